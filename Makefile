@@ -1,0 +1,72 @@
+# The two commands: `make demo` runs the main job, `make test` passes the tests.
+# Both set everything up in .venv first; nothing outside this folder is touched.
+
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+SHELL := /bin/sh
+
+VENV := .venv
+BIN := $(VENV)/bin
+READY := $(VENV)/.ready
+DEMO := build/demo
+
+# The first interpreter that is 3.11 or newer; `make PYTHON=/path/to/python3` overrides.
+PYTHON ?= $(shell for p in python3.11 python3.12 python3.13 python3; do \
+	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; \
+	done)
+
+.PHONY: help setup demo test check bench lock clean
+
+help:
+	@echo "make demo   optimise a sample part and show what changed"
+	@echo "make test   run the tests"
+	@echo "make check  formatting, lint, types, layers"
+	@echo "make bench  speed, side by side with peers"
+	@echo "make setup  only install into $(VENV)"
+
+setup: $(READY)
+
+$(READY): requirements.lock pyproject.toml
+	@test -n "$(PYTHON)" || { echo "error: Python 3.11 or newer is needed: apt-get install python3 python3-venv" >&2; exit 1; }
+	@"$(PYTHON)" -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || \
+		{ echo "error: $(PYTHON) is older than Python 3.11: apt-get install python3 python3-venv" >&2; exit 1; }
+	@if command -v uv >/dev/null 2>&1; then \
+		uv venv --quiet --allow-existing --python "$(PYTHON)" $(VENV) && \
+		VIRTUAL_ENV=$(VENV) uv pip sync --quiet --require-hashes requirements.lock && \
+		VIRTUAL_ENV=$(VENV) uv pip install --quiet --no-deps --no-build-isolation --editable . ; \
+	else \
+		"$(PYTHON)" -c 'import ensurepip, venv' 2>/dev/null || \
+			{ echo "error: the venv module is missing: apt-get install python3-venv" >&2; exit 1; }; \
+		"$(PYTHON)" -m venv $(VENV) && \
+		$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes -r requirements.lock && \
+		$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable . ; \
+	fi
+	@touch $@
+
+demo: $(READY)
+	@mkdir -p $(DEMO)
+	$(BIN)/stepnc check examples/parts/bracket.stpnc
+	$(BIN)/optimise examples/parts/bracket.stpnc --mode TC --machine vmc15 \
+		-o $(DEMO)/bracket.optimised.stpnc --report $(DEMO)/bracket.html
+	$(BIN)/optimise examples/parts/paper002.stpnc --mode TC --machine paper002 --json \
+		-o $(DEMO)/paper002.optimised.stpnc
+
+test: $(READY)
+	$(BIN)/python -m pytest -n auto
+
+check: $(READY)
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+bench: $(READY)
+	$(BIN)/python -m benchmarks
+
+# Needs uv. Universal (every platform, Python 3.11 and later), hashes, no index addresses.
+lock:
+	uv pip compile pyproject.toml --extra dev --universal --python-version 3.11 --generate-hashes \
+		--no-emit-index-url --no-emit-find-links --no-header --quiet -o requirements.lock
+
+clean:
+	rm -rf $(VENV) build *.egg-info .mypy_cache .pytest_cache .ruff_cache .hypothesis .import_linter_cache

@@ -1,0 +1,1 @@
+"""What to do now: the feed override from the measured force."""

@@ -1,0 +1,1 @@
+"""What was: outcomes, evaluation tables, corrections."""

@@ -1,0 +1,1 @@
+"""What should be: the best feed within the physics."""

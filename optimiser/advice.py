@@ -1,0 +1,120 @@
+"""What the optimiser says of a workingstep, and of a whole program."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from optimiser.cut import Cut
+from optimiser.limit import Limit, LimitName
+from optimiser.modes import Mode
+from optimiser.problem import Setting
+from simulator.spec import Machine, MaterialMatch
+from stepnc_model.errors import Finding
+from stepnc_model.program import Workingstep
+from stepnc_model.technology import Programmed
+from stepnc_model.tool import Tool
+
+
+class Status(StrEnum):
+    """What became of a workingstep."""
+
+    ADVISED = "advised"
+    UNTOUCHED = "untouched"
+    """the program forbids it, or no feed is to be chosen; said why"""
+    INFEASIBLE = "infeasible"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Load:
+    """One limit at one setting."""
+
+    limit: Limit
+    value: float
+    """canonical unit"""
+    bound: float
+    """canonical unit"""
+
+    @property
+    def margin(self) -> float:
+        """Share of the bound that is left; negative when it is passed."""
+        sign = 1.0 if self.limit.sense.value == "at most" else -1.0
+        return sign * (self.bound - self.value) / self.bound
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class State:
+    """A setting and what it does."""
+
+    setting: Setting
+    feed: float
+    """mm/s"""
+    time: float
+    """s"""
+    energy: float
+    """J"""
+    motor_power: float
+    """W"""
+    cutting_force: float
+    """N"""
+    roughness: float | None
+    """Ra in mm; ``None`` where the feed does not describe it"""
+    loads: tuple[Load, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Point:
+    """One point of the front between time, roughness and energy."""
+
+    state: State
+    roughness_bound: float | None
+    """Ra in mm that this point had to keep"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Advice:
+    """Advice for one workingstep."""
+
+    workingstep: Workingstep
+    tool: Tool
+    programmed: Programmed
+    status: Status
+    reason: str
+    """one sentence: what holds the feed, why it was not touched, or what conflicts"""
+    cut: Cut | None
+    before: State | None
+    after: State | None
+    active: LimitName | None = None
+    saving_of_one_more: float = 0.0
+    """s saved by one more step of the active limit"""
+    deepest_first_time: float | None = None
+    """s with the fewest passes"""
+    prices: tuple[tuple[LimitName, float], ...] = ()
+    """relative fall of the cost for a relative rise of the bound"""
+    front: tuple[Point, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Plan:
+    """Advice for a program."""
+
+    program: str
+    mode: Mode
+    machine: Machine
+    material: MaterialMatch
+    advices: tuple[Advice, ...]
+    findings: tuple[Finding, ...]
+
+    @property
+    def is_infeasible(self) -> bool:
+        """Whether some workingstep has no feasible setting."""
+        return any(advice.status is Status.INFEASIBLE for advice in self.advices)
+
+    @property
+    def time_before(self) -> float:
+        """Seconds as programmed, of the workingsteps whose time is known."""
+        return sum(advice.before.time for advice in self.advices if advice.before)
+
+    @property
+    def time_after(self) -> float:
+        """Seconds as advised."""
+        states = (advice.after or advice.before for advice in self.advices)
+        return sum(state.time for state in states if state)

@@ -1,0 +1,71 @@
+"""One cut as the limits see it: geometry, tool and what is programmed, for one workingstep.
+
+Whoever makes a :class:`Cut` (an estimate from the feature, or a tool path with the stock) knows
+the part; the limits know the physics; the mathematics knows neither. Units: mm, rad, s, rev/s.
+"""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from optimiser.problem import Setting
+from simulator.physics.engagement import Engagement
+from simulator.spec import ToolKind
+from stepnc_model.tool import Tool
+
+
+class CutKind(StrEnum):
+    """Which physics applies."""
+
+    MILLING = "milling"
+    DRILLING = "drilling"
+    TURNING = "turning"
+    GROOVING = "grooving"
+
+
+class Texture(StrEnum):
+    """How the feed marks the finished surface."""
+
+    CORNER_PER_REVOLUTION = "corner, one high tooth"
+    """a turning insert, or the highest insert of a face mill"""
+    CORNER_PER_TOOTH = "corner, all teeth equal"
+    """the corner of a solid end mill"""
+    WALL = "wall"
+    """the side of an end mill"""
+    NONE = "not described by the feed"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Cut:
+    """What one workingstep cuts."""
+
+    kind: CutKind
+    tool: Tool
+    tool_kind: ToolKind
+    diameter: float
+    """mm at which the cutting speed is taken: of the tool, or mean one of the workpiece"""
+    programmed: Setting
+    length: float
+    """mm at cutting feed in one pass, approach and overrun included"""
+    total_depth: float
+    """mm to remove, all passes together"""
+    is_depth_free: bool
+    """whether another number of passes would make the same part"""
+    engagement: Engagement | None = None
+    """of a milling cutter"""
+    radial_width: float = 0.0
+    """a_e of a milling cutter, width of a grooving insert"""
+    previous_diameter: float = 0.0
+    """mm, of the hole before a drill, reamer or boring bar"""
+    link_length: float = 0.0
+    """mm at rapid in one pass"""
+    texture: Texture = Texture.NONE
+    corner_radius: float = 0.0
+    """mm, the radius that marks the surface"""
+    is_finishing: bool = False
+    """this workingstep leaves the surface"""
+    is_finish_operation: bool = False
+    """the operation is a finish by its kind, not only the last on its feature"""
+    depth_bound: float | None = None
+    """greatest depth of one pass that the tool allows, mm"""
+    floor: "Cut | None" = None
+    """the floor that is swept once, at its own depth, by an operation that cuts walls"""

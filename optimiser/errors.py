@@ -1,0 +1,37 @@
+"""Errors of the optimiser; the tree is drawn in :mod:`stepnc_model.errors`."""
+
+from stepnc_model.errors import StepNcError
+
+
+class OptimisationError(StepNcError):
+    """No best feed could be found."""
+
+
+class Infeasible(OptimisationError):
+    """Two limits exclude each other.
+
+    Parameters
+    ----------
+    message : str
+        The limits that conflict, with their numbers and units.
+    limits : tuple of str
+        Names of the limits that conflict.
+    """
+
+    def __init__(self, message: str, *, limits: tuple[str, ...]) -> None:
+        super().__init__(message)
+        self.limits = limits
+
+
+class SolverFailed(OptimisationError):
+    """The convex solver gave no optimum.
+
+    Parameters
+    ----------
+    status : str
+        What the solver said.
+    """
+
+    def __init__(self, status: str) -> None:
+        super().__init__(f"the geometric program has no solution: {status}")
+        self.status = status

@@ -1,0 +1,254 @@
+"""Cuts of turning operations, estimated from the feature and the bar.
+
+The cutting speed is taken at the mean diameter of what is removed: a lathe at constant cutting
+speed has it everywhere, one at constant spindle speed on average.
+"""
+
+from dataclasses import dataclass
+from math import hypot
+
+from optimiser.cut import Cut, CutKind, Texture
+from optimiser.estimate import earlier_operations, passes_for
+from optimiser.problem import Setting
+from optimiser.region import points_of, size
+from simulator.spec import ToolKind
+from stepnc_model.entities.entity import Entity
+from stepnc_model.entities.geometry import RightCircularCylinder
+from stepnc_model.entities.profiles import SquareUProfile
+from stepnc_model.entities.turning import (
+    Contouring,
+    ContouringFinish,
+    CuttingIn,
+    Facing,
+    FacingFinish,
+    Grooving,
+    TurningMachiningOperation,
+)
+from stepnc_model.entities.turning_features import (
+    GeneralRevolution,
+    Groove,
+    OuterDiameter,
+    OuterDiameterToShoulder,
+    RevolvedFlat,
+)
+from stepnc_model.errors import Finding, Severity
+from stepnc_model.part21.values import Ref
+from stepnc_model.program import Program, Workingstep
+from stepnc_model.tool import Tool
+
+CLEARANCE = 2.0
+"""mm between the start of the feed and the workpiece, customary"""
+
+FALLBACK_DEPTH = 1.0
+"""mm of one pass when neither strategy nor allowance says how much is removed"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Revolved:
+    """A turning feature: radii in mm, and the length of its contour."""
+
+    inner_radius: float
+    outer_radius: float
+    length: float
+
+
+def mean_diameter(program: Program, step: Workingstep) -> float:
+    """Diameter in mm at which the cutting speed of a turning workingstep is taken."""
+    shape = _shape(program, step)
+    return shape.inner_radius + shape.outer_radius
+
+
+def turning_cut(
+    program: Program, step: Workingstep, tool: Tool, *, speed: float, feed: float
+) -> tuple[Cut, tuple[Finding, ...]]:
+    """Cut of a turning workingstep; parameters as :func:`optimiser.estimate.milling_cut`."""
+    operation = step.operation
+    shape = _shape(program, step)
+    if isinstance(operation, Grooving):
+        return _grooving_cut(program, step, tool, speed=speed, feed=feed), ()
+    if not isinstance(operation, (Facing, Contouring)):
+        raise program.error(
+            f"{step.operation_type}: no cutting model describes it", step.operation_ref
+        )
+    total, depth, findings = _depths(program, step, operation, shape)
+    across = shape.outer_radius - shape.inner_radius
+    length = across if isinstance(operation, Facing) else shape.length
+    overcut = getattr(_strategy(program, operation), "overcut_length", None) or 0.0
+    retract = operation.retract_plane or 0.0
+    is_finish = isinstance(operation, (FacingFinish, ContouringFinish))
+    cut = Cut(
+        kind=CutKind.TURNING,
+        tool=tool,
+        tool_kind=ToolKind.TURNING,
+        diameter=shape.inner_radius + shape.outer_radius,
+        programmed=Setting(
+            feed=feed, depth=depth, passes=passes_for(total, depth), speed=speed
+        ),
+        length=length + CLEARANCE + overcut,
+        total_depth=total,
+        is_depth_free=not is_finish,
+        link_length=length + 2.0 * retract,
+        texture=Texture.CORNER_PER_REVOLUTION if tool.corner_radius else Texture.NONE,
+        corner_radius=tool.corner_radius or 0.0,
+        is_finishing=step.is_last_on_feature or is_finish,
+        is_finish_operation=is_finish,
+        depth_bound=tool.cutting_edge_length,
+    )
+    return cut, findings
+
+
+def _grooving_cut(
+    program: Program, step: Workingstep, tool: Tool, *, speed: float, feed: float
+) -> Cut:
+    """A groove made by plunging, or a cut-off."""
+    shape = _shape(program, step)
+    width = tool.width
+    if not width:
+        raise program.error("a grooving tool needs its cutting width", step.tool_ref)
+    infeed = shape.outer_radius - shape.inner_radius
+    is_off = isinstance(step.operation, CuttingIn)
+    plunges = 1 if is_off else passes_for(shape.length, width)
+    retract = step.operation.retract_plane or 0.0
+    return Cut(
+        kind=CutKind.GROOVING,
+        tool=tool,
+        tool_kind=ToolKind.GROOVING,
+        diameter=shape.inner_radius + shape.outer_radius,
+        programmed=Setting(feed=feed, depth=infeed, passes=plunges, speed=speed),
+        length=infeed + CLEARANCE,
+        total_depth=infeed * plunges,
+        is_depth_free=False,
+        radial_width=width,
+        link_length=infeed + 2.0 * retract,
+        is_finishing=step.is_last_on_feature,
+    )
+
+
+def _depths(
+    program: Program, step: Workingstep, operation: TurningMachiningOperation, shape: Revolved
+) -> tuple[float, float, tuple[Finding, ...]]:
+    """Total depth and programmed depth of one pass, mm."""
+    allowance = getattr(operation, "allowance", None) or 0.0
+    left = [
+        getattr(earlier, "allowance", None) or 0.0
+        for _, earlier in earlier_operations(program, step)
+        if isinstance(earlier, type(operation).__mro__[1])
+    ]
+    written = getattr(_strategy(program, operation), "cutting_depth", None) or ()
+    if isinstance(operation, (FacingFinish, ContouringFinish)) and left and left[-1] > 0.0:
+        total = left[-1] - allowance
+    elif isinstance(operation, Facing):
+        total = _stock_in_front(program) - allowance
+    else:
+        total = _bar_radius(program, shape) - shape.inner_radius - allowance
+    findings: tuple[Finding, ...] = ()
+    if total <= 0.0:
+        total = written[0] if written else FALLBACK_DEPTH
+        text = f"how much is removed cannot be told from the bar: {total:g} mm assumed"
+        findings = (program.finding(Severity.WARNING, text, step.operation_ref),)
+    depth = min(written[0], total) if written else total
+    return total, depth, findings
+
+
+def _strategy(program: Program, operation: TurningMachiningOperation) -> Entity | None:
+    """Strategy of an operation, if it has one."""
+    reference = operation.its_machining_strategy
+    return program.get(reference) if reference is not None else None
+
+
+def _bar(program: Program) -> RightCircularCylinder | None:
+    """The bar that the part is turned from."""
+    workpiece = program.workpiece()
+    reference = workpiece.its_bounding_geometry if workpiece is not None else None
+    if reference is None:
+        return None
+    bounding = program.get(reference)
+    return bounding if isinstance(bounding, RightCircularCylinder) else None
+
+
+def _bar_radius(program: Program, shape: Revolved) -> float:
+    """Radius of the bar, or of the feature's own outside when there is none."""
+    return _bar_radius_or(program, shape.outer_radius)
+
+
+def _bar_radius_or(program: Program, radius: float) -> float:
+    """Radius of the bar, or a radius when there is no bar."""
+    bar = _bar(program)
+    return bar.radius if bar is not None else radius
+
+
+def _stock_in_front(program: Program) -> float:
+    """Length in mm of the bar in front of the workpiece's zero."""
+    bar = _bar(program)
+    if bar is None:
+        return 0.0
+    start = program.get(program.get(bar.position).location).coordinates[2]
+    return float(start + bar.height)
+
+
+def _shape(program: Program, step: Workingstep) -> Revolved:
+    """All features of the workingstep together."""
+    if not step.features:
+        raise program.error("has no feature: nothing tells what to turn", step.ref)
+    shapes = [_revolved(program, feature) for feature in step.features]
+    outer = max(shape.outer_radius for shape in shapes)
+    if isinstance(step.operation, Contouring):
+        bar = _bar(program)
+        outer = max(outer, bar.radius if bar is not None else 0.0)
+    return Revolved(
+        inner_radius=min(shape.inner_radius for shape in shapes),
+        outer_radius=outer,
+        length=sum(shape.length for shape in shapes),
+    )
+
+
+def _revolved(program: Program, ref: Ref[Entity]) -> Revolved:
+    """Radii and length of one feature."""
+    feature = program.get(ref)
+    if isinstance(feature, OuterDiameter):
+        radius = 0.5 * size(program, feature.diameter_at_placement)
+        length = size(program, feature.feature_length)
+        return Revolved(inner_radius=radius, outer_radius=radius, length=length)
+    if isinstance(feature, OuterDiameterToShoulder):
+        radius = 0.5 * size(program, feature.diameter_at_placement)
+        return Revolved(inner_radius=radius, outer_radius=radius, length=radius)
+    if isinstance(feature, RevolvedFlat):
+        edge = program.get(program.get(feature.flat_edge_shape).profile_length)
+        length = float(edge.its_parameter_value)
+        return Revolved(
+            inner_radius=feature.radius, outer_radius=feature.radius + length, length=length
+        )
+    if isinstance(feature, GeneralRevolution):
+        points = list(points_of(program, program.get(feature.outer_edge_profile).its_profile))
+        return _contour(points, feature.radius)
+    if isinstance(feature, Groove):
+        return _groove(program, feature)
+    raise program.error("a turning feature of this kind cannot be estimated", ref)
+
+
+def _contour(points: list[tuple[float, float, float]], offset: float) -> Revolved:
+    """Polyline in the x, z half plane."""
+    radii = [offset + hypot(point[0], point[1]) for point in points]
+    heights = [point[2] for point in points]
+    return Revolved(
+        inner_radius=min(radii),
+        outer_radius=max(radii),
+        length=max(heights) - min(heights),
+    )
+
+
+def _groove(program: Program, feature: Groove) -> Revolved:
+    """A groove from the surface above it to its radius."""
+    profile = program.get(feature.sweep)
+    if not isinstance(profile, SquareUProfile):
+        raise program.error("a groove of this profile cannot be estimated", feature.sweep)
+    radii = [
+        0.5 * size(program, other.diameter_at_placement)
+        for _, other in program.model.of_type(OuterDiameter)
+    ]
+    above = [radius for radius in radii if radius > feature.radius]
+    return Revolved(
+        inner_radius=feature.radius,
+        outer_radius=min(above, default=_bar_radius_or(program, feature.radius)),
+        length=size(program, profile.width),
+    )

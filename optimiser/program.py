@@ -1,0 +1,308 @@
+"""The geometric program of one workingstep: the general method, and the judge of the fast one.
+
+For a given number of passes every limit is a posynomial in the feed per tooth f and the spindle
+speed n, and so are machining time, Taylor tool changes and energy. In logarithms the program is
+convex, so what the solver finds is the optimum, and its dual variables are the marginal prices
+of the limits: the relative rise of the cost for a relative fall of the bound. The program is
+compiled once with parameters; a solve only sets them.
+
+S. Boyd, S.-J. Kim, L. Vandenberghe, A. Hassibi, "A tutorial on geometric programming", Optim.
+Eng. 8 (2007) 67–127, §§ 2 and 3.3. Only home of cvxpy.
+"""
+
+import warnings
+from dataclasses import dataclass, replace
+from functools import cache
+
+import cvxpy as cp
+
+from optimiser.errors import Infeasible, OptimisationError, SolverFailed
+from optimiser.limit import Limit, LimitName, Monomial, Sense
+from optimiser.modes import Mode
+from optimiser.problem import Problem, Setting
+from optimiser.workingstep import TIE, conflict, limits_at
+
+ROWS = 16
+"""limits that one program can hold"""
+
+ABSENT = 1e-12
+"""weight of a term that is not there: a posynomial knows no zero"""
+
+PRECISION = {"tol_gap_abs": 1e-7, "tol_gap_rel": 1e-7, "tol_feas": 1e-8, "max_iter": 200}
+"""relative, of the logarithm of the cost: what Clarabel reaches on every case tried"""
+
+UNIT_FEEDS = (1.0, 3.0, 0.3)
+"""units of the feed tried in turn, over the programmed feed, should one be ill-conditioned"""
+
+TERMS = 4
+"""monomials of the cost: standby, idling, chip and edge energy, or time and tool changes"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Optimum:
+    """What the solver found for one number of passes."""
+
+    setting: Setting
+    cost: float
+    """s or J"""
+    prices: dict[LimitName, float]
+    """−d ln(cost) / d ln(bound) of each limit, dimensionless; zero when it does not bind"""
+
+
+@dataclass(frozen=True, slots=True)
+class _Row:
+    """Parameters of one limit: ``c·f^α·n^γ + e·n^γ ≤ 1``."""
+
+    coefficient: cp.Parameter
+    offset: cp.Parameter
+    feed_exponent: cp.Parameter
+    speed_exponent: cp.Parameter
+
+
+@dataclass(frozen=True, slots=True)
+class _Unit:
+    """What one of the program's variables stands for, mm and rev/s, so that it is of order one.
+
+    A fixed speed leaves the program by exponents of zero: an interior point needs an inside.
+    """
+
+    feed: float
+    speed: float
+    is_fixed: bool
+
+
+class GeometricProgram:
+    """The compiled program; a solve sets its parameters (so it is not shared by threads)."""
+
+    def __init__(self) -> None:
+        self._feed = cp.Variable(pos=True)
+        self._speed = cp.Variable(pos=True)
+        self._least_speed = cp.Parameter(pos=True)
+        self._greatest_speed = cp.Parameter(pos=True)
+        self._terms = [
+            (cp.Parameter(pos=True), cp.Parameter(), cp.Parameter()) for _ in range(TERMS)
+        ]
+        self._rows = [
+            _Row(cp.Parameter(pos=True), cp.Parameter(pos=True), cp.Parameter(), cp.Parameter())
+            for _ in range(ROWS)
+        ]
+        cost = sum(
+            weight * self._feed**feed * self._speed**speed
+            for weight, feed, speed in self._terms
+        )
+        self._held = [
+            row.coefficient * self._feed**row.feed_exponent * self._speed**row.speed_exponent
+            + row.offset * self._speed**row.speed_exponent
+            <= 1.0
+            for row in self._rows
+        ]
+        self._problem = cp.Problem(
+            cp.Minimize(cost),
+            [
+                *self._held,
+                self._speed >= self._least_speed,
+                self._speed <= self._greatest_speed,
+            ],
+        )
+
+    def solve(
+        self, problem: Problem, mode: Mode, *, passes: int, depth: float, stretch: int = 0
+    ) -> Optimum:
+        """Optimum for one number of passes on one stretch of the spindle's curve.
+
+        Parameters
+        ----------
+        problem : Problem
+        mode : Mode
+        passes : int
+        depth : float
+            mm, depth of each pass.
+        stretch : int
+            Index into ``problem.stretches``.
+
+        Returns
+        -------
+        Optimum
+
+        Raises
+        ------
+        Infeasible
+            When the limits exclude each other at this depth.
+        SolverFailed
+            When the solver gives no optimum for another reason.
+        """
+        limits = [
+            limit
+            for limit in problem.limits + problem.stretches[stretch]
+            if limit.load.feed_exponent > 0.0
+        ]
+        terms = _cost_terms(problem, mode, passes=passes, depth=depth)
+        speeds = problem.speeds[stretch : stretch + 2]
+        for unit_feed in UNIT_FEEDS:
+            unit = _Unit(unit_feed * problem.programmed.feed, speeds[0], len(speeds) == 1)
+            self._set_speeds(speeds)
+            self._set_rows(limits, depth=depth, unit=unit)
+            worth = self._set_terms(terms, unit=unit)
+            status = self._attempt()
+            if status in {cp.INFEASIBLE, cp.INFEASIBLE_INACCURATE}:
+                raise conflict(problem)
+            if status == cp.OPTIMAL:
+                break
+        else:
+            raise SolverFailed(status)
+        setting = Setting(
+            feed=unit.feed * float(self._feed.value),
+            depth=depth,
+            passes=passes,
+            speed=unit.speed * (1.0 if unit.is_fixed else float(self._speed.value)),
+        )
+        standby = problem.cost.standby_power if mode is Mode.EC else 1.0
+        programmed = worth * float(self._problem.value)
+        cost = programmed + passes * problem.cost.link_time * standby
+        # The constant link time is no part of the program: its prices shrink by that share.
+        prices = {
+            limit.name: float(held.dual_value) * programmed / cost
+            for limit, held in zip(limits, self._held, strict=False)
+        }
+        return Optimum(setting=setting, cost=cost, prices=prices)
+
+    def _attempt(self) -> str:
+        """Solve what the parameters say; the solver's own word for the outcome."""
+        with warnings.catch_warnings():
+            warnings.filterwarnings("ignore", message="Solution may be inaccurate")
+            try:
+                self._problem.solve(gp=True, solver=cp.CLARABEL, enforce_dpp=True, **PRECISION)
+            except cp.error.SolverError:
+                return "solver_error"
+        return str(self._problem.status)
+
+    def _set_speeds(self, speeds: tuple[float, ...]) -> None:
+        """Bounds of the speed over its unit; a fixed one needs an inside all the same."""
+        self._least_speed.value = 1.0
+        self._greatest_speed.value = speeds[-1] / speeds[0] if len(speeds) > 1 else 2.0
+
+    def _set_rows(self, limits: list[Limit], *, depth: float, unit: _Unit) -> None:
+        """One row a limit; rows left over hold always."""
+        if len(limits) > ROWS:
+            raise OptimisationError(f"{len(limits)} limits exceed the {ROWS} of the program")
+        for row, limit in zip(self._rows, limits, strict=False):
+            load, sign = limit.load, 1.0 if limit.sense is Sense.AT_MOST else -1.0
+            exponent = load.speed_exponent - limit.bound_speed_exponent
+            scale = depth**load.depth_exponent * unit.speed**exponent / limit.bound
+            chip = unit.feed**load.feed_exponent
+            if sign < 0.0 and load.offset:
+                raise OptimisationError(f"{limit.name.words} with an offset is no posynomial")
+            row.coefficient.value = (load.coefficient * scale * chip) ** sign
+            row.offset.value = max(load.offset * scale, ABSENT)
+            row.feed_exponent.value = sign * load.feed_exponent
+            row.speed_exponent.value = 0.0 if unit.is_fixed else sign * exponent
+        for row in self._rows[len(limits) :]:
+            row.coefficient.value = row.offset.value = ABSENT
+            row.feed_exponent.value = row.speed_exponent.value = 0.0
+
+    def _set_terms(self, terms: list[tuple[float, float, float]], *, unit: _Unit) -> float:
+        """Weights and exponents of the cost; returns what a cost of one is worth."""
+        weights = [
+            weight * unit.feed**feed * unit.speed**speed for weight, feed, speed in terms
+        ]
+        worth = float(sum(weights))
+        rows = [
+            (max(weight / worth, ABSENT), feed, 0.0 if unit.is_fixed else speed)
+            for weight, (_, feed, speed) in zip(weights, terms, strict=True)
+        ]
+        rows += [(ABSENT, 0.0, 0.0)] * (TERMS - len(rows))
+        for parameters, values in zip(self._terms, rows, strict=True):
+            for parameter, value in zip(parameters, values, strict=True):
+                parameter.value = value
+        return worth
+
+
+@cache
+def program() -> GeometricProgram:
+    """The one compiled program of this process."""
+    return GeometricProgram()
+
+
+def solve(problem: Problem, mode: Mode) -> Optimum:
+    """Optimum over all numbers of passes and all stretches of the spindle's curve.
+
+    The cost is convex in the logarithm of the number of passes, so the search ends at the
+    first rise.
+
+    Parameters
+    ----------
+    problem : Problem
+    mode : Mode
+
+    Returns
+    -------
+    Optimum
+
+    Raises
+    ------
+    Infeasible
+        When no number of passes keeps all limits.
+    """
+    best: Optimum | None = None
+    for passes in range(problem.deepest(), problem.passes[1] + 1):
+        depth = problem.total_depth / passes
+        if problem.passes[0] == problem.passes[1]:
+            depth = problem.programmed.depth
+        found = _best_stretch(problem, mode, passes=passes, depth=depth)
+        if found is None:
+            continue
+        if best is not None and found.cost > best.cost * (1.0 + 100.0 * TIE):
+            break
+        if best is None or found.cost < best.cost:
+            best = found
+    if best is None:
+        raise conflict(problem)
+    return best
+
+
+def snapped(problem: Problem, optimum: Optimum) -> Setting:
+    """The solver's setting with its feed put on the nearest cap: feasible to the last digit."""
+    at = optimum.setting
+    speed = min(max(at.speed, problem.speeds[0]), problem.speeds[-1])
+    caps = [
+        limit.feed_at_bound(at.depth, speed)
+        for limit in limits_at(problem, speed)
+        if limit.sense is Sense.AT_MOST
+    ]
+    return replace(at, feed=min(caps), speed=speed)
+
+
+def _best_stretch(problem: Problem, mode: Mode, *, passes: int, depth: float) -> Optimum | None:
+    """Best of the stretches of the spindle's curve, or None when none is feasible."""
+    best: Optimum | None = None
+    for stretch in range(len(problem.stretches)):
+        try:
+            found = program().solve(problem, mode, passes=passes, depth=depth, stretch=stretch)
+        except Infeasible:
+            continue
+        if best is None or found.cost < best.cost:
+            best = found
+    return best
+
+
+def _cost_terms(
+    problem: Problem, mode: Mode, *, passes: int, depth: float
+) -> list[tuple[float, float, float]]:
+    """Monomials (weight, exponent of f, exponent of n) of time or energy."""
+    cost = problem.cost
+    stroke = cost.travel(passes) / cost.teeth
+    wear = cost.wear_rate or Monomial(coefficient=0.0)
+    if mode is not Mode.EC:
+        changes = stroke * cost.tool_change * wear.coefficient
+        return [
+            (stroke, -1.0, -1.0),
+            (changes, wear.feed_exponent - 1.0, wear.speed_exponent - 1.0),
+        ]
+    cut = cost.motor_power
+    scale = stroke * depth**cut.depth_exponent
+    return [
+        (stroke * cost.standby_power, -1.0, -1.0),
+        (stroke * cost.standby_power_per_speed, -1.0, 0.0),
+        (scale * cut.coefficient, cut.feed_exponent - 1.0, cut.speed_exponent - 1.0),
+        (scale * cut.offset, -1.0, cut.speed_exponent - 1.0),
+    ]

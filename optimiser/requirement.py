@@ -1,0 +1,47 @@
+"""The roughness that a program asks of a surface.
+
+ISO 14649-10 ``surface_texture_parameter`` on ``machined_surface``. The standard leaves the unit
+to the reader; profiles are told in micrometres everywhere, so the value is read as µm.
+"""
+
+from stepnc_model.entities.enums import BottomOrSide
+from stepnc_model.entities.milling import PlaneMilling, SideMilling
+from stepnc_model.entities.surfaces import SurfaceTextureParameter
+from stepnc_model.program import Program, Workingstep
+from stepnc_model.units import mm_from_um
+
+RZ_PER_RA = 4.0
+"""customary ratio; see :mod:`simulator.physics.surface`"""
+
+
+def required_roughness(program: Program, step: Workingstep) -> float | None:
+    """Smallest Ra in mm asked of a surface that this workingstep leaves, or None."""
+    mine = {int(feature) for feature in step.features}
+    asked = [
+        _arithmetic(texture)
+        for _, texture in program.model.of_type(SurfaceTextureParameter)
+        for surface in map(program.get, texture.applied_surfaces)
+        if int(surface.its_machining_feature) in mine and _leaves(step, surface.surface_element)
+    ]
+    known = [value for value in asked if value is not None]
+    return min(known) if known else None
+
+
+def _arithmetic(texture: SurfaceTextureParameter) -> float | None:
+    """Ra in mm; None for a parameter that is neither Ra nor Rz."""
+    name = texture.parameter_name.strip().upper()
+    value = texture.its_value
+    if value is None or value <= 0.0:
+        return None
+    if name in {"RA", "R"}:
+        return mm_from_um(value)
+    return mm_from_um(value) / RZ_PER_RA if name == "RZ" else None
+
+
+def _leaves(step: Workingstep, element: BottomOrSide | None) -> bool:
+    """Whether the operation makes the bottom or the side that is meant."""
+    if isinstance(step.operation, PlaneMilling):
+        return element is not BottomOrSide.SIDE
+    if isinstance(step.operation, SideMilling):
+        return element is not BottomOrSide.BOTTOM
+    return True

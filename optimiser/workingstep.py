@@ -1,0 +1,281 @@
+"""The exact optimum of one workingstep: one feed, depth, integer passes and spindle speed.
+
+For k passes the depth is H/k and everything is monomial. Time and energy fall with the feed,
+so at a given speed the best feed is its smallest cap: a closed form. When the speed is free
+the best point of k is a vertex of the feasible polygon in (ln f, ln n), since along every edge
+both costs fall with the feed; all vertices are tried.
+
+The cost of the best point is a convex function of ln k (it is the value of a geometric
+program), so trying k = k_min, k_min + 1, … may stop at the first rise: exact, no rounding of a
+relaxed answer. Ties keep what was programmed.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from itertools import combinations
+from math import exp, inf, log
+
+from optimiser.errors import Infeasible, OptimisationError
+from optimiser.limit import ROUNDING, Limit, LimitName, Sense
+from optimiser.modes import Mode
+from optimiser.problem import Problem, Setting
+
+TIE = 1e-9
+"""relative difference of cost below which two settings are equally good"""
+
+BISECTIONS = 80
+"""halvings that bring any bracket of ln n below the rounding of a float"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Solution:
+    """The best setting and what holds it there."""
+
+    setting: Setting
+    time: float
+    """s"""
+    energy: float
+    """J"""
+    active: LimitName
+    """the limit that holds the feed"""
+    limits: tuple[Limit, ...]
+    """all limits that apply at this setting"""
+    deepest_first_time: float
+    """s, had the fewest passes been chosen; equal to ``time`` when they are the best"""
+
+
+def solve(problem: Problem, mode: Mode) -> Solution:
+    """Best setting of a workingstep.
+
+    Parameters
+    ----------
+    problem : Problem
+    mode : Mode
+        ``EC`` minimises energy; ``TC`` and ``QC`` minimise time (they differ in their limits).
+
+    Returns
+    -------
+    Solution
+
+    Raises
+    ------
+    Infeasible
+        When no number of passes keeps all limits; names the two that conflict.
+    OptimisationError
+        When nothing limits the feed.
+    """
+    cost = cost_function(problem, mode)
+    best: Setting | None = None
+    first: Setting | None = None
+    for setting in _best_by_passes(problem, cost):
+        first = first or setting
+        if best is not None and cost(setting) > cost(best) * (1.0 + TIE):
+            break
+        if best is None or cost(setting) < cost(best) * (1.0 - TIE):
+            best = setting
+    kept = _best_at(problem, problem.programmed.passes, problem.programmed.depth, cost)
+    if (
+        kept is not None
+        and _may_keep(problem)
+        and (best is None or cost(kept) <= cost(best) * (1.0 + TIE))
+    ):
+        best = kept
+    if best is None:
+        raise conflict(problem)
+    return settled(problem, best, first)
+
+
+def cost_function(problem: Problem, mode: Mode) -> Callable[[Setting], float]:
+    """Seconds or joules, whichever the mode wants least."""
+    return problem.cost.energy if mode is Mode.EC else problem.cost.time
+
+
+def limits_at(problem: Problem, speed: float) -> tuple[Limit, ...]:
+    """All limits that apply at one spindle speed."""
+    for index, limits in enumerate(problem.stretches):
+        if index + 1 >= len(problem.speeds) or speed <= problem.speeds[index + 1]:
+            return problem.limits + limits
+    return problem.limits + problem.stretches[-1]
+
+
+def conflict(problem: Problem) -> Infeasible:
+    """The two limits that exclude each other at the depth that comes nearest to both."""
+    passes, speed = problem.passes[1], problem.programmed.speed
+    depth = problem.total_depth / passes
+    limits = limits_at(problem, speed)
+    caps = [limit for limit in limits if limit.sense is Sense.AT_MOST]
+    floors = [limit for limit in limits if limit.sense is Sense.AT_LEAST]
+    for limit in caps:
+        if limit.name is LimitName.AXIAL_DEPTH and not limit.holds(1.0, depth, speed):
+            return Infeasible(
+                f"{told(limit, limit.load.value(1.0, depth, speed), speed)}, and the number "
+                f"of passes is not free",
+                limits=(limit.name,),
+            )
+    cap = min(caps, key=lambda limit: limit.feed_at_bound(depth, speed))
+    floor = max(
+        (limit for limit in floors if limit.load.feed_exponent),
+        key=lambda limit: limit.feed_at_bound(depth, speed),
+        default=cap,
+    )
+    highest, lowest = cap.feed_at_bound(depth, speed), floor.feed_at_bound(depth, speed)
+    return Infeasible(
+        f"{cap.name.words} allows a feed of at most {highest:.4g} mm/tooth"
+        f" ({cap.sense} {cap.bound_at(speed) * cap.scale:.4g} {cap.unit}),"
+        f" {floor.name.words} needs at least {lowest:.4g} mm/tooth"
+        f" ({floor.sense} {floor.bound_at(speed) * floor.scale:.4g} {floor.unit}),"
+        f" at a depth of {depth:.4g} mm in {passes} passes",
+        limits=(cap.name, floor.name),
+    )
+
+
+def told(limit: Limit, load: float, speed: float) -> str:
+    """One limit with its numbers: 'axial depth 6 mm exceeds 5 mm'."""
+    verb = "exceeds" if limit.sense is Sense.AT_MOST else "is below"
+    return (
+        f"{limit.name.words} {load * limit.scale:.4g} {limit.unit} {verb} "
+        f"{limit.bound_at(speed) * limit.scale:.4g} {limit.unit}"
+    )
+
+
+def widened(problem: Problem, name: LimitName, *, by_factor: float) -> Problem:
+    """The same problem with the bound of one limit multiplied."""
+
+    def wider(limit: Limit) -> Limit:
+        if limit.name is not name:
+            return limit
+        return replace(limit, bound=limit.bound * by_factor)
+
+    return replace(
+        problem,
+        limits=tuple(map(wider, problem.limits)),
+        stretches=tuple(tuple(map(wider, limits)) for limits in problem.stretches),
+    )
+
+
+def saving_of_one_more(problem: Problem, mode: Mode, solution: Solution) -> float:
+    """Seconds saved if the bound of the active limit were one step wider; 0 when none."""
+    speed = solution.setting.speed
+    active = next(limit for limit in solution.limits if limit.name is solution.active)
+    factor = 1.0 + active.step / (active.scale * active.bound_at(speed))
+    wider = widened(problem, active.name, by_factor=factor)
+    return max(0.0, solution.time - solve(wider, mode).time)
+
+
+def _may_keep(problem: Problem) -> bool:
+    """Whether the programmed depth itself keeps the depth limits."""
+    at = problem.programmed
+    return all(
+        limit.holds(at.feed, at.depth, at.speed)
+        for limit in problem.limits
+        if limit.name is LimitName.AXIAL_DEPTH
+    )
+
+
+def _best_by_passes(problem: Problem, cost: Callable[[Setting], float]) -> Iterator[Setting]:
+    """Best setting of each feasible number of passes, fewest first."""
+    for passes in range(problem.deepest(), problem.passes[1] + 1):
+        depth = problem.total_depth / passes
+        if problem.passes[0] == problem.passes[1]:
+            depth = problem.programmed.depth
+        setting = _best_at(problem, passes, depth, cost)
+        if setting is not None:
+            yield setting
+
+
+def _best_at(
+    problem: Problem, passes: int, depth: float, cost: Callable[[Setting], float]
+) -> Setting | None:
+    """Best feed and speed at one depth, or None when no feed keeps all limits."""
+    best: Setting | None = None
+    for speed in _speed_candidates(problem, depth):
+        limits = limits_at(problem, speed)
+        highest, lowest = _feed_range(limits, depth, speed)
+        if highest == inf:
+            raise OptimisationError(
+                "nothing limits the feed: the machine, the material and the tool grade give "
+                "no power, force, chip load or feed bound"
+            )
+        if highest < lowest * (1.0 - ROUNDING) or highest <= 0.0:
+            continue
+        setting = Setting(feed=highest, depth=depth, passes=passes, speed=speed)
+        if best is None or cost(setting) < cost(best):
+            best = setting
+    return best
+
+
+def _feed_range(limits: tuple[Limit, ...], depth: float, speed: float) -> tuple[float, float]:
+    """Greatest and least feed per tooth that keep all limits."""
+    highest, lowest = inf, 0.0
+    for limit in limits:
+        if limit.load.feed_exponent == 0.0:
+            continue
+        feed = limit.feed_at_bound(depth, speed)
+        if limit.sense is Sense.AT_MOST:
+            highest = min(highest, feed)
+        else:
+            lowest = max(lowest, feed)
+    return highest, lowest
+
+
+def _speed_candidates(problem: Problem, depth: float) -> Iterator[float]:
+    """Spindle speeds at which the best point of this depth can lie."""
+    if len(problem.speeds) == 1:
+        yield problem.speeds[0]
+        return
+    for low, high in zip(problem.speeds, problem.speeds[1:], strict=False):
+        yield low
+        yield high
+        bounding = [
+            limit for limit in limits_at(problem, high) if limit.load.feed_exponent > 0.0
+        ]
+        for first, second in combinations(bounding, 2):
+            crossing = _crossing(first, second, depth=depth, between=(low, high))
+            if crossing is not None:
+                yield crossing
+
+
+def _crossing(
+    first: Limit, second: Limit, *, depth: float, between: tuple[float, float]
+) -> float | None:
+    """Speed at which two limits allow the same feed, or None within the stretch.
+
+    ``ln f_i`` is linear in ln n for Kienzle limits and monotone for all, so halving the
+    bracket of the difference finds the only crossing to the last digit.
+    """
+
+    def difference(speed: float) -> float:
+        one = first.feed_at_bound(depth, speed)
+        other = second.feed_at_bound(depth, speed)
+        return log(one / other) if one > 0.0 and other > 0.0 else one - other
+
+    low, high = between
+    at_low, at_high = difference(low), difference(high)
+    if at_low * at_high >= 0.0:
+        return None
+    low, high = log(low), log(high)
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        if difference(exp(middle)) * at_low > 0.0:
+            low = middle
+        else:
+            high = middle
+    return exp(0.5 * (low + high))
+
+
+def settled(problem: Problem, best: Setting, first: Setting | None = None) -> Solution:
+    """Solution at a setting: the limit that holds its feed, and what it costs."""
+    limits = limits_at(problem, best.speed)
+    active = min(
+        (limit for limit in limits if limit.sense is Sense.AT_MOST),
+        key=lambda limit: limit.feed_at_bound(best.depth, best.speed),
+    )
+    time = problem.cost.time(best)
+    return Solution(
+        setting=best,
+        time=time,
+        energy=problem.cost.energy(best),
+        active=active.name,
+        limits=limits,
+        deepest_first_time=max(time, problem.cost.time(first or best)),
+    )

@@ -1,0 +1,1 @@
+"""What is: what the cut and the machine do."""

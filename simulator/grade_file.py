@@ -1,0 +1,83 @@
+"""The tool grades of one kind of tool from its TOML file.
+
+A file has one ``[edge.<cutting material>]`` table for what the whole tool has in common and
+one ``[[grade]]`` row per cutting material and ISO group for its windows.
+"""
+
+from simulator.material_file import ISO_GROUPS, RAKE, speed_window
+from simulator.spec import CuttingMaterial, Grade, ToolKind
+from simulator.toml_file import Range, Table
+from stepnc_model.units import rad_from_deg
+
+ANY_GROUP = "*"
+"""the grade serves every ISO group"""
+
+FEED_RATIO = Range(low=1e-4, high=0.2)
+FEED = Range(low=1e-4, high=10, unit="mm")
+DEPTH_RATIO = Range(low=0.001, high=20)
+DEPTH = Range(low=0.01, high=200, unit="mm")
+CHIP_THICKNESS = Range(low=1e-4, high=0.1, unit="mm")
+YOUNGS_MODULUS = Range(low=50_000, high=1_000_000, unit="N/mm²")
+BENDING_STRENGTH = Range(low=50, high=5_000, unit="N/mm²")
+
+
+def read_grades(table: Table, kind: ToolKind) -> tuple[Grade, ...]:
+    """Grades of a file's root table, in canonical units.
+
+    Raises
+    ------
+    LibraryError
+        A key is missing, unknown or out of its range.
+    """
+    edges = table.table("edge")
+    shared = {
+        material: edges.table(material) for material in CuttingMaterial if material in edges
+    }
+    grades = []
+    for row in table.tables("grade"):
+        material = row.choice("cutting_material", CuttingMaterial)
+        if material not in shared:
+            raise row.error("cutting_material", f"there is no [edge.{material}] table")
+        grades.append(_grade(row, edge=shared[material], kind=kind, material=material))
+    table.text("title")
+    table.finish()
+    return tuple(grades)
+
+
+def _grade(row: Table, *, edge: Table, kind: ToolKind, material: CuttingMaterial) -> Grade:
+    """One ``[[grade]]`` row with what its tool has in common."""
+    group = _group(row)
+    low_ratio, high_ratio = row.window("min_feed_ratio", "max_feed_ratio", allowed=FEED_RATIO)
+    low_feed, high_feed = row.window("min_feed_mm", "max_feed_mm", allowed=FEED)
+    low_speed, high_speed = speed_window(row)
+    if (low_speed is None) != (high_speed is None):
+        raise row.error("", "a cutting-speed window that replaces the material's has two ends")
+    rake = edge.optional_number("rake_angle_deg", RAKE)
+    return Grade(
+        name=f"{material} {kind.replace('_', ' ')} {group}",
+        tool_kind=kind,
+        cutting_material=material,
+        iso_group=group,
+        min_feed_ratio=low_ratio,
+        max_feed_ratio=high_ratio,
+        min_feed=low_feed,
+        max_feed=high_feed,
+        min_cutting_speed=low_speed,
+        max_cutting_speed=high_speed,
+        max_depth_ratio=row.optional_number("max_depth_ratio", DEPTH_RATIO),
+        max_depth=row.optional_number("max_depth_mm", DEPTH),
+        min_chip_thickness=edge.number("min_chip_thickness_mm", CHIP_THICKNESS),
+        youngs_modulus=edge.number("youngs_modulus_n_mm2", YOUNGS_MODULUS),
+        bending_strength=edge.number("bending_strength_n_mm2", BENDING_STRENGTH),
+        rake_angle=None if rake is None else rad_from_deg(rake),
+        source=f"{row.text('source')}; {edge.text('source')}",
+    )
+
+
+def _group(row: Table) -> str:
+    """ISO 513 group of a row, or the mark for any."""
+    group = row.text("iso_group")
+    if group not in {*ISO_GROUPS, ANY_GROUP}:
+        known = ", ".join((*ISO_GROUPS, ANY_GROUP))
+        raise row.error("iso_group", f"'{group}' is none of {known}")
+    return group

@@ -1,0 +1,192 @@
+"""Machines, work materials and tool grades by name or from the user's own file.
+
+The files lie under ``simulator/data``, one per machine, material and kind of tool, with the
+unit in each key and a source in each table. A value that is missing, misspelt or out of range
+is a :class:`simulator.errors.LibraryError` that names file, key, value and bound.
+"""
+
+from difflib import get_close_matches
+from functools import cache
+from pathlib import Path
+
+from simulator.errors import LibraryError, UnknownMachine, UnknownMaterial
+from simulator.grade_file import ANY_GROUP, read_grades
+from simulator.machine_file import read_machine
+from simulator.machine_xml import read_machine_xml
+from simulator.material_file import read_material
+from simulator.spec import (
+    CuttingMaterial,
+    CuttingWindow,
+    Grade,
+    Machine,
+    Material,
+    ToolBody,
+    ToolKind,
+)
+from simulator.toml_file import read_toml
+
+DATA = Path(__file__).with_name("data")
+"""where the library's files lie"""
+
+SOLID_TOOLS = frozenset({
+    ToolKind.ENDMILL,
+    ToolKind.DRILL,
+    ToolKind.CENTER_DRILL,
+    ToolKind.COUNTERSINK,
+    ToolKind.REAMER,
+    ToolKind.TAP,
+})
+"""kinds of tool that are one piece with their edges; the others hold inserts"""
+
+
+def machine_names() -> tuple[str, ...]:
+    """Names of the machines that the library has."""
+    return _names("machines")
+
+
+def material_names() -> tuple[str, ...]:
+    """Names of the work materials that the library has."""
+    return _names("materials")
+
+
+def material_path(name: str) -> Path:
+    """File of a material of the library."""
+    return DATA / "materials" / f"{name}.toml"
+
+
+def load_machine(name_or_path: str) -> Machine:
+    """A machine of the library, or the user's own.
+
+    Parameters
+    ----------
+    name_or_path : str
+        ``vmc15``, or a file ``my.toml``, or a file ``my.xml`` in the form of
+        :mod:`simulator.machine_xml`.
+
+    Raises
+    ------
+    UnknownMachine
+        The library has no machine of that name.
+    LibraryError
+        The file cannot be read or a value in it is no good.
+
+    Examples
+    --------
+    >>> load_machine("paper002").spindle.efficiency
+    0.9
+    """
+    path = Path(name_or_path)
+    if path.suffix.lower() == ".xml":
+        return read_machine_xml(path)
+    if _is_path(name_or_path):
+        return read_machine(read_toml(path), name=path.stem)
+    name = name_or_path.strip().lower()
+    if name not in machine_names():
+        raise UnknownMachine(name_or_path, _nearest_first(name, machine_names()))
+    return read_machine(read_toml(DATA / "machines" / f"{name}.toml"), name=name)
+
+
+def load_material(name_or_path: str) -> Material:
+    """A work material of the library, or the user's own file.
+
+    Parameters
+    ----------
+    name_or_path : str
+        ``c45``, or a file ``my.toml``. Names of catalogues, standard numbers and what a
+        STEP-NC program says are for :func:`simulator.matching.match_material`.
+
+    Raises
+    ------
+    UnknownMaterial
+        The library has no material of that name.
+    LibraryError
+        The file cannot be read or a value in it is no good.
+
+    Examples
+    --------
+    >>> load_material("paper002").kienzle
+    Kienzle(k_c11=1000.0, m_c=0.0, rake_angle=None)
+    """
+    if _is_path(name_or_path):
+        path = Path(name_or_path)
+        return read_material(read_toml(path), name=path.stem)
+    name = name_or_path.strip().lower()
+    if name not in material_names():
+        raise UnknownMaterial(name_or_path, _nearest_first(name, material_names()))
+    return read_material(read_toml(material_path(name)), name=name)
+
+
+def find_window(
+    material: Material, tool_kind: ToolKind, cutting_material: CuttingMaterial
+) -> CuttingWindow | None:
+    """Cutting-speed window of a tool in a material; ``None`` when the source gives none.
+
+    Carbide has two windows in most materials, of solid tools and of inserts. Where the source
+    gives only the other one, that one serves.
+    """
+    body = ToolBody.SOLID if tool_kind in SOLID_TOOLS else ToolBody.INDEXABLE
+    windows = [
+        window for window in material.windows if window.cutting_material is cutting_material
+    ]
+    fitting = [window for window in windows if window.tool_body in {body, None}]
+    return next(iter(fitting or windows), None)
+
+
+def load_grades() -> tuple[Grade, ...]:
+    """All tool grades of the library."""
+    return tuple(grade for kind in ToolKind for grade in _grades(kind))
+
+
+def find_grade(tool_kind: ToolKind, cutting_material: CuttingMaterial, iso_group: str) -> Grade:
+    """Grade of a kind of tool for an ISO group, or else the one that serves every group.
+
+    Parameters
+    ----------
+    tool_kind : ToolKind
+    cutting_material : CuttingMaterial
+    iso_group : str
+        P, M, K, N, S or H.
+
+    Raises
+    ------
+    LibraryError
+        The library has no such grade: HSS in hardened steel, for example.
+    """
+    grades = [
+        grade for grade in _grades(tool_kind) if grade.cutting_material is cutting_material
+    ]
+    for group in (iso_group, ANY_GROUP):
+        for grade in grades:
+            if grade.iso_group == group:
+                return grade
+    raise LibraryError(
+        f"no {cutting_material} grade for ISO group '{iso_group}'",
+        path=str(_grade_path(tool_kind)),
+    )
+
+
+@cache
+def _grades(kind: ToolKind) -> tuple[Grade, ...]:
+    """Grades of one kind; kept, since every workingstep asks and the files do not change."""
+    return read_grades(read_toml(_grade_path(kind)), kind)
+
+
+def _grade_path(kind: ToolKind) -> Path:
+    """File of the grades of one kind of tool."""
+    return DATA / "tools" / f"{kind}.toml"
+
+
+def _names(folder: str) -> tuple[str, ...]:
+    """Stems of the TOML files of a folder of the library."""
+    return tuple(sorted(path.stem for path in (DATA / folder).glob("*.toml")))
+
+
+def _is_path(name_or_path: str) -> bool:
+    """Whether the user means a file rather than a name."""
+    return name_or_path.lower().endswith(".toml") or "/" in name_or_path or "\\" in name_or_path
+
+
+def _nearest_first(name: str, known: tuple[str, ...]) -> tuple[str, ...]:
+    """Known names, those that look like ``name`` first."""
+    near = get_close_matches(name, known, n=5, cutoff=0.4)
+    return (*near, *(other for other in known if other not in near))

@@ -1,0 +1,177 @@
+"""Which material of the library a STEP-NC program means.
+
+Programs name their material freely: a standard number, a grade of another country, a brand, or
+just "steel". Names are compared without blanks, hyphens, dots, accents and capitals. An exact
+name in any text beats every guess; a guess is said to be one, with its reason; what cannot
+even be guessed is an error that lists near names.
+
+What a name may be guessed to mean is in ``simulator/data/material_guesses.toml``.
+"""
+
+import re
+import unicodedata
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
+from itertools import pairwise
+
+from simulator.errors import UnknownMaterial
+from simulator.library import DATA, load_material, material_names, material_path
+from simulator.spec import Certainty, MaterialMatch
+from simulator.toml_file import Range, Table, read_toml, read_toml_head
+
+STANDARD_PREFIX = re.compile(r"(?:aisi|sae|ansi|din|jis|astm|uns|wnr|wnum|en)(?=.*\d)")
+"""standards that stand before a name and say nothing about the metal"""
+
+SEPARATORS = re.compile(r"[\s,;:/()\[\]_]+")
+"""what stands between the words of a text"""
+
+GRADE_NUMBER = Range(low=1, high=9_999)
+"""numbers by which families of materials are ordered"""
+
+NEAR_NAMES = 5
+"""names listed when a material is unknown"""
+
+LONGEST_NAME = 40
+"""characters of a text that are compared when near names are sought"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Guess:
+    """A material that a name may mean."""
+
+    material: str
+    reason: str
+
+
+def match_material(texts: Sequence[str]) -> MaterialMatch:
+    """The material that a program's texts name.
+
+    Parameters
+    ----------
+    texts : sequence of str
+        What the program says of its material, the most telling first: standard identifier,
+        material identifier, property names. Blank ones do not count.
+
+    Raises
+    ------
+    UnknownMaterial
+        None of the texts can even be guessed.
+
+    Examples
+    --------
+    >>> match = match_material(["ST-50", "STEEL"])
+    >>> match.material.name, match.certainty.value
+    ('st50', 'exact')
+    """
+    said = tuple(text.strip() for text in texts if text.strip())
+    names = _known_names()
+    for candidate in _candidates(said):
+        if (name := _exact(candidate, names)) is not None:
+            return _match(name, Certainty.EXACT, reason=f"'{candidate}' is a name of it")
+    if said:
+        guesses = read_toml(DATA / "material_guesses.toml")
+        guess = _by_family(said, guesses) or _by_kind(said, guesses)
+        if guess is not None:
+            return _match(guess.material, Certainty.GUESS, reason=guess.reason)
+    raise UnknownMaterial(" / ".join(said), _near(said, names))
+
+
+def normalised(text: str) -> str:
+    """Letters and digits of a text, without accents and capitals."""
+    plain = unicodedata.normalize("NFKD", text).casefold()
+    return "".join(character for character in plain if character.isalnum())
+
+
+def _match(name: str, certainty: Certainty, *, reason: str) -> MaterialMatch:
+    """The material of a name with a sentence for the user."""
+    material = load_material(name)
+    verb = "is read as" if certainty is Certainty.EXACT else "is guessed to be"
+    return MaterialMatch(
+        material=material,
+        certainty=certainty,
+        reason=f"the material {verb} {material.title}: {reason}",
+    )
+
+
+def _known_names() -> dict[str, str]:
+    """Normalised name of every material → its file."""
+    names: dict[str, str] = {}
+    for file in material_names():
+        head = read_toml_head(material_path(file))
+        title = head.text("title")
+        for text in (file, title, *title.split(" / "), *head.texts("equivalents")):
+            names.setdefault(normalised(text), file)
+            names.setdefault(_without_standard(text), file)
+    return names
+
+
+def _exact(text: str, names: Mapping[str, str]) -> str | None:
+    """File of the material that has just this name."""
+    return names.get(normalised(text)) or names.get(_without_standard(text))
+
+
+def _without_standard(text: str) -> str:
+    """Normalised name without the name of the standard before it."""
+    return STANDARD_PREFIX.sub("", normalised(text), count=1)
+
+
+def _candidates(texts: tuple[str, ...]) -> Iterator[str]:
+    """Pieces of the texts that may be names, the largest first."""
+    yield from texts
+    for first, second in pairwise(texts):
+        yield f"{first} {second}"
+    for text in texts:
+        words = [word for word in SEPARATORS.split(text) if word]
+        yield from words
+        for first, second in pairwise(words):
+            yield f"{first} {second}"
+
+
+def _by_family(texts: tuple[str, ...], guesses: Table) -> Guess | None:
+    """The nearest number of the first family that a piece of the texts belongs to."""
+    families = guesses.tables("family")
+    for candidate in _candidates(texts):
+        for family in families:
+            found = re.fullmatch(family.text("pattern"), normalised(candidate))
+            if found is not None:
+                return _nearest(candidate, family, number=int(found[1]))
+    return None
+
+
+def _nearest(candidate: str, family: Table, *, number: int) -> Guess:
+    """The member of a family whose number is nearest."""
+    members = family.tables("members")
+    nearest = min(members, key=lambda row: abs(row.number("number", GRADE_NUMBER) - number))
+    return Guess(
+        material=nearest.text("material"),
+        reason=f"'{candidate}' is not in the library; of the family {family.text('meaning')} "
+        "this one is the nearest",
+    )
+
+
+def _by_kind(texts: tuple[str, ...], guesses: Table) -> Guess | None:
+    """The material that stands for a kind of metal which the texts name."""
+    for text in texts:
+        whole = normalised(text)
+        words = {normalised(word) for word in SEPARATORS.split(text)}
+        for kind in guesses.tables("kind"):
+            if words.intersection(kind.texts("equals")) or any(
+                part in whole for part in kind.texts("contains")
+            ):
+                return Guess(
+                    material=kind.text("material"),
+                    reason=f"'{text}' says no more than {kind.text('meaning')}, for which this "
+                    "one stands",
+                )
+    return None
+
+
+def _near(texts: tuple[str, ...], names: Mapping[str, str]) -> tuple[str, ...]:
+    """Files of the materials whose names look most like the texts; all when nothing is said."""
+    near: dict[str, None] = {}
+    for text in texts:
+        start = normalised(text)[:LONGEST_NAME]
+        for name in get_close_matches(start, names, n=NEAR_NAMES, cutoff=0.0):
+            near[names[name]] = None
+    return tuple(near)[:NEAR_NAMES] or material_names()

@@ -1,0 +1,1 @@
+"""Pure functions of the cut: engagement, force, power, surface, tool life, motion."""

@@ -1,0 +1,285 @@
+"""Speeds, feeds, removal rates and times of a cut, from its geometry alone.
+
+All arguments and results are scalars in mm, s and rev/s, so that the 1000 and the 60 of the
+handbook forms disappear.
+
+References
+----------
+.. [1] F. Ridwan, X. Xu and G. Liu, "A framework for machining optimisation based on STEP-NC",
+   J. Intell. Manuf., 2010; eqs. (2), (3), (11).
+.. [2] Mitsubishi Materials, "Technical information", formulae for turning, milling, drilling.
+.. [3] M. P. Groover, "Fundamentals of Modern Manufacturing", machining operations.
+"""
+
+from math import pi
+
+from simulator.physics.domain import (
+    require_hole,
+    require_not_negative,
+    require_positive,
+    require_teeth,
+)
+
+
+def cutting_speed(diameter: float, spindle_speed: float) -> float:
+    """Speed of the edge on the diameter that turns.
+
+    ``v_c = π · D · n``, [1]_ eq. (3).
+
+    Parameters
+    ----------
+    diameter : float, mm
+        Of the tool in milling and drilling, of the workpiece in turning.
+    spindle_speed : float, rev/s
+
+    Returns
+    -------
+    float, mm/s
+
+    Raises
+    ------
+    ValueError
+        If either is not positive.
+
+    Examples
+    --------
+    Ø125 mm at 350 rpm cuts with 137.4 m/min [2]_:
+
+    >>> round(cutting_speed(125.0, 350 / 60) * 60 / 1000, 1)
+    137.4
+    """
+    require_positive(diameter, "diameter", "mm")
+    require_positive(spindle_speed, "spindle speed", "rev/s")
+    return pi * diameter * spindle_speed
+
+
+def spindle_speed(diameter: float, cutting_speed: float) -> float:
+    """Spindle speed that gives the cutting speed, the inverse of :func:`cutting_speed`.
+
+    ``n = v_c / (π · D)``, [1]_ eq. (3).
+
+    Parameters
+    ----------
+    diameter : float, mm
+    cutting_speed : float, mm/s
+
+    Returns
+    -------
+    float, rev/s
+
+    Raises
+    ------
+    ValueError
+        If either is not positive.
+
+    Examples
+    --------
+    The worked case of [1]_: 35 m/min on Ø18 mm is 618.9 rpm.
+
+    >>> round(spindle_speed(18.0, 35_000 / 60) * 60, 1)
+    618.9
+    """
+    require_positive(diameter, "diameter", "mm")
+    require_positive(cutting_speed, "cutting speed", "mm/s")
+    return cutting_speed / (pi * diameter)
+
+
+def feed(feed_per_tooth: float, spindle_speed: float, *, teeth: int = 1) -> float:
+    """Feed speed of the tool against the workpiece.
+
+    ``v_f = f_z · z · n``, [1]_ eq. (2), whose "mm/r" must read mm per tooth. One tooth: the
+    feed per revolution of turning and drilling.
+
+    Parameters
+    ----------
+    feed_per_tooth : float, mm
+    spindle_speed : float, rev/s
+    teeth : int
+
+    Returns
+    -------
+    float, mm/s
+
+    Raises
+    ------
+    ValueError
+        If any is not positive.
+
+    Examples
+    --------
+    0.1 mm, 10 teeth, 500 rpm: 500 mm/min [2]_.
+
+    >>> round(feed(0.1, 500 / 60, teeth=10) * 60, 9)
+    500.0
+    """
+    require_positive(feed_per_tooth, "feed per tooth", "mm")
+    require_positive(spindle_speed, "spindle speed", "rev/s")
+    require_teeth(teeth)
+    return feed_per_tooth * teeth * spindle_speed
+
+
+def feed_per_tooth(feed: float, spindle_speed: float, *, teeth: int = 1) -> float:
+    """Feed per tooth, the inverse of :func:`feed`; one tooth: feed per revolution.
+
+    ``f_z = v_f / (z · n)``, [1]_ eq. (2).
+
+    Parameters
+    ----------
+    feed : float, mm/s
+    spindle_speed : float, rev/s
+    teeth : int
+
+    Returns
+    -------
+    float, mm
+
+    Raises
+    ------
+    ValueError
+        If any is not positive.
+
+    Examples
+    --------
+    120 mm/min at 500 rpm is 0.24 mm/rev [2]_.
+
+    >>> round(feed_per_tooth(120 / 60, 500 / 60), 9)
+    0.24
+    """
+    require_positive(feed, "feed", "mm/s")
+    require_positive(spindle_speed, "spindle speed", "rev/s")
+    require_teeth(teeth)
+    return feed / (teeth * spindle_speed)
+
+
+def milling_removal_rate(feed: float, *, axial_depth: float, radial_width: float) -> float:
+    """Volume that a milling cutter removes in one second.
+
+    ``Q = a_p · a_e · v_f``, [3]_.
+
+    Parameters
+    ----------
+    feed : float, mm/s
+    axial_depth, radial_width : float, mm
+
+    Returns
+    -------
+    float, mm³/s
+
+    Raises
+    ------
+    ValueError
+        If any is not positive.
+
+    Examples
+    --------
+    >>> milling_removal_rate(5.0, axial_depth=3.0, radial_width=18.0)
+    270.0
+    """
+    require_positive(feed, "feed", "mm/s")
+    require_positive(axial_depth, "axial depth", "mm")
+    require_positive(radial_width, "radial width", "mm")
+    return axial_depth * radial_width * feed
+
+
+def drilling_removal_rate(
+    feed: float, *, tool_diameter: float, previous_diameter: float = 0.0
+) -> float:
+    """Volume that a drill, reamer or boring bar removes in one second.
+
+    ``Q = π/4 · (D² − d²) · v_f``, [3]_; d is the hole that was there.
+
+    Parameters
+    ----------
+    feed : float, mm/s
+    tool_diameter : float, mm
+    previous_diameter : float, mm
+        0 for drilling into the solid.
+
+    Returns
+    -------
+    float, mm³/s
+
+    Raises
+    ------
+    ValueError
+        If feed or diameter is not positive or the hole is not smaller than the tool.
+
+    Examples
+    --------
+    >>> round(drilling_removal_rate(2.0, tool_diameter=10.0), 2)
+    157.08
+    """
+    require_positive(feed, "feed", "mm/s")
+    require_hole(tool_diameter, previous_diameter)
+    return pi / 4.0 * (tool_diameter**2 - previous_diameter**2) * feed
+
+
+def turning_removal_rate(
+    feed_per_revolution: float, *, depth: float, cutting_speed: float
+) -> float:
+    """Volume that a turning tool removes in one second.
+
+    ``Q = a_p · f · v_c``, [3]_; exact when v_c is taken on the mean of the diameters before and
+    after the cut, and high by less than ``a_p / d`` when it is taken on the outer one.
+
+    Parameters
+    ----------
+    feed_per_revolution : float, mm
+    depth : float, mm
+    cutting_speed : float, mm/s
+
+    Returns
+    -------
+    float, mm³/s
+
+    Raises
+    ------
+    ValueError
+        If any is not positive.
+
+    Examples
+    --------
+    >>> turning_removal_rate(0.25, depth=2.0, cutting_speed=2500.0)
+    1250.0
+    """
+    require_positive(feed_per_revolution, "feed per revolution", "mm")
+    require_positive(depth, "depth of cut", "mm")
+    require_positive(cutting_speed, "cutting speed", "mm/s")
+    return depth * feed_per_revolution * cutting_speed
+
+
+def machining_time(
+    length: float, feed: float, *, approach: float = 0.0, overrun: float = 0.0
+) -> float:
+    """Time at cutting feed over a length with its way in and its way out.
+
+    ``t = (L + A + O) / v_f``: [1]_ eq. (11) with the approach and overrun that it leaves out.
+
+    Parameters
+    ----------
+    length : float, mm
+        Of the workpiece along the path.
+    feed : float, mm/s
+    approach, overrun : float, mm
+
+    Returns
+    -------
+    float, s
+
+    Raises
+    ------
+    ValueError
+        If length or feed is not positive, or approach or overrun is negative.
+
+    Examples
+    --------
+    300 mm with 21 mm approach at 120 mm/min: 2.675 min (El-Hofy).
+
+    >>> round(machining_time(300.0, 120 / 60, approach=21.0) / 60, 3)
+    2.675
+    """
+    require_positive(length, "length", "mm")
+    require_positive(feed, "feed", "mm/s")
+    require_not_negative(approach, "approach", "mm")
+    require_not_negative(overrun, "overrun", "mm")
+    return (length + approach + overrun) / feed

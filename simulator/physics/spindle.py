@@ -1,0 +1,232 @@
+"""What a spindle gives at a speed: its power and torque curve as monomials.
+
+Scalars in W, N·mm and rev/s. Monomials, because what chooses the feed works in logarithms.
+"""
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import inf, log, pow
+
+from simulator.physics.domain import require_positive
+from simulator.spec import Spindle, SpindlePoint
+
+_STEEPEST = 50.0  # exponent beyond which coefficients at 1 rev/s leave the range of floats
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CurveSegment:
+    """One stretch of a spindle's curve: ``P = c·n^γ`` and, where known, ``M = d·n^δ``."""
+
+    min_speed: float
+    """rev/s, 0 when the curve has no lower end"""
+    max_speed: float
+    """rev/s, ``inf`` when it has no upper end"""
+    power_coefficient: float
+    """c: motor power in W at 1 rev/s"""
+    power_exponent: float
+    """γ: 0 constant power, 1 constant torque"""
+    torque_coefficient: float | None
+    """d: torque in N·mm at 1 rev/s; ``None``: the source gives none"""
+    torque_exponent: float
+    """δ"""
+
+    def power(self, spindle_speed: float) -> float:
+        """Motor power at a speed, W."""
+        return self.power_coefficient * pow(spindle_speed, self.power_exponent)
+
+    def torque(self, spindle_speed: float) -> float | None:
+        """Torque at a speed, N·mm."""
+        if self.torque_coefficient is None:
+            return None
+        return self.torque_coefficient * pow(spindle_speed, self.torque_exponent)
+
+
+def curve_segments(spindle: Spindle) -> tuple[CurveSegment, ...]:
+    """The spindle's curve as monomials, one for each stretch, ascending in speed.
+
+    Below the first point the torque stays constant where it is known (power in proportion to
+    speed), else the power does; between two points both are straight in logarithms; above the
+    last the power stays constant and the torque falls as ``1/n``. Torque is known between two
+    points when both have it. The stretches reach from the spindle's least to its greatest
+    speed, or from 0 and to infinity.
+
+    Parameters
+    ----------
+    spindle : Spindle
+
+    Returns
+    -------
+    tuple of CurveSegment
+        At least one; each ends where the next begins.
+
+    Raises
+    ------
+    ValueError
+        If the curve is empty, does not ascend, has a value that is not positive, or jumps: a
+        gear change is a short stretch, not a step (5 % of power need 0.1 % of speed).
+
+    Examples
+    --------
+    >>> from simulator.spec import Spindle, SpindlePoint
+    >>> base = SpindlePoint(speed=25.0, power=7500.0, torque=47_700.0)
+    >>> spindle = Spindle(
+    ...     curve=(base,), efficiency=0.9, min_speed=None, max_speed=100.0, acceleration=None
+    ... )
+    >>> [(s.min_speed, s.max_speed, s.power_exponent) for s in curve_segments(spindle)]
+    [(0.0, 25.0, 1.0), (25.0, 100.0, 0.0)]
+    """
+    least = 0.0 if spindle.min_speed is None else spindle.min_speed
+    greatest = inf if spindle.max_speed is None else spindle.max_speed
+    if not 0.0 <= least < greatest:
+        raise ValueError(
+            f"least spindle speed {least:g} rev/s must be less than the greatest, "
+            f"{greatest:g} rev/s"
+        )
+    clipped = (_clipped(part, least, greatest) for part in _stretches(spindle))
+    return tuple(part for part in clipped if part.min_speed < part.max_speed)
+
+
+def available_power(spindle: Spindle, spindle_speed: float) -> float:
+    """Motor power that the spindle gives continuously at a speed.
+
+    Interpolated as :func:`curve_segments` says, and beyond the speeds that the spindle
+    reaches: those are a limit of their own.
+
+    Parameters
+    ----------
+    spindle : Spindle
+    spindle_speed : float, rev/s
+
+    Returns
+    -------
+    float, W
+
+    Raises
+    ------
+    ValueError
+        If the speed is not positive or the curve unusable.
+    """
+    return _stretch_at(spindle, spindle_speed).power(spindle_speed)
+
+
+def available_torque(spindle: Spindle, spindle_speed: float) -> float | None:
+    """Torque that the spindle gives continuously at a speed.
+
+    Parameters
+    ----------
+    spindle : Spindle
+    spindle_speed : float, rev/s
+
+    Returns
+    -------
+    float, N·mm, or None
+        ``None``: the source gives none on this stretch of the curve.
+
+    Raises
+    ------
+    ValueError
+        If the speed is not positive or the curve unusable.
+    """
+    return _stretch_at(spindle, spindle_speed).torque(spindle_speed)
+
+
+def _stretch_at(spindle: Spindle, spindle_speed: float) -> CurveSegment:
+    """Stretch of the unlimited curve that holds a speed."""
+    require_positive(spindle_speed, "spindle speed", "rev/s")
+    return next(part for part in _stretches(spindle) if spindle_speed <= part.max_speed)
+
+
+def _stretches(spindle: Spindle) -> tuple[CurveSegment, ...]:
+    """The curve from 0 to infinity."""
+    _require_usable(spindle.curve)
+    first, last = spindle.curve[0], spindle.curve[-1]
+    between = (_between(low, high) for low, high in pairwise(spindle.curve))
+    return (_below(first), *between, _above(last))
+
+
+def _require_usable(curve: tuple[SpindlePoint, ...]) -> None:
+    """Refuse an empty curve, one that does not ascend, and values that are not positive."""
+    if not curve:
+        raise ValueError("spindle curve has 0 points and must have at least 1")
+    for point in curve:
+        require_positive(point.speed, "spindle curve's speed", "rev/s")
+        require_positive(point.power, "spindle curve's power", "W")
+        if point.torque is not None:
+            require_positive(point.torque, "spindle curve's torque", "N·mm")
+    for low, high in pairwise(curve):
+        if low.speed >= high.speed:
+            raise ValueError(
+                f"spindle curve's speed {high.speed:g} rev/s must be greater than the one "
+                f"before it, {low.speed:g} rev/s"
+            )
+
+
+def _below(point: SpindlePoint) -> CurveSegment:
+    """Constant torque, or constant power where no torque is known."""
+    if point.torque is None:
+        return CurveSegment(
+            min_speed=0.0,
+            max_speed=point.speed,
+            power_coefficient=point.power,
+            power_exponent=0.0,
+            torque_coefficient=None,
+            torque_exponent=0.0,
+        )
+    return CurveSegment(
+        min_speed=0.0,
+        max_speed=point.speed,
+        power_coefficient=point.power / point.speed,
+        power_exponent=1.0,
+        torque_coefficient=point.torque,
+        torque_exponent=0.0,
+    )
+
+
+def _between(low: SpindlePoint, high: SpindlePoint) -> CurveSegment:
+    """Straight in logarithms."""
+    power_exponent = _exponent(low, high, high.power / low.power)
+    torque_exponent = 0.0
+    torque_coefficient = None
+    if low.torque is not None and high.torque is not None:
+        torque_exponent = _exponent(low, high, high.torque / low.torque)
+        torque_coefficient = low.torque * pow(low.speed, -torque_exponent)
+    return CurveSegment(
+        min_speed=low.speed,
+        max_speed=high.speed,
+        power_coefficient=low.power * pow(low.speed, -power_exponent),
+        power_exponent=power_exponent,
+        torque_coefficient=torque_coefficient,
+        torque_exponent=torque_exponent,
+    )
+
+
+def _exponent(low: SpindlePoint, high: SpindlePoint, ratio: float) -> float:
+    """Slope in logarithms of a value that changes by a ratio between two points."""
+    exponent = log(ratio) / log(high.speed / low.speed)
+    if abs(exponent) > _STEEPEST:
+        raise ValueError(
+            f"spindle curve's slope {exponent:g} between {low.speed:g} rev/s and "
+            f"{high.speed:g} rev/s must be at most {_STEEPEST:g} in logarithms: "
+            "move the two points apart"
+        )
+    return exponent
+
+
+def _above(point: SpindlePoint) -> CurveSegment:
+    """Constant power."""
+    known = point.torque is not None
+    return CurveSegment(
+        min_speed=point.speed,
+        max_speed=inf,
+        power_coefficient=point.power,
+        power_exponent=0.0,
+        torque_coefficient=point.torque * point.speed if point.torque is not None else None,
+        torque_exponent=-1.0 if known else 0.0,
+    )
+
+
+def _clipped(part: CurveSegment, least: float, greatest: float) -> CurveSegment:
+    """The part of a stretch between two speeds; empty (ends crossed) when it lies outside."""
+    return replace(
+        part, min_speed=max(part.min_speed, least), max_speed=min(part.max_speed, greatest)
+    )

@@ -1,0 +1,171 @@
+"""How long an edge lasts, and how it wears until then.
+
+Scalars in mm, s and mm/s. Taylor's constant keeps the meaning of print, the speed for a life of
+one **minute**, and is turned into seconds here.
+
+References
+----------
+.. [1] F. W. Taylor, "On the art of cutting metals", Trans. ASME, 1907: ``v_c · T^n = C``.
+.. [2] ISO 3685: end of life at a flank wear of 0.3 mm.
+"""
+
+from math import pow
+
+from simulator.physics.domain import require_not_negative, require_positive
+from simulator.spec import Taylor
+from stepnc_model.units import SECONDS_PER_MINUTE
+
+LIFE_CRITERION = 0.3  # mm, VB_B, [2]
+
+
+def tool_life(taylor: Taylor, cutting_speed: float) -> float:
+    """Cutting time until an edge is worn.
+
+    ``T = (C / v_c)^(1/n)`` minutes, [1]_, given in seconds. Valid for the feed and depth at
+    which n and C were measured, and for speeds near theirs.
+
+    Parameters
+    ----------
+    taylor : Taylor
+    cutting_speed : float, mm/s
+
+    Returns
+    -------
+    float, s
+
+    Raises
+    ------
+    ValueError
+        If the speed or a constant is out of range.
+
+    Examples
+    --------
+    n = 0.5, C = 400 m/min, at 200 m/min: 4 min.
+
+    >>> steel = Taylor(exponent=0.5, constant=400_000 / 60)
+    >>> round(tool_life(steel, 200_000 / 60), 9)
+    240.0
+    """
+    _require_usable(taylor)
+    require_positive(cutting_speed, "cutting speed", "mm/s")
+    return SECONDS_PER_MINUTE * pow(taylor.constant / cutting_speed, 1.0 / taylor.exponent)
+
+
+def speed_for_life(taylor: Taylor, life: float) -> float:
+    """Cutting speed at which an edge lasts so long, the inverse of :func:`tool_life`.
+
+    ``v_c = C / T^n`` with T in minutes, [1]_.
+
+    Parameters
+    ----------
+    taylor : Taylor
+    life : float, s
+
+    Returns
+    -------
+    float, mm/s
+
+    Raises
+    ------
+    ValueError
+        If the life or a constant is out of range.
+
+    Examples
+    --------
+    >>> steel = Taylor(exponent=0.5, constant=400_000 / 60)
+    >>> round(speed_for_life(steel, 240.0) * 60 / 1000, 9)
+    200.0
+    """
+    _require_usable(taylor)
+    require_positive(life, "tool life", "s")
+    return taylor.constant / pow(life / SECONDS_PER_MINUTE, taylor.exponent)
+
+
+def wear_rate(taylor: Taylor, cutting_speed: float) -> float:
+    """Tool lives used up in one second of cutting: ``1/T = (v_c / C)^(1/n) / 60``, 1/s.
+
+    Raises
+    ------
+    ValueError
+        As :func:`tool_life`.
+    """
+    return 1.0 / tool_life(taylor, cutting_speed)
+
+
+def tool_changes(cutting_time: float, life: float) -> float:
+    """Share of tool changes that a cut costs: ``t_c / T``, a fraction, not rounded up.
+
+    Parameters
+    ----------
+    cutting_time : float, s
+    life : float, s
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    ValueError
+        If the time is negative or the life not positive.
+
+    Examples
+    --------
+    >>> tool_changes(120.0, 240.0)
+    0.5
+    """
+    require_not_negative(cutting_time, "cutting time", "s")
+    require_positive(life, "tool life", "s")
+    return cutting_time / life
+
+
+def flank_wear(
+    cutting_time: float,
+    life: float,
+    *,
+    run_in: float = 0.0,
+    criterion: float = LIFE_CRITERION,
+) -> float:
+    """Flank wear after a time of cutting, growing evenly after a quick run-in.
+
+    ``VB(t) = VB_0 + (VB_max − VB_0) · t/T``, so that the criterion is met exactly at t = T. The
+    steep end beyond it is not modelled.
+
+    Parameters
+    ----------
+    cutting_time : float, s
+    life : float, s
+    run_in : float, mm
+        VB_0, 0.03 to 0.05 mm as a rule.
+    criterion : float, mm
+        VB_max at the end of life, [2]_.
+
+    Returns
+    -------
+    float, mm
+
+    Raises
+    ------
+    ValueError
+        If time or run-in is negative, life not positive, or run-in not below the criterion.
+
+    Examples
+    --------
+    >>> round(flank_wear(120.0, 240.0, run_in=0.04), 9)
+    0.17
+    """
+    require_not_negative(run_in, "run-in wear", "mm")
+    if run_in >= criterion:
+        raise ValueError(
+            f"run-in wear {run_in:g} mm must be less than the criterion, {criterion:g} mm"
+        )
+    return run_in + (criterion - run_in) * tool_changes(cutting_time, life)
+
+
+def _require_usable(taylor: Taylor) -> None:
+    """Refuse an exponent outside (0, 1) and a constant that is not positive."""
+    if not 0.0 < taylor.exponent < 1.0:
+        raise ValueError(
+            f"Taylor exponent {taylor.exponent:g} must be greater than 0 and less than 1"
+        )
+    require_positive(taylor.constant, "Taylor constant", "mm/s")

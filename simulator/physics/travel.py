@@ -1,0 +1,140 @@
+"""Approach, overrun and point length: the way of a tool beyond the length that it machines.
+
+Scalars in mm.
+
+References
+----------
+.. [1] Mitsubishi Materials, "Technical information", cutting time of face milling.
+.. [2] M. P. Groover, "Fundamentals of Modern Manufacturing", machining operations.
+"""
+
+from math import pi, sqrt, tan
+
+from simulator.physics.domain import require_at_most, require_positive
+
+
+def centred_approach(tool_diameter: float, radial_width: float) -> float:
+    """Way from first contact to full width when the cutter runs over the middle of the face.
+
+    ``A = D/2 − ½·√(D² − a_e²)``, [2]_: full immersion and centred bilateral face milling. The
+    same way past the end takes the full width off; :func:`centred_overrun` clears the face.
+
+    Parameters
+    ----------
+    tool_diameter : float, mm
+    radial_width : float, mm
+        At most the tool diameter.
+
+    Returns
+    -------
+    float, mm
+
+    Raises
+    ------
+    ValueError
+        If either is not positive or the width exceeds the diameter.
+
+    Examples
+    --------
+    >>> centred_approach(50.0, 30.0)
+    5.0
+    """
+    require_positive(tool_diameter, "tool diameter", "mm")
+    require_at_most(radial_width, tool_diameter, thing="radial width", unit="mm")
+    return 0.5 * (tool_diameter - sqrt(tool_diameter**2 - radial_width**2))
+
+
+def centred_overrun(tool_diameter: float, radial_width: float) -> float:
+    """Way past the end of a face until the whole cutter has left it.
+
+    ``O = D − A``: approach and overrun together are one diameter, the ``t = (L + D)/v_f`` of
+    [1]_.
+
+    Parameters
+    ----------
+    tool_diameter : float, mm
+    radial_width : float, mm
+
+    Returns
+    -------
+    float, mm
+
+    Raises
+    ------
+    ValueError
+        As :func:`centred_approach`.
+
+    Examples
+    --------
+    >>> centred_overrun(50.0, 30.0)
+    45.0
+    """
+    return tool_diameter - centred_approach(tool_diameter, radial_width)
+
+
+def one_sided_approach(tool_diameter: float, radial_width: float) -> float:
+    """Way from first contact to the full width when one side of the cutter is engaged.
+
+    ``A = √(a_e · (D − a_e))`` up to half the diameter, [2]_: peripheral milling and
+    unidirectional face milling. Beyond it the foremost point of the cutter is engaged and the
+    way is ``D/2`` (the square root would fall again, to nothing for a slot). The same way past
+    the end clears the workpiece.
+
+    Parameters
+    ----------
+    tool_diameter : float, mm
+    radial_width : float, mm
+        At most the tool diameter.
+
+    Returns
+    -------
+    float, mm
+
+    Raises
+    ------
+    ValueError
+        If either is not positive or the width exceeds the diameter.
+
+    Examples
+    --------
+    >>> one_sided_approach(50.0, 5.0)
+    15.0
+    """
+    require_positive(tool_diameter, "tool diameter", "mm")
+    require_at_most(radial_width, tool_diameter, thing="radial width", unit="mm")
+    if radial_width >= tool_diameter / 2.0:
+        return tool_diameter / 2.0
+    return sqrt(radial_width * (tool_diameter - radial_width))
+
+
+def drill_point_length(tool_diameter: float, point_angle: float) -> float:
+    """Height of a drill's point: what a through hole needs beyond its depth.
+
+    ``l = D / (2 · tan(σ/2))``.
+
+    Parameters
+    ----------
+    tool_diameter : float, mm
+    point_angle : float, rad
+        Included angle σ, 0 < σ ≤ π.
+
+    Returns
+    -------
+    float, mm
+
+    Raises
+    ------
+    ValueError
+        If the diameter is not positive or the angle is out of range.
+
+    Examples
+    --------
+    The customary 118° gives 0.3 D:
+
+    >>> from stepnc_model.units import rad_from_deg
+    >>> round(drill_point_length(10.0, rad_from_deg(118.0)), 2)
+    3.0
+    """
+    require_positive(tool_diameter, "tool diameter", "mm")
+    require_at_most(point_angle, pi, thing="point angle", unit="rad")
+    return tool_diameter / (2.0 * tan(point_angle / 2.0))

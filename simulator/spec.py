@@ -1,0 +1,267 @@
+"""Machines, materials and tool grades as parameters without behaviour.
+
+Units: mm, s, N, W, rad, rev/s; torque N·mm; stress and specific force N/mm². ``None`` means
+that the source gives no value, and a limit without a value does not limit.
+"""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+class MachineKind(StrEnum):
+    """What turns: the tool or the workpiece."""
+
+    MILL = "mill"
+    LATHE = "lathe"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SpindlePoint:
+    """One point of the spindle's power and torque curve (continuous duty, S1)."""
+
+    speed: float
+    """rev/s, positive"""
+    power: float
+    """motor power available at that speed, W"""
+    torque: float | None = None
+    """torque available at the spindle nose, N·mm"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Spindle:
+    """Main drive.
+
+    Between two points of the curve power and torque are interpolated in logarithms, so that
+    constant torque and constant power are straight lines. Below the first point the torque
+    stays constant where the point has one (power in proportion to speed), else the power does;
+    above the last point the power stays constant. One point without torque: constant power.
+    """
+
+    curve: tuple[SpindlePoint, ...]
+    """ascending in speed, at least one point"""
+    efficiency: float
+    """cutting power over motor power, 0 < η ≤ 1"""
+    min_speed: float | None
+    """rev/s"""
+    max_speed: float | None
+    """rev/s"""
+    acceleration: float | None
+    """rev/s²"""
+    inertia: float | None = None
+    """kg·m²"""
+    idle_power: float = 0.0
+    """W, turning without cutting, independent of speed"""
+    idle_power_per_speed: float = 0.0
+    """W per rev/s"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Axis:
+    """One linear axis."""
+
+    name: str
+    """X, Y or Z"""
+    travel: tuple[float, float]
+    """mm; an end that the source does not give is infinite"""
+    rapid: float
+    """mm/s"""
+    max_feed: float
+    """mm/s"""
+    acceleration: float
+    """mm/s²"""
+    jerk: float | None = None
+    """mm/s³"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Machine:
+    """One machine tool."""
+
+    name: str
+    title: str
+    kind: MachineKind
+    spindle: Spindle
+    axes: tuple[Axis, ...]
+    rapid: float | None
+    """mm/s, of the slowest axis; ``None``: not limited"""
+    max_feed: float | None
+    """mm/s, the feed mechanism"""
+    max_cutting_force: float | None
+    """N"""
+    max_axial_depth: float | None
+    """mm, depth of cut that the machine permits"""
+    block_time: float | None
+    """s, the control's processing time of one block"""
+    base_power: float
+    """W, whatever the machine does"""
+    coolant_power: float
+    """W"""
+    tool_change: float
+    """s, chip to chip"""
+    source: str
+    remarks: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Kienzle:
+    """k_c = k_c1.1 · h^(−m_c)."""
+
+    k_c11: float
+    """N/mm²"""
+    m_c: float
+    """0 ≤ m_c < 1; 0 is the constant k_s of El-Hofy"""
+    rake_angle: float | None = None
+    """rad, γ₀ of the tool the values were measured with; ``None``: no rake correction"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LinearEdge:
+    """F_t = K_tc·b·h + K_te·b and likewise radial and axial."""
+
+    k_tc: float
+    """N/mm²"""
+    k_te: float
+    """N/mm"""
+    k_rc: float = 0.0
+    k_re: float = 0.0
+    k_ac: float = 0.0
+    k_ae: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Taylor:
+    """v_c · T^n = C."""
+
+    exponent: float
+    """n, dimensionless, 0 < n < 1"""
+    constant: float
+    """C as a cutting speed in mm/s for a life of one minute"""
+
+
+class CuttingMaterial(StrEnum):
+    """What the cutting edge is made of."""
+
+    HSS = "hss"
+    CARBIDE = "carbide"
+    CERAMIC = "ceramic"
+
+
+class ToolBody(StrEnum):
+    """How the cutting edge is held; the speeds of carbide differ with it."""
+
+    SOLID = "solid"
+    INDEXABLE = "indexable"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CuttingWindow:
+    """What a cutting material may do in a work material."""
+
+    cutting_material: CuttingMaterial
+    min_cutting_speed: float | None
+    """mm/s"""
+    max_cutting_speed: float | None
+    """mm/s"""
+    taylor: Taylor | None
+    tool_body: ToolBody | None = None
+    """``None``: the window serves both"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Material:
+    """One work material."""
+
+    name: str
+    """file name in the library, ``c45``"""
+    title: str
+    """what a catalogue calls it, ``AISI 1045``"""
+    iso_group: str
+    """P, M, K, N, S or H; empty when it has none"""
+    equivalents: tuple[str, ...]
+    """other names and standard numbers"""
+    hardness_hb: float | None
+    density: float | None
+    """g/cm³"""
+    tensile_strength: float | None
+    """N/mm²"""
+    kienzle: Kienzle
+    linear_edge: LinearEdge | None
+    windows: tuple[CuttingWindow, ...]
+    min_feed_per_tooth_ratio: float | None
+    """f_z over the cutter's diameter, end mills"""
+    max_feed_per_tooth_ratio: float | None
+    max_feed_per_tooth: float | None
+    """mm, absolute, where the source gives one"""
+    source: str
+    remarks: tuple[str, ...] = ()
+
+
+class ToolKind(StrEnum):
+    """Families of tools that share feed windows."""
+
+    ENDMILL = "endmill"
+    FACEMILL = "facemill"
+    DRILL = "drill"
+    CENTER_DRILL = "center_drill"
+    COUNTERSINK = "countersink"
+    REAMER = "reamer"
+    BORING_BAR = "boring_bar"
+    TAP = "tap"
+    TURNING = "turning"
+    GROOVING = "grooving"
+    THREADING = "threading"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Grade:
+    """Feed windows and strength of one kind of tool in one cutting material and ISO group.
+
+    Feeds are per tooth for milling, per revolution for everything else.
+    """
+
+    name: str
+    tool_kind: ToolKind
+    cutting_material: CuttingMaterial
+    iso_group: str
+    """P, M, K, N, S, H; ``*`` for all"""
+    min_feed_ratio: float | None
+    """least feed per tooth (or revolution) over the tool's diameter"""
+    max_feed_ratio: float | None
+    min_feed: float | None
+    """mm, absolute"""
+    max_feed: float | None
+    """mm, absolute"""
+    min_cutting_speed: float | None
+    """mm/s; overrides the material's window"""
+    max_cutting_speed: float | None
+    """mm/s"""
+    max_depth_ratio: float | None
+    """greatest axial depth over the tool's diameter"""
+    max_depth: float | None
+    """mm, absolute"""
+    min_chip_thickness: float
+    """mm, below which the edge rubs"""
+    youngs_modulus: float
+    """N/mm²"""
+    bending_strength: float
+    """N/mm², permissible bending stress of the shank"""
+    rake_angle: float | None
+    """rad"""
+    source: str
+
+
+class Certainty(StrEnum):
+    """How a material was found."""
+
+    EXACT = "exact"
+    GUESS = "guess"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MaterialMatch:
+    """A material and how it was found."""
+
+    material: Material
+    certainty: Certainty
+    reason: str
+    """one sentence for the user: "'ST-50' read as E295 / St50-2 by its equivalent name" """

@@ -1,0 +1,1 @@
+"""The nouns: what a STEP-NC program says, in memory and on disk."""

@@ -1,0 +1,364 @@
+"""Part 21 instances ↔ entities, driven by the fields of the entities; no code per entity.
+
+Reading is tolerant: what deviates from the schema is a finding, and only asking for an instance
+that is not there, or that no entity describes, is an error. Entities are bound one by one when
+they are asked for, and hold references, so a file of any size or shape costs what is used.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, TypeVar, cast
+
+from stepnc_model.entities.catalogue import BY_ARITY, class_of, classes
+from stepnc_model.entities.conversion import Remark, give, take, take_missing
+from stepnc_model.entities.entity import Entity, attributes
+from stepnc_model.entities.operations import MachiningOperation
+from stepnc_model.entities.slots import Slot, slots_of
+from stepnc_model.errors import Finding, Part21Error, SchemaError, Severity
+from stepnc_model.part21.reader import Part21File
+from stepnc_model.part21.values import Ref, Value
+
+T = TypeVar("T")
+
+OPTIMISATION = "its_optimisation"
+OPTIMISATION_POSITION = 8
+"""where Fig. 11 of paper 002 prints the surplus attribute: behind its_machine_functions"""
+
+_PARTS = {
+    "approach": "ISO 14649-11",
+    "drilling": "ISO 14649-11",
+    "geometry": "ISO 10303-42",
+    "milling": "ISO 14649-11",
+    "optimisation": "optimisation.exp",
+    "strategies": "ISO 14649-11",
+    "technology": "ISO 14649-11",
+    "tools": "ISO 14649-111",
+    "turning": "ISO 14649-12",
+    "turning_features": "ISO 14649-12",
+    "turning_strategies": "ISO 14649-12",
+    "turning_tools": "ISO 14649-121",
+}
+"""standard that a module of entities speaks for; all others speak for ISO 14649-10"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Bound:
+    """An entity, and what was odd about its instance."""
+
+    entity: Entity
+    remarks: tuple[tuple[str, Remark], ...]
+    """by attribute; an empty name means the whole instance"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Inspection:
+    """What a look at one instance finds."""
+
+    findings: tuple[Finding, ...]
+    references: tuple[int, ...]
+    """ids; the optimisation is left out, for its records lead back to operations"""
+
+
+class Model:
+    """The entities of one file.
+
+    Not a value: entities are kept once bound.
+
+    Parameters
+    ----------
+    file : Part21File
+    """
+
+    def __init__(self, file: Part21File) -> None:
+        self.file = file
+        self._bound: dict[int, Entity | None] = {}
+
+    def get(self, ref: Ref[T], /) -> T:
+        """The entity behind a reference.
+
+        Raises
+        ------
+        SchemaError
+            If there is no such instance, it is malformed, or no entity describes it.
+        """
+        found = self.entity(int(ref))
+        if found is None:
+            raise self._refusal(int(ref))
+        return cast("T", found)
+
+    def entity(self, id: int, /) -> Entity | None:
+        """The entity of an instance; None where :meth:`get` raises."""
+        if id not in self._bound:
+            self._bound[id] = _entity_of(self.file, id)
+        return self._bound[id]
+
+    def of_type(self, cls: type[T]) -> Iterator[tuple[Ref[T], T]]:
+        """All instances of a class and its subclasses that can be bound, in file order."""
+        named = [(keyword, bound) for keyword, bound in classes().items()]
+        named += [(keyword, bound) for (keyword, _), bound in BY_ARITY.items()]
+        keywords = {keyword for keyword, bound in named if issubclass(bound, cls)}
+        ids = [id for keyword in keywords for id in self.file.ids_of(keyword)]
+        for id in sorted(ids, key=self.file.span):
+            entity = self.entity(id)
+            if isinstance(entity, cls):
+                yield Ref[T](id), entity
+
+    def position(self, ref: Ref[Any], attribute: str) -> int:
+        """Place of an attribute among the parameters of its instance, counted from 0.
+
+        An attribute that the instance lacks has the place where it belongs, which is then
+        beyond the parameters; ``its_optimisation`` belongs at the very end.
+
+        Raises
+        ------
+        ValueError
+            If the entity has no such attribute.
+        """
+        cls = type(cast("Entity", self.get(ref)))
+        values = self.file.parameters(int(ref))
+        surplus = _optimisation_at(self.file, cls, values)
+        names = attributes(cls)
+        if attribute == OPTIMISATION and issubclass(cls, MachiningOperation):
+            return max(len(values), len(names)) if surplus is None else surplus
+        if attribute not in names:
+            raise ValueError(f"{cls.__name__} has no attribute {attribute}")
+        index = names.index(attribute)
+        return index + 1 if surplus is not None and surplus <= index else index
+
+    def findings(self) -> tuple[Finding, ...]:
+        """Everything that deviates from the schema, in file order; binds every instance."""
+        edges: dict[int, tuple[int, ...]] = {}
+        found: list[Finding] = []
+        for id in self.file.ids():
+            inspection = _inspect(self.file, id)
+            if inspection is not None:
+                found += inspection.findings
+                edges[id] = inspection.references
+        found += _cycle_findings(self.file, edges)
+        found += _unknown_findings(self.file)
+        return tuple(sorted(found, key=lambda finding: finding.line))
+
+    def _refusal(self, id: int) -> SchemaError:
+        """Why an instance has no entity."""
+        if id not in self.file:
+            return SchemaError("is referred to, but there is no such instance", entity=f"#{id}")
+        message = "is not an entity that this program reads"
+        try:
+            self.file.parameters(id)
+        except Part21Error as error:
+            message = str(error)
+        return SchemaError(message, entity=self.file.label(id), line=self.file.line(id))
+
+
+def bind(
+    cls: type[Entity], values: tuple[Value, ...], *, file: Part21File | None = None
+) -> Bound:
+    """Entity of a class from its parameters.
+
+    Parameters
+    ----------
+    cls : type
+    values : tuple of Value
+    file : Part21File, optional
+        Where references lead, to tell a reference to an optimisation from others.
+    """
+    slots = slots_of(cls)
+    given, optimisation = _without_optimisation(file, cls, values)
+    bound: dict[str, object] = {}
+    remarks: list[tuple[str, Remark]] = []
+    for index, (name, slot) in enumerate(slots.items()):
+        taken = take(slot, given[index]) if index < len(given) else take_missing(slot)
+        bound[name], remark = taken
+        if remark is not None:
+            remarks.append((name, remark))
+    if len(given) > len(slots):
+        text = f"{len(given)} attributes, {len(slots)} expected: the surplus is kept, not read"
+        remarks.append(("", Remark(Severity.WARNING, text)))
+    if optimisation is not None:
+        bound[OPTIMISATION] = optimisation
+    return Bound(entity=cls(**bound), remarks=tuple(remarks))
+
+
+def to_parameters(entity: Entity) -> tuple[Value, ...]:
+    """Part 21 parameters of an entity, the reference to its optimisation last.
+
+    The inverse of binding.
+    """
+    slots = slots_of(type(entity))
+    values = [give(slot, getattr(entity, name)) for name, slot in slots.items()]
+    optimisation: Ref[object] | None = getattr(entity, OPTIMISATION, None)
+    return (*values, optimisation) if optimisation is not None else tuple(values)
+
+
+def keyword_of(entity: Entity) -> str:
+    """Name of an entity in a Part 21 file."""
+    return entity.keyword
+
+
+def _entity_of(file: Part21File, id: int) -> Entity | None:
+    """Entity of one instance, or None."""
+    found = _read(file, id)
+    return None if found is None else bind(*found, file=file).entity
+
+
+def _read(file: Part21File, id: int) -> tuple[type[Entity], tuple[Value, ...]] | None:
+    """Class and parameters of an instance that can be bound."""
+    if id not in file or file.keyword(id) not in classes():
+        return None
+    try:
+        values = file.parameters(id)
+    except Part21Error:
+        return None
+    cls = class_of(file.keyword(id), len(values))
+    return None if cls is None else (cls, values)
+
+
+def _without_optimisation(
+    file: Part21File | None, cls: type[Entity], values: tuple[Value, ...]
+) -> tuple[tuple[Value, ...], Ref[object] | None]:
+    """Parameters in EXPRESS order, and the reference that stood among them."""
+    place = _optimisation_at(file, cls, values)
+    if place is None:
+        return values, None
+    surplus = values[place]
+    reference = surplus if isinstance(surplus, Ref) else None
+    return values[:place] + values[place + 1 :], reference
+
+
+def _optimisation_at(
+    file: Part21File | None, cls: type[Entity], values: tuple[Value, ...]
+) -> int | None:
+    """Place of the reference to the optimisation of an operation, or None."""
+    if not issubclass(cls, MachiningOperation):
+        return None
+    names = attributes(cls)
+    if len(values) > OPTIMISATION_POSITION:
+        value = values[OPTIMISATION_POSITION]
+        slot = slots_of(cls).get(names[OPTIMISATION_POSITION])
+        is_alien = len(values) == len(names) + 1 and slot is not None and not slot.references
+        if isinstance(value, Ref) and (is_alien or _is_optimisation(file, value)):
+            return OPTIMISATION_POSITION
+    if len(values) > len(names) and isinstance(values[len(names)], Ref | None):
+        return len(names)
+    return None
+
+
+def _is_optimisation(file: Part21File | None, ref: Ref[object]) -> bool:
+    """Whether a reference leads to a record of an optimum."""
+    return (
+        file is not None
+        and int(ref) in file
+        and file.keyword(int(ref)).endswith("OPTIMISATION")
+    )
+
+
+def _inspect(file: Part21File, id: int) -> Inspection | None:
+    """Look at one instance; None when it cannot be bound."""
+    found = _read(file, id)
+    if found is None:
+        return None
+    cls, values = found
+    findings = [
+        _finding(file, id, name, remark=remark, rule=_rule(cls))
+        for name, remark in bind(cls, values, file=file).remarks
+    ]
+    given, optimisation = _without_optimisation(file, cls, values)
+    references = list(_references(cls, given))
+    for name, ref, slot in references:
+        findings += _reference_findings(file, id, name, ref=ref, slot=slot)
+    if optimisation is not None:
+        findings += _reference_findings(
+            file, id, OPTIMISATION, ref=optimisation, slot=Slot(references=(Entity,))
+        )
+    return Inspection(
+        findings=tuple(findings), references=tuple(int(ref) for _, ref, _ in references)
+    )
+
+
+def _references(
+    cls: type[Entity], values: tuple[Value, ...]
+) -> Iterator[tuple[str, Ref[object], Slot]]:
+    """References of an instance with their attributes, those in lists as well."""
+    for (name, slot), value in zip(slots_of(cls).items(), values, strict=False):
+        if isinstance(value, Ref):
+            yield name, value, slot.items or slot
+        elif isinstance(value, tuple) and slot.items is not None:
+            yield from ((name, item, slot.items) for item in value if isinstance(item, Ref))
+
+
+def _reference_findings(
+    file: Part21File, id: int, name: str, *, ref: Ref[object], slot: Slot
+) -> Iterator[Finding]:
+    """A reference that leads nowhere, or to the wrong kind of instance."""
+    if int(ref) not in file:
+        remark = Remark(Severity.ERROR, f"{ref} is no instance of this file")
+        yield _finding(file, id, name, remark=remark, rule="ISO 10303-21")
+        return
+    target = classes().get(file.keyword(int(ref)))
+    if target is None or not slot.references or issubclass(target, slot.references):
+        return
+    wanted = " or ".join(cls.__name__ for cls in slot.references)
+    remark = Remark(Severity.ERROR, f"{file.label(int(ref))} stands where {wanted} belongs")
+    yield _finding(file, id, name, remark=remark, rule=_rule(target))
+
+
+def _cycle_findings(
+    file: Part21File, edges: Mapping[int, tuple[int, ...]]
+) -> Iterator[Finding]:
+    """Instances that contain themselves: ISO 14649 nests, it never goes in circles."""
+    for circle in _circles(edges):
+        path = " → ".join(f"#{id}" for id in (*circle, circle[0]))
+        remark = Remark(Severity.ERROR, f"contains itself: {path}")
+        yield _finding(file, circle[0], "", remark=remark, rule="ISO 14649-10")
+
+
+def _circles(edges: Mapping[int, tuple[int, ...]]) -> Iterator[tuple[int, ...]]:
+    """One circle for every edge that closes one; no recursion, files may nest deeply."""
+    done: set[int] = set()
+    for root in edges:
+        path: dict[int, Iterator[int]] = {}
+        current = None if root in done else root
+        while current is not None:
+            pending = path.setdefault(current, iter(edges.get(current, ())))
+            step = next((id for id in pending if id not in done), None)
+            if step is None:
+                path.pop(current)
+                done.add(current)
+                current = next(reversed(path), None)
+            elif step in path:
+                ids = list(path)
+                yield tuple(ids[ids.index(step) :])
+            else:
+                current = step
+
+
+def _unknown_findings(file: Part21File) -> Iterator[Finding]:
+    """One note for each keyword that no entity has."""
+    unknown: dict[str, list[int]] = {}
+    for id in file.ids():
+        keyword = file.keyword(id)
+        if keyword not in classes():
+            unknown.setdefault(keyword, []).append(id)
+    for keyword, ids in unknown.items():
+        count = f" ({len(ids)} instances)" if len(ids) > 1 else ""
+        text = f"{keyword or 'a complex instance'}{count} is not read, and kept as it is"
+        yield _finding(file, ids[0], "", remark=Remark(Severity.NOTE, text), rule="ISO 14649")
+
+
+def _finding(
+    file: Part21File, id: int, attribute: str, *, remark: Remark, rule: str
+) -> Finding:
+    """A remark with its place."""
+    return Finding(
+        severity=remark.severity,
+        message=remark.message,
+        entity=file.label(id),
+        attribute=attribute,
+        line=file.line(id),
+        rule=rule,
+    )
+
+
+def _rule(cls: type[Entity]) -> str:
+    """Standard that defines an entity."""
+    return _PARTS.get(cls.__module__.rpartition(".")[2], "ISO 14649-10")

@@ -1,0 +1,106 @@
+"""All entities by keyword, with the names that the two editions of ISO 14649 give them."""
+
+from collections.abc import Iterator
+from functools import cache
+
+from stepnc_model.entities import (
+    adaptive,
+    approach,
+    bottoms,
+    drilling,
+    executables,
+    expressions,
+    features,
+    functions,
+    geometry,
+    measures,
+    milling,
+    operations,
+    optimisation,
+    probing,
+    profiles,
+    project,
+    regions,
+    setup,
+    strategies,
+    surfaces,
+    technology,
+    threads,
+    toolpaths,
+    tools,
+    turning,
+    turning_features,
+    turning_strategies,
+    turning_tools,
+    workpiece,
+)
+from stepnc_model.entities.entity import Entity
+
+MODULES = (
+    adaptive,
+    approach,
+    bottoms,
+    drilling,
+    executables,
+    expressions,
+    features,
+    functions,
+    geometry,
+    measures,
+    milling,
+    operations,
+    optimisation,
+    probing,
+    profiles,
+    project,
+    regions,
+    setup,
+    strategies,
+    surfaces,
+    technology,
+    threads,
+    toolpaths,
+    tools,
+    turning,
+    turning_features,
+    turning_strategies,
+    turning_tools,
+    workpiece,
+)
+
+OLDER_NAMES = {
+    "TOOL_DIMENSION": "MILLING_TOOL_DIMENSION",
+    "UNIDIRECTIONAL": "UNIDIRECTIONAL_MILLING",
+    "BIDIRECTIONAL": "BIDIRECTIONAL_MILLING",
+    "EXPLICIT": "EXPLICIT_STRATEGY",
+    "CUTTING_TOOL": "MILLING_CUTTING_TOOL",
+    "COUNTERSINKING": "COUNTER_SINKING",
+    "MULTISTEP_DRILLING_OPERATION": "MULTISTEP_DRILLING",
+}
+"""names of the drafts of 2001 and of some files, and what the standard of 2004 calls them"""
+
+
+BY_ARITY: dict[tuple[str, int], type[Entity]] = {
+    ("MILLING_TECHNOLOGY", 5): adaptive.AdaptiveMillingTechnology
+}
+"""other forms of an entity, told apart by the number of parameters"""
+
+
+def class_of(keyword: str, arity: int) -> type[Entity] | None:
+    """Class of an instance by its keyword and number of parameters; None: not read."""
+    return BY_ARITY.get((keyword, arity)) or classes().get(keyword)
+
+
+@cache
+def classes() -> dict[str, type[Entity]]:
+    """Class of every keyword, older names included."""
+    found = {cls.keyword: cls for module in MODULES for cls in _entities(module)}
+    found.update({old: found[new] for old, new in OLDER_NAMES.items()})
+    return found
+
+
+def _entities(module: object) -> Iterator[type[Entity]]:
+    """Entities that one module defines and a file may name."""
+    for value in vars(module).values():
+        if isinstance(value, type) and issubclass(value, Entity) and "keyword" in vars(value):
+            yield value

@@ -1,0 +1,104 @@
+"""The base of every ISO 14649 entity: a frozen, slotted, keyword-only dataclass.
+
+The order of the fields, supertypes first, is the order of the parameters in a Part 21 file.
+Attributes that point to an instance hold a :class:`~stepnc_model.part21.values.Ref`, never the
+entity itself, so circular and dangling references cost nothing; looking them up is the work
+of :class:`stepnc_model.binding.Model`.
+
+Why not plain ``@dataclass``: it generates and compiles five methods for each class, half a
+millisecond apiece, and there are some three hundred classes on the way to ``--help``. Here one
+``__init__``, ``__repr__``, ``__eq__`` and ``__hash__``, driven by the fields, serve them all,
+and annotations stay strings (``from __future__ import annotations``) until somebody binds.
+``dataclasses.fields``, ``replace`` and ``asdict`` work as on any dataclass.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import MISSING, FrozenInstanceError, dataclass, field, fields
+from typing import TYPE_CHECKING, TypeVar, dataclass_transform
+
+if TYPE_CHECKING:
+    from dataclasses import Field
+    from typing import Any, ClassVar, NoReturn
+
+E = TypeVar("E")
+
+_WORD = re.compile(r"(?<=.)(?=[A-Z])|(?<=[a-z])(?=[0-9][a-z])")
+
+
+@dataclass_transform(frozen_default=True, kw_only_default=True, field_specifiers=(field,))
+def abstract(cls: type[E]) -> type[E]:
+    """Make an EXPRESS supertype that no instance of a file may name."""
+    return dataclass(init=False, repr=False, eq=False, slots=True, kw_only=True)(cls)
+
+
+@dataclass_transform(frozen_default=True, kw_only_default=True, field_specifiers=(field,))
+def entity(cls: type[E]) -> type[E]:
+    """Make an EXPRESS entity; its keyword follows from the name of the class."""
+    made = abstract(cls)
+    made.keyword = _WORD.sub("_", cls.__name__).upper()  # type: ignore[attr-defined]
+    return made
+
+
+@abstract
+class Entity:
+    """What every entity of ISO 14649 has: equality by value, and no change."""
+
+    keyword = ""
+    """Name in a Part 21 file; an abstract class has the one of the entity above it, or none."""
+
+    if TYPE_CHECKING:
+        __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
+
+    @classmethod
+    def express_name(cls) -> str:
+        """Name in the standard's spelling, ``plane_rough_milling``."""
+        return _WORD.sub("_", cls.__name__).lower()
+
+    def __init__(self, **attributes: object) -> None:
+        missing = []
+        for name, attribute in self.__dataclass_fields__.items():
+            value = attributes.pop(name, attribute.default)
+            if value is MISSING:
+                missing.append(name)
+            object.__setattr__(self, name, value)
+        if missing:
+            raise TypeError(f"{type(self).__name__} lacks {', '.join(missing)}")
+        if attributes:
+            raise TypeError(f"{type(self).__name__} has no {', '.join(attributes)}")
+
+    def __setattr__(self, name: str, value: object) -> NoReturn:
+        raise FrozenInstanceError(f"cannot assign to {type(self).__name__}.{name}")
+
+    def __delattr__(self, name: str) -> NoReturn:
+        raise FrozenInstanceError(f"cannot delete {type(self).__name__}.{name}")
+
+    def __eq__(self, other: object) -> bool:
+        return type(other) is type(self) and values(other) == values(self)
+
+    def __hash__(self) -> int:
+        return hash((type(self), values(self)))
+
+    def __repr__(self) -> str:
+        shown = (f"{name}={getattr(self, name)!r}" for name in self.__dataclass_fields__)
+        return f"{type(self).__name__}({', '.join(shown)})"
+
+    def __setstate__(self, state: tuple[None, dict[str, object]]) -> None:
+        for name, value in state[1].items():
+            object.__setattr__(self, name, value)
+
+
+def apart() -> Any:
+    """Field of ours that the EXPRESS entity lacks: no Part 21 position, absent by default."""
+    return field(default=None, metadata={"express": False})
+
+
+def attributes(cls: type[Entity] | Entity) -> tuple[str, ...]:
+    """EXPRESS names of the explicit attributes, in the order of the Part 21 parameters."""
+    return tuple(each.name for each in fields(cls) if each.metadata.get("express", True))
+
+
+def values(instance: Entity) -> tuple[object, ...]:
+    """Values of all fields, in their order."""
+    return tuple(getattr(instance, name) for name in instance.__dataclass_fields__)

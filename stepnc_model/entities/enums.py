@@ -1,0 +1,217 @@
+"""Enumerations of ISO 14649-10, -11, -111, -12, -121 and ISO 10303-42.
+
+The value of a member is the EXPRESS name in upper case, as a Part 21 file writes it between
+dots.
+"""
+
+from enum import StrEnum
+
+
+class Logical(StrEnum):
+    """LOGICAL of EXPRESS, where unknown is an answer."""
+
+    TRUE = "T"
+    FALSE = "F"
+    UNKNOWN = "U"
+
+
+class ToolReferencePoint(StrEnum):
+    """Point of the tool that moves with the feed programmed."""
+
+    TCP = "TCP"
+    CCP = "CCP"
+
+
+class Hand(StrEnum):
+    """Hand of cut of a rotating tool."""
+
+    LEFT = "LEFT"
+    RIGHT = "RIGHT"
+    NEUTRAL = "NEUTRAL"
+
+
+class RotDirection(StrEnum):
+    """Sense in which a contour is followed."""
+
+    CW = "CW"
+    CCW = "CCW"
+
+
+class CutmodeType(StrEnum):
+    """Down milling or up milling."""
+
+    CLIMB = "CLIMB"
+    CONVENTIONAL = "CONVENTIONAL"
+
+
+class LeftOrRight(StrEnum):
+    """Side to which strokes step over."""
+
+    LEFT = "LEFT"
+    RIGHT = "RIGHT"
+
+
+class PathmodeType(StrEnum):
+    """Strokes in one direction or in both."""
+
+    FORWARD = "FORWARD"
+    ZIGZAG = "ZIGZAG"
+
+
+class StrokeConnectionStrategy(StrEnum):
+    """Way from the end of one stroke to the start of the next."""
+
+    STRAGHTLINE = "STRAGHTLINE"
+    """spelt so in ISO 14649-11"""
+    STRAIGHTLINE = "STRAIGHTLINE"
+    """spelt so in files"""
+    LIFT_SHIFT_PLUNGE = "LIFT_SHIFT_PLUNGE"
+    DEGOUGE = "DEGOUGE"
+    LOOP_BACK = "LOOP_BACK"
+
+
+class ToolpathType(StrEnum):
+    """What a tool path is for."""
+
+    APPROACH = "APPROACH"
+    LIFT = "LIFT"
+    CONNECT = "CONNECT"
+    NON_CONTACT = "NON_CONTACT"
+    CONTACT = "CONTACT"
+    TRAJECTORY_PATH = "TRAJECTORY_PATH"
+
+
+class SpeedName(StrEnum):
+    """Feed that has a name instead of a number."""
+
+    RAPID = "RAPID"
+
+
+class ContactType(StrEnum):
+    """Part of the cutter that touches the surface."""
+
+    SIDE = "SIDE"
+    FRONT = "FRONT"
+
+
+class BottomOrSide(StrEnum):
+    """Part of a feature that a surface finish is asked of."""
+
+    BOTTOM = "BOTTOM"
+    SIDE = "SIDE"
+    BOTTOM_AND_SIDE = "BOTTOM_AND_SIDE"
+
+
+class FittingType(StrEnum):
+    """Which partner of a fit."""
+
+    SHAFT = "SHAFT"
+    HOLE = "HOLE"
+
+
+class CoolantSelect(StrEnum):
+    """How a lathe brings its coolant (ISO 14649-12)."""
+
+    FLOOD = "FLOOD"
+    MIST = "MIST"
+    THROUGH_TOOL = "THROUGH_TOOL"
+
+
+class ThreadCutDepthType(StrEnum):
+    """How the depth of thread passes develops (ISO 14649-12)."""
+
+    CONSTANT_DEPTH = "CONSTANT_DEPTH"
+    VARIABLE_DEPTH = "VARIABLE_DEPTH"
+    CONSTANT_REMOVAL_AMOUNT = "CONSTANT_REMOVAL_AMOUNT"
+
+
+class ThreadingDirectionType(StrEnum):
+    """Flank along which a threading tool is fed in (ISO 14649-12)."""
+
+    LEFT = "LEFT"
+    RIGHT = "RIGHT"
+    CENTER = "CENTER"
+    LEFT_ZIGZAG = "LEFT_ZIGZAG"
+    RIGHT_ZIGZAG = "RIGHT_ZIGZAG"
+
+
+class HandOfToolType(StrEnum):
+    """Hand of a turning tool (ISO 14649-121)."""
+
+    LEFT = "LEFT"
+    RIGHT = "RIGHT"
+    NEUTRAL = "NEUTRAL"
+
+
+class ThreadHandType(StrEnum):
+    """Hand of the thread a tool cuts (ISO 14649-121)."""
+
+    LEFT = "LEFT"
+    RIGHT = "RIGHT"
+
+
+class ThreadType(StrEnum):
+    """Inside or outside thread (ISO 14649-121)."""
+
+    INTERNAL = "INTERNAL"
+    EXTERNAL = "EXTERNAL"
+
+
+class ThreadProfileType(StrEnum):
+    """Insert that cuts the crest as well, or not (ISO 14649-121)."""
+
+    FULL_PROFILE = "FULL_PROFILE"
+    PARTIAL_PROFILE = "PARTIAL_PROFILE"
+
+
+class KnurlPatternType(StrEnum):
+    """Pattern of a knurling wheel; members after the knurls of ISO 14649-12."""
+
+    STRAIGHT = "STRAIGHT"
+    DIAGONAL = "DIAGONAL"
+    DIAMOND = "DIAMOND"
+
+
+class TransitionCode(StrEnum):
+    """How one segment of a composite curve meets the next (ISO 10303-42)."""
+
+    DISCONTINUOUS = "DISCONTINUOUS"
+    CONTINUOUS = "CONTINUOUS"
+    CONT_SAME_GRADIENT = "CONT_SAME_GRADIENT"
+    CONT_SAME_GRADIENT_SAME_CURVATURE = "CONT_SAME_GRADIENT_SAME_CURVATURE"
+
+
+class TrimmingPreference(StrEnum):
+    """Which way of trimming wins where both are given (ISO 10303-42)."""
+
+    CARTESIAN = "CARTESIAN"
+    PARAMETER = "PARAMETER"
+    UNSPECIFIED = "UNSPECIFIED"
+
+
+class BSplineCurveForm(StrEnum):
+    """What curve a B-spline stands for (ISO 10303-42)."""
+
+    POLYLINE_FORM = "POLYLINE_FORM"
+    CIRCULAR_ARC = "CIRCULAR_ARC"
+    ELLIPTIC_ARC = "ELLIPTIC_ARC"
+    PARABOLIC_ARC = "PARABOLIC_ARC"
+    HYPERBOLIC_ARC = "HYPERBOLIC_ARC"
+    UNSPECIFIED = "UNSPECIFIED"
+
+
+class KnotType(StrEnum):
+    """How the knots of a B-spline are spread (ISO 10303-42)."""
+
+    UNIFORM_KNOTS = "UNIFORM_KNOTS"
+    QUASI_UNIFORM_KNOTS = "QUASI_UNIFORM_KNOTS"
+    PIECEWISE_BEZIER_KNOTS = "PIECEWISE_BEZIER_KNOTS"
+    UNSPECIFIED = "UNSPECIFIED"
+
+
+class AheadOrBehind(StrEnum):
+    """Sense of an offset from universal time (ISO 10303-41)."""
+
+    AHEAD = "AHEAD"
+    EXACT = "EXACT"
+    BEHIND = "BEHIND"

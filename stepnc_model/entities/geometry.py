@@ -1,0 +1,248 @@
+"""Geometry of ISO 10303-42 as far as ISO 14649 programs use it.
+
+Lengths in mm; what the faces of a solid look like is kept in the file and not modelled here.
+"""
+
+from __future__ import annotations
+
+from stepnc_model.entities.entity import Entity, abstract, entity
+from stepnc_model.entities.enums import (
+    BSplineCurveForm,
+    KnotType,
+    Logical,
+    TransitionCode,
+    TrimmingPreference,
+)
+from stepnc_model.part21.values import Ref, Typed
+
+
+@abstract
+class RepresentationItem(Entity):
+    """Anything that geometry is made of."""
+
+    name: str
+
+
+@abstract
+class Point(RepresentationItem):
+    """Location in space."""
+
+
+@entity
+class CartesianPoint(Point):
+    """Point by its coordinates, mm."""
+
+    coordinates: tuple[float, ...]
+
+
+@entity
+class Direction(RepresentationItem):
+    """Direction by its ratios; the length means nothing."""
+
+    direction_ratios: tuple[float, ...]
+
+
+@entity
+class Vector(RepresentationItem):
+    """Direction with a magnitude."""
+
+    orientation: Ref[Direction]
+    magnitude: float
+
+
+@abstract
+class Placement(RepresentationItem):
+    """Location of a coordinate system."""
+
+    location: Ref[CartesianPoint]
+
+
+@entity
+class Axis1Placement(Placement):
+    """Location and axis; the axis is z unless given."""
+
+    axis: Ref[Direction] | None = None
+
+
+@entity
+class Axis2Placement2d(Placement):
+    """Coordinate system in the plane."""
+
+    ref_direction: Ref[Direction] | None = None
+
+
+@entity
+class Axis2Placement3d(Placement):
+    """Coordinate system in space: z along ``axis``, x towards ``ref_direction``."""
+
+    axis: Ref[Direction] | None = None
+    ref_direction: Ref[Direction] | None = None
+
+
+@abstract
+class Curve(RepresentationItem):
+    """Anything that has one parameter."""
+
+
+@entity
+class Line(Curve):
+    """Unbounded straight line."""
+
+    pnt: Ref[CartesianPoint]
+    dir: Ref[Vector]
+
+
+@abstract
+class Conic(Curve):
+    """Plane curve of second order."""
+
+    position: Ref[Axis2Placement2d | Axis2Placement3d]
+
+
+@entity
+class Circle(Conic):
+    """Full circle about the z axis of its placement."""
+
+    radius: float
+
+
+@entity
+class Ellipse(Conic):
+    """Full ellipse; the first half axis lies along x."""
+
+    semi_axis_1: float
+    semi_axis_2: float
+
+
+@entity
+class Helix(Curve):
+    """Right-hand screw line about z.
+
+    No entity of ISO 10303-42: an addition of NIST's ``ex1E.stp``.
+    """
+
+    position: Ref[Axis2Placement3d]
+    radius: float
+    pitch: float
+
+
+@abstract
+class BoundedCurve(Curve):
+    """Curve with two ends."""
+
+
+@entity
+class Polyline(BoundedCurve):
+    """Straight segments from point to point."""
+
+    points: tuple[Ref[CartesianPoint], ...]
+
+
+@entity
+class TrimmedCurve(BoundedCurve):
+    """Part of a curve between two points or two parameters."""
+
+    basis_curve: Ref[Curve]
+    trim_1: tuple[Ref[CartesianPoint] | Typed | float, ...]
+    trim_2: tuple[Ref[CartesianPoint] | Typed | float, ...]
+    sense_agreement: bool
+    master_representation: TrimmingPreference
+
+
+@abstract
+class FoundedItem(Entity):
+    """What has a meaning only within another item."""
+
+
+@entity
+class CompositeCurveSegment(FoundedItem):
+    """One curve of a chain, and how it meets the next."""
+
+    transition: TransitionCode
+    same_sense: bool
+    parent_curve: Ref[Curve]
+
+
+@entity
+class CompositeCurve(BoundedCurve):
+    """Chain of curves."""
+
+    segments: tuple[Ref[CompositeCurveSegment], ...]
+    self_intersect: Logical
+
+
+@entity
+class BSplineCurve(BoundedCurve):
+    """Polynomial curve by its control points."""
+
+    degree: int
+    control_points_list: tuple[Ref[CartesianPoint], ...]
+    curve_form: BSplineCurveForm
+    closed_curve: Logical
+    self_intersect: Logical
+
+
+@entity
+class BSplineCurveWithKnots(BSplineCurve):
+    """Polynomial curve with its knots spelt out."""
+
+    knot_multiplicities: tuple[int, ...]
+    knots: tuple[float, ...]
+    knot_spec: KnotType
+
+
+@abstract
+class Surface(RepresentationItem):
+    """Anything that has two parameters."""
+
+
+@entity
+class ElementarySurface(Surface):
+    """Simple surface; drafts of ISO 14649 write it where they mean a plane."""
+
+    position: Ref[Axis2Placement3d]
+
+
+@entity
+class Plane(ElementarySurface):
+    """Plane through the origin of its placement, normal to z."""
+
+
+@entity
+class CylindricalSurface(ElementarySurface):
+    """Unbounded cylinder about z."""
+
+    radius: float
+
+
+@abstract
+class BoundedSurface(Surface):
+    """Surface with a boundary."""
+
+
+@entity
+class Block(RepresentationItem):
+    """Box from the origin of its placement along the positive axes, mm."""
+
+    position: Ref[Axis2Placement3d]
+    x: float
+    y: float
+    z: float
+
+
+@entity
+class RightCircularCylinder(RepresentationItem):
+    """Cylinder that rises from its placement along the axis, mm."""
+
+    position: Ref[Axis1Placement | Axis2Placement3d]
+    height: float
+    radius: float
+
+
+@entity
+class AdvancedBrepShapeRepresentation(Entity):
+    """Solid by its faces; faces are not modelled, the references are."""
+
+    name: str
+    items: tuple[Ref[Entity], ...]
+    context_of_items: Ref[Entity]

@@ -1,0 +1,201 @@
+"""The optimisation record of a machining operation: ``schemas/optimisation.exp`` in memory.
+
+The data model of [1]_, Fig. 10, made consistent, with what a machine that optimises, measures
+and learns has to add. Numbers are those of the file, in the units of ISO 14649-10, 4.2.1: mm,
+s, m/s, rev/s (signed), degrees; forces in N, powers in kW, energies in J, roughness in µm,
+specific force in N/mm². They become mm, s, N, W and rad where a program is read, not here.
+
+References
+----------
+.. [1] F. Ridwan, X. Xu, G. Liu, "A framework for machining optimisation based on STEP-NC",
+   J. Intell. Manuf., 2010, Fig. 10 and 11.
+"""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+from stepnc_model.entities.entity import Entity, abstract, entity
+from stepnc_model.entities.measures import NumericParameter
+from stepnc_model.entities.operations import MachiningOperation
+from stepnc_model.part21.values import Ref
+
+
+class FaceMillingImmersion(StrEnum):
+    """``face_milling_immersion``: which part of the cutter's width cuts, [1]_ Fig. 6."""
+
+    FULL_IMMERSION = "FULL_IMMERSION"
+    UNIDIRECTIONAL_PART_IMMERSION = "UNIDIRECTIONAL_PART_IMMERSION"
+    BILATERAL_PART_IMMERSION = "BILATERAL_PART_IMMERSION"
+
+
+@abstract
+class Optimisation(Entity):
+    """Supertype ``optimisation``."""
+
+    its_id: str
+    main_drive_motor_power: Ref[MachinePower]
+    process_description: str | None = None
+
+
+@entity
+class TimeCriticalOptimisation(Optimisation):
+    """EXPRESS ``time_critical_optimisation``: mm per tooth and mm."""
+
+    feed_per_tooth_max: float
+    axial_cutting_depth_max: float
+    its_record: Ref[OptimisationRecord] | None = None
+
+
+@entity
+class QualityCriticalOptimisation(Optimisation):
+    """EXPRESS ``quality_critical_optimisation``: mm per tooth and mm."""
+
+    feed_per_tooth: float
+    axial_cutting_depth: float
+    its_record: Ref[OptimisationRecord] | None = None
+
+
+@entity
+class EnergyCriticalOptimisation(Optimisation):
+    """EXPRESS ``energy_critical_optimisation``: mm per tooth and mm."""
+
+    feed_per_tooth: float
+    axial_cutting_depth: float
+    its_record: Ref[OptimisationRecord] | None = None
+
+
+@abstract
+class Power(Entity):
+    """Supertype ``power``: a numeric parameter in kW."""
+
+    its_power_property: Ref[NumericParameter]
+
+
+@entity
+class MachinePower(Power):
+    """EXPRESS ``machine_power``: what the main drive has."""
+
+
+@entity
+class MainCuttingPower(Power):
+    """EXPRESS ``main_cutting_power``: what the cut takes, at a signed speed in rev/s."""
+
+    its_cutting_force: Ref[CuttingForce]
+    spindle_speed: float
+
+
+@entity
+class CuttingForce(Entity):
+    """EXPRESS ``cutting_force``: what the mean tangential force follows from."""
+
+    its_face_milling_type: Ref[FaceMillingType] | None = None
+    spindle_speed: float
+    """rev/s, signed"""
+    feed_per_tooth: float
+    """mm"""
+    specific_cutting_resistance: float
+    """N/mm²"""
+    axial_cutting_depth: float
+    """mm"""
+
+
+@entity
+class FaceMillingType(Entity):
+    """EXPRESS ``face_milling_type``: the angle of contact in degrees, 180 in a full cut."""
+
+    zeta: float
+    immersion_type: FaceMillingImmersion
+
+
+@entity
+class OptimisationRecord(Entity):
+    """EXPRESS ``optimisation_record``: how an optimum came about."""
+
+    number_of_passes: int
+    active_limit: str
+    """what forbids a greater feed"""
+    predicted: Ref[PredictedValues]
+    programmed: Ref[ProgrammedValues]
+    its_cutting_power: Ref[MainCuttingPower] | None = None
+    machine: str
+    material: str
+    generator: str
+
+
+@entity
+class PredictedValues(Entity):
+    """EXPRESS ``predicted_values``: what the models expect of the whole operation."""
+
+    machining_time: float
+    """s"""
+    motor_power: float
+    """kW, greatest"""
+    cutting_force: float
+    """N, greatest"""
+    surface_roughness: float | None = None
+    """µm, arithmetic mean"""
+    energy: float | None = None
+    """J"""
+
+
+@entity
+class ProgrammedValues(Entity):
+    """EXPRESS ``programmed_values``: what the file said before the first optimisation."""
+
+    feedrate: float | None = None
+    """m/s"""
+    feedrate_per_tooth: float | None = None
+    """mm"""
+    cutspeed: float | None = None
+    """m/s"""
+    spindle: float | None = None
+    """rev/s, signed"""
+    axial_cutting_depth: float | None = None
+    """mm"""
+
+
+@entity
+class FeedProfile(Entity):
+    """EXPRESS ``feed_profile``: feed along the path, linear between stations."""
+
+    its_operation: Ref[MachiningOperation]
+    its_stations: tuple[float, ...]
+    """mm from the start of the path"""
+    its_feedrates: tuple[float, ...]
+    """m/s, one for each station"""
+
+
+@entity
+class Outcome(Entity):
+    """EXPRESS ``outcome``: what was measured while an operation ran."""
+
+    its_operation: Ref[MachiningOperation]
+    measured_at: str | None = None
+    """ISO 8601, with zone"""
+    machining_time: float | None = None
+    """s"""
+    cutting_force: float | None = None
+    """N"""
+    feedrate: float | None = None
+    """m/s"""
+    surface_roughness: float | None = None
+    """µm"""
+    trace: str | None = None
+    """where the samples are kept"""
+
+
+@entity
+class Correction(Entity):
+    """EXPRESS ``correction``: what was learned for a machine, a material and a tool."""
+
+    machine: str
+    material: str
+    tool: str
+    specific_force_factor: float
+    confidence: float
+    """0…1"""
+    accepted_by: str | None = None
+    """absent while it is only proposed"""
+    valid_from: str
+    """ISO 8601"""

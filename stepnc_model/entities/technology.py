@@ -1,0 +1,122 @@
+"""Feeds, speeds, machine functions and tool directions (ISO 14649-10 and -11).
+
+Numbers are kept in the units of ISO 14649-10 §4.2.1: m/s, rev/s, mm/tooth, Pa, degrees.
+"""
+
+from __future__ import annotations
+
+from stepnc_model.entities.entity import Entity, abstract, entity
+from stepnc_model.entities.enums import ToolReferencePoint
+from stepnc_model.entities.geometry import Direction
+from stepnc_model.entities.measures import PropertyParameter
+from stepnc_model.part21.values import Ref
+
+
+@abstract
+class Technology(Entity):
+    """What every technology programs."""
+
+    feedrate: float | None = None
+    """m/s"""
+    feedrate_reference: ToolReferencePoint
+
+
+@entity
+class AdaptiveControl(Entity):
+    """Adaptive control of the machine; the standard leaves the content to vendors."""
+
+
+@entity
+class MillingTechnology(Technology):
+    """Cutting conditions of a rotating tool.
+
+    WR1 and WR2 of ISO 14649-11: exactly one of ``cutspeed`` and ``spindle``, exactly one of
+    ``feedrate`` and ``feedrate_per_tooth``, unless there is an adaptive control.
+    """
+
+    cutspeed: float | None = None
+    """m/s"""
+    spindle: float | None = None
+    """rev/s; negative is clockwise, as right-hand tools need"""
+    feedrate_per_tooth: float | None = None
+    """mm"""
+    synchronize_spindle_with_feed: bool
+    inhibit_feedrate_override: bool
+    inhibit_spindle_override: bool
+    its_adaptive_control: Ref[AdaptiveControl] | None = None
+
+
+@entity
+class ProcessModel(Entity):
+    """Model of the process, by the file that holds its data."""
+
+    ini_data_file: str
+    its_type: str
+
+
+@entity
+class ProcessModelList(Entity):
+    """Process models of one operation."""
+
+    its_list: tuple[Ref[ProcessModel], ...]
+
+
+@abstract
+class MachineFunctions(Entity):
+    """What the machine does besides moving."""
+
+
+@entity
+class MillingMachineFunctions(MachineFunctions):
+    """Coolant, clamping and chips on a milling machine; pressures in Pa."""
+
+    coolant: bool
+    coolant_pressure: float | None = None
+    mist: bool | None = None
+    through_spindle_coolant: bool
+    through_pressure: float | None = None
+    axis_clamping: tuple[str, ...]
+    chip_removal: bool
+    oriented_spindle_stop: Ref[Direction] | None = None
+    its_process_model: Ref[ProcessModelList] | None = None
+    other_functions: tuple[Ref[PropertyParameter], ...]
+
+
+@abstract
+class ToolDirection(Entity):
+    """How the tool stands."""
+
+
+@entity
+class TwoAxes(ToolDirection):
+    """Tool of a lathe."""
+
+
+@entity
+class ThreeAxes(ToolDirection):
+    """Tool along z."""
+
+
+@abstract
+class ToolDirectionForMilling(ToolDirection):
+    """Tool that may be inclined."""
+
+
+@entity
+class ThreeAxesTiltedTool(ToolDirectionForMilling):
+    """Tool along a direction that stays."""
+
+    its_tool_direction: Ref[Direction]
+
+
+@entity
+class FiveAxesConstTiltYaw(ToolDirectionForMilling):
+    """Tool at constant angles to the path, degrees."""
+
+    tilt_angle: float
+    yaw_angle: float
+
+
+@entity
+class FiveAxesVarTiltYaw(ToolDirectionForMilling):
+    """Tool whose angles the tool path tells."""

@@ -1,0 +1,117 @@
+"""The errors of the project: one root, one branch per package.
+
+::
+
+    StepNcError
+    ├── Part21Error(line, column)          the text is no ISO 10303-21
+    ├── SchemaError(entity, attribute)     the instances are no usable ISO 14649 program
+    ├── WriteError(path)                   the result could not be written
+    ├── SimulationError                    simulator.errors
+    │   ├── UnknownMachine, UnknownMaterial
+    │   └── LibraryError(path, key)
+    └── OptimisationError                  optimiser.errors
+        ├── Infeasible(workingstep, limits)
+        └── SolverFailed(status)
+
+A caller's mistake is a ``ValueError`` or ``TypeError``; a bad file or an impossible cut is in
+this tree. What is no failure (a deviation from the schema, a guess) is a :class:`Finding`.
+"""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+class StepNcError(Exception):
+    """Root of every error that a user of the project can cause."""
+
+
+class Part21Error(StepNcError):
+    """The bytes are no ISO 10303-21 exchange structure.
+
+    Parameters
+    ----------
+    message : str
+        What was found and what was expected.
+    line, column : int
+        Place in the file, both counted from 1.
+    """
+
+    def __init__(self, message: str, *, line: int = 1, column: int = 1) -> None:
+        super().__init__(f"line {line}, column {column}: {message}")
+        self.line = line
+        self.column = column
+
+
+class SchemaError(StepNcError):
+    """An instance lacks what a machining program cannot do without.
+
+    Parameters
+    ----------
+    message : str
+        The rule that is broken.
+    entity : str
+        The instance as the file names it, ``#19 PLANE_FINISH_MILLING``; empty when the whole
+        file is meant.
+    attribute : str
+        EXPRESS name of the attribute, or empty.
+    line : int
+        Line of the instance, counted from 1; 0 when the whole file is meant.
+    """
+
+    def __init__(
+        self, message: str, *, entity: str = "", attribute: str = "", line: int = 0
+    ) -> None:
+        place = f"line {line}: " if line else ""
+        name = f"{entity}.{attribute}: " if attribute else (f"{entity}: " if entity else "")
+        super().__init__(f"{place}{name}{message}")
+        self.entity = entity
+        self.attribute = attribute
+        self.line = line
+
+
+class WriteError(StepNcError):
+    """A result could not be written; nothing was left half done.
+
+    Parameters
+    ----------
+    message : str
+        What the operating system or the rule says.
+    path : str
+        The file that was to be written.
+    """
+
+    def __init__(self, message: str, *, path: str) -> None:
+        super().__init__(f"{path}: {message}")
+        self.path = path
+
+
+class Severity(StrEnum):
+    """How much a finding matters."""
+
+    NOTE = "note"
+    """Said so that nobody is surprised: a guess, a default, an older name."""
+    WARNING = "warning"
+    """A deviation from the standard that a machinist would want to see."""
+    ERROR = "error"
+    """The instance named cannot be used."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Finding:
+    """A deviation that is reported rather than raised."""
+
+    severity: Severity
+    message: str
+    entity: str = ""
+    """The instance as the file names it, ``#19 PLANE_FINISH_MILLING``."""
+    attribute: str = ""
+    line: int = 0
+    """Line of the instance, counted from 1; 0 when the whole file is meant."""
+    rule: str = ""
+    """The clause or rule broken, ``ISO 14649-11 WR1`` for example."""
+
+    def __str__(self) -> str:
+        place = f"line {self.line}: " if self.line else ""
+        name = f"{self.entity}.{self.attribute}" if self.attribute else self.entity
+        rule = f" ({self.rule})" if self.rule else ""
+        return f"{self.severity}: {place}{name + ': ' if name else ''}{self.message}{rule}"

@@ -1,0 +1,1 @@
+"""A small reader of ISO 10303-11 EXPRESS."""

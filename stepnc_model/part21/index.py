@@ -1,0 +1,213 @@
+r"""Where the instances of a DATA section are: one pass, no object per instance.
+
+One regular expression takes the ordinary instance in a single step. What it does not take is
+looked at piece by piece: an instance with ``#`` in a string or without its ``;``, comments,
+the end of the section, and text that belongs nowhere. Every byte of a section is an instance,
+blank, or noted; nothing is left out silently.
+"""
+
+import re
+from array import array
+from collections import defaultdict
+from dataclasses import dataclass
+
+from stepnc_model.errors import Part21Error
+from stepnc_model.part21.grammar import (
+    BINARY,
+    COMMENT,
+    INSTANCE_HEAD,
+    KEYWORD,
+    SECTION_END,
+    STRING,
+    TIDY_COMMENT,
+    closing,
+    skip_blank,
+)
+from stepnc_model.part21.places import Slip, error_at, excerpt
+from stepnc_model.part21.record import parse_record
+
+_ITEM = re.compile(
+    rb"\s*+\#([0-9]{1,18}+)\s*+=\s*+([!A-Za-z0-9_]*+)\s*+(?=\()"
+    rb"(?:[^;'/\"=]++|'[^'#]*+'|" + BINARY + rb"|" + TIDY_COMMENT + rb")*+(?<=\));"
+    rb"|(?:\s++|" + TIDY_COMMENT + rb")++"
+    rb"|(?s:.)"
+)
+_END_WORD = rb"[Ee](?!(?i:NDSEC\s*+(?:;|END-ISO|DATA)|ND-ISO-10303-21))"
+_BODY = re.compile(
+    rb"(?:[^;'\"/\#Ee]++|" + STRING + rb"|" + BINARY + rb"|\"|" + COMMENT + rb"|/(?!\*)"
+    rb"|\#(?![0-9]++\s*+=)|" + _END_WORD + rb")*+"
+)
+_JUNK = re.compile(
+    rb"(?:[^\#/EeDd]++|\#(?![0-9]++\s*+=)|/(?!\*)|"
+    + _END_WORD
+    + rb"|[Dd](?!(?i:ATA\s*+[;(])))++"
+)
+_STRING_OR_COMMENT = re.compile(STRING + rb"|" + COMMENT)
+_SECTION_END = re.compile(SECTION_END)
+_MAX_ID_DIGITS = 18
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Index:
+    """Instances of a file in the order of the file, as columns of equal length."""
+
+    ids: "array[int]"
+    starts: "array[int]"
+    """offset of the ``#``"""
+    ends: "array[int]"
+    """offset behind the ``;``"""
+    codes: "array[int]"
+    """position in ``keywords``"""
+    keywords: tuple[str, ...]
+    """upper case; empty for complex instances"""
+    positions: dict[int, int]
+    """id → position in the columns"""
+
+
+class IndexBuilder:
+    """Running state while the sections of one file are indexed."""
+
+    def __init__(self, data: bytes) -> None:
+        self.slips: list[Slip] = []
+        self._data = data
+        self._ids = array("q")
+        self._starts = array("q")
+        self._ends = array("q")
+        self._codes = array("I")
+        self._code_of: defaultdict[bytes, int] = defaultdict()
+        self._code_of.default_factory = self._code_of.__len__
+
+    def add_section(self, position: int) -> int:
+        """Index the instances from ``position`` on; the offset at which the section ends."""
+        while True:
+            position = self._ordinary(position)
+            position = skip_blank(self._data, position, slips=self.slips)
+            if position == len(self._data) or _SECTION_END.match(self._data, position):
+                return position
+            head = INSTANCE_HEAD.match(self._data, position)
+            if head is None:
+                position = skip_junk(self._data, position, slips=self.slips)
+            else:
+                position = self._unusual(head)
+
+    def _ordinary(self, position: int) -> int:
+        """Take ordinary instances and comments; the offset of the first other thing."""
+        add_id, add_start = self._ids.append, self._starts.append
+        add_end, add_code = self._ends.append, self._codes.append
+        code_of = self._code_of
+        for match in _ITEM.finditer(self._data, position):
+            number, keyword = match.group(1, 2)
+            if number is not None:
+                add_id(int(number))
+                add_start(match.start(1) - 1)
+                add_end(match.end())
+                add_code(code_of[keyword])
+            elif match.end() - match.start() == 1 and not match[0].isspace():
+                return match.start()
+        return len(self._data)
+
+    def _unusual(self, head: re.Match[bytes]) -> int:
+        """Take the instance with this head piece by piece; the offset behind it."""
+        data, start = self._data, head.start()
+        if len(head[1]) > _MAX_ID_DIGITS:
+            raise error_at(data, start, f"instance name too long: #{head[1][:20].decode()}…")
+        body = _BODY.match(data, head.end())
+        name = f"#{int(head[1])}"
+        stop = body.end() if body else head.end()
+        if data.startswith(b";", stop):
+            _check_strings(data, head.end(), stop + 1)
+            end = stop + 1
+        else:
+            _check_unended(data, start, stop, name=name)
+            end = self._end_without_semicolon(head.end(), stop, name=name)
+        self._ids.append(int(head[1]))
+        self._starts.append(start)
+        self._ends.append(end)
+        self._codes.append(self._code_of[_keyword(data, head.end())])
+        return end
+
+    def _end_without_semicolon(self, start: int, stop: int, *, name: str) -> int:
+        """Where an instance ends whose ``;`` is missing before ``stop``."""
+        data = self._data
+        bracket = data.find(b"(", start, stop)
+        end = closing(data, bracket) if bracket >= 0 else -1
+        if not 0 <= end <= stop:
+            end = start + len(data[start:stop].rstrip())
+        self.slips.append(Slip(offset=end - 1, message=f"';' is missing after {name}"))
+        return end
+
+    def finish(self) -> Index:
+        """Index of all sections.
+
+        Raises
+        ------
+        Part21Error
+            If two instances have the same id.
+        """
+        positions = dict(zip(self._ids, range(len(self._ids)), strict=True))
+        if len(positions) != len(self._ids):
+            raise self._duplicate()
+        return Index(
+            ids=self._ids,
+            starts=self._starts,
+            ends=self._ends,
+            codes=self._codes,
+            keywords=tuple(raw.decode("latin-1").upper() for raw in self._code_of),
+            positions=positions,
+        )
+
+    def _duplicate(self) -> Part21Error:
+        """Error that names the first id given twice and both its lines."""
+        first: dict[int, int] = {}
+        for number, start in zip(self._ids, self._starts, strict=True):
+            if number in first:
+                break
+            first[number] = start
+        line = error_at(self._data, first[number], "").line
+        message = f"#{number} is defined twice, first on line {line}"
+        return error_at(self._data, start, message)
+
+
+def skip_junk(data: bytes, position: int, *, slips: list[Slip]) -> int:
+    """Note text that belongs nowhere; the offset at which something known may begin."""
+    match = _JUNK.match(data, position)
+    end = max(match.end() if match else 0, position + 1)
+    last = position + len(data[position:end].rstrip())
+    message = f"text that belongs to no instance: {excerpt(data, position, last)}"
+    slips.append(Slip(offset=position, message=message))
+    return end
+
+
+def _check_unended(data: bytes, start: int, stop: int, *, name: str) -> None:
+    """Raise if the body of an instance stops at a string or comment without end, or nowhere."""
+    if stop == len(data):
+        label = f"{name} {_keyword(data, data.index(b'=', start) + 1).decode()}".strip()
+        raise error_at(data, start, f"the file is cut off within {label}")
+    if data.startswith(b"'", stop):
+        raise error_at(data, stop, f"the string that begins here in {name} does not end")
+    if data.startswith(b"/*", stop):
+        raise error_at(data, stop, f"the comment that begins here in {name} does not end")
+
+
+def _check_strings(data: bytes, start: int, end: int) -> None:
+    """Raise if a string swallows another instance because its apostrophe is missing.
+
+    ``#5=`` within a string is no fault as long as the instance around it is in order.
+    """
+    if INSTANCE_HEAD.search(data, start, end) is None:
+        return
+    for piece in _STRING_OR_COMMENT.finditer(data, start, end):
+        swallowed = INSTANCE_HEAD.search(data, piece.start(), piece.end())
+        if not piece[0].startswith(b"'") or swallowed is None:
+            continue
+        record = parse_record(data[start:end].decode("latin-1"))
+        if record.error is None and not record.slips:
+            return
+        message = f"the string that begins here does not end before #{int(swallowed[1])}"
+        raise error_at(data, piece.start(), message)
+
+
+def _keyword(data: bytes, position: int) -> bytes:
+    """Keyword at ``position`` behind blanks; empty for a complex instance."""
+    match = KEYWORD.match(data, skip_blank(data, position, slips=[]))
+    return match[0] if match else b""

@@ -1,0 +1,63 @@
+"""Where something is in a file: offsets, lines and columns, and what is said about a place."""
+
+from array import array
+from dataclasses import dataclass
+
+from stepnc_model.errors import Part21Error, Severity
+
+_BLOCK = 1 << 14
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Slip:
+    """A deviation from the syntax at an offset; the reader makes a finding of it."""
+
+    offset: int
+    """byte in the file, or in the text that was parsed"""
+    message: str
+    severity: Severity = Severity.WARNING
+
+
+class Lines:
+    """Line numbers of a file; counts its line breaks once, block by block.
+
+    Lines end in LF or CR LF; a file that has neither may end them in CR.
+    """
+
+    def __init__(self, data: bytes) -> None:
+        self._data = data
+        self._break = line_break(data)[-1:]
+        self._before = array("q", [0])
+        for start in range(0, len(data), _BLOCK):
+            count = data.count(self._break, start, start + _BLOCK)
+            self._before.append(self._before[-1] + count)
+
+    def line(self, offset: int) -> int:
+        """Line of an offset, counted from 1."""
+        block = offset // _BLOCK
+        return self._before[block] + self._data.count(self._break, block * _BLOCK, offset) + 1
+
+
+def line_break(data: bytes) -> bytes:
+    """Bytes that end a line in this file; LF when it has one line only."""
+    first = data.find(b"\n")
+    if first > 0 and data[first - 1 : first] == b"\r":
+        return b"\r\n"
+    if first < 0 and b"\r" in data:
+        return b"\r"
+    return b"\n"
+
+
+def error_at(data: bytes, offset: int, message: str) -> Part21Error:
+    """Error that names the line and the column of an offset."""
+    newline = line_break(data)[-1:]
+    line = data.count(newline, 0, offset) + 1
+    column = offset - data.rfind(newline, 0, offset)
+    return Part21Error(message, line=line, column=column)
+
+
+def excerpt(data: bytes, start: int, end: int) -> str:
+    """At most forty characters of the file, on one line, for a message."""
+    text = data[start : min(end, start + 40)].decode("latin-1")
+    shown = " ".join("".join(c if c.isprintable() else " " for c in text).split())
+    return f"'{shown}…'" if end - start > 40 else f"'{shown}'"

@@ -1,0 +1,232 @@
+"""Read access to an ISO 10303-21 file: an index now, parameters when they are asked for."""
+
+from array import array
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Self
+
+from stepnc_model.errors import Finding
+from stepnc_model.part21.grammar import closing, skip_blank
+from stepnc_model.part21.header import Header, HeaderReading, read_header
+from stepnc_model.part21.index import Index
+from stepnc_model.part21.places import Lines, Slip, error_at
+from stepnc_model.part21.record import Part, Record, parse_record
+from stepnc_model.part21.structure import Structure, read_structure
+from stepnc_model.part21.tidy import is_tidy, tidy_values
+from stepnc_model.part21.values import Value
+
+_RULE = "ISO 10303-21"
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Part21File:
+    """Immutable view on one file's bytes.
+
+    Not slotted: line numbers, header and the instances of each keyword are worked out when
+    they are first asked for and kept.
+    """
+
+    data: bytes
+    name: str
+    structure: Structure
+
+    @classmethod
+    def from_bytes(cls, data: bytes, *, name: str = "") -> Self:
+        """Index a file.
+
+        Parameters
+        ----------
+        data : bytes
+            The whole file.
+        name : str
+            What messages call it.
+
+        Raises
+        ------
+        Part21Error
+            If the bytes are no exchange structure, break off within an instance, string or
+            comment, or give an id twice.
+        """
+        return cls(data=data, name=name, structure=read_structure(data))
+
+    def __contains__(self, id: int) -> bool:
+        return id in self._index.positions
+
+    def __len__(self) -> int:
+        return len(self._index.ids)
+
+    def ids(self) -> Sequence[int]:
+        """Ids of all DATA sections in the order of the file."""
+        return self._index.ids
+
+    def ids_of(self, keyword: str) -> Sequence[int]:
+        """Ids of all instances of a keyword in the order of the file."""
+        return self._ids_by_keyword.get(keyword.upper(), ())
+
+    def keyword(self, id: int) -> str:
+        """Entity name in upper case; empty for a complex instance."""
+        return self._index.keywords[self._index.codes[self._index.positions[id]]]
+
+    def parameters(self, id: int) -> tuple[Value, ...]:
+        """Parameters of a simple instance.
+
+        Raises
+        ------
+        Part21Error
+            If they are malformed, or if the instance is complex: see :meth:`parts`.
+        """
+        text = self._text(id)
+        if is_tidy(text):
+            return tidy_values(text)
+        return self._simple(id).parts[0][1]
+
+    def parts(self, id: int) -> tuple[Part, ...]:
+        """Keywords and parameters of a complex instance; a simple one has one part.
+
+        Raises
+        ------
+        Part21Error
+            If a part is malformed.
+        """
+        text = self._text(id)
+        if is_tidy(text):
+            return ((self.keyword(id), tidy_values(text)),)
+        return self._record(id).parts
+
+    def parameter_spans(self, id: int) -> tuple[tuple[int, int], ...]:
+        """Byte spans of the parameters of a simple instance, comments around them left out.
+
+        Raises
+        ------
+        Part21Error
+            If the parameters are malformed, or if the instance is complex.
+        """
+        origin = self._body(id)
+        return tuple((origin + a, origin + b) for a, b in self._simple(id).spans)
+
+    def closing_bracket(self, id: int) -> int:
+        """Offset of the ``)`` that ends the parameters of a simple instance."""
+        return self._body(id) + self._simple(id).end
+
+    def span(self, id: int) -> tuple[int, int]:
+        """Byte span of ``#id=...;``."""
+        position = self._index.positions[id]
+        return self._index.starts[position], self._index.ends[position]
+
+    def line(self, id: int) -> int:
+        """Line on which the instance begins, counted from 1."""
+        return self._lines.line(self.span(id)[0])
+
+    def label(self, id: int) -> str:
+        """Name of an instance in messages, ``#19 PLANE_FINISH_MILLING``."""
+        return f"#{id} {self.keyword(id)}".rstrip()
+
+    def header(self) -> Header:
+        """Header as far as it could be read."""
+        return self._header.header
+
+    @property
+    def schemas(self) -> tuple[str, ...]:
+        """Names in FILE_SCHEMA as written; blank ones are dropped."""
+        return self._header.header.schemas
+
+    def schema_list_span(self) -> tuple[int, int]:
+        """Byte span between the inner brackets of FILE_SCHEMA.
+
+        Raises
+        ------
+        Part21Error
+            If the file has no FILE_SCHEMA.
+        """
+        for statement in self.structure.statements:
+            if statement.keyword == "FILE_SCHEMA":
+                inner = skip_blank(self.data, statement.bracket + 1, slips=[])
+                if self.data.startswith(b"(", inner):
+                    return inner + 1, closing(self.data, inner) - 1
+                return statement.bracket + 1, statement.end - 1
+        raise error_at(self.data, 0, "FILE_SCHEMA is missing")
+
+    @cached_property
+    def findings(self) -> tuple[Finding, ...]:
+        """Deviations from the syntax, in the order of the file.
+
+        Malformed parameters, which :meth:`parameters` refuses, are findings of severity
+        ``ERROR``. All instances are looked at when this is first asked for.
+        """
+        slips = [(slip, "") for slip in (*self.structure.slips, *self._header.slips)]
+        for id in self._untidy():
+            slips += [(slip, self.label(id)) for slip in self._slips_within(id)]
+        slips.sort(key=lambda item: item[0].offset)
+        return tuple(
+            Finding(
+                severity=slip.severity,
+                message=slip.message,
+                entity=label,
+                line=self._lines.line(slip.offset),
+                rule=_RULE,
+            )
+            for slip, label in slips
+        )
+
+    @cached_property
+    def _index(self) -> Index:
+        """Columns of the instances, near at hand."""
+        return self.structure.index
+
+    @cached_property
+    def _lines(self) -> Lines:
+        return Lines(self.data)
+
+    @cached_property
+    def _header(self) -> HeaderReading:
+        return read_header(self.data, self.structure.statements)
+
+    @cached_property
+    def _ids_by_keyword(self) -> "dict[str, array[int]]":
+        """Ids by keyword; spellings in other letter cases are one keyword."""
+        found: dict[str, array[int]] = {name: array("q") for name in self._index.keywords}
+        columns = [found[name] for name in self._index.keywords]
+        for id, code in zip(self._index.ids, self._index.codes, strict=True):
+            columns[code].append(id)
+        return found
+
+    def _body(self, id: int) -> int:
+        """Offset behind the ``=``."""
+        start, end = self.span(id)
+        return self.data.index(b"=", start, end) + 1
+
+    def _text(self, id: int) -> str:
+        """The instance from ``#`` to ``;``, one character per byte."""
+        index = self._index
+        position = index.positions[id]
+        return self.data[index.starts[position] : index.ends[position]].decode("latin-1")
+
+    def _read(self, id: int) -> Record:
+        return parse_record(self._text(id).partition("=")[2])
+
+    def _record(self, id: int) -> Record:
+        """Parsed instance; raises where it is malformed."""
+        record = self._read(id)
+        if record.error is not None:
+            offset = self._body(id) + record.error.offset
+            raise error_at(self.data, offset, f"{self.label(id)}: {record.error.message}")
+        return record
+
+    def _simple(self, id: int) -> Record:
+        """Parsed instance that is not complex."""
+        record = self._record(id)
+        if record.is_complex:
+            message = f"#{id} is a complex instance: it has parts, no parameters"
+            raise error_at(self.data, self.span(id)[0], message)
+        return record
+
+    def _untidy(self) -> Iterator[int]:
+        """Ids of the instances that need a second look."""
+        return (id for id in self._index.ids if not is_tidy(self._text(id)))
+
+    def _slips_within(self, id: int) -> list[Slip]:
+        """Deviations in one instance, the error that ends its reading last."""
+        record, origin = self._read(id), self._body(id)
+        errors = () if record.error is None else (record.error,)
+        return [replace(slip, offset=origin + slip.offset) for slip in (*record.slips, *errors)]

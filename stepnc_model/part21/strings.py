@@ -1,0 +1,135 @@
+r"""Strings of ISO 10303-21: what stands between the apostrophes, decoded and encoded.
+
+Decoding accepts every directive of the standard [1]_ and keeps what is none, so that a path
+such as ``C:\temp`` survives. Encoding writes ASCII only, with ``\X2\`` for the basic plane and
+``\X4\`` for the rest.
+
+References
+----------
+.. [1] ISO 10303-21:2016, 6.4.3 (strings) and 5.7 (print control directives).
+"""
+
+import re
+
+_PLAIN = re.compile(r"[^'\\\r\n\x80-\xff]*+", re.ASCII)
+_DIRECTIVE = re.compile(
+    r"''"
+    r"|[\r\n]++"
+    r"|\\\\"
+    r"|\\X2\\(?P<two>(?:[0-9A-Fa-f]{4})++)\\X0\\"
+    r"|\\X4\\(?P<four>(?:[0-9A-Fa-f]{8})++)\\X0\\"
+    r"|\\X\\(?P<one>[0-9A-Fa-f]{2})"
+    r"|\\P(?P<page>[A-I])\\"
+    r"|\\S\\(?P<high>[\x20-\x7e])"
+    r"|\\(?P<print>[NF])\\"
+    r"|[\x80-\xff]++"
+)
+_UNSAFE = re.compile(r"['\\]|[^\x20-\x7e]++")
+_PRINT_CONTROL = {"N": "\n", "F": "\f"}
+_BASIC_PLANE_END = 0x10000
+_SURROGATES = range(0xD800, 0xE000)
+
+
+def decode(raw: str) -> str:
+    r"""Text of a string as the file writes it.
+
+    Line breaks within a string carry no meaning and go. Bytes above 127 are UTF-8 where that
+    is possible and Latin-1 otherwise. ``\N\`` and ``\F\`` become a line and a form feed.
+
+    Parameters
+    ----------
+    raw : str
+        What stands between the apostrophes, one character per byte of the file.
+
+    Examples
+    --------
+    >>> decode(r"d''usinage \X2\00E9\X0\ \S\D")
+    "d'usinage é Ä"
+    """
+    if _PLAIN.fullmatch(raw):
+        return raw
+    page = "iso8859-1"
+
+    def meaning(match: re.Match[str]) -> str:
+        nonlocal page
+        if match["page"]:
+            page = f"iso8859-{ord(match['page']) - ord('A') + 1}"
+            return ""
+        if match["high"]:
+            return _high_half(match["high"], page=page) or match[0]
+        return _meaning(match)
+
+    return _DIRECTIVE.sub(meaning, raw)
+
+
+def _high_half(character: str, *, page: str) -> str:
+    r"""What ``\S\`` makes of a character in a part of ISO 8859; empty where it is undefined."""
+    return bytes([ord(character) | 0x80]).decode(page, errors="ignore")
+
+
+def _meaning(match: re.Match[str]) -> str:
+    """Text of a directive that does not depend on the code page."""
+    if match["two"]:
+        return bytes.fromhex(match["two"]).decode("utf-16-be", errors="surrogatepass")
+    if match["four"]:
+        return _wide(match["four"]) or match[0]
+    if match["one"]:
+        return chr(int(match["one"], 16))
+    if match["print"]:
+        return _PRINT_CONTROL[match["print"]]
+    if match[0][0] in "\r\n":
+        return ""
+    if match[0][0] in "'\\":
+        return match[0][0]
+    return _bytes_above_ascii(match[0])
+
+
+def _wide(digits: str) -> str:
+    """Characters of 32-bit units; empty if one of them is no code point."""
+    points = [int(digits[i : i + 8], 16) for i in range(0, len(digits), 8)]
+    return "".join(map(chr, points)) if max(points) <= 0x10FFFF else ""
+
+
+def _bytes_above_ascii(raw: str) -> str:
+    """UTF-8 where the bytes are that, Latin-1 otherwise."""
+    try:
+        return raw.encode("latin-1").decode("utf-8")
+    except UnicodeDecodeError:
+        return raw
+
+
+def encode(text: str) -> str:
+    r"""ASCII form of any text, without the apostrophes around it.
+
+    Examples
+    --------
+    >>> print(encode("50 % 'Ø' \\"))
+    50 % ''\X2\00D8\X0\'' \\
+    """
+    return _UNSAFE.sub(_escape, text)
+
+
+def _escape(match: re.Match[str]) -> str:
+    """Doubled character, or the run of characters in hexadecimal."""
+    run = match[0]
+    if run in {"'", "\\"}:
+        return run * 2
+    pieces: list[str] = []
+    for is_wide, characters in _by_width(run):
+        name, width = ("X4", 8) if is_wide else ("X2", 4)
+        digits = "".join(f"{ord(c):0{width}X}" for c in characters)
+        pieces.append(f"\\{name}\\{digits}\\X0\\")
+    return "".join(pieces)
+
+
+def _by_width(run: str) -> list[tuple[bool, str]]:
+    """Cut a run where its characters stop or begin to need 32 bits."""
+    groups: list[tuple[bool, str]] = []
+    for character in run:
+        point = ord(character)
+        is_wide = point >= _BASIC_PLANE_END or point in _SURROGATES
+        if groups and groups[-1][0] == is_wide:
+            groups[-1] = (is_wide, groups[-1][1] + character)
+        else:
+            groups.append((is_wide, character))
+    return groups

@@ -1,0 +1,301 @@
+"""Writing: one value as text, and edits of a file that leave every other byte as it is.
+
+What is added goes before the ENDSEC of the last DATA section, one instance on a line, with ids
+above the largest that is kept. Text is ASCII; lines end as the file's own lines do.
+"""
+
+import math
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from stepnc_model.part21.grammar import KEYWORD
+from stepnc_model.part21.places import line_break
+from stepnc_model.part21.reader import Part21File
+from stepnc_model.part21.record import parse_record
+from stepnc_model.part21.splice import (
+    Element,
+    Span,
+    Splice,
+    line_span,
+    line_start,
+    list_splices,
+    spliced,
+)
+from stepnc_model.part21.strings import decode, encode
+from stepnc_model.part21.values import Binary, Derived, Enumeration, Real, Ref, Typed, Value
+
+_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*+", re.ASCII)
+_BINARY = re.compile(r"[0-3][0-9A-F]*+")
+
+
+def format_value(value: Value) -> bytes:
+    """Text of a value; reading it gives the value back.
+
+    A real that was read keeps its characters; another one gets the shortest that give the
+    same number.
+
+    Raises
+    ------
+    TypeError
+        If the value has no form in ISO 10303-21.
+    ValueError
+        If a number is not finite, or an enumeration or binary holds other characters than
+        those allowed.
+    """
+    pieces: list[bytes] = []
+    pending: list[Value | bytes] = [value]
+    while pending:
+        item = pending.pop()
+        if isinstance(item, bytes):
+            pieces.append(item)
+        elif isinstance(item, tuple):
+            pending.extend(reversed(_bracketed(item)))
+        elif isinstance(item, Typed):
+            pending.extend((b")", item.value, _keyword(item.keyword) + b"("))
+        else:
+            pieces.append(_scalar(item).encode("ascii"))
+    return b"".join(pieces)
+
+
+def _bracketed(values: tuple[Value, ...]) -> "list[Value | bytes]":
+    """Values of a list with brackets and commas between them."""
+    items: list[Value | bytes] = [b"("]
+    for position, value in enumerate(values):
+        items += [b",", value] if position else [value]
+    return [*items, b")"]
+
+
+def _keyword(keyword: str) -> bytes:
+    """Keyword as the file writes it."""
+    name = keyword.encode("ascii", errors="replace")
+    if KEYWORD.fullmatch(name) is None:
+        raise ValueError(f"{keyword!r} is no keyword")
+    return name
+
+
+def _scalar(value: Value) -> str:
+    """Text of a value that holds no other."""
+    if value is None:
+        return "$"
+    if isinstance(value, Derived):
+        return "*"
+    if isinstance(value, float):
+        return _real(value)
+    if isinstance(value, int) and not isinstance(value, bool):
+        return f"#{int(value)}" if isinstance(value, Ref) else str(int(value))
+    if isinstance(value, Enumeration):
+        return f".{_checked(value, _NAME)}."
+    if isinstance(value, Binary):
+        return f'"{_checked(value, _BINARY)}"'
+    if isinstance(value, str):
+        return f"'{encode(value)}'"
+    raise TypeError(f"{value!r} has no form in ISO 10303-21")
+
+
+def _checked(value: str, pattern: re.Pattern[str]) -> str:
+    """The characters of a value if they are those allowed."""
+    if pattern.fullmatch(value) is None:
+        raise ValueError(f"{value!r} is no {type(value).__name__.lower()}")
+    return str.__str__(value)
+
+
+def _real(value: float) -> str:
+    """Characters that were read, else the shortest with a point in the mantissa."""
+    lexeme = value.lexeme if isinstance(value, Real) else ""
+    if lexeme:
+        return lexeme
+    if not math.isfinite(value):
+        raise ValueError(f"{float(value)} cannot be written")
+    mantissa, _, exponent = float.__repr__(value).partition("e")
+    mantissa = mantissa.removesuffix(".0")
+    point = "" if "." in mantissa else "."
+    return f"{mantissa}{point}E{exponent}" if exponent else f"{mantissa}{point}"
+
+
+class Edits:
+    """Changes of one file, collected and then applied at once.
+
+    Running state: every verb changes it. The file itself is never changed; an instance that
+    was added can be edited and removed like one of the file.
+
+    Parameters
+    ----------
+    file : Part21File
+        What is edited.
+    """
+
+    def __init__(self, file: Part21File) -> None:
+        self.file = file
+        self._changed: dict[int, list[Element]] = {}
+        self._removed: set[int] = set()
+        self._added: dict[int, _Added] = {}
+        self._schemas: list[Element] | None = None
+        self._largest: int | None = None
+
+    def __contains__(self, id: int) -> bool:
+        return id in self._added or (id in self.file and id not in self._removed)
+
+    def replace_parameter(self, id: int, position: int, value: Value) -> None:
+        """Put a value in the place of a parameter, counted from 0.
+
+        Raises
+        ------
+        KeyError, IndexError
+            If there is no such instance or parameter.
+        Part21Error
+            If the instance is malformed or complex.
+        """
+        parameters = self._parameters(id)
+        if not 0 <= position < len(parameters):
+            raise IndexError(f"#{id} has {len(parameters)} parameters, no number {position}")
+        parameters[position] = format_value(value)
+
+    def append_parameter(self, id: int, value: Value) -> None:
+        """Add a parameter behind the last one."""
+        self._parameters(id).append(format_value(value))
+
+    def remove_last_parameter(self, id: int) -> None:
+        """Take the last parameter away.
+
+        Raises
+        ------
+        IndexError
+            If there is none.
+        """
+        parameters = self._parameters(id)
+        if not parameters:
+            raise IndexError(f"#{id} has no parameters")
+        parameters.pop()
+
+    def next_id(self) -> int:
+        """Id that the next added instance gets: one above the largest of those kept."""
+        if self._largest is None:
+            kept = (id for id in self.file.ids() if id not in self._removed)
+            self._largest = max((*self._added, max(kept, default=0)))
+        return self._largest + 1
+
+    def add(self, keyword: str, parameters: tuple[Value, ...]) -> Ref[object]:
+        """Add an instance at the end of the last DATA section; the reference to it."""
+        id = self.next_id()
+        texts: list[Element] = [format_value(value) for value in parameters]
+        self._added[id] = _Added(keyword=_keyword(keyword), parameters=texts)
+        self._largest = id
+        return Ref(id)
+
+    def remove(self, id: int) -> None:
+        """Remove an instance, and its line if nothing else stands there.
+
+        Raises
+        ------
+        KeyError
+            If there is no such instance.
+        """
+        if id not in self:
+            raise KeyError(id)
+        if id in self._added:
+            del self._added[id]
+        else:
+            self._removed.add(id)
+            self._changed.pop(id, None)
+        if id == self._largest:
+            self._largest = None
+
+    def add_schema(self, name: str) -> None:
+        """Add a name to FILE_SCHEMA unless it is there."""
+        if not any(_is_schema(text, name) for text in self._schema_names()):
+            self._schema_elements().append(format_value(name))
+
+    def remove_schema(self, name: str) -> None:
+        """Take a name out of FILE_SCHEMA."""
+        names = self._schema_names()
+        elements = self._schema_elements()
+        self._schemas = [
+            element
+            for text, element in zip(names, elements, strict=True)
+            if not _is_schema(text, name)
+        ]
+
+    def set_schemas(self, names: Iterable[str]) -> None:
+        """Make FILE_SCHEMA list these names in this order."""
+        self._schemas = [format_value(name) for name in names]
+
+    def apply(self) -> bytes:
+        """The file with all changes; without changes, its own bytes."""
+        data = self.file.data
+        splices = self._splices()
+        if not self._added:
+            return spliced(data, splices, start=0, end=len(data))
+        place = line_start(data, self.file.structure.data_end)
+        newline = line_break(data)
+        before = spliced(data, splices, start=0, end=place)
+        gap = b"" if before.endswith((b"\n", b"\r")) else newline
+        lines = b"".join(added.text(id) + newline for id, added in self._added.items())
+        return before + gap + lines + spliced(data, splices, start=place, end=len(data))
+
+    def _splices(self) -> list[Splice]:
+        """Splices of everything that is in the file already."""
+        file = self.file
+        splices: list[Splice] = []
+        for id, elements in self._changed.items():
+            spans, close = file.parameter_spans(id), file.closing_bracket(id)
+            splices += list_splices(file.data, elements, spans=spans, close=close)
+        for id in self._removed:
+            splices.append((*line_span(file.data, file.span(id)), b""))
+        if self._schemas is not None:
+            close = file.schema_list_span()[1]
+            spans = self._schema_spans()
+            splices += list_splices(file.data, self._schemas, spans=spans, close=close)
+        return splices
+
+    def _parameters(self, id: int) -> list[Element]:
+        """Parameters of an instance as they stand now, to be changed in place."""
+        if id in self._added:
+            return self._added[id].parameters
+        if id in self._removed:
+            raise KeyError(id)
+        if id not in self._changed:
+            self._changed[id] = list(self.file.parameter_spans(id))
+        return self._changed[id]
+
+    def _schema_spans(self) -> tuple[Span, ...]:
+        """Byte spans of the names in FILE_SCHEMA."""
+        start, end = self.file.schema_list_span()
+        opening = "LIST("
+        inner = self.file.data[start:end].decode("latin-1")
+        origin = start - len(opening)
+        spans = parse_record(f"{opening}{inner});").spans
+        return tuple((origin + first, origin + last) for first, last in spans)
+
+    def _schema_elements(self) -> list[Element]:
+        """Names in FILE_SCHEMA as they stand now, to be changed in place."""
+        if self._schemas is None:
+            self._schemas = list(self._schema_spans())
+        return self._schemas
+
+    def _schema_names(self) -> list[str]:
+        """The same as text without apostrophes."""
+        data = self.file.data
+        texts = (
+            element if isinstance(element, bytes) else data[element[0] : element[1]]
+            for element in self._schema_elements()
+        )
+        return [decode(text[1:-1].decode("latin-1")) for text in texts]
+
+
+@dataclass(slots=True, kw_only=True)
+class _Added:
+    """An instance that is not in the file yet."""
+
+    keyword: bytes
+    parameters: list[Element]
+
+    def text(self, id: int) -> bytes:
+        """Its line, without the break."""
+        texts = (element for element in self.parameters if isinstance(element, bytes))
+        return b"#%d=%s(%s);" % (id, self.keyword, b",".join(texts))
+
+
+def _is_schema(text: str, name: str) -> bool:
+    """Whether an entry of FILE_SCHEMA names a schema, with or without its object identifier."""
+    return text.partition("{")[0].strip().upper() == name.strip().upper()

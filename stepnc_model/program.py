@@ -1,0 +1,280 @@
+"""A STEP-NC program: its workingsteps in order, and what each refers to.
+
+Loading never fails on a deviation that leaves the program usable; it is a finding. What makes
+one workingstep unusable is an error finding, and asking for that workingstep raises it.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TypeVar
+
+from stepnc_model.binding import Model
+from stepnc_model.entities.entity import Entity
+from stepnc_model.entities.executables import (
+    Assignment,
+    IfStatement,
+    MachiningWorkingstep,
+    NonSequential,
+    Parallel,
+    Selective,
+    TurningWorkingstep,
+    WhileStatement,
+    Workplan,
+)
+from stepnc_model.entities.operations import MachiningOperation
+from stepnc_model.entities.project import Project
+from stepnc_model.entities.setup import Setup
+from stepnc_model.entities.workpiece import Material, Workpiece
+from stepnc_model.errors import Finding, SchemaError, Severity
+from stepnc_model.part21.reader import Part21File
+from stepnc_model.part21.values import Ref
+from stepnc_model.unit_profiles import ISO, UnitProfile
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Executable:
+    """One line of the program as it is shown: a structure, a function or a workingstep."""
+
+    ref: Ref[Entity]
+    keyword: str
+    """EXPRESS name in capitals, as in the file"""
+    id: str
+    level: int
+    """nesting, 0 for the main workplan"""
+    setup: Ref[Setup] | None
+    """setup of the innermost workplan that has one"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Workingstep:
+    """One workingstep with what it refers to."""
+
+    ref: Ref[Entity]
+    id: str
+    operation_ref: Ref[Entity]
+    operation: MachiningOperation
+    features: tuple[Ref[Entity], ...]
+    tool_ref: Ref[Entity]
+    technology_ref: Ref[Entity]
+    functions_ref: Ref[Entity] | None
+    setup: Ref[Setup] | None
+    is_last_on_feature: bool
+    """no later workingstep works on the same feature: this one leaves the surface"""
+
+    @property
+    def operation_type(self) -> str:
+        """EXPRESS name of the operation, ``plane_rough_milling``."""
+        return self.operation.keyword.lower()
+
+
+class Program:
+    """One STEP-NC file, bound and walked.
+
+    Parameters
+    ----------
+    file : Part21File
+    units : UnitProfile
+        In which units the file writes feeds and speeds.
+    name : str
+        File name, for messages.
+    """
+
+    def __init__(self, file: Part21File, *, units: UnitProfile = ISO, name: str = "") -> None:
+        self.name = name
+        self.units = units
+        self.file = file
+        self.model = Model(file)
+        self.executables = tuple(self._walk())
+        self._faults: dict[int, SchemaError] = {}
+        self.workingsteps = tuple(self._workingsteps())
+
+    @classmethod
+    def load(cls, path: Path, *, units: UnitProfile = ISO) -> "Program":
+        """Read a file; Part21Error or SchemaError when it is no STEP-NC program."""
+        return cls(
+            Part21File.from_bytes(path.read_bytes(), name=path.name),
+            units=units,
+            name=path.name,
+        )
+
+    def get(self, ref: Ref[T]) -> T:
+        """The entity behind a reference."""
+        return self.model.get(ref)
+
+    def line(self, ref: Ref[Entity]) -> int:
+        """Line of an instance, counted from 1."""
+        return self.file.line(int(ref))
+
+    def label(self, ref: Ref[Entity]) -> str:
+        """The instance as messages name it, ``#19 DRILLING``."""
+        return self.file.label(int(ref))
+
+    def error(self, message: str, ref: Ref[Entity], attribute: str = "") -> SchemaError:
+        """An error at one instance."""
+        return SchemaError(
+            message, entity=self.label(ref), attribute=attribute, line=self.line(ref)
+        )
+
+    def finding(
+        self, severity: Severity, message: str, ref: Ref[Entity], attribute: str = ""
+    ) -> Finding:
+        """A finding at one instance."""
+        return Finding(
+            severity=severity,
+            message=message,
+            entity=self.label(ref),
+            attribute=attribute,
+            line=self.line(ref),
+        )
+
+    @property
+    def faults(self) -> tuple[SchemaError, ...]:
+        """Why some workingsteps cannot be used."""
+        return tuple(self._faults.values())
+
+    def findings(self) -> tuple[Finding, ...]:
+        """Everything noticed: syntax, schema, and the walk of the program."""
+        faults = tuple(
+            Finding(
+                severity=Severity.ERROR,
+                message=str(fault),
+                entity=fault.entity,
+                attribute=fault.attribute,
+                line=fault.line,
+            )
+            for fault in self._faults.values()
+        )
+        return self.file.findings + self.model.findings() + faults
+
+    def workpiece(self) -> Workpiece | None:
+        """The workpiece of the project, or the first one of the file."""
+        for project in self._all(Project):
+            if project.its_workpieces:
+                return self.get(project.its_workpieces[0])
+        return next(self._all(Workpiece), None)
+
+    def material(self) -> Material | None:
+        """Material of the workpiece, or None when the file names none."""
+        workpiece = self.workpiece()
+        if workpiece is None or workpiece.its_material is None:
+            return None
+        return self.get(workpiece.its_material)
+
+    def _all(self, cls: type[T]) -> Iterator[T]:
+        """All instances of one entity, without their references."""
+        return (entity for _, entity in self.model.of_type(cls))
+
+    def _main_workplan(self) -> Ref[Workplan]:
+        """Main workplan of the project, or the only workplan that nothing contains."""
+        for ref, project in self.model.of_type(Project):
+            if project.main_workplan is None:
+                raise self.error("the project has no main workplan", ref, "main_workplan")
+            plan = self.get(project.main_workplan)
+            if not isinstance(plan, Workplan):
+                raise self.error("is no workplan", ref, "main_workplan")
+            return project.main_workplan
+        plans = dict(self.model.of_type(Workplan))
+        inner = {int(element) for plan in plans.values() for element in plan.its_elements}
+        outer = [ref for ref in plans if int(ref) not in inner]
+        if len(outer) != 1:
+            raise SchemaError(
+                f"no PROJECT, and {len(outer)} workplans that nothing contains: "
+                "a program needs one main workplan"
+            )
+        return outer[0]
+
+    def _walk(self) -> Iterator[Executable]:
+        """Executables in order, structures before what they contain; no recursion."""
+        stack: list[tuple[Ref[Entity], int, Ref[Setup] | None, frozenset[int]]] = [
+            (self._main_workplan(), 0, None, frozenset())
+        ]
+        while stack:
+            ref, level, setup, above = stack.pop()
+            if int(ref) in above:
+                raise self.error("contains itself", ref, "its_elements")
+            entity = self.get(ref)
+            if isinstance(entity, Workplan):
+                setup = entity.its_setup or setup
+            yield Executable(
+                ref=ref,
+                keyword=self.file.keyword(int(ref)),
+                id=str(getattr(entity, "its_id", "")),
+                level=level,
+                setup=setup,
+            )
+            inner = above | {int(ref)}
+            stack.extend(
+                (child, level + 1, setup, inner) for child in reversed(_children(entity))
+            )
+
+    def _workingsteps(self) -> Iterator[Workingstep]:
+        """Workingsteps in order; what is wrong with one becomes a fault."""
+        last: dict[int, int] = {}
+        found: list[Workingstep] = []
+        for executable in self.executables:
+            try:
+                step = self._workingstep(executable)
+            except SchemaError as fault:
+                self._faults[int(executable.ref)] = fault
+                continue
+            if step is None:
+                continue
+            for feature in step.features:
+                last[int(feature)] = len(found)
+            found.append(step)
+        for index, step in enumerate(found):
+            is_last = any(last[int(feature)] == index for feature in step.features)
+            yield replace(step, is_last_on_feature=is_last)
+
+    def _workingstep(self, executable: Executable) -> Workingstep | None:
+        """One workingstep, or None when the executable machines nothing."""
+        entity = self.get(executable.ref)
+        if isinstance(entity, MachiningWorkingstep):
+            feature = entity.its_feature
+            features: tuple[Ref[Entity], ...] = (feature,) if feature is not None else ()
+        elif isinstance(entity, TurningWorkingstep):
+            features = tuple(entity.its_features)
+        else:
+            return None
+        if entity.its_operation is None:
+            raise self.error("has no operation", executable.ref, "its_operation")
+        operation = self.get(entity.its_operation)
+        if not isinstance(operation, MachiningOperation):
+            raise self.error("is no machining operation", entity.its_operation)
+        if operation.its_tool is None:
+            raise self.error("has no tool", entity.its_operation, "its_tool")
+        if operation.its_technology is None:
+            raise self.error("has no technology", entity.its_operation, "its_technology")
+        for ref in (operation.its_tool, operation.its_technology, *features):
+            self.get(ref)
+        return Workingstep(
+            ref=executable.ref,
+            id=entity.its_id,
+            operation_ref=entity.its_operation,
+            operation=operation,
+            features=features,
+            tool_ref=operation.its_tool,
+            technology_ref=operation.its_technology,
+            functions_ref=operation.its_machine_functions,
+            setup=executable.setup,
+            is_last_on_feature=False,
+        )
+
+
+def _children(entity: Entity) -> tuple[Ref[Entity], ...]:
+    """Executables that a program structure contains, in order."""
+    if isinstance(entity, (Workplan, Selective, NonSequential)):
+        return tuple(entity.its_elements)
+    if isinstance(entity, Parallel):
+        return tuple(entity.branches)
+    if isinstance(entity, IfStatement):
+        branches = (entity.true_branch, entity.false_branch)
+        return tuple(branch for branch in branches if branch is not None)
+    if isinstance(entity, WhileStatement):
+        return (entity.body,)
+    if isinstance(entity, Assignment):
+        return ()
+    return ()

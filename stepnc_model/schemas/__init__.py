@@ -1,0 +1,1 @@
+"""EXPRESS schemas of the entities that ISO 14649 lacks."""

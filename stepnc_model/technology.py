@@ -1,0 +1,246 @@
+"""What a technology entity programs, in canonical units, and where it stands in the file.
+
+Milling: ISO 14649-11 ``milling_technology`` (rules WR1 and WR2: exactly one of cutspeed and
+spindle, exactly one of feedrate and feedrate_per_tooth), also in the form that NIST proposed in
+2009, with ``adaptive_allowed``. Turning: ISO 14649-12 ``turning_technology``. Units: mm, s,
+rev/s.
+"""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from math import isfinite, pi
+
+from stepnc_model.entities.adaptive import (
+    AdaptiveMillingTechnology,
+    Cutspeed,
+    FeedratePerTooth,
+)
+from stepnc_model.entities.entity import Entity
+from stepnc_model.entities.technology import MillingTechnology
+from stepnc_model.entities.turning import (
+    ConstCuttingSpeed,
+    ConstSpindleSpeed,
+    TurningTechnology,
+)
+from stepnc_model.part21.values import Ref
+from stepnc_model.program import Program
+from stepnc_model.unit_profiles import FeedUnit
+
+
+class Quantity(StrEnum):
+    """What a programmed number is."""
+
+    FEED = "feed"
+    FEED_PER_TOOTH = "feed per tooth"
+    FEED_PER_REVOLUTION = "feed per revolution"
+    CUTTING_SPEED = "cutting speed"
+    SPINDLE_SPEED = "spindle speed"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Number:
+    """One programmed number."""
+
+    ref: Ref[Entity]
+    """instance that holds it"""
+    attribute: str
+    quantity: Quantity
+    value: float
+    """mm, mm/s or rev/s; never negative"""
+    scale: float
+    """canonical number per number in the file; negative for a clockwise spindle"""
+
+    def in_file(self, value: float) -> float:
+        """A canonical number as the file would write it here."""
+        return value / self.scale
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Programmed:
+    """Feed and speed as the file programs them."""
+
+    feed: Number
+    speed: Number
+    max_spindle_speed: float | None = None
+    """rev/s, a lathe's limit at constant cutting speed"""
+    inhibition: str = ""
+    """why nobody may touch the feed; empty when one may"""
+    is_synchronised: bool = False
+    """feed bound to the spindle by a pitch"""
+    has_both_speeds: bool = False
+    """cutting speed and spindle are both given; the spindle counts"""
+
+    def spindle_speed(self, diameter: float) -> float:
+        """Spindle speed in rev/s at a diameter in mm: as programmed, else v_c/(π·D)."""
+        if self.speed.quantity is Quantity.SPINDLE_SPEED:
+            return self.speed.value
+        speed = self.speed.value / (pi * diameter)
+        return min(speed, self.max_spindle_speed) if self.max_spindle_speed else speed
+
+    def feed_per_tooth(self, speed: float, teeth: int) -> float:
+        """Feed per tooth in mm at a spindle speed in rev/s."""
+        value = self.feed.value
+        if self.feed.quantity is Quantity.FEED_PER_TOOTH:
+            return value
+        if self.feed.quantity is Quantity.FEED_PER_REVOLUTION:
+            return value / teeth
+        return value / (speed * teeth)
+
+    def feed_number(self, feed_per_tooth: float, *, speed: float, teeth: int) -> float:
+        """What the file's feed attribute must hold for a feed per tooth in mm."""
+        factor = {
+            Quantity.FEED_PER_TOOTH: 1.0,
+            Quantity.FEED_PER_REVOLUTION: teeth,
+        }.get(self.feed.quantity, teeth * speed)
+        return self.feed.in_file(feed_per_tooth * factor)
+
+    def speed_number(self, speed: float, diameter: float) -> float:
+        """What the file's speed attribute must hold for a spindle speed in rev/s."""
+        is_spindle = self.speed.quantity is Quantity.SPINDLE_SPEED
+        return self.speed.in_file(speed if is_spindle else speed * pi * diameter)
+
+
+def programmed(program: Program, ref: Ref[Entity]) -> Programmed:
+    """Feed and speed of a technology.
+
+    Raises
+    ------
+    SchemaError
+        When feed or speed is missing, zero, negative or not finite.
+    """
+    technology = program.get(ref)
+    if isinstance(technology, AdaptiveMillingTechnology):
+        return _adaptive(program, ref, technology)
+    if isinstance(technology, MillingTechnology):
+        return _milling(program, ref, technology)
+    if isinstance(technology, TurningTechnology):
+        return _turning(program, ref, technology)
+    raise program.error("is no milling or turning technology", ref)
+
+
+def _milling(program: Program, ref: Ref[Entity], technology: MillingTechnology) -> Programmed:
+    """ISO 14649-11."""
+    units = program.units
+    quantity = _feed_quantity(units.feed)
+    feed = _number(program, ref, "feedrate", quantity, scale=units.feed_scale) or _number(
+        program, ref, "feedrate_per_tooth", Quantity.FEED_PER_TOOTH, scale=1.0
+    )
+    cutspeed = _number(
+        program, ref, "cutspeed", Quantity.CUTTING_SPEED, scale=units.cutting_speed
+    )
+    spindle = _number(program, ref, "spindle", Quantity.SPINDLE_SPEED, scale=units.spindle)
+    speed = spindle or cutspeed
+    if feed is None:
+        raise program.error(
+            "has neither feedrate nor feedrate_per_tooth (ISO 14649-11 WR2)", ref, "feedrate"
+        )
+    if speed is None:
+        raise program.error(
+            "has neither cutspeed nor spindle (ISO 14649-11 WR1)", ref, "spindle"
+        )
+    inhibited = "inhibit_feedrate_override" if technology.inhibit_feedrate_override else ""
+    return Programmed(
+        feed=feed,
+        speed=speed,
+        inhibition=inhibited,
+        is_synchronised=bool(technology.synchronize_spindle_with_feed),
+        has_both_speeds=spindle is not None and cutspeed is not None,
+    )
+
+
+def _adaptive(
+    program: Program, ref: Ref[Entity], technology: AdaptiveMillingTechnology
+) -> Programmed:
+    """The form NIST proposed: feed and speed are entities that allow or forbid adaptation."""
+    units = program.units
+    speed_entity = program.get(technology.its_speed)
+    feed_entity = program.get(technology.its_feed)
+    is_cutting = isinstance(speed_entity, Cutspeed)
+    is_per_tooth = isinstance(feed_entity, FeedratePerTooth)
+    speed = _number(
+        program,
+        technology.its_speed,
+        "value",
+        Quantity.CUTTING_SPEED if is_cutting else Quantity.SPINDLE_SPEED,
+        scale=units.cutting_speed if is_cutting else units.spindle,
+    )
+    feed = _number(
+        program,
+        technology.its_feed,
+        "value",
+        Quantity.FEED_PER_TOOTH if is_per_tooth else _feed_quantity(units.feed),
+        scale=1.0 if is_per_tooth else units.feed_scale,
+    )
+    if feed is None or speed is None:
+        raise program.error("has no feed or no speed", ref, "its_feed")
+    inhibition = "adaptive_allowed is false" if not feed_entity.adaptive_allowed else ""
+    if technology.inhibit_feedrate_override:
+        inhibition = "inhibit_feedrate_override"
+    return Programmed(
+        feed=feed,
+        speed=speed,
+        inhibition=inhibition,
+        is_synchronised=bool(technology.synchronize_spindle_with_feed),
+    )
+
+
+def _turning(program: Program, ref: Ref[Entity], technology: TurningTechnology) -> Programmed:
+    """ISO 14649-12."""
+    units = program.units
+    quantity = _feed_quantity(units.feed)
+    feed = _number(program, ref, "feedrate", quantity, scale=units.feed_scale) or _number(
+        program, ref, "feed_per_revolution", Quantity.FEED_PER_REVOLUTION, scale=1.0
+    )
+    if feed is None:
+        raise program.error("has neither feedrate nor feed_per_revolution", ref, "feedrate")
+    if technology.spindle_speed is None:
+        raise program.error("has no spindle speed", ref, "spindle_speed")
+    spindle = technology.spindle_speed
+    entity: Entity = program.get(spindle)
+    is_constant = isinstance(entity, ConstSpindleSpeed)
+    speed = _number(
+        program,
+        spindle,
+        "rot_speed" if is_constant else "speed",
+        Quantity.SPINDLE_SPEED if is_constant else Quantity.CUTTING_SPEED,
+        scale=units.spindle if is_constant else units.cutting_speed,
+    )
+    if speed is None:
+        raise program.error("has no speed", spindle)
+    top = entity.max_speed if isinstance(entity, ConstCuttingSpeed) else None
+    return Programmed(
+        feed=feed,
+        speed=speed,
+        max_spindle_speed=abs(top) * units.spindle if top else None,
+        inhibition="inhibit_feedrate_override" if technology.inhibit_feedrate_override else "",
+        is_synchronised=bool(technology.sync_spindle_and_z_feed),
+    )
+
+
+def _feed_quantity(unit: FeedUnit) -> Quantity:
+    """What ``feedrate`` holds in a unit profile."""
+    return {
+        FeedUnit.MM_PER_TOOTH: Quantity.FEED_PER_TOOTH,
+        FeedUnit.MM_PER_REVOLUTION: Quantity.FEED_PER_REVOLUTION,
+    }.get(unit, Quantity.FEED)
+
+
+def _number(
+    program: Program, ref: Ref[Entity], attribute: str, quantity: Quantity, *, scale: float
+) -> Number | None:
+    """One number of an instance, which must cut something when it is given."""
+    written = getattr(program.get(ref), attribute)
+    if written is None:
+        return None
+    size = abs(written) if quantity is Quantity.SPINDLE_SPEED else written
+    if not isfinite(size) or size <= 0.0:
+        raise program.error(
+            f"{quantity.value} {written:g} cuts nothing: it must be positive", ref, attribute
+        )
+    return Number(
+        ref=ref,
+        attribute=attribute,
+        quantity=quantity,
+        value=size * scale,
+        scale=scale if written > 0.0 else -scale,
+    )

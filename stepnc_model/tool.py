@@ -1,0 +1,132 @@
+"""The tool of a workingstep as numbers: ISO 14649-111 and -121 tools in mm and rad."""
+
+from dataclasses import dataclass
+from math import isfinite, pi
+
+from stepnc_model.entities.entity import Entity
+from stepnc_model.entities.tools import BallEndmill, MillingCuttingTool, MillingToolBody
+from stepnc_model.entities.turning_tools import (
+    GroovingTool,
+    RoundedCorner,
+    TurningMachineCuttingTool,
+)
+from stepnc_model.part21.values import Ref
+from stepnc_model.program import Program
+from stepnc_model.units import rad_from_deg
+
+RIGHT_ANGLE = 0.5 * pi
+
+LEAST_TOP_ANGLE_DEG = 2.0
+"""no drill is so blunt: a smaller number is in radians, as some files write it"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Tool:
+    """What the physics needs to know of a cutting tool.
+
+    A rotating tool has a diameter and teeth; a turning tool has ``diameter = 0`` and one
+    tooth.
+    """
+
+    id: str
+    keyword: str
+    """EXPRESS name of the tool body (or turning tool) in capitals"""
+    edge_material: tuple[str, ...] = ()
+    """names given for the cutting edge"""
+    diameter: float = 0.0
+    """mm"""
+    teeth: int = 1
+    has_teeth: bool = True
+    """the file says how many"""
+    corner_radius: float | None = None
+    """mm: end-mill corner, insert nose; half the diameter of a ball"""
+    cutting_edge_length: float | None = None
+    """mm, or the greatest depth that an insert may take"""
+    cutting_edge_angle: float = RIGHT_ANGLE
+    """rad, κ_r"""
+    point_angle: float | None = None
+    """rad, included angle of a drill's point"""
+    width: float | None = None
+    """mm, of a grooving insert"""
+
+
+def tool_of(program: Program, ref: Ref[Entity]) -> Tool:
+    """Tool behind a reference.
+
+    Raises
+    ------
+    SchemaError
+        When its diameter is missing or not positive, or it is no cutting tool.
+    """
+    tool = program.get(ref)
+    if isinstance(tool, MillingCuttingTool):
+        return _rotating(program, ref, tool)
+    if isinstance(tool, TurningMachineCuttingTool):
+        return _turning(program, ref, tool)
+    raise program.error("is no milling, drilling or turning tool", ref)
+
+
+def _rotating(program: Program, ref: Ref[Entity], tool: MillingCuttingTool) -> Tool:
+    """Milling and drilling tools."""
+    if tool.its_tool_body is None:
+        raise program.error("has no tool body", ref, "its_tool_body")
+    body = program.get(tool.its_tool_body)
+    if not isinstance(body, MillingToolBody) or body.dimension is None:
+        raise program.error("has no dimension", tool.its_tool_body, "dimension")
+    dimension = program.get(body.dimension)
+    diameter = dimension.diameter
+    if diameter is None or not isfinite(diameter) or diameter <= 0.0:
+        raise program.error(f"diameter {diameter} mm: it must be positive", body.dimension)
+    teeth = body.number_of_teeth
+    if teeth is not None and teeth < 1:
+        raise program.error(f"{teeth} teeth cut nothing", tool.its_tool_body, "number_of_teeth")
+    radius = 0.5 * diameter if isinstance(body, BallEndmill) else dimension.edge_radius
+    return Tool(
+        id=tool.its_id or body.keyword.lower().replace("_", " "),
+        keyword=body.keyword,
+        edge_material=tuple(_edge_materials(program, tool)),
+        diameter=diameter,
+        teeth=teeth or 1,
+        has_teeth=teeth is not None,
+        corner_radius=radius or None,
+        cutting_edge_length=dimension.cutting_edge_length or None,
+        point_angle=_point_angle(dimension.tool_top_angle),
+    )
+
+
+def _turning(program: Program, ref: Ref[Entity], tool: TurningMachineCuttingTool) -> Tool:
+    """Turning tools."""
+    if tool.cutting_edge is None:
+        raise program.error("has no cutting edge", ref, "cutting_edge")
+    edge = program.get(tool.cutting_edge)
+    corners = [program.get(corner) for corner in edge.corner_transitions or ()]
+    radii = [corner.corner_radius for corner in corners if isinstance(corner, RoundedCorner)]
+    angle = edge.tool_cutting_edge_angle
+    return Tool(
+        id=tool.its_id or tool.keyword.lower().replace("_", " "),
+        keyword=tool.keyword,
+        edge_material=(tool.its_id,),
+        corner_radius=min(radii, default=0.0) or None,
+        cutting_edge_length=edge.maximum_side_cutting_depth,
+        cutting_edge_angle=rad_from_deg(angle) if angle else RIGHT_ANGLE,
+        width=tool.cutting_width if isinstance(tool, GroovingTool) else None,
+    )
+
+
+def _edge_materials(program: Program, tool: MillingCuttingTool) -> list[str]:
+    """Texts that name what the edges are made of."""
+    texts: list[str] = []
+    for component in tool.its_cutting_edge:
+        material = program.get(component).its_material
+        if material is not None:
+            entity = program.get(material)
+            texts += [entity.standard_identifier, entity.material_identifier]
+    return [*texts, tool.its_id]
+
+
+def _point_angle(top_angle: float | None) -> float | None:
+    """Included angle in rad; the top angle lies between the lip and the tool's face plane."""
+    if not top_angle:
+        return None
+    top = top_angle if top_angle < LEAST_TOP_ANGLE_DEG else rad_from_deg(top_angle)
+    return pi - 2.0 * top if 0.0 < top < RIGHT_ANGLE else None

@@ -1,0 +1,97 @@
+"""The XML form of paper 003."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from simulator.errors import LibraryError
+from simulator.library import load_machine
+from simulator.machine_xml import read_machine_xml
+
+EXAMPLE = Path(__file__).parent / "data" / "paper003.xml"
+
+
+def with_change(folder: Path, old: str, new: str) -> Path:
+    text = EXAMPLE.read_text(encoding="utf-8")
+    assert old in text
+    path = folder / "my.xml"
+    path.write_text(text.replace(old, new), encoding="utf-8")
+    return path
+
+
+def test_the_audited_reading_of_figure_5() -> None:
+    machine = read_machine_xml(EXAMPLE)
+    assert machine.rapid == pytest.approx(16_000 / 60)  # PHYSICS §1.3 t: 16 m/min
+    assert machine.spindle.acceleration == 10.0  # rev/s²
+    assert machine.spindle.inertia == 0.5
+    assert machine.spindle.efficiency == 0.95
+    assert [axis.acceleration for axis in machine.axes] == [6000.0] * 3
+    assert (machine.base_power, machine.coolant_power) == (370.0, 280.0)
+    assert machine.spindle.curve[0].power == 1_000_000  # not given; no cut reaches it
+
+
+def test_the_xml_and_the_library_say_the_same_of_paper_003() -> None:
+    xml, toml = load_machine(str(EXAMPLE)), load_machine("paper003")
+    assert replace(xml, title="", source="", remarks=()) == replace(
+        toml, title="", source="", remarks=()
+    )
+
+
+def test_every_assumed_unit_is_a_remark() -> None:
+    remarks = " ".join(read_machine_xml(EXAMPLE).remarks)
+    for name in ("basicRapidSpeed", "angularAcceleration", "pitchFeedScrew", "Energy"):
+        assert name in remarks
+    assert "'TurningMc1', but the form describes a mill" in remarks
+
+
+def test_the_corrected_spelling_is_read_too(tmp_path: Path) -> None:
+    path = with_change(tmp_path, "partEstupEnergy", "partSetupEnergy")
+    assert read_machine_xml(path).base_power == 370.0
+
+
+def test_an_id_that_looks_like_a_number_is_a_name(tmp_path: Path) -> None:
+    assert read_machine_xml(with_change(tmp_path, "TurningMc1", "7")).title == "7"
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('pDefaultLoad="370"', 'pDefaultLoad="-1"', "Machine.pDefaultLoad: -1 W is below 0 W"),
+        (
+            'pDefaultLoad="370"',
+            'pDefaultLoad="much"',
+            "Machine.pDefaultLoad: 'much' is no number",
+        ),
+        ('pDefaultLoad="370"', "", "Machine.pDefaultLoad: missing"),
+        ('pDefaultLoad="370"', 'pDefaultLod="370"', "Machine.pDefaultLoad: missing"),
+        ('gravity="9.81"', 'gravitation="9.81"', "Machine.gravitation: unknown key"),
+        ('gravity="9.81"', 'gravity="981"', "Machine.gravity: 981 m/s² exceeds 9.9 m/s²"),
+        ('basicRapidSpeed="1600"', 'basicRapidSpeed="1.6"', "1.6 1/100 m/min is below 10"),
+        ("<Machines>", "<Machines", "is no XML"),
+        ("<Machine\n", "<Robot\n", "has no Machine element"),
+    ],
+)
+def test_a_bad_attribute_is_told(old: str, new: str, message: str, tmp_path: Path) -> None:
+    with pytest.raises(LibraryError) as caught:
+        read_machine_xml(with_change(tmp_path, old, new))
+    assert message in str(caught.value)
+
+
+def test_an_absent_file_is_told(tmp_path: Path) -> None:
+    with pytest.raises(LibraryError, match="cannot be read: No such file"):
+        load_machine(str(tmp_path / "absent.xml"))
+
+
+def test_an_entity_is_not_followed_into_another_file(tmp_path: Path) -> None:
+    secret = tmp_path / "secret.txt"
+    secret.write_text("370", encoding="utf-8")
+    path = tmp_path / "my.xml"
+    path.write_text(
+        f'<!DOCTYPE Machine [<!ENTITY load SYSTEM "{secret.as_uri()}">]>\n'
+        '<Machine id="&load;"/>',
+        encoding="utf-8",
+    )
+    with pytest.raises(LibraryError) as caught:
+        read_machine_xml(path)
+    assert "370" not in str(caught.value)

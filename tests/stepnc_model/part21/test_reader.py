@@ -1,0 +1,453 @@
+"""Each tolerance of the reader by name, and each refusal."""
+
+from pathlib import Path
+
+import pytest
+
+from stepnc_model.errors import Part21Error, Severity
+from stepnc_model.part21.reader import Part21File
+from stepnc_model.part21.values import DERIVED, Binary, Enumeration, Real, Ref, Typed
+
+SHARED = Path(__file__).parents[4] / "shared"
+CORPUS = sorted(
+    path
+    for path in (SHARED / "corpus").glob("*/*")
+    if path.suffix in {".stp", ".p21", ".stpnc"}
+)
+needs_corpus = pytest.mark.skipif(not CORPUS, reason="the shared corpus is not there")
+
+HEADER = (
+    "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION(('a part'),'2;1');\n"
+    "FILE_NAME('part.stp','2024-01-01',('A. Author'),('Shop'),'pre','sys','auth');\n"
+    "FILE_SCHEMA(('MACHINING_SCHEMA','MILLING_SCHEMA'));\nENDSEC;\n"
+)
+END = "ENDSEC;\nEND-ISO-10303-21;\n"
+
+
+def file_of(*instances: str, header: str = HEADER, end: str = END) -> Part21File:
+    lines = "".join(f"{instance}\n" for instance in instances)
+    return Part21File.from_bytes((header + "DATA;\n" + lines + end).encode("latin-1"))
+
+
+def messages(file: Part21File) -> list[str]:
+    return [finding.message for finding in file.findings]
+
+
+def test_ordinary_file_has_no_findings() -> None:
+    file = file_of("#1=DIRECTION('',(0.,0.,1.));", "#2=PLANE('p',#1);")
+    assert list(file.ids()) == [1, 2]
+    assert len(file) == 2
+    assert 1 in file
+    assert 3 not in file
+    assert file.findings == ()
+    assert file.schemas == ("MACHINING_SCHEMA", "MILLING_SCHEMA")
+    assert file.label(2) == "#2 PLANE"
+    assert file.line(1) == 8
+
+
+def test_every_kind_of_value_is_read() -> None:
+    file = file_of(
+        "#1=A(1,-2,+3,4.,-5.5E-07,'s','',.CLIMB.,.T.,$,*,\"0A3F\",#7,(),(1,(2)),L_M(0.01),!X('v'));"
+    )
+    assert file.parameters(1) == (
+        1,
+        -2,
+        3,
+        Real(4.0),
+        Real(-5.5e-7),
+        "s",
+        "",
+        Enumeration("CLIMB"),
+        Enumeration("T"),
+        None,
+        DERIVED,
+        Binary("0A3F"),
+        Ref(7),
+        (),
+        (1, (2,)),
+        Typed("L_M", Real(0.01)),
+        Typed("!X", "v"),
+    )
+    assert file.findings == ()
+
+
+def test_reals_keep_their_characters() -> None:
+    values = file_of("#1=A(1.50,-0.,1.E+06,0010.);").parameters(1)
+    assert [v.lexeme for v in values if isinstance(v, Real)] == [
+        "1.50",
+        "-0.",
+        "1.E+06",
+        "0010.",
+    ]
+
+
+def test_real_out_of_range_keeps_its_characters_and_is_infinite() -> None:
+    (value,) = file_of("#1=A(1.0E400);").parameters(1)
+    assert isinstance(value, Real)
+    assert value == float("inf")
+    assert value.lexeme == "1.0E400"
+
+
+def test_comments_before_the_opening_and_in_header_parameters() -> None:
+    header = "/* by hand */\n\n" + HEADER.replace(
+        "FILE_NAME('part", "FILE_NAME(/* name */ 'part"
+    )
+    file = file_of("#1=A();", header=header)
+    assert file.header().name == "part.stp"
+    assert file.findings == ()
+
+
+def test_comments_within_an_instance() -> None:
+    file = file_of(
+        "#1= /* c */ A /* (d */ ( /* 1, */ 2 /* ; */ , 'x' /* ' */ ) /* e */ ;", "#2=B();"
+    )
+    assert file.parameters(1) == (2, "x")
+    assert file.keyword(1) == "A"
+    spans = file.parameter_spans(1)
+    assert [file.data[a:b] for a, b in spans] == [b"2", b"'x'"]
+    assert file.findings == ()
+
+
+def test_instance_commented_out_with_the_same_id_is_not_read() -> None:
+    file = file_of("#1=A(1);", "/* #1=A(2); */", "#2=B(/* #3=C(); */ 5);")
+    assert list(file.ids()) == [1, 2]
+    assert file.findings == ()
+
+
+def test_instance_over_several_lines_with_crlf() -> None:
+    file = file_of("#1=A(1,\r\n  2,\r\n  'x')\r\n;\r", "#2=B();\r")
+    assert file.parameters(1) == (1, 2, "x")
+    assert file.line(2) == 12
+
+
+def test_carriage_returns_alone_end_lines() -> None:
+    file = Part21File.from_bytes(
+        (HEADER + "DATA;\n#1=A();\n" + END).replace("\n", "\r").encode()
+    )
+    assert file.line(1) == 8
+
+
+def test_ids_unordered_with_gaps() -> None:
+    file = file_of("#900=A();", "#7=B();", "#0100=A();")
+    assert list(file.ids()) == [900, 7, 100]
+    assert list(file.ids_of("a")) == [900, 100]
+    assert list(file.ids_of("NOT_THERE")) == []
+
+
+def test_doubled_apostrophe_semicolon_and_comment_marks_in_strings() -> None:
+    file = file_of("#1=A('it''s; /* no */ comment','',''';''');", "#2=B('a''');")
+    assert file.parameters(1) == ("it's; /* no */ comment", "", "';'")
+    assert file.parameters(2) == ("a'",)
+    assert file.findings == ()
+
+
+def test_text_like_an_instance_in_a_string_is_text() -> None:
+    file = file_of("#1=A('HOLE #2=B(); and\n#3=C();\n');", "#4=D('#5');")
+    assert list(file.ids()) == [1, 4]
+    assert file.parameters(1) == ("HOLE #2=B(); and#3=C();",)
+
+
+def test_string_over_two_lines_is_one_string() -> None:
+    assert file_of("#1=A('one\r\ntwo');").parameters(1) == ("onetwo",)
+
+
+def test_byte_order_mark_and_latin_1_bytes() -> None:
+    data = b"\xef\xbb\xbf" + (HEADER + "DATA;\n#1=A('Fr\xe4ser');\n" + END).encode("latin-1")
+    file = Part21File.from_bytes(data)
+    assert file.parameters(1) == ("Fräser",)
+
+
+def test_utf_8_bytes() -> None:
+    data = (HEADER + "DATA;\n#1=A('Fräser');\n" + END).encode()
+    assert Part21File.from_bytes(data).parameters(1) == ("Fräser",)
+
+
+def test_lower_case_keywords() -> None:
+    text = HEADER.lower() + "data;\n#1=direction('',(0.,0.,.t.));\n" + END.lower()
+    file = Part21File.from_bytes(text.encode())
+    assert file.keyword(1) == "DIRECTION"
+    assert file.parameters(1) == ("", (0.0, 0.0, Enumeration("T")))
+    assert file.schemas == ("machining_schema", "milling_schema")
+    assert list(file.ids_of("DIRECTION")) == [1]
+
+
+@pytest.mark.parametrize(
+    ("end", "missing"),
+    [
+        ("END-ISO-10303-21;", ["ENDSEC is missing after the DATA section"]),
+        ("ENDSEC;", ["END-ISO-10303-21 is missing"]),
+        ("", ["ENDSEC is missing after the DATA section", "END-ISO-10303-21 is missing"]),
+        ("ENDSEC END-ISO-10303-21;", ["';' is missing after ENDSEC"]),
+    ],
+)
+def test_missing_end_is_a_finding(end: str, missing: list[str]) -> None:
+    file = file_of("#1=A();", end=end)
+    assert len(file) == 1
+    assert messages(file) == missing
+
+
+def test_missing_endsec_of_the_header() -> None:
+    file = file_of("#1=A();", header=HEADER.removesuffix("ENDSEC;\n"))
+    assert messages(file) == ["ENDSEC is missing after the HEADER section"]
+
+
+def test_edition_2_data_with_name_and_several_sections() -> None:
+    text = HEADER + "DATA('one',('S'));\n#1=A();\nENDSEC;\nDATA ('two',('S'));\n#2=B();\n" + END
+    file = Part21File.from_bytes(text.encode())
+    assert list(file.ids()) == [1, 2]
+    assert file.findings == ()
+
+
+def test_edition_3_sections_hold_no_instances() -> None:
+    extra = "ANCHOR;\n<a>=#1;\nENDSEC;\nREFERENCE;\n#9=<part.stp#it's>;\nENDSEC;\n"
+    signature = "ENDSEC;\nEND-ISO-10303-21;\n"
+    text = HEADER + extra + "DATA;\n#1=A();\nENDSEC;\nSIGNATURE;\nMII/ab//E=\n" + signature
+    file = Part21File.from_bytes(text.encode())
+    assert list(file.ids()) == [1]
+    assert file.findings == ()
+
+
+def test_user_defined_keyword_and_complex_instance() -> None:
+    file = file_of("#1=!SHOP_NOTE('x');", "#2=(A(1)B_C('y',#1)\nD());")
+    assert file.keyword(1) == "!SHOP_NOTE"
+    assert file.keyword(2) == ""
+    assert file.parts(1) == (("!SHOP_NOTE", ("x",)),)
+    assert file.parts(2) == (("A", (1,)), ("B_C", ("y", Ref(1))), ("D", ()))
+    assert file.findings == ()
+    with pytest.raises(Part21Error, match="#2 is a complex instance"):
+        file.parameters(2)
+
+
+def test_header_with_the_wrong_arity_is_read_as_far_as_it_goes() -> None:
+    statements = "FILE_DESCRIPTION(' ');\nFILE_NAME('n',$);\nFILE_SCHEMA('S');\n"
+    header = f"ISO-10303-21;\nHEADER;\n{statements}ENDSEC;\n"
+    file = file_of("#1=A();", header=header)
+    assert file.header().name == "n"
+    assert file.schemas == ("S",)
+    assert messages(file) == [
+        "FILE_DESCRIPTION has 1 parameters instead of 2",
+        "FILE_NAME has 2 parameters instead of 7",
+    ]
+
+
+def test_header_is_read() -> None:
+    header = file_of("#1=A();").header()
+    assert header.description == ("a part",)
+    assert header.implementation_level == "2;1"
+    assert header.time_stamp == "2024-01-01"
+    assert header.author == ("A. Author",)
+    assert header.organisation == ("Shop",)
+    assert header.authorisation == "auth"
+
+
+def test_broken_header_is_never_fatal() -> None:
+    header = "ISO-10303-21;\nHEADER;\nFILE_NAME('a' 'b');\nFILE_SCHEMA((;\nwhat\nENDSEC;\n"
+    file = file_of("#1=A();", header=header)
+    assert list(file.ids()) == [1]
+    assert file.schemas == ()
+    assert file.findings
+
+
+def test_schema_list_span_lies_between_the_inner_brackets() -> None:
+    file = file_of(
+        "#1=A();", header=HEADER.replace("FILE_SCHEMA((", "FILE_SCHEMA ( /* ( */ ( ")
+    )
+    start, end = file.schema_list_span()
+    assert file.data[start:end] == b" 'MACHINING_SCHEMA','MILLING_SCHEMA'"
+
+
+def test_figure_11_of_paper_002_is_readable_as_printed() -> None:
+    paper = SHARED / "seeds" / "002_489edeab1a316dc9.txt"
+    if not paper.exists():
+        pytest.skip("the shared paper is not there")
+    text = paper.read_text()
+    start = text.index("ISO-10303-21;")
+    file = Part21File.from_bytes(text[start : text.index("```", start)].encode())
+    assert list(file.ids()) == [20, 39, 29, 30, 125, 40, 42, 43, 60, 61, *range(200, 205)]
+    assert file.parameters(29)[1:4] == (4.0, Enumeration("RIGHT"), Enumeration("F"))
+    assert file.parameters(204) == (180.0, "FULL_IMMERSION")
+    assert file.parameters(202) == ("CUTTING POWER", None, "kW", Ref(203), 35)
+    assert [(f.line, f.message) for f in file.findings] == [
+        (3, "FILE_DESCRIPTION has 1 parameters instead of 2"),
+        (4, "FILE_NAME has 1 parameters instead of 7"),
+        (7, "text that belongs to no instance: '. . .'"),
+        (11, "nested comment: '/*' within a comment"),
+        (13, "text that belongs to no instance: '*****/'"),
+        (14, "instances outside a DATA section: 'DATA;' is missing"),
+        (16, "RIGHT: read as .RIGHT."),
+        (16, "..F.: an enumeration has one dot on either side"),
+        (24, "nested comment: '/*' within a comment"),
+        (26, "text that belongs to no instance: '*****/'"),
+        (29, "';' is missing after #202"),
+        (30, "';' is missing after #203"),
+        (31, '"FULL_IMMERSION": double quotes enclose binary values; read as a string'),
+        (31, "';' is missing after #204"),
+        (32, "text that belongs to no instance: '. . .'"),
+    ]
+
+
+def test_missing_semicolon_loses_no_instance() -> None:
+    file = file_of("#1=A(1)", "#2=B(2) /* c */", "#3=C((3)")
+    assert list(file.ids()) == [1, 2, 3]
+    assert file.parameters(2) == (2,)
+    assert [f.message for f in file.findings if f.severity is Severity.WARNING] == [
+        "';' is missing after #1",
+        "';' is missing after #2",
+        "';' is missing after #3",
+    ]
+
+
+def test_junk_between_instances_is_a_finding_with_its_line() -> None:
+    file = file_of("#1=A();", "it's ## junk; (", "#2=B();")
+    assert list(file.ids()) == [1, 2]
+    (finding,) = file.findings
+    assert finding.line == 9
+    assert "it's ## junk; (" in finding.message
+
+
+def test_comment_that_swallows_instances_says_so() -> None:
+    file = file_of("#1=A(); /* lost end", "#2=B();", "#3=C(); /* c */", "#4=D();")
+    assert list(file.ids()) == [1, 4]
+    assert messages(file) == ["nested comment: '/*' within a comment; it hides 2 instances"]
+
+
+@pytest.mark.parametrize(
+    ("text", "value", "slips"),
+    [
+        ("1E5", 1e5, 1),
+        ("1.5e-3", 1.5e-3, 1),
+        (".5", 0.5, 1),
+        ("word", "WORD", 1),
+        ("..F.", "F", 1),
+        ('"WIDE"', "WIDE", 1),
+        ("((((((1))))))", ((((((1,),),),),),), 0),
+    ],
+)
+def test_slip_in_a_value_is_read_and_reported(text: str, value: object, slips: int) -> None:
+    file = file_of(f"#1=A({text});")
+    assert file.parameters(1) == (value,)
+    assert len(file.findings) == slips
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "1,,2",
+        "1,",
+        ",1",
+        "1 2",
+        "nan",
+        "INF",
+        "-nan",
+        "1=2",
+        "(1",
+        "1)",
+        "@",
+        "X(1,2)",
+        "X()",
+        "\x00",
+        "1.5abc",
+        "1" * 5000,
+        "#" + "1" * 30,
+        "(" * 600 + ")" * 600,
+        '"',
+        "A(1)B(2)",
+    ],
+)
+def test_malformed_parameters_are_an_error_of_that_instance_only(text: str) -> None:
+    file = file_of("#1=FIRST(1);", f"#2=X({text});", "#3=LAST(3);")
+    assert file.parameters(1) == (1,)
+    assert file.parameters(3) == (3,)
+    with pytest.raises(Part21Error, match="#2 X") as caught:
+        file.parameters(2)
+    assert caught.value.line == 9
+    (error,) = [f for f in file.findings if f.severity is Severity.ERROR]
+    assert error.entity == "#2 X"
+    assert error.line == 9
+
+
+def test_error_names_line_and_column() -> None:
+    with pytest.raises(Part21Error) as caught:
+        file_of("#1=A(1,\n  2 3);").parameters(1)
+    assert (caught.value.line, caught.value.column) == (9, 5)
+
+
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [
+        (b"", "empty"),
+        (b" \r\n\t", "empty"),
+        (b"\xef\xbb\xbf \n", "empty"),
+        (b"G0 X1", "not an ISO 10303-21 file"),
+        (b"\x89PNG\r\n\x1a\n\x00\x00", "not an ISO 10303-21 file"),
+        (HEADER.encode("utf-16"), "not an ISO 10303-21 file"),
+        (HEADER.encode(), "no DATA section"),
+        (b"ISO-10303-21;", "no DATA section"),
+        (b"ISO-10303-21; /* x", "comment that begins here does not end"),
+        ((HEADER + "DATA;\n#1=A();\n#2=PLANE('x',#").encode(), "cut off within #2 PLANE"),
+        ((HEADER + "DATA;\n#1=A();\n#2").encode(), None),
+        ((HEADER + "DATA;\n#1=A('x;\nENDSEC;\n").encode(), "string that begins here in #1"),
+        ((HEADER + "DATA;\n#1=A(/* x);\nENDSEC;\n").encode(), "comment that begins here in #1"),
+        ((HEADER + "DATA;\n#1=A('x);\n#2=B('y');\n" + END).encode(), "string that begins here"),
+        ((HEADER + "DATA;\n#1=A();\n#2=B();\n#1=C();\n").encode(), "#1 is defined twice"),
+        ((HEADER + "DATA;\n#" + "9" * 30 + "=A();\n").encode(), "instance name too long"),
+    ],
+)
+def test_refusal_says_what_is_wrong(data: bytes, message: str | None) -> None:
+    if message is None:
+        assert Part21File.from_bytes(data).findings
+        return
+    with pytest.raises(Part21Error, match=message):
+        Part21File.from_bytes(data)
+
+
+def test_duplicate_id_names_both_lines() -> None:
+    with pytest.raises(Part21Error, match=r"^line 10, .*first on line 8"):
+        file_of("#5=A();", "#6=B();", "#5=A();")
+
+
+def test_absent_id_is_a_key_error() -> None:
+    with pytest.raises(KeyError):
+        file_of("#1=A();").parameters(2)
+
+
+@pytest.mark.parametrize(
+    "unit", ["'", '"', "/*", "*/", "(", "#1=", ";", "DATA;", "ENDSEC;", "A("]
+)
+@pytest.mark.parametrize("opening", ["", "#9=A("])
+def test_repeated_marks_are_answered_in_linear_time(unit: str, opening: str) -> None:
+    data = (HEADER + "DATA;\n" + opening + unit * (200_000 // len(unit))).encode()
+    try:
+        file = Part21File.from_bytes(data)
+    except Part21Error:
+        return
+    assert len(file) <= 1
+    assert file.findings
+
+
+def test_millions_of_brackets_are_refused_without_recursion() -> None:
+    brackets = b"(" * 5_000_000
+    with pytest.raises(Part21Error, match="not an ISO 10303-21 file"):
+        Part21File.from_bytes(brackets)
+    with pytest.raises(Part21Error, match="cut off within #1 A"):
+        Part21File.from_bytes(HEADER.encode() + b"DATA;#1=A" + brackets)
+    file = Part21File.from_bytes(
+        HEADER.encode() + b"DATA;#1=A" + brackets + b";" + END.encode()
+    )
+    with pytest.raises(Part21Error, match="nested deeper than 500"):
+        file.parameters(1)
+
+
+@needs_corpus
+@pytest.mark.parametrize("path", CORPUS, ids=lambda path: path.name)
+def test_corpus_file_is_read_without_findings(path: Path) -> None:
+    file = Part21File.from_bytes(path.read_bytes())
+    assert file.findings == ()
+    for id in file.ids():
+        assert all(keyword for keyword, _ in file.parts(id))
+
+
+@needs_corpus
+def test_ex1_has_105_instances() -> None:
+    path = SHARED / "corpus" / "iso14649" / "ex1.stp"
+    assert len(Part21File.from_bytes(path.read_bytes())) == 105
