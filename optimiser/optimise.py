@@ -59,6 +59,8 @@ class Task:
     """s to change a worn tool; 0: tool life does not count"""
     force_factor: float = 1.0
     """accepted correction of k_c"""
+    front: bool = False
+    """whether the front between time, roughness and energy is wanted"""
 
 
 def optimise(

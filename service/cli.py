@@ -44,11 +44,13 @@ Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of a tabl
 
 
 @stepnc.command(epilog=EPILOG)
-def optimise(  # noqa: PLR0913 (one parameter an option: the command line is flat)
+def optimise(
     file: File,
     mode: Annotated[
         str,
-        typer.Option(help="TC least time, QC fastest that keeps the roughness, EC least energy."),
+        typer.Option(
+            help="TC least time, QC fastest feed that keeps the roughness, EC energy."
+        ),
     ] = "TC",
     machine: Annotated[
         str, typer.Option(help="A machine of `stepnc machines`, or your own TOML or XML file.")

@@ -306,14 +306,13 @@ def _cycle_findings(
     file: Part21File, edges: Mapping[int, tuple[int, ...]]
 ) -> Iterator[Finding]:
     """Instances that contain themselves: ISO 14649 nests, it never goes in circles."""
-    for circle in _circles(edges):
-        path = " → ".join(f"#{id}" for id in (*circle, circle[0]))
-        remark = Remark(Severity.ERROR, f"contains itself: {path}")
-        yield _finding(file, circle[0], "", remark=remark, rule="ISO 14649-10")
+    for id, last in _circles(edges):
+        remark = Remark(Severity.ERROR, f"contains itself: #{last} refers back to it")
+        yield _finding(file, id, "", remark=remark, rule="ISO 14649-10")
 
 
-def _circles(edges: Mapping[int, tuple[int, ...]]) -> Iterator[tuple[int, ...]]:
-    """One circle for every edge that closes one; no recursion, files may nest deeply."""
+def _circles(edges: Mapping[int, tuple[int, ...]]) -> Iterator[tuple[int, int]]:
+    """First and last instance of each circle; no recursion, for files may nest deeply."""
     done: set[int] = set()
     for root in edges:
         path: dict[int, Iterator[int]] = {}
@@ -326,8 +325,7 @@ def _circles(edges: Mapping[int, tuple[int, ...]]) -> Iterator[tuple[int, ...]]:
                 done.add(current)
                 current = next(reversed(path), None)
             elif step in path:
-                ids = list(path)
-                yield tuple(ids[ids.index(step) :])
+                yield step, current
             else:
                 current = step
 

@@ -74,6 +74,8 @@ OLDER_NAMES = {
     "BIDIRECTIONAL": "BIDIRECTIONAL_MILLING",
     "EXPLICIT": "EXPLICIT_STRATEGY",
     "CUTTING_TOOL": "MILLING_CUTTING_TOOL",
+    "NGON_PROFILE": "NGON_CLOSED_PROFILE",
+    "THREADING_TOOL": "MILLING_THREADING_TOOL",
     "COUNTERSINKING": "COUNTER_SINKING",
     "MULTISTEP_DRILLING_OPERATION": "MULTISTEP_DRILLING",
 }
@@ -102,5 +104,7 @@ def classes() -> dict[str, type[Entity]]:
 def _entities(module: object) -> Iterator[type[Entity]]:
     """Entities that one module defines and a file may name."""
     for value in vars(module).values():
-        if isinstance(value, type) and issubclass(value, Entity) and "keyword" in vars(value):
+        if not isinstance(value, type) or not issubclass(value, Entity):
+            continue
+        if vars(value).get("keyword"):
             yield value

@@ -29,35 +29,17 @@ Taken = tuple[object, Remark | None]
 
 
 def take(slot: Slot, value: Value) -> Taken:
-    """Python value of one parameter; ``None`` for one that the slot does not take."""
-    if value is None:
-        return _take_unset(slot)
-    if isinstance(value, Derived):
-        return None, None
-    if isinstance(value, tuple):
-        return _take_list(slot, value)
-    if slot.items is not None:
-        return _take_single(slot, value)
-    if isinstance(value, Typed):
-        return _take_typed(slot, value)
-    if isinstance(value, Ref):
-        return (value, None) if slot.references else _refused(slot, value)
-    if isinstance(value, Enumeration):
-        return _take_enumeration(slot, value)
-    if isinstance(value, int | Real):
-        return _take_number(slot, value)
-    if isinstance(value, Binary) or str not in slot.plain:
-        return _refused(slot, value)
-    return value, None
+    """Python value of one parameter, or its stand-in when the slot does not take it."""
+    taken, remark = _take(slot, value)
+    return _stand_in(slot) if taken is None else taken, remark
 
 
 def take_missing(slot: Slot) -> Taken:
     """Stand-in for a parameter that the instance is too short for."""
-    empty = () if slot.items is not None and not slot.is_optional else None
-    if slot.is_optional or empty is not None:
+    if slot.is_optional or slot.items is not None:
         text = "is missing at the end, as in older editions"
-        return empty, Remark(Severity.NOTE, text)
-    return None, Remark(Severity.ERROR, "is missing at the end")
+        return _stand_in(slot), Remark(Severity.NOTE, text)
+    return _stand_in(slot), Remark(Severity.ERROR, "is missing at the end")
 
 
 def give(slot: Slot, value: object) -> Value:
@@ -83,34 +65,67 @@ def give(slot: Slot, value: object) -> Value:
     raise TypeError(f"{value!r} is no value of an attribute")
 
 
-def _take_unset(slot: Slot) -> Taken:
-    """``$``: nothing, or what comes nearest where something is required."""
+def _stand_in(slot: Slot) -> object:
+    """What comes nearest to nothing: readers may rely on lists and texts."""
     if slot.is_optional:
-        return None, None
+        return None
     if slot.items is not None:
-        return (), Remark(Severity.NOTE, "$ where a list is required: read as an empty one")
+        return ()
+    return "" if str in slot.plain else None
+
+
+def _take(slot: Slot, value: Value) -> Taken:
+    """Python value of one parameter; ``None`` when the slot does not take it."""
+    if value is None or isinstance(value, Derived):
+        return None, None if isinstance(value, Derived) else _unset(slot)
+    if isinstance(value, tuple):
+        return _take_list(slot, value)
+    if slot.items is not None:
+        return _take_single(slot, value)
+    if isinstance(value, Typed):
+        return _take_typed(slot, value)
+    if isinstance(value, Ref):
+        return (value, None) if slot.references else _refused(slot, value)
+    if isinstance(value, Enumeration):
+        return _take_enumeration(slot, value)
+    if isinstance(value, int | Real):
+        return _take_number(slot, value)
+    if isinstance(value, Binary) or str not in slot.plain:
+        return _refused(slot, value)
+    return value, None
+
+
+def _unset(slot: Slot) -> Remark | None:
+    """What to say about ``$``."""
+    if slot.is_optional:
+        return None
+    if slot.items is not None:
+        return Remark(Severity.NOTE, "$ where a list is required: read as an empty one")
     if str in slot.plain:
-        return "", Remark(Severity.NOTE, "$ where a text is required: read as an empty one")
-    severity = Severity.ERROR if slot.references else Severity.WARNING
-    return None, Remark(severity, f"$ where {slot.expected()} is required")
+        return Remark(Severity.NOTE, "$ where a text is required: read as an empty one")
+    return Remark(Severity.WARNING, f"$ where {slot.expected()} is required")
 
 
 def _take_list(slot: Slot, value: tuple[Value, ...]) -> Taken:
     """Every item, or none: a list with a hole would shift coordinates."""
     if slot.items is None:
         return None, Remark(Severity.ERROR, f"a list where {slot.expected()} is required")
-    taken = [take(slot.items, item) for item in value]
-    odd = [(place, remark) for place, (_, remark) in enumerate(taken, 1) if remark is not None]
-    remark = None
-    if odd:
-        place, first = odd[0]
-        remark = Remark(first.severity, f"item {place}: {first.message}")
+    taken = [_take(slot.items, item) for item in value]
     items = tuple(item for item, _ in taken)
+    remark = _first_remark([each for _, each in taken])
     if None not in items:
         return items, remark
     if slot.items.references:
         return tuple(item for item in items if item is not None), remark
-    return (), remark
+    return (), Remark(Severity.ERROR, remark.message if remark else "items are left out")
+
+
+def _first_remark(remarks: list[Remark | None]) -> Remark | None:
+    """The first thing that is odd about a list."""
+    for place, remark in enumerate(remarks, 1):
+        if remark is not None:
+            return Remark(remark.severity, f"item {place}: {remark.message}")
+    return None
 
 
 def _take_single(slot: Slot, value: Value) -> Taken:
@@ -124,9 +139,11 @@ def _take_single(slot: Slot, value: Value) -> Taken:
 def _take_typed(slot: Slot, value: Typed) -> Taken:
     """A measure: the type is kept where it matters, unwrapped where the slot implies it."""
     inner = value.value
+    while isinstance(inner, Typed):
+        inner = inner.value
     if Typed in slot.plain and isinstance(inner, Real) and isfinite(inner):
         return value, None
-    return take(slot, inner)
+    return _take(slot, inner)
 
 
 def _take_enumeration(slot: Slot, value: Enumeration) -> Taken:

@@ -168,6 +168,19 @@ class Edits:
             raise IndexError(f"#{id} has no parameters")
         parameters.pop()
 
+    def remove_parameter(self, id: int, position: int) -> None:
+        """Take a parameter away, counted from 0; those behind it move up.
+
+        Raises
+        ------
+        IndexError
+            If there is no such parameter.
+        """
+        parameters = self._parameters(id)
+        if not 0 <= position < len(parameters):
+            raise IndexError(f"#{id} has {len(parameters)} parameters, no number {position}")
+        del parameters[position]
+
     def next_id(self) -> int:
         """Id that the next added instance gets: one above the largest of those kept."""
         if self._largest is None:

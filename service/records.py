@@ -1,0 +1,117 @@
+"""Advice → what is written: the optimiser's answer as nouns of the file."""
+
+from dataclasses import dataclass
+from math import isclose, pi
+
+from optimiser.advice import Advice, Plan, State, Status
+from optimiser.cut import Cut, CutKind
+from simulator.physics.engagement import Engagement
+from stepnc_model.record import GENERATOR, Record
+from stepnc_model.technology import Quantity
+from stepnc_model.units import deg_from_rad, kw_from_watts, um_from_mm
+from stepnc_model.writeback import Change, rounded
+
+UNCHANGED = 1e-9
+"""relative difference below which a number counts as the programmed one"""
+
+
+def changes_of(plan: Plan) -> list[Change]:
+    """Changes of all workingsteps that were advised."""
+    return [
+        _change(plan, _Advised(each, each.cut, each.before, each.after))
+        for each in plan.advices
+        if each.status is Status.ADVISED and each.cut and each.before and each.after
+    ]
+
+
+@dataclass(frozen=True, slots=True)
+class _Advised:
+    """An advice with everything that an advised workingstep has."""
+
+    advice: Advice
+    cut: Cut
+    before: State
+    after: State
+
+
+def _change(plan: Plan, advised: _Advised) -> Change:
+    """Numbers for the file, in the units of its attributes."""
+    advice, cut = advised.advice, advised.cut
+    conditions, before, after = advice.programmed, advised.before, advised.after
+    given, best = before.setting, after.setting
+    is_speed_new = not isclose(given.speed, best.speed, rel_tol=UNCHANGED)
+    is_depth_new = not isclose(given.depth, best.depth, rel_tol=UNCHANGED)
+    return Change(
+        workingstep=advice.workingstep,
+        programmed=conditions,
+        record=_record(plan, advised),
+        feed=conditions.feed_number(best.feed, speed=best.speed, teeth=cut.tool.teeth),
+        speed=conditions.speed_number(best.speed, cut.diameter) if is_speed_new else None,
+        depth=best.depth if is_depth_new else None,
+    )
+
+
+def _record(plan: Plan, advised: _Advised) -> Record:
+    """Everything worth keeping beside the numbers themselves."""
+    advice, cut = advised.advice, advised.cut
+    before, after = advised.before, advised.after
+    spindle = plan.machine.spindle
+    available = max(point.power for point in spindle.curve)
+    best = after.setting
+    clockwise = -1.0 if advice.programmed.speed.scale < 0.0 else 1.0
+    cutting = after.motor_power * spindle.efficiency
+    removal = _removal_rate(cut, after)
+    feed, speed = advice.programmed.feed, advice.programmed.speed
+    raw_feed, raw_speed = feed.in_file(feed.value), speed.in_file(speed.value)
+    is_feed = feed.quantity is Quantity.FEED
+    is_spindle = speed.quantity is Quantity.SPINDLE_SPEED
+    engagement = cut.engagement
+    return Record(
+        mode=plan.mode.value,
+        id=advice.workingstep.operation.its_id,
+        description=advice.reason,
+        machine=plan.machine.name,
+        material=plan.material.material.name,
+        generator=GENERATOR,
+        active_limit=advice.active.value if advice.active else "",
+        number_of_passes=best.passes,
+        feed_per_tooth=rounded(best.feed),
+        axial_depth=rounded(best.depth),
+        machine_power=rounded(kw_from_watts(available)),
+        cutting_power=rounded(kw_from_watts(cutting)),
+        spindle_speed=rounded(clockwise * best.speed),
+        specific_cutting_resistance=rounded(cutting * 1000.0 / removal),
+        machining_time=rounded(after.time),
+        motor_power=rounded(kw_from_watts(after.motor_power)),
+        cutting_force=rounded(after.cutting_force),
+        energy=rounded(after.energy),
+        surface_roughness=rounded(um_from_mm(after.roughness)) if after.roughness else None,
+        contact_angle=rounded(deg_from_rad(engagement.contact_angle)) if engagement else None,
+        immersion=_immersion(engagement) if engagement else None,
+        programmed_feedrate=raw_feed if is_feed else None,
+        programmed_feedrate_per_tooth=None if is_feed else raw_feed,
+        programmed_cutspeed=None if is_spindle else raw_speed,
+        programmed_spindle=raw_speed if is_spindle else None,
+        programmed_axial_depth=before.setting.depth,
+    )
+
+
+def _removal_rate(cut: Cut, after: State) -> float:
+    """Material removed in mm³/s while the tool cuts."""
+    best = after.setting
+    if cut.kind is CutKind.MILLING:
+        return cut.radial_width * best.depth * after.feed
+    if cut.kind is CutKind.DRILLING:
+        return pi / 4.0 * (cut.diameter**2 - cut.previous_diameter**2) * after.feed
+    width = cut.radial_width if cut.kind is CutKind.GROOVING else best.depth
+    return width * best.feed * pi * cut.diameter * best.speed
+
+
+def _immersion(engagement: Engagement) -> str:
+    """Name of the paper's face-milling type."""
+    half = 0.5 * pi
+    if engagement.contact_angle >= 2.0 * half - 1e-9:
+        return "FULL_IMMERSION"
+    middle = 0.5 * (engagement.entry_angle + engagement.exit_angle)
+    is_centred = abs(middle - half) < 1e-9
+    return "BILATERAL_PART_IMMERSION" if is_centred else "UNIDIRECTIONAL_PART_IMMERSION"

@@ -1,0 +1,251 @@
+"""Tables on a terminal."""
+
+import os
+import sys
+from collections.abc import Sequence
+
+from optimiser.advice import Advice, Plan, Status
+from service.usecases import Contents
+from simulator.spec import Machine, Material
+from stepnc_model.errors import Finding, Severity
+from stepnc_model.units import (
+    kw_from_watts,
+    m_min_from_speed,
+    mm_min_from_speed,
+    rpm_from_rev_s,
+)
+
+Row = Sequence[str]
+
+COLOURS = {Severity.ERROR: "31", Severity.WARNING: "33", Severity.NOTE: "36"}
+"""ANSI colours of findings"""
+
+MOST_FINDINGS = 40
+"""findings shown in a table; --json has all"""
+
+
+def print_plan(plan: Plan) -> None:
+    """Advice for a program: a row for each workingstep, then totals and findings."""
+    material = plan.material.material
+    _line(
+        f"{plan.program}: mode {plan.mode.value}, machine {plan.machine.name} "
+        f"({plan.machine.title}), material {material.title}"
+    )
+    header = (
+        "workingstep", "operation", "tool", "feed mm/min", "rpm", "depth mm x passes",
+        "active limit", "time s",
+    )  # fmt: skip
+    rows = [_advice_row(advice) for advice in plan.advices]
+    total = f"{plan.time_before:.1f} -> {plan.time_after:.1f}"
+    _table(header, [*rows, ("total", "", "", "", "", "", "", total)])
+    for advice in plan.advices:
+        _line(f"  {advice.workingstep.id}: {_reason(advice)}")
+    for advice in plan.advices:
+        if advice.front:
+            _print_front(advice)
+    _print_findings(plan.findings)
+
+
+def print_contents(contents: Contents) -> None:
+    """What is in a file."""
+    _line(
+        f"{contents.name}: {contents.instances} instances, "
+        f"schemas {', '.join(contents.schemas) or 'none'}"
+    )
+    program = contents.program
+    if program is not None:
+        steps = {int(step.ref): step for step in program.workingsteps}
+        rows = []
+        for each in program.executables:
+            step = steps.get(int(each.ref))
+            tool = getattr(program.get(step.tool_ref), "its_id", "") if step else ""
+            rows.append((
+                str(each.ref),
+                "  " * each.level + each.keyword.lower(),
+                each.id,
+                step.operation_type if step else "",
+                tool,
+            ))
+        _table(("instance", "executable", "id", "operation", "tool"), rows)
+    _print_findings(contents.findings)
+    _line("usable" if contents.is_usable else "cannot be used: see the errors above")
+
+
+def print_entries(kind: str, entries: Sequence[Machine | Material]) -> None:
+    """A library as a table."""
+    if kind == "machines":
+        machines = [entry for entry in entries if isinstance(entry, Machine)]
+        rows = [
+            (each.name, each.kind.value, _power(each), _top_speed(each), each.title)
+            for each in machines
+        ]
+        _table(("name", "kind", "kW", "rpm", "title"), rows)
+        return
+    materials = [entry for entry in entries if isinstance(entry, Material)]
+    rows = [
+        (
+            each.name,
+            each.iso_group,
+            f"{each.kienzle.k_c11:g}",
+            f"{each.kienzle.m_c:g}",
+            each.title,
+        )
+        for each in materials
+    ]
+    _table(("name", "ISO", "k_c1.1 N/mm2", "m_c", "title"), rows)
+
+
+def print_entry(entry: Machine | Material) -> None:
+    """One machine or material."""
+    _line(f"{entry.name}: {entry.title}")
+    facts = _machine_facts(entry) if isinstance(entry, Machine) else _material_facts(entry)
+    _table(("what", "value"), facts)
+    _line(f"source: {entry.source}")
+    for remark in entry.remarks:
+        _line(f"remark: {remark}")
+
+
+def _machine_facts(machine: Machine) -> list[Row]:
+    """What a planner wants to know of a machine."""
+    facts: list[Row] = [
+        (
+            f"spindle at {rpm_from_rev_s(point.speed):g} rpm",
+            f"{kw_from_watts(point.power):g} kW"
+            + (f", {point.torque / 1000.0:g} N·m" if point.torque else ""),
+        )
+        for point in machine.spindle.curve
+    ]
+    facts.append(("efficiency", f"{machine.spindle.efficiency:g}"))
+    for name, value in (
+        ("greatest speed rpm", machine.spindle.max_speed and machine.spindle.max_speed * 60.0),
+        ("rapid mm/min", machine.rapid and mm_min_from_speed(machine.rapid)),
+        ("greatest feed mm/min", machine.max_feed and mm_min_from_speed(machine.max_feed)),
+        ("greatest cutting force N", machine.max_cutting_force),
+        ("greatest depth mm", machine.max_axial_depth),
+        ("base power kW", kw_from_watts(machine.base_power)),
+    ):
+        facts.append((name, "not limited" if value is None else f"{value:g}"))
+    return facts
+
+
+def _material_facts(material: Material) -> list[Row]:
+    """What a planner wants to know of a material."""
+    facts: list[Row] = [
+        ("ISO group", material.iso_group or "none"),
+        ("also called", ", ".join(material.equivalents)),
+        ("k_c1.1 N/mm2", f"{material.kienzle.k_c11:g}"),
+        ("m_c", f"{material.kienzle.m_c:g}"),
+    ]
+    for window in material.windows:
+        body = f" {window.tool_body.value}" if window.tool_body else ""
+        low = window.min_cutting_speed
+        high = window.max_cutting_speed
+        shown = " to ".join(f"{m_min_from_speed(each):g}" for each in (low, high) if each)
+        facts.append((f"m/min with {window.cutting_material.value}{body}", shown))
+    return facts
+
+
+def _advice_row(advice: Advice) -> Row:
+    """One workingstep, programmed -> advised."""
+    before, after = advice.before, advice.after
+    names = (advice.workingstep.id, advice.workingstep.operation_type, advice.tool.id)
+    if before is None:
+        return (*names, "", "", "", advice.status.value, "")
+    given = before.setting
+    if after is None or advice.status is not Status.ADVISED:
+        return (
+            *names,
+            f"{mm_min_from_speed(before.feed):.1f}",
+            f"{rpm_from_rev_s(given.speed):.1f}",
+            f"{given.depth:.4g} x {given.passes}",
+            advice.status.value,
+            f"{before.time:.1f}",
+        )
+    best = after.setting
+    depth = f"{given.depth:.4g} x {given.passes}"
+    new_depth = f"{best.depth:.4g} x {best.passes}"
+    old_speed, speed = f"{rpm_from_rev_s(given.speed):.1f}", f"{rpm_from_rev_s(best.speed):.1f}"
+    return (
+        *names,
+        f"{mm_min_from_speed(before.feed):.1f} -> {mm_min_from_speed(after.feed):.1f}",
+        speed if speed == old_speed else f"{old_speed} -> {speed}",
+        depth if depth == new_depth else f"{depth} -> {new_depth}",
+        advice.active.words if advice.active else "",
+        f"{before.time:.1f} -> {after.time:.1f}",
+    )
+
+
+def _reason(advice: Advice) -> str:
+    """Why this feed, and what would change it."""
+    if advice.status is not Status.ADVISED or advice.after is None:
+        return f"{advice.status.value}: {advice.reason}"
+    text = advice.reason
+    limit = next(load.limit for load in advice.after.loads if load.limit.name is advice.active)
+    if advice.saving_of_one_more > 0.0:
+        text += f"; {limit.step:g} {limit.unit} more saves {advice.saving_of_one_more:.2g} s"
+    deepest = advice.deepest_first_time
+    if deepest is not None and deepest > advice.after.time * 1.001:
+        text += f"; the deepest passes would have taken {deepest:.1f} s"
+    return text
+
+
+def _print_front(advice: Advice) -> None:
+    """The front between time, roughness and energy of one workingstep."""
+    _line(f"front of {advice.workingstep.id}:")
+    rows = []
+    for point in advice.front:
+        state = point.state
+        roughness = "" if state.roughness is None else f"{state.roughness * 1e3:.3g}"
+        rows.append((
+            f"{state.time:.2f}",
+            roughness,
+            f"{state.energy / 1e3:.2f}",
+            f"{mm_min_from_speed(state.feed):.1f}",
+            f"{rpm_from_rev_s(state.setting.speed):.0f}",
+            f"{state.setting.passes}",
+        ))
+    _table(("time s", "Ra µm", "energy kJ", "feed mm/min", "rpm", "passes"), rows)
+
+
+def _print_findings(findings: Sequence[Finding]) -> None:
+    """Findings, errors first, equal ones once."""
+    order = list(Severity)[::-1]
+    ranked = sorted(findings, key=lambda finding: order.index(finding.severity))
+    unique = list(dict.fromkeys(str(finding) for finding in ranked))
+    severities = {str(finding): finding.severity for finding in ranked}
+    for text in unique[:MOST_FINDINGS]:
+        _line(_coloured(text, COLOURS[severities[text]]))
+    if len(unique) > MOST_FINDINGS:
+        _line(f"... and {len(unique) - MOST_FINDINGS} more findings (--json has all)")
+
+
+def _power(machine: Machine) -> str:
+    return f"{max(kw_from_watts(point.power) for point in machine.spindle.curve):g}"
+
+
+def _top_speed(machine: Machine) -> str:
+    top = machine.spindle.max_speed
+    return "" if top is None else f"{rpm_from_rev_s(top):g}"
+
+
+def _table(header: Row, rows: Sequence[Row]) -> None:
+    """Columns as wide as their widest cell; figures to the right."""
+    columns = list(zip(header, *rows, strict=True))
+    widths = [max(len(cell) for cell in column) for column in columns]
+    for index, row in enumerate((header, *rows)):
+        cells = [cell.ljust(width) for cell, width in zip(row, widths, strict=True)]
+        _line("  ".join(cells).rstrip())
+        if index == 0:
+            _line("  ".join("-" * width for width in widths))
+
+
+def _coloured(text: str, colour: str) -> str:
+    """Text in a colour, on a terminal that wants colours."""
+    if not sys.stdout.isatty() or os.environ.get("NO_COLOR"):
+        return text
+    return f"\x1b[{colour}m{text}\x1b[0m"
+
+
+def _line(text: str) -> None:
+    """One line of data, to stdout."""
+    sys.stdout.write(text + "\n")

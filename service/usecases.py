@@ -1,0 +1,312 @@
+"""One function per verb. Packages meet here; the command line and REST are skins over it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from pathlib import Path
+from typing import TypeVar
+
+from optimiser.advice import Plan
+from optimiser.modes import Free, Mode
+from optimiser.optimise import Task
+from optimiser.optimise import optimise as advise
+from service.files import read_bytes, write_atomically
+from service.records import changes_of
+from simulator.library import load_machine, load_material, machine_names, material_names
+from simulator.matching import match_material
+from simulator.spec import Certainty, Machine, Material, MaterialMatch
+from stepnc_model import writeback
+from stepnc_model.entities.turning import TurningMachiningOperation
+from stepnc_model.errors import Finding, SchemaError, Severity, StepNcError, WriteError
+from stepnc_model.part21.reader import Part21File
+from stepnc_model.plausibility import implausible, refusal
+from stepnc_model.program import Program, Workingstep
+from stepnc_model.unit_profiles import PROFILES, UnitProfile
+from stepnc_model.units import mm_from_um
+from stepnc_model.writeback import Profile
+
+DEFAULT_MILL, DEFAULT_LATHE = "vmc15", "lathe22"
+"""machines taken when none is named"""
+
+E = TypeVar("E", bound=StrEnum)
+
+Tell = Callable[[str], None]
+"""where messages go"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Request:
+    """What the user asks of ``optimise``, in the user's units."""
+
+    file: Path
+    mode: str = "TC"
+    machine: str = ""
+    material: str = ""
+    units: str = "iso"
+    roughness_um: float | None = None
+    free: str = "feed,depth"
+    profile: str = "optimisation"
+    output: Path | None = None
+    in_place: bool = False
+    workingsteps: tuple[str, ...] = ()
+    pareto: bool = False
+    tool_change: float = 0.0
+    dry_run: bool = False
+    report: Path | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Outcome:
+    """What ``optimise`` did."""
+
+    plan: Plan
+    written: Path | None
+    """the STEP-NC file, or None when nothing was written"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Contents:
+    """What ``check`` shows of a file."""
+
+    name: str
+    schemas: tuple[str, ...]
+    instances: int
+    program: Program | None
+    findings: tuple[Finding, ...]
+
+    @property
+    def is_usable(self) -> bool:
+        """Whether the program can be worked with."""
+        return self.program is not None and not any(
+            finding.severity is Severity.ERROR for finding in self.findings
+        )
+
+
+def optimise(request: Request, *, tell: Tell = lambda _: None) -> Outcome:
+    """Read, optimise, write back.
+
+    Raises
+    ------
+    StepNcError
+        For everything that is wrong with file, names, limits or output; nothing is written.
+    """
+    mode = _one_of(Mode, request.mode.upper(), "mode")
+    profile = _one_of(Profile, request.profile, "profile")
+    free = frozenset(_one_of(Free, word.strip(), "free") for word in request.free.split(","))
+    _require_positive(request.roughness_um, "roughness", "µm")
+    output = _output(request)
+    program = read_program(request.file, units=request.units)
+    chosen = _selected(program, request.workingsteps)
+    _require_usable(program, chosen)
+    machine = _machine(request.machine, program)
+    match = _material(request.material, program)
+    tell(f"material: {match.reason}")
+    plan = advise(
+        program,
+        machine=machine,
+        material=match,
+        task=Task(
+            mode=mode,
+            free=free,
+            roughness=None
+            if request.roughness_um is None
+            else mm_from_um(request.roughness_um),
+            tool_change=request.tool_change,
+            front=request.pareto,
+        ),
+        selected=lambda step: step in chosen,
+    )
+    plan = _with_file_findings(plan, program, match)
+    written = None
+    if not request.dry_run:
+        changes = changes_of(plan)
+        if changes:
+            write_atomically(output, writeback.write(program, changes, profile))
+            written = output
+            tell(f"written: {output}")
+        else:
+            tell("nothing was written: no workingstep was advised")
+    if request.report is not None:
+        from service.report import report_page  # noqa: PLC0415 (plotly takes a second)
+
+        write_atomically(request.report, report_page(plan).encode())
+        tell(f"report: {request.report}")
+    return Outcome(plan=plan, written=written)
+
+
+def check(path: Path, *, units: str = "iso") -> Contents:
+    """What is in a file, and what is wrong with it."""
+    profile = _units(units)
+    file = Part21File.from_bytes(read_bytes(path), name=path.name)
+    try:
+        program = Program(file, units=profile, name=path.name)
+    except SchemaError as error:
+        fault = Finding(
+            severity=Severity.ERROR,
+            message=str(error),
+        )
+        return Contents(
+            name=path.name,
+            schemas=file.schemas,
+            instances=len(file),
+            program=None,
+            findings=(*file.findings, fault),
+        )
+    return Contents(
+        name=path.name,
+        schemas=file.schemas,
+        instances=len(file),
+        program=program,
+        findings=program.findings() + implausible(program),
+    )
+
+
+def convert(path: Path, *, profile: str, output: Path) -> None:
+    """Move the optimisation records of a file into another profile."""
+    wanted = _one_of(Profile, profile, "profile")
+    if _is_same(path, output):
+        raise WriteError("is the input file; name another output", path=str(output))
+    program = read_program(path, units="iso")
+    write_atomically(output, writeback.convert(program, wanted))
+
+
+def read_program(path: Path, *, units: str) -> Program:
+    """A program from a file."""
+    profile = _units(units)
+    file = Part21File.from_bytes(read_bytes(path), name=path.name)
+    return Program(file, units=profile, name=path.name)
+
+
+def library_entries(kind: str) -> tuple[Machine | Material, ...]:
+    """All machines or materials."""
+    if kind == "machines":
+        return tuple(load_machine(name) for name in machine_names())
+    return tuple(load_material(name) for name in material_names())
+
+
+def library_entry(kind: str, name: str) -> Machine | Material:
+    """One machine or material, by name or file."""
+    if kind == "machines":
+        return load_machine(name)
+    return _load_material(name).material
+
+
+def _units(name: str) -> UnitProfile:
+    """Unit profile by name."""
+    if name not in PROFILES:
+        raise StepNcError(f"unknown units '{name}'; known: {', '.join(PROFILES)}")
+    return PROFILES[name]
+
+
+def _one_of(kinds: type[E], word: str, what: str) -> E:
+    """Member of an enumeration by its value."""
+    try:
+        return kinds(word)
+    except ValueError:
+        known = ", ".join(kind.value for kind in kinds)
+        raise StepNcError(f"unknown {what} '{word}'; known: {known}") from None
+
+
+def _require_positive(value: float | None, what: str, unit: str) -> None:
+    """A number that is given must be positive and finite."""
+    if value is not None and not 0.0 < value < float("inf"):
+        raise StepNcError(f"{what} {value:g} {unit}: it must be positive")
+
+
+def _output(request: Request) -> Path:
+    """Where the optimised program goes: never over the input unless asked."""
+    if request.in_place:
+        if request.output is not None:
+            raise StepNcError("--in-place and --output exclude each other")
+        return request.file
+    output = request.output or request.file.with_suffix(".optimised.stpnc")
+    if _is_same(request.file, output):
+        raise WriteError("is the input file; use --in-place to overwrite it", path=str(output))
+    if not request.dry_run and not output.parent.is_dir():
+        raise WriteError("the folder does not exist", path=str(output))
+    return output
+
+
+def _is_same(one: Path, other: Path) -> bool:
+    """Whether two paths lead to one file."""
+    return one.resolve() == other.resolve() or (
+        one.exists() and other.exists() and one.samefile(other)
+    )
+
+
+def _selected(program: Program, wanted: tuple[str, ...]) -> tuple[Workingstep, ...]:
+    """Workingsteps by id or #instance; all when none is named."""
+    if not wanted:
+        return program.workingsteps
+    found = tuple(
+        step for step in program.workingsteps if step.id in wanted or str(step.ref) in wanted
+    )
+    names = {step.id for step in found} | {str(step.ref) for step in found}
+    missing = [name for name in wanted if name not in names]
+    if missing:
+        known = ", ".join(f"'{step.id}' ({step.ref})" for step in program.workingsteps)
+        raise StepNcError(f"no workingstep '{missing[0]}'; known: {known}")
+    return found
+
+
+def _require_usable(program: Program, chosen: tuple[Workingstep, ...]) -> None:
+    """Refuse a program with errors, or with numbers that are in other units.
+
+    When single workingsteps are asked for, what is wrong elsewhere does not matter.
+    """
+    if program.faults and len(chosen) == len(program.workingsteps):
+        raise program.faults[0]
+    if not chosen:
+        raise SchemaError("the program has no machining workingstep")
+    if len(chosen) == len(program.workingsteps):
+        for finding in program.findings():
+            if finding.severity is Severity.ERROR:
+                raise SchemaError(
+                    finding.message,
+                    entity=finding.entity,
+                    attribute=finding.attribute,
+                    line=finding.line,
+                )
+    error = refusal(program, chosen)
+    if error is not None:
+        raise error
+
+
+def _machine(name: str, program: Program) -> Machine:
+    """The machine named, or one that suits the program's first workingstep."""
+    if name:
+        return load_machine(name)
+    first = program.workingsteps[0].operation
+    is_turning = isinstance(first, TurningMachiningOperation)
+    return load_machine(DEFAULT_LATHE if is_turning else DEFAULT_MILL)
+
+
+def _material(name: str, program: Program) -> MaterialMatch:
+    """The material named, or the one the file names."""
+    if name:
+        return _load_material(name)
+    material = program.material()
+    if material is None:
+        raise StepNcError(
+            "the file names no workpiece material: name one with --material "
+            "(`stepnc materials` lists them)"
+        )
+    return match_material((material.standard_identifier, material.material_identifier))
+
+
+def _load_material(name: str) -> MaterialMatch:
+    """A material by library name, file, or any name that catalogues give it."""
+    if name in material_names() or Path(name).suffix == ".toml":
+        return MaterialMatch(
+            material=load_material(name),
+            certainty=Certainty.EXACT,
+            reason=f"'{name}' as asked for",
+        )
+    return match_material((name,))
+
+
+def _with_file_findings(plan: Plan, program: Program, match: MaterialMatch) -> Plan:
+    """The plan with what was noticed while reading, and how the material was found."""
+    guess = match.certainty is Certainty.GUESS
+    said = Finding(severity=Severity.WARNING if guess else Severity.NOTE, message=match.reason)
+    return replace(plan, findings=(*program.findings(), said, *plan.findings))

@@ -1,0 +1,181 @@
+"""The JSON of the command line. Keys carry their units and are fixed: others parse them."""
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import Any
+
+from optimiser.advice import Advice, Load, Plan, State
+from optimiser.limit import LimitName, Sense
+from service.usecases import Contents
+from simulator.spec import Machine, Material
+from stepnc_model.errors import Finding
+from stepnc_model.units import (
+    kw_from_watts,
+    mm_min_from_speed,
+    rpm_from_rev_s,
+    um_from_mm,
+)
+
+
+def plan_json(plan: Plan) -> str:
+    """A plan as JSON."""
+    return _dump({
+        "program": plan.program,
+        "mode": plan.mode.value,
+        "machine": plan.machine.name,
+        "material": plan.material.material.name,
+        "workingsteps": [_advice(advice) for advice in plan.advices],
+        "total_time_s": {"before": plan.time_before, "after": plan.time_after},
+        "findings": [_finding(finding) for finding in plan.findings],
+    })
+
+
+def contents_json(contents: Contents) -> str:
+    """What a file holds, as JSON."""
+    program = contents.program
+    steps = program.workingsteps if program is not None else ()
+    executables = program.executables if program is not None else ()
+    return _dump({
+        "program": contents.name,
+        "schemas": list(contents.schemas),
+        "instances": contents.instances,
+        "is_usable": contents.is_usable,
+        "executables": [
+            {
+                "instance": str(each.ref),
+                "entity": each.keyword,
+                "id": each.id,
+                "level": each.level,
+            }
+            for each in executables
+        ],
+        "workingsteps": [
+            {
+                "id": step.id,
+                "instance": str(step.ref),
+                "operation": step.operation_type,
+                "tool": str(step.tool_ref),
+            }
+            for step in steps
+        ],
+        "findings": [_finding(finding) for finding in contents.findings],
+    })
+
+
+def entry_json(entry: Machine | Material) -> str:
+    """One machine or material as JSON, in canonical units (mm, s, N, W, rev/s)."""
+    return _dump(asdict(entry))
+
+
+def entries_json(entries: Sequence[Machine | Material]) -> str:
+    """All machines or materials by name and title."""
+    return _dump([{"name": entry.name, "title": entry.title} for entry in entries])
+
+
+def tightest(loads: Sequence[Load]) -> list[Load]:
+    """One load for each limit and sense: the one that is nearest to its bound."""
+    worst: dict[tuple[LimitName, Sense], Load] = {}
+    for load in loads:
+        key = (load.limit.name, load.limit.sense)
+        if key not in worst or load.margin < worst[key].margin:
+            worst[key] = load
+    return list(worst.values())
+
+
+def _advice(advice: Advice) -> dict[str, Any]:
+    """One workingstep."""
+    before, after = advice.before, advice.after
+    shown = after or before
+    step = advice.workingstep
+    return {
+        "id": step.id,
+        "instance": str(step.ref),
+        "operation": step.operation_type,
+        "tool": advice.tool.id,
+        "status": advice.status.value,
+        "reason": advice.reason,
+        "programmed": _setting(before, passes=False),
+        "advised": _setting(after, passes=True),
+        "active_limit": advice.active.value if advice.active else None,
+        "limits": [_load(load) for load in tightest(shown.loads)] if shown else [],
+        "motor_power_kw": kw_from_watts(shown.motor_power) if shown else None,
+        "cutting_force_n": shown.cutting_force if shown else None,
+        "roughness_ra_um": um_from_mm(shown.roughness) if shown and shown.roughness else None,
+        "energy_j": shown.energy if shown else None,
+        "time_s": {
+            "before": before.time if before else None,
+            "after": after.time if after else None,
+        },
+        "sensitivity": _sensitivity(advice),
+        "deepest_pass_first_time_s": advice.deepest_first_time,
+        "prices": {name.value: price for name, price in advice.prices},
+        "pareto": [
+            {
+                "time_s": point.state.time,
+                "roughness_ra_um": um_from_mm(point.state.roughness or 0.0) or None,
+                "energy_j": point.state.energy,
+                "feed_mm_min": mm_min_from_speed(point.state.feed),
+                "spindle_rpm": rpm_from_rev_s(point.state.setting.speed),
+                "passes": point.state.setting.passes,
+            }
+            for point in advice.front
+        ],
+    }
+
+
+def _setting(state: State | None, *, passes: bool) -> dict[str, Any] | None:
+    """Feed, speed and depth in shop units."""
+    if state is None:
+        return None
+    setting = state.setting
+    shown: dict[str, Any] = {
+        "feed_mm_min": mm_min_from_speed(state.feed),
+        "spindle_rpm": rpm_from_rev_s(setting.speed),
+        "feed_per_tooth_mm": setting.feed,
+        "axial_depth_mm": setting.depth,
+    }
+    return {**shown, "passes": setting.passes} if passes else shown
+
+
+def _load(load: Load) -> dict[str, Any]:
+    """One limit with its margin as a share of the bound."""
+    limit = load.limit
+    return {
+        "name": limit.name.value,
+        "value": load.value * limit.scale,
+        "bound": load.bound * limit.scale,
+        "unit": limit.unit,
+        "sense": limit.sense.value,
+        "margin": load.margin,
+    }
+
+
+def _sensitivity(advice: Advice) -> dict[str, Any] | None:
+    """What one more of the active limit's unit would save."""
+    if advice.active is None or advice.after is None:
+        return None
+    limit = next(load.limit for load in advice.after.loads if load.limit.name is advice.active)
+    return {
+        "limit": advice.active.value,
+        "one_more": limit.step,
+        "unit": limit.unit,
+        "saves_s": advice.saving_of_one_more,
+    }
+
+
+def _finding(finding: Finding) -> dict[str, Any]:
+    """One finding."""
+    return {
+        "severity": finding.severity.value,
+        "message": finding.message,
+        "entity": finding.entity,
+        "attribute": finding.attribute,
+        "line": finding.line,
+        "rule": finding.rule,
+    }
+
+
+def _dump(value: object) -> str:
+    """Readable JSON without NaN."""
+    return json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False, default=str)

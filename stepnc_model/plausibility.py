@@ -1,0 +1,142 @@
+"""Numbers that no machine can mean: the sign that a program is written in other units.
+
+What a file's numbers mean cannot be inferred, so nothing is guessed: implausible numbers are
+findings, and the unit profiles that would make them plausible are named.
+"""
+
+from collections.abc import Iterator, Sequence
+
+from stepnc_model.errors import Finding, SchemaError, Severity
+from stepnc_model.program import Program, Workingstep
+from stepnc_model.technology import Number, Programmed, Quantity, programmed
+from stepnc_model.tool import tool_of
+from stepnc_model.unit_profiles import PROFILES, UnitProfile
+
+MAX_SPINDLE_SPEED = 300.0
+"""rev/s; faster spindles are those of dental and circuit-board machines"""
+
+MAX_CUTTING_SPEED = 10_000.0
+"""mm/s; aluminium cut faster is a laboratory's"""
+
+LEAST_FEED_PER_TOOTH = 5e-4
+"""mm; below it no edge is sharp enough to cut"""
+
+MAX_TURNING_FEED = 5.0
+"""mm per revolution"""
+
+
+def implausible(program: Program) -> tuple[Finding, ...]:
+    """Findings about all workingsteps of a program."""
+    found: dict[str, Finding] = {}
+    for step in program.workingsteps:
+        for finding in _findings(program, step):
+            found[str(finding)] = finding
+    return tuple(found.values())
+
+
+def refusal(program: Program, steps: Sequence[Workingstep]) -> SchemaError | None:
+    """Error that names the first implausible number, and the profiles that would do."""
+    for step in steps:
+        for finding in _findings(program, step):
+            if finding.severity is Severity.WARNING and finding.rule == RULE:
+                fitting = [
+                    name for name, units in PROFILES.items() if _all_fit(program, steps, units)
+                ]
+                advice = (
+                    f"plausible with --units {' or '.join(fitting)}"
+                    if fitting
+                    else "no unit profile makes all numbers plausible"
+                )
+                return SchemaError(
+                    f"{finding.message}; {advice}",
+                    entity=finding.entity,
+                    attribute=finding.attribute,
+                    line=finding.line,
+                )
+    return None
+
+
+RULE = "ISO 14649-10 4.2.1"
+
+
+def _findings(program: Program, step: Workingstep) -> Iterator[Finding]:
+    """What is odd about the numbers of one workingstep."""
+    try:
+        conditions = programmed(program, step.technology_ref)
+    except SchemaError as error:
+        yield Finding(
+            severity=Severity.ERROR,
+            message=str(error),
+            entity=error.entity,
+            attribute=error.attribute,
+            line=error.line,
+        )
+        return
+    for number, message in _oddities(program, step, conditions):
+        yield Finding(
+            severity=Severity.WARNING,
+            message=message,
+            entity=program.label(number.ref),
+            attribute=number.attribute,
+            line=program.line(number.ref),
+            rule=RULE,
+        )
+    speed = conditions.speed
+    is_milling = speed.attribute == "spindle"
+    if is_milling and speed.scale > 0.0 and not _is_left_handed(program, step):
+        yield program.finding(
+            Severity.NOTE,
+            "the spindle is positive, counter-clockwise, and the tool is not left-handed",
+            speed.ref,
+            "spindle",
+        )
+
+
+def _oddities(
+    program: Program, step: Workingstep, conditions: Programmed
+) -> Iterator[tuple[Number, str]]:
+    """Numbers that cannot be meant, with the reason."""
+    speed = conditions.speed
+    is_spindle = speed.quantity is Quantity.SPINDLE_SPEED
+    if is_spindle and speed.value > MAX_SPINDLE_SPEED:
+        yield speed, f"spindle {speed.value:g} rev/s exceeds {MAX_SPINDLE_SPEED:g} rev/s"
+    if not is_spindle and speed.value > MAX_CUTTING_SPEED:
+        text = (
+            f"cutting speed {speed.value / 1e3:g} m/s exceeds {MAX_CUTTING_SPEED / 1e3:g} m/s"
+        )
+        yield speed, text
+    if conditions.is_synchronised:
+        return
+    tool = tool_of(program, step.tool_ref)
+    if tool.diameter <= 0.0:
+        is_per_turn = conditions.feed.quantity is Quantity.FEED_PER_REVOLUTION
+        if is_per_turn and conditions.feed.value > MAX_TURNING_FEED:
+            yield conditions.feed, f"feed {conditions.feed.value:g} mm per revolution"
+        return
+    feed = conditions.feed_per_tooth(conditions.spindle_speed(tool.diameter), tool.teeth)
+    radius = 0.5 * tool.diameter
+    if feed > radius:
+        yield conditions.feed, f"feed per tooth {feed:g} mm exceeds the radius {radius:g} mm"
+    elif feed < LEAST_FEED_PER_TOOTH:
+        text = f"feed per tooth {feed:.3g} mm is below {LEAST_FEED_PER_TOOTH:g} mm"
+        yield conditions.feed, text
+
+
+def _all_fit(program: Program, steps: Sequence[Workingstep], units: UnitProfile) -> bool:
+    """Whether another profile makes the numbers of all workingsteps plausible."""
+    other = Program(program.file, units=units, name=program.name)
+    for step in steps:
+        try:
+            conditions = programmed(other, step.technology_ref)
+        except SchemaError:
+            continue
+        if any(True for _ in _oddities(other, step, conditions)):
+            return False
+    return True
+
+
+def _is_left_handed(program: Program, step: Workingstep) -> bool:
+    """Whether the tool's hand asks for a counter-clockwise spindle."""
+    body = getattr(program.get(step.tool_ref), "its_tool_body", None)
+    hand = getattr(program.get(body), "hand_of_cut", None) if body is not None else None
+    return str(hand) == "LEFT"

@@ -1,0 +1,254 @@
+"""The record of an optimum, as one flat noun, and its two forms in a file.
+
+Profile ``optimisation`` writes entities of ``schemas/optimisation.exp``; profile ``standard``
+writes prefixed parameters that every ISO 14649 reader takes. Both carry the same numbers to the
+last digit, so a record moves between them without loss. Numbers are those of the file: mm, m/s,
+rev/s, s, kW, N, J, µm.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, fields
+from typing import Any, cast
+
+from stepnc_model.binding import Model, to_parameters
+from stepnc_model.entities.entity import Entity
+from stepnc_model.entities.measures import (
+    DescriptiveParameter,
+    NumericParameter,
+    PropertyParameter,
+)
+from stepnc_model.entities.optimisation import (
+    CuttingForce,
+    EnergyCriticalOptimisation,
+    FaceMillingImmersion,
+    FaceMillingType,
+    MachinePower,
+    MainCuttingPower,
+    Optimisation,
+    OptimisationRecord,
+    PredictedValues,
+    ProgrammedValues,
+    QualityCriticalOptimisation,
+    TimeCriticalOptimisation,
+)
+from stepnc_model.part21.values import Ref
+from stepnc_model.part21.writer import Edits
+
+PREFIX = "optimisation:"
+"""of every parameter that belongs to a record"""
+
+GENERATOR = "stepnc-optimiser"
+
+
+def _unit(unit: str) -> Any:
+    """Field with the unit that its parameter is written with."""
+    return field(metadata={"unit": unit})
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Record:
+    """What was advised for one operation, and why."""
+
+    mode: str
+    """TC, QC or EC"""
+    id: str
+    description: str
+    machine: str
+    material: str
+    generator: str
+    active_limit: str
+    number_of_passes: int = _unit("")
+    feed_per_tooth: float = _unit("mm")
+    axial_depth: float = _unit("mm")
+    machine_power: float = _unit("kW")
+    cutting_power: float = _unit("kW")
+    spindle_speed: float = _unit("rev/s")
+    specific_cutting_resistance: float = _unit("N/mm2")
+    machining_time: float = _unit("s")
+    motor_power: float = _unit("kW")
+    cutting_force: float = _unit("N")
+    energy: float = _unit("J")
+    surface_roughness: float | None = field(default=None, metadata={"unit": "um"})
+    contact_angle: float | None = field(default=None, metadata={"unit": "deg"})
+    immersion: str | None = None
+    programmed_feedrate: float | None = field(default=None, metadata={"unit": "m/s"})
+    programmed_feedrate_per_tooth: float | None = field(default=None, metadata={"unit": "mm"})
+    programmed_cutspeed: float | None = field(default=None, metadata={"unit": "m/s"})
+    programmed_spindle: float | None = field(default=None, metadata={"unit": "rev/s"})
+    programmed_axial_depth: float | None = field(default=None, metadata={"unit": "mm"})
+
+
+MODES: dict[str, type[Entity]] = {
+    "TC": TimeCriticalOptimisation,
+    "QC": QualityCriticalOptimisation,
+    "EC": EnergyCriticalOptimisation,
+}
+
+
+def write_entities(record: Record, edits: Edits) -> Ref[Entity]:
+    """Add the entities of a record; the reference to the optimisation."""
+
+    def add(entity: Entity) -> Ref[Any]:
+        return cast("Ref[Any]", edits.add(entity.keyword, to_parameters(entity)))
+
+    def power(name: str, value: float) -> Ref[NumericParameter]:
+        return add(
+            NumericParameter(
+                parameter_name=name, its_parameter_value=value, its_parameter_unit="kW"
+            )
+        )
+
+    available = add(
+        MachinePower(its_power_property=power("machine power", record.machine_power))
+    )
+    immersion: Ref[FaceMillingType] | None = None
+    if record.immersion is not None and record.contact_angle is not None:
+        immersion = add(
+            FaceMillingType(
+                zeta=record.contact_angle,
+                immersion_type=FaceMillingImmersion[record.immersion],
+            )
+        )
+    force = add(
+        CuttingForce(
+            its_face_milling_type=immersion,
+            spindle_speed=record.spindle_speed,
+            feed_per_tooth=record.feed_per_tooth,
+            specific_cutting_resistance=record.specific_cutting_resistance,
+            axial_cutting_depth=record.axial_depth,
+        )
+    )
+    cutting = add(
+        MainCuttingPower(
+            its_power_property=power("cutting power", record.cutting_power),
+            its_cutting_force=force,
+            spindle_speed=record.spindle_speed,
+        )
+    )
+    details = add(
+        OptimisationRecord(
+            number_of_passes=record.number_of_passes,
+            active_limit=record.active_limit,
+            predicted=add(_predicted(record)),
+            programmed=add(_programmed(record)),
+            its_cutting_power=cutting,
+            machine=record.machine,
+            material=record.material,
+            generator=record.generator,
+        )
+    )
+    return add(_optimisation(record, available, details))
+
+
+def read_entities(model: Model, ref: Ref[Entity]) -> Record | None:
+    """Record behind an operation's optimisation; None for one that is not of this project."""
+    optimum: Any = model.entity(int(ref))
+    if not isinstance(optimum, Optimisation) or getattr(optimum, "its_record", None) is None:
+        return None
+    named: Any = optimum
+    details = model.get(named.its_record)
+    mode = next(name for name, cls in MODES.items() if isinstance(optimum, cls))
+    suffix = "_max" if mode == "TC" else ""
+    cutting = model.get(details.its_cutting_power)
+    force = model.get(cutting.its_cutting_force)
+    face = force.its_face_milling_type
+    immersion = model.get(face) if face is not None else None
+    predicted, programmed = model.get(details.predicted), model.get(details.programmed)
+    available = model.get(model.get(named.main_drive_motor_power).its_power_property)
+    return Record(
+        mode=mode,
+        id=named.its_id,
+        description=named.process_description or "",
+        machine=details.machine,
+        material=details.material,
+        generator=details.generator,
+        active_limit=details.active_limit,
+        number_of_passes=details.number_of_passes,
+        feed_per_tooth=getattr(named, f"feed_per_tooth{suffix}"),
+        axial_depth=getattr(named, f"axial_cutting_depth{suffix}"),
+        machine_power=available.its_parameter_value,
+        cutting_power=model.get(cutting.its_power_property).its_parameter_value,
+        spindle_speed=force.spindle_speed,
+        specific_cutting_resistance=force.specific_cutting_resistance,
+        machining_time=predicted.machining_time,
+        motor_power=predicted.motor_power,
+        cutting_force=predicted.cutting_force,
+        energy=predicted.energy or 0.0,
+        surface_roughness=predicted.surface_roughness,
+        contact_angle=immersion.zeta if immersion else None,
+        immersion=immersion.immersion_type.value if immersion else None,
+        programmed_feedrate=programmed.feedrate,
+        programmed_feedrate_per_tooth=programmed.feedrate_per_tooth,
+        programmed_cutspeed=programmed.cutspeed,
+        programmed_spindle=programmed.spindle,
+        programmed_axial_depth=programmed.axial_cutting_depth,
+    )
+
+
+def parameters_of(record: Record) -> Iterator[PropertyParameter]:
+    """The same record as prefixed parameters, one for each number or word."""
+    for each in fields(record):
+        value = getattr(record, each.name)
+        if value is None:
+            continue
+        name = PREFIX + each.name
+        if isinstance(value, str):
+            yield DescriptiveParameter(parameter_name=name, descriptive_string=value)
+        else:
+            yield NumericParameter(
+                parameter_name=name,
+                its_parameter_value=float(value),
+                its_parameter_unit=each.metadata["unit"],
+            )
+
+
+def read_parameters(values: Mapping[str, float | str]) -> Record | None:
+    """Record from its parameters by name, or None when they are not all there."""
+    known = {each.name: each for each in fields(Record)}
+    found: dict[str, Any] = {
+        name: int(value) if name == "number_of_passes" else value
+        for name, value in values.items()
+        if name in known
+    }
+    try:
+        return Record(**found)
+    except TypeError:
+        return None
+
+
+def _predicted(record: Record) -> PredictedValues:
+    """What is expected."""
+    return PredictedValues(
+        machining_time=record.machining_time,
+        motor_power=record.motor_power,
+        cutting_force=record.cutting_force,
+        surface_roughness=record.surface_roughness,
+        energy=record.energy,
+    )
+
+
+def _programmed(record: Record) -> ProgrammedValues:
+    """What the file said first."""
+    return ProgrammedValues(
+        feedrate=record.programmed_feedrate,
+        feedrate_per_tooth=record.programmed_feedrate_per_tooth,
+        cutspeed=record.programmed_cutspeed,
+        spindle=record.programmed_spindle,
+        axial_cutting_depth=record.programmed_axial_depth,
+    )
+
+
+def _optimisation(
+    record: Record, power: Ref[MachinePower], details: Ref[OptimisationRecord]
+) -> Entity:
+    """The entity of the record's mode."""
+    suffix = "_max" if record.mode == "TC" else ""
+    values: dict[str, object] = {
+        "its_id": record.id,
+        "main_drive_motor_power": power,
+        "process_description": record.description,
+        f"feed_per_tooth{suffix}": record.feed_per_tooth,
+        f"axial_cutting_depth{suffix}": record.axial_depth,
+        "its_record": details,
+    }
+    return MODES[record.mode](**values)

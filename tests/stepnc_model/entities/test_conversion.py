@@ -1,0 +1,182 @@
+"""Values of one attribute: what is tolerated, and what is said about it."""
+
+from math import inf, nan
+
+import pytest
+
+from stepnc_model.entities.conversion import give, take, take_missing
+from stepnc_model.entities.entity import Entity
+from stepnc_model.entities.enums import Logical, SpeedName, ToolReferencePoint
+from stepnc_model.entities.slots import Slot
+from stepnc_model.errors import Severity
+from stepnc_model.part21.values import (
+    DERIVED,
+    Binary,
+    Enumeration,
+    Real,
+    Ref,
+    Typed,
+    Value,
+)
+
+NUMBER = Slot(plain=(float,))
+COUNT = Slot(plain=(int,))
+LABEL = Slot(plain=(str,))
+TRUTH = Slot(plain=(bool,))
+NAME = Slot(enumeration=ToolReferencePoint)
+REFERENCE = Slot(references=(Entity,))
+NUMBERS = Slot(items=NUMBER)
+REFERENCES = Slot(items=REFERENCE)
+FEED = Slot(plain=(Typed, float), is_optional=True)
+SPEED = Slot(plain=(Typed, float), enumeration=SpeedName, references=(Entity,))
+
+
+@pytest.mark.parametrize(
+    ("slot", "value", "expected"),
+    [
+        (NUMBER, Real(0.04), 0.04),
+        (NUMBER, 12, 12.0),
+        (NUMBER, Typed("LENGTH_MEASURE", Real(3.0)), 3.0),
+        (NUMBER, Typed("LENGTH_MEASURE", 3), 3.0),
+        (NUMBER, DERIVED, None),
+        (COUNT, 4, 4),
+        (LABEL, "MILL 18MM", "MILL 18MM"),
+        (TRUTH, Enumeration("T"), True),
+        (TRUTH, Enumeration("F"), False),
+        (NAME, Enumeration("TCP"), ToolReferencePoint.TCP),
+        (NAME, Enumeration("ccp"), ToolReferencePoint.CCP),
+        (Slot(enumeration=Logical), Enumeration("U"), Logical.UNKNOWN),
+        (REFERENCE, Ref(7), Ref(7)),
+        (NUMBERS, (), ()),
+        (NUMBERS, (Real(1.0), 2), (1.0, 2.0)),
+        (REFERENCES, (Ref(1), Ref(2)), (Ref(1), Ref(2))),
+        (Slot(plain=(str,), is_optional=True), None, None),
+        (FEED, None, None),
+        (FEED, Real(0.1), 0.1),
+        (FEED, Typed("FEED_PER_REV_TYPE", Real(0.1)), Typed("FEED_PER_REV_TYPE", Real(0.1))),
+        (SPEED, Typed("SPEED_NAME", Enumeration("RAPID")), SpeedName.RAPID),
+        (SPEED, Enumeration("RAPID"), SpeedName.RAPID),
+        (SPEED, Ref(3), Ref(3)),
+    ],
+)
+def test_value_that_fits_is_taken_without_a_word(
+    slot: Slot, value: Value, expected: object
+) -> None:
+    assert take(slot, value) == (expected, None)
+
+
+@pytest.mark.parametrize(
+    ("slot", "value", "expected", "severity", "words"),
+    [
+        (NUMBERS, None, (), Severity.NOTE, "$ where a list is required"),
+        (LABEL, None, "", Severity.NOTE, "$ where a text is required"),
+        (NUMBER, None, None, Severity.WARNING, "$ where a number is required"),
+        (NAME, None, None, Severity.WARNING, "one of .TCP., .CCP."),
+        (REFERENCE, None, None, Severity.ERROR, "$ where entity is required"),
+        (COUNT, Real(4.0), 4, Severity.NOTE, "a real where an integer is required"),
+        (COUNT, Real(4.5), None, Severity.ERROR, "4.5 where an integer is required"),
+        (COUNT, Real(inf), None, Severity.ERROR, "no finite number"),
+        (NUMBER, Real(inf), None, Severity.ERROR, "no finite number"),
+        (NUMBER, Real(nan), None, Severity.ERROR, "no finite number"),
+        (NUMBER, 10**400, None, Severity.ERROR, "beyond all reals"),
+        (FEED, Typed("FEED_PER_REV_TYPE", Real(inf)), None, Severity.ERROR, "finite"),
+        (NUMBER, "0.04", None, Severity.ERROR, "'0.04' where a number is required"),
+        (NUMBER, Ref(4), None, Severity.ERROR, "#4 where a number is required"),
+        (NUMBER, Enumeration("T"), None, Severity.ERROR, ".T. where a number is required"),
+        (NUMBER, (Real(1.0),), None, Severity.ERROR, "a list where a number is required"),
+        (LABEL, Real(1.0), "", Severity.ERROR, "1.0 where a text is required"),
+        (LABEL, Binary("0A"), "", Severity.ERROR, "'0A' where a text is required"),
+        (TRUTH, Enumeration("U"), None, Severity.WARNING, ".U. is not a truth value"),
+        (NAME, Enumeration("TIP"), None, Severity.WARNING, ".TIP. is not one of"),
+        (NAME, "TCP", None, Severity.ERROR, "'TCP' where one of"),
+        (REFERENCE, Real(7.0), None, Severity.ERROR, "7.0 where entity is required"),
+        (NUMBERS, Real(1.0), (1.0,), Severity.WARNING, "lacks its brackets"),
+        (REFERENCES, Ref(1), (Ref(1),), Severity.WARNING, "lacks its brackets"),
+        (NUMBERS, "x", (), Severity.ERROR, "item 1: 'x' where a number is required"),
+        (REFERENCES, (Ref(1), None), (Ref(1),), Severity.ERROR, "item 2: $"),
+        (NUMBERS, (Real(1.0), None), (), Severity.ERROR, "item 2: $"),
+        (NUMBERS, (Real(1.0), DERIVED), (), Severity.ERROR, "items are left out"),
+    ],
+)
+def test_odd_value_is_told_and_never_fatal(
+    slot: Slot, value: Value, expected: object, severity: Severity, words: str
+) -> None:
+    taken, remark = take(slot, value)
+    assert taken == expected
+    assert remark is not None
+    assert remark.severity is severity
+    assert words in remark.message
+
+
+def test_list_with_a_hole_gives_no_shifted_coordinates() -> None:
+    taken, remark = take(NUMBERS, (Real(1.0), "x", Real(3.0)))
+    assert taken == ()
+    assert remark is not None
+    assert remark.severity is Severity.ERROR
+
+
+@pytest.mark.parametrize(
+    ("slot", "expected", "severity"),
+    [
+        (Slot(is_optional=True, plain=(float,)), None, Severity.NOTE),
+        (Slot(is_optional=True, items=NUMBER), None, Severity.NOTE),
+        (NUMBERS, (), Severity.NOTE),
+        (NUMBER, None, Severity.ERROR),
+        (LABEL, "", Severity.ERROR),
+    ],
+)
+def test_parameter_may_be_missing_at_the_end(
+    slot: Slot, expected: object, severity: Severity
+) -> None:
+    taken, remark = take_missing(slot)
+    assert taken == expected
+    assert remark is not None
+    assert remark.severity is severity
+
+
+@pytest.mark.parametrize(
+    ("slot", "value", "expected"),
+    [
+        (NUMBER, 0.5, Real(0.5)),
+        (NUMBER, 2, Real(2.0)),
+        (COUNT, 2, 2),
+        (TRUTH, True, Enumeration("T")),
+        (NAME, ToolReferencePoint.TCP, Enumeration("TCP")),
+        (Slot(enumeration=Logical), Logical.UNKNOWN, Enumeration("U")),
+        (REFERENCES, (Ref(1),), (Ref(1),)),
+        (NUMBERS, (1, 2.5), (Real(1.0), Real(2.5))),
+        (FEED, Typed("FEED_PER_REV_TYPE", Real(0.1)), Typed("FEED_PER_REV_TYPE", Real(0.1))),
+        (LABEL, "", ""),
+        (FEED, None, None),
+    ],
+)
+def test_value_is_given_back_as_its_type_is_written(
+    slot: Slot, value: object, expected: Value
+) -> None:
+    given = give(slot, value)
+    assert given == expected
+    assert type(given) is type(expected)
+
+
+def test_real_that_was_read_keeps_its_characters() -> None:
+    taken, _ = take(NUMBER, Real(0.04, "0.040"))
+    given = give(NUMBER, taken)
+    assert isinstance(given, Real)
+    assert given.lexeme == "0.040"
+
+
+def test_reference_is_not_taken_for_a_number() -> None:
+    assert isinstance(give(REFERENCE, Ref(5)), Ref)
+    assert take(COUNT, Ref(5))[0] is None
+
+
+def test_types_within_types_need_no_stack() -> None:
+    value: Value = Real(1.0)
+    for _ in range(5000):
+        value = Typed("SOME_MEASURE", value)
+    assert take(NUMBER, value) == (1.0, None)
+
+
+def test_anything_else_has_no_form() -> None:
+    with pytest.raises(TypeError, match="no value of an attribute"):
+        give(NUMBER, [1.0])
