@@ -10,6 +10,7 @@ from math import ceil
 
 from optimiser.cut import Cut, CutKind, Texture
 from optimiser.limit import ROUNDING
+from optimiser.path_length import path_length
 from optimiser.problem import Setting
 from optimiser.region import Region, region_of
 from simulator.physics.engagement import Engagement, bilateral, full_immersion, unidirectional
@@ -33,6 +34,9 @@ from stepnc_model.tool import Tool
 
 DEFAULT_SIDE_ALLOWANCE = 0.5
 """mm that a finish pass takes off a wall when no roughing operation says how much it left"""
+
+LEAST_FACEMILL = 25.0
+"""mm; files call smaller end mills FACEMILL, and nobody makes face mills so small"""
 
 FINISHING = (PlaneFinishMilling, SideFinishMilling, BottomAndSideFinishMilling)
 
@@ -80,9 +84,16 @@ def milling_cut(
         raise program.error("has no feature: nothing tells what to cut", step.ref)
     region = region_of(program, step.features[0])
     sweep, findings = _sweep(program, step, region, tool)
-    kind = ToolKind.FACEMILL if tool.keyword == "FACEMILL" else ToolKind.ENDMILL
+    is_facemill = tool.keyword == "FACEMILL" and tool.diameter >= LEAST_FACEMILL
+    kind = ToolKind.FACEMILL if is_facemill else ToolKind.ENDMILL
     texture, corner = _texture(sweep, tool, kind)
     is_finish = isinstance(step.operation, FINISHING)
+    length = region.count * _length(region, sweep, tool)
+    if step.operation.its_toolpath is not None:
+        length = path_length(program, step.operation.its_toolpath) or length
+        sweep = replace(sweep, total_depth=sweep.axial_depth)
+        text = "the load along the given tool path is not known: full depth and width assumed"
+        findings.append(program.finding(Severity.WARNING, text, step.operation_ref))
     cut = Cut(
         kind=CutKind.MILLING,
         tool=tool,
@@ -94,7 +105,7 @@ def milling_cut(
             passes=passes_for(sweep.total_depth, sweep.axial_depth),
             speed=speed,
         ),
-        length=region.count * _length(region, sweep, tool),
+        length=length,
         total_depth=sweep.total_depth,
         is_depth_free=not isinstance(step.operation, FIXED_DEPTH),
         engagement=_engagement(sweep, tool),
@@ -222,7 +233,7 @@ def _left_on_side(program: Program, step: Workingstep) -> float:
 def _radial_width(program: Program, operation: Entity, region: Region, tool: Tool) -> float:
     """``a_e = D·(1 − overlap)``, at most the programmed radial depth and the feature."""
     reference = getattr(operation, "its_machining_strategy", None)
-    strategy = program.get(reference) if reference is not None else None
+    strategy = program.model.entity(int(reference)) if reference is not None else None
     overlap = 0.0
     if isinstance(strategy, Two5dMillingStrategy) and strategy.overlap is not None:
         overlap = ratio(strategy.overlap)

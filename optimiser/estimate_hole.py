@@ -17,6 +17,8 @@ from stepnc_model.entities.drilling import (
 )
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.features import CompoundFeature, ReplicateFeature
+from stepnc_model.entities.milling import FreeformOperation
+from stepnc_model.entities.operations import MachiningOperation
 from stepnc_model.errors import Finding, Severity
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program, Workingstep
@@ -32,7 +34,20 @@ TOOL_KINDS: tuple[tuple[type[Entity], ToolKind], ...] = (
     (Boring, ToolKind.BORING_BAR),
     (BackBoring, ToolKind.BORING_BAR),
 )
-"""kind of tool that an operation is done with; a drill for all others"""
+"""kind of tool that an operation is done with"""
+
+TOOL_BODIES = {
+    "TWIST_DRILL": ToolKind.DRILL,
+    "TAPERED_DRILL": ToolKind.DRILL,
+    "SPADE_DRILL": ToolKind.DRILL,
+    "CENTER_DRILL": ToolKind.CENTER_DRILL,
+    "COUNTERSINK": ToolKind.COUNTERSINK,
+    "COUNTERBORE": ToolKind.COUNTERSINK,
+    "REAMER": ToolKind.REAMER,
+    "TAPERED_REAMER": ToolKind.REAMER,
+    "BORING_TOOL": ToolKind.BORING_BAR,
+}
+"""kind of tool by its body, where the operation does not tell; a drill for all others"""
 
 
 def hole_cut(
@@ -40,12 +55,10 @@ def hole_cut(
 ) -> tuple[Cut, tuple[Finding, ...]]:
     """Cut of a drilling workingstep; parameters as :func:`optimiser.estimate.milling_cut`."""
     operation = step.operation
-    if not isinstance(operation, DrillingTypeOperation):
-        raise program.error("is no drilling operation", step.operation_ref)
-    kind = next((k for cls, k in TOOL_KINDS if isinstance(operation, cls)), ToolKind.DRILL)
+    kind = _tool_kind(operation, tool)
     depth, count = _depth_and_count(program, step, operation)
     previous, findings = _previous_diameter(program, step, operation, tool)
-    length = depth + CLEARANCE + (operation.overcut_length or 0.0)
+    length = depth + CLEARANCE + (getattr(operation, "overcut_length", None) or 0.0)
     if kind is ToolKind.DRILL and tool.point_angle and _is_through(program, step):
         length += drill_point_length(tool.diameter, tool.point_angle)
     cut = Cut(
@@ -65,8 +78,21 @@ def hole_cut(
     return cut, findings
 
 
+def is_hole_making(operation: MachiningOperation, tool: Tool) -> bool:
+    """Whether an operation drills: by its kind, or along a given path by its tool."""
+    return isinstance(operation, DrillingTypeOperation) or (
+        isinstance(operation, FreeformOperation) and tool.keyword in TOOL_BODIES
+    )
+
+
+def _tool_kind(operation: MachiningOperation, tool: Tool) -> ToolKind:
+    """Kind of tool by the operation, or by its body where the path is given."""
+    by_operation = (kind for cls, kind in TOOL_KINDS if isinstance(operation, cls))
+    return next(by_operation, TOOL_BODIES.get(tool.keyword, ToolKind.DRILL))
+
+
 def _depth_and_count(
-    program: Program, step: Workingstep, operation: DrillingTypeOperation
+    program: Program, step: Workingstep, operation: MachiningOperation
 ) -> tuple[float, int]:
     """Depth of the hole in mm, and how many of them a pattern makes."""
     if not step.features:
@@ -81,8 +107,9 @@ def _depth_and_count(
         feature = program.get(reference)
     if isinstance(feature, CompoundFeature):
         reference = feature.elements[0]
-    if operation.cutting_depth:
-        return operation.cutting_depth, count
+    given = getattr(operation, "cutting_depth", None)
+    if given:
+        return float(given), count
     return feature_depth(program, reference), count
 
 
@@ -93,16 +120,16 @@ def _is_through(program: Program, step: Workingstep) -> bool:
 
 
 def _previous_diameter(
-    program: Program, step: Workingstep, operation: DrillingTypeOperation, tool: Tool
+    program: Program, step: Workingstep, operation: MachiningOperation, tool: Tool
 ) -> tuple[float, tuple[Finding, ...]]:
     """Diameter of the hole that is already there, mm."""
-    given = operation.previous_diameter
+    given = getattr(operation, "previous_diameter", None)
     if given and given < tool.diameter:
         return given, ()
     earlier = [
         tool_of(program, other.tool_ref).diameter
         for other, done in earlier_operations(program, step)
-        if isinstance(done, DrillingTypeOperation) and not isinstance(done, CenterDrilling)
+        if is_hole_making(done, tool) and not isinstance(done, CenterDrilling)
     ]
     smaller = [diameter for diameter in earlier if 0.0 < diameter < tool.diameter]
     if smaller:

@@ -153,7 +153,7 @@ def _depths(
 def _strategy(program: Program, operation: TurningMachiningOperation) -> Entity | None:
     """Strategy of an operation, if it has one."""
     reference = operation.its_machining_strategy
-    return program.get(reference) if reference is not None else None
+    return program.model.entity(int(reference)) if reference is not None else None
 
 
 def _bar(program: Program) -> RightCircularCylinder | None:

@@ -244,10 +244,16 @@ def _depth_limits(cut: Cut, at: Conditions) -> Iterator[Limit]:
 
 def _surface_limits(cut: Cut, at: Conditions) -> Iterator[Limit]:
     """Roughness, where the feed describes it."""
+    if at.roughness is not None and roughness_load(cut) is not None:
+        yield roughness_limit(cut, at.roughness)
+
+
+def roughness_limit(cut: Cut, roughness: float) -> Limit:
+    """Ra in mm at most so much; ValueError when the feed does not describe the surface."""
     load = roughness_load(cut)
-    if load is None or at.roughness is None:
-        return
-    yield Limit(name=LimitName.ROUGHNESS, load=load, bound=at.roughness, unit="µm", scale=UM)
+    if load is None:
+        raise ValueError("the feed does not describe this surface")
+    return Limit(name=LimitName.ROUGHNESS, load=load, bound=roughness, unit="µm", scale=UM)
 
 
 def _speed_limits(cut: Cut, at: Conditions) -> Iterator[Limit]:

@@ -22,7 +22,7 @@ from optimiser.modes import Mode
 from optimiser.problem import Problem, Setting
 from optimiser.workingstep import TIE, conflict, limits_at
 
-ROWS = 16
+ROWS = 24
 """limits that one program can hold"""
 
 ABSENT = 1e-12

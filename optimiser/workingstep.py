@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 from math import exp, inf, log
 
+from optimiser.caps import Caps, caps_at
 from optimiser.errors import Infeasible, OptimisationError
 from optimiser.limit import ROUNDING, Limit, LimitName, Sense
 from optimiser.modes import Mode
@@ -67,18 +68,21 @@ def solve(problem: Problem, mode: Mode) -> Solution:
     cost = cost_function(problem, mode)
     best: Setting | None = None
     first: Setting | None = None
+    least = inf
     for setting in _best_by_passes(problem, cost):
         first = first or setting
-        if best is not None and cost(setting) > cost(best) * (1.0 + TIE):
+        found = cost(setting)
+        if found > least * (1.0 + TIE):
             break
-        if best is None or cost(setting) < cost(best) * (1.0 - TIE):
-            best = setting
-    kept = _best_at(problem, problem.programmed.passes, problem.programmed.depth, cost)
-    if (
-        kept is not None
-        and _may_keep(problem)
-        and (best is None or cost(kept) <= cost(best) * (1.0 + TIE))
-    ):
+        if found < least * (1.0 - TIE):
+            best, least = setting, found
+    given = problem.programmed
+    kept = None
+    if _may_keep(problem):
+        kept = _best_at(
+            problem, given.passes, given.depth, cost=cost, caps=_fixed_caps(problem)
+        )
+    if kept is not None and (best is None or cost(kept) <= least * (1.0 + TIE)):
         best = kept
     if best is None:
         raise conflict(problem)
@@ -174,48 +178,54 @@ def _may_keep(problem: Problem) -> bool:
 
 def _best_by_passes(problem: Problem, cost: Callable[[Setting], float]) -> Iterator[Setting]:
     """Best setting of each feasible number of passes, fewest first."""
+    caps = _fixed_caps(problem)
     for passes in range(problem.deepest(), problem.passes[1] + 1):
         depth = problem.total_depth / passes
         if problem.passes[0] == problem.passes[1]:
             depth = problem.programmed.depth
-        setting = _best_at(problem, passes, depth, cost)
+        setting = _best_at(problem, passes, depth, cost=cost, caps=caps)
         if setting is not None:
             yield setting
 
 
+def _fixed_caps(problem: Problem) -> Caps | None:
+    """Caps at the only speed there is, or None when the speed may be chosen."""
+    if len(problem.speeds) > 1:
+        return None
+    speed = problem.speeds[0]
+    return caps_at(limits_at(problem, speed), speed)
+
+
 def _best_at(
-    problem: Problem, passes: int, depth: float, cost: Callable[[Setting], float]
+    problem: Problem,
+    passes: int,
+    depth: float,
+    *,
+    cost: Callable[[Setting], float],
+    caps: Caps | None,
 ) -> Setting | None:
     """Best feed and speed at one depth, or None when no feed keeps all limits."""
+    if caps is not None:
+        return _setting(caps, passes, depth)
     best: Setting | None = None
     for speed in _speed_candidates(problem, depth):
-        limits = limits_at(problem, speed)
-        highest, lowest = _feed_range(limits, depth, speed)
-        if highest == inf:
-            raise OptimisationError(
-                "nothing limits the feed: the machine, the material and the tool grade give "
-                "no power, force, chip load or feed bound"
-            )
-        if highest < lowest * (1.0 - ROUNDING) or highest <= 0.0:
-            continue
-        setting = Setting(feed=highest, depth=depth, passes=passes, speed=speed)
-        if best is None or cost(setting) < cost(best):
+        setting = _setting(caps_at(limits_at(problem, speed), speed), passes, depth)
+        if setting is not None and (best is None or cost(setting) < cost(best)):
             best = setting
     return best
 
 
-def _feed_range(limits: tuple[Limit, ...], depth: float, speed: float) -> tuple[float, float]:
-    """Greatest and least feed per tooth that keep all limits."""
-    highest, lowest = inf, 0.0
-    for limit in limits:
-        if limit.load.feed_exponent == 0.0:
-            continue
-        feed = limit.feed_at_bound(depth, speed)
-        if limit.sense is Sense.AT_MOST:
-            highest = min(highest, feed)
-        else:
-            lowest = max(lowest, feed)
-    return highest, lowest
+def _setting(caps: Caps, passes: int, depth: float) -> Setting | None:
+    """The greatest feed at one depth and speed, or None when none keeps all limits."""
+    highest, lowest = caps.greatest(depth), caps.least(depth)
+    if highest == inf:
+        raise OptimisationError(
+            "nothing limits the feed: the machine, the material and the tool grade give "
+            "no power, force, chip load or feed bound"
+        )
+    if highest < lowest * (1.0 - ROUNDING) or highest <= 0.0:
+        return None
+    return Setting(feed=highest, depth=depth, passes=passes, speed=caps.speed)
 
 
 def _speed_candidates(problem: Problem, depth: float) -> Iterator[float]:

@@ -5,197 +5,177 @@ Data goes to stdout, messages and progress to stderr. Exit codes: 0 ok, 2 usage,
 commands, so that ``--help`` answers at once.
 """
 
+import argparse
+import os
 import sys
-from collections.abc import Callable
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
-
-import typer
 
 OK, BAD_INPUT, INFEASIBLE, INTERRUPTED = 0, 3, 4, 130
 
-EPILOG = """Examples:
-
+EXAMPLES = """examples:
   optimise part.stpnc --mode TC --machine vmc15
-
   optimise part.stpnc --mode QC --roughness 1.6 --report part.html
+  optimise part.stpnc --mode EC --free feed,depth,speed --dry-run --json
+  stepnc check part.stpnc
 
-  optimise part.stpnc --mode EC --dry-run --json
-"""
-
-stepnc = typer.Typer(
-    name="stepnc",
-    help="Read, check and optimise STEP-NC programs (ISO 14649).",
-    no_args_is_help=True,
-    add_completion=True,
-    pretty_exceptions_enable=False,
-    rich_markup_mode=None,
-)
-
-File = Annotated[Path, typer.Argument(metavar="FILE", help="A STEP-NC program (Part 21).")]
-Units = Annotated[
-    str,
-    typer.Option(
-        help="Units of feeds and speeds in the file: iso (m/s, rev/s), rpm-mmin, rpm-mmtooth, "
-        "rpm-mmrev, revs-mmtooth or revs-mmrev."
-    ),
-]
-Json = Annotated[bool, typer.Option("--json", help="Print JSON instead of a table.")]
+Optimise the feeds of a STEP-NC program and write them back as STEP-NC."""
 
 
-@stepnc.command(epilog=EPILOG)
-def optimise(
-    file: File,
-    mode: Annotated[
-        str,
-        typer.Option(
-            help="TC least time, QC fastest feed that keeps the roughness, EC energy."
-        ),
-    ] = "TC",
-    machine: Annotated[
-        str, typer.Option(help="A machine of `stepnc machines`, or your own TOML or XML file.")
-    ] = "",
-    material: Annotated[
-        str, typer.Option(help="A material of `stepnc materials`, or your own TOML file.")
-    ] = "",
-    units: Units = "iso",
-    roughness: Annotated[
-        float | None, typer.Option(help="Ra in µm that finished surfaces must keep.")
-    ] = None,
-    free: Annotated[
-        str, typer.Option(help="What may change: feed, depth, speed (comma separated).")
-    ] = "feed,depth",
-    profile: Annotated[
-        str, typer.Option(help="How records are written: optimisation or standard.")
-    ] = "optimisation",
-    output: Annotated[
-        Path | None, typer.Option("-o", "--output", help="Default: FILE.optimised.stpnc")
-    ] = None,
-    in_place: Annotated[
-        bool, typer.Option("--in-place", help="Overwrite the input file.")
-    ] = False,
-    workingstep: Annotated[
-        list[str] | None,
-        typer.Option("--workingstep", help="Only this one (its id or #instance); repeatable."),
-    ] = None,
-    pareto: Annotated[
-        bool, typer.Option("--pareto", help="Also the front of time, roughness and energy.")
-    ] = False,
-    tool_change_s: Annotated[
-        float, typer.Option("--tool-change-s", help="Seconds to change a worn tool.")
-    ] = 0.0,
-    as_json: Json = False,
-    dry_run: Annotated[bool, typer.Option("--dry-run", help="Write no STEP-NC file.")] = False,
-    report: Annotated[
-        Path | None, typer.Option("--report", help="Write a self-contained HTML page.")
-    ] = None,
-) -> None:
-    """Optimise the feeds of FILE and write them back as STEP-NC."""
-    from service import usecases, wire
-
-    request = usecases.Request(
-        file=file,
-        mode=mode,
-        machine=machine,
-        material=material,
-        units=units,
-        roughness_um=roughness,
-        free=free,
-        profile=profile,
-        output=output,
-        in_place=in_place,
-        workingsteps=tuple(workingstep or ()),
-        pareto=pareto,
-        tool_change=tool_change_s,
-        dry_run=dry_run,
-        report=report,
-    )
-    outcome = usecases.optimise(request, tell=_tell)
-    if as_json:
-        _print(wire.plan_json(outcome.plan))
-    else:
-        from service import tables
-
-        tables.print_plan(outcome.plan)
-    raise typer.Exit(INFEASIBLE if outcome.plan.is_infeasible else OK)
-
-
-@stepnc.command()
-def check(file: File, units: Units = "iso", as_json: Json = False) -> None:
-    """Show what is in FILE, and what is wrong with it; exit 3 when it cannot be used."""
-    from service import usecases, wire
-
-    contents = usecases.check(file, units=units)
-    if as_json:
-        _print(wire.contents_json(contents))
-    else:
-        from service import tables
-
-        tables.print_contents(contents)
-    raise typer.Exit(OK if contents.is_usable else BAD_INPUT)
-
-
-@stepnc.command()
-def convert(
-    file: File,
-    profile: Annotated[str, typer.Option(help="optimisation or standard.")],
-    output: Annotated[Path, typer.Option("-o", "--output", help="Where to write.")],
-) -> None:
-    """Move the optimisation records of FILE into the other profile, losing nothing."""
-    from service import usecases
-
-    usecases.convert(file, profile=profile, output=output)
-    _tell(f"{output}: records in profile '{profile}'")
-
-
-@stepnc.command()
-def machines(
-    name: Annotated[str, typer.Argument(help="Show this one in full.")] = "",
-    as_json: Json = False,
-) -> None:
-    """List the machines, or show one."""
-    _show_library("machines", name, as_json=as_json)
-
-
-@stepnc.command()
-def materials(
-    name: Annotated[str, typer.Argument(help="Show this one in full.")] = "",
-    as_json: Json = False,
-) -> None:
-    """List the materials, or show one."""
-    _show_library("materials", name, as_json=as_json)
-
-
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> None:
     """Run ``stepnc``."""
-    _run(stepnc)
-
-
-def optimise_main() -> None:
-    """Run ``optimise``: the same as ``stepnc optimise``."""
-    alone = typer.Typer(
-        add_completion=True, pretty_exceptions_enable=False, rich_markup_mode=None
+    parser = argparse.ArgumentParser(
+        prog="stepnc",
+        description=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    alone.command(name="optimise", epilog=EPILOG)(optimise)
-    _run(alone)
+    parser.add_argument(
+        "--print-completion",
+        choices=("bash", "zsh", "tcsh"),
+        help="print a completion script for a shell",
+    )
+    commands = parser.add_subparsers(dest="command", metavar="COMMAND")
+    optimise = commands.add_parser(
+        "optimise",
+        help="optimise the feeds of a program and write them back",
+        description=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    add_optimise_options(optimise)
+    _add_check(commands)
+    _add_convert(commands)
+    for kind in ("machines", "materials"):
+        listing = commands.add_parser(kind, help=f"list the {kind}, or show one")
+        listing.add_argument("name", nargs="?", default="", help="show this one in full")
+        _add_json(listing)
+        listing.set_defaults(run=_show_library)
+    options = parser.parse_args(arguments)
+    if options.print_completion:
+        import shtab
+
+        _print(shtab.complete(parser, shell=options.print_completion))
+    elif options.command is None:
+        parser.print_help()
+        sys.exit(2)
+    else:
+        _run(options)
 
 
-def _run(app: Callable[..., object]) -> None:
-    """Run an application and turn the project's errors into exit codes."""
+def optimise_main(arguments: Sequence[str] | None = None) -> None:
+    """Run ``optimise``: the same as ``stepnc optimise``."""
+    parser = argparse.ArgumentParser(
+        prog="optimise",
+        description=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    add_optimise_options(parser)
+    _run(parser.parse_args(arguments))
+
+
+def add_optimise_options(parser: argparse.ArgumentParser) -> None:
+    """Options of ``optimise``."""
+    add = parser.add_argument
+    _add_file(parser)
+    add(
+        "--mode",
+        default="TC",
+        help="TC least time (default), QC fastest feed that keeps the roughness, EC energy",
+    )
+    add("--machine", default="", help="one of `stepnc machines`, or your own TOML or XML file")
+    add("--material", default="", help="one of `stepnc materials`, or your own TOML file")
+    add(
+        "--roughness",
+        type=float,
+        metavar="UM",
+        help="Ra in µm that finished surfaces must keep",
+    )
+    add(
+        "--free",
+        default="feed,depth",
+        metavar="WORDS",
+        help="what may change, of feed,depth,speed (default: feed,depth)",
+    )
+    add(
+        "--profile",
+        default="optimisation",
+        help="how records are written: optimisation (default) or standard",
+    )
+    add("-o", "--output", type=Path, metavar="FILE", help="default: FILE.optimised.stpnc")
+    add("--in-place", action="store_true", help="overwrite the input file")
+    add(
+        "--workingstep",
+        action="append",
+        default=[],
+        metavar="ID",
+        help="only this one, by its id or #instance; repeatable",
+    )
+    add("--pareto", action="store_true", help="also the front of time, roughness and energy")
+    add(
+        "--tool-change-s",
+        type=float,
+        default=0.0,
+        metavar="S",
+        help="seconds to change a worn tool: tool life then counts",
+    )
+    add("--dry-run", action="store_true", help="write no STEP-NC file")
+    add("--report", type=Path, metavar="HTML", help="write a self-contained page with plots")
+    _add_json(parser)
+    parser.set_defaults(run=_optimise)
+
+
+def _add_check(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    """``stepnc check``."""
+    parser = commands.add_parser(
+        "check", help="show what is in a program and what is wrong; exit 3: cannot be used"
+    )
+    _add_file(parser)
+    _add_json(parser)
+    parser.set_defaults(run=_check)
+
+
+def _add_convert(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    """``stepnc convert``."""
+    parser = commands.add_parser(
+        "convert", help="move optimisation records into the other profile, losing nothing"
+    )
+    _add_file(parser)
+    parser.add_argument("--profile", required=True, help="optimisation or standard")
+    parser.add_argument("-o", "--output", type=Path, required=True, metavar="FILE")
+    parser.set_defaults(run=_convert)
+
+
+def _add_file(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("file", type=Path, metavar="FILE", help="a STEP-NC program (Part 21)")
+    parser.add_argument(
+        "--units",
+        default="iso",
+        help="units of feeds and speeds in the file: iso (m/s, rev/s; default), rpm-mmin, "
+        "rpm-mmtooth, rpm-mmrev, revs-mmtooth or revs-mmrev",
+    )
+
+
+def _add_json(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--json", action="store_true", help="print JSON instead of a table")
+
+
+def _run(options: argparse.Namespace) -> None:
+    """Run a command and turn the project's errors into exit codes."""
     from stepnc_model.errors import StepNcError
 
     try:
-        app()
+        code = options.run(options)
+        sys.stdout.flush()
     except StepNcError as error:
         _tell(f"error: {error}")
-        sys.exit(_exit_code(error))
+        code = _exit_code(error)
     except KeyboardInterrupt:
         _tell("interrupted: nothing was written")
-        sys.exit(INTERRUPTED)
+        code = INTERRUPTED
     except BrokenPipeError:
-        # The reader of a pipe left (``| head``): no more to say, and nobody to hear it.
-        sys.stderr.close()
-        sys.exit(OK)
+        # The reader of a pipe left (``| head``). What is still buffered has nobody to go to.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        code = OK
+    sys.exit(code)
 
 
 def _exit_code(error: Exception) -> int:
@@ -205,16 +185,78 @@ def _exit_code(error: Exception) -> int:
     return INFEASIBLE if isinstance(error, OptimisationError) else BAD_INPUT
 
 
-def _show_library(kind: str, name: str, *, as_json: bool) -> None:
-    """List a library, or show one entry of it."""
+def _optimise(options: argparse.Namespace) -> int:
+    """``optimise``."""
+    from service import usecases
+
+    outcome = usecases.optimise(
+        usecases.Request(
+            file=options.file,
+            mode=options.mode,
+            machine=options.machine,
+            material=options.material,
+            units=options.units,
+            roughness_um=options.roughness,
+            free=options.free,
+            profile=options.profile,
+            output=options.output,
+            in_place=options.in_place,
+            workingsteps=tuple(options.workingstep),
+            pareto=options.pareto,
+            tool_change=options.tool_change_s,
+            dry_run=options.dry_run,
+            report=options.report,
+        ),
+        tell=_tell,
+    )
+    if options.json:
+        from service.wire import plan_json
+
+        _print(plan_json(outcome.plan))
+    else:
+        from service.tables import print_plan
+
+        print_plan(outcome.plan)
+    return INFEASIBLE if outcome.plan.is_infeasible else OK
+
+
+def _check(options: argparse.Namespace) -> int:
+    """``stepnc check``."""
+    from service import usecases
+
+    contents = usecases.check(options.file, units=options.units)
+    if options.json:
+        from service.wire import contents_json
+
+        _print(contents_json(contents))
+    else:
+        from service.tables import print_contents
+
+        print_contents(contents)
+    return OK if contents.is_usable else BAD_INPUT
+
+
+def _convert(options: argparse.Namespace) -> int:
+    """``stepnc convert``."""
+    from service import usecases
+
+    usecases.convert(options.file, profile=options.profile, output=options.output)
+    _tell(f"{options.output}: records in profile '{options.profile}'")
+    return OK
+
+
+def _show_library(options: argparse.Namespace) -> int:
+    """``stepnc machines`` and ``stepnc materials``."""
     from service import tables, usecases, wire
 
+    kind, name = options.command, options.name
     if name:
         entry = usecases.library_entry(kind, name)
-        _print(wire.entry_json(entry)) if as_json else tables.print_entry(entry)
-        return
+        _print(wire.entry_json(entry)) if options.json else tables.print_entry(entry)
+        return OK
     entries = usecases.library_entries(kind)
-    _print(wire.entries_json(entries)) if as_json else tables.print_entries(kind, entries)
+    _print(wire.entries_json(entries)) if options.json else tables.print_entries(kind, entries)
+    return OK
 
 
 def _print(text: str) -> None:

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TypeVar
 
 from optimiser.advice import Plan
+from optimiser.formulate import Task
 from optimiser.modes import Free, Mode
-from optimiser.optimise import Task
 from optimiser.optimise import optimise as advise
 from service.files import read_bytes, write_atomically
 from service.records import changes_of

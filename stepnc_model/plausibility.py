@@ -5,6 +5,7 @@ findings, and the unit profiles that would make them plausible are named.
 """
 
 from collections.abc import Iterator, Sequence
+from math import pi
 
 from stepnc_model.errors import Finding, SchemaError, Severity
 from stepnc_model.program import Program, Workingstep
@@ -17,6 +18,9 @@ MAX_SPINDLE_SPEED = 300.0
 
 MAX_CUTTING_SPEED = 10_000.0
 """mm/s; aluminium cut faster is a laboratory's"""
+
+LEAST_CUTTING_SPEED = 8.0
+"""mm/s, half a metre a minute; below it nobody mills or drills"""
 
 LEAST_FEED_PER_TOOTH = 5e-4
 """mm; below it no edge is sharp enough to cut"""
@@ -113,7 +117,11 @@ def _oddities(
         if is_per_turn and conditions.feed.value > MAX_TURNING_FEED:
             yield conditions.feed, f"feed {conditions.feed.value:g} mm per revolution"
         return
-    feed = conditions.feed_per_tooth(conditions.spindle_speed(tool.diameter), tool.teeth)
+    turning = conditions.spindle_speed(tool.diameter)
+    around = pi * tool.diameter * turning
+    if around < LEAST_CUTTING_SPEED:
+        yield speed, f"the edge moves at {around * 60.0 / 1e3:.3g} m/min only"
+    feed = conditions.feed_per_tooth(turning, tool.teeth)
     radius = 0.5 * tool.diameter
     if feed > radius:
         yield conditions.feed, f"feed per tooth {feed:g} mm exceeds the radius {radius:g} mm"

@@ -1,0 +1,81 @@
+"""The front between time, roughness and energy of one workingstep.
+
+Every point is an exact optimum: least time, or least energy, for a roughness that is asked
+for. What another point beats in all three is left out.
+"""
+
+from dataclasses import replace
+
+from optimiser import workingstep as exact
+from optimiser.advice import Point, State
+from optimiser.cut import Cut
+from optimiser.errors import Infeasible
+from optimiser.formulate import state_of
+from optimiser.limit import Limit, LimitName, Sense
+from optimiser.limits import Conditions, roughness_limit, roughness_load
+from optimiser.modes import Mode
+from optimiser.problem import Problem
+
+POINTS = 15
+"""levels of roughness between the finest that cuts and the one that costs no time"""
+
+
+def front_of(problem: Problem, cut: Cut, at: Conditions) -> tuple[Point, ...]:
+    """Points of the front, the fastest first."""
+    free = replace(problem, limits=_without_roughness(problem.limits))
+    fastest = state_of(cut, free, at, exact.solve(free, Mode.TC).setting)
+    points = []
+    for level in _levels(free, cut, fastest):
+        bounded = free
+        if level is not None:
+            bounded = replace(free, limits=(*free.limits, roughness_limit(cut, level)))
+        for mode in (Mode.TC, Mode.EC):
+            try:
+                setting = exact.solve(bounded, mode).setting
+            except Infeasible:
+                continue
+            state = state_of(cut, bounded, at, setting)
+            points.append(Point(state=state, roughness_bound=level))
+    return tuple(sorted(_undominated(points), key=lambda point: point.state.time))
+
+
+def _without_roughness(limits: tuple[Limit, ...]) -> tuple[Limit, ...]:
+    return tuple(limit for limit in limits if limit.name is not LimitName.ROUGHNESS)
+
+
+def _levels(problem: Problem, cut: Cut, fastest: State) -> list[float | None]:
+    """Ra in mm from what the fastest setting leaves down to what the thinnest chip leaves."""
+    load = roughness_load(cut)
+    if load is None or fastest.roughness is None:
+        return [None]
+    setting = fastest.setting
+    thinnest = max(
+        (
+            limit.feed_at_bound(setting.depth, setting.speed)
+            for limit in problem.limits
+            if limit.sense is Sense.AT_LEAST and limit.load.feed_exponent > 0.0
+        ),
+        default=setting.feed / POINTS,
+    )
+    steps = [index / (POINTS - 1) for index in range(POINTS)]
+    feeds = [setting.feed * (thinnest / setting.feed) ** step for step in steps]
+    return [load.value(feed, setting.depth, setting.speed) for feed in feeds]
+
+
+def _undominated(points: list[Point]) -> list[Point]:
+    """Points that no other equals or beats in time, roughness and energy."""
+    kept: list[Point] = []
+    for point in sorted(points, key=lambda point: _measures(point.state)):
+        mine = _measures(point.state)
+        if not any(_beats(_measures(other.state), mine) for other in kept):
+            kept.append(point)
+    return kept
+
+
+def _measures(state: State) -> tuple[float, float, float]:
+    return state.time, state.roughness or 0.0, state.energy
+
+
+def _beats(one: tuple[float, ...], other: tuple[float, ...]) -> bool:
+    """Whether the first is nowhere worse, up to rounding."""
+    return all(a <= b * (1.0 + exact.TIE) for a, b in zip(one, other, strict=True))
