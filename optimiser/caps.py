@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from math import inf
 
-from optimiser.limit import Limit, Sense
+from optimiser.limit import ROUNDING, Limit, LimitName, Sense
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -25,11 +25,18 @@ class Caps:
     """mm, the greatest of the limits from below that know no depth"""
     floors: tuple[Limit, ...]
     """limits from below that do"""
+    deepest: float
+    """mm, the greatest depth that the depth limits allow"""
     speed: float
     """rev/s"""
 
     def greatest(self, depth: float) -> float:
-        """Greatest feed per tooth at a depth, mm; infinite when nothing caps it."""
+        """Greatest feed per tooth at a depth, mm; infinite when nothing caps it.
+
+        Zero at a depth that is itself not allowed.
+        """
+        if depth > self.deepest * (1.0 + ROUNDING):
+            return 0.0
         feed = self.constant
         for factor, exponent in self.powers:
             feed = min(feed, factor * depth**exponent)
@@ -47,13 +54,15 @@ class Caps:
 
 def caps_at(limits: Iterable[Limit], speed: float) -> Caps:
     """Caps of all limits that bound the feed, at one spindle speed in rev/s."""
-    constant, floor = inf, 0.0
+    constant, floor, deepest = inf, 0.0, inf
     powers: list[tuple[float, float]] = []
     others: list[Limit] = []
     floors: list[Limit] = []
     for limit in limits:
         load = limit.load
         if load.feed_exponent == 0.0:
+            if limit.name is LimitName.AXIAL_DEPTH:
+                deepest = min(deepest, limit.bound / load.coefficient)
             continue
         if limit.sense is Sense.AT_LEAST:
             if load.depth_exponent == 0.0:
@@ -72,6 +81,7 @@ def caps_at(limits: Iterable[Limit], speed: float) -> Caps:
         powers=tuple(powers),
         others=tuple(others),
         floor=floor,
+        deepest=deepest,
         floors=tuple(floors),
         speed=speed,
     )

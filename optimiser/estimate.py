@@ -38,6 +38,9 @@ DEFAULT_SIDE_ALLOWANCE = 0.5
 LEAST_FACEMILL = 25.0
 """mm; files call smaller end mills FACEMILL, and nobody makes face mills so small"""
 
+LEAST_DEPTH = 1e-3
+"""mm; a pass less deep than a micrometre is a slip of the pen"""
+
 FINISHING = (PlaneFinishMilling, SideFinishMilling, BottomAndSideFinishMilling)
 
 FIXED_DEPTH = (FreeformOperation, SideFinishMilling, BottomAndSideFinishMilling)
@@ -140,8 +143,11 @@ def _floor(program: Program, step: Workingstep, region: Region, wall: Cut) -> Cu
         is_wall=False,
         is_centred=False,
     )
+    texture, corner = _texture(sweep, tool, wall.tool_kind)
     return replace(
         wall,
+        texture=texture,
+        corner_radius=corner,
         length=region.count * _length(region, sweep, tool),
         total_depth=left[-1],
         engagement=_engagement(sweep, tool),
@@ -176,7 +182,13 @@ def _sweep(
     findings: list[Finding] = []
     total = _total_depth(program, step, region)
     depth = getattr(operation, "axial_cutting_depth", None)
-    if depth is None or depth <= 0.0:
+    if depth is not None and depth < LEAST_DEPTH:
+        raise program.error(
+            f"a depth of {depth:g} mm: it must be {LEAST_DEPTH:g} mm at least",
+            step.operation_ref,
+            "axial_cutting_depth",
+        )
+    if depth is None:
         reach = min(total, tool.cutting_edge_length or total)
         depth = total / passes_for(total, reach)
         text = f"no axial_cutting_depth: {depth:.4g} mm assumed"

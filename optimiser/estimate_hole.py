@@ -3,7 +3,7 @@
 from optimiser.cut import Cut, CutKind, Texture
 from optimiser.estimate import earlier_operations
 from optimiser.problem import Setting
-from optimiser.region import feature_depth
+from optimiser.region import feature_depth, pattern_count
 from simulator.physics.travel import drill_point_length
 from simulator.spec import ToolKind
 from stepnc_model.entities.bottoms import ThroughBottomCondition
@@ -16,7 +16,13 @@ from stepnc_model.entities.drilling import (
     Reaming,
 )
 from stepnc_model.entities.entity import Entity
-from stepnc_model.entities.features import CompoundFeature, ReplicateFeature
+from stepnc_model.entities.features import (
+    CircularPattern,
+    CompoundFeature,
+    GeneralPattern,
+    RectangularPattern,
+    ReplicateFeature,
+)
 from stepnc_model.entities.milling import FreeformOperation
 from stepnc_model.entities.operations import MachiningOperation
 from stepnc_model.errors import Finding, Severity
@@ -100,9 +106,8 @@ def _depth_and_count(
     reference: Ref[Entity] = step.features[0]
     feature: Entity = program.get(reference)
     count = 1
-    if isinstance(feature, ReplicateFeature):
-        places = getattr(feature, "replicate_locations", None)
-        count = 1 + len(places) if places else getattr(feature, "number_of_feature", 1)
+    if isinstance(feature, GeneralPattern | RectangularPattern | CircularPattern):
+        count = pattern_count(feature)
         reference = feature.replicate_base_feature
         feature = program.get(reference)
     if isinstance(feature, CompoundFeature):
@@ -115,7 +120,10 @@ def _depth_and_count(
 
 def _is_through(program: Program, step: Workingstep) -> bool:
     """Whether the hole has no bottom."""
-    bottom = getattr(program.get(step.features[0]), "bottom_condition", None)
+    feature: Entity = program.get(step.features[0])
+    if isinstance(feature, ReplicateFeature):
+        feature = program.get(feature.replicate_base_feature)
+    bottom = getattr(feature, "bottom_condition", None)
     return bottom is not None and isinstance(program.get(bottom), ThroughBottomCondition)
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from math import hypot
 
 from optimiser.cut import Cut, CutKind, Texture
-from optimiser.estimate import earlier_operations, passes_for
+from optimiser.estimate import LEAST_DEPTH, earlier_operations, passes_for
 from optimiser.problem import Setting
 from optimiser.region import points_of, size
 from simulator.spec import ToolKind
@@ -18,6 +18,7 @@ from stepnc_model.entities.profiles import SquareUProfile
 from stepnc_model.entities.turning import (
     Contouring,
     ContouringFinish,
+    ContouringRough,
     CuttingIn,
     Facing,
     FacingFinish,
@@ -146,6 +147,12 @@ def _depths(
         total = written[0] if written else FALLBACK_DEPTH
         text = f"how much is removed cannot be told from the bar: {total:g} mm assumed"
         findings = (program.finding(Severity.WARNING, text, step.operation_ref),)
+    if written and written[0] < LEAST_DEPTH:
+        raise program.error(
+            f"a depth of {written[0]:g} mm: it must be {LEAST_DEPTH:g} mm at least",
+            operation.its_machining_strategy or step.operation_ref,
+            "cutting_depth",
+        )
     depth = min(written[0], total) if written else total
     return total, depth, findings
 
@@ -192,7 +199,7 @@ def _shape(program: Program, step: Workingstep) -> Revolved:
         raise program.error("has no feature: nothing tells what to turn", step.ref)
     shapes = [_revolved(program, feature) for feature in step.features]
     outer = max(shape.outer_radius for shape in shapes)
-    if isinstance(step.operation, Contouring):
+    if isinstance(step.operation, ContouringRough):
         bar = _bar(program)
         outer = max(outer, bar.radius if bar is not None else 0.0)
     return Revolved(
@@ -211,7 +218,8 @@ def _revolved(program: Program, ref: Ref[Entity]) -> Revolved:
         return Revolved(inner_radius=radius, outer_radius=radius, length=length)
     if isinstance(feature, OuterDiameterToShoulder):
         radius = 0.5 * size(program, feature.diameter_at_placement)
-        return Revolved(inner_radius=radius, outer_radius=radius, length=radius)
+        length = _shoulder_distance(program, feature)
+        return Revolved(inner_radius=radius, outer_radius=radius, length=length)
     if isinstance(feature, RevolvedFlat):
         edge = program.get(program.get(feature.flat_edge_shape).profile_length)
         length = float(edge.its_parameter_value)
@@ -224,6 +232,14 @@ def _revolved(program: Program, ref: Ref[Entity]) -> Revolved:
     if isinstance(feature, Groove):
         return _groove(program, feature)
     raise program.error("a turning feature of this kind cannot be estimated", ref)
+
+
+def _shoulder_distance(program: Program, feature: OuterDiameterToShoulder) -> float:
+    """Length in mm up to the shoulder, by the place of its profile."""
+    profile = program.get(feature.v_shape_boundary)
+    if profile.placement is None:
+        raise program.error("does not say where the shoulder is", feature.v_shape_boundary)
+    return abs(float(program.get(program.get(profile.placement).location).coordinates[2]))
 
 
 def _contour(points: list[tuple[float, float, float]], offset: float) -> Revolved:

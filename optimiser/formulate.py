@@ -1,5 +1,6 @@
 """From a cut and its conditions to a problem, and from a setting to what it does."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import inf, pi
 
@@ -128,15 +129,20 @@ def _wear_rate(cut: Cut, at: Conditions) -> Monomial | None:
 def state_of(cut: Cut, problem: Problem, at: Conditions, setting: Setting) -> State:
     """Everything about a cut at one setting."""
     point = (setting.feed, setting.depth, setting.speed)
-    roughness = roughness_load(cut)
+    floor = cut.floor
+    roughness = [
+        load.value(*point)
+        for each in (cut, floor)
+        if each is not None and (load := roughness_load(each)) is not None
+    ]
     return State(
         setting=setting,
         feed=setting.feed * cut.tool.teeth * setting.speed,
         time=problem.cost.time(setting),
         energy=problem.cost.energy(setting),
-        motor_power=power_load(cut, at).value(*point),
-        cutting_force=force_load(cut, at).value(*point),
-        roughness=roughness.value(*point) if roughness is not None else None,
+        motor_power=_greater(power_load, cut, at, setting),
+        cutting_force=_greater(force_load, cut, at, setting),
+        roughness=max(roughness, default=None),
         loads=tuple(
             Load(
                 limit=limit,
@@ -146,3 +152,14 @@ def state_of(cut: Cut, problem: Problem, at: Conditions, setting: Setting) -> St
             for limit in exact.limits_at(problem, setting.speed)
         ),
     )
+
+
+def _greater(
+    load: Callable[[Cut, Conditions], Monomial], cut: Cut, at: Conditions, setting: Setting
+) -> float:
+    """A load of the walls or of the floor that is swept with them, whichever is greater."""
+    value = load(cut, at).value(setting.feed, setting.depth, setting.speed)
+    if cut.floor is None:
+        return value
+    depth = cut.floor.total_depth
+    return max(value, load(cut.floor, at).value(setting.feed, depth, setting.speed))

@@ -79,6 +79,7 @@ def limits_of(cut: Cut, at: Conditions) -> tuple[Limit, ...]:
         *_load_limits(cut, at),
         *_depth_limits(cut, at),
         *_surface_limits(cut, at),
+        *(_surface_limits(cut.floor, at) if cut.floor is not None else ()),
         *_speed_limits(cut, at),
     )
 

@@ -5,6 +5,7 @@ Same inputs, same result: corrections of the cutting force come as an argument.
 
 from collections.abc import Callable
 from dataclasses import replace
+from math import isfinite
 
 from optimiser import workingstep as exact
 from optimiser.advice import Advice, Plan, State, Status
@@ -15,7 +16,7 @@ from optimiser.estimate_hole import hole_cut, is_hole_making
 from optimiser.estimate_turning import mean_diameter, turning_cut
 from optimiser.formulate import Task, problem_of, state_of
 from optimiser.front import front_of
-from optimiser.limit import LimitName
+from optimiser.limit import Limit, LimitName
 from optimiser.limits import Conditions, roughness_load
 from optimiser.modes import Mode
 from optimiser.problem import Problem
@@ -88,6 +89,19 @@ def advise(
     task: Task,
 ) -> tuple[Advice, list[Finding]]:
     """Advice for one workingstep, with what was assumed on the way."""
+    with program.using(step.operation_ref):
+        return _advise(program, step, machine=machine, material=material, task=task)
+
+
+def _advise(
+    program: Program,
+    step: Workingstep,
+    *,
+    machine: Machine,
+    material: MaterialMatch,
+    task: Task,
+) -> tuple[Advice, list[Finding]]:
+    """Advise one workingstep; whoever calls it names the place of what goes wrong."""
     tool = tool_of(program, step.tool_ref)
     conditions = programmed(program, step.technology_ref)
     untouched = Advice(
@@ -108,6 +122,8 @@ def advise(
     findings += found
     problem = problem_of(cut, at, task)
     before = state_of(cut, problem, at, problem.programmed)
+    if not isfinite(before.time) or not isfinite(before.energy):
+        raise ValueError(f"a time of {before.time:g} s: its numbers are beyond all machines")
     untouched = replace(untouched, cut=cut, before=before, after=before)
     findings += _programmed_findings(program, step, before)
     if conditions.inhibition:
@@ -144,7 +160,7 @@ def _solved(
     return replace(
         untouched,
         status=Status.ADVISED,
-        reason=reason_of(after, solution.active),
+        reason=reason_of(after, solution.holding),
         after=after,
         active=solution.active,
         saving_of_one_more=saving,
@@ -154,12 +170,11 @@ def _solved(
     )
 
 
-def reason_of(state: State, active: LimitName) -> str:
+def reason_of(state: State, limit: Limit) -> str:
     """Sentence that names the limit that holds the feed."""
-    load = next(load for load in state.loads if load.limit.name is active)
-    limit = load.limit
+    load = next(load for load in state.loads if load.limit is limit)
     return (
-        f"{active.words} {load.value * limit.scale:.4g} {limit.unit} reaches its bound of "
+        f"{limit.name.words} {load.value * limit.scale:.4g} {limit.unit} reaches its bound of "
         f"{load.bound * limit.scale:.4g} {limit.unit}"
     )
 

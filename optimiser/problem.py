@@ -9,6 +9,9 @@ from math import ceil
 
 from optimiser.limit import ROUNDING, Limit, LimitName, Monomial
 
+DIGITS = 12
+"""significant digits of a depth"""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Setting:
@@ -91,6 +94,15 @@ class Problem:
     programmed: Setting
     stretches: tuple[tuple[Limit, ...], ...] = ((),)
     """limits that hold on one stretch of the curve only, one tuple for each stretch"""
+
+    def depth_at(self, passes: int) -> float:
+        """Depth of each of so many passes, mm, as it is written into a file.
+
+        Rounded, so that reading what was written and solving again gives the same numbers.
+        """
+        if self.passes[0] == self.passes[1]:
+            return self.programmed.depth
+        return float(f"{self.total_depth / passes:.{DIGITS}g}")
 
     def deepest(self) -> int:
         """Least number of passes that the depth limits allow."""

@@ -245,9 +245,7 @@ def solve(problem: Problem, mode: Mode) -> Optimum:
     """
     best: Optimum | None = None
     for passes in range(problem.deepest(), problem.passes[1] + 1):
-        depth = problem.total_depth / passes
-        if problem.passes[0] == problem.passes[1]:
-            depth = problem.programmed.depth
+        depth = problem.depth_at(passes)
         found = _best_stretch(problem, mode, passes=passes, depth=depth)
         if found is None:
             continue

@@ -105,7 +105,7 @@ def region_of(program: Program, ref: Ref[Entity]) -> Region:
     feature = program.get(ref)
     if isinstance(feature, (GeneralPattern, RectangularPattern, CircularPattern)):
         base = region_of(program, feature.replicate_base_feature)
-        return replace(base, count=_count(feature))
+        return replace(base, count=pattern_count(feature))
     if isinstance(feature, CompoundFeature):
         return region_of(program, feature.elements[0])
     depth = feature_depth(program, ref)
@@ -399,7 +399,7 @@ def _parameter(program: Program, ref: Ref[NumericParameter]) -> float:
     return value
 
 
-def _count(pattern: GeneralPattern | RectangularPattern | CircularPattern) -> int:
+def pattern_count(pattern: GeneralPattern | RectangularPattern | CircularPattern) -> int:
     """Regions that a pattern makes."""
     if isinstance(pattern, GeneralPattern):
         return 1 + len(pattern.replicate_locations)

@@ -38,7 +38,9 @@ class Solution:
     energy: float
     """J"""
     active: LimitName
-    """the limit that holds the feed"""
+    """name of the limit that holds the feed"""
+    holding: Limit
+    """that limit itself; several may have one name"""
     limits: tuple[Limit, ...]
     """all limits that apply at this setting"""
     deepest_first_time: float
@@ -105,15 +107,16 @@ def limits_at(problem: Problem, speed: float) -> tuple[Limit, ...]:
 def conflict(problem: Problem) -> Infeasible:
     """The two limits that exclude each other at the depth that comes nearest to both."""
     passes, speed = problem.passes[1], problem.programmed.speed
-    depth = problem.total_depth / passes
+    depth = problem.depth_at(passes)
     limits = limits_at(problem, speed)
     caps = [limit for limit in limits if limit.sense is Sense.AT_MOST]
     floors = [limit for limit in limits if limit.sense is Sense.AT_LEAST]
     for limit in caps:
         if limit.name is LimitName.AXIAL_DEPTH and not limit.holds(1.0, depth, speed):
+            is_fixed = problem.passes[0] == problem.passes[1]
+            why = "the depth is not free" if is_fixed else f"there are {passes} passes at most"
             return Infeasible(
-                f"{told(limit, limit.load.value(1.0, depth, speed), speed)}, and the number "
-                f"of passes is not free",
+                f"{told(limit, limit.load.value(1.0, depth, speed), speed)}, and {why}",
                 limits=(limit.name,),
             )
     cap = min(caps, key=lambda limit: limit.feed_at_bound(depth, speed))
@@ -123,6 +126,11 @@ def conflict(problem: Problem) -> Infeasible:
         default=cap,
     )
     highest, lowest = cap.feed_at_bound(depth, speed), floor.feed_at_bound(depth, speed)
+    if highest <= 0.0:
+        rest = cap.load.value(0.0, depth, speed)
+        return Infeasible(
+            f"{told(cap, rest, speed)}, however small the feed", limits=(cap.name,)
+        )
     return Infeasible(
         f"{cap.name.words} allows a feed of at most {highest:.4g} mm/tooth"
         f" ({cap.sense} {cap.bound_at(speed) * cap.scale:.4g} {cap.unit}),"
@@ -160,7 +168,7 @@ def widened(problem: Problem, name: LimitName, *, by_factor: float) -> Problem:
 def saving_of_one_more(problem: Problem, mode: Mode, solution: Solution) -> float:
     """Seconds saved if the bound of the active limit were one step wider; 0 when none."""
     speed = solution.setting.speed
-    active = next(limit for limit in solution.limits if limit.name is solution.active)
+    active = solution.holding
     factor = 1.0 + active.step / (active.scale * active.bound_at(speed))
     wider = widened(problem, active.name, by_factor=factor)
     return max(0.0, solution.time - solve(wider, mode).time)
@@ -180,9 +188,7 @@ def _best_by_passes(problem: Problem, cost: Callable[[Setting], float]) -> Itera
     """Best setting of each feasible number of passes, fewest first."""
     caps = _fixed_caps(problem)
     for passes in range(problem.deepest(), problem.passes[1] + 1):
-        depth = problem.total_depth / passes
-        if problem.passes[0] == problem.passes[1]:
-            depth = problem.programmed.depth
+        depth = problem.depth_at(passes)
         setting = _best_at(problem, passes, depth, cost=cost, caps=caps)
         if setting is not None:
             yield setting
@@ -286,6 +292,7 @@ def settled(problem: Problem, best: Setting, first: Setting | None = None) -> So
         time=time,
         energy=problem.cost.energy(best),
         active=active.name,
+        holding=active,
         limits=limits,
         deepest_first_time=max(time, problem.cost.time(first or best)),
     )

@@ -53,7 +53,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     if options.print_completion:
         import shtab
 
-        _print(shtab.complete(parser, shell=options.print_completion))
+        from service.terminal import write_out
+
+        write_out(shtab.complete(parser, shell=options.print_completion))
     elif options.command is None:
         parser.print_help()
         sys.exit(2)
@@ -138,7 +140,7 @@ def _add_convert(commands: "argparse._SubParsersAction[argparse.ArgumentParser]"
     parser = commands.add_parser(
         "convert", help="move optimisation records into the other profile, losing nothing"
     )
-    _add_file(parser)
+    parser.add_argument("file", type=Path, metavar="FILE", help="a STEP-NC program (Part 21)")
     parser.add_argument("--profile", required=True, help="optimisation or standard")
     parser.add_argument("-o", "--output", type=Path, required=True, metavar="FILE")
     parser.set_defaults(run=_convert)
@@ -160,21 +162,26 @@ def _add_json(parser: argparse.ArgumentParser) -> None:
 
 def _run(options: argparse.Namespace) -> None:
     """Run a command and turn the project's errors into exit codes."""
+    from service.terminal import prepare, tell
     from stepnc_model.errors import StepNcError
 
+    prepare()
+    code = OK
     try:
         code = options.run(options)
         sys.stdout.flush()
     except StepNcError as error:
-        _tell(f"error: {error}")
+        tell(f"error: {error}")
         code = _exit_code(error)
     except KeyboardInterrupt:
-        _tell("interrupted: nothing was written")
+        tell("interrupted")
         code = INTERRUPTED
-    except BrokenPipeError:
-        # The reader of a pipe left (``| head``). What is still buffered has nobody to go to.
+    except OSError as error:
+        # What is still buffered has nobody to go to; a reader that left (``| head``) is fine.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        code = OK
+        if not isinstance(error, BrokenPipeError):
+            tell(f"error: stdout: {error.strerror}")
+            code = BAD_INPUT
     sys.exit(code)
 
 
@@ -188,6 +195,7 @@ def _exit_code(error: Exception) -> int:
 def _optimise(options: argparse.Namespace) -> int:
     """``optimise``."""
     from service import usecases
+    from service.terminal import tell, write_out
 
     outcome = usecases.optimise(
         usecases.Request(
@@ -207,12 +215,12 @@ def _optimise(options: argparse.Namespace) -> int:
             dry_run=options.dry_run,
             report=options.report,
         ),
-        tell=_tell,
+        tell=tell,
     )
     if options.json:
         from service.wire import plan_json
 
-        _print(plan_json(outcome.plan))
+        write_out(plan_json(outcome.plan))
     else:
         from service.tables import print_plan
 
@@ -223,12 +231,13 @@ def _optimise(options: argparse.Namespace) -> int:
 def _check(options: argparse.Namespace) -> int:
     """``stepnc check``."""
     from service import usecases
+    from service.terminal import write_out
 
     contents = usecases.check(options.file, units=options.units)
     if options.json:
         from service.wire import contents_json
 
-        _print(contents_json(contents))
+        write_out(contents_json(contents))
     else:
         from service.tables import print_contents
 
@@ -239,31 +248,28 @@ def _check(options: argparse.Namespace) -> int:
 def _convert(options: argparse.Namespace) -> int:
     """``stepnc convert``."""
     from service import usecases
+    from service.terminal import tell
 
     usecases.convert(options.file, profile=options.profile, output=options.output)
-    _tell(f"{options.output}: records in profile '{options.profile}'")
+    tell(f"{options.output}: records in profile '{options.profile}'")
     return OK
 
 
 def _show_library(options: argparse.Namespace) -> int:
     """``stepnc machines`` and ``stepnc materials``."""
     from service import tables, usecases, wire
+    from service.terminal import write_out
 
     kind, name = options.command, options.name
     if name:
         entry = usecases.library_entry(kind, name)
-        _print(wire.entry_json(entry)) if options.json else tables.print_entry(entry)
+        if options.json:
+            write_out(wire.entry_json(entry))
+        else:
+            tables.print_entry(entry)
         return OK
     entries = usecases.library_entries(kind)
-    _print(wire.entries_json(entries)) if options.json else tables.print_entries(kind, entries)
+    write_out(wire.entries_json(entries)) if options.json else tables.print_entries(
+        kind, entries
+    )
     return OK
-
-
-def _print(text: str) -> None:
-    """Data, to stdout."""
-    sys.stdout.write(text + "\n")
-
-
-def _tell(message: str) -> None:
-    """A message, to stderr."""
-    sys.stderr.write(message + "\n")

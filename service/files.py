@@ -13,6 +13,34 @@ def read_bytes(path: Path) -> bytes:
         return path.read_bytes()
     except OSError as error:
         raise StepNcError(f"{path}: {_reason(error)}") from error
+    except ValueError as error:
+        raise StepNcError(f"{str(path)!r} is no file name: {error}") from error
+
+
+def is_same(one: Path, other: Path) -> bool:
+    """Whether two paths lead to one file.
+
+    Raises
+    ------
+    StepNcError
+        When a path is no path, or lies where one may not look.
+    """
+    try:
+        if one.resolve() == other.resolve():
+            return True
+        return one.exists() and other.exists() and one.samefile(other)
+    except OSError as error:
+        raise StepNcError(f"{error.filename}: {_reason(error)}") from error
+    except ValueError as error:
+        raise StepNcError(f"{str(one)!r} or {str(other)!r} is no file name") from error
+
+
+def require_place(path: Path, *, apart_from: Path) -> None:
+    """Refuse an output that is another file of the same run, or has no folder."""
+    if is_same(path, apart_from):
+        raise WriteError(f"is also {apart_from}; name another file", path=str(path))
+    if not path.parent.is_dir():
+        raise WriteError("the folder does not exist", path=str(path))
 
 
 def write_atomically(path: Path, data: bytes) -> None:
@@ -30,6 +58,9 @@ def write_atomically(path: Path, data: bytes) -> None:
     """
     name = ""
     try:
+        path = path.resolve() if path.is_symlink() else path
+        if path.exists() and not path.is_file():
+            raise WriteError("is no regular file", path=str(path))
         descriptor, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
         with os.fdopen(descriptor, "wb") as file:
             file.write(data)

@@ -92,7 +92,7 @@ def _record(plan: Plan, advised: _Advised) -> Record:
         programmed_feedrate_per_tooth=None if is_feed else raw_feed,
         programmed_cutspeed=None if is_spindle else raw_speed,
         programmed_spindle=raw_speed if is_spindle else None,
-        programmed_axial_depth=before.setting.depth,
+        programmed_axial_depth=float(before.setting.depth),
     )
 
 

@@ -5,6 +5,7 @@ import sys
 from collections.abc import Sequence
 
 from optimiser.advice import Advice, Plan, Status
+from service.terminal import clean
 from service.usecases import Contents
 from simulator.spec import Machine, Material
 from stepnc_model.errors import Finding, Severity
@@ -214,7 +215,7 @@ def _print_findings(findings: Sequence[Finding]) -> None:
     unique = list(dict.fromkeys(str(finding) for finding in ranked))
     severities = {str(finding): finding.severity for finding in ranked}
     for text in unique[:MOST_FINDINGS]:
-        _line(_coloured(text, COLOURS[severities[text]]))
+        _line(text, COLOURS[severities[text]])
     if len(unique) > MOST_FINDINGS:
         _line(f"... and {len(unique) - MOST_FINDINGS} more findings (--json has all)")
 
@@ -239,13 +240,9 @@ def _table(header: Row, rows: Sequence[Row]) -> None:
             _line("  ".join("-" * width for width in widths))
 
 
-def _coloured(text: str, colour: str) -> str:
-    """Text in a colour, on a terminal that wants colours."""
-    if not sys.stdout.isatty() or os.environ.get("NO_COLOR"):
-        return text
-    return f"\x1b[{colour}m{text}\x1b[0m"
-
-
-def _line(text: str) -> None:
-    """One line of data, to stdout."""
+def _line(text: str, colour: str = "") -> None:
+    """One line of data, to stdout; in a colour on a terminal that wants colours."""
+    text = clean(text)
+    if colour and sys.stdout.isatty() and not os.environ.get("NO_COLOR"):
+        text = f"\x1b[{colour}m{text}\x1b[0m"
     sys.stdout.write(text + "\n")

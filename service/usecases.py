@@ -6,11 +6,11 @@ from enum import StrEnum
 from pathlib import Path
 from typing import TypeVar
 
-from optimiser.advice import Plan
+from optimiser.advice import Plan, Status
 from optimiser.formulate import Task
 from optimiser.modes import Free, Mode
 from optimiser.optimise import optimise as advise
-from service.files import read_bytes, write_atomically
+from service.files import is_same, read_bytes, require_place, write_atomically
 from service.records import changes_of
 from simulator.library import load_machine, load_material, machine_names, material_names
 from simulator.matching import match_material
@@ -94,10 +94,13 @@ def optimise(request: Request, *, tell: Tell = lambda _: None) -> Outcome:
     profile = _one_of(Profile, request.profile, "profile")
     free = frozenset(_one_of(Free, word.strip(), "free") for word in request.free.split(","))
     _require_positive(request.roughness_um, "roughness", "µm")
+    if request.tool_change:
+        _require_positive(request.tool_change, "tool change", "s")
     output = _output(request)
     program = read_program(request.file, units=request.units)
     chosen = _selected(program, request.workingsteps)
-    _require_usable(program, chosen)
+    findings = program.file.findings + program.model.findings()
+    _require_usable(program, chosen, findings)
     machine = _machine(request.machine, program)
     match = _material(request.material, program)
     tell(f"material: {match.reason}")
@@ -116,7 +119,7 @@ def optimise(request: Request, *, tell: Tell = lambda _: None) -> Outcome:
         ),
         selected=lambda step: step in chosen,
     )
-    plan = _with_file_findings(plan, program, match)
+    plan = _with_file_findings(plan, findings, match)
     written = None
     if not request.dry_run:
         changes = changes_of(plan)
@@ -131,6 +134,10 @@ def optimise(request: Request, *, tell: Tell = lambda _: None) -> Outcome:
 
         write_atomically(request.report, report_page(plan).encode())
         tell(f"report: {request.report}")
+    conflicts = [each for each in plan.advices if each.status is Status.INFEASIBLE]
+    if conflicts:
+        names = ", ".join(f"'{each.workingstep.id}'" for each in conflicts)
+        tell(f"infeasible, and not written: {names}")
     return Outcome(plan=plan, written=written)
 
 
@@ -157,15 +164,22 @@ def check(path: Path, *, units: str = "iso") -> Contents:
         schemas=file.schemas,
         instances=len(file),
         program=program,
-        findings=program.findings() + implausible(program),
+        findings=_all_findings(program),
     )
+
+
+def _all_findings(program: Program) -> tuple[Finding, ...]:
+    """Findings of a program; its numbers are looked at only where its references are sound."""
+    findings = program.findings()
+    if any(finding.severity is Severity.ERROR for finding in findings):
+        return findings
+    return findings + implausible(program)
 
 
 def convert(path: Path, *, profile: str, output: Path) -> None:
     """Move the optimisation records of a file into another profile."""
     wanted = _one_of(Profile, profile, "profile")
-    if _is_same(path, output):
-        raise WriteError("is the input file; name another output", path=str(output))
+    require_place(output, apart_from=path)
     program = read_program(path, units="iso")
     write_atomically(output, writeback.convert(program, wanted))
 
@@ -218,20 +232,18 @@ def _output(request: Request) -> Path:
     if request.in_place:
         if request.output is not None:
             raise StepNcError("--in-place and --output exclude each other")
-        return request.file
-    output = request.output or request.file.with_suffix(".optimised.stpnc")
-    if _is_same(request.file, output):
-        raise WriteError("is the input file; use --in-place to overwrite it", path=str(output))
-    if not request.dry_run and not output.parent.is_dir():
-        raise WriteError("the folder does not exist", path=str(output))
+        output = request.file
+    else:
+        output = request.output or request.file.with_suffix(".optimised.stpnc")
+        if is_same(request.file, output):
+            message = "is the input file; use --in-place to overwrite it"
+            raise WriteError(message, path=str(output))
+        if not request.dry_run:
+            require_place(output, apart_from=request.file)
+    if request.report is not None:
+        require_place(request.report, apart_from=request.file)
+        require_place(request.report, apart_from=output)
     return output
-
-
-def _is_same(one: Path, other: Path) -> bool:
-    """Whether two paths lead to one file."""
-    return one.resolve() == other.resolve() or (
-        one.exists() and other.exists() and one.samefile(other)
-    )
 
 
 def _selected(program: Program, wanted: tuple[str, ...]) -> tuple[Workingstep, ...]:
@@ -249,24 +261,25 @@ def _selected(program: Program, wanted: tuple[str, ...]) -> tuple[Workingstep, .
     return found
 
 
-def _require_usable(program: Program, chosen: tuple[Workingstep, ...]) -> None:
+def _require_usable(
+    program: Program, chosen: tuple[Workingstep, ...], findings: tuple[Finding, ...]
+) -> None:
     """Refuse a program with errors, or with numbers that are in other units.
 
-    When single workingsteps are asked for, what is wrong elsewhere does not matter.
+    Broken workingsteps do not matter when others are asked for by name.
     """
     if program.faults and len(chosen) == len(program.workingsteps):
         raise program.faults[0]
     if not chosen:
         raise SchemaError("the program has no machining workingstep")
-    if len(chosen) == len(program.workingsteps):
-        for finding in program.findings():
-            if finding.severity is Severity.ERROR:
-                raise SchemaError(
-                    finding.message,
-                    entity=finding.entity,
-                    attribute=finding.attribute,
-                    line=finding.line,
-                )
+    for finding in findings:
+        if finding.severity is Severity.ERROR:
+            raise SchemaError(
+                finding.message,
+                entity=finding.entity,
+                attribute=finding.attribute,
+                line=finding.line,
+            )
     error = refusal(program, chosen)
     if error is not None:
         raise error
@@ -305,8 +318,10 @@ def _load_material(name: str) -> MaterialMatch:
     return match_material((name,))
 
 
-def _with_file_findings(plan: Plan, program: Program, match: MaterialMatch) -> Plan:
+def _with_file_findings(
+    plan: Plan, findings: tuple[Finding, ...], match: MaterialMatch
+) -> Plan:
     """The plan with what was noticed while reading, and how the material was found."""
     guess = match.certainty is Certainty.GUESS
     said = Finding(severity=Severity.WARNING if guess else Severity.NOTE, message=match.reason)
-    return replace(plan, findings=(*program.findings(), said, *plan.findings))
+    return replace(plan, findings=(*findings, said, *plan.findings))

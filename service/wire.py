@@ -3,6 +3,7 @@
 import json
 from collections.abc import Sequence
 from dataclasses import asdict
+from math import isfinite
 from typing import Any
 
 from optimiser.advice import Advice, Load, Plan, State
@@ -65,7 +66,7 @@ def contents_json(contents: Contents) -> str:
 
 def entry_json(entry: Machine | Material) -> str:
     """One machine or material as JSON, in canonical units (mm, s, N, W, rev/s)."""
-    return _dump(asdict(entry))
+    return _dump(_finite(asdict(entry)))
 
 
 def entries_json(entries: Sequence[Machine | Material]) -> str:
@@ -174,6 +175,15 @@ def _finding(finding: Finding) -> dict[str, Any]:
         "line": finding.line,
         "rule": finding.rule,
     }
+
+
+def _finite(value: Any) -> Any:
+    """The same value with null where a number is infinite: not limited."""
+    if isinstance(value, dict):
+        return {key: _finite(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(item) for item in value]
+    return None if isinstance(value, float) and not isfinite(value) else value
 
 
 def _dump(value: object) -> str:

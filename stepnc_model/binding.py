@@ -15,6 +15,7 @@ from stepnc_model.entities.entity import Entity, attributes
 from stepnc_model.entities.operations import MachiningOperation
 from stepnc_model.entities.slots import Slot, slots_of
 from stepnc_model.errors import Finding, Part21Error, SchemaError, Severity
+from stepnc_model.paper002 import PRINTED, Reading, read_printed
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref, Value
 
@@ -197,8 +198,22 @@ def keyword_of(entity: Entity) -> str:
 
 def _entity_of(file: Part21File, id: int) -> Entity | None:
     """Entity of one instance, or None."""
+    printed = _printed(file, id)
+    if printed is not None:
+        return printed.entity
     found = _read(file, id)
     return None if found is None else bind(*found, file=file).entity
+
+
+def _printed(file: Part21File, id: int) -> Reading | None:
+    """A record in the form of paper 002's Fig. 11, or None for every other instance."""
+    if id not in file or file.keyword(id) not in PRINTED:
+        return None
+    try:
+        values = file.parameters(id)
+    except Part21Error:
+        return None
+    return read_printed(file.keyword(id), values, label=file.label(id), line=file.line(id))
 
 
 def _read(file: Part21File, id: int) -> tuple[type[Entity], tuple[Value, ...]] | None:
@@ -254,6 +269,9 @@ def _is_optimisation(file: Part21File | None, ref: Ref[object]) -> bool:
 
 def _inspect(file: Part21File, id: int) -> Inspection | None:
     """Look at one instance; None when it cannot be bound."""
+    printed = _printed(file, id)
+    if printed is not None:
+        return Inspection(findings=printed.findings, references=())
     found = _read(file, id)
     if found is None:
         return None

@@ -30,6 +30,14 @@ from stepnc_model.units import rev_s_from_rpm
 
 RULE = "paper 002, Fig. 11"
 
+PRINTED = frozenset({
+    "MACHINE_POWER",
+    "MAIN_CUTTING_POWER",
+    "CUTTING_FORCE",
+    "FACE_MILLING_TYPE",
+})
+"""keywords whose instances may stand in the printed form"""
+
 INLINED: Ref[NumericParameter] = Ref(0)
 """stands for a numeric parameter that has no instance of its own; ids of a file start at 1"""
 

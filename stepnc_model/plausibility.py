@@ -66,7 +66,10 @@ RULE = "ISO 14649-10 4.2.1"
 def _findings(program: Program, step: Workingstep) -> Iterator[Finding]:
     """What is odd about the numbers of one workingstep."""
     try:
-        conditions = programmed(program, step.technology_ref)
+        with program.using(step.operation_ref):
+            conditions = programmed(program, step.technology_ref)
+            oddities = list(_oddities(program, step, conditions))
+            is_left = _is_left_handed(program, step)
     except SchemaError as error:
         yield Finding(
             severity=Severity.ERROR,
@@ -76,7 +79,7 @@ def _findings(program: Program, step: Workingstep) -> Iterator[Finding]:
             line=error.line,
         )
         return
-    for number, message in _oddities(program, step, conditions):
+    for number, message in oddities:
         yield Finding(
             severity=Severity.WARNING,
             message=message,
@@ -87,7 +90,7 @@ def _findings(program: Program, step: Workingstep) -> Iterator[Finding]:
         )
     speed = conditions.speed
     is_milling = speed.attribute == "spindle"
-    if is_milling and speed.scale > 0.0 and not _is_left_handed(program, step):
+    if is_milling and speed.scale > 0.0 and not is_left:
         yield program.finding(
             Severity.NOTE,
             "the spindle is positive, counter-clockwise, and the tool is not left-handed",
@@ -135,10 +138,12 @@ def _all_fit(program: Program, steps: Sequence[Workingstep], units: UnitProfile)
     other = Program(program.file, units=units, name=program.name)
     for step in steps:
         try:
-            conditions = programmed(other, step.technology_ref)
+            with other.using(step.operation_ref):
+                conditions = programmed(other, step.technology_ref)
+                oddities = list(_oddities(other, step, conditions))
         except SchemaError:
             continue
-        if any(True for _ in _oddities(other, step, conditions)):
+        if oddities:
             return False
     return True
 

@@ -5,6 +5,7 @@ one workingstep unusable is an error finding, and asking for that workingstep ra
 """
 
 from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeVar
@@ -32,6 +33,12 @@ from stepnc_model.part21.values import Ref
 from stepnc_model.unit_profiles import ISO, UnitProfile
 
 T = TypeVar("T")
+
+MAX_EXECUTABLES = 100_000
+"""beyond so many a program is a trap: workplans that name each other twice grow as 2^n"""
+
+AIM_KEYWORDS = ("PRODUCT_DEFINITION", "MACHINING_WORKPLAN", "MACHINING_PROJECT")
+"""instances that AP238 files have and ISO 14649 files have not"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -87,8 +94,8 @@ class Program:
         self.units = units
         self.file = file
         self.model = Model(file)
-        self.executables = tuple(self._walk())
         self._faults: dict[int, SchemaError] = {}
+        self.executables = tuple(self._walk())
         self.workingsteps = tuple(self._workingsteps())
 
     @classmethod
@@ -129,6 +136,21 @@ class Program:
             attribute=attribute,
             line=self.line(ref),
         )
+
+    @contextmanager
+    def using(self, ref: Ref[Entity]) -> Iterator[None]:
+        """Turn what an instance lacks into an error that names it.
+
+        The binding is tolerant: where the schema requires a value, an entity may hold None, or
+        a number that no physics takes. Who works with it finds out, and here it gets a place.
+        """
+        try:
+            yield
+        except ValueError as error:
+            raise self.error(str(error), ref) from error
+        except (ArithmeticError, AttributeError, IndexError, TypeError) as error:
+            message = "an attribute that it needs is missing, of another kind, or out of range"
+            raise self.error(message, ref) from error
 
     @property
     def faults(self) -> tuple[SchemaError, ...]:
@@ -179,6 +201,10 @@ class Program:
         plans = dict(self.model.of_type(Workplan))
         inner = {int(element) for plan in plans.values() for element in plan.its_elements}
         outer = [ref for ref in plans if int(ref) not in inner]
+        if len(outer) != 1 and any(self.file.ids_of(keyword) for keyword in AIM_KEYWORDS):
+            raise SchemaError(
+                "an AP238 program (the AIM): programs of ISO 14649 are read, AP238 is not yet"
+            )
         if len(outer) != 1:
             raise SchemaError(
                 f"no PROJECT, and {len(outer)} workplans that nothing contains: "
@@ -188,27 +214,41 @@ class Program:
 
     def _walk(self) -> Iterator[Executable]:
         """Executables in order, structures before what they contain; no recursion."""
-        stack: list[tuple[Ref[Entity], int, Ref[Setup] | None, frozenset[int]]] = [
-            (self._main_workplan(), 0, None, frozenset())
-        ]
+        stack: list[_Visit] = [_Visit(self._main_workplan(), 0, None)]
+        open_ones: set[int] = set()
+        count = 0
         while stack:
-            ref, level, setup, above = stack.pop()
-            if int(ref) in above:
-                raise self.error("contains itself", ref, "its_elements")
-            entity = self.get(ref)
+            visit = stack.pop()
+            number = int(visit.ref)
+            if visit.is_leaving:
+                open_ones.discard(number)
+                continue
+            if number in open_ones:
+                raise self.error("contains itself", visit.ref, "its_elements")
+            if number not in self.file:
+                message = "is referred to, but there is no such instance"
+                self._faults[number] = SchemaError(message, entity=str(visit.ref))
+                continue
+            count += 1
+            if count > MAX_EXECUTABLES:
+                raise self.error(f"more than {MAX_EXECUTABLES} executables", visit.ref)
+            # An executable that no entity describes is kept and shown.
+            entity = self.model.entity(number)
+            setup = visit.setup
             if isinstance(entity, Workplan):
                 setup = entity.its_setup or setup
             yield Executable(
-                ref=ref,
-                keyword=self.file.keyword(int(ref)),
+                ref=visit.ref,
+                keyword=self.file.keyword(number),
                 id=str(getattr(entity, "its_id", "")),
-                level=level,
+                level=visit.level,
                 setup=setup,
             )
-            inner = above | {int(ref)}
-            stack.extend(
-                (child, level + 1, setup, inner) for child in reversed(_children(entity))
-            )
+            children = _children(entity)
+            if children:
+                open_ones.add(number)
+                stack.append(_Visit(visit.ref, visit.level, setup, is_leaving=True))
+            stack.extend(_Visit(child, visit.level + 1, setup) for child in reversed(children))
 
     def _workingsteps(self) -> Iterator[Workingstep]:
         """Workingsteps in order; what is wrong with one becomes a fault."""
@@ -231,7 +271,7 @@ class Program:
 
     def _workingstep(self, executable: Executable) -> Workingstep | None:
         """One workingstep, or None when the executable machines nothing."""
-        entity = self.get(executable.ref)
+        entity = self.model.entity(int(executable.ref))
         if isinstance(entity, MachiningWorkingstep):
             feature = entity.its_feature
             features: tuple[Ref[Entity], ...] = (feature,) if feature is not None else ()
@@ -264,7 +304,17 @@ class Program:
         )
 
 
-def _children(entity: Entity) -> tuple[Ref[Entity], ...]:
+@dataclass(frozen=True, slots=True)
+class _Visit:
+    """A place of the walk: going into an executable, or leaving it."""
+
+    ref: Ref[Entity]
+    level: int
+    setup: Ref[Setup] | None
+    is_leaving: bool = False
+
+
+def _children(entity: Entity | None) -> tuple[Ref[Entity], ...]:
     """Executables that a program structure contains, in order."""
     if isinstance(entity, (Workplan, Selective, NonSequential)):
         return tuple(entity.its_elements)

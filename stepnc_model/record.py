@@ -8,6 +8,7 @@ rev/s, s, kW, N, J, µm.
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields
+from math import isfinite
 from typing import Any, cast
 
 from stepnc_model.binding import Model, to_parameters
@@ -31,6 +32,7 @@ from stepnc_model.entities.optimisation import (
     QualityCriticalOptimisation,
     TimeCriticalOptimisation,
 )
+from stepnc_model.errors import SchemaError
 from stepnc_model.part21.values import Ref
 from stepnc_model.part21.writer import Edits
 
@@ -141,7 +143,16 @@ def write_entities(record: Record, edits: Edits) -> Ref[Entity]:
 
 
 def read_entities(model: Model, ref: Ref[Entity]) -> Record | None:
-    """Record behind an operation's optimisation; None for one that is not of this project."""
+    """Record behind an operation's optimisation; None for one that is not complete."""
+    try:
+        return _checked(_from_entities(model, ref))
+    except (AttributeError, TypeError, SchemaError):
+        # A record of another program: some reference leads to nothing or to something else.
+        return None
+
+
+def _from_entities(model: Model, ref: Ref[Entity]) -> Record | None:
+    """Collect what the entities of a record say."""
     optimum: Any = model.entity(int(ref))
     if not isinstance(optimum, Optimisation) or getattr(optimum, "its_record", None) is None:
         return None
@@ -173,7 +184,7 @@ def read_entities(model: Model, ref: Ref[Entity]) -> Record | None:
         machining_time=predicted.machining_time,
         motor_power=predicted.motor_power,
         cutting_force=predicted.cutting_force,
-        energy=predicted.energy or 0.0,
+        energy=predicted.energy,
         surface_roughness=predicted.surface_roughness,
         contact_angle=immersion.zeta if immersion else None,
         immersion=immersion.immersion_type.value if immersion else None,
@@ -204,16 +215,32 @@ def parameters_of(record: Record) -> Iterator[PropertyParameter]:
 
 def read_parameters(values: Mapping[str, float | str]) -> Record | None:
     """Record from its parameters by name, or None when they are not all there."""
-    known = {each.name: each for each in fields(Record)}
-    found: dict[str, Any] = {
-        name: int(value) if name == "number_of_passes" else value
-        for name, value in values.items()
-        if name in known
-    }
+    known = {each.name for each in fields(Record)}
+    found: dict[str, Any] = {name: value for name, value in values.items() if name in known}
+    count = found.get("number_of_passes")
+    if isinstance(count, float) and count.is_integer():
+        found["number_of_passes"] = int(count)
     try:
-        return Record(**found)
+        return _checked(Record(**found))
     except TypeError:
         return None
+
+
+def _checked(record: Record | None) -> Record | None:
+    """The record if every value is of its kind, else None."""
+    if record is None or record.mode not in MODES:
+        return None
+    for each in fields(record):
+        value = getattr(record, each.name)
+        if value is None and each.default is None:
+            continue
+        if "unit" not in each.metadata:
+            is_good = isinstance(value, str)
+        else:
+            is_good = isinstance(value, int | float) and isfinite(value)
+        if not is_good:
+            return None
+    return record
 
 
 def _predicted(record: Record) -> PredictedValues:

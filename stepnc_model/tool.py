@@ -1,7 +1,7 @@
 """The tool of a workingstep as numbers: ISO 14649-111 and -121 tools in mm and rad."""
 
 from dataclasses import dataclass
-from math import isfinite, pi
+from math import pi
 
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.tools import BallEndmill, MillingCuttingTool, MillingToolBody
@@ -18,6 +18,13 @@ RIGHT_ANGLE = 0.5 * pi
 
 LEAST_TOP_ANGLE_DEG = 2.0
 """no drill is so blunt: a smaller number is in radians, as some files write it"""
+
+
+MAX_DIAMETER = 2000.0
+"""mm; the largest face mills are below one metre"""
+
+MAX_TEETH = 500
+"""circular saws have more, and are no milling cutters"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,11 +82,13 @@ def _rotating(program: Program, ref: Ref[Entity], tool: MillingCuttingTool) -> T
         raise program.error("has no dimension", tool.its_tool_body, "dimension")
     dimension = program.get(body.dimension)
     diameter = dimension.diameter
-    if diameter is None or not isfinite(diameter) or diameter <= 0.0:
-        raise program.error(f"diameter {diameter} mm: it must be positive", body.dimension)
+    if diameter is None or not 0.0 < diameter <= MAX_DIAMETER:
+        message = f"diameter {diameter} mm: it must be positive, {MAX_DIAMETER:g} mm at most"
+        raise program.error(message, body.dimension, "diameter")
     teeth = body.number_of_teeth
-    if teeth is not None and teeth < 1:
-        raise program.error(f"{teeth} teeth cut nothing", tool.its_tool_body, "number_of_teeth")
+    if teeth is not None and not 1 <= teeth <= MAX_TEETH:
+        message = f"{teeth} teeth: a cutter has 1 to {MAX_TEETH}"
+        raise program.error(message, tool.its_tool_body, "number_of_teeth")
     radius = 0.5 * diameter if isinstance(body, BallEndmill) else dimension.edge_radius
     return Tool(
         id=tool.its_id or body.keyword.lower().replace("_", " "),

@@ -67,6 +67,11 @@ class TestNumbers:
             ("$,.TCP.,$,-20.,5.1,.F.,.F.,.F.", "feedrate_per_tooth", "exceeds the radius 5 mm"),
             ("1.,.TCP.,$,-20.,$,.F.,.F.,.F.", "feedrate", "25 mm exceeds the radius 5 mm"),
             ("$,.TCP.,$,-20.,0.0004,.F.,.F.,.F.", "feedrate_per_tooth", "below 0.0005 mm"),
+            (
+                "$,.TCP.,$,-0.25,0.1,.F.,.F.,.F.",
+                "spindle",
+                "the edge moves at 0.471 m/min only",
+            ),
         ],
     )
     def test_an_implausible_number_is_named_with_its_place(
@@ -117,6 +122,28 @@ class TestNumbers:
         program = program_of(f"0.004,.TCP.,$,{spindle},$,.F.,.F.,.F.", hand=hand)
         assert [each.severity for each in implausible(program)] == severities
         assert refusal(program, program.workingsteps) is None
+
+
+class TestTurning:
+    """A sample whose rough contour is given another feed per revolution."""
+
+    @staticmethod
+    def sample(feed: str) -> Program:
+        data = (PARTS / "shaft.stpnc").read_bytes()
+        old = b"#302=TURNING_TECHNOLOGY($,.TCP.,#310,0.22,"
+        assert old in data
+        return Program(
+            Part21File.from_bytes(data.replace(old, old[:-5] + feed.encode() + b","))
+        )
+
+    def test_no_lathe_feeds_six_millimetres_a_turn(self) -> None:
+        (finding,) = implausible(self.sample("6."))
+        assert finding.message == "feed 6 mm per revolution"
+        assert finding.entity == "#302 TURNING_TECHNOLOGY"
+        assert finding.attribute == "feed_per_revolution"
+
+    def test_five_millimetres_a_turn_are_plausible(self) -> None:
+        assert implausible(self.sample("5.")) == ()
 
 
 class TestAdvice:
@@ -177,12 +204,19 @@ class TestPublicFiles:
         assert caught.value.line > 0
         assert not output.exists()
 
-    @pytest.mark.parametrize("name", ["FuroBaseConica", "Ranhura", "furo"])
-    def test_the_units_named_are_not_refused(self, name: str) -> None:
+    @pytest.mark.parametrize(
+        ("name", "units"),
+        [
+            ("FuroBaseConica", "rpm-mmtooth"),
+            ("Ranhura", "rpm-mmrev"),
+            ("furo", "revs-mmtooth"),
+        ],
+    )
+    def test_the_units_named_are_not_refused(self, name: str, units: str) -> None:
         path = CORPUS / f"{name}.p21"
         if not path.exists():
             pytest.skip(f"{name}.p21 is not beside the project")
-        program = Program.load(path, units=PROFILES["rpm-mmtooth"])
+        program = Program.load(path, units=PROFILES[units])
         assert refusal(program, program.workingsteps) is None
 
 

@@ -31,7 +31,7 @@ EMPTY = (
 )
 
 NUMBERS = st.floats(allow_nan=False, allow_infinity=False)
-TEXTS = st.text(st.characters(exclude_categories=("Cs",)), max_size=20)
+TEXTS = st.text(st.characters(exclude_categories=["Cs"]), max_size=20)
 IMMERSIONS = st.sampled_from(sorted(FaceMillingImmersion))
 
 RECORD = Record(

@@ -108,23 +108,24 @@ class TestMilling:
         assert not milling().has_both_speeds
 
     def test_neither_speed_is_refused_by_rule_1(self) -> None:
-        with pytest.raises(SchemaError, match="neither cutspeed nor spindle.*WR1") as caught:
+        with pytest.raises(SchemaError, match=r"neither cutspeed nor spindle.*WR1") as caught:
             milling(spindle="$")
         assert caught.value.entity == "#10 MILLING_TECHNOLOGY"
         assert caught.value.line == FIRST_LINE
 
     def test_neither_feed_is_refused_by_rule_2(self) -> None:
-        with pytest.raises(SchemaError, match="neither feedrate nor .*WR2") as caught:
+        with pytest.raises(SchemaError, match=r"neither feedrate nor .*WR2") as caught:
             milling("$")
         assert caught.value.attribute == "feedrate"
 
     @pytest.mark.parametrize("number", HOSTILE)
     @pytest.mark.parametrize("attribute", ["feed", "cutspeed", "per_tooth"])
     def test_a_number_that_cuts_nothing_is_refused(self, attribute: str, number: str) -> None:
-        given = {"feed": "$", "cutspeed": "$", "spindle": "$", "per_tooth": "$"}
         other = {"cutspeed": "feed", "feed": "spindle", "per_tooth": "spindle"}[attribute]
+        numbers = {other: "1.", attribute: number}
+        names = ("feed", "cutspeed", "spindle", "per_tooth")
         with pytest.raises(SchemaError) as caught:
-            milling(**(given | {other: "1.", attribute: number}))
+            milling(*(numbers.get(name, "$") for name in names))
         assert caught.value.line == FIRST_LINE
 
     @pytest.mark.parametrize("number", ["0.", "-0.", "1e400", "-1e400"])

@@ -1,0 +1,142 @@
+"""A program while it is edited: the splice writer, spoken to by attribute names.
+
+Instances may be shorter than their entity (older editions) or carry the surplus reference to an
+optimisation in their middle; a draft knows where an attribute stands after what was taken away,
+and fills up with ``$`` where something has to stand behind the end.
+"""
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from typing import Any, cast
+
+from stepnc_model.binding import to_parameters
+from stepnc_model.entities.entity import Entity, attributes
+from stepnc_model.part21.values import Ref, Value
+from stepnc_model.part21.writer import Edits
+from stepnc_model.program import Program
+
+
+class Draft:
+    """Edits of one program; running state until :meth:`finish`."""
+
+    def __init__(self, program: Program) -> None:
+        self.program = program
+        self.edits = Edits(program.file)
+        self.removed: set[int] = set()
+        self.has_surplus = False
+        """whether an operation was given a reference to an optimisation"""
+        self._gaps: dict[int, int] = {}
+        self._lengths: dict[int, int] = {}
+        self._uses: Counter[int] | None = None
+        self._own: dict[tuple[int, str], Ref[Any]] = {}
+
+    def add(self, entity: Entity) -> Ref[Any]:
+        """Add an instance."""
+        return cast("Ref[Any]", self.edits.add(entity.keyword, to_parameters(entity)))
+
+    def add_like(self, ref: Ref[Any], values: tuple[Value, ...]) -> Ref[Any]:
+        """Add an instance of the same keyword as another."""
+        keyword = self.program.file.keyword(int(ref))
+        added = cast("Ref[Any]", self.edits.add(keyword, values))
+        self._lengths[int(added)] = len(values)
+        return added
+
+    def put(
+        self, owner: Ref[Any], attribute: str, value: Value, *, at: Ref[Any] | None = None
+    ) -> None:
+        """Set an attribute.
+
+        Parameters
+        ----------
+        owner : Ref
+            Instance of the file that tells where the attribute stands.
+        attribute : str
+        value : Value
+        at : Ref, optional
+            Copy of the owner that is written instead of it.
+        """
+        holder = int(at if at is not None else owner)
+        place = self.program.model.position(owner, attribute)
+        if place > self._gaps.get(holder, place):
+            place -= 1
+        self._fill(holder, place + 1)
+        self.edits.replace_parameter(holder, place, value)
+
+    def append_surplus(self, owner: Ref[Any], value: Value) -> None:
+        """Add a parameter behind the last attribute that the entity has."""
+        self._fill(int(owner), len(attributes(self.program.get(owner))))
+        self.edits.append_parameter(int(owner), value)
+        self.has_surplus = True
+        self._lengths[int(owner)] += 1
+
+    def drop_surplus(self, owner: Ref[Any]) -> None:
+        """Take the reference to an optimisation away."""
+        place = self.program.model.position(owner, "its_optimisation")
+        self.edits.remove_parameter(int(owner), place)
+        self._lengths[int(owner)] = self._length(int(owner)) - 1
+        self._gaps[int(owner)] = place
+
+    def remove(self, numbers: Sequence[int]) -> None:
+        """Remove instances of the file, each once."""
+        for number in numbers:
+            if number not in self.removed:
+                self.edits.remove(number)
+                self.removed.add(number)
+
+    def own(self, owner: Ref[Any], attribute: str, *, at: Ref[Any] | None = None) -> Ref[Any]:
+        """The instance that an attribute refers to, copied first when others use it too."""
+        holder = at if at is not None else owner
+        key = (int(holder), attribute)
+        if key not in self._own:
+            reference: Ref[Any] = getattr(self.program.get(owner), attribute)
+            self._own[key] = self._unshared(owner, attribute, reference, at=holder)
+        return self._own[key]
+
+    def _unshared(
+        self, owner: Ref[Any], attribute: str, reference: Ref[Any], *, at: Ref[Any]
+    ) -> Ref[Any]:
+        """The same instance when nobody else uses it, else a copy that the holder gets."""
+        uses = self._use_counts()
+        if uses[int(reference)] < 2:
+            return reference
+        values = self.program.file.parameters(int(reference))
+        copy = self.add_like(reference, values)
+        uses[int(reference)] -= 1
+        uses[int(copy)] = 1
+        # What the original refers to is now used by the copy as well.
+        uses.update(int(inner) for inner in references(values))
+        self.put(owner, attribute, copy, at=at)
+        return copy
+
+    def _use_counts(self) -> Counter[int]:
+        """How many references each instance has in the file."""
+        if self._uses is None:
+            file = self.program.file
+            self._uses = Counter(
+                int(reference)
+                for number in file.ids()
+                for _, values in file.parts(number)
+                for reference in references(values)
+            )
+        return self._uses
+
+    def _length(self, number: int) -> int:
+        """Parameters that an instance has now."""
+        if number not in self._lengths:
+            self._lengths[number] = len(self.program.file.parameters(number))
+        return self._lengths[number]
+
+    def _fill(self, number: int, count: int) -> None:
+        """Make an instance at least so long, by ``$`` at its end."""
+        for _ in range(count - self._length(number)):
+            self.edits.append_parameter(number, None)
+            self._lengths[number] += 1
+
+
+def references(values: tuple[Value, ...]) -> Iterator[Ref[object]]:
+    """All references among values, lists included."""
+    for value in values:
+        if isinstance(value, Ref):
+            yield value
+        elif isinstance(value, tuple):
+            yield from references(value)

@@ -1,0 +1,169 @@
+"""Taking the record of an optimum out of a draft, and putting it in.
+
+Profile ``optimisation``: entities behind one surplus parameter of the operation. Profile
+``standard``: prefixed parameters of a copy of the operation's machine functions, which names
+the original it was copied from.
+"""
+
+from typing import Any
+
+from stepnc_model.draft import Draft, references
+from stepnc_model.entities.entity import Entity
+from stepnc_model.entities.measures import DescriptiveParameter, NumericParameter
+from stepnc_model.entities.technology import MachineFunctions, ProcessModel, ProcessModelList
+from stepnc_model.part21.values import Ref
+from stepnc_model.program import Program, Workingstep
+from stepnc_model.record import (
+    GENERATOR,
+    PREFIX,
+    Record,
+    parameters_of,
+    read_entities,
+    read_parameters,
+    write_entities,
+)
+
+ORIGINAL = "machine_functions"
+"""parameter that names the machine functions a record's copy was made of"""
+
+RECORD_KEYWORDS = frozenset({
+    "TIME_CRITICAL_OPTIMISATION",
+    "QUALITY_CRITICAL_OPTIMISATION",
+    "ENERGY_CRITICAL_OPTIMISATION",
+    "OPTIMISATION_RECORD",
+    "MACHINE_POWER",
+    "MAIN_CUTTING_POWER",
+    "CUTTING_FORCE",
+    "FACE_MILLING_TYPE",
+    "PREDICTED_VALUES",
+    "PROGRAMMED_VALUES",
+    "NUMERIC_PARAMETER",
+})
+"""instances that a record is made of"""
+
+
+def find_record(program: Program, step: Workingstep) -> Record | None:
+    """Record of a workingstep in either profile; None when there is none that is ours."""
+    reference = step.operation.its_optimisation
+    if reference is not None:
+        return read_entities(program.model, reference)
+    return _parameter_record(program, step)
+
+
+def take_out(draft: Draft, step: Workingstep) -> None:
+    """Remove what an operation carries of an optimum, whatever its form."""
+    program = draft.program
+    reference = step.operation.its_optimisation
+    if reference is not None:
+        draft.drop_surplus(step.operation_ref)
+        draft.remove(_record_instances(program, reference))
+    original = _original_functions(program, step)
+    if original is None or step.functions_ref is None:
+        return
+    functions: Any = program.get(step.functions_ref)
+    draft.put(step.operation_ref, "its_machine_functions", original)
+    ours = [
+        int(each)
+        for each in functions.other_functions or ()
+        if _name_of(program, each).startswith(PREFIX)
+    ]
+    draft.remove([*ours, *_own_models(program, functions), int(step.functions_ref)])
+
+
+def put_entities(draft: Draft, step: Workingstep, record: Record) -> None:
+    """Profile ``optimisation``."""
+    draft.append_surplus(step.operation_ref, write_entities(record, draft.edits))
+
+
+def put_parameters(draft: Draft, step: Workingstep, record: Record) -> None:
+    """Profile ``standard``; SchemaError when the operation has no machine functions."""
+    program = draft.program
+    original = _original_functions(program, step) or step.functions_ref
+    if original is None:
+        raise program.error(
+            "has no machine functions: profile 'standard' has nowhere to put the record",
+            step.operation_ref,
+            "its_machine_functions",
+        )
+    functions: Any = program.get(original)
+    named = DescriptiveParameter(
+        parameter_name=PREFIX + ORIGINAL, descriptive_string=repr(original)
+    )
+    entities: list[Entity] = [*parameters_of(record), named]
+    added = [draft.add(entity) for entity in entities]
+    copy = draft.add_like(original, program.file.parameters(int(original)))
+    others = (*(functions.other_functions or ()), *added)
+    draft.put(original, "other_functions", others, at=copy)
+    if functions.its_process_model is None:
+        draft.put(original, "its_process_model", _process_model(draft, record), at=copy)
+    draft.put(step.operation_ref, "its_machine_functions", copy)
+
+
+def _parameter_record(program: Program, step: Workingstep) -> Record | None:
+    """Record written as parameters of the machine functions."""
+    if _original_functions(program, step) is None or step.functions_ref is None:
+        return None
+    functions: Any = program.get(step.functions_ref)
+    values: dict[str, float | str] = {}
+    for reference in functions.other_functions or ():
+        name = _name_of(program, reference)
+        if name.startswith(PREFIX):
+            values[name.removeprefix(PREFIX)] = _value_of(program.get(reference))
+    return read_parameters(values)
+
+
+def _original_functions(program: Program, step: Workingstep) -> Ref[Any] | None:
+    """Machine functions that an operation's copy was made of; None when it has no copy."""
+    if step.functions_ref is None:
+        return None
+    functions: Any = program.model.entity(int(step.functions_ref))
+    for reference in getattr(functions, "other_functions", None) or ():
+        if _name_of(program, reference) != PREFIX + ORIGINAL:
+            continue
+        number = str(_value_of(program.get(reference))).removeprefix("#")
+        if not number.isdecimal() or int(number) == int(step.functions_ref):
+            return None
+        is_functions = isinstance(program.model.entity(int(number)), MachineFunctions)
+        return Ref(int(number)) if is_functions else None
+    return None
+
+
+def _process_model(draft: Draft, record: Record) -> Ref[Any]:
+    """A process model that says which model the record comes from."""
+    model = draft.add(ProcessModel(ini_data_file=record.machine, its_type=GENERATOR))
+    return draft.add(ProcessModelList(its_list=(model,)))
+
+
+def _record_instances(program: Program, ref: Ref[Any]) -> list[int]:
+    """Instances that a record is made of, the optimisation first."""
+    found, waiting = [], [int(ref)]
+    while waiting:
+        number = waiting.pop()
+        known = number in program.file and number not in found
+        if not known or program.file.keyword(number) not in RECORD_KEYWORDS:
+            continue
+        found.append(number)
+        waiting += [int(each) for each in references(program.file.parameters(number))]
+    return found
+
+
+def _own_models(program: Program, functions: Entity) -> list[int]:
+    """Process models of a copy that this project added."""
+    reference: Any = getattr(functions, "its_process_model", None)
+    models: Any = program.model.entity(int(reference)) if reference is not None else None
+    if not isinstance(models, ProcessModelList):
+        return []
+    kinds = [program.get(each).its_type for each in models.its_list]
+    return [int(reference), *map(int, models.its_list)] if kinds == [GENERATOR] else []
+
+
+def _name_of(program: Program, ref: Ref[Any]) -> str:
+    """Name of a parameter, empty for another instance."""
+    return str(getattr(program.model.entity(int(ref)), "parameter_name", ""))
+
+
+def _value_of(parameter: Entity) -> float | str:
+    """Number or text of a parameter."""
+    if isinstance(parameter, NumericParameter):
+        return parameter.its_parameter_value
+    return str(getattr(parameter, "descriptive_string", ""))

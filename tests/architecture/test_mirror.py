@@ -1,0 +1,46 @@
+"""Every module has tests of its own, in the place that mirrors its own."""
+
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PACKAGES = ("stepnc_model", "simulator", "optimiser", "service")
+
+NOUNS = {
+    "stepnc_model/entities": "nouns without behaviour: tests/stepnc_model/entities/test_order.py"
+    " holds every one against the standard's attribute order",
+}
+"""folders whose modules are tested together"""
+
+TOGETHER = {
+    "simulator/spec.py": "dataclasses only; loaded and checked in tests/simulator",
+    "simulator/errors.py": "raised and read in tests/simulator",
+    "optimiser/advice.py": "made and read in tests/optimiser/test_optimise.py",
+    "service/figures.py": "drawn in tests/service/test_report.py",
+    "stepnc_model/part21/values.py": "written and read in tests/stepnc_model/part21",
+    "stepnc_model/express/datatypes.py": "parsed in tests/stepnc_model/express/test_reader.py",
+}
+"""modules that are tested through another"""
+
+
+def modules() -> list[str]:
+    return sorted(
+        str(path.relative_to(ROOT))
+        for package in PACKAGES
+        for path in (ROOT / package).rglob("*.py")
+        if path.name != "__init__.py"
+    )
+
+
+@pytest.mark.parametrize("module", modules())
+def test_module_has_a_mirror(module: str) -> None:
+    path = Path(module)
+    if str(path.parent) in NOUNS or module in TOGETHER:
+        return
+    assert (ROOT / "tests" / path.parent / f"test_{path.name}").exists()
+
+
+@pytest.mark.parametrize("module", modules())
+def test_module_is_short_enough_to_read(module: str) -> None:
+    assert len((ROOT / module).read_text(encoding="utf-8").splitlines()) <= 400

@@ -1,0 +1,43 @@
+"""What the documents show is what the commands print."""
+
+import contextlib
+import io
+import re
+from pathlib import Path
+
+import pytest
+
+from service.cli import optimise_main
+
+ROOT = Path(__file__).parents[2]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def test_the_command_prints_what_the_readme_shows(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(ROOT)
+    shown = re.search(r"    \$ optimise (.*) -o part\.stpnc\n((?:    .*\n)+)", README)
+    assert shown is not None
+    with pytest.raises(SystemExit) as stopped:
+        optimise_main([*shown[1].split(), "-o", str(tmp_path / "part.stpnc")])
+    assert stopped.value.code == 0
+    printed = capsys.readouterr().out
+    for line in shown[2].splitlines():
+        assert line.removeprefix("    ") in printed
+
+
+def test_the_python_of_the_readme_prints_its_comment(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(ROOT)
+    code = re.search(r"```python\n(.*?)```", README, flags=re.DOTALL)
+    assert code is not None
+    expected = re.search(r"print\(.*\)  # (.*)", code[1])
+    assert expected is not None
+    printed = io.StringIO()
+    with contextlib.redirect_stdout(printed):
+        exec(compile(code[1], "README.md", "exec"), {})
+    assert printed.getvalue().strip() == expected[1]
+
+
+def test_the_readme_is_one_screen() -> None:
+    assert len(README.splitlines()) <= 66

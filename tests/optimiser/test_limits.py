@@ -1,0 +1,362 @@
+"""The limits of a cut: which there are, where their bounds come from, and what loads them."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from math import pi, sqrt
+
+import pytest
+
+from optimiser import loads
+from optimiser.cut import Cut, CutKind, Texture
+from optimiser.limit import Limit, LimitName, Sense
+from optimiser.limits import (
+    FINISHING_DEFLECTION,
+    NOSE_FEED_RATIO,
+    ROUGHING_DEFLECTION,
+    STICK_OUT,
+    Conditions,
+    cutting_speed_window,
+    force_factor,
+    force_load,
+    limits_of,
+    power_load,
+    roughness_load,
+    segment_at,
+    speed_range,
+    spindle_limits,
+)
+from optimiser.problem import Setting
+from simulator.library import find_grade, load_machine, load_material
+from simulator.physics.engagement import full_immersion, unidirectional
+from simulator.spec import CuttingMaterial, ToolKind
+from stepnc_model.tool import Tool
+
+MILL = Tool(
+    id="mill",
+    keyword="TAPERED_ENDMILL",
+    diameter=12.0,
+    teeth=4,
+    corner_radius=0.5,
+    cutting_edge_length=26.0,
+)
+DRILL = Tool(id="drill", keyword="TWIST_DRILL", diameter=10.0, teeth=2)
+INSERT = Tool(id="insert", keyword="GENERAL_TURNING_TOOL", corner_radius=0.8)
+CUT = Cut(
+    kind=CutKind.MILLING,
+    tool=MILL,
+    tool_kind=ToolKind.ENDMILL,
+    diameter=12.0,
+    programmed=Setting(feed=0.05, depth=3.0, passes=2, speed=60.0),
+    length=500.0,
+    total_depth=6.0,
+    is_depth_free=True,
+    engagement=unidirectional(6.0, 12.0),
+    radial_width=6.0,
+    depth_bound=26.0,
+)
+DRILLED = replace(
+    CUT,
+    kind=CutKind.DRILLING,
+    tool=DRILL,
+    tool_kind=ToolKind.DRILL,
+    diameter=10.0,
+    engagement=None,
+    depth_bound=None,
+)
+TURNED = replace(
+    CUT,
+    kind=CutKind.TURNING,
+    tool=INSERT,
+    tool_kind=ToolKind.TURNING,
+    diameter=40.0,
+    engagement=None,
+    corner_radius=0.8,
+    texture=Texture.CORNER_PER_REVOLUTION,
+    depth_bound=6.0,
+)
+
+
+def conditions(kind: ToolKind = ToolKind.ENDMILL, roughness: float | None = None) -> Conditions:
+    """Carbide in C45 on the machining centre of the library."""
+    return Conditions(
+        machine=load_machine("vmc15"),
+        material=load_material("c45"),
+        cutting_material=CuttingMaterial.CARBIDE,
+        grade=find_grade(kind, CuttingMaterial.CARBIDE, "P"),
+        roughness=roughness,
+    )
+
+
+CARBIDE = conditions()
+PAPER = Conditions(
+    machine=load_machine("paper002"),
+    material=load_material("paper002"),
+    cutting_material=CuttingMaterial.HSS,
+    grade=None,
+    roughness=None,
+)
+
+
+def names(limits: Sequence[Limit]) -> set[LimitName]:
+    return {limit.name for limit in limits}
+
+
+def named(limits: Sequence[Limit], name: LimitName, sense: Sense = Sense.AT_MOST) -> Limit:
+    (found,) = (limit for limit in limits if limit.name is name and limit.sense is sense)
+    return found
+
+
+def test_what_a_source_does_not_give_does_not_limit() -> None:
+    """Table 2 of paper 002 gives a motor and a greatest feed per tooth."""
+    cut = replace(CUT, depth_bound=None)
+    assert names(limits_of(cut, PAPER)) == {LimitName.FEED_PER_TOOTH}
+    limits = spindle_limits(cut, PAPER, segment_at(PAPER, 10.0))
+    assert names(limits) == {LimitName.MOTOR_POWER}
+    assert limits[0].bound_at(10.0) == pytest.approx(290.0)
+
+
+def test_end_mill_on_a_machining_centre_has_all_its_limits() -> None:
+    at = replace(CARBIDE, roughness=1.6e-3)
+    cut = replace(CUT, texture=Texture.CORNER_PER_TOOTH, corner_radius=0.5)
+    assert names(limits_of(cut, at)) == {
+        LimitName.CUTTING_FORCE,
+        LimitName.FEED_MECHANISM,
+        LimitName.FEED_PER_TOOTH,
+        LimitName.CHIP_THICKNESS,
+        LimitName.TOOL_DEFLECTION,
+        LimitName.SHANK_STRENGTH,
+        LimitName.AXIAL_DEPTH,
+        LimitName.ROUGHNESS,
+        LimitName.CUTTING_SPEED,
+        LimitName.SPINDLE_SPEED,
+    }
+
+
+def test_face_mill_does_not_bend() -> None:
+    cut = replace(CUT, tool_kind=ToolKind.FACEMILL)
+    found = names(limits_of(cut, conditions(ToolKind.FACEMILL)))
+    assert not found & {LimitName.TOOL_DEFLECTION, LimitName.SHANK_STRENGTH}
+
+
+def test_feed_per_tooth_is_the_grades_share_of_the_diameter() -> None:
+    limit = named(limits_of(CUT, CARBIDE), LimitName.FEED_PER_TOOTH)
+    assert CARBIDE.grade is not None
+    assert CARBIDE.grade.max_feed_ratio is not None
+    assert limit.bound == pytest.approx(CARBIDE.grade.max_feed_ratio * 12.0)
+
+
+def test_feed_per_tooth_of_the_material_holds_where_it_is_less() -> None:
+    at = replace(CARBIDE, material=replace(CARBIDE.material, max_feed_per_tooth=0.02))
+    assert named(limits_of(CUT, at), LimitName.FEED_PER_TOOTH).bound == 0.02
+
+
+def test_drills_feed_is_per_revolution_and_shared_by_its_lips() -> None:
+    at = conditions(ToolKind.DRILL)
+    assert at.grade is not None
+    assert at.grade.max_feed_ratio is not None
+    limit = named(limits_of(DRILLED, at), LimitName.FEED_PER_TOOTH)
+    assert limit.bound == pytest.approx(at.grade.max_feed_ratio * 10.0 / 2)
+
+
+def test_feed_of_an_insert_stays_below_its_nose() -> None:
+    at = conditions(ToolKind.TURNING)
+    limit = named(limits_of(replace(TURNED, corner_radius=0.2), at), LimitName.FEED_PER_TOOTH)
+    assert limit.bound == pytest.approx(NOSE_FEED_RATIO * 0.2)
+
+
+def test_chip_floor_grows_the_feed_of_a_narrow_cut() -> None:
+    """h_m = f_z·C/φ: a tenth of the diameter has C = 0.2 over 36.87 degrees."""
+    cut = replace(CUT, engagement=unidirectional(1.2, 12.0))
+    floor = named(limits_of(cut, CARBIDE), LimitName.CHIP_THICKNESS, Sense.AT_LEAST)
+    assert CARBIDE.grade is not None
+    ratio = 0.2 / (36.8699 * pi / 180.0)
+    expected = CARBIDE.grade.min_chip_thickness / ratio
+    assert floor.feed_at_bound(3.0, 60.0) == pytest.approx(expected, rel=1e-5)
+
+
+def test_deflection_is_that_of_a_bar_clamped_at_one_end() -> None:
+    """F·L³/(3·E·π·d⁴/64) with d = 0.8·D and L = 3·D."""
+    limit = named(limits_of(CUT, CARBIDE), LimitName.TOOL_DEFLECTION)
+    stress = named(limits_of(CUT, CARBIDE), LimitName.SHANK_STRENGTH)
+    overhang, diameter = STICK_OUT * 12.0, 0.8 * 12.0
+    assert CARBIDE.grade is not None
+    stiffness = 3.0 * CARBIDE.grade.youngs_modulus * pi * diameter**4 / 64.0
+    force = limit.load.value(0.05, 3.0, 60.0) * stiffness / overhang**3
+    expected = 32.0 * force * overhang / (pi * diameter**3)
+    assert stress.load.value(0.05, 3.0, 60.0) == pytest.approx(expected)
+    assert limit.bound == ROUGHING_DEFLECTION
+    assert stress.bound == CARBIDE.grade.bending_strength
+
+
+def test_long_edge_sticks_out_further() -> None:
+    long = replace(CUT, tool=replace(MILL, cutting_edge_length=72.0))
+    deflections = [
+        named(limits_of(cut, CARBIDE), LimitName.TOOL_DEFLECTION).load.coefficient
+        for cut in (CUT, long)
+    ]
+    assert deflections[1] == pytest.approx(8.0 * deflections[0])
+
+
+def test_finished_wall_bends_the_tool_less() -> None:
+    cut = replace(CUT, texture=Texture.WALL, is_finish_operation=True)
+    limit = named(limits_of(cut, CARBIDE), LimitName.TOOL_DEFLECTION)
+    assert limit.bound == FINISHING_DEFLECTION
+    roughed = replace(CUT, texture=Texture.WALL, is_finishing=True)
+    limit = named(limits_of(roughed, CARBIDE), LimitName.TOOL_DEFLECTION)
+    assert limit.bound == ROUGHING_DEFLECTION
+
+
+@pytest.mark.parametrize(
+    ("machine", "edge", "expected"),
+    [(2.0, 26.0, 2.0), (None, 4.0, 4.0), (None, None, 24.0)],
+)
+def test_least_bound_of_the_depth_holds(
+    machine: float | None, edge: float | None, expected: float
+) -> None:
+    """Machine, cutting edge, or twice the diameter by the grade."""
+    at = replace(CARBIDE, machine=replace(CARBIDE.machine, max_axial_depth=machine))
+    limit = named(limits_of(replace(CUT, depth_bound=edge), at), LimitName.AXIAL_DEPTH)
+    assert limit.bound == pytest.approx(expected)
+
+
+def test_depth_of_a_hole_is_no_depth_of_cut() -> None:
+    limits = limits_of(DRILLED, conditions(ToolKind.DRILL))
+    assert LimitName.AXIAL_DEPTH not in names(limits)
+
+
+def test_cutting_force_of_a_drill_is_its_thrust() -> None:
+    """The force along the axis is what the machine has to push with."""
+    at = conditions(ToolKind.DRILL)
+    limit = named(limits_of(DRILLED, at), LimitName.CUTTING_FORCE)
+    assert limit.bound == 8000.0
+    assert limit.load == loads.thrust(DRILLED, at.material.kienzle, force_factor(at))
+
+
+def test_feed_mechanism_is_teeth_times_speed_times_feed() -> None:
+    limit = named(limits_of(CUT, CARBIDE), LimitName.FEED_MECHANISM)
+    assert limit.load.value(0.1, 3.0, 60.0) == pytest.approx(0.1 * 4 * 60.0)
+    assert limit.bound * limit.scale == pytest.approx(20_000.0)
+
+
+@pytest.mark.parametrize("teeth", [1, 5])
+def test_face_milled_floor_is_marked_once_a_revolution(teeth: int) -> None:
+    """f²/(18√3·r) with f = z·f_z, and 0.2 µm that no feed removes."""
+    cut = replace(
+        CUT,
+        tool=replace(MILL, teeth=teeth),
+        texture=Texture.CORNER_PER_REVOLUTION,
+        corner_radius=0.8,
+    )
+    load = roughness_load(cut)
+    assert load is not None
+    expected = (teeth * 0.1) ** 2 / (18.0 * sqrt(3.0) * 0.8) + 0.2e-3
+    assert load.value(0.1, 3.0, 60.0) == pytest.approx(expected)
+
+
+def test_end_milled_floor_is_marked_by_every_tooth() -> None:
+    cut = replace(CUT, texture=Texture.CORNER_PER_TOOTH, corner_radius=0.5)
+    load = roughness_load(cut)
+    assert load is not None
+    expected = 0.1**2 / (18.0 * sqrt(3.0) * 0.5) + 0.2e-3
+    assert load.value(0.1, 3.0, 60.0) == pytest.approx(expected)
+
+
+def test_wall_is_marked_by_the_circle_of_the_mill() -> None:
+    """f_z²/(4·D) from peak to valley, a quarter of it as Ra."""
+    load = roughness_load(replace(CUT, texture=Texture.WALL))
+    assert load is not None
+    expected = 0.1**2 / (4.0 * 12.0) / 4.0 + 0.2e-3
+    assert load.value(0.1, 3.0, 60.0) == pytest.approx(expected)
+
+
+def test_surface_that_the_feed_does_not_describe_has_no_roughness() -> None:
+    assert roughness_load(CUT) is None
+    at = replace(CARBIDE, roughness=1.6e-3)
+    assert LimitName.ROUGHNESS not in names(limits_of(CUT, at))
+
+
+def test_turned_roughness_of_print_allows_the_feed_of_print() -> None:
+    """Ra 1.6 µm and a nose of 0.8 mm: 0.1998 mm without the floor of 0.2 µm."""
+    at = conditions(ToolKind.TURNING, roughness=1.6e-3 + 0.2e-3)
+    limit = named(limits_of(TURNED, at), LimitName.ROUGHNESS)
+    assert limit.feed_at_bound(1.0, 10.0) == pytest.approx(0.1998, abs=5e-5)
+
+
+def test_roughness_that_nobody_asks_for_does_not_limit() -> None:
+    cut = replace(CUT, texture=Texture.WALL)
+    assert LimitName.ROUGHNESS not in names(limits_of(cut, CARBIDE))
+
+
+def test_floor_limits_the_feed_too_at_its_own_depth() -> None:
+    floor = replace(CUT, engagement=full_immersion(), radial_width=12.0, total_depth=0.2)
+    limits = limits_of(replace(CUT, floor=floor), CARBIDE)
+    deflections = [limit for limit in limits if limit.name is LimitName.TOOL_DEFLECTION]
+    assert len(deflections) == 2
+    alone = named(limits_of(floor, CARBIDE), LimitName.TOOL_DEFLECTION)
+    swept = deflections[1]
+    for depth in (0.5, 6.0):
+        assert swept.feed_at_bound(depth, 60.0) == pytest.approx(alone.feed_at_bound(0.2, 60.0))
+
+
+def test_floor_loads_the_spindle_too() -> None:
+    floor = replace(CUT, engagement=full_immersion(), total_depth=0.2)
+    at = replace(CUT, floor=floor)
+    segment = segment_at(CARBIDE, 60.0)
+    powers = [
+        limit
+        for limit in spindle_limits(at, CARBIDE, segment)
+        if limit.name is LimitName.MOTOR_POWER
+    ]
+    expected = power_load(floor, CARBIDE).value(0.05, 0.2, 60.0)
+    assert powers[1].load.value(0.05, 99.0, 60.0) == pytest.approx(expected)
+
+
+def test_spindle_gives_constant_torque_then_constant_power() -> None:
+    """81.2 N·m up to 1500 rpm; 15 kW up to 8000 rpm."""
+    low = spindle_limits(CUT, CARBIDE, segment_at(CARBIDE, 10.0))
+    middle = spindle_limits(CUT, CARBIDE, segment_at(CARBIDE, 60.0))
+    assert named(low, LimitName.SPINDLE_TORQUE).bound_at(10.0) == pytest.approx(81_200.0)
+    assert named(low, LimitName.MOTOR_POWER).bound_at(12.5) == pytest.approx(7_500.0, rel=1e-3)
+    assert named(middle, LimitName.MOTOR_POWER).bound_at(60.0) == pytest.approx(15_000.0)
+
+
+def test_beyond_the_ends_of_the_curve_the_nearest_stretch_holds() -> None:
+    assert segment_at(CARBIDE, 1e6).max_speed == pytest.approx(200.0)
+
+
+def test_speed_range_is_what_tool_and_machine_share() -> None:
+    """200 to 250 m/min on 12 mm: 88 to 110 rev/s, below 12 000 rpm."""
+    low, high = speed_range(CUT, CARBIDE)
+    assert low == pytest.approx(200_000.0 / 60.0 / (pi * 12.0))
+    assert high == pytest.approx(250_000.0 / 60.0 / (pi * 12.0))
+    slow = replace(CARBIDE.machine, spindle=replace(CARBIDE.machine.spindle, max_speed=100.0))
+    assert speed_range(CUT, replace(CARBIDE, machine=slow))[1] == 100.0
+
+
+def test_window_of_the_grade_goes_before_that_of_the_material() -> None:
+    assert CARBIDE.grade is not None
+    grade = replace(CARBIDE.grade, max_cutting_speed=1000.0)
+    low, high = cutting_speed_window(replace(CARBIDE, grade=grade))
+    assert high == 1000.0
+    assert low == pytest.approx(200_000.0 / 60.0)
+
+
+def test_material_of_constant_resistance_has_no_correction() -> None:
+    assert force_factor(PAPER) == 1.0
+    assert force_factor(replace(PAPER, force_factor=1.3)) == 1.3
+
+
+def test_accepted_correction_multiplies_the_force() -> None:
+    plain = force_load(CUT, CARBIDE).value(0.05, 3.0, 60.0)
+    corrected = force_load(CUT, replace(CARBIDE, force_factor=1.2)).value(0.05, 3.0, 60.0)
+    assert corrected == pytest.approx(1.2 * plain)
+
+
+def test_positive_rake_cuts_easier() -> None:
+    """One per cent a degree: 10 degrees more are 10 % less."""
+    kienzle = replace(CARBIDE.material.kienzle, rake_angle=0.0)
+    assert CARBIDE.grade is not None
+    at = replace(CARBIDE, material=replace(CARBIDE.material, kienzle=kienzle))
+    flat = replace(at, grade=replace(CARBIDE.grade, rake_angle=0.0))
+    steep = replace(at, grade=replace(CARBIDE.grade, rake_angle=10.0 * pi / 180.0))
+    assert force_factor(steep) == pytest.approx(0.9 * force_factor(flat))

@@ -1,0 +1,367 @@
+"""Advice for whole programs: the sample parts."""
+
+from math import pi, sqrt
+from pathlib import Path
+
+import pytest
+
+from optimiser.advice import Advice, Plan, State, Status
+from optimiser.formulate import Task
+from optimiser.limit import LimitName
+from optimiser.modes import Free, Mode
+from optimiser.optimise import DEFAULT_QUALITY, optimise
+from simulator.library import load_machine
+from simulator.matching import match_material
+from stepnc_model.part21.reader import Part21File
+from stepnc_model.program import Program
+from stepnc_model.units import mm_min_from_speed
+
+PARTS = Path(__file__).parents[2] / "examples" / "parts"
+USUAL = {
+    "bracket": ("vmc15", "C45"),
+    "paper002": ("paper002", "paper002"),
+    "shaft": ("lathe22", "42CrMo4"),
+}
+ALL_FREE = frozenset(Free)
+
+
+def edited(name: str, *changes: tuple[str, str]) -> Program:
+    """A sample part with some texts replaced."""
+    text = (PARTS / f"{name}.stpnc").read_text()
+    for before, after in changes:
+        assert before in text
+        text = text.replace(before, after)
+    return Program(Part21File.from_bytes(text.encode(), name=name), name=name)
+
+
+def plan_of(name: str, task: Task, *changes: tuple[str, str], machine: str = "") -> Plan:
+    usual, material = USUAL[name]
+    return optimise(
+        edited(name, *changes),
+        machine=load_machine(machine or usual),
+        material=match_material([material]),
+        task=task,
+    )
+
+
+def advice_of(plan: Plan, name: str) -> Advice:
+    (found,) = (advice for advice in plan.advices if advice.workingstep.id == name)
+    return found
+
+
+def after(advice: Advice) -> State:
+    assert advice.after is not None
+    return advice.after
+
+
+def before(advice: Advice) -> State:
+    assert advice.before is not None
+    return advice.before
+
+
+@pytest.fixture(scope="module")
+def bracket() -> Plan:
+    return plan_of("bracket", Task())
+
+
+@pytest.fixture(scope="module")
+def shaft() -> Plan:
+    return plan_of("shaft", Task())
+
+
+def test_paper_002_runs_at_290_mm_min_at_its_motor_power() -> None:
+    (advice,) = plan_of("paper002", Task()).advices
+    state = after(advice)
+    assert mm_min_from_speed(state.feed) == pytest.approx(290.0)
+    assert state.setting.feed == pytest.approx(0.1171, abs=5e-5)
+    assert state.motor_power == pytest.approx(290.0)
+    assert state.cutting_force == pytest.approx(447.43, abs=0.01)
+    assert state.time == pytest.approx(318.0 / 290.0 * 60.0)
+    assert advice.active is LimitName.MOTOR_POWER
+    assert advice.reason == "motor power 0.29 kW reaches its bound of 0.29 kW"
+
+
+@pytest.mark.parametrize("mode", list(Mode))
+@pytest.mark.parametrize("name", ["bracket", "shaft"])
+def test_advice_keeps_every_limit_that_the_feed_or_the_depth_can_keep(
+    name: str, mode: Mode
+) -> None:
+    """A programmed speed outside its window is a warning, where the speed is not free."""
+    not_free = {LimitName.CUTTING_SPEED, LimitName.SPINDLE_SPEED}
+    for advice in plan_of(name, Task(mode=mode)).advices:
+        if advice.status is not Status.ADVISED:
+            continue
+        for load in after(advice).loads:
+            assert load.margin >= -1e-9 or load.limit.name in not_free
+
+
+@pytest.mark.parametrize("name", ["bracket", "shaft"])
+def test_advice_with_all_free_keeps_every_limit(name: str) -> None:
+    for advice in plan_of(name, Task(free=ALL_FREE)).advices:
+        if advice.status is Status.ADVISED:
+            assert min(load.margin for load in after(advice).loads) >= -1e-9
+
+
+def test_every_reason_names_the_limit_that_is_reached(bracket: Plan) -> None:
+    for advice in bracket.advices:
+        if advice.status is Status.ADVISED:
+            assert advice.active is not None
+            assert advice.reason.startswith(advice.active.words)
+            margins = [
+                abs(load.margin)
+                for load in after(advice).loads
+                if load.limit.name is advice.active
+            ]
+            assert min(margins) < 1e-6
+
+
+def test_inhibited_feed_is_untouched_and_said(bracket: Plan) -> None:
+    advice = advice_of(bracket, "REAM HOLE 1")
+    assert advice.status is Status.UNTOUCHED
+    assert "inhibit_feedrate_override" in advice.reason
+    assert "nobody may touch this feed" in advice.reason
+    assert after(advice) == before(advice)
+
+
+def test_thread_is_untouched_and_said(shaft: Plan) -> None:
+    advice = advice_of(shaft, "THREAD M30 X 2")
+    assert advice.status is Status.UNTOUCHED
+    assert advice.reason == "the feed is bound to the pitch of the thread"
+    assert advice.before is None
+
+
+def test_feed_synchronised_with_the_spindle_is_untouched() -> None:
+    change = (
+        "#311=MILLING_TECHNOLOGY(0.0053,.TCP.,$,-38.,$,.F.,",
+        "#311=MILLING_TECHNOLOGY(0.0053,.TCP.,$,-38.,$,.T.,",
+    )
+    advice = advice_of(plan_of("bracket", Task(), change), "DRILL HOLE 1")
+    assert advice.status is Status.UNTOUCHED
+    assert "pitch" in advice.reason
+
+
+def test_roughness_of_the_file_is_kept(bracket: Plan) -> None:
+    """Ra 1.6 µm: as programmed 3.8 µm, said as a warning."""
+    advice = advice_of(bracket, "FINISH FACE")
+    assert before(advice).roughness == pytest.approx(3.81e-3, abs=5e-6)
+    assert after(advice).roughness == pytest.approx(1.6e-3)
+    assert advice.active is LimitName.ROUGHNESS
+    texts = [str(finding) for finding in bracket.findings]
+    assert any("as programmed: roughness 3.808 µm exceeds 1.6 µm" in text for text in texts)
+
+
+def test_roughness_of_the_user_goes_before_that_of_the_file() -> None:
+    plan = plan_of("bracket", Task(roughness=2.5e-3))
+    assert after(advice_of(plan, "FINISH FACE")).roughness == pytest.approx(2.5e-3)
+
+
+def test_roughing_keeps_no_roughness() -> None:
+    plan = plan_of("bracket", Task(roughness=0.8e-3))
+    names = {load.limit.name for load in after(advice_of(plan, "ROUGH FACE")).loads}
+    assert LimitName.ROUGHNESS not in names
+
+
+def test_quality_nobody_asked_for_is_the_default_and_said() -> None:
+    plan = plan_of("shaft", Task(mode=Mode.QC))
+    roughness = after(advice_of(plan, "FINISH FACE")).roughness
+    assert roughness is not None
+    assert roughness <= DEFAULT_QUALITY * (1.0 + 1e-9)
+    texts = [str(finding) for finding in plan.findings]
+    assert any("no roughness is asked for: QC keeps Ra 3.2 µm" in text for text in texts)
+
+
+@pytest.mark.parametrize("name", ["bracket", "shaft"])
+def test_quality_is_never_slower_than_it_must(name: str) -> None:
+    """The roughness, or another limit, is at its bound."""
+    for advice in plan_of(name, Task(mode=Mode.QC)).advices:
+        if advice.status is Status.ADVISED:
+            margins = [
+                abs(load.margin)
+                for load in after(advice).loads
+                if load.limit.name is advice.active
+            ]
+            assert min(margins) < 1e-6
+
+
+def test_quality_equals_time_where_the_same_roughness_is_asked_for() -> None:
+    task = Task(roughness=1.6e-3)
+    fast = plan_of("bracket", task)
+    good = plan_of("bracket", Task(mode=Mode.QC, roughness=1.6e-3))
+    assert good.time_after == pytest.approx(fast.time_after)
+
+
+@pytest.mark.parametrize("free", [frozenset({Free.FEED, Free.DEPTH}), ALL_FREE])
+@pytest.mark.parametrize("name", ["bracket", "shaft"])
+def test_energy_critical_never_needs_more_energy_than_time_critical(
+    name: str, free: frozenset[Free]
+) -> None:
+    fast = plan_of(name, Task(free=free))
+    frugal = plan_of(name, Task(mode=Mode.EC, free=free))
+    for one, other in zip(fast.advices, frugal.advices, strict=True):
+        if one.status is Status.ADVISED:
+            assert after(other).energy <= after(one).energy * (1.0 + 1e-8)
+            assert after(one).time <= after(other).time * (1.0 + 1e-8)
+
+
+def test_feed_that_is_not_free_stays() -> None:
+    plan = plan_of("bracket", Task(free=frozenset({Free.DEPTH})))
+    advice = advice_of(plan, "ROUGH POCKET")
+    assert advice.status is Status.ADVISED
+    assert after(advice).setting.feed == pytest.approx(before(advice).setting.feed)
+    assert after(advice).setting.passes < before(advice).setting.passes
+    assert advice.active is LimitName.PROGRAMMED_FEED
+
+
+def test_programmed_feed_that_breaks_a_limit_is_infeasible_when_it_is_not_free() -> None:
+    """Three times the roughness: the cap and the held feed conflict."""
+    plan = plan_of("bracket", Task(free=frozenset({Free.DEPTH})))
+    advice = advice_of(plan, "FINISH FACE")
+    assert advice.status is Status.INFEASIBLE
+    assert plan.is_infeasible
+    assert advice.after is None
+    for part in ("roughness", "1.6 µm", "programmed feed", "0.06 mm"):
+        assert part in advice.reason
+
+
+def test_depth_that_is_not_free_stays() -> None:
+    plan = plan_of("bracket", Task(free=frozenset({Free.FEED})))
+    for advice in plan.advices:
+        if advice.status is Status.ADVISED:
+            setting, given = after(advice).setting, before(advice).setting
+            assert (setting.depth, setting.passes) == (given.depth, given.passes)
+
+
+def test_speed_that_is_not_free_stays(bracket: Plan) -> None:
+    for advice in bracket.advices:
+        assert after(advice).setting.speed == before(advice).setting.speed
+
+
+def test_free_speed_lies_in_the_window_of_the_tool() -> None:
+    """End mills of carbide in C45: 200 to 250 m/min."""
+    advice = advice_of(plan_of("bracket", Task(free=ALL_FREE)), "ROUGH POCKET")
+    velocity = pi * 12.0 * after(advice).setting.speed * 60.0 / 1000.0
+    assert 200.0 - 1e-6 <= velocity <= 250.0 + 1e-6
+
+
+def test_free_speed_is_never_slower_where_the_programmed_one_is_allowed() -> None:
+    fixed, free = plan_of("bracket", Task()), plan_of("bracket", Task(free=ALL_FREE))
+    compared = 0
+    for one, other in zip(fixed.advices, free.advices, strict=True):
+        is_allowed = all(
+            load.margin >= 0.0
+            for load in before(one).loads
+            if load.limit.name is LimitName.CUTTING_SPEED
+        )
+        if one.status is Status.ADVISED and is_allowed:
+            compared += 1
+            assert after(other).time <= after(one).time * (1.0 + 1e-8)
+    assert compared >= 2
+
+
+def test_finishing_operations_keep_their_depth() -> None:
+    plan = plan_of("bracket", Task(free=ALL_FREE))
+    for name in ("FINISH CONTOUR", "FINISH POCKET", "DRILL HOLE 1"):
+        advice = advice_of(plan, name)
+        assert after(advice).setting.depth == before(advice).setting.depth
+
+
+def test_floor_of_a_bottom_and_side_finish_limits_the_feed_too() -> None:
+    """Eight millimetres of floor instead of 0.2 mm."""
+    thin = plan_of("bracket", Task())
+    thick = plan_of("bracket", Task(), ("4.,6.,0.3,0.2", "4.,6.,0.3,8."))
+    name = "FINISH POCKET"
+    forces = [after(advice_of(plan, name)).cutting_force for plan in (thin, thick)]
+    assert forces[1] > 5.0 * forces[0]
+
+
+def test_roughness_of_the_floor_limits_the_feed_too() -> None:
+    """The floor's Ra 0.4 µm at a corner of 0.2 mm; 0.2 µm of it are there at any feed."""
+    advice = advice_of(plan_of("bracket", Task(roughness=0.4e-3)), "FINISH POCKET")
+    assert advice.active is LimitName.ROUGHNESS
+    assert after(advice).setting.feed == pytest.approx(sqrt(18 * sqrt(3) * 0.2 * 0.2e-3))
+
+
+def test_more_passes_are_told_when_the_deepest_is_not_the_best(bracket: Plan) -> None:
+    """Contour: two passes of 10 mm, for one of 20 mm bends the tool."""
+    advice = advice_of(bracket, "ROUGH CONTOUR")
+    assert advice.deepest_first_time is not None
+    assert advice.deepest_first_time > after(advice).time
+    assert after(advice).setting.passes > 1
+
+
+def test_one_step_more_of_the_active_limit_saves_time(bracket: Plan) -> None:
+    for advice in bracket.advices:
+        if advice.status is Status.ADVISED:
+            assert advice.saving_of_one_more > 0.0
+
+
+def test_machine_of_twice_the_power_runs_twice_the_feed(tmp_path: Path) -> None:
+    source = (
+        PARTS.parents[1] / "simulator" / "data" / "machines" / "paper002.toml"
+    ).read_text()
+    assert "power_kw = 0.29" in source
+    machine = tmp_path / "double.toml"
+    machine.write_text(source.replace("power_kw = 0.29", "power_kw = 0.58"))
+    (advice,) = plan_of("paper002", Task(), machine=str(machine)).advices
+    assert mm_min_from_speed(after(advice).feed) == pytest.approx(580.0)
+
+
+def test_accepted_correction_lowers_the_feed_at_the_power_limit() -> None:
+    (advice,) = plan_of("paper002", Task(force_factor=1.42)).advices
+    assert mm_min_from_speed(after(advice).feed) == pytest.approx(290.0 / 1.42)
+
+
+def test_tool_without_a_material_is_taken_as_carbide_and_said() -> None:
+    plan = plan_of(
+        "bracket",
+        Task(),
+        ("#423=CUTTING_COMPONENT(85.,#490,$,$,$);", "#423=CUTTING_COMPONENT(85.,$,$,$,$);"),
+    )
+    texts = [str(finding) for finding in plan.findings]
+    assert any("names no cutting material: carbide assumed" in text for text in texts)
+
+
+def test_tool_without_teeth_is_taken_with_one_and_said() -> None:
+    plan = plan_of(
+        "paper002",
+        Task(),
+        ("#51=TAPERED_ENDMILL(#52,4,", "#51=TAPERED_ENDMILL(#52,$,"),
+    )
+    (advice,) = plan.advices
+    assert after(advice).setting.feed == pytest.approx(0.4685, abs=5e-5)
+    texts = [str(finding) for finding in plan.findings]
+    assert any("one tooth assumed" in text for text in texts)
+
+
+def test_turning_on_a_mill_is_said() -> None:
+    plan = plan_of("shaft", Task(), machine="vmc15")
+    texts = [str(finding) for finding in plan.findings]
+    assert any("facing_rough on machine 'vmc15', a mill" in text for text in texts)
+
+
+def test_only_selected_workingsteps_are_advised() -> None:
+    plan = optimise(
+        edited("bracket"),
+        machine=load_machine("vmc15"),
+        material=match_material(["C45"]),
+        task=Task(),
+        selected=lambda step: step.id == "MILL SLOT",
+    )
+    assert [advice.workingstep.id for advice in plan.advices] == ["MILL SLOT"]
+
+
+@pytest.mark.parametrize("name", ["bracket", "paper002", "shaft"])
+def test_same_inputs_give_the_same_plan(name: str) -> None:
+    assert plan_of(name, Task()).advices == plan_of(name, Task()).advices
+
+
+@pytest.mark.parametrize("name", ["bracket", "shaft"])
+def test_front_trades_time_for_roughness(name: str) -> None:
+    plan = plan_of(name, Task(front=True))
+    fronts = [advice.front for advice in plan.advices if len(advice.front) > 2]
+    assert fronts
+    for front in fronts:
+        times = [point.state.time for point in front]
+        assert times == sorted(times)
+        roughness = [point.state.roughness for point in front]
+        assert roughness[0] == max(value for value in roughness if value is not None)

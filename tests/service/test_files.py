@@ -1,0 +1,109 @@
+"""Files are written whole or not at all."""
+
+import errno
+import os
+import resource
+from pathlib import Path
+
+import pytest
+
+from service.files import read_bytes, write_atomically
+from stepnc_model.errors import StepNcError, WriteError
+
+
+def names(folder: Path) -> list[str]:
+    return sorted(path.name for path in folder.iterdir())
+
+
+def test_a_new_file_holds_the_bytes_and_nothing_else_is_left(tmp_path: Path) -> None:
+    write_atomically(tmp_path / "new.stpnc", b"bytes\r\n\x00")
+    assert (tmp_path / "new.stpnc").read_bytes() == b"bytes\r\n\x00"
+    assert names(tmp_path) == ["new.stpnc"]
+
+
+def test_a_new_file_has_the_permissions_that_the_umask_leaves(tmp_path: Path) -> None:
+    before = os.umask(0o027)
+    try:
+        write_atomically(tmp_path / "new", b"")
+    finally:
+        os.umask(before)
+    assert (tmp_path / "new").stat().st_mode & 0o777 == 0o640
+
+
+def test_a_replaced_file_keeps_its_permissions(tmp_path: Path) -> None:
+    path = tmp_path / "old"
+    path.write_bytes(b"old")
+    path.chmod(0o604)
+    write_atomically(path, b"new")
+    assert path.read_bytes() == b"new"
+    assert path.stat().st_mode & 0o777 == 0o604
+
+
+def test_who_reads_the_old_file_reads_it_to_its_end(tmp_path: Path) -> None:
+    path = tmp_path / "old"
+    path.write_bytes(b"old")
+    with path.open("rb") as reader:
+        write_atomically(path, b"new")
+        assert reader.read() == b"old"
+
+
+def test_a_file_that_outgrows_its_quota_leaves_the_old_one(tmp_path: Path) -> None:
+    path = tmp_path / "old"
+    path.write_bytes(b"old")
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1_000, hard))
+    try:
+        with pytest.raises(WriteError, match=r"old: File too large"):
+            write_atomically(path, b"x" * 5_000)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    assert path.read_bytes() == b"old"
+    assert names(tmp_path) == ["old"]
+
+
+@pytest.mark.parametrize("call", ["fsync", "replace"])
+def test_a_full_disk_leaves_the_old_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, call: str
+) -> None:
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    path = tmp_path / "old"
+    path.write_bytes(b"old")
+    monkeypatch.setattr(os, call, full)
+    with pytest.raises(WriteError, match=r"old: No space left on device"):
+        write_atomically(path, b"new")
+    assert path.read_bytes() == b"old"
+    assert names(tmp_path) == ["old"]
+
+
+def test_an_interrupt_leaves_the_old_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(_: object) -> None:
+        raise KeyboardInterrupt
+
+    path = tmp_path / "old"
+    path.write_bytes(b"old")
+    monkeypatch.setattr(os, "fsync", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        write_atomically(path, b"new")
+    assert path.read_bytes() == b"old"
+    assert names(tmp_path) == ["old"]
+
+
+@pytest.mark.parametrize("place", ["missing/new", "a_file/new", "a_folder", "n" * 300])
+def test_a_place_that_cannot_be_written_is_named(tmp_path: Path, place: str) -> None:
+    (tmp_path / "a_file").touch()
+    (tmp_path / "a_folder").mkdir()
+    with pytest.raises(WriteError) as caught:
+        write_atomically(tmp_path / place, b"new")
+    assert caught.value.path == str(tmp_path / place)
+    assert names(tmp_path) == ["a_file", "a_folder"]
+
+
+@pytest.mark.parametrize("place", ["missing", "a_folder", "n" * 300])
+def test_what_cannot_be_read_is_named(tmp_path: Path, place: str) -> None:
+    (tmp_path / "a_folder").mkdir()
+    with pytest.raises(StepNcError, match=place):
+        read_bytes(tmp_path / place)

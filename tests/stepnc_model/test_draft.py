@@ -1,0 +1,101 @@
+"""Edits by attribute, in instances that are shared, short or carry a surplus parameter."""
+
+from pathlib import Path
+
+import pytest
+
+from service.usecases import Request, optimise
+from stepnc_model import writeback
+from stepnc_model.errors import SchemaError
+from stepnc_model.part21.reader import Part21File
+from stepnc_model.program import Program
+from stepnc_model.technology import programmed
+from stepnc_model.writeback import Profile
+
+PARTS = Path(__file__).parents[2] / "examples" / "parts"
+TECHNOLOGY = b"#41=MILLING_TECHNOLOGY($,.TCP.,0.583333333333333,$,0.05,.F.,.F.,.F.,$);"
+ADAPTIVE = (
+    b"#41=MILLING_TECHNOLOGY(#46,#47,.F.,.F.,.F.);\n"
+    b"#46=CUTSPEED(.T.,0.583333333333333);\n#47=FEEDRATE_PER_TOOTH(.T.,0.05);"
+)
+STEP = b"#3=MACHINING_WORKINGSTEP('ROUGH THE FACE',#22,#30,#40,$);"
+
+
+def paper002() -> bytes:
+    return (PARTS / "paper002.stpnc").read_bytes()
+
+
+def with_step(data: bytes, step: bytes, more: bytes = b"") -> bytes:
+    data = data.replace(b"(#3),$,#20,$", b"(#3,#4),$,#20,$")
+    return data.replace(STEP, STEP + b"\n" + step + more)
+
+
+def optimised(data: bytes, folder: Path, profile: Profile, **options: object) -> bytes:
+    source, output = folder / "in.stpnc", folder / "out.stpnc"
+    source.write_bytes(data)
+    request = Request(
+        file=source,
+        output=output,
+        profile=profile.value,
+        machine="paper002",
+        **options,  # type: ignore[arg-type]
+    )
+    optimise(request)
+    return output.read_bytes()
+
+
+def feeds(data: bytes) -> dict[str, float]:
+    program = Program(Part21File.from_bytes(data))
+    return {
+        step.id: programmed(program, step.technology_ref).feed.value
+        for step in program.workingsteps
+    }
+
+
+def test_a_feed_inside_a_shared_technology_changes_for_one_operation_only(
+    tmp_path: Path,
+) -> None:
+    second = b"\n#45=PLANE_ROUGH_MILLING($,$,'B',10.,$,#50,#41,#42,$,#43,#43,#44,3.,0.);"
+    data = with_step(
+        paper002().replace(TECHNOLOGY, ADAPTIVE),
+        b"#4=MACHINING_WORKINGSTEP('AGAIN',#22,#30,#45,$);",
+        second,
+    )
+    after = feeds(optimised(data, tmp_path, Profile.STANDARD, workingsteps=("#3",)))
+    assert after["ROUGH THE FACE"] == pytest.approx(0.1171, rel=1e-3)
+    assert after["AGAIN"] == pytest.approx(0.05)
+
+
+@pytest.mark.parametrize("profile", list(Profile))
+def test_one_operation_of_two_workingsteps_carries_one_record(
+    profile: Profile, tmp_path: Path
+) -> None:
+    data = with_step(paper002(), b"#4=MACHINING_WORKINGSTEP('AGAIN',#22,#30,#40,$);")
+    once = optimised(data, tmp_path, profile)
+    assert list(writeback.records(Program(Part21File.from_bytes(once)))) == [40]
+    assert optimised(once, tmp_path, profile) == once
+
+
+def test_an_operation_without_machine_functions_is_refused_by_name(tmp_path: Path) -> None:
+    data = paper002().replace(b"#50,#41,#42,$,#43", b"#50,#41,$,$,#43")
+    with pytest.raises(SchemaError, match="#40 PLANE_ROUGH_MILLING") as caught:
+        optimised(data, tmp_path, Profile.STANDARD)
+    assert caught.value.attribute == "its_machine_functions"
+
+
+@pytest.mark.parametrize("profile", list(Profile))
+@pytest.mark.parametrize("end", [b"#44,3.);", b"#44);"])
+def test_a_short_operation_is_filled_up(profile: Profile, end: bytes, tmp_path: Path) -> None:
+    data = paper002().replace(b"#44,3.,0.);", end)
+    once = optimised(data, tmp_path, profile)
+    assert len(writeback.records(Program(Part21File.from_bytes(once)))) == 1
+    assert optimised(once, tmp_path, profile) == once
+
+
+def test_the_printed_place_of_a_record_is_left_and_depths_stay_in_theirs(
+    tmp_path: Path,
+) -> None:
+    source = (Path(__file__).parents[1] / "data" / "fig11.stpnc").read_bytes()
+    text = optimised(source, tmp_path, Profile.OPTIMISATION, material="paper002").decode()
+    line = next(line for line in text.splitlines() if line.startswith("#20="))
+    assert "#41, $,#60, #61, #42, 3., $, #" in line
