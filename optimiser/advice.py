@@ -1,10 +1,11 @@
 """What the optimiser says of a workingstep, and of a whole program."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 
 from optimiser.cut import Cut
-from optimiser.limit import Limit, LimitName
+from optimiser.limit import Limit, LimitName, Sense
 from optimiser.modes import Mode
 from optimiser.problem import Setting
 from simulator.spec import Machine, MaterialMatch
@@ -36,7 +37,7 @@ class Load:
     @property
     def margin(self) -> float:
         """Share of the bound that is left; negative when it is passed."""
-        sign = 1.0 if self.limit.sense.value == "at most" else -1.0
+        sign = 1.0 if self.limit.sense is Sense.AT_MOST else -1.0
         return sign * (self.bound - self.value) / self.bound
 
 
@@ -118,3 +119,13 @@ class Plan:
         """Seconds as advised."""
         states = (advice.after or advice.before for advice in self.advices)
         return sum(state.time for state in states if state)
+
+
+def tightest(loads: Sequence[Load]) -> list[Load]:
+    """One load for each limit and sense: the one that is nearest to its bound."""
+    worst: dict[tuple[LimitName, Sense], Load] = {}
+    for load in loads:
+        key = (load.limit.name, load.limit.sense)
+        if key not in worst or load.margin < worst[key].margin:
+            worst[key] = load
+    return list(worst.values())

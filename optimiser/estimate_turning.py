@@ -9,8 +9,8 @@ from math import hypot
 
 from optimiser.cut import Cut, CutKind, Texture
 from optimiser.estimate import LEAST_DEPTH, earlier_operations, passes_for
+from optimiser.outline import points_of, size
 from optimiser.problem import Setting
-from optimiser.region import points_of, size
 from simulator.spec import ToolKind
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.geometry import RightCircularCylinder

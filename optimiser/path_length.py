@@ -3,7 +3,7 @@
 from itertools import pairwise
 from math import dist
 
-from optimiser.region import points_of
+from optimiser.outline import points_of
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.toolpaths import CutterLocationTrajectory, ToolpathList
 from stepnc_model.errors import SchemaError

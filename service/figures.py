@@ -4,9 +4,8 @@ from collections.abc import Sequence
 
 import plotly.graph_objects as go
 
-from optimiser.advice import Advice, Plan, State, Status
+from optimiser.advice import Advice, Plan, State, Status, tightest
 from optimiser.limit import LimitName, Sense
-from service.wire import tightest
 from stepnc_model.units import kw_from_watts, mm_min_from_speed
 
 BEFORE, AFTER, BOUND = "#999999", "#0072B2", "#D55E00"

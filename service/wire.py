@@ -6,8 +6,7 @@ from dataclasses import asdict
 from math import isfinite
 from typing import Any
 
-from optimiser.advice import Advice, Load, Plan, State
-from optimiser.limit import LimitName, Sense
+from optimiser.advice import Advice, Load, Plan, State, tightest
 from service.usecases import Contents
 from simulator.spec import Machine, Material
 from stepnc_model.errors import Finding
@@ -72,16 +71,6 @@ def entry_json(entry: Machine | Material) -> str:
 def entries_json(entries: Sequence[Machine | Material]) -> str:
     """All machines or materials by name and title."""
     return _dump([{"name": entry.name, "title": entry.title} for entry in entries])
-
-
-def tightest(loads: Sequence[Load]) -> list[Load]:
-    """One load for each limit and sense: the one that is nearest to its bound."""
-    worst: dict[tuple[LimitName, Sense], Load] = {}
-    for load in loads:
-        key = (load.limit.name, load.limit.sense)
-        if key not in worst or load.margin < worst[key].margin:
-            worst[key] = load
-    return list(worst.values())
 
 
 def _advice(advice: Advice) -> dict[str, Any]:

@@ -8,8 +8,7 @@ ROOT = Path(__file__).parents[2]
 PACKAGES = ("stepnc_model", "simulator", "optimiser", "service")
 
 NOUNS = {
-    "stepnc_model/entities": "nouns without behaviour: tests/stepnc_model/entities/test_order.py"
-    " holds every one against the standard's attribute order",
+    "stepnc_model/entities": "nouns: test_order.py holds them against the attribute order",
 }
 """folders whose modules are tested together"""
 

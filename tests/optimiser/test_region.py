@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from optimiser.region import DEFAULT_STEP_WIDTH, Region, feature_depth, region_of, vee_angle
+from optimiser.outline import vee_angle
+from optimiser.region import DEFAULT_STEP_WIDTH, Region, feature_depth, region_of
 from stepnc_model.entities.entity import Entity
 from stepnc_model.errors import SchemaError
 from stepnc_model.part21.reader import Part21File

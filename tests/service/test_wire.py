@@ -7,8 +7,9 @@ from typing import Any
 
 import pytest
 
+from optimiser.advice import tightest
 from service import usecases
-from service.wire import contents_json, entries_json, entry_json, plan_json, tightest
+from service.wire import contents_json, entries_json, entry_json, plan_json
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 

@@ -1,0 +1,68 @@
+"""The front holds exact optima, and none that another beats."""
+
+from itertools import combinations
+from pathlib import Path
+
+import pytest
+
+from optimiser.advice import Advice, Point
+from optimiser.formulate import Task
+from optimiser.front import POINTS
+from optimiser.modes import Free
+from optimiser.optimise import optimise
+from simulator.library import load_machine
+from simulator.matching import match_material
+from stepnc_model.program import Program
+
+PARTS = Path(__file__).parents[2] / "examples" / "parts"
+
+
+def advice(name: str, *free: Free) -> Advice:
+    program = Program.load(PARTS / "bracket.stpnc")
+    plan = optimise(
+        program,
+        machine=load_machine("vmc15"),
+        material=match_material(("C45",)),
+        task=Task(front=True, free=frozenset(free)),
+        selected=lambda step: step.id == name,
+    )
+    return plan.advices[0]
+
+
+def measures(point: Point) -> tuple[float, float, float]:
+    return point.state.time, point.state.roughness or 0.0, point.state.energy
+
+
+@pytest.mark.parametrize("free", [(Free.FEED,), (Free.FEED, Free.DEPTH, Free.SPEED)])
+def test_no_point_beats_another(free: tuple[Free, ...]) -> None:
+    front = advice("FINISH FACE", *free).front
+    assert len(front) >= POINTS - 1
+    for one, other in combinations(map(measures, front), 2):
+        assert not all(a <= b for a, b in zip(one, other, strict=True))
+        assert not all(b <= a for a, b in zip(one, other, strict=True))
+
+
+def test_time_is_bought_with_roughness() -> None:
+    front = advice("FINISH FACE", Free.FEED).front
+    times = [point.state.time for point in front]
+    rough = [point.state.roughness or 0.0 for point in front]
+    assert times == sorted(times)
+    assert rough == sorted(rough, reverse=True)
+
+
+def test_the_front_passes_through_the_advice() -> None:
+    """At the Ra that the advice keeps, no point of the front is faster."""
+    found = advice("FINISH FACE", Free.FEED)
+    assert found.after is not None
+    assert found.after.roughness is not None
+    finer = [
+        point.state.time
+        for point in found.front
+        if (point.state.roughness or 0.0) <= found.after.roughness
+    ]
+    assert min(finer) >= found.after.time * (1.0 - 1e-9)
+
+
+def test_where_the_feed_leaves_no_roughness_one_point_is_left() -> None:
+    front = advice("DRILL HOLE 1", Free.FEED).front
+    assert len(front) == 1

@@ -1,0 +1,55 @@
+"""The page holds what the table says, and fetches nothing."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from service.usecases import Request, optimise
+
+PARTS = Path(__file__).parents[2] / "examples" / "parts"
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory: pytest.TempPathFactory) -> str:
+    folder = tmp_path_factory.mktemp("report")
+    source = folder / "a&b <i>.stpnc"
+    source.write_bytes((PARTS / "bracket.stpnc").read_bytes())
+    report = folder / "page.html"
+    optimise(Request(file=source, report=report, pareto=True))
+    return report.read_text(encoding="utf-8")
+
+
+def own(page: str) -> str:
+    """The page without the plotting library."""
+    return re.sub(r"<script>.*?</script>", "", page, count=1, flags=re.DOTALL)
+
+
+def test_every_workingstep_has_a_row_with_its_reason(page: str) -> None:
+    assert page.count("<tr><td>") == 16
+    assert "353.7 → 1237.9" in page
+    assert "untouched: inhibit_feedrate_override: nobody may touch this feed" in page
+
+
+def test_all_five_plots_are_drawn(page: str) -> None:
+    for title in (
+        "Time by workingstep",
+        "Feed",
+        "Motor power before and after",
+        "Share of each limit that the advice uses",
+        "Fronts between time and roughness",
+    ):
+        assert title in own(page)
+
+
+def test_names_from_the_file_cannot_become_markup(page: str) -> None:
+    assert "a&amp;b &lt;i&gt;.stpnc" in page
+    assert "<i>" not in own(page)
+
+
+def test_nothing_is_loaded_from_elsewhere(page: str) -> None:
+    assert not re.search(r"<(?:script|link|img|iframe)[^>]*\s(?:src|href)=", own(page))
+
+
+def test_the_total_change_has_its_sign(page: str) -> None:
+    assert "change<b>−47%</b>" in page
