@@ -1,18 +1,19 @@
 """Pieces of the ISO 10303-21 grammar over bytes, and the two scans made of them.
 
 Every pattern is possessive: what it took it never gives back, so a scan is linear in the
-bytes it passes whatever they are.
+bytes it passes whatever they are. Repeated groups are atomic, ``(?>(?:…)*)`` and not ``(?:…)*+``:
+CPython before 3.11.5 gets the latter wrong (gh-106052), and Debian 12 ships 3.11.2.
 """
 
 import re
 
 from stepnc_model.part21.places import Slip, error_at
 
-COMMENT = rb"/\*(?:[^*]++|\*(?!/))*+\*/"
+COMMENT = rb"/\*(?>(?:[^*]++|\*(?!/))*)\*/"
 """A comment; within it ``/*`` is text."""
-TIDY_COMMENT = rb"/\*(?:[^*/]++|\*(?!/)|/(?!\*))*+\*/"
+TIDY_COMMENT = rb"/\*(?>(?:[^*/]++|\*(?!/)|/(?!\*))*)\*/"
 """A comment in which no other is opened."""
-BLANK = rb"(?:\s++|" + TIDY_COMMENT + rb")*+"
+BLANK = rb"(?>(?:\s++|" + TIDY_COMMENT + rb")*)"
 STRING = rb"'[^']*+'"
 """A string, or the piece of one up to a doubled apostrophe."""
 BINARY = rb'"[^"\r\n;]*+"'

@@ -28,19 +28,19 @@ from stepnc_model.part21.record import parse_record
 
 _ITEM = re.compile(
     rb"\s*+\#([0-9]{1,18}+)\s*+=\s*+([!A-Za-z0-9_]*+)\s*+(?=\()"
-    rb"(?:[^;'/\"=]++|'[^'#]*+'|" + BINARY + rb"|" + TIDY_COMMENT + rb")*+(?<=\));"
-    rb"|(?:\s++|" + TIDY_COMMENT + rb")++"
+    rb"(?>(?:[^;'/\"=]++|'[^'#]*+'|" + BINARY + rb"|" + TIDY_COMMENT + rb")*)(?<=\));"
+    rb"|(?>(?:\s++|" + TIDY_COMMENT + rb")+)"
     rb"|(?s:.)"
 )
 _END_WORD = rb"[Ee](?!(?i:NDSEC\s*+(?:;|END-ISO|DATA)|ND-ISO-10303-21))"
 _BODY = re.compile(
-    rb"(?:[^;'\"/\#Ee]++|" + STRING + rb"|" + BINARY + rb"|\"|" + COMMENT + rb"|/(?!\*)"
-    rb"|\#(?![0-9]++\s*+=)|" + _END_WORD + rb")*+"
+    rb"(?>(?:[^;'\"/\#Ee]++|" + STRING + rb"|" + BINARY + rb"|\"|" + COMMENT + rb"|/(?!\*)"
+    rb"|\#(?![0-9]++\s*+=)|" + _END_WORD + rb")*)"
 )
 _JUNK = re.compile(
-    rb"(?:[^\#/EeDd]++|\#(?![0-9]++\s*+=)|/(?!\*)|"
+    rb"(?>(?:[^\#/EeDd]++|\#(?![0-9]++\s*+=)|/(?!\*)|"
     + _END_WORD
-    + rb"|[Dd](?!(?i:ATA\s*+[;(])))++"
+    + rb"|[Dd](?!(?i:ATA\s*+[;(])))+)"
 )
 _STRING_OR_COMMENT = re.compile(STRING + rb"|" + COMMENT)
 _SECTION_END = re.compile(SECTION_END)

@@ -35,8 +35,8 @@ _SECTION = re.compile(
 _NO_LETTER = re.compile(rb"[^A-Za-z]")
 _STATEMENT = re.compile(rb"(!?[A-Za-z_][A-Za-z0-9_]*+)" + BLANK + rb"(?=\()")
 _FOREIGN = re.compile(
-    rb"(?:[^'/Ee]++|" + STRING + rb"|" + TIDY_COMMENT + rb"|'|/"
-    rb"|[Ee](?!(?i:NDSEC\s*+;|ND-ISO-10303-21)))*+"
+    rb"(?>(?:[^'/Ee]++|" + STRING + rb"|" + TIDY_COMMENT + rb"|'|/"
+    rb"|[Ee](?!(?i:NDSEC\s*+;|ND-ISO-10303-21)))*)"
 )
 
 

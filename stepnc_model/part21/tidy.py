@@ -11,14 +11,14 @@ from stepnc_model.part21.tokens import BINARY, ENUMERATION, KEYWORD, STRING
 from stepnc_model.part21.values import DERIVED, Binary, Enumeration, Real, Ref, Typed, Value
 
 _SCALAR = (
-    r"(?:#[0-9]{1,18}+|[+-]?[0-9]{1,300}+(?:\.[0-9]*+(?:E[+-]?[0-9]++)?+)?+"
+    r"(?:#[0-9]{1,18}+|[+-]?[0-9]{1,300}+(?>(?:\.[0-9]*+(?>(?:E[+-]?[0-9]++)?))?)"
     rf"|{STRING}|\$|{ENUMERATION}|\*|{BINARY})"
 )
 
 
 def _list_of(value: str) -> str:
     """Pattern of a bracketed list of a pattern."""
-    return rf"\(\s*+(?:{value}\s*+(?:,\s*+{value}\s*+)*+)?+\)"
+    return rf"\(\s*+(?>(?:{value}\s*+(?>(?:,\s*+{value}\s*+)*))?)\)"
 
 
 def _value_of_depth(depth: int) -> str:
@@ -32,11 +32,11 @@ def _value_of_depth(depth: int) -> str:
 _TIDY = re.compile(
     rf"#[0-9]++\s*+=\s*+{KEYWORD}\s*+{_list_of(_value_of_depth(2))}\s*+;", re.ASCII
 )
-_REAL = r"[+-]?[0-9]++\.[0-9]*+(?:E[+-]?[0-9]++)?+"
+_REAL = r"[+-]?[0-9]++\.[0-9]*+(?>(?:E[+-]?[0-9]++)?)"
 _new_float = float.__new__
 # Flat lists of reals or of references, the bulk of large files, are one token each.
 _TOKEN = re.compile(
-    rf"\((?:{_REAL},)*+{_REAL}\)|\((?:#[0-9]++,)*+#[0-9]++\)"
+    rf"\((?>(?:{_REAL},)*){_REAL}\)|\((?>(?:#[0-9]++,)*)#[0-9]++\)"
     rf"|#[0-9]++|[+-]?[0-9][0-9.E+-]*+|[()$*]|{STRING}|{ENUMERATION}|{BINARY}|{KEYWORD}",
     re.ASCII,
 )

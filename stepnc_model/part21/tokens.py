@@ -13,18 +13,18 @@ from stepnc_model.part21.strings import decode
 from stepnc_model.part21.values import DERIVED, Binary, Enumeration, Real, Ref, Value
 
 KEYWORD = r"!?[A-Za-z_][A-Za-z0-9_]*+"
-STRING = r"'[^']*+(?:''[^']*+)*+'"
+STRING = r"'[^']*+(?>(?:''[^']*+)*)'"
 ENUMERATION = r"\.[A-Za-z_][A-Za-z0-9_]*+\."
 BINARY = r'"[0-3][0-9A-F]*+"'
-COMMENT = r"/\*(?:[^*]++|\*(?!/))*+\*/"
+COMMENT = r"/\*(?>(?:[^*]++|\*(?!/))*)\*/"
 
 _MAX_DIGITS = 4000
 TOKEN = re.compile(
     rf"(?P<blank>\s++|{COMMENT}|\\[NF]\\)"
-    rf"|(?P<keyword>{KEYWORD})(?=(?:\s++|{COMMENT})*+\()"
+    rf"|(?P<keyword>{KEYWORD})(?=(?>(?:\s++|{COMMENT})*)\()"
     rf"|(?P<word>{KEYWORD})"
     r"|(?P<reference>#[0-9]++)"
-    r"|(?P<number>[+-]?(?:[0-9]++\.?[0-9]*+|\.[0-9]++)(?:[Ee][+-]?[0-9]++)?+(?![\w#\"']))"
+    r"|(?P<number>[+-]?(?:[0-9]++\.?[0-9]*+|\.[0-9]++)(?>(?:[Ee][+-]?[0-9]++)?)(?![\w#\"']))"
     rf"|(?P<string>{STRING})"
     r'|(?P<quoted>"[^"]*+")'
     r"|(?P<enumeration>\.++[A-Za-z_][A-Za-z0-9_]*+\.++)"
@@ -36,7 +36,7 @@ TOKEN = re.compile(
 """Any text is a sequence of these; the last two groups are what cannot stand there."""
 
 _INTEGER = re.compile(r"[+-]?[0-9]++", re.ASCII)
-_STANDARD_REAL = re.compile(r"[+-]?[0-9]++\.[0-9]*+(?:E[+-]?[0-9]++)?+", re.ASCII)
+_STANDARD_REAL = re.compile(r"[+-]?[0-9]++\.[0-9]*+(?>(?:E[+-]?[0-9]++)?)", re.ASCII)
 _STANDARD_BINARY = re.compile(BINARY)
 _NO_NUMBER = frozenset({"NAN", "INF", "INFINITY", "IND", "QNAN", "SNAN"})
 
