@@ -1,8 +1,8 @@
 """Pieces of the ISO 10303-21 grammar over bytes, and the two scans made of them.
 
 Every pattern is possessive: what it took it never gives back, so a scan is linear in the
-bytes it passes whatever they are. Repeated groups are atomic, ``(?>(?:…)*)`` and not ``(?:…)*+``:
-CPython before 3.11.5 gets the latter wrong (gh-106052), and Debian 12 ships 3.11.2.
+bytes it passes whatever they are. Repeated groups are atomic, ``(?>(?:…)*)``, and not
+``(?:…)*+``: CPython before 3.11.5 gets that wrong (gh-106052), and Debian 12 ships 3.11.2.
 """
 
 import re
