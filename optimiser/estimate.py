@@ -164,14 +164,7 @@ def earlier_operations(
     program: Program, step: Workingstep
 ) -> list[tuple[Workingstep, MachiningOperation]]:
     """Workingsteps on the same feature that run before this one, in order."""
-    mine = {int(feature) for feature in step.features}
-    found = []
-    for other in program.workingsteps:
-        if other.ref == step.ref:
-            break
-        if mine & {int(feature) for feature in other.features}:
-            found.append((other, other.operation))
-    return found
+    return [(other, other.operation) for other in program.before(step)]
 
 
 def _sweep(

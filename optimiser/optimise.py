@@ -41,6 +41,7 @@ def optimise(
     material: MaterialMatch,
     task: Task,
     selected: Callable[[Workingstep], bool] = lambda _: True,
+    progress: Callable[[], None] = lambda: None,
 ) -> Plan:
     """Advise every selected workingstep of a program.
 
@@ -52,6 +53,8 @@ def optimise(
     task : Task
     selected : callable
         Which workingsteps are wanted.
+    progress : callable
+        Called after each of them.
 
     Returns
     -------
@@ -69,6 +72,7 @@ def optimise(
             continue
         advice, found = advise(program, step, machine=machine, material=material, task=task)
         advices.append(advice)
+        progress()
         findings += found
     return Plan(
         program=program.name,

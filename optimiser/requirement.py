@@ -16,12 +16,11 @@ RZ_PER_RA = 4.0
 
 def required_roughness(program: Program, step: Workingstep) -> float | None:
     """Smallest Ra in mm asked of a surface that this workingstep leaves, or None."""
-    mine = {int(feature) for feature in step.features}
     asked = [
         _arithmetic(texture)
-        for _, texture in program.model.of_type(SurfaceTextureParameter)
-        for surface in map(program.get, texture.applied_surfaces)
-        if int(surface.its_machining_feature) in mine and _leaves(step, surface.surface_element)
+        for feature in step.features
+        for texture, surface in program.textures_of(feature)
+        if _leaves(step, surface.surface_element)
     ]
     known = [value for value in asked if value is not None]
     return min(known) if known else None

@@ -2,6 +2,11 @@
 
 import sys
 
+_CONTROLS = {
+    code: "�" for code in (*range(0x20), *range(0x7F, 0xA0)) if chr(code) not in "\n\t"
+}
+"""C0 and C1 control characters but line breaks and tabs"""
+
 
 def write_out(text: str) -> None:
     """A line of data, to stdout."""
@@ -15,7 +20,7 @@ def tell(message: str) -> None:
 
 def clean(text: str) -> str:
     """Text whose control characters, which a file may hold, cannot steer a terminal."""
-    return "".join(each if each.isprintable() or each == "\n" else "�" for each in text)
+    return text.translate(_CONTROLS)
 
 
 def prepare() -> None:

@@ -11,6 +11,7 @@ from optimiser.formulate import Task
 from optimiser.modes import Free, Mode
 from optimiser.optimise import optimise as advise
 from service.files import is_same, read_bytes, require_place, write_atomically
+from service.progress import Progress
 from service.records import changes_of
 from simulator.library import load_machine, load_material, machine_names, material_names
 from simulator.matching import match_material
@@ -104,6 +105,7 @@ def optimise(request: Request, *, tell: Tell = lambda _: None) -> Outcome:
     machine = _machine(request.machine, program)
     match = _material(request.material, program)
     tell(f"material: {match.reason}")
+    wanted = {int(step.ref) for step in chosen}
     plan = advise(
         program,
         machine=machine,
@@ -117,7 +119,8 @@ def optimise(request: Request, *, tell: Tell = lambda _: None) -> Outcome:
             tool_change=request.tool_change,
             front=request.pareto,
         ),
-        selected=lambda step: step in chosen,
+        selected=lambda step: int(step.ref) in wanted,
+        progress=Progress(tell, total=len(chosen)),
     )
     plan = _with_file_findings(plan, findings, match)
     written = None

@@ -26,6 +26,7 @@ from stepnc_model.entities.executables import (
 from stepnc_model.entities.operations import MachiningOperation
 from stepnc_model.entities.project import Project
 from stepnc_model.entities.setup import Setup
+from stepnc_model.entities.surfaces import MachinedSurface, SurfaceTextureParameter
 from stepnc_model.entities.workpiece import Material, Workpiece
 from stepnc_model.errors import Finding, SchemaError, Severity
 from stepnc_model.part21.reader import Part21File
@@ -68,6 +69,8 @@ class Workingstep:
     technology_ref: Ref[Entity]
     functions_ref: Ref[Entity] | None
     setup: Ref[Setup] | None
+    index: int
+    """place among the workingsteps of the program, from 0"""
     is_last_on_feature: bool
     """no later workingstep works on the same feature: this one leaves the surface"""
 
@@ -97,6 +100,13 @@ class Program:
         self._faults: dict[int, SchemaError] = {}
         self.executables = tuple(self._walk())
         self.workingsteps = tuple(self._workingsteps())
+        self._textures: (
+            dict[int, list[tuple[SurfaceTextureParameter, MachinedSurface]]] | None
+        ) = None
+        self._by_feature: dict[int, list[Workingstep]] = {}
+        for step in self.workingsteps:
+            for feature in step.features:
+                self._by_feature.setdefault(int(feature), []).append(step)
 
     @classmethod
     def load(cls, path: Path, *, units: UnitProfile = ISO) -> "Program":
@@ -170,6 +180,28 @@ class Program:
             for fault in self._faults.values()
         )
         return self.file.findings + self.model.findings() + faults
+
+    def before(self, step: Workingstep) -> list[Workingstep]:
+        """Workingsteps on the same features that run before this one, in order."""
+        found: dict[int, Workingstep] = {}
+        for feature in step.features:
+            for other in self._by_feature[int(feature)]:
+                if other.ref == step.ref:
+                    break
+                found[int(other.ref)] = other
+        return sorted(found.values(), key=lambda step: step.index)
+
+    def textures_of(
+        self, feature: Ref[Entity]
+    ) -> list[tuple[SurfaceTextureParameter, MachinedSurface]]:
+        """Textures that are asked of a feature, each with the surface that is meant."""
+        if self._textures is None:
+            self._textures = {}
+            for texture in self._all(SurfaceTextureParameter):
+                for surface in map(self.get, texture.applied_surfaces):
+                    pairs = self._textures.setdefault(int(surface.its_machining_feature), [])
+                    pairs.append((texture, surface))
+        return self._textures.get(int(feature), [])
 
     def workpiece(self) -> Workpiece | None:
         """The workpiece of the project, or the first one of the file."""
@@ -267,7 +299,7 @@ class Program:
             found.append(step)
         for index, step in enumerate(found):
             is_last = any(last[int(feature)] == index for feature in step.features)
-            yield replace(step, is_last_on_feature=is_last)
+            yield replace(step, index=index, is_last_on_feature=is_last)
 
     def _workingstep(self, executable: Executable) -> Workingstep | None:
         """One workingstep, or None when the executable machines nothing."""
@@ -300,6 +332,7 @@ class Program:
             technology_ref=operation.its_technology,
             functions_ref=operation.its_machine_functions,
             setup=executable.setup,
+            index=0,
             is_last_on_feature=False,
         )
 
