@@ -84,6 +84,8 @@ class Advice:
     before: State | None
     after: State | None
     active: LimitName | None = None
+    active_words: str = ""
+    """the same as the user reads it"""
     saving_of_one_more: float = 0.0
     """s saved by one more step of the active limit"""
     deepest_first_time: float | None = None

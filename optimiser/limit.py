@@ -78,6 +78,13 @@ class Limit:
     """what "one more" of the bound means to the user, in the user's unit"""
     sense: Sense = Sense.AT_MOST
     bound_speed_exponent: float = 0.0
+    label: str = ""
+    """what the user reads instead of the name"""
+
+    @property
+    def words(self) -> str:
+        """The limit as a sentence uses it."""
+        return self.label or self.name.words
 
     def bound_at(self, speed: float) -> float:
         """Bound at one spindle speed, canonical unit."""

@@ -177,6 +177,7 @@ def _tool_limits(cut: Cut, at: Conditions) -> Iterator[Limit]:
     if highest is not None:
         yield Limit(
             name=LimitName.FEED_PER_TOOTH,
+            label="feed per revolution" if cut.tool.diameter <= 0.0 else "",
             load=Monomial(coefficient=1.0, feed_exponent=1.0),
             bound=highest,
             unit="mm",

@@ -167,6 +167,7 @@ def _solved(
         reason=reason_of(after, solution.holding),
         after=after,
         active=solution.active,
+        active_words=solution.holding.words,
         saving_of_one_more=saving,
         deepest_first_time=solution.deepest_first_time,
         prices=prices,
@@ -178,7 +179,7 @@ def reason_of(state: State, limit: Limit) -> str:
     """Sentence that names the limit that holds the feed."""
     load = next(load for load in state.loads if load.limit is limit)
     return (
-        f"{limit.name.words} {load.value * limit.scale:.4g} {limit.unit} reaches its bound of "
+        f"{limit.words} {load.value * limit.scale:.4g} {limit.unit} reaches its bound of "
         f"{load.bound * limit.scale:.4g} {limit.unit}"
     )
 

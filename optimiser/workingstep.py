@@ -132,9 +132,9 @@ def conflict(problem: Problem) -> Infeasible:
             f"{told(cap, rest, speed)}, however small the feed", limits=(cap.name,)
         )
     return Infeasible(
-        f"{cap.name.words} allows a feed of at most {highest:.4g} mm/tooth"
+        f"{cap.words} allows a feed of at most {highest:.4g} mm/tooth"
         f" ({cap.sense} {cap.bound_at(speed) * cap.scale:.4g} {cap.unit}),"
-        f" {floor.name.words} needs at least {lowest:.4g} mm/tooth"
+        f" {floor.words} needs at least {lowest:.4g} mm/tooth"
         f" ({floor.sense} {floor.bound_at(speed) * floor.scale:.4g} {floor.unit}),"
         f" at a depth of {depth:.4g} mm in {passes} passes",
         limits=(cap.name, floor.name),
@@ -145,7 +145,7 @@ def told(limit: Limit, load: float, speed: float) -> str:
     """One limit with its numbers: 'axial depth 6 mm exceeds 5 mm'."""
     verb = "exceeds" if limit.sense is Sense.AT_MOST else "is below"
     return (
-        f"{limit.name.words} {load * limit.scale:.4g} {limit.unit} {verb} "
+        f"{limit.words} {load * limit.scale:.4g} {limit.unit} {verb} "
         f"{limit.bound_at(speed) * limit.scale:.4g} {limit.unit}"
     )
 

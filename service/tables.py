@@ -171,7 +171,7 @@ def _advice_row(advice: Advice) -> Row:
         f"{mm_min_from_speed(before.feed):.1f} -> {mm_min_from_speed(after.feed):.1f}",
         speed if speed == old_speed else f"{old_speed} -> {speed}",
         depth if depth == new_depth else f"{depth} -> {new_depth}",
-        advice.active.words if advice.active else "",
+        advice.active_words,
         f"{before.time:.1f} -> {after.time:.1f}",
     )
 
