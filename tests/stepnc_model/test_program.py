@@ -306,3 +306,13 @@ def test_the_samples_load_without_fault() -> None:
 def test_a_loaded_program_knows_its_name_and_units() -> None:
     program = Program.load(PARTS / "bracket.stpnc", units=PROFILES["rpm-mmin"])
     assert (program.name, program.units.name) == ("bracket.stpnc", "rpm-mmin")
+
+
+def test_an_executable_that_no_entity_describes_is_kept_and_shown() -> None:
+    data = (PARTS / "paper002.stpnc").read_bytes()
+    data = data.replace(b"(#3),$,#20,$", b"(#3,#4),$,#20,$")
+    data = data.replace(b"\n#10=", b"\n#4=COFFEE_BREAK('FIVE MINUTES');\n#10=", 1)
+    program = Program(Part21File.from_bytes(data))
+    assert [each.keyword for each in program.executables][-1] == "COFFEE_BREAK"
+    assert len(program.workingsteps) == 1
+    assert any("COFFEE_BREAK" in finding.message for finding in program.findings())
