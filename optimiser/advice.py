@@ -119,8 +119,31 @@ class Plan:
     @property
     def time_after(self) -> float:
         """Seconds as advised."""
+        return sum(state.time for state in self._final)
+
+    @property
+    def energy_before(self) -> float:
+        """Joules as programmed, of the workingsteps whose energy is known."""
+        return sum(advice.before.energy for advice in self.advices if advice.before)
+
+    @property
+    def energy_after(self) -> float:
+        """Joules as advised."""
+        return sum(state.energy for state in self._final)
+
+    @property
+    def left_out(self) -> str:
+        """What the totals do not count."""
+        unknown = sum(advice.before is None for advice in self.advices)
+        rest = "tool changes and moves between workingsteps"
+        return (
+            f"{unknown} of the workingsteps (the feed is a pitch), {rest}" if unknown else rest
+        )
+
+    @property
+    def _final(self) -> list[State]:
         states = (advice.after or advice.before for advice in self.advices)
-        return sum(state.time for state in states if state)
+        return [state for state in states if state]
 
 
 def tightest(loads: Sequence[Load]) -> list[Load]:

@@ -17,18 +17,19 @@ from optimiser.modes import Mode
 from optimiser.problem import Problem
 
 POINTS = 15
-"""levels of roughness between the finest that cuts and the one that costs no time"""
+"""levels of roughness between the finest that cuts and the one that costs nothing"""
 
 
 def front_of(problem: Problem, cut: Cut, at: Conditions) -> tuple[Point, ...]:
     """Points of the front, the fastest first."""
     free = replace(problem, limits=_without_roughness(problem.limits))
-    fastest = state_of(cut, free, at, exact.solve(free, Mode.TC).setting)
-    points = []
-    for level in _levels(free, cut, fastest):
-        bounded = free
-        if level is not None:
-            bounded = replace(free, limits=(*free.limits, roughness_limit(cut, level)))
+    best = [
+        state_of(cut, free, at, exact.solve(free, mode).setting) for mode in (Mode.TC, Mode.EC)
+    ]
+    points = [Point(state=state, roughness_bound=None) for state in best]
+    roughest = max(best, key=lambda state: state.roughness or 0.0)
+    for level in _levels(free, cut, roughest):
+        bounded = replace(free, limits=(*free.limits, roughness_limit(cut, level)))
         for mode in (Mode.TC, Mode.EC):
             try:
                 setting = exact.solve(bounded, mode).setting
@@ -43,12 +44,12 @@ def _without_roughness(limits: tuple[Limit, ...]) -> tuple[Limit, ...]:
     return tuple(limit for limit in limits if limit.name is not LimitName.ROUGHNESS)
 
 
-def _levels(problem: Problem, cut: Cut, fastest: State) -> list[float | None]:
-    """Ra in mm from what the fastest setting leaves down to what the thinnest chip leaves."""
+def _levels(problem: Problem, cut: Cut, roughest: State) -> list[float]:
+    """Ra in mm from what the roughest optimum leaves down to what the thinnest chip leaves."""
     load = roughness_load(cut)
-    if load is None or fastest.roughness is None:
-        return [None]
-    setting = fastest.setting
+    if load is None or roughest.roughness is None:
+        return []
+    setting = roughest.setting
     thinnest = max(
         (
             limit.feed_at_bound(setting.depth, setting.speed)

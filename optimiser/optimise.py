@@ -8,7 +8,7 @@ from dataclasses import replace
 from math import isfinite
 
 from optimiser import workingstep as exact
-from optimiser.advice import Advice, Plan, State, Status
+from optimiser.advice import Advice, Load, Plan, State, Status
 from optimiser.cut import Cut, CutKind
 from optimiser.errors import Infeasible, OptimisationError
 from optimiser.estimate import milling_cut
@@ -129,19 +129,19 @@ def _advise(
     if not isfinite(before.time) or not isfinite(before.energy):
         raise ValueError(f"a time of {before.time:g} s: its numbers are beyond all machines")
     untouched = replace(untouched, cut=cut, before=before, after=before)
-    findings += _programmed_findings(program, step, before)
+    advice = untouched
     if conditions.inhibition:
         reason = f"{conditions.inhibition}: nobody may touch this feed"
-        return replace(untouched, reason=reason), findings
-    try:
-        return _solved(untouched, cut, problem, at, task), findings
-    except Infeasible as conflict:
-        return (
-            replace(untouched, status=Status.INFEASIBLE, reason=str(conflict), after=None),
-            findings,
-        )
-    except OptimisationError as error:
-        raise OptimisationError(f"{program.label(step.operation_ref)}: {error}") from error
+        advice = replace(untouched, reason=reason)
+    else:
+        try:
+            advice = _solved(untouched, cut, problem, at, task)
+        except Infeasible as conflict:
+            reason = str(conflict)
+            advice = replace(untouched, status=Status.INFEASIBLE, reason=reason, after=None)
+        except OptimisationError as error:
+            raise OptimisationError(f"{program.label(step.operation_ref)}: {error}") from error
+    return advice, findings + _passed_limits(program, advice)
 
 
 def _solved(
@@ -265,7 +265,14 @@ def _roughness(
     """Ra in mm that this workingstep must keep: asked for, in the file, or QC's default."""
     if not cut.is_finishing:
         return None
-    asked = task.roughness or required_roughness(program, step)
+    drawn = required_roughness(program, step)
+    asked = task.roughness or drawn
+    if asked is not None and drawn is not None and asked > drawn:
+        text = (
+            f"Ra {asked * 1e3:g} µm as asked for is coarser than "
+            f"Ra {drawn * 1e3:g} µm in the file"
+        )
+        findings.append(program.finding(Severity.WARNING, text, step.operation_ref))
     if asked is None and task.mode is Mode.QC:
         asked = DEFAULT_QUALITY
         text = f"no roughness is asked for: QC keeps Ra {DEFAULT_QUALITY * 1e3:g} µm"
@@ -291,13 +298,26 @@ def _cutting_material(tool: Tool) -> CuttingMaterial | None:
     return None
 
 
-def _programmed_findings(program: Program, step: Workingstep, before: State) -> list[Finding]:
-    """Limits that the programmed setting itself does not keep."""
+def _passed_limits(program: Program, advice: Advice) -> list[Finding]:
+    """Limits that the programmed setting passes, and the advised one too: a held speed's."""
+    if advice.before is None:
+        return []
+    still = set()
+    if advice.status is Status.ADVISED and advice.after is not None:
+        still = {
+            load.limit.name for load in advice.after.loads if _is_passed(load, advice.after)
+        }
     found = {}
-    for load in before.loads:
-        at = before.setting
-        if not load.limit.holds(at.feed, at.depth, at.speed):
-            text = f"as programmed: {exact.told(load.limit, load.value, at.speed)}"
-            ref = step.technology_ref
-            found[load.limit.name] = program.finding(Severity.WARNING, text, ref)
+    for load in advice.before.loads:
+        if _is_passed(load, advice.before):
+            name = load.limit.name
+            when = "as programmed and as advised" if name in still else "as programmed"
+            text = f"{when}: {exact.told(load.limit, load.value, advice.before.setting.speed)}"
+            ref = advice.workingstep.technology_ref
+            found[name] = program.finding(Severity.WARNING, text, ref)
     return list(found.values())
+
+
+def _is_passed(load: Load, state: State) -> bool:
+    at = state.setting
+    return not load.limit.holds(at.feed, at.depth, at.speed)

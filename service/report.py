@@ -72,14 +72,17 @@ def report_page(plan: Plan) -> str:
 
 
 def _totals(plan: Plan) -> str:
-    """The three numbers that are looked at first."""
+    """The numbers that are looked at first."""
     before, after = plan.time_before, plan.time_after
+    energy = f"{plan.energy_before / 1e3:.0f} → {plan.energy_after / 1e3:.0f} kJ"
     change = f"{after / before - 1.0:+.0%}".replace("-", "−") if before else ""
     return (
         '<div class="figures">'
         f"<div>as programmed<b>{before:.1f} s</b></div>"
         f"<div>as advised<b>{after:.1f} s</b></div>"
-        f"<div>change<b>{change}</b></div></div>"
+        f"<div>change<b>{change}</b></div>"
+        f"<div>energy<b>{energy}</b></div></div>"
+        f"<p class=sub>totals leave out {escape(plan.left_out)}</p>"
     )
 
 

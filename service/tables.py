@@ -39,6 +39,10 @@ def print_plan(plan: Plan) -> None:
     rows = [_advice_row(advice) for advice in plan.advices]
     total = f"{plan.time_before:.1f} -> {plan.time_after:.1f}"
     _table(header, [*rows, ("total", "", "", "", "", "", "", total)])
+    _line(
+        f"energy {plan.energy_before / 1e3:.1f} -> {plan.energy_after / 1e3:.1f} kJ; "
+        f"totals leave out {plan.left_out}"
+    )
     for advice in plan.advices:
         _line(f"  {advice.workingstep.id}: {_reason(advice)}")
     for advice in plan.advices:
@@ -184,6 +188,12 @@ def _reason(advice: Advice) -> str:
     limit = next(load.limit for load in advice.after.loads if load.limit.name is advice.active)
     if advice.saving_of_one_more > 0.0:
         text += f"; {limit.step:g} {limit.unit} more saves {advice.saving_of_one_more:.2g} s"
+    if (
+        advice.after.roughness is not None
+        and advice.cut is not None
+        and advice.cut.is_finishing
+    ):
+        text += f"; leaves Ra {advice.after.roughness * 1e3:.3g} µm"
     deepest = advice.deepest_first_time
     if deepest is not None and deepest > advice.after.time * 1.001:
         text += f"; the deepest passes would have taken {deepest:.1f} s"

@@ -140,7 +140,7 @@ def optimise(request: Request, *, tell: Tell = lambda _: None) -> Outcome:
     conflicts = [each for each in plan.advices if each.status is Status.INFEASIBLE]
     if conflicts:
         names = ", ".join(f"'{each.workingstep.id}'" for each in conflicts)
-        tell(f"infeasible, and not written: {names}")
+        tell(f"infeasible, left as programmed: {names}")
     return Outcome(plan=plan, written=written)
 
 

@@ -8,7 +8,7 @@ import pytest
 from optimiser.advice import Advice, Point
 from optimiser.formulate import Task
 from optimiser.front import POINTS
-from optimiser.modes import Free
+from optimiser.modes import Free, Mode
 from optimiser.optimise import optimise
 from simulator.library import load_machine
 from simulator.matching import match_material
@@ -17,13 +17,13 @@ from stepnc_model.program import Program
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 
 
-def advice(name: str, *free: Free) -> Advice:
+def advice(name: str, *free: Free, mode: Mode = Mode.TC) -> Advice:
     program = Program.load(PARTS / "bracket.stpnc")
     plan = optimise(
         program,
         machine=load_machine("vmc15"),
         material=match_material(("C45",)),
-        task=Task(front=True, free=frozenset(free)),
+        task=Task(mode=mode, front=True, free=frozenset(free)),
         selected=lambda step: step.id == name,
     )
     return plan.advices[0]
@@ -66,3 +66,11 @@ def test_the_front_passes_through_the_advice() -> None:
 def test_where_the_feed_leaves_no_roughness_one_point_is_left() -> None:
     front = advice("DRILL HOLE 1", Free.FEED).front
     assert len(front) == 1
+
+
+def test_the_front_holds_the_optimum_of_energy() -> None:
+    """Two thin passes at a high feed: rougher than the fastest setting, and more frugal."""
+    found = advice("MILL STEP", Free.FEED, Free.DEPTH, mode=Mode.EC)
+    assert found.after is not None
+    frugal = min(point.state.energy for point in found.front)
+    assert frugal == pytest.approx(found.after.energy)

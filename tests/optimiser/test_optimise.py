@@ -153,6 +153,23 @@ def test_roughness_of_the_file_is_kept(bracket: Plan) -> None:
 def test_roughness_of_the_user_goes_before_that_of_the_file() -> None:
     plan = plan_of("bracket", Task(roughness=2.5e-3))
     assert after(advice_of(plan, "FINISH FACE")).roughness == pytest.approx(2.5e-3)
+    texts = [str(finding) for finding in plan.findings]
+    said = "Ra 2.5 µm as asked for is coarser than Ra 1.6 µm in the file"
+    assert any(said in text for text in texts)
+
+
+def test_what_the_advice_leaves_out_of_range_is_said(bracket: Plan) -> None:
+    """The speed is not free: 99.9 m/min stays below the window until it is."""
+    text = "as programmed and as advised: cutting speed 99.9 m/min is below 200 m/min"
+    assert any(text in str(finding) for finding in bracket.findings)
+    freed = plan_of("bracket", Task(free=ALL_FREE))
+    assert not any("as advised" in str(finding) for finding in freed.findings)
+
+
+def test_totals_say_what_they_leave_out(bracket: Plan, shaft: Plan) -> None:
+    assert bracket.left_out == "tool changes and moves between workingsteps"
+    assert shaft.left_out.startswith("1 of the workingsteps (the feed is a pitch), ")
+    assert bracket.energy_after < bracket.energy_before
 
 
 def test_roughing_keeps_no_roughness() -> None:
@@ -364,4 +381,4 @@ def test_front_trades_time_for_roughness(name: str) -> None:
         times = [point.state.time for point in front]
         assert times == sorted(times)
         roughness = [point.state.roughness for point in front]
-        assert roughness[0] == max(value for value in roughness if value is not None)
+        assert roughness[-1] == min(value for value in roughness if value is not None)

@@ -161,7 +161,7 @@ def test_nothing_is_written_when_no_workingstep_is_feasible(bracket: Path) -> No
     assert outcome.plan.is_infeasible
     assert outcome.written is None
     assert "nothing was written: no workingstep was advised" in told
-    assert told[-1].startswith("infeasible, and not written: 'ROUGH FACE'")
+    assert told[-1].startswith("infeasible, left as programmed: 'ROUGH FACE'")
     assert names(bracket.parent) == ["bracket.stpnc", "slow.toml"]
 
 
