@@ -14,7 +14,7 @@ from optimiser.formulate import state_of
 from optimiser.limit import Limit, LimitName, Sense
 from optimiser.limits import Conditions, roughness_limit, roughness_load
 from optimiser.modes import Mode
-from optimiser.problem import Problem
+from optimiser.problem import Problem, Setting
 
 POINTS = 15
 """levels of roughness between the finest that cuts and the one that costs nothing"""
@@ -23,21 +23,29 @@ POINTS = 15
 def front_of(problem: Problem, cut: Cut, at: Conditions) -> tuple[Point, ...]:
     """Points of the front, the fastest first."""
     free = replace(problem, limits=_without_roughness(problem.limits))
-    best = [
-        state_of(cut, free, at, exact.solve(free, mode).setting) for mode in (Mode.TC, Mode.EC)
-    ]
+    best = [state_of(cut, free, at, _best(free, mode)) for mode in (Mode.TC, Mode.EC)]
     points = [Point(state=state, roughness_bound=None) for state in best]
     roughest = max(best, key=lambda state: state.roughness or 0.0)
     for level in _levels(free, cut, roughest):
         bounded = replace(free, limits=(*free.limits, roughness_limit(cut, level)))
         for mode in (Mode.TC, Mode.EC):
             try:
-                setting = exact.solve(bounded, mode).setting
+                setting = _best(bounded, mode)
             except Infeasible:
                 continue
             state = state_of(cut, bounded, at, setting)
             points.append(Point(state=state, roughness_bound=level))
     return tuple(sorted(_undominated(points), key=lambda point: point.state.time))
+
+
+def _best(problem: Problem, mode: Mode) -> Setting:
+    """The optimum: in closed form, but where wear puts the fastest speed inside its range."""
+    has_wear = mode is not Mode.EC and problem.cost.tool_change > 0.0
+    if not has_wear or len(problem.speeds) == 1:
+        return exact.solve(problem, mode).setting
+    from optimiser import program as general  # noqa: PLC0415 (cvxpy takes a second)
+
+    return general.snapped(problem, general.solve(problem, mode))
 
 
 def _without_roughness(limits: tuple[Limit, ...]) -> tuple[Limit, ...]:

@@ -141,7 +141,7 @@ class GeometricProgram:
         for unit_feed in UNIT_FEEDS:
             unit = _Unit(unit_feed * problem.programmed.feed, speeds[0], len(speeds) == 1)
             self._set_speeds(speeds)
-            self._set_rows(limits, depth=depth, unit=unit)
+            rests = self._set_rows(limits, depth=depth, unit=unit)
             worth = self._set_terms(terms, unit=unit)
             status = self._attempt()
             if status in {cp.INFEASIBLE, cp.INFEASIBLE_INACCURATE}:
@@ -161,8 +161,8 @@ class GeometricProgram:
         cost = programmed + passes * problem.cost.link_time * standby
         # The constant link time is no part of the program: its prices shrink by that share.
         prices = {
-            limit.name: float(held.dual_value) * programmed / cost
-            for limit, held in zip(limits, self._held, strict=False)
+            limit.name: float(held.dual_value) / rest * programmed / cost
+            for limit, held, rest in zip(limits, self._held, rests, strict=False)
         }
         return Optimum(setting=setting, cost=cost, prices=prices)
 
@@ -181,8 +181,14 @@ class GeometricProgram:
         self._least_speed.value = 1.0
         self._greatest_speed.value = speeds[-1] / speeds[0] if len(speeds) > 1 else 2.0
 
-    def _set_rows(self, limits: list[Limit], *, depth: float, unit: _Unit) -> None:
-        """One row a limit; rows left over hold always."""
+    def _set_rows(self, limits: list[Limit], *, depth: float, unit: _Unit) -> list[float]:
+        """One row a limit; rows left over hold always.
+
+        An offset that no speed changes goes to the other side, ``c·f^α ≤ b − e``: beside it a
+        bound only just above the offset would leave the solver no digits. Returns the share
+        of each bound that is left, ``d ln(b − e) = d ln b / share``.
+        """
+        rests = []
         if len(limits) > ROWS:
             raise OptimisationError(f"{len(limits)} limits exceed the {ROWS} of the program")
         for row, limit in zip(self._rows, limits, strict=False):
@@ -192,13 +198,18 @@ class GeometricProgram:
             chip = unit.feed**load.feed_exponent
             if sign < 0.0 and load.offset:
                 raise OptimisationError(f"{limit.name.words} with an offset is no posynomial")
-            row.coefficient.value = (load.coefficient * scale * chip) ** sign
-            row.offset.value = max(load.offset * scale, ABSENT)
+            offset = load.offset * scale
+            is_constant = (unit.is_fixed or exponent == 0.0) and offset < 1.0
+            rest = 1.0 - offset if is_constant else 1.0
+            rests.append(rest)
+            row.coefficient.value = (load.coefficient * scale * chip) ** sign / rest
+            row.offset.value = ABSENT if is_constant else max(offset, ABSENT)
             row.feed_exponent.value = sign * load.feed_exponent
             row.speed_exponent.value = 0.0 if unit.is_fixed else sign * exponent
         for row in self._rows[len(limits) :]:
             row.coefficient.value = row.offset.value = ABSENT
             row.feed_exponent.value = row.speed_exponent.value = 0.0
+        return rests
 
     def _set_terms(self, terms: list[tuple[float, float, float]], *, unit: _Unit) -> float:
         """Weights and exponents of the cost; returns what a cost of one is worth."""

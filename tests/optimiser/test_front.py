@@ -17,13 +17,13 @@ from stepnc_model.program import Program
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 
 
-def advice(name: str, *free: Free, mode: Mode = Mode.TC) -> Advice:
+def advice(name: str, *free: Free, mode: Mode = Mode.TC, tool_change: float = 0.0) -> Advice:
     program = Program.load(PARTS / "bracket.stpnc")
     plan = optimise(
         program,
         machine=load_machine("vmc15"),
         material=match_material(("C45",)),
-        task=Task(mode=mode, front=True, free=frozenset(free)),
+        task=Task(mode=mode, front=True, free=frozenset(free), tool_change=tool_change),
         selected=lambda step: step.id == name,
     )
     return plan.advices[0]
@@ -74,3 +74,14 @@ def test_the_front_holds_the_optimum_of_energy() -> None:
     assert found.after is not None
     frugal = min(point.state.energy for point in found.front)
     assert frugal == pytest.approx(found.after.energy)
+
+
+@pytest.mark.parametrize(
+    ("name", "seconds"), [("ROUGH CONTOUR", 600.0), ("FINISH POCKET", 3000.0)]
+)
+def test_tool_life_counts_in_the_front_too(name: str, seconds: float) -> None:
+    """With tool changes the best speed lies inside its range, down to the finest surface."""
+    found = advice(name, *Free, tool_change=seconds)
+    assert found.after is not None
+    least = min(point.state.time for point in found.front)
+    assert least <= found.after.time * (1.0 + 1e-6)

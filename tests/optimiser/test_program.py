@@ -1,5 +1,6 @@
 """The geometric program as the judge of the closed form."""
 
+from dataclasses import replace
 from random import Random
 
 import pytest
@@ -7,6 +8,7 @@ import pytest
 from benchmarks.problems import random_problem
 from optimiser import program, workingstep
 from optimiser.errors import Infeasible
+from optimiser.limit import Limit, LimitName, Monomial
 from optimiser.modes import Mode
 
 CASES = 540
@@ -49,3 +51,22 @@ def test_prices_equal_finite_differences() -> None:
     )
     measured = (solution.time / wider.time - 1.0) / 1e-4
     assert found.prices[solution.active] == pytest.approx(measured, rel=1e-3)
+
+
+def test_a_bound_just_above_the_floor_keeps_its_digits() -> None:
+    """Ra 0.202 µm over a floor of 0.2 µm: 1 % of the bound is left for the feed."""
+    drawn = random_problem(Random(7), free_speed=True)
+    load = Monomial(coefficient=1.0 / 25.0, offset=0.2e-3, feed_exponent=2.0)
+    fine = Limit(name=LimitName.ROUGHNESS, load=load, bound=0.202e-3, unit="µm")
+    feeds = {LimitName.ROUGHNESS, LimitName.CHIP_THICKNESS}
+    kept = tuple(limit for limit in drawn.limits if limit.name not in feeds)
+    problem = replace(drawn, limits=(*kept, fine))
+    solution = workingstep.solve(problem, Mode.TC)
+    judged = program.solve(problem, Mode.TC)
+    assert solution.active is LimitName.ROUGHNESS
+    assert solution.time == pytest.approx(judged.cost, rel=1e-6)
+    wider = workingstep.solve(
+        workingstep.widened(problem, LimitName.ROUGHNESS, by_factor=1.0 + 1e-6), Mode.TC
+    )
+    measured = (solution.time / wider.time - 1.0) / 1e-6
+    assert judged.prices[LimitName.ROUGHNESS] == pytest.approx(measured, rel=1e-3)
