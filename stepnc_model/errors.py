@@ -6,6 +6,8 @@
     ├── Part21Error(line, column)          the text is no ISO 10303-21
     ├── SchemaError(entity, attribute)     the instances are no usable ISO 14649 program
     ├── WriteError(path)                   the result could not be written
+    ├── PathError(entity, attribute)       no tool path can be made for a workingstep
+    ├── PostError(line)                    NC code that a control or a reader cannot take
     ├── SimulationError                    simulator.errors
     │   ├── UnknownMachine, UnknownMaterial
     │   └── LibraryError(path, key)
@@ -66,6 +68,26 @@ class SchemaError(StepNcError):
         super().__init__(f"{place}{name}{message}")
         self.entity = entity
         self.attribute = attribute
+        self.line = line
+
+
+class PathError(SchemaError):
+    """No tool path can be made: the feature, the tool or the strategy does not allow it."""
+
+
+class PostError(StepNcError):
+    """NC code cannot be written for a control, or cannot be read.
+
+    Parameters
+    ----------
+    message : str
+        What was found and what was expected.
+    line : int
+        Line of the NC code, counted from 1; 0 when there is none.
+    """
+
+    def __init__(self, message: str, *, line: int = 0) -> None:
+        super().__init__(f"line {line}: {message}" if line else message)
         self.line = line
 
 

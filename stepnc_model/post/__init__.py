@@ -1,0 +1,1 @@
+"""NC code: neutral blocks, the dialects of controls, and a reader for each."""

@@ -1,0 +1,403 @@
+"""Curves of the file as chains of lines and circular arcs in space.
+
+ISO 10303-42: polylines, composite and trimmed curves, circles, lines and B-splines, and the
+helix of NIST's ``ex1E.stp``. Circles stay arcs; ellipses and B-splines become chords within
+``CHORD_TOLERANCE``.
+
+References
+----------
+.. [1] L. Piegl, W. Tiller, "The NURBS Book", 2nd ed., Springer 1997, algorithm A2.1 and
+   eq. (3.1): points of a B-spline curve by de Boor's recursion.
+"""
+
+from bisect import bisect_right
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import atan2, ceil, cos, dist, pi, sin
+
+from stepnc_model.entities.entity import Entity
+from stepnc_model.entities.enums import TrimmingPreference
+from stepnc_model.entities.geometry import (
+    BSplineCurve,
+    BSplineCurveWithKnots,
+    Circle,
+    CompositeCurve,
+    Ellipse,
+    Helix,
+    Line,
+    Polyline,
+    TrimmedCurve,
+)
+from stepnc_model.errors import PathError
+from stepnc_model.part21.values import Ref, Typed
+from stepnc_model.program import Program
+from stepnc_model.toolpath.frame import Frame, direction_of, frame_of, point_of
+from stepnc_model.toolpath.path import Arc, Feed, Move, MoveType, Plane, Point
+from stepnc_model.units import rad_from_deg
+
+CHORD_TOLERANCE = 1e-3
+"""mm between a curve that is no arc and the chords that stand for it"""
+
+JOINED = 1e-2
+"""mm of gap between two curves of a chain that a file is forgiven"""
+
+ON_CIRCLE = 1e-2
+"""mm by which a trimming point may lie beside its circle"""
+
+MOST_CHORDS = 4096
+
+PRINCIPAL = 1e-9
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Bend:
+    """Circular arc or helix in space."""
+
+    centre: Point
+    normal: Point
+    """unit vector; counter-clockwise is seen from its tip"""
+    turn: float
+    """rad"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Segment:
+    """One line, or one arc when it has a bend."""
+
+    start: Point
+    end: Point
+    bend: Bend | None = None
+
+    def reversed(self) -> "Segment":
+        """The same way back."""
+        bend = replace(self.bend, turn=-self.bend.turn) if self.bend else None
+        return Segment(start=self.end, end=self.start, bend=bend)
+
+    def within(self, frame: Frame) -> "Segment":
+        """A segment given in a frame, in the coordinates around it."""
+        bend = self.bend and Bend(
+            centre=frame.point(self.bend.centre),
+            normal=frame.direction(self.bend.normal),
+            turn=self.bend.turn,
+        )
+        return Segment(start=frame.point(self.start), end=frame.point(self.end), bend=bend)
+
+
+def segments_of(program: Program, ref: Ref[Entity]) -> tuple[Segment, ...]:
+    """Lines and arcs of a bounded curve, in its sense.
+
+    Raises
+    ------
+    PathError
+        When the curve is of another kind, has no length, or its parts do not join.
+    """
+    with program.using(ref):
+        segments = tuple(
+            segment for segment in _segments(program, ref) if not _is_point(segment)
+        )
+    for one, other in pairwise(segments):
+        gap = dist(one.end, other.start)
+        if gap > JOINED:
+            raise _fault(program, ref, f"its parts do not join: a gap of {gap:.4g} mm")
+    return segments
+
+
+def move_of(segment: Segment, type: MoveType, feed: Feed | None) -> Iterator[Move]:
+    """Moves along a segment: one, or chords where its plane is no principal one."""
+    bend = segment.bend
+    if bend is None:
+        yield Move(end=segment.end, type=type, feed=feed)
+        return
+    for plane in Plane:
+        along = bend.normal[plane.axes[2]]
+        if abs(abs(along) - 1.0) < PRINCIPAL:
+            turn = bend.turn if along > 0.0 else -bend.turn
+            arc = Arc(centre=bend.centre, turn=turn, plane=plane)
+            yield Move(end=segment.end, type=type, feed=feed, arc=arc)
+            return
+    for point in _bend_points(segment, bend):
+        yield Move(end=point, type=type, feed=feed)
+
+
+def _segments(program: Program, ref: Ref[Entity]) -> Iterator[Segment]:
+    """Lines and arcs of a curve."""
+    curve = program.get(ref)
+    if isinstance(curve, Polyline):
+        points = [point_of(program, point) for point in curve.points]
+        yield from (Segment(start=a, end=b) for a, b in pairwise(points))
+    elif isinstance(curve, CompositeCurve):
+        for each in map(program.get, curve.segments):
+            inner = tuple(_segments(program, each.parent_curve))
+            yield from inner if each.same_sense is not False else _backwards(inner)
+    elif isinstance(curve, TrimmedCurve):
+        yield from _trimmed(program, ref, curve)
+    elif isinstance(curve, BSplineCurve):
+        yield from _spline(program, ref, curve)
+    elif isinstance(curve, (Circle, Ellipse)):
+        yield from _conic(program, curve, 0.0, 2.0 * pi)
+    else:
+        raise _fault(program, ref, "a curve of this kind cannot be followed")
+
+
+def _backwards(segments: Sequence[Segment]) -> Iterator[Segment]:
+    return (segment.reversed() for segment in reversed(segments))
+
+
+def _trimmed(program: Program, ref: Ref[Entity], curve: TrimmedCurve) -> Iterator[Segment]:
+    """Part of a line, circle, ellipse or helix."""
+    basis = program.get(curve.basis_curve)
+    sense = curve.sense_agreement is not False
+    if isinstance(basis, Line):
+        start, end = (_line_point(program, ref, curve, basis, t) for t in _trims(curve))
+        yield Segment(start=start, end=end)
+    elif isinstance(basis, (Circle, Ellipse, Helix)):
+        frame = frame_of(program, basis.position)
+        first, second = (
+            _angle(program, ref, curve, basis, frame, trims) for trims in _trims(curve)
+        )
+        if isinstance(basis, Helix):
+            yield from _helix(program, ref, curve, basis, frame)
+            return
+        turn = (second - first) % (2.0 * pi) if sense else -((first - second) % (2.0 * pi))
+        if abs(turn) < PRINCIPAL or 2.0 * pi - abs(turn) < PRINCIPAL:
+            turn = 2.0 * pi if sense else -2.0 * pi
+        segments = tuple(_conic(program, basis, first, turn))
+        yield from _exact_ends(program, curve, segments)
+    elif isinstance(basis, (Polyline, CompositeCurve, BSplineCurve)):
+        # A bounded curve that is trimmed at its own ends.
+        inner = tuple(_segments(program, curve.basis_curve))
+        yield from inner if sense else _backwards(inner)
+    else:
+        raise _fault(program, ref, "a curve of this kind cannot be trimmed")
+
+
+def _trims(curve: TrimmedCurve) -> tuple[tuple[object, ...], tuple[object, ...]]:
+    return tuple(curve.trim_1), tuple(curve.trim_2)
+
+
+def _cartesian(
+    program: Program, curve: TrimmedCurve, trims: tuple[object, ...]
+) -> Point | None:
+    """The trimming point, unless the parameter is preferred and given."""
+    points = [trim for trim in trims if isinstance(trim, Ref)]
+    is_other = len(points) < len(trims)
+    if points and not (
+        is_other and curve.master_representation is TrimmingPreference.PARAMETER
+    ):
+        return point_of(program, points[0])
+    return None
+
+
+def _parameter(program: Program, ref: Ref[Entity], trims: tuple[object, ...]) -> float:
+    for trim in trims:
+        value = trim.value if isinstance(trim, Typed) else trim
+        if isinstance(value, (int, float)):
+            return float(value)
+    raise _fault(program, ref, "is trimmed by neither point nor parameter")
+
+
+def _line_point(
+    program: Program,
+    ref: Ref[Entity],
+    curve: TrimmedCurve,
+    line: Line,
+    trims: tuple[object, ...],
+) -> Point:
+    point = _cartesian(program, curve, trims)
+    if point is not None:
+        return point
+    at = _parameter(program, ref, trims)
+    vector = program.get(line.dir)
+    origin, along = (
+        point_of(program, line.pnt),
+        direction_of(program, vector.orientation),
+    )
+    a, b, c = (o + at * vector.magnitude * d for o, d in zip(origin, along, strict=True))
+    return a, b, c
+
+
+def _angle(
+    program: Program,
+    ref: Ref[Entity],
+    curve: TrimmedCurve,
+    basis: Circle | Ellipse | Helix,
+    frame: Frame,
+    trims: tuple[object, ...],
+) -> float:
+    """Parameter of a trim in rad; parameters of a file are in degrees."""
+    point = _cartesian(program, curve, trims)
+    if point is None:
+        return rad_from_deg(_parameter(program, ref, trims))
+    a, b, beside = local(frame, point)
+    if isinstance(basis, Ellipse):
+        return atan2(b / basis.semi_axis_2, a / basis.semi_axis_1)
+    off = abs(dist((a, b), (0.0, 0.0)) - basis.radius)
+    if not isinstance(basis, Helix):
+        off = max(off, abs(beside))
+    if off > ON_CIRCLE:
+        raise _fault(program, ref, f"a trimming point lies {off:.4g} mm beside its circle")
+    return atan2(b, a)
+
+
+def local(frame: Frame, point: Point) -> Point:
+    """A point in the coordinates of a frame."""
+    from_origin = tuple(p - o for p, o in zip(point, frame.origin, strict=True))
+    a, b, c = (
+        sum(f * d for f, d in zip(from_origin, axis, strict=True))
+        for axis in (frame.x, frame.y, frame.z)
+    )
+    return a, b, c
+
+
+def _exact_ends(
+    program: Program, curve: TrimmedCurve, segments: tuple[Segment, ...]
+) -> Iterator[Segment]:
+    """The segments between the trimming points themselves, as the file writes them."""
+    start = _cartesian(program, curve, tuple(curve.trim_1))
+    end = _cartesian(program, curve, tuple(curve.trim_2))
+    last = len(segments) - 1
+    for index, segment in enumerate(segments):
+        yield replace(
+            segment,
+            start=start if index == 0 and start is not None else segment.start,
+            end=end if index == last and end is not None else segment.end,
+        )
+
+
+def _conic(
+    program: Program, conic: Circle | Ellipse, first: float, turn: float
+) -> Iterator[Segment]:
+    """Arc of a circle, or chords of an ellipse, from an angle through a turn."""
+    frame = frame_of(program, conic.position)
+    if isinstance(conic, Circle):
+        ends = [
+            frame.point((conic.radius * cos(at), conic.radius * sin(at), 0.0))
+            for at in (first, first + turn)
+        ]
+        bend = Bend(centre=frame.origin, normal=frame.z, turn=turn)
+        yield Segment(start=ends[0], end=ends[1], bend=bend)
+        return
+    yield from _chords(
+        lambda at: frame.point((conic.semi_axis_1 * cos(at), conic.semi_axis_2 * sin(at), 0.0)),
+        first,
+        first + turn,
+    )
+
+
+def _helix(
+    program: Program,
+    ref: Ref[Entity],
+    curve: TrimmedCurve,
+    helix: Helix,
+    frame: Frame,
+) -> Iterator[Segment]:
+    """Part of a right-hand helix between two points; the rise and the pitch tell the turns."""
+    ends = [_cartesian(program, curve, trims) for trims in _trims(curve)]
+    if ends[0] is None or ends[1] is None or not helix.pitch:
+        raise _fault(program, ref, "a helix needs a pitch and two trimming points")
+    start, end = local(frame, ends[0]), local(frame, ends[1])
+    first, second = atan2(start[1], start[0]), atan2(end[1], end[0])
+    rise = end[2] - start[2]
+    # Files round the pitch: the whole turns follow from it, the rest from the points.
+    whole = 2.0 * pi * rise / helix.pitch
+    rest = (second - first) % (2.0 * pi)
+    turn = rest + 2.0 * pi * round((whole - rest) / (2.0 * pi))
+    bend = Bend(centre=frame.origin, normal=frame.z, turn=turn)
+    yield Segment(start=ends[0], end=ends[1], bend=bend)
+
+
+def _spline(program: Program, ref: Ref[Entity], curve: BSplineCurve) -> Iterator[Segment]:
+    """Chords of a B-spline, [1]_."""
+    poles = [point_of(program, point) for point in curve.control_points_list]
+    knots = _knots(program, ref, curve, len(poles))
+    degree = curve.degree
+    spans = sorted(set(knots[degree : len(poles) + 1]))
+    for low, high in pairwise(spans):
+        yield from _chords(lambda at: _de_boor(knots, poles, degree, at), low, high)
+
+
+def _knots(program: Program, ref: Ref[Entity], curve: BSplineCurve, count: int) -> list[float]:
+    """Knot vector; open and uniform where the curve spells none out."""
+    degree = curve.degree
+    if degree < 1 or count <= degree:
+        raise _fault(program, ref, f"degree {degree} with {count} control points")
+    if isinstance(curve, BSplineCurveWithKnots):
+        knots = [
+            float(knot)
+            for knot, times in zip(curve.knots, curve.knot_multiplicities, strict=True)
+            for _ in range(times)
+        ]
+    else:
+        inner = [float(index) for index in range(1, count - degree)]
+        knots = [0.0] * (degree + 1) + inner + [float(count - degree)] * (degree + 1)
+    if len(knots) != count + degree + 1 or any(a > b for a, b in pairwise(knots)):
+        message = f"{len(knots)} knots for {count} control points of degree {degree}"
+        raise _fault(program, ref, message)
+    return knots
+
+
+def _de_boor(knots: list[float], poles: list[Point], degree: int, at: float) -> Point:
+    """Point of a B-spline at a parameter."""
+    span = min(max(bisect_right(knots, at) - 1, degree), len(poles) - 1)
+    points = [poles[span - degree + i] for i in range(degree + 1)]
+    for level in range(1, degree + 1):
+        for i in range(degree, level - 1, -1):
+            low = knots[span - degree + i]
+            width = knots[span + 1 + i - level] - low
+            part = (at - low) / width if width > 0.0 else 0.0
+            a, b = points[i - 1], points[i]
+            points[i] = (
+                a[0] + part * (b[0] - a[0]),
+                a[1] + part * (b[1] - a[1]),
+                a[2] + part * (b[2] - a[2]),
+            )
+    return points[degree]
+
+
+def _chords(curve: Callable[[float], Point], low: float, high: float) -> Iterator[Segment]:
+    """Chords of equal parameter that stay within the tolerance; their number doubles."""
+    count = 4
+    while count < MOST_CHORDS:
+        ends = [curve(low + (high - low) * i / count) for i in range(count + 1)]
+        middles = [curve(low + (high - low) * (i + 0.5) / count) for i in range(count)]
+        if all(
+            dist(middle, tuple(0.5 * (p + q) for p, q in zip(a, b, strict=True)))
+            <= CHORD_TOLERANCE
+            for middle, (a, b) in zip(middles, pairwise(ends), strict=True)
+        ):
+            break
+        count *= 2
+    yield from (Segment(start=a, end=b) for a, b in pairwise(ends))
+
+
+def _bend_points(segment: Segment, bend: Bend) -> Iterator[Point]:
+    """Points of an arc in any plane, after its start."""
+    towards = tuple(s - c for s, c in zip(segment.start, bend.centre, strict=True))
+    n = bend.normal
+    along = sum(t * c for t, c in zip(towards, n, strict=True))
+    x = tuple(t - along * c for t, c in zip(towards, n, strict=True))
+    y = (n[1] * x[2] - n[2] * x[1], n[2] * x[0] - n[0] * x[2], n[0] * x[1] - n[1] * x[0])
+    size = dist(x, (0.0, 0.0, 0.0))
+    rise = sum((e - s) * c for e, s, c in zip(segment.end, segment.start, n, strict=True))
+    step = 2.0 * (2.0 * CHORD_TOLERANCE / max(size, CHORD_TOLERANCE)) ** 0.5
+    count = min(MOST_CHORDS, max(2, ceil(abs(bend.turn) / step)))
+    for i in range(1, count):
+        part = i / count
+        a, b = cos(part * bend.turn), sin(part * bend.turn)
+        lift = along + part * rise
+        p, q, r = (
+            c + a * u + b * v + lift * w
+            for c, u, v, w in zip(bend.centre, x, y, n, strict=True)
+        )
+        yield p, q, r
+    yield segment.end
+
+
+def _is_point(segment: Segment) -> bool:
+    """A segment without length, as files leave between their curves."""
+    return segment.start == segment.end and segment.bend is None
+
+
+def _fault(program: Program, ref: Ref[Entity], message: str) -> PathError:
+    return PathError(message, entity=program.label(ref), line=program.line(ref))

@@ -1,0 +1,145 @@
+"""What every tool path is made from: the workingstep, its tool, its frame and its heights."""
+
+from dataclasses import dataclass
+
+from stepnc_model.entities.entity import Entity
+from stepnc_model.entities.geometry import Block, RightCircularCylinder
+from stepnc_model.entities.setup import Setup
+from stepnc_model.errors import Finding, PathError, Severity
+from stepnc_model.part21.values import Ref
+from stepnc_model.program import Program, Workingstep
+from stepnc_model.tool import Tool, tool_of
+from stepnc_model.toolpath.frame import Frame, feature_frame, frame_of, workpiece_frame
+from stepnc_model.toolpath.path import Feed
+
+DEFAULT_CLEARANCE = 5.0
+"""mm from the feature up to the retract plane where the file gives none"""
+
+DEFAULT_SECURITY = 50.0
+"""mm above zero where a file gives no security plane"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stock:
+    """Raw part in the coordinates of the setup: a box, or a bar about an axis along z."""
+
+    low: tuple[float, float, float]
+    high: tuple[float, float, float]
+    radius: float | None = None
+    """mm, of a bar; its axis is in the middle of the box"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Job:
+    """One workingstep with what its tool path needs to know."""
+
+    program: Program
+    step: Workingstep
+    tool: Tool
+    security_z: float
+    """mm, height of the security plane in the setup"""
+    stock: Stock | None
+    findings: tuple[Finding, ...] = ()
+
+    @property
+    def feed(self) -> Feed:
+        """The programmed feed."""
+        return Feed(technology=self.step.technology_ref)
+
+    def frame(self, feature: Ref[Entity]) -> Frame:
+        """Frame of a feature in the setup."""
+        return feature_frame(self.program, self.step.setup, feature)
+
+    def fault(self, message: str, ref: Ref[Entity], attribute: str = "") -> PathError:
+        """Why no path can be made, at one instance."""
+        return PathError(
+            message,
+            entity=self.program.label(ref),
+            attribute=attribute,
+            line=self.program.line(ref),
+        )
+
+    def note(
+        self, message: str, ref: Ref[Entity] | None = None, attribute: str = ""
+    ) -> Finding:
+        """What was assumed."""
+        at = self.step.operation_ref if ref is None else ref
+        return self.program.finding(Severity.NOTE, message, at, attribute)
+
+    def warning(
+        self, message: str, ref: Ref[Entity] | None = None, attribute: str = ""
+    ) -> Finding:
+        """What a machinist would want to see."""
+        at = self.step.operation_ref if ref is None else ref
+        return self.program.finding(Severity.WARNING, message, at, attribute)
+
+
+def job_of(program: Program, step: Workingstep) -> Job:
+    """What a workingstep's tool path is made from.
+
+    Raises
+    ------
+    SchemaError, PathError
+        When its tool or security plane cannot be used.
+    """
+    stock = stock_of(program, step.setup)
+    security_z, findings = _security(program, step, stock)
+    return Job(
+        program=program,
+        step=step,
+        tool=tool_of(program, step.tool_ref),
+        security_z=security_z,
+        stock=stock,
+        findings=findings,
+    )
+
+
+def stock_of(program: Program, setup: Ref[Setup] | None) -> Stock | None:
+    """The raw part, by the bounding geometry of the raw piece or of the workpiece."""
+    workpiece = program.workpiece()
+    if workpiece is None:
+        return None
+    raw = program.get(workpiece.its_rawpiece) if workpiece.its_rawpiece else workpiece
+    reference = raw.its_bounding_geometry or workpiece.its_bounding_geometry
+    if reference is None:
+        return None
+    shape = program.get(reference)
+    if not isinstance(shape, (Block, RightCircularCylinder)):
+        return None
+    frame = workpiece_frame(program, setup).inner(frame_of(program, shape.position))
+    radius = None
+    if isinstance(shape, Block):
+        low, high = (0.0, 0.0, 0.0), (shape.x, shape.y, shape.z)
+    else:
+        low = (-shape.radius, -shape.radius, 0.0)
+        high = (shape.radius, shape.radius, shape.height)
+        radius = shape.radius
+    corners = [
+        frame.point((x, y, z))
+        for x in (low[0], high[0])
+        for y in (low[1], high[1])
+        for z in (low[2], high[2])
+    ]
+    columns = list(zip(*corners, strict=True))
+    return Stock(
+        low=(min(columns[0]), min(columns[1]), min(columns[2])),
+        high=(max(columns[0]), max(columns[1]), max(columns[2])),
+        radius=radius,
+    )
+
+
+def _security(
+    program: Program, step: Workingstep, stock: Stock | None
+) -> tuple[float, tuple[Finding, ...]]:
+    """Height of the security plane: the workingstep's, else the setup's, else a default."""
+    entity = program.get(step.ref)
+    planes = [getattr(entity, "its_secplane", None)]
+    if step.setup is not None:
+        planes.append(program.get(step.setup).its_secplane)
+    for plane in planes:
+        if plane is not None:
+            frame = frame_of(program, program.get(plane).position)
+            return frame.origin[2], ()
+    height = max(DEFAULT_SECURITY, (stock.high[2] if stock else 0.0) + DEFAULT_CLEARANCE)
+    text = f"no security plane: z = {height:g} mm assumed"
+    return height, (program.finding(Severity.NOTE, text, step.ref, "its_secplane"),)

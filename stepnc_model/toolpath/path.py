@@ -1,0 +1,232 @@
+"""A tool path: lines and arcs by station, each with what it is for.
+
+Types of moves after Shin et al., "Developing a virtual machining model to generate MTConnect
+machine-monitoring data from STEP-NC", Int. J. Prod. Res. 54 (2016) 4487-4505, section 3.2.2:
+approach, retract, rapid, interpolation in contact and not in contact; each interpolation is
+linear or circular. Coordinates are those of the setup, mm; on a lathe x is the radius, y is 0
+and z the spindle axis, away from the chuck.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import StrEnum
+from itertools import accumulate
+from math import atan2, cos, dist, hypot, isfinite, pi, sin
+
+from stepnc_model.entities.entity import Entity
+from stepnc_model.errors import Finding
+from stepnc_model.part21.values import Ref
+
+Point = tuple[float, float, float]
+"""x, y, z in mm"""
+
+
+class MoveType(StrEnum):
+    """What a move is for."""
+
+    APPROACH = "approach"
+    """to the first cut, down into the material if need be"""
+    RETRACT = "retract"
+    """away from the last cut"""
+    RAPID = "rapid"
+    """between cuts"""
+    NO_CONTACT = "no contact"
+    """interpolation through air: overcut, links"""
+    CONTACT = "contact"
+    """interpolation that cuts"""
+
+
+class Plane(StrEnum):
+    """Plane of an arc; counter-clockwise is seen from the tip of its normal."""
+
+    XY = "XY"
+    ZX = "ZX"
+    YZ = "YZ"
+
+    @property
+    def axes(self) -> tuple[int, int, int]:
+        """Indices of the first, second and normal axis."""
+        return {"XY": (0, 1, 2), "ZX": (2, 0, 1), "YZ": (1, 2, 0)}[self.value]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Feed:
+    """At which feed and speed a move runs: those of a technology, or ratios of them."""
+
+    technology: Ref[Entity]
+    ratio: float = 1.0
+    """of the programmed feed"""
+    speed_ratio: float = 1.0
+    """of the programmed spindle speed"""
+    per_revolution: float | None = None
+    """mm; overrides the programmed feed"""
+    velocity: float | None = None
+    """mm/s; overrides the programmed feed"""
+    is_synchronised: bool = False
+    """bound to the angle of the spindle: threads"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Arc:
+    """How a move bends: about a centre, with a rise along the normal when it is a helix."""
+
+    centre: Point
+    """its coordinate along the normal of the plane means nothing"""
+    turn: float
+    """rad, positive counter-clockwise; more than 2π for several turns"""
+    plane: Plane = Plane.XY
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Move:
+    """One line or arc, from where the last one ended."""
+
+    end: Point
+    type: MoveType
+    feed: Feed | None = None
+    """None: rapid"""
+    arc: Arc | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Dwell:
+    """Pause; exactly one of the two is given."""
+
+    seconds: float | None = None
+    revolutions: float | None = None
+
+
+class SpindleCommand(StrEnum):
+    """What the spindle does between moves."""
+
+    START = "start"
+    """in the direction of cutting"""
+    REVERSE = "reverse"
+    STOP = "stop"
+    ORIENT = "orient"
+
+
+Step = Move | Dwell | SpindleCommand
+
+
+class CycleKind(StrEnum):
+    """Cycles that controls have of their own."""
+
+    DRILL = "drill"
+    """feed in, rapid out"""
+    DWELL = "drill with dwell"
+    PECK = "peck, full retract"
+    CHIP_BREAK = "peck, short retract"
+    TAP = "tap"
+    BORE = "feed in, feed out"
+    BORE_STOP = "feed in, spindle stop, rapid out"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Cycle:
+    """A run of steps that a control can make with one of its own cycles."""
+
+    kind: CycleKind
+    first: int
+    """index of the first step that the cycle replaces: the feed from the retract plane"""
+    last: int
+    """index of the last one: back on the retract plane"""
+    retract_z: float
+    """mm, of the retract plane"""
+    bottom_z: float
+    """mm"""
+    feed: Feed
+    step_depth: float = 0.0
+    """mm of each peck"""
+    retract_distance: float = 0.0
+    """mm of a short retract"""
+    dwell: float = 0.0
+    """s at the bottom"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ToolPath:
+    """What the tool does in one workingstep: from the security plane and back to it."""
+
+    workingstep: Ref[Entity]
+    id: str
+    """of the workingstep"""
+    operation_ref: Ref[Entity]
+    tool_ref: Ref[Entity] | None
+    """None: a rapid movement with whatever tool there is"""
+    technology_ref: Ref[Entity] | None
+    functions_ref: Ref[Entity] | None
+    is_turning: bool
+    start: Point
+    steps: tuple[Step, ...]
+    cycles: tuple[Cycle, ...] = ()
+    findings: tuple[Finding, ...] = ()
+    """what was assumed"""
+
+    def __post_init__(self) -> None:
+        for point in (self.start, *(move.end for move in self.moves)):
+            if not all(map(isfinite, point)):
+                raise ValueError(f"'{self.id}': position {point} mm is not finite")
+
+    @property
+    def moves(self) -> tuple[Move, ...]:
+        """The moves without the pauses between them."""
+        return tuple(step for step in self.steps if isinstance(step, Move))
+
+    @property
+    def end(self) -> Point:
+        """Where the path ends."""
+        return next((move.end for move in reversed(self.moves)), self.start)
+
+    def segments(self) -> Iterator[tuple[Point, Move]]:
+        """Each move with the point where it starts."""
+        start = self.start
+        for move in self.moves:
+            yield start, move
+            start = move.end
+
+    def stations(self) -> tuple[float, ...]:
+        """Arc length in mm from the start to the end of each move."""
+        return tuple(accumulate(length(start, move) for start, move in self.segments()))
+
+
+def length(start: Point, move: Move) -> float:
+    """Length of one move, mm."""
+    if move.arc is None:
+        return dist(start, move.end)
+    normal = move.arc.plane.axes[2]
+    return hypot(radius(start, move.arc) * move.arc.turn, move.end[normal] - start[normal])
+
+
+def radius(start: Point, arc: Arc) -> float:
+    """Radius of an arc, mm."""
+    first, second, _ = arc.plane.axes
+    return hypot(start[first] - arc.centre[first], start[second] - arc.centre[second])
+
+
+def points_along(start: Point, move: Move, *, step: float) -> Iterator[Point]:
+    """Points on a move after its start, the last one its end.
+
+    Parameters
+    ----------
+    start : Point
+    move : Move
+    step : float, rad
+        Greatest angle between two points of an arc.
+    """
+    if move.arc is not None:
+        first, second, normal = move.arc.plane.axes
+        centre = move.arc.centre
+        size = radius(start, move.arc)
+        angle = atan2(start[second] - centre[second], start[first] - centre[first])
+        rise = move.end[normal] - start[normal]
+        count = max(1, int(abs(move.arc.turn) / min(step, pi)) + 1)
+        for index in range(1, count):
+            part = index / count
+            turned = angle + part * move.arc.turn
+            point = [0.0, 0.0, 0.0]
+            point[first] = centre[first] + size * cos(turned)
+            point[second] = centre[second] + size * sin(turned)
+            point[normal] = start[normal] + part * rise
+            yield point[0], point[1], point[2]
+    yield move.end
