@@ -3,14 +3,8 @@
 ISO 10303-42: polylines, composite and trimmed curves, circles, lines and B-splines, and the
 helix of NIST's ``ex1E.stp``. Circles stay arcs; ellipses and B-splines become chords within
 ``CHORD_TOLERANCE``.
-
-References
-----------
-.. [1] L. Piegl, W. Tiller, "The NURBS Book", 2nd ed., Springer 1997, algorithm A2.1 and
-   eq. (3.1): points of a B-spline curve by de Boor's recursion.
 """
 
-from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -20,7 +14,6 @@ from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.enums import TrimmingPreference
 from stepnc_model.entities.geometry import (
     BSplineCurve,
-    BSplineCurveWithKnots,
     Circle,
     CompositeCurve,
     Ellipse,
@@ -34,6 +27,7 @@ from stepnc_model.part21.values import Ref, Typed
 from stepnc_model.program import Program
 from stepnc_model.toolpath.frame import Frame, direction_of, frame_of, point_of
 from stepnc_model.toolpath.path import Arc, Feed, Move, MoveType, Plane, Point
+from stepnc_model.toolpath.spline import spline_of
 from stepnc_model.units import rad_from_deg
 
 CHORD_TOLERANCE = 1e-3
@@ -133,7 +127,7 @@ def _segments(program: Program, ref: Ref[Entity]) -> Iterator[Segment]:
     elif isinstance(curve, TrimmedCurve):
         yield from _trimmed(program, ref, curve)
     elif isinstance(curve, BSplineCurve):
-        yield from _spline(program, ref, curve)
+        yield from _spline(program, ref)
     elif isinstance(curve, (Circle, Ellipse)):
         yield from _conic(program, curve, 0.0, 2.0 * pi)
     else:
@@ -307,52 +301,11 @@ def _helix(
     yield Segment(start=ends[0], end=ends[1], bend=bend)
 
 
-def _spline(program: Program, ref: Ref[Entity], curve: BSplineCurve) -> Iterator[Segment]:
-    """Chords of a B-spline, [1]_."""
-    poles = [point_of(program, point) for point in curve.control_points_list]
-    knots = _knots(program, ref, curve, len(poles))
-    degree = curve.degree
-    spans = sorted(set(knots[degree : len(poles) + 1]))
-    for low, high in pairwise(spans):
-        yield from _chords(lambda at: _de_boor(knots, poles, degree, at), low, high)
-
-
-def _knots(program: Program, ref: Ref[Entity], curve: BSplineCurve, count: int) -> list[float]:
-    """Knot vector; open and uniform where the curve spells none out."""
-    degree = curve.degree
-    if degree < 1 or count <= degree:
-        raise _fault(program, ref, f"degree {degree} with {count} control points")
-    if isinstance(curve, BSplineCurveWithKnots):
-        knots = [
-            float(knot)
-            for knot, times in zip(curve.knots, curve.knot_multiplicities, strict=True)
-            for _ in range(times)
-        ]
-    else:
-        inner = [float(index) for index in range(1, count - degree)]
-        knots = [0.0] * (degree + 1) + inner + [float(count - degree)] * (degree + 1)
-    if len(knots) != count + degree + 1 or any(a > b for a, b in pairwise(knots)):
-        message = f"{len(knots)} knots for {count} control points of degree {degree}"
-        raise _fault(program, ref, message)
-    return knots
-
-
-def _de_boor(knots: list[float], poles: list[Point], degree: int, at: float) -> Point:
-    """Point of a B-spline at a parameter."""
-    span = min(max(bisect_right(knots, at) - 1, degree), len(poles) - 1)
-    points = [poles[span - degree + i] for i in range(degree + 1)]
-    for level in range(1, degree + 1):
-        for i in range(degree, level - 1, -1):
-            low = knots[span - degree + i]
-            width = knots[span + 1 + i - level] - low
-            part = (at - low) / width if width > 0.0 else 0.0
-            a, b = points[i - 1], points[i]
-            points[i] = (
-                a[0] + part * (b[0] - a[0]),
-                a[1] + part * (b[1] - a[1]),
-                a[2] + part * (b[2] - a[2]),
-            )
-    return points[degree]
+def _spline(program: Program, ref: Ref[Entity]) -> Iterator[Segment]:
+    """Chords of a B-spline."""
+    spline = spline_of(program, ref)
+    for low, high in pairwise(spline.spans):
+        yield from _chords(spline.at, low, high)
 
 
 def _chords(curve: Callable[[float], Point], low: float, high: float) -> Iterator[Segment]:

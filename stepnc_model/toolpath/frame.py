@@ -1,14 +1,15 @@
 """Coordinate systems: placements of the file as rigid motions, from a feature to the setup.
 
-ISO 14649-10: a feature is placed on its workpiece, a workpiece in its setup. Tool paths come
-out in the coordinates of the setup.
+ISO 14649-10: a feature is placed on its workpiece or in its compound feature, a workpiece in
+its setup. Tool paths come out in the coordinates of the setup.
 """
 
 from dataclasses import dataclass
 from math import sqrt
 
 from stepnc_model.entities.entity import Entity
-from stepnc_model.entities.geometry import Axis1Placement, Axis2Placement3d
+from stepnc_model.entities.features import CompoundFeature
+from stepnc_model.entities.geometry import Placement
 from stepnc_model.entities.setup import Setup
 from stepnc_model.errors import PathError
 from stepnc_model.part21.values import Ref
@@ -55,6 +56,13 @@ class Frame:
             z=self.direction(frame.z),
         )
 
+    def inverse(self) -> "Frame":
+        """The coordinates around this system, seen from within it."""
+        columns = tuple(zip(self.x, self.y, self.z, strict=True))
+        back = Frame(x=columns[0], y=columns[1], z=columns[2])
+        x, y, z = back.direction(self.origin)
+        return Frame(origin=(-x, -y, -z), x=columns[0], y=columns[1], z=columns[2])
+
     @property
     def is_upright(self) -> bool:
         """Whether z points along the z around it."""
@@ -72,13 +80,12 @@ def frame_of(program: Program, ref: Ref[Entity] | None) -> Frame:
     if ref is None:
         return Frame()
     placement = program.get(ref)
-    if not isinstance(placement, (Axis1Placement, Axis2Placement3d)):
-        raise _fault(program, ref, "is no placement in space")
+    if not isinstance(placement, Placement):
+        raise _fault(program, ref, "is no placement")
     origin = point_of(program, placement.location)
-    z = _direction(program, ref, placement.axis) or (0.0, 0.0, 1.0)
-    towards = None
-    if isinstance(placement, Axis2Placement3d):
-        towards = _direction(program, ref, placement.ref_direction)
+    # A placement in the plane has no axis, one on an axis has no reference direction.
+    z = _direction(program, ref, getattr(placement, "axis", None)) or (0.0, 0.0, 1.0)
+    towards = _direction(program, ref, getattr(placement, "ref_direction", None))
     if towards is None:
         is_along_x = abs(z[1]) + abs(z[2]) < PARALLEL
         towards = (0.0, 1.0, 0.0) if is_along_x else (1.0, 0.0, 0.0)
@@ -114,10 +121,31 @@ def workpiece_frame(program: Program, setup: Ref[Setup] | None) -> Frame:
     return frame_of(program, program.get(placed[0]).its_origin) if placed else Frame()
 
 
+def compound_of(program: Program, feature: Ref[Entity]) -> Ref[CompoundFeature] | None:
+    """Compound feature that a feature is an element of."""
+    compounds = program.model.of_type(CompoundFeature)
+    return next((ref for ref, compound in compounds if feature in compound.elements), None)
+
+
+def surrounding_frame(
+    program: Program, setup: Ref[Setup] | None, feature: Ref[Entity]
+) -> Frame:
+    """Frame that a feature is placed in: its compound feature's, else its workpiece's.
+
+    ISO 14649-10: elements of a compound feature are placed relative to it, also when a
+    workingstep names an element.
+    """
+    frame = workpiece_frame(program, setup)
+    compound = compound_of(program, feature)
+    if compound is None:
+        return frame
+    return frame.inner(frame_of(program, program.get(compound).feature_placement))
+
+
 def feature_frame(program: Program, setup: Ref[Setup] | None, feature: Ref[Entity]) -> Frame:
     """Frame of a feature in the setup."""
     placement = getattr(program.get(feature), "feature_placement", None)
-    return workpiece_frame(program, setup).inner(frame_of(program, placement))
+    return surrounding_frame(program, setup, feature).inner(frame_of(program, placement))
 
 
 def _fault(program: Program, ref: Ref[Entity], message: str) -> PathError:

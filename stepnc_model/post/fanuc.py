@@ -1,0 +1,243 @@
+"""NC code for Fanuc controls, mill (M) and lathe (T, G-code system A), and their kin.
+
+After Fanuc, "Series 0i-MODEL F Operator's Manual" (B-64604EN, B-64604EN-1 for lathes,
+B-64604EN-2 for machining centres) and, for rigid tapping by lead,
+"Series 0i Connection Manual (Function)" (B-63833EN-1). Dwell in ms, X of a lathe is a
+diameter, its G98 and G99 are the modes of feed. How far above the last depth a peck begins is
+parameter 5115, its short retract 5114.
+"""
+
+import re
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import ClassVar
+
+from stepnc_model.errors import PostError
+from stepnc_model.post.blocks import (
+    Block,
+    CoolantKind,
+    Machine,
+    ProgramEnd,
+    RateMode,
+    RigidTap,
+    Sense,
+    Threading,
+    ToolChange,
+)
+from stepnc_model.post.iso_acts import CANNED, COMMON, LENGTHS, PER_TIME, Act
+from stepnc_model.post.iso_code import IsoCode
+from stepnc_model.post.iso_reader import IsoReader
+from stepnc_model.post.iso_words import Words, whole
+from stepnc_model.post.words import ascii_text, pointed
+from stepnc_model.toolpath.path import Plane, Point
+
+LONGEST = 100
+"""characters of a comment"""
+
+MOST_TOOLS = 99
+"""numbers of tools on a lathe have two digits"""
+
+LATHE_MODES = {RateMode.PER_MINUTE: "G98", RateMode.PER_REVOLUTION: "G99"}
+
+REFUSED = re.compile(r"[^A-Z0-9 .,+\-*/=#\[\]&_?@]")
+"""what no character set is sure to have; % and ; would end the tape or the block"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Manner:
+    """Where the controls of this family differ."""
+
+    head: str
+    """number of the program"""
+    seconds: Callable[[float], str]
+    """P word of a dwell"""
+    seconds_of: Callable[[float], float]
+    """dwell in s of a P word"""
+    coolant: Mapping[CoolantKind, str]
+    coolant_ends: tuple[str, ...]
+    threads: Mapping[Machine, str]
+    """thread cutting"""
+    taps: Mapping[tuple[Machine, Sense], str]
+    """rigid tapping"""
+    tap_speed: str
+    """what goes before the S word of a rigid tap"""
+    retract: frozenset[Machine]
+    """where a rigid tap names the plane it returns to, absolute"""
+
+
+FANUC = Manner(
+    head="O0001",
+    seconds=lambda value: f"P{round(1000.0 * value)}",
+    seconds_of=lambda value: value / 1000.0,
+    coolant={CoolantKind.FLOOD: "M8", CoolantKind.MIST: "M7", CoolantKind.THROUGH: "M8"},
+    coolant_ends=("M9",),
+    threads={Machine.MILL: "G33", Machine.LATHE: "G32"},
+    taps={
+        (Machine.MILL, Sense.CLOCKWISE): "G84",
+        (Machine.MILL, Sense.COUNTERCLOCKWISE): "G74",
+        (Machine.LATHE, Sense.CLOCKWISE): "G84",
+    },
+    tap_speed="M29",
+    retract=frozenset({Machine.MILL}),
+)
+
+
+class Fanuc(IsoCode):
+    """Writer for Fanuc and its kin."""
+
+    def __init__(self, manner: Manner = FANUC) -> None:
+        super().__init__()
+        self.manner = manner
+        self.coolant_codes = manner.coolant
+
+    def number(self, value: float, places: int) -> str:
+        """With its point: without one old controls count in µm."""
+        return pointed(value, places)
+
+    def start(self, name: str) -> Iterator[str]:
+        """Percent sign, number, modes."""
+        yield "%"
+        yield f"{self.manner.head} {self.text(name)}"
+        is_lathe = self.machine is Machine.LATHE
+        self.plane_words(Plane.ZX if is_lathe else Plane.XY)
+        self.modal.set("mode", "G99" if is_lathe else "G94")
+        yield from self.line(
+            "G18 G21 G40 G54 G80 G97 G99" if is_lathe else "G17 G21 G40 G49 G54 G80 G90 G94"
+        )
+
+    def end(self, _: ProgramEnd) -> Iterator[str]:
+        """End, rewind and percent sign."""
+        yield from self.line("M30")
+        yield "%"
+
+    def text(self, text: str) -> str:
+        """A comment in capitals."""
+        plain = ascii_text(text).upper().replace("(", "[").replace(")", "]")
+        return f"({REFUSED.sub(' ', plain)[:LONGEST]})"
+
+    def tool_change(self, block: ToolChange) -> Iterator[str]:
+        """T and M6, the offset with the next z; on a lathe both in T."""
+        if self.machine is Machine.MILL:
+            yield from self.line(f"T{block.number}", "M6")
+            self.pend(f"G43 H{block.number}")
+            return
+        if block.number > MOST_TOOLS:
+            raise PostError(f"tool {block.number}: a lathe has {MOST_TOOLS} at most")
+        yield from self.line(f"T{block.number:02}{block.number:02}")
+        self.pend("")
+
+    def mode_code(self, mode: RateMode) -> str:
+        """G94 and G95, or G98 and G99 on a lathe."""
+        is_lathe = self.machine is Machine.LATHE
+        return LATHE_MODES[mode] if is_lathe else super().mode_code(mode)
+
+    def surface_speed(self, speed: str, limit: str, sense: str) -> Iterator[str]:
+        """G50 with the limit, then G96."""
+        if limit:
+            yield from self.line("G50", f"S{limit}")
+        yield from self.line("G96", f"S{speed}", sense)
+
+    def coolant_off(self) -> Iterator[str]:
+        """All coolant off."""
+        codes = [self.manner.coolant_ends[0]] if self.cooling - {self._through} else []
+        if self._through in self.cooling:
+            codes.append(self.manner.coolant_ends[-1])
+        self.cooling.clear()
+        for code in dict.fromkeys(codes):
+            yield from self.line(code)
+
+    @property
+    def _through(self) -> str:
+        return self.manner.coolant[CoolantKind.THROUGH]
+
+    def seconds(self, value: float) -> str:
+        """P word of a dwell."""
+        return self.manner.seconds(value)
+
+    def thread_words(self, start: Point, block: Threading) -> list[str]:
+        """Thread cutting with the lead in F."""
+        if self.machine not in self.manner.threads:
+            raise PostError(f"a synchronised line: this {self.machine} has none")
+        return [self.manner.threads[self.machine], f"F{self.number(block.lead, 4)}"]
+
+    def rigid_tap(self, block: RigidTap) -> Iterator[str]:
+        """The speed, the cycle with the lead in F, and its end."""
+        code = self.manner.taps.get((self.machine, block.sense))
+        if code is None:
+            raise PostError(f"a left-hand rigid tap: this {self.machine} has none")
+        is_mill = self.machine is Machine.MILL
+        retract = ""
+        if self.machine in self.manner.retract:
+            retract = f"R{self.number(block.start[2], self.places)}"
+        yield from self.line(self.manner.tap_speed, self.speed(block.speed))
+        yield from self.line(
+            self.mode(RateMode.PER_REVOLUTION),
+            "G99" if is_mill else "",
+            code,
+            f"Z{self.number(block.bottom_z, self.places)}",
+            retract,
+            f"F{self.number(block.lead, 4)}",
+        )
+        yield from self.line("G80")
+
+
+MILL: dict[str, Act] = COMMON | PER_TIME | LENGTHS | CANNED
+LATHE: dict[str, Act] = COMMON | {
+    "G21": Act.NOTHING,
+    "G50": Act.SPEED_LIMIT,
+    "G80": Act.CANCEL,
+    "G98": Act.PER_MINUTE,
+    "G99": Act.PER_REVOLUTION,
+}
+TAPS = {Sense.CLOCKWISE: Act.TAP, Sense.COUNTERCLOCKWISE: Act.LEFT_TAP}
+
+
+class FanucReader(IsoReader):
+    """Reader of Fanuc code and its kin."""
+
+    quiet: ClassVar[frozenset[str]] = frozenset({"M29"})
+
+    def __init__(self, machine: Machine, manner: Manner = FANUC) -> None:
+        super().__init__(machine)
+        self.manner = manner
+        own = {code: TAPS[s] for (m, s), code in manner.taps.items() if m is machine}
+        if machine in manner.threads:
+            own[manner.threads[machine]] = Act.THREAD
+        self.codes = {machine: (MILL if machine is Machine.MILL else LATHE) | own}
+        self.coolants = {code: frozenset({kind}) for kind, code in manner.coolant.items()}
+        self.coolants["M8"] = frozenset({CoolantKind.FLOOD})
+        self.coolant_ends = frozenset(manner.coolant_ends)
+
+    def seconds(self, words: Words) -> float:
+        """P word of a dwell."""
+        return self.manner.seconds_of(words.need("P", "G4"))
+
+    def tool(self, words: Words) -> Iterator[Block]:
+        """T and M6; on a lathe T alone, its offset behind."""
+        if self.machine is Machine.MILL:
+            yield from super().tool(words)
+            return
+        number = words.take("T")
+        if number is not None:
+            self.sense = None
+            yield ToolChange(number=whole(number, "T") // 100)
+
+    def lead(self, end: Point, words: Words) -> float:
+        """F, which is the feed as well."""
+        return self._lead()
+
+    def tap(self, words: Words, act: Act) -> Iterator[Block]:
+        """Rigid taps by lead."""
+        sense = Sense.CLOCKWISE if act is Act.TAP else Sense.COUNTERCLOCKWISE
+        if self.mode is not RateMode.PER_REVOLUTION:
+            raise PostError("a rigid tap is read with its lead, in the mode per revolution")
+        x, y, bottom = self.end(words)
+        retract = words.take("R")
+        self.at = (x, y, self.at[2] if retract is None else retract)
+        self.sense = sense
+        yield self.tapped(bottom, self._lead(), sense)
+
+    def _lead(self) -> float:
+        if not self.feed:
+            raise PostError("a thread without F")
+        return self.feed

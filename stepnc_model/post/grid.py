@@ -1,0 +1,265 @@
+"""Blocks on the grid of a control: end points are rounded first, arcs are made to fit them.
+
+An arc's centre is moved along the bisector of its rounded chord, so that the radii to both of
+its ends agree within the rounding and no control refuses it. Arcs whose chord says little of
+their centre (nearly full circles) are cut in two before; arcs below the grid become lines.
+"""
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
+from math import atan2, cos, hypot, pi, sin
+
+from stepnc_model.post.blocks import (
+    Block,
+    Circular,
+    DrillingCycle,
+    Linear,
+    Rapid,
+    Retract,
+    RigidTap,
+    Threading,
+)
+from stepnc_model.toolpath.path import Plane, Point
+
+FULL = 2.0 * pi
+
+WHOLE = 1e-6
+"""rad by which a full turn may be missed: noise of the arithmetic"""
+
+WIDE = 1.5 * pi
+"""rad; the chord of a wider arc is too short to place its centre"""
+
+NARROW = 0.5 * pi
+"""rad; after full turns, the chord of a narrower arc is"""
+
+
+def on_grid(blocks: Iterable[Block], places: int) -> Iterator[Block]:
+    """Blocks with rounded coordinates.
+
+    Parameters
+    ----------
+    blocks : iterable of Block
+    places : int
+        Decimal places of a coordinate in mm.
+    """
+    at: Point = (0.0, 0.0, 0.0)
+    for block in blocks:
+        if isinstance(block, Linear):
+            end = rounded(block.end, places)
+            if end != at:
+                at = end
+                yield Linear(end=end, rate=block.rate)
+        elif isinstance(block, Circular):
+            for piece in _arc(at, block, places):
+                yield piece
+                at = piece.end
+        elif isinstance(block, Rapid):
+            at = rounded(block.end, places)
+            yield Rapid(end=at)
+        elif isinstance(block, Retract):
+            at = (at[0], at[1], round(block.z, places) + 0.0)
+            yield Retract(z=at[2])
+        elif isinstance(block, Threading):
+            end = rounded(block.end, places)
+            if end != at:
+                at = end
+                yield replace(block, end=end)
+        elif isinstance(block, RigidTap):
+            at = rounded(block.start, places)
+            yield replace(block, start=at, bottom_z=round(block.bottom_z, places))
+        elif isinstance(block, DrillingCycle):
+            at = rounded((*block.at, block.retract_z), places)
+            bottom = round(block.bottom_z, places)
+            yield replace(block, at=at[:2], retract_z=at[2], bottom_z=bottom)
+        else:
+            yield block
+
+
+def flat(
+    blocks: Iterable[Block], keeps: Callable[[DrillingCycle], bool] | None = None
+) -> Iterator[Block]:
+    """Blocks with every cycle that is not kept replaced by what it stands for."""
+    for block in blocks:
+        if isinstance(block, DrillingCycle) and not (keeps is not None and keeps(block)):
+            yield from block.expansion
+        else:
+            yield block
+
+
+def merged(blocks: Iterable[Block]) -> Iterator[Block]:
+    """Blocks without the rapids that lead from one cycle to the next on its retract plane."""
+    last: DrillingCycle | None = None
+    held: Rapid | None = None
+    for block in blocks:
+        if isinstance(block, DrillingCycle):
+            is_there = held is not None and held.end == (*block.at, block.retract_z)
+            if held is not None and not is_there:
+                yield held
+            held, last = None, block
+            yield block
+            continue
+        if held is not None:
+            yield held
+            held = None
+        if isinstance(block, Rapid) and last is not None and block.end[2] == last.retract_z:
+            held = block
+            continue
+        last = None
+        yield block
+    if held is not None:
+        yield held
+
+
+def single_turns(blocks: Iterable[Block]) -> Iterator[Block]:
+    """Blocks with every arc of more than one turn cut into single turns."""
+    at: Point = (0.0, 0.0, 0.0)
+    for block in blocks:
+        if isinstance(block, Circular):
+            yield from turns(at, block)
+        else:
+            yield block
+        at = end_of(block, at)
+
+
+def pieces(start: Point, arc: Circular) -> Iterator[Circular]:
+    """The arc in pieces whose chords place their centres well."""
+    sense = 1.0 if arc.turn > 0.0 else -1.0
+    full, rest = divmod(abs(arc.turn), FULL)
+    if FULL - rest < WHOLE:
+        full, rest = full + 1.0, 0.0
+    whole = full * FULL
+    if rest < WHOLE:
+        parts = [whole]
+    elif full and rest < NARROW:
+        parts = [whole, rest]
+    elif rest > WIDE:
+        parts = [whole + 0.5 * rest, 0.5 * rest]
+    else:
+        parts = [whole + rest]
+    yield from cut(start, arc, [sense * part for part in parts if part])
+
+
+def turns(start: Point, arc: Circular) -> Iterator[Circular]:
+    """The arc in single turns: full ones, then the rest."""
+    sense = 1.0 if arc.turn > 0.0 else -1.0
+    full, rest = divmod(abs(arc.turn), FULL)
+    if FULL - rest < WHOLE:
+        full, rest = full + 1.0, 0.0
+    parts = [FULL] * int(full) + ([rest] if rest >= WHOLE or not full else [])
+    yield from cut(start, arc, [sense * part for part in parts])
+
+
+def cut(start: Point, arc: Circular, parts: list[float]) -> Iterator[Circular]:
+    """The arc cut into parts by angle; the last one ends where the arc ends."""
+    if len(parts) < 2:
+        yield arc
+        return
+    total, turned = sum(parts), 0.0
+    for part in parts[:-1]:
+        turned += part
+        end = along(start, arc, turned, turned / total)
+        yield replace(arc, end=end, turn=part)
+    yield replace(arc, turn=parts[-1])
+
+
+def along(start: Point, arc: Circular, turned: float, part: float) -> Point:
+    """Point of an arc at an angle in rad from its start, and a part of its rise."""
+    first, second, normal = arc.plane.axes
+    u, v = start[first] - arc.centre[first], start[second] - arc.centre[second]
+    point = list(start)
+    # Full turns come back to the start exactly.
+    if abs(turned) % FULL > WHOLE and FULL - abs(turned) % FULL > WHOLE:
+        point[first] = arc.centre[first] + u * cos(turned) - v * sin(turned)
+        point[second] = arc.centre[second] + u * sin(turned) + v * cos(turned)
+    point[normal] = start[normal] + part * (arc.end[normal] - start[normal])
+    return point[0], point[1], point[2]
+
+
+def end_of(block: Block, at: Point) -> Point:
+    """Where a block leaves the tool."""
+    if isinstance(block, (Rapid, Linear, Circular, Threading)):
+        return block.end
+    if isinstance(block, Retract):
+        return (at[0], at[1], block.z)
+    if isinstance(block, RigidTap):
+        return block.start
+    if isinstance(block, DrillingCycle):
+        return (*block.at, block.retract_z)
+    return at
+
+
+def rounded(point: Point, places: int) -> Point:
+    """A point on the grid, without negative zeros."""
+    x, y, z = point
+    return round(x, places) + 0.0, round(y, places) + 0.0, round(z, places) + 0.0
+
+
+def sweep(start: Point, end: Point, centre: Point, plane: Plane, *, sense: float) -> float:
+    """Angle in rad, above 0 and at most 2π, from start to end about a centre."""
+    first, second, _ = plane.axes
+    a, b = start[first] - centre[first], start[second] - centre[second]
+    c, d = end[first] - centre[first], end[second] - centre[second]
+    angle = sense * atan2(a * d - b * c, a * c + b * d)
+    return angle if angle > 0.0 else angle + FULL
+
+
+def _arc(at: Point, arc: Circular, places: int) -> Iterator[Circular | Linear]:
+    """The arc on the grid, from a point of the grid."""
+    start = at
+    for piece in pieces(at, arc):
+        for fitted in _fitted(start, piece, places):
+            yield fitted
+            start = fitted.end
+
+
+def _fitted(start: Point, arc: Circular, places: int) -> Iterator[Circular | Linear]:
+    """One piece on the grid: an arc, or a line where the grid is too coarse for one."""
+    first, second, _ = arc.plane.axes
+    end = rounded(arc.end, places)
+    sense = 1.0 if arc.turn > 0.0 else -1.0
+    size = hypot(start[first] - arc.centre[first], start[second] - arc.centre[second])
+    full = round(abs(arc.turn) / FULL)
+    is_whole = full > 0 and abs(abs(arc.turn) - full * FULL) < WHOLE
+    if size * 10.0**places >= 1.0 and is_whole:
+        back = list(end)
+        back[first], back[second] = start[first], start[second]
+        closed = (back[0], back[1], back[2])
+        centre = _from(start, arc.centre, arc.plane, places)
+        yield replace(arc, end=closed, centre=centre, turn=sense * full * FULL)
+        if closed != end:
+            yield Linear(end=end, rate=arc.rate)
+        return
+    if size * 10.0**places >= 1.0 and (start[first], start[second]) != (
+        end[first],
+        end[second],
+    ):
+        centre = _from(start, _bisected(start, end, arc), arc.plane, places)
+        angle = sweep(start, end, centre, arc.plane, sense=sense)
+        more = round((abs(arc.turn) - angle) / FULL)
+        if more >= 0:
+            yield replace(arc, end=end, centre=centre, turn=sense * (angle + more * FULL))
+            return
+    if end != start:
+        yield Linear(end=end, rate=arc.rate)
+
+
+def _bisected(start: Point, end: Point, arc: Circular) -> Point:
+    """The centre moved along the chord, onto its bisector."""
+    first, second, _ = arc.plane.axes
+    u, v = end[first] - start[first], end[second] - start[second]
+    p = arc.centre[first] - 0.5 * (start[first] + end[first])
+    q = arc.centre[second] - 0.5 * (start[second] + end[second])
+    shift = (p * u + q * v) / (u * u + v * v)
+    point = list(arc.centre)
+    point[first] -= shift * u
+    point[second] -= shift * v
+    return point[0], point[1], point[2]
+
+
+def _from(start: Point, centre: Point, plane: Plane, places: int) -> Point:
+    """The centre at a rounded distance from the start, as I, J and K give it."""
+    first, second, _ = plane.axes
+    point = list(start)
+    for axis in (first, second):
+        point[axis] = round(start[axis] + round(centre[axis] - start[axis], places), places)
+    return point[0], point[1], point[2]

@@ -1,0 +1,389 @@
+"""What controls that speak G-code share: ISO 6983 words, modal and in a fixed order.
+
+A dialect derives from :class:`IsoCode` and says what it does otherwise.
+"""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import ClassVar
+
+from stepnc_model.errors import PostError
+from stepnc_model.post.blocks import (
+    Block,
+    Circular,
+    Comment,
+    Coolant,
+    CoolantKind,
+    Cycles,
+    DrillingCycle,
+    Linear,
+    Machine,
+    Message,
+    OptionalStop,
+    Pause,
+    ProgramEnd,
+    ProgramStart,
+    ProgramStop,
+    Rapid,
+    Rate,
+    RateMode,
+    Retract,
+    RigidTap,
+    Sense,
+    SpindleOff,
+    SpindleOn,
+    SpindleOrient,
+    SurfaceSpeed,
+    Threading,
+    ToolChange,
+)
+from stepnc_model.post.grid import flat, merged, on_grid, single_turns
+from stepnc_model.post.words import Modal, decimal
+from stepnc_model.toolpath.path import CycleKind, Plane, Point
+from stepnc_model.units import m_min_from_speed, mm_min_from_speed, rpm_from_rev_s
+
+PLANE_CODES = {Plane.XY: "G17", Plane.ZX: "G18", Plane.YZ: "G19"}
+SENSE_CODES = {Sense.CLOCKWISE: "M3", Sense.COUNTERCLOCKWISE: "M4"}
+RATE_PLACES = {RateMode.PER_MINUTE: 3, RateMode.PER_REVOLUTION: 4}
+
+
+class IsoCode:
+    """Writer of one program. Running state: what is in force, and where the tool is."""
+
+    places: ClassVar[int] = 3
+    """of a coordinate"""
+    speed_places: ClassVar[int] = 0
+    """of an S word"""
+    last_number: ClassVar[int] = 99999
+    """block numbers end here: they are optional"""
+    coolant_codes: Mapping[CoolantKind, str] = {
+        CoolantKind.FLOOD: "M8",
+        CoolantKind.MIST: "M7",
+        CoolantKind.THROUGH: "M8",
+    }
+    cycle_codes: ClassVar[Mapping[CycleKind, str]] = {
+        CycleKind.DRILL: "G81",
+        CycleKind.DWELL: "G82",
+        CycleKind.PECK: "G83",
+        CycleKind.CHIP_BREAK: "G73",
+        CycleKind.BORE: "G85",
+        CycleKind.BORE_STOP: "G86",
+    }
+    dwelling: ClassVar[frozenset[CycleKind]] = frozenset({CycleKind.DWELL})
+    """cycles that wait at the bottom"""
+
+    def __init__(self) -> None:
+        self.modal = Modal()
+        self.machine = Machine.MILL
+        self.at: list[float | None] = [None, None, None]
+        self.is_surface_speed = False
+        self.cooling: set[str] = set()
+        self._number = 0
+        self._pending = ""
+        self._cycle: tuple[object, ...] = ()
+        self._makers: dict[type, Callable[..., Iterator[str]]] = {
+            ProgramStart: self._start,
+            ProgramEnd: self.end,
+            Comment: self.comment,
+            Message: self.message,
+            ToolChange: self.tool_change,
+            SpindleOn: self.spindle_on,
+            SurfaceSpeed: self._surface_speed,
+            SpindleOff: self._spindle_off,
+            SpindleOrient: self.orient,
+            Coolant: self.coolant,
+            Retract: self._retract,
+            Rapid: self.rapid,
+            Linear: self._linear,
+            Circular: self._circular,
+            Threading: self._threading,
+            RigidTap: self._rigid_tap,
+            Pause: self.pause,
+            ProgramStop: self._stop,
+            OptionalStop: self._optional_stop,
+            DrillingCycle: self.drilling_cycle,
+        }
+
+    def lines(self, blocks: Iterable[Block], cycles: Cycles) -> Iterator[str]:
+        """The program, line by line."""
+        kept = self.keeps if cycles is Cycles.OWN else None
+        shaped = self.shaped(flat(blocks, kept))
+        for block in merged(on_grid(shaped, self.places)):
+            if self._cycle and not isinstance(block, DrillingCycle):
+                self._cycle = ()
+                yield from self.line("G80")
+            yield from self._makers[type(block)](block)
+
+    # What dialects do otherwise.
+
+    def number(self, value: float, places: int) -> str:
+        """A number in the form of the control."""
+        return decimal(value, places)
+
+    def shaped(self, blocks: Iterable[Block]) -> Iterator[Block]:
+        """Blocks with arcs as the control takes them."""
+        return single_turns(blocks)
+
+    def keeps(self, cycle: DrillingCycle) -> bool:
+        """Whether the control has a cycle of its own for this one."""
+        return (
+            self.machine is Machine.MILL
+            and cycle.kind in self.cycle_codes
+            and (not cycle.dwell or cycle.kind in self.dwelling)
+        )
+
+    def start(self, name: str) -> Iterator[str]:
+        """Head of the program."""
+        raise NotImplementedError
+
+    def end(self, _: ProgramEnd) -> Iterator[str]:
+        """Foot of the program."""
+        raise NotImplementedError
+
+    def text(self, text: str) -> str:
+        """A comment with its marks."""
+        raise NotImplementedError
+
+    def tool_change(self, block: ToolChange) -> Iterator[str]:
+        """Tool change and length offset."""
+        raise NotImplementedError
+
+    def mode_code(self, mode: RateMode) -> str:
+        """Word for a mode of feed."""
+        return "G94" if mode is RateMode.PER_MINUTE else "G95"
+
+    def surface_speed(self, speed: str, limit: str, sense: str) -> Iterator[str]:
+        """Lines of a constant surface speed in m/min with its limit in rpm, or none."""
+        raise NotImplementedError
+
+    def thread_words(self, start: Point, block: Threading) -> list[str]:
+        """Motion and lead of a synchronised line."""
+        raise NotImplementedError
+
+    def rigid_tap(self, block: RigidTap) -> Iterator[str]:
+        """Lines of a rigid tap at the current position."""
+        raise NotImplementedError
+
+    def seconds(self, value: float) -> str:
+        """Duration of a dwell, with its letter."""
+        return f"P{self.number(value, 3)}"
+
+    def turn_words(self, block: Circular) -> list[str]:
+        """What says how often an arc goes round."""
+        return []
+
+    # What they share.
+
+    def line(self, *words: str) -> Iterator[str]:
+        """One numbered line of all words that say something."""
+        kept = [word for word in words if word]
+        if kept:
+            self._number += 10
+            if self._number <= self.last_number:
+                kept.insert(0, f"N{self._number}")
+            yield " ".join(kept)
+
+    def comment(self, block: Comment) -> Iterator[str]:
+        """A remark on a line of its own."""
+        yield self.text(block.text)
+
+    def message(self, block: Message) -> Iterator[str]:
+        """A comment, where a control shows no text without stopping."""
+        yield self.text(block.text)
+
+    def spindle_on(self, block: SpindleOn) -> Iterator[str]:
+        """Constant speed."""
+        code = "G97" if self.is_surface_speed else ""
+        self.is_surface_speed = False
+        yield from self.line(code, self.speed(block.speed), SENSE_CODES[block.sense])
+
+    def speed(self, speed: float) -> str:
+        """S word in rpm."""
+        return f"S{decimal(rpm_from_rev_s(speed), self.speed_places)}"
+
+    def orient(self, _: SpindleOrient) -> Iterator[str]:
+        """Spindle at angle 0."""
+        return self.line("M19")
+
+    def coolant(self, block: Coolant) -> Iterator[str]:
+        """Coolant: off as a whole, then on what is to be."""
+        codes = {self.coolant_codes[kind]: None for kind in sorted(block.kinds)}
+        if not self.cooling <= set(codes):
+            yield from self.coolant_off()
+        for code in codes:
+            if code not in self.cooling:
+                yield from self.line(code)
+                self.cooling.add(code)
+
+    def coolant_off(self) -> Iterator[str]:
+        """All coolant off."""
+        self.cooling.clear()
+        return self.line("M9")
+
+    def rapid(self, block: Rapid) -> Iterator[str]:
+        """Straight in rapid."""
+        words = self.coordinates(block.end)
+        if words:
+            yield from self.line(self.modal.word("motion", "G0"), *self._offset(), *words)
+
+    def pause(self, block: Pause) -> Iterator[str]:
+        """Dwell."""
+        return self.line("G4", self.seconds(block.seconds))
+
+    def drilling_cycle(self, block: DrillingCycle) -> Iterator[str]:
+        """A canned cycle: in full, or its next position."""
+        x, y = block.at
+        words = [f"X{self.number(x, self.places)}", f"Y{self.number(y, self.places)}"]
+        key = (
+            block.kind,
+            block.retract_z,
+            block.bottom_z,
+            block.rate,
+            block.step_depth,
+            block.dwell,
+        )
+        if key != self._cycle:
+            # In another plane the cycle would drill along its normal.
+            head = [self.plane_words(Plane.XY), self.mode(block.rate.mode), "G99"]
+            words = [*head, self.cycle_codes[block.kind], *words]
+            words += [
+                f"Z{self.number(block.bottom_z, self.places)}",
+                f"R{self.number(block.retract_z, self.places)}",
+            ]
+            if block.kind in {CycleKind.PECK, CycleKind.CHIP_BREAK}:
+                words.append(f"Q{self.number(block.step_depth, self.places)}")
+            if block.kind in self.dwelling:
+                words.append(self.seconds(block.dwell))
+            words.append(self.rate(block.rate))
+        self._cycle = key
+        self.modal.forget("motion")
+        self.at = [x, y, block.retract_z]
+        yield from self.line(*words)
+
+    def coordinates(self, end: Point) -> list[str]:
+        """Words of the axes that move; a lathe's X is a diameter."""
+        words: list[str] = []
+        at = self.at
+        if end[0] != at[0]:
+            x = end[0] if self.machine is Machine.MILL else 2.0 * end[0]
+            words.append(f"X{self.number(x, self.places)}")
+        if end[1] != at[1] and self.machine is Machine.MILL:
+            words.append(f"Y{self.number(end[1], self.places)}")
+        elif end[1] and self.machine is Machine.LATHE:
+            raise PostError(f"y = {end[1]:g} mm: a lathe has no y")
+        if end[2] != at[2]:
+            words.append(f"Z{self.number(end[2], self.places)}")
+        self.at = list(end)
+        return words
+
+    def mode(self, mode: RateMode) -> str:
+        """Word of a mode of feed when it is new."""
+        word = self.modal.word("mode", self.mode_code(mode))
+        if word:
+            self.modal.forget("F")
+        return word
+
+    def rate(self, rate: Rate) -> str:
+        """F word when it is new."""
+        return self.modal.word("F", f"F{self.rate_text(rate)}")
+
+    def rate_text(self, rate: Rate) -> str:
+        """A feed in mm/min or mm per revolution."""
+        is_per_minute = rate.mode is RateMode.PER_MINUTE
+        value = mm_min_from_speed(rate.value) if is_per_minute else rate.value
+        text = self.number(value, RATE_PLACES[rate.mode])
+        if float(text) <= 0.0:
+            raise PostError(f"feed {value:g} ({rate.mode}): below what an F word can say")
+        return text
+
+    def _start(self, block: ProgramStart) -> Iterator[str]:
+        self.machine = block.machine
+        return self.start(block.name)
+
+    def plane_words(self, plane: Plane) -> str:
+        """Word of a plane when it is new."""
+        return self.modal.word("plane", PLANE_CODES[plane])
+
+    def pend(self, words: str) -> None:
+        """Words that go with the next rapid along z, as length offsets do."""
+        self._pending = words
+        self.at = [None, None, None]
+        self.modal.forget("motion", "F")
+
+    def _offset(self) -> list[str]:
+        pending, self._pending = self._pending, ""
+        return [pending]
+
+    def _surface_speed(self, block: SurfaceSpeed) -> Iterator[str]:
+        if self.machine is Machine.MILL:
+            raise PostError("constant surface speed: a milling machine has none")
+        limit = ""
+        if block.limit is not None:
+            limit = decimal(rpm_from_rev_s(block.limit), self.speed_places)
+        speed = decimal(m_min_from_speed(block.speed), self.speed_places)
+        self.is_surface_speed = True
+        return self.surface_speed(speed, limit, SENSE_CODES[block.sense])
+
+    def _spindle_off(self, _: SpindleOff) -> Iterator[str]:
+        return self.line("M5")
+
+    def _retract(self, block: Retract) -> Iterator[str]:
+        if block.z != self.at[2]:
+            self.at[2] = block.z
+            z = f"Z{self.number(block.z, self.places)}"
+            yield from self.line(self.modal.word("motion", "G0"), *self._offset(), z)
+
+    def _linear(self, block: Linear) -> Iterator[str]:
+        mode = self.mode(block.rate.mode)
+        words = self.coordinates(block.end)
+        motion = self.modal.word("motion", "G1")
+        yield from self.line(mode, motion, *words, self.rate(block.rate))
+
+    def _circular(self, block: Circular) -> Iterator[str]:
+        start = self.at
+        first, second, _ = block.plane.axes
+        offsets = [0.0, 0.0]
+        for place, axis in enumerate((first, second)):
+            from_ = start[axis]
+            if from_ is None:
+                raise PostError("an arc from an unknown position")
+            offsets[place] = block.centre[axis] - from_
+        plane = self.plane_words(block.plane)
+        mode = self.mode(block.rate.mode)
+        # A full circle moves no axis: both axes of the plane are always said.
+        self.at = [None if i in {first, second} else v for i, v in enumerate(start)]
+        words = self.coordinates(block.end)
+        centre = [
+            f"{'IJK'[axis]}{self.number(offset, self.places)}"
+            for axis, offset in sorted(zip((first, second), offsets, strict=True))
+        ]
+        motion = self.modal.word("motion", "G3" if block.turn > 0.0 else "G2")
+        turn = self.turn_words(block)
+        yield from self.line(plane, mode, motion, *words, *centre, *turn, self.rate(block.rate))
+
+    def _threading(self, block: Threading) -> Iterator[str]:
+        start = self.known()
+        head, *lead = self.thread_words(start, block)
+        words = self.coordinates(block.end)
+        # Another control may take the lead for the feed: both are said anew.
+        self.modal.forget("motion", "F")
+        yield from self.line(head, *words, *lead)
+
+    def _rigid_tap(self, block: RigidTap) -> Iterator[str]:
+        yield from self.rapid(Rapid(end=block.start))
+        if self.machine is Machine.MILL:
+            yield from self.line(self.plane_words(Plane.XY))
+        yield from self.rigid_tap(block)
+        self.modal.forget("motion", "F")
+
+    def known(self) -> Point:
+        """Where the tool is."""
+        x, y, z = self.at
+        if x is None or y is None or z is None:
+            raise PostError("a cut from an unknown position")
+        return x, y, z
+
+    def _stop(self, _: ProgramStop) -> Iterator[str]:
+        return self.line("M0")
+
+    def _optional_stop(self, _: OptionalStop) -> Iterator[str]:
+        return self.line("M1")

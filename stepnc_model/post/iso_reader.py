@@ -1,0 +1,397 @@
+"""Reading G-code: one modal machine for all dialects of ISO 6983, neutral blocks come out.
+
+Strict: a code or word that is not known, or that nothing uses, is an error; so is an arc whose
+radii differ. A dialect derives from :class:`IsoReader` and says what it does otherwise.
+Coordinates are absolute and metric; arc centres are relative to the start.
+"""
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from math import dist, hypot
+from typing import ClassVar
+
+from stepnc_model.errors import PostError
+from stepnc_model.post.blocks import (
+    Block,
+    Circular,
+    Comment,
+    Coolant,
+    CoolantKind,
+    DrillingCycle,
+    Linear,
+    Machine,
+    OptionalStop,
+    Pause,
+    ProgramEnd,
+    ProgramStop,
+    Rapid,
+    Rate,
+    RateMode,
+    Retract,
+    RigidTap,
+    Sense,
+    SpindleOff,
+    SpindleOn,
+    SpindleOrient,
+    SurfaceSpeed,
+    Threading,
+    ToolChange,
+)
+from stepnc_model.post.cycles import expanded
+from stepnc_model.post.grid import FULL, sweep
+from stepnc_model.post.iso_acts import KINDS, MODES, MOTIONS, PLANES, SENSES, TAPS, Act
+from stepnc_model.post.iso_words import Words, pairs, whole
+from stepnc_model.toolpath.path import CycleKind, Plane, Point
+from stepnc_model.units import rev_s_from_rpm, speed_from_m_min, speed_from_mm_min
+
+ROUND = 0.01
+"""mm by which the radii to both ends of an arc may differ (MD21000 of the Sinumerik 840D)"""
+
+PECK_CLEARANCE = 0.254
+"""mm above the last depth: fixed in LinuxCNC, a parameter of the machine elsewhere"""
+
+
+COMMENT = re.compile(r"\(([^()]*)\)")
+
+
+class IsoReader:
+    """Reader of one program. Running state: what is in force, and where the tool is."""
+
+    codes: Mapping[Machine, Mapping[str, Act]] = {}
+    coolants: Mapping[str, frozenset[CoolantKind]] = {
+        "M7": frozenset({CoolantKind.MIST}),
+        "M8": frozenset({CoolantKind.FLOOD}),
+    }
+    coolant_ends: frozenset[str] = frozenset({"M9"})
+    quiet: ClassVar[frozenset[str]] = frozenset()
+    """M words that change nothing here"""
+
+    def __init__(self, machine: Machine) -> None:
+        self.machine = machine
+        self.at: Point = (0.0, 0.0, 0.0)
+        self.plane = Plane.XY if machine is Machine.MILL else Plane.ZX
+        self.mode = RateMode.PER_MINUTE
+        self.motion: Act | None = None
+        self.limit: float | None = None
+        self.is_surface_speed = False
+        self.speed: float | None = None
+        self.sense: Sense | None = None
+        self.is_diameter = machine is Machine.LATHE
+        self.returns_to_start = True
+        self.feed: float | None = None
+        self._tool: int | None = None
+        self._coolant: frozenset[CoolantKind] = frozenset()
+        self._cycle: DrillingCycle | None = None
+
+    def blocks(self, lines: Iterable[str]) -> Iterator[Block]:
+        """Neutral blocks of the program.
+
+        Raises
+        ------
+        PostError
+            With the line and what is wrong with it.
+        """
+        for number, line in enumerate(lines, 1):
+            try:
+                yield from self.line(line.rstrip("\r\n"))
+            except PostError as error:
+                raise PostError(str(error), line=number) from None
+
+    # What dialects do otherwise.
+
+    def line(self, line: str) -> Iterator[Block]:
+        """Blocks of one line: its comments, then its words."""
+        for found in COMMENT.finditer(line):
+            yield self.comment(found[1])
+        text = COMMENT.sub(" ", line).strip()
+        if text and text != "%" and not text.startswith("O"):
+            yield from self.block(Words(pairs(text)))
+
+    def comment(self, text: str) -> Block:
+        """What a comment says."""
+        return Comment(text=text)
+
+    def seconds(self, words: Words) -> float:
+        """Duration of a dwell."""
+        return words.need("P", "G4")
+
+    def lead(self, end: Point, words: Words) -> float:
+        """Lead of a thread along the axis that moves most, mm."""
+        raise NotImplementedError
+
+    def tap(self, words: Words, act: Act) -> Iterator[Block]:
+        """Blocks of a rigid tap."""
+        raise NotImplementedError
+
+    def surface_limit(self, words: Words) -> float | None:
+        """Greatest speed at constant surface speed, rev/s."""
+        return self.limit
+
+    def tool(self, words: Words) -> Iterator[Block]:
+        """Tool words: T chooses, M6 changes."""
+        number = words.take("T")
+        if number is not None:
+            self._tool = whole(number, "T")
+        if "M6" in words.functions:
+            words.functions.remove("M6")
+            if self._tool is None:
+                raise PostError("M6 without a tool")
+            self.sense = None
+            yield ToolChange(number=self._tool)
+
+    def extra(self, words: Words) -> Iterator[Block]:
+        """What else a dialect has in a block."""
+        yield from ()
+
+    # What they share.
+
+    def block(self, words: Words) -> Iterator[Block]:
+        """Blocks of the words of one line."""
+        words.take("N")
+        acts = [self._act(code) for code in words.codes]
+        self.settle(acts, words)
+        yield from self.tool(words)
+        yield from self._spindle(words, changed=Act.SURFACE_SPEED in acts)
+        yield from self._switches(words)
+        yield from self.extra(words)
+        if Act.DWELL in acts:
+            yield Pause(seconds=self.seconds(words))
+        yield from self._motion(acts, words)
+        yield from self._stops(words)
+        words.finish()
+        if words.functions:
+            raise PostError(f"word {words.functions[0]}: not known")
+
+    def rate(self) -> Rate:
+        """The feed in force."""
+        if not self.feed:
+            raise PostError("a motion at feed without F")
+        if self.mode is RateMode.PER_MINUTE:
+            return Rate(value=speed_from_mm_min(self.feed))
+        return Rate(value=self.feed, mode=RateMode.PER_REVOLUTION)
+
+    def end(self, words: Words) -> Point:
+        """Where the axis words lead."""
+        x, y, z = self.at
+        given = words.take("X")
+        if given is not None:
+            x = 0.5 * given if self.is_diameter else given
+        if self.machine is Machine.MILL:
+            given = words.take("Y")
+            y = y if given is None else given
+        given = words.take("Z")
+        return x, y, z if given is None else given
+
+    def _act(self, code: str) -> Act:
+        act = self.codes[self.machine].get(code)
+        if act is None:
+            raise PostError(f"word {code}: not known on this {self.machine}")
+        return act
+
+    def settle(self, acts: list[Act], words: Words) -> None:
+        """Take in what holds from here on."""
+        for act in acts:
+            if act in PLANES:
+                self.plane = PLANES[act]
+            elif act in MODES and MODES[act] is not self.mode:
+                self.mode, self.feed = MODES[act], None
+            elif act in {Act.TO_RETRACT, Act.TO_START}:
+                self.returns_to_start = act is Act.TO_START
+            elif act is Act.SPEED_LIMIT:
+                self.limit = rev_s_from_rpm(words.need("S", "G50"))
+            elif act is Act.SURFACE_SPEED:
+                self.is_surface_speed = True
+                self.limit = self.surface_limit(words)
+            elif act is Act.SPINDLE_SPEED:
+                self.is_surface_speed = False
+            elif act is Act.DIAMETER:
+                self.machine, self.is_diameter = Machine.LATHE, True
+            elif act is Act.LENGTH:
+                words.need("H", "G43")
+        self.feed = words.take("F") if "F" in words else self.feed
+
+    def _spindle(self, words: Words, *, changed: bool) -> Iterator[Block]:
+        speed = words.take("S")
+        if speed is not None:
+            self.speed, changed = speed, True
+        for code, sense in SENSES.items():
+            if code in words.functions:
+                words.functions.remove(code)
+                self.sense, changed = sense, True
+        if "M5" in words.functions:
+            words.functions.remove("M5")
+            self.sense = None
+            yield SpindleOff()
+        turning = self.turning()
+        if changed and turning is not None:
+            yield turning
+
+    def turning(self) -> SpindleOn | SurfaceSpeed | None:
+        """What the spindle does, or None while it stands."""
+        if self.sense is None:
+            return None
+        if self.speed is None:
+            raise PostError("spindle on without S")
+        if self.is_surface_speed:
+            speed = speed_from_m_min(self.speed)
+            return SurfaceSpeed(speed=speed, limit=self.limit, sense=self.sense)
+        return SpindleOn(speed=rev_s_from_rpm(self.speed), sense=self.sense)
+
+    def _switches(self, words: Words) -> Iterator[Block]:
+        """Coolant, orientation, and what changes nothing."""
+        for code in list(words.functions):
+            if code in self.coolant_ends:
+                self._coolant = frozenset()
+            elif code in self.coolants:
+                self._coolant |= self.coolants[code]
+            elif code == "M19":
+                yield SpindleOrient()
+            elif code not in self.quiet:
+                continue
+            words.functions.remove(code)
+            if code in self.coolant_ends or code in self.coolants:
+                yield Coolant(kinds=self._coolant)
+
+    def _motion(self, acts: list[Act], words: Words) -> Iterator[Block]:
+        """The motion that the block names, or the one in force when axes move."""
+        named = [act for act in acts if act in MOTIONS]
+        if len(named) > 1:
+            raise PostError("two motions in one block")
+        if Act.CANCEL in acts:
+            self.motion, self._cycle = None, None
+        if named:
+            if named[0] not in KINDS:
+                self._cycle = None
+            self.motion = named[0]
+        elif not any(letter in words for letter in "XYZ"):
+            return
+        yield from self._moved(words)
+
+    def _moved(self, words: Words) -> Iterator[Block]:
+        motion = self.motion
+        if motion is None:
+            raise PostError("axes move, but no motion is in force")
+        if motion in KINDS:
+            yield from self._drilled(words, KINDS[motion])
+        elif motion in TAPS:
+            self.motion = None
+            yield from self.tap(words, motion)
+        elif motion is Act.RAPID:
+            yield self._rapid(words)
+        elif motion is Act.THREAD:
+            yield self._thread(words)
+        elif motion is Act.LINEAR:
+            self.at = self.end(words)
+            yield Linear(end=self.at, rate=self.rate())
+        else:
+            yield self._arc(words, 1.0 if motion is Act.COUNTERCLOCKWISE else -1.0)
+
+    def _rapid(self, words: Words) -> Block:
+        is_retract = "X" not in words and "Y" not in words
+        self.at = self.end(words)
+        return Retract(z=self.at[2]) if is_retract else Rapid(end=self.at)
+
+    def _thread(self, words: Words) -> Block:
+        end = self.end(words)
+        block = Threading(end=end, lead=self.lead(end, words))
+        self.at = end
+        return block
+
+    def turns(self, words: Words) -> int:
+        """Full turns of an arc, besides what its end points say."""
+        given = words.take("P")
+        return 0 if given is None else whole(given, "P") - 1
+
+    def _arc(self, words: Words, sense: float) -> Block:
+        start, end = self.at, self.end(words)
+        first, second, _ = self.plane.axes
+        centre = list(start)
+        for axis in (first, second):
+            centre[axis] += words.take("IJK"[axis]) or 0.0
+        middle = (centre[0], centre[1], centre[2])
+        radii = [
+            hypot(p[first] - middle[first], p[second] - middle[second]) for p in (start, end)
+        ]
+        if min(radii) <= 0.0 or abs(radii[0] - radii[1]) > ROUND:
+            raise PostError(
+                f"no arc: its radii are {radii[0]:.4f} and {radii[1]:.4f} mm, "
+                f"{ROUND:g} mm may lie between them"
+            )
+        angle = sweep(start, end, middle, self.plane, sense=sense)
+        turn = sense * (angle + self.turns(words) * FULL)
+        self.at = end
+        return Circular(end=end, centre=middle, turn=turn, plane=self.plane, rate=self.rate())
+
+    def _drilled(self, words: Words, kind: CycleKind) -> Iterator[Block]:
+        """A canned cycle, at the position given."""
+        x, y, bottom = self.end(words) if "Z" in words else (*self.end(words)[:2], None)
+        last = self._cycle if self._cycle is not None and self._cycle.kind is kind else None
+        retract, step, dwell = words.take("R"), words.take("Q"), self.cycle_dwell(words)
+        if last is None and (bottom is None or retract is None):
+            raise PostError("a drilling cycle without Z or R")
+        if kind in {CycleKind.PECK, CycleKind.CHIP_BREAK} and not (step or last):
+            raise PostError("a cycle that pecks without Q")
+        cycle = DrillingCycle(
+            kind=kind,
+            at=(x, y),
+            retract_z=last.retract_z if last and retract is None else retract or 0.0,
+            bottom_z=last.bottom_z if last and bottom is None else bottom or 0.0,
+            rate=self.rate(),
+            step_depth=last.step_depth if last and step is None else step or 0.0,
+            retract_distance=PECK_CLEARANCE,
+            dwell=last.dwell if last and dwell is None else dwell or 0.0,
+        )
+        yield from self.drilled(cycle)
+
+    def drilled(self, cycle: DrillingCycle) -> Iterator[Block]:
+        """The way to a cycle, the cycle, and the way back."""
+        start_z = self.at[2]
+        x, y = cycle.at
+        if self.plane is not Plane.XY:
+            raise PostError(f"a drilling cycle in the plane {self.plane}: it is read in XY")
+        if cycle.bottom_z >= cycle.retract_z:
+            raise PostError("a drilling cycle must lead down")
+        if start_z < cycle.retract_z:
+            yield Retract(z=cycle.retract_z)
+        yield Rapid(end=(x, y, max(start_z, cycle.retract_z)))
+        yield Rapid(end=(x, y, cycle.retract_z))
+        self._cycle = expanded(cycle, self.turning())
+        yield self._cycle
+        back = max(start_z, cycle.retract_z) if self.returns_to_start else cycle.retract_z
+        self.at = (x, y, back)
+        if back != cycle.retract_z:
+            yield Retract(z=back)
+
+    def cycle_dwell(self, words: Words) -> float | None:
+        """Dwell of a cycle, s."""
+        return self.seconds(words) if "P" in words else None
+
+    def tapped(self, bottom: float, lead: float, sense: Sense) -> Block:
+        """A rigid tap where the tool is."""
+        if self.speed is None:
+            raise PostError("a rigid tap without S")
+        return RigidTap(
+            start=self.at,
+            bottom_z=bottom,
+            lead=lead,
+            speed=rev_s_from_rpm(self.speed),
+            sense=sense,
+        )
+
+    def _stops(self, words: Words) -> Iterator[Block]:
+        stops: dict[str, type[ProgramStop | OptionalStop | ProgramEnd]] = {
+            "M0": ProgramStop,
+            "M1": OptionalStop,
+            "M2": ProgramEnd,
+            "M30": ProgramEnd,
+        }
+        for code in list(words.functions):
+            if code in stops:
+                words.functions.remove(code)
+                yield stops[code]()
+
+
+def along_path(start: Point, end: Point, lead: float) -> float:
+    """Lead along the axis that moves most, from one along the path."""
+    most = max(abs(e - s) for s, e in zip(start, end, strict=True))
+    return lead * most / dist(start, end)

@@ -1,0 +1,157 @@
+"""NC code for LinuxCNC, mill and lathe.
+
+After LinuxCNC 2.9, "G-Code reference": G7 (lathe diameter), G33 and G33.1 (K is the distance
+along the path for each revolution), G96 D S, P for the turns of an arc, G73 and G81 to G86
+with a fixed retract of 0.254 mm.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import ClassVar
+
+from stepnc_model.errors import PostError
+from stepnc_model.post.blocks import (
+    Block,
+    Circular,
+    Comment,
+    Machine,
+    Message,
+    ProgramEnd,
+    RigidTap,
+    Threading,
+    ToolChange,
+)
+from stepnc_model.post.canonical import synchronised
+from stepnc_model.post.grid import FULL
+from stepnc_model.post.iso_acts import CANNED, COMMON, LENGTHS, PER_TIME, Act
+from stepnc_model.post.iso_code import SENSE_CODES, IsoCode
+from stepnc_model.post.iso_reader import IsoReader, along_path
+from stepnc_model.post.iso_words import Words
+from stepnc_model.post.words import ascii_text, bracketed
+from stepnc_model.toolpath.path import CycleKind, Plane, Point
+from stepnc_model.units import rev_s_from_rpm
+
+LONGEST = 200
+"""characters of a comment; a line may have 255"""
+
+ACTIVE = (
+    "MSG,",
+    "DEBUG,",
+    "PRINT,",
+    "LOG,",
+    "LOGOPEN,",
+    "LOGAPPEND,",
+    "LOGCLOSE",
+    "PROBE",
+    "PY,",
+    "ABORT,",
+)
+"""what comments must not begin with: such do something"""
+
+
+class LinuxCnc(IsoCode):
+    """Writer for LinuxCNC."""
+
+    places: ClassVar[int] = 4
+    speed_places: ClassVar[int] = 3
+    dwelling: ClassVar[frozenset[CycleKind]] = frozenset({
+        CycleKind.DWELL,
+        CycleKind.BORE_STOP,
+    })
+    wide_codes: ClassVar[Mapping[Machine, str]] = {
+        Machine.MILL: "G17 G21 G40 G49 G54 G80 G90 G91.1 G94 G97",
+        Machine.LATHE: "G18 G21 G40 G49 G54 G7 G80 G90 G91.1 G94 G97",
+    }
+
+    def shaped(self, blocks: Iterable[Block]) -> Iterator[Block]:
+        """Arcs as they are: P counts their turns."""
+        return iter(blocks)
+
+    def start(self, name: str) -> Iterator[str]:
+        """Percent sign, name, modes."""
+        yield "%"
+        yield self.text(name)
+        is_lathe = self.machine is Machine.LATHE
+        self.plane_words(Plane.ZX if is_lathe else Plane.XY)
+        self.modal.set("mode", "G94")
+        yield from self.line(self.wide_codes[self.machine])
+
+    def end(self, _: ProgramEnd) -> Iterator[str]:
+        """End and percent sign."""
+        yield from self.line("M2")
+        yield "%"
+
+    def text(self, text: str) -> str:
+        """A comment that does nothing."""
+        plain = ascii_text(text).strip()
+        is_active = plain.upper().replace(" ", "").startswith(ACTIVE)
+        return bracketed(f"- {plain}" if is_active else plain, LONGEST)
+
+    def message(self, block: Message) -> Iterator[str]:
+        """Text on the screen."""
+        yield bracketed(f"MSG,{block.text}", LONGEST)
+
+    def tool_change(self, block: ToolChange) -> Iterator[str]:
+        """Tool, then its offset."""
+        yield from self.line(f"T{block.number}", "M6")
+        yield from self.line(f"G43 H{block.number}")
+        self.pend("")
+
+    def surface_speed(self, speed: str, limit: str, sense: str) -> Iterator[str]:
+        """G96 with its limit."""
+        return self.line("G96", f"D{limit}" if limit else "", f"S{speed}", sense)
+
+    def thread_words(self, start: Point, block: Threading) -> list[str]:
+        """G33 with the lead along the path."""
+        lead = synchronised(start, block.end, block.lead)
+        return ["G33", f"K{self.number(lead, 4)}"]
+
+    def rigid_tap(self, block: RigidTap) -> Iterator[str]:
+        """G33.1, there and back."""
+        yield from self.line(self.speed(block.speed), SENSE_CODES[block.sense])
+        z = f"Z{self.number(block.bottom_z, self.places)}"
+        yield from self.line("G33.1", z, f"K{self.number(block.lead, 4)}")
+
+    def turn_words(self, block: Circular) -> list[str]:
+        """P, the turns begun."""
+        turns = int(abs(block.turn) / FULL - 1e-9) + 1
+        return [f"P{turns}"] if turns > 1 else []
+
+
+class LinuxCncReader(IsoReader):
+    """Reader of LinuxCNC's G-code."""
+
+    codes: Mapping[Machine, Mapping[str, Act]] = {
+        machine: COMMON
+        | PER_TIME
+        | LENGTHS
+        | CANNED
+        | {
+            "G7": Act.DIAMETER,
+            "G33": Act.THREAD,
+            "G33.1": Act.TAP,
+            "G91.1": Act.NOTHING,
+        }
+        for machine in Machine
+    }
+
+    def comment(self, text: str) -> Block:
+        """A message, or a comment."""
+        if text.upper().startswith("MSG,"):
+            return Message(text=text[4:])
+        return Comment(text=text)
+
+    def lead(self, end: Point, words: Words) -> float:
+        """K, along the path."""
+        return along_path(self.at, end, words.need("K", "G33"))
+
+    def surface_limit(self, words: Words) -> float | None:
+        """D of the same block, or none."""
+        limit = words.take("D")
+        return None if limit is None else rev_s_from_rpm(limit)
+
+    def tap(self, words: Words, act: Act) -> Iterator[Block]:
+        """G33.1, in the sense of the spindle."""
+        if self.sense is None:
+            raise PostError("G33.1 while the spindle stands")
+        bottom = self.end(words)[2]
+        yield self.tapped(bottom, words.need("K", "G33.1"), self.sense)

@@ -1,0 +1,294 @@
+"""Reading Klartext of Heidenhain controls, as far as it is written here.
+
+Strict: a line that is not known is an error, and so is an arc whose radii differ.
+"""
+
+import re
+from collections.abc import Callable, Iterable, Iterator
+from math import cos, hypot, radians, sin
+
+from stepnc_model.errors import PostError
+from stepnc_model.post.blocks import (
+    Block,
+    Circular,
+    Comment,
+    Coolant,
+    CoolantKind,
+    DrillingCycle,
+    Linear,
+    Machine,
+    OptionalStop,
+    Pause,
+    ProgramEnd,
+    ProgramStop,
+    Rapid,
+    Rate,
+    RateMode,
+    Retract,
+    RigidTap,
+    Sense,
+    SpindleOff,
+    SpindleOn,
+    SpindleOrient,
+    ToolChange,
+)
+from stepnc_model.post.cycles import expanded
+from stepnc_model.post.grid import sweep
+from stepnc_model.post.iso_words import NUMBER
+from stepnc_model.toolpath.path import CycleKind, Plane, Point
+from stepnc_model.units import rev_s_from_rpm, speed_from_mm_min
+
+ROUND = 0.016
+"""mm by which the radii to both ends of an arc may differ (iTNC 530, MP7431)"""
+
+WORD = re.compile(rf"(DR|IPA|IZ|FU|[XYZF])({NUMBER}|[+-])|(FMAX|R0)|\S+")
+PARAMETER = re.compile(rf"(Q\d+)\s*=\s*({NUMBER})")
+TOOL = re.compile(rf"TOOL CALL(?: (\d+) Z)?(?: S({NUMBER}))?")
+DWELL = re.compile(rf"CYCL DEF 9\.1 DWELL ({NUMBER})")
+DEFINITION = re.compile(r"CYCL DEF (200|201|205|207)\b(.*)")
+SILENT = re.compile(
+    r"(?:BEGIN|END) PGM \S+ MM|CYCL DEF 9\.0 DWELL TIME|"
+    r"CYCL DEF 13\.0 ORIENTATION|CYCL DEF 13\.1 ANGLE 0"
+)
+PLANES = {"XY": Plane.XY, "XZ": Plane.ZX, "YZ": Plane.YZ}
+
+
+class HeidenhainReader:
+    """Reader of one program. Running state: what is in force, and where the tool is."""
+
+    def __init__(self, machine: Machine) -> None:
+        if machine is Machine.LATHE:
+            raise PostError("Klartext is read for mills only")
+        self.at: Point = (0.0, 0.0, 0.0)
+        self.speed: float | None = None
+        self.rate: Rate | None = None
+        self.centre: dict[str, float] = {}
+        self._cycle: tuple[str, dict[str, float]] | None = None
+        self._functions: dict[str, Callable[[], Block]] = {
+            "M3": lambda: self._spindle(Sense.CLOCKWISE),
+            "M4": lambda: self._spindle(Sense.COUNTERCLOCKWISE),
+            "M5": SpindleOff,
+            "M8": lambda: Coolant(kinds=frozenset({CoolantKind.FLOOD})),
+            "M9": Coolant,
+            "M19": SpindleOrient,
+            "STOP": ProgramStop,
+            "M0": ProgramStop,
+            "M1": OptionalStop,
+            "M2": ProgramEnd,
+            "M30": ProgramEnd,
+        }
+
+    def blocks(self, lines: Iterable[str]) -> Iterator[Block]:
+        """Neutral blocks of the program.
+
+        Raises
+        ------
+        PostError
+            With the line and what is wrong with it.
+        """
+        held, start = "", 0
+        for number, line in enumerate(lines, 1):
+            start = start or number
+            code, mark, text = line.rstrip().partition(";")
+            # A tilde carries the block on; behind it stand the names of parameters.
+            held += " " + (code if mark else code.removesuffix("~")).strip()
+            if line.rstrip().endswith("~"):
+                continue
+            try:
+                yield from self._block(held.strip())
+                if mark and "=" not in code:
+                    yield Comment(text=text.strip())
+            except PostError as error:
+                raise PostError(str(error), line=start) from None
+            held, start = "", 0
+        if held:
+            raise PostError("the last block goes on, but nothing follows", line=start)
+
+    def _block(self, numbered: str) -> Iterator[Block]:
+        number, _, text = numbered.partition(" ")
+        if not number.isdigit():
+            raise PostError(f"'{numbered}': a block begins with its number")
+        text = text.strip()
+        if not text or SILENT.fullmatch(text):
+            return
+        kind, _, rest = text.partition(" ")
+        if text in self._functions:
+            yield self._functions[text]()
+        elif kind in {"L", "C", "CP", "CC"}:
+            yield from self._moved(kind, rest)
+        elif text == "CYCL CALL":
+            yield from self._called()
+        elif found := TOOL.fullmatch(text):
+            yield from self._tool(found[1], found[2])
+        elif found := DWELL.fullmatch(text):
+            yield Pause(seconds=float(found[1]))
+        elif found := DEFINITION.fullmatch(text):
+            parameters = {name: float(v) for name, v in PARAMETER.findall(found[2])}
+            self._cycle = (found[1], parameters)
+        else:
+            raise PostError(f"'{text}': not known")
+
+    def _tool(self, number: str | None, speed: str | None) -> Iterator[Block]:
+        if speed is not None:
+            self.speed = float(speed)
+        if number is not None:
+            yield ToolChange(number=int(number))
+
+    def _spindle(self, sense: Sense) -> Block:
+        return SpindleOn(speed=self._rpm(), sense=sense)
+
+    def _rpm(self) -> float:
+        if self.speed is None:
+            raise PostError("the spindle has no speed: no TOOL CALL with S came before")
+        return rev_s_from_rpm(self.speed)
+
+    def _moved(self, kind: str, text: str) -> Iterator[Block]:
+        words: dict[str, str] = {}
+        for found in WORD.finditer(text):
+            letter = found[1] or found[3]
+            if letter is None or letter in words:
+                raise PostError(f"word {found[0]}: not known here, or said twice")
+            words[letter] = found[2] or ""
+        if kind == "CC":
+            self.centre = {letter: float(value) for letter, value in words.items()}
+            return
+        is_rapid = words.pop("FMAX", None) is not None
+        words.pop("R0", None)
+        self._set_rate(words)
+        if kind == "L":
+            yield self._line(words, is_rapid=is_rapid)
+        else:
+            yield self._arc(words) if kind == "C" else self._helix(words)
+        if words:
+            raise PostError(f"word {next(iter(words))}: nothing in this block uses it")
+
+    def _set_rate(self, words: dict[str, str]) -> None:
+        if "F" in words:
+            self.rate = Rate(value=speed_from_mm_min(float(words.pop("F"))))
+        elif "FU" in words:
+            value = float(words.pop("FU"))
+            self.rate = Rate(value=value, mode=RateMode.PER_REVOLUTION)
+
+    def _feed(self) -> Rate:
+        if self.rate is None or self.rate.value <= 0.0:
+            raise PostError("a motion at feed without F")
+        return self.rate
+
+    def _end(self, words: dict[str, str]) -> Point:
+        x, y, z = (
+            float(words.pop(letter)) if letter in words else value
+            for letter, value in zip("XYZ", self.at, strict=True)
+        )
+        return x, y, z
+
+    def _line(self, words: dict[str, str], *, is_rapid: bool) -> Block:
+        is_retract = set(words) == {"Z"}
+        self.at = self._end(words)
+        if not is_rapid:
+            return Linear(end=self.at, rate=self._feed())
+        return Retract(z=self.at[2]) if is_retract else Rapid(end=self.at)
+
+    def _middle(self) -> tuple[Plane, Point]:
+        """Plane and centre of the last CC."""
+        plane = PLANES.get("".join(sorted(self.centre)))
+        if plane is None:
+            raise PostError("an arc without CC in two axes before it")
+        x, y, z = (
+            self.centre.get(letter, value) for letter, value in zip("XYZ", self.at, strict=True)
+        )
+        return plane, (x, y, z)
+
+    def _arc(self, words: dict[str, str]) -> Block:
+        plane, centre = self._middle()
+        sense = _sense(words)
+        start, end = self.at, self._end(words)
+        first, second, normal = plane.axes
+        radii = [
+            hypot(p[first] - centre[first], p[second] - centre[second]) for p in (start, end)
+        ]
+        if min(radii) <= 0.0 or abs(radii[0] - radii[1]) > ROUND:
+            raise PostError(
+                f"no arc: its radii are {radii[0]:.4f} and {radii[1]:.4f} mm, "
+                f"{ROUND:g} mm may lie between them"
+            )
+        if start[normal] != end[normal]:
+            raise PostError("C leads out of the plane of its CC")
+        self.at = end
+        turn = sense * sweep(start, end, centre, plane, sense=sense)
+        return Circular(end=end, centre=centre, turn=turn, plane=plane, rate=self._feed())
+
+    def _helix(self, words: dict[str, str]) -> Block:
+        plane, centre = self._middle()
+        if "IPA" not in words or plane is not Plane.XY:
+            raise PostError("CP is read with IPA, about a CC in x and y")
+        turn, rise, sense = (
+            radians(float(words.pop("IPA"))),
+            words.pop("IZ", "0"),
+            _sense(words),
+        )
+        if turn * sense <= 0.0:
+            raise PostError("the signs of IPA and DR differ")
+        u, v = self.at[0] - centre[0], self.at[1] - centre[1]
+        end = (
+            centre[0] + u * cos(turn) - v * sin(turn),
+            centre[1] + u * sin(turn) + v * cos(turn),
+            self.at[2] + rise,
+        )
+        self.at = end
+        return Circular(end=end, centre=centre, turn=turn, plane=plane, rate=self._feed())
+
+    def _called(self) -> Iterator[Block]:
+        """The cycle defined last, where the tool is."""
+        if self._cycle is None:
+            raise PostError("CYCL CALL without a cycle")
+        number, values = self._cycle
+        wanted = {"Q200", "Q201", "Q203", "Q239" if number == "207" else "Q206"}
+        if not wanted <= set(values):
+            missing = " ".join(sorted(wanted - set(values)))
+            raise PostError(f"cycle {number}: {missing} is missing")
+        surface, bottom = values["Q203"], values["Q203"] + values["Q201"]
+        at = (self.at[0], self.at[1], surface + values["Q200"])
+        if at[2] != self.at[2]:
+            self.at = at
+            yield Rapid(end=at)
+        if number == "207":
+            yield RigidTap(
+                start=self.at,
+                bottom_z=bottom,
+                lead=abs(values["Q239"]),
+                speed=self._rpm(),
+                sense=Sense.CLOCKWISE if values["Q239"] > 0.0 else Sense.COUNTERCLOCKWISE,
+            )
+            return
+        kind, step, above = _kind(number, values)
+        yield expanded(
+            DrillingCycle(
+                kind=kind,
+                at=at[:2],
+                retract_z=at[2],
+                bottom_z=bottom,
+                rate=Rate(value=speed_from_mm_min(values["Q206"])),
+                step_depth=step,
+                retract_distance=above,
+                dwell=values.get("Q211", 0.0),
+            )
+        )
+
+
+def _kind(number: str, values: dict[str, float]) -> tuple[CycleKind, float, float]:
+    """Kind of a drilling cycle, depth of its pecks and how far it retracts."""
+    if number == "201":
+        return CycleKind.BORE, 0.0, 0.0
+    if number == "205" and values.get("Q257"):
+        return CycleKind.CHIP_BREAK, values["Q257"], values.get("Q256", 0.0)
+    step, depth = values.get("Q202", 0.0), -values["Q201"]
+    if step and step < depth:
+        return CycleKind.PECK, step, values.get("Q258", 0.0)
+    return (CycleKind.DWELL if values.get("Q211") else CycleKind.DRILL), 0.0, 0.0
+
+
+def _sense(words: dict[str, str]) -> float:
+    text = words.pop("DR", "")
+    if text not in {"+", "-"}:
+        raise PostError("an arc without DR+ or DR-")
+    return 1.0 if text == "+" else -1.0

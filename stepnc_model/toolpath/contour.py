@@ -1,0 +1,200 @@
+"""Plane contours of lines and exact arcs, as complex numbers x + iy, mm.
+
+A loop is closed, and what it bounds lies on its left: outer boundaries run counter-clockwise,
+islands clockwise. Arcs turn through π at most; longer ones are halved on the way in.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import ceil, pi, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+from shapely import Polygon
+
+Floats = NDArray[np.float64]
+Points = NDArray[np.complex128]
+
+TINY = 1e-9
+"""mm; two points nearer than this are one"""
+
+
+@dataclass(frozen=True, slots=True)
+class Edge:
+    """A line, or an arc when it has a centre."""
+
+    start: complex
+    end: complex
+    centre: complex | None = None
+    turn: float = 0.0
+    """rad, positive counter-clockwise"""
+
+    @property
+    def length(self) -> float:
+        """Arc length, mm."""
+        if self.centre is None:
+            return abs(self.end - self.start)
+        return abs(self.turn) * abs(self.start - self.centre)
+
+    def at(self, part: float) -> complex:
+        """Point at a part of the length, 0 to 1."""
+        if self.centre is None:
+            return self.start + part * (self.end - self.start)
+        return self.centre + (self.start - self.centre) * _turned(part * self.turn)
+
+    def along(self, part: float) -> complex:
+        """Unit vector of the way there."""
+        if self.centre is None:
+            way = self.end - self.start
+            return way / abs(way)
+        outward = self.at(part) - self.centre
+        return outward / abs(outward) * (1j if self.turn > 0.0 else -1j)
+
+    def between(self, low: float, high: float) -> "Edge":
+        """Piece between two parts of the length; its ends are exact where they are its own."""
+        return Edge(
+            start=self.start if low <= 0.0 else self.at(low),
+            end=self.end if high >= 1.0 else self.at(high),
+            centre=self.centre,
+            turn=self.turn * (high - low),
+        )
+
+    def reversed(self) -> "Edge":
+        """The same way back."""
+        return Edge(start=self.end, end=self.start, centre=self.centre, turn=-self.turn)
+
+
+Chain = tuple[Edge, ...]
+"""edges one after another"""
+
+Loop = Chain
+"""edges that come back to where they start"""
+
+
+def line(start: complex, end: complex) -> Edge:
+    """A straight edge."""
+    return Edge(start, end)
+
+
+def circle(centre: complex, radius: float) -> Loop:
+    """A circle counter-clockwise, in two halves."""
+    right, left = centre + radius, centre - radius
+    return (Edge(right, left, centre, pi), Edge(left, right, centre, pi))
+
+
+def polygon(points: Sequence[complex]) -> Loop:
+    """Straight edges through points and back to the first."""
+    ends = [*points[1:], points[0]]
+    return tuple(line(a, b) for a, b in zip(points, ends, strict=True) if abs(a - b) > TINY)
+
+
+def halved(chain: Iterable[Edge]) -> Chain:
+    """The same way, no arc of it longer than half a turn."""
+    found: list[Edge] = []
+    for edge in chain:
+        count = max(1, ceil(abs(edge.turn) / pi - TINY))
+        parts = [i / count for i in range(count + 1)]
+        found += [edge.between(a, b) for a, b in pairwise(parts)]
+    return tuple(found)
+
+
+def reversed_chain(chain: Chain) -> Chain:
+    """The same way back."""
+    return tuple(edge.reversed() for edge in reversed(chain))
+
+
+def chain_length(chain: Iterable[Edge]) -> float:
+    """Length, mm."""
+    return sum(edge.length for edge in chain)
+
+
+def area(loop: Loop) -> float:
+    """Area on the left, mm²; negative for a clockwise loop (Green's theorem)."""
+    total = 0.0
+    for edge in loop:
+        total += 0.5 * (edge.start.conjugate() * edge.end).imag
+        if edge.centre is not None:
+            radius = abs(edge.start - edge.centre)
+            total += 0.5 * radius**2 * (edge.turn - np.sin(edge.turn))
+    return float(total)
+
+
+def counter_clockwise(loop: Loop) -> Loop:
+    """The loop, turned round if need be."""
+    return loop if area(loop) >= 0.0 else reversed_chain(loop)
+
+
+def clockwise(loop: Loop) -> Loop:
+    """The loop as the boundary of an island."""
+    return reversed_chain(counter_clockwise(loop))
+
+
+def vertices(chain: Chain, *, tolerance: float) -> list[complex]:
+    """Points of the chain whose chords stay within a tolerance in mm; without its last end."""
+    points: list[complex] = []
+    for edge in chain:
+        count = 1
+        if edge.centre is not None:
+            radius = abs(edge.start - edge.centre)
+            step = 2.0 * sqrt(2.0 * min(tolerance / max(radius, tolerance), 0.5))
+            count = max(1, ceil(abs(edge.turn) / step))
+        points += [edge.at(i / count) for i in range(count)]
+    return points
+
+
+def shape(loop: Loop, *, tolerance: float) -> Polygon:
+    """The area of a loop as a polygon."""
+    points = vertices(loop, tolerance=tolerance)
+    return Polygon([(point.real, point.imag) for point in points])
+
+
+def moved(chain: Chain, *, by: complex = 0j, turned: complex = 1 + 0j) -> Chain:
+    """The chain turned about the origin by a unit number, then moved."""
+    return tuple(
+        replace(
+            edge,
+            start=edge.start * turned + by,
+            end=edge.end * turned + by,
+            centre=None if edge.centre is None else edge.centre * turned + by,
+        )
+        for edge in chain
+    )
+
+
+def rotated_to(loop: Loop, near: complex) -> Loop:
+    """The loop, starting at its point nearest to another one."""
+    index, part = nearest(loop, near)
+    edge = loop[index]
+    if part * edge.length < TINY:
+        return (*loop[index:], *loop[:index])
+    if (1.0 - part) * edge.length < TINY:
+        return (*loop[index + 1 :], *loop[: index + 1])
+    return (edge.between(part, 1.0), *loop[index + 1 :], *loop[:index], edge.between(0.0, part))
+
+
+def nearest(chain: Chain, point: complex) -> tuple[int, float]:
+    """Index of the edge, and the part of its length, where a chain is nearest to a point."""
+    parts = [_foot(edge, point) for edge in chain]
+    distances = [abs(edge.at(part) - point) for edge, part in zip(chain, parts, strict=True)]
+    index = min(range(len(chain)), key=distances.__getitem__)
+    return index, parts[index]
+
+
+def _foot(edge: Edge, point: complex) -> float:
+    """Part of an edge's length nearest to a point."""
+    if edge.centre is None:
+        way = edge.end - edge.start
+        return min(1.0, max(0.0, ((point - edge.start) / way).real))
+    spoke = (point - edge.centre) / (edge.start - edge.centre)
+    if abs(spoke) < TINY:
+        return 0.0
+    turned = float(np.angle(spoke)) * (1.0 if edge.turn > 0.0 else -1.0)
+    part = (turned % (2.0 * pi)) / abs(edge.turn)
+    if part <= 1.0:
+        return part
+    return 0.0 if abs(point - edge.start) <= abs(point - edge.end) else 1.0
+
+
+def _turned(angle: float) -> complex:
+    return complex(np.cos(angle), np.sin(angle))

@@ -1,0 +1,143 @@
+"""The tool paths of a whole program, in its order.
+
+An executable for which no path can be made raises, or is handed to the caller, who goes on
+with the rest: the other workingsteps do not depend on it.
+"""
+
+from collections.abc import Callable, Iterator
+from typing import NoReturn
+
+from stepnc_model.entities.drilling import DrillingTypeOperation
+from stepnc_model.entities.executables import (
+    NonSequential,
+    RapidMovement,
+    Workplan,
+)
+from stepnc_model.entities.functions import (
+    DisplayMessage,
+    NcFunction,
+    OptionalStop,
+    ProgramStop,
+)
+from stepnc_model.entities.setup import Setup
+from stepnc_model.entities.turning import TurningMachiningOperation
+from stepnc_model.errors import SchemaError
+from stepnc_model.part21.values import Ref
+from stepnc_model.program import Executable, Program, Workingstep
+from stepnc_model.toolpath.explicit import explicit_path, rapid_movement_path
+from stepnc_model.toolpath.function import Function
+from stepnc_model.toolpath.hole import hole_path
+from stepnc_model.toolpath.job import job_of
+from stepnc_model.toolpath.milling import milling_path
+from stepnc_model.toolpath.path import ToolPath
+from stepnc_model.toolpath.turning import turning_path
+
+OnFault = Callable[[SchemaError], None]
+"""where executables go for which no path can be made"""
+
+
+def raised(error: SchemaError) -> NoReturn:
+    """End with the first executable for which no path can be made."""
+    raise error
+
+
+def generate(program: Program, on_fault: OnFault = raised) -> Iterator[ToolPath | Function]:
+    """Tool paths and functions of a program, one after another.
+
+    Parameters
+    ----------
+    program : Program
+    on_fault : callable
+        Called with the error of each executable that is left out; raises it unless given.
+
+    Yields
+    ------
+    ToolPath or Function
+        In the order of the program; coordinates are those of each one's setup.
+
+    Raises
+    ------
+    SchemaError
+        Unless another ``on_fault`` goes on.
+    """
+    steps = {int(step.ref): step for step in program.workingsteps}
+    faults = {fault.entity: fault for fault in program.faults}
+    skipped: int | None = None
+    setup: Ref[Setup] | None = None
+    for executable in program.executables:
+        if skipped is not None and executable.level > skipped:
+            continue
+        skipped = None
+        step = steps.get(int(executable.ref))
+        try:
+            if step is not None:
+                if setup is not None and step.setup != setup:
+                    yield _new_setup(program, step)
+                setup = step.setup
+                yield workingstep_path(program, step)
+            else:
+                yield from _other(program, executable, faults)
+        except SchemaError as error:
+            skipped = executable.level
+            on_fault(error)
+
+
+def workingstep_path(program: Program, step: Workingstep) -> ToolPath:
+    """Tool path of one workingstep: the one of the file, else one made from its feature.
+
+    Raises
+    ------
+    SchemaError, PathError
+        When the file does not say enough, or the tool cannot do it.
+    """
+    with program.using(step.operation_ref):
+        job = job_of(program, step)
+        operation = step.operation
+        if operation.its_toolpath is not None:
+            return explicit_path(job)
+        if isinstance(operation, DrillingTypeOperation):
+            return hole_path(job)
+        if isinstance(operation, TurningMachiningOperation):
+            return turning_path(job)
+        return milling_path(job)
+
+
+def _other(
+    program: Program, executable: Executable, faults: dict[str, SchemaError]
+) -> Iterator[ToolPath | Function]:
+    """An executable that is no usable workingstep."""
+    label = program.label(executable.ref)
+    if label in faults:
+        raise faults[label]
+    entity = program.model.entity(int(executable.ref))
+    if isinstance(entity, (Workplan, NonSequential)):
+        return
+    if isinstance(entity, RapidMovement):
+        path = rapid_movement_path(program, executable)
+        if path is not None:
+            yield path
+    elif isinstance(entity, (OptionalStop, ProgramStop, DisplayMessage)):
+        yield _function(executable, entity)
+    else:
+        message = "an executable of this kind cannot be made into a tool path"
+        raise program.error(message, executable.ref)
+
+
+def _function(executable: Executable, entity: NcFunction) -> Function:
+    """A stop or a message."""
+    return Function(
+        ref=executable.ref,
+        keyword=executable.keyword,
+        id=executable.id,
+        text=getattr(entity, "its_text", ""),
+    )
+
+
+def _new_setup(program: Program, step: Workingstep) -> Function:
+    """A stop where the workpiece has to be clamped anew."""
+    name = program.get(step.setup).its_id if step.setup is not None else ""
+    return Function(
+        ref=step.ref,
+        keyword=ProgramStop.keyword,
+        id=f"CLAMP FOR {name}".strip(),
+    )

@@ -1,0 +1,211 @@
+"""Turning paths against a sampled lathe: nothing is gouged, all is touched, rapids stay clear.
+
+The lathe here knows nothing of the code under test: it drags a sampled nose over a sampled bar.
+"""
+
+from dataclasses import dataclass, field
+from itertools import pairwise
+from math import hypot, isfinite, pi
+from pathlib import Path
+
+import numpy as np
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+from stepnc_model.part21.reader import Part21File
+from stepnc_model.program import Program
+from stepnc_model.toolpath.job import job_of
+from stepnc_model.toolpath.path import MoveType, Point, ToolPath, points_along
+from stepnc_model.toolpath.turning import turning_path
+
+Floats = NDArray[np.float64]
+
+SHAFT = Path(__file__).parents[2] / "examples" / "parts" / "shaft.stpnc"
+CELL = 0.1
+"""mm of z"""
+STEP = 0.1
+"""mm between two positions of the nose"""
+TOLERANCE = 0.02
+"""mm; what the sampling costs"""
+BAR = 30.0
+LOW, HIGH = -150.0, 2.0
+
+
+@dataclass
+class Lathe:
+    """A bar as radii in cells of z."""
+
+    nose: float
+    z: Floats = field(default_factory=lambda: np.arange(LOW, HIGH + CELL / 2, CELL))
+    radius: Floats = field(init=False)
+    worst_rapid: float = 0.0
+
+    def __post_init__(self) -> None:
+        self.radius = np.full(len(self.z), BAR)
+
+    def run(self, path: ToolPath) -> None:
+        for start, move in path.segments():
+            lower = self.swept(start, [start, *points_along(start, move, step=pi / 180)])
+            if move.feed is None:
+                self.worst_rapid = max(self.worst_rapid, float(np.max(self.radius - lower)))
+            else:
+                self.radius = np.minimum(self.radius, lower)
+
+    def swept(self, start: Point, points: list[Point]) -> Floats:
+        """Lowest radius that the nose comes to over each cell."""
+        positions: list[tuple[float, float]] = []
+        for a, b in pairwise(points):
+            count = max(1, int(hypot(b[0] - a[0], b[2] - a[2]) / STEP) + 1)
+            positions += [
+                (a[0] + (b[0] - a[0]) * i / count, a[2] + (b[2] - a[2]) * i / count)
+                for i in range(count + 1)
+            ]
+        lower = np.full(len(self.z), np.inf)
+        if not positions:
+            return lower
+        x, z = np.array(positions).T + self.nose
+        reach = int(self.nose / CELL) + 1
+        cells = np.rint((z - LOW) / CELL).astype(int)[:, None] + np.arange(-reach, reach + 1)
+        is_on = (cells >= 0) & (cells < len(self.z))
+        inside = self.nose**2 - (LOW + cells * CELL - z[:, None]) ** 2
+        is_on &= inside >= 0.0
+        bottoms = x[:, None] - np.sqrt(np.maximum(inside, 0.0))
+        np.minimum.at(lower, cells[is_on], bottoms[is_on])
+        return lower
+
+
+@dataclass(frozen=True)
+class Contour:
+    """Corners (z, x) from the front to the chuck, and the radius of a nose."""
+
+    corners: tuple[tuple[float, float], ...]
+    nose: float
+    allowance: float
+    depth: float
+    is_to_and_fro: bool
+    is_along: bool
+
+    def radius(self, z: Floats) -> Floats:
+        """Largest radius at each z; −inf beside the contour."""
+        found = np.full(len(z), -np.inf)
+        for (a, b), (c, d) in zip(self.corners, self.corners[1:], strict=False):
+            if a - c > 1e-9:
+                is_on = (z < a - 1e-9) & (z > c + 1e-9)
+                found[is_on] = np.maximum(found[is_on], b + (d - b) * (z[is_on] - a) / (c - a))
+        return found
+
+
+steps = st.tuples(st.integers(0, 200), st.integers(-40, 80))
+"""length and rise of one line, in tenths of a millimetre"""
+
+
+@st.composite
+def contours(draw: st.DrawFn, *, is_monotone: bool) -> Contour:
+    corners = [(0.0, draw(st.integers(80, 150)) / 10.0)]
+    for length, rise in draw(st.lists(steps, min_size=1, max_size=6)):
+        z, x = corners[-1]
+        up = abs(rise) if is_monotone else rise
+        point = (round(z - length / 10.0, 3), round(min(29.0, max(5.0, x + up / 10.0)), 3))
+        if hypot(point[0] - z, point[1] - x) > 0.5:
+            corners.append(point)
+    z, x = corners[-1]
+    corners.append((round(z - 10.0, 3), x))
+    return Contour(
+        corners=tuple(corners),
+        nose=draw(st.sampled_from([0.2, 0.4, 0.8, 1.2])),
+        allowance=draw(st.sampled_from([0.2, 0.5])),
+        depth=draw(st.sampled_from([0.7, 1.5, 3.0])),
+        is_to_and_fro=draw(st.booleans()),
+        is_along=draw(st.booleans()),
+    )
+
+
+def program_of(contour: Contour) -> Program:
+    """The shaft with this contour instead of its own, and no face in front of it."""
+    points = ",".join(f"#{900 + i}" for i in range(len(contour.corners)))
+    lines = "\n".join(
+        f"#{900 + i}=CARTESIAN_POINT('',({x!r},0.,{z!r}));"
+        for i, (z, x) in enumerate(contour.corners)
+    )
+    to_and_fro = f"BIDIRECTIONAL_TURNING(1.,.T.,({contour.depth!r}),$,#504,$,$);"
+    along = f"CONTOUR_TURNING(1.,.T.,({contour.depth!r}),$,#504,$,$,$,$,$,$,$);"
+    scan = f"UNIDIRECTIONAL_TURNING(1.,.T.,({contour.depth!r}),$,#504,$,$,$,$,$,$);"
+    strategy = to_and_fro if contour.is_to_and_fro else along if contour.is_along else scan
+    edits = (
+        ("(#113,#114,#115,#116,#117,#118,#119));", f"({points}));\n{lines}"),
+        ("#352=UNIDIRECTIONAL_TURNING(1.,.T.,(2.),$,#504,#501,#502,#506,1.,$,$);",
+         f"#352={strategy}"),
+        ("(#10,#11,#12,#13)", "(#12,#13)"),
+        ("(#3,#4)", "(#3)"),
+        ("#43,(#110,#120),#202", "#43,(#110),#202"),
+        ("#43,(#110,#120),#203", "#43,(#110),#203"),
+        ("#330,$,$,#352,0.5)", f"#330,$,$,#352,{contour.allowance!r})"),
+        ("ROUNDED_CORNER(0.8);\n#410", f"ROUNDED_CORNER({contour.nose!r});\n#410"),
+        ("#412=ROUNDED_CORNER(0.8)", f"#412=ROUNDED_CORNER({contour.nose!r})"),
+    )  # fmt: skip
+    text = SHAFT.read_text()
+    for before, after in edits:
+        assert before in text, before
+        text = text.replace(before, after)
+    return Program(Part21File.from_bytes(text.encode()))
+
+
+def rough_and_finish(contour: Contour) -> tuple[ToolPath, ToolPath]:
+    program = program_of(contour)
+    rough, finish = (turning_path(job_of(program, step)) for step in program.workingsteps)
+    return rough, finish
+
+
+def rolled(contour: Contour, z: Floats) -> Floats:
+    """Surface that a nose leaves when it rolls over the contour and the bar behind it."""
+    target = contour.radius(z)
+    target[z < contour.corners[-1][0] - 1e-9] = BAR
+    reach = int(contour.nose / CELL)
+    offsets = np.arange(-reach, reach + 1)
+    ball = np.sqrt(np.maximum(0.0, contour.nose**2 - (offsets * CELL) ** 2))
+    centre = np.full(len(z), -np.inf)
+    for offset, height in zip(offsets, ball, strict=True):
+        moved = np.roll(target, offset) + height
+        centre = np.maximum(centre, moved)
+    left = np.full(len(z), np.inf)
+    for offset, height in zip(offsets, ball, strict=True):
+        left = np.minimum(left, np.roll(centre, offset) - height)
+    return left
+
+
+@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(contours(is_monotone=False))
+def test_no_pass_gouges_and_no_rapid_touches(contour: Contour) -> None:
+    rough, finish = rough_and_finish(contour)
+    lathe = Lathe(nose=contour.nose)
+    lathe.run(rough)
+    target = contour.radius(lathe.z)
+    assert np.min(lathe.radius - target) > contour.allowance - 0.5 * contour.allowance
+    lathe.run(finish)
+    assert np.min(lathe.radius - target) > -TOLERANCE
+    assert lathe.worst_rapid < TOLERANCE
+    behind = lathe.z < contour.corners[-1][0] - 1e-9
+    assert np.min(lathe.radius[behind]) == BAR
+
+
+@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(contours(is_monotone=True))
+def test_a_finish_touches_all_that_the_nose_can_reach(contour: Contour) -> None:
+    lathe = Lathe(nose=contour.nose)
+    for path in rough_and_finish(contour):
+        lathe.run(path)
+    inside = (lathe.z <= -contour.nose) & (lathe.z >= contour.corners[-1][0])
+    left = rolled(contour, lathe.z)
+    # Beside a wall a cell is as good as its neighbours.
+    left = np.maximum(left, np.maximum(np.roll(left, 1), np.roll(left, -1)))
+    assert np.max(lathe.radius[inside] - left[inside]) < TOLERANCE
+
+
+@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@given(contours(is_monotone=False))
+def test_paths_are_finite_and_end_where_they_start(contour: Contour) -> None:
+    for path in rough_and_finish(contour):
+        assert all(isfinite(c) for move in path.moves for c in move.end)
+        assert path.end == path.start
+        assert any(move.type is MoveType.CONTACT for move in path.moves)
