@@ -13,11 +13,15 @@ from pathlib import Path
 
 OK, BAD_INPUT, INFEASIBLE, INTERRUPTED = 0, 3, 4, 130
 
+CONTROLS = "linuxcnc, fanuc, haas, sinumerik, heidenhain or canonical"
+
 EXAMPLES = """examples:
   optimise part.stpnc --mode TC --machine vmc15
   optimise part.stpnc --mode QC --roughness 1.6 --report part.html
   optimise part.stpnc --mode EC --free feed,depth,speed --dry-run --json
   stepnc check part.stpnc
+  stepnc toolpath part.stpnc --plot path.png
+  stepnc post part.stpnc --control linuxcnc
 
 Optimise the feeds of a STEP-NC program and write them back as STEP-NC."""
 
@@ -44,6 +48,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     add_optimise_options(optimise)
     _add_check(commands)
     _add_convert(commands)
+    _add_toolpath(commands)
+    _add_post(commands)
+    _add_canonical(commands)
     for kind in ("machines", "materials"):
         listing = commands.add_parser(kind, help=f"list the {kind}, or show one")
         listing.add_argument("name", nargs="?", default="", help="show this one in full")
@@ -119,6 +126,12 @@ def add_optimise_options(parser: argparse.ArgumentParser) -> None:
         metavar="S",
         help="seconds to change a worn tool: tool life then counts",
     )
+    add(
+        "--nc",
+        default="",
+        metavar="CONTROL",
+        help=f"also NC code with the advised feeds, for {CONTROLS}",
+    )
     add("--dry-run", action="store_true", help="write no STEP-NC file")
     add("--report", type=Path, metavar="HTML", help="write a self-contained page with plots")
     _add_json(parser)
@@ -144,6 +157,50 @@ def _add_convert(commands: "argparse._SubParsersAction[argparse.ArgumentParser]"
     parser.add_argument("--profile", required=True, help="optimisation or standard")
     parser.add_argument("-o", "--output", type=Path, required=True, metavar="FILE")
     parser.set_defaults(run=_convert)
+
+
+def _add_toolpath(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    """``stepnc toolpath``."""
+    parser = commands.add_parser(
+        "toolpath", help="make the tool paths of a program, or take those it gives"
+    )
+    _add_file(parser)
+    _add_keep_going(parser)
+    parser.add_argument("--plot", type=Path, metavar="PNG", help="draw them, coloured by type")
+    _add_json(parser)
+    parser.set_defaults(run=_toolpath)
+
+
+def _add_post(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    """``stepnc post``."""
+    parser = commands.add_parser("post", help="write NC code for a control")
+    _add_file(parser)
+    parser.add_argument("--control", required=True, metavar="NAME", help=CONTROLS)
+    parser.add_argument("-o", "--output", type=Path, metavar="FILE")
+    parser.add_argument(
+        "--cycles", action="store_true", help="drill with the control's own cycles"
+    )
+    _add_keep_going(parser)
+    parser.set_defaults(run=_post)
+
+
+def _add_canonical(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+    """``stepnc canonical``."""
+    parser = commands.add_parser(
+        "canonical", help="show NC code as canonical commands, to compare programs"
+    )
+    parser.add_argument("file", type=Path, metavar="FILE", help="NC code")
+    parser.add_argument("--control", required=True, metavar="NAME", help=CONTROLS)
+    parser.add_argument("--lathe", action="store_true", help="Fanuc or Haas code for a lathe")
+    parser.set_defaults(run=_canonical)
+
+
+def _add_keep_going(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--keep-going",
+        action="store_true",
+        help="leave out workingsteps for which no path can be made; exit 3 all the same",
+    )
 
 
 def _add_file(parser: argparse.ArgumentParser) -> None:
@@ -214,6 +271,7 @@ def _optimise(options: argparse.Namespace) -> int:
             tool_change=options.tool_change_s,
             dry_run=options.dry_run,
             report=options.report,
+            control=options.nc,
         ),
         tell=tell,
     )
@@ -252,6 +310,59 @@ def _convert(options: argparse.Namespace) -> int:
 
     usecases.convert(options.file, profile=options.profile, output=options.output)
     tell(f"{options.output}: records in profile '{options.profile}'")
+    return OK
+
+
+def _toolpath(options: argparse.Namespace) -> int:
+    """``stepnc toolpath``."""
+    from service import toolpaths
+    from service.terminal import tell, write_out
+
+    paths = toolpaths.tool_paths(
+        options.file, units=options.units, keep_going=options.keep_going, tell=tell
+    )
+    if options.plot is not None:
+        toolpaths.plot(paths, options.file, options.plot)
+        tell(f"picture: {options.plot}")
+    if options.json:
+        from service.path_wire import paths_json
+
+        write_out(paths_json(paths))
+    else:
+        from service.path_table import print_paths
+
+        print_paths(paths)
+    return BAD_INPUT if paths.faults else OK
+
+
+def _post(options: argparse.Namespace) -> int:
+    """``stepnc post``."""
+    from service import toolpaths
+    from service.terminal import tell
+
+    paths = toolpaths.post(
+        toolpaths.PostRequest(
+            file=options.file,
+            control=options.control,
+            units=options.units,
+            output=options.output,
+            cycles=options.cycles,
+            keep_going=options.keep_going,
+        ),
+        tell=tell,
+    )
+    return BAD_INPUT if paths.faults else OK
+
+
+def _canonical(options: argparse.Namespace) -> int:
+    """``stepnc canonical``."""
+    from service import toolpaths
+    from service.terminal import write_out
+
+    for line in toolpaths.canonical_of(
+        options.file, control=options.control, is_lathe=options.lathe
+    ):
+        write_out(line)
     return OK
 
 

@@ -2,6 +2,7 @@
 
 import os
 import tempfile
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from stepnc_model.errors import StepNcError, WriteError
@@ -56,6 +57,31 @@ def write_atomically(path: Path, data: bytes) -> None:
     WriteError
         When the folder or the disk refuses; what was there stays as it was.
     """
+    _write_chunks(path, (data,))
+
+
+def write_lines(path: Path, lines: Iterable[str]) -> int:
+    """Write lines of text as they are made, whole or not at all; how many there were.
+
+    Raises
+    ------
+    WriteError
+        As :func:`write_atomically`; errors of what makes the lines pass through.
+    """
+    count = 0
+
+    def chunks() -> Iterator[bytes]:
+        nonlocal count
+        for line in lines:
+            count += 1
+            yield line.encode() + b"\n"
+
+    _write_chunks(path, chunks())
+    return count
+
+
+def _write_chunks(path: Path, chunks: Iterable[bytes]) -> None:
+    """Write beside the place, then move it there."""
     name = ""
     try:
         path = path.resolve() if path.is_symlink() else path
@@ -63,7 +89,7 @@ def write_atomically(path: Path, data: bytes) -> None:
             raise WriteError("is no regular file", path=str(path))
         descriptor, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
         with os.fdopen(descriptor, "wb") as file:
-            file.write(data)
+            file.writelines(chunks)
             file.flush()
             os.fsync(file.fileno())
         os.chmod(name, _mode(path))

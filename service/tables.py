@@ -28,7 +28,7 @@ MOST_FINDINGS = 40
 def print_plan(plan: Plan) -> None:
     """Advice for a program: a row for each workingstep, then totals and findings."""
     material = plan.material.material
-    _line(
+    print_line(
         f"{plan.program}: mode {plan.mode.value}, machine {plan.machine.name} "
         f"({plan.machine.title}), material {material.title}"
     )
@@ -38,22 +38,22 @@ def print_plan(plan: Plan) -> None:
     )  # fmt: skip
     rows = [_advice_row(advice) for advice in plan.advices]
     total = f"{plan.time_before:.1f} -> {plan.time_after:.1f}"
-    _table(header, [*rows, ("total", "", "", "", "", "", "", total)])
-    _line(
+    print_table(header, [*rows, ("total", "", "", "", "", "", "", total)])
+    print_line(
         f"energy {plan.energy_before / 1e3:.1f} -> {plan.energy_after / 1e3:.1f} kJ; "
         f"totals leave out {plan.left_out}"
     )
     for advice in plan.advices:
-        _line(f"  {advice.workingstep.id}: {_reason(advice)}")
+        print_line(f"  {advice.workingstep.id}: {_reason(advice)}")
     for advice in plan.advices:
         if advice.front:
             _print_front(advice)
-    _print_findings(plan.findings)
+    print_findings(plan.findings)
 
 
 def print_contents(contents: Contents) -> None:
     """What is in a file."""
-    _line(
+    print_line(
         f"{contents.name}: {contents.instances} instances, "
         f"schemas {', '.join(contents.schemas) or 'none'}"
     )
@@ -71,9 +71,9 @@ def print_contents(contents: Contents) -> None:
                 step.operation_type if step else "",
                 tool,
             ))
-        _table(("instance", "executable", "id", "operation", "tool"), rows)
-    _print_findings(contents.findings)
-    _line("usable" if contents.is_usable else "cannot be used: see the errors above")
+        print_table(("instance", "executable", "id", "operation", "tool"), rows)
+    print_findings(contents.findings)
+    print_line("usable" if contents.is_usable else "cannot be used: see the errors above")
 
 
 def print_entries(kind: str, entries: Sequence[Machine | Material]) -> None:
@@ -84,7 +84,7 @@ def print_entries(kind: str, entries: Sequence[Machine | Material]) -> None:
             (each.name, each.kind.value, _power(each), _top_speed(each), each.title)
             for each in machines
         ]
-        _table(("name", "kind", "kW", "rpm", "title"), rows)
+        print_table(("name", "kind", "kW", "rpm", "title"), rows)
         return
     materials = [entry for entry in entries if isinstance(entry, Material)]
     rows = [
@@ -97,17 +97,17 @@ def print_entries(kind: str, entries: Sequence[Machine | Material]) -> None:
         )
         for each in materials
     ]
-    _table(("name", "ISO", "k_c1.1 N/mm2", "m_c", "title"), rows)
+    print_table(("name", "ISO", "k_c1.1 N/mm2", "m_c", "title"), rows)
 
 
 def print_entry(entry: Machine | Material) -> None:
     """One machine or material."""
-    _line(f"{entry.name}: {entry.title}")
+    print_line(f"{entry.name}: {entry.title}")
     facts = _machine_facts(entry) if isinstance(entry, Machine) else _material_facts(entry)
-    _table(("what", "value"), facts)
-    _line(f"source: {entry.source}")
+    print_table(("what", "value"), facts)
+    print_line(f"source: {entry.source}")
     for remark in entry.remarks:
-        _line(f"remark: {remark}")
+        print_line(f"remark: {remark}")
 
 
 def _machine_facts(machine: Machine) -> list[Row]:
@@ -202,7 +202,7 @@ def _reason(advice: Advice) -> str:
 
 def _print_front(advice: Advice) -> None:
     """The front between time, roughness and energy of one workingstep."""
-    _line(f"front of {advice.workingstep.id}:")
+    print_line(f"front of {advice.workingstep.id}:")
     rows = []
     for point in advice.front:
         state = point.state
@@ -215,19 +215,19 @@ def _print_front(advice: Advice) -> None:
             f"{rpm_from_rev_s(state.setting.speed):.0f}",
             f"{state.setting.passes}",
         ))
-    _table(("time s", "Ra µm", "energy kJ", "feed mm/min", "rpm", "passes"), rows)
+    print_table(("time s", "Ra µm", "energy kJ", "feed mm/min", "rpm", "passes"), rows)
 
 
-def _print_findings(findings: Sequence[Finding]) -> None:
+def print_findings(findings: Sequence[Finding]) -> None:
     """Findings, errors first, equal ones once."""
     order = list(Severity)[::-1]
     ranked = sorted(findings, key=lambda finding: order.index(finding.severity))
     unique = list(dict.fromkeys(str(finding) for finding in ranked))
     severities = {str(finding): finding.severity for finding in ranked}
     for text in unique[:MOST_FINDINGS]:
-        _line(text, COLOURS[severities[text]])
+        print_line(text, COLOURS[severities[text]])
     if len(unique) > MOST_FINDINGS:
-        _line(f"... and {len(unique) - MOST_FINDINGS} more findings (--json has all)")
+        print_line(f"... and {len(unique) - MOST_FINDINGS} more findings (--json has all)")
 
 
 def _power(machine: Machine) -> str:
@@ -239,18 +239,18 @@ def _top_speed(machine: Machine) -> str:
     return "" if top is None else f"{rpm_from_rev_s(top):g}"
 
 
-def _table(header: Row, rows: Sequence[Row]) -> None:
+def print_table(header: Row, rows: Sequence[Row]) -> None:
     """Columns as wide as their widest cell; figures to the right."""
     columns = list(zip(header, *rows, strict=True))
     widths = [max(len(cell) for cell in column) for column in columns]
     for index, row in enumerate((header, *rows)):
         cells = [cell.ljust(width) for cell, width in zip(row, widths, strict=True)]
-        _line("  ".join(cells).rstrip())
+        print_line("  ".join(cells).rstrip())
         if index == 0:
-            _line("  ".join("-" * width for width in widths))
+            print_line("  ".join("-" * width for width in widths))
 
 
-def _line(text: str, colour: str = "") -> None:
+def print_line(text: str, colour: str = "") -> None:
     """One line of data, to stdout; in a colour on a terminal that wants colours."""
     text = clean(text)
     if colour and sys.stdout.isatty() and not os.environ.get("NO_COLOR"):

@@ -1,17 +1,16 @@
 """One function per verb. Packages meet here; the command line and REST are skins over it."""
 
-from collections.abc import Callable
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from enum import StrEnum
 from pathlib import Path
-from typing import TypeVar
 
 from optimiser.advice import Plan, Status
 from optimiser.formulate import Task
 from optimiser.modes import Free, Mode
 from optimiser.optimise import optimise as advise
-from service.files import is_same, read_bytes, require_place, write_atomically
+from service.files import is_same, read_bytes, require_place, write_atomically, write_lines
 from service.progress import Progress
+from service.reading import Tell, one_of, read_program, silent, unit_profile
 from service.records import changes_of
 from simulator.library import load_machine, load_material, machine_names, material_names
 from simulator.matching import match_material
@@ -21,18 +20,13 @@ from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import Finding, SchemaError, Severity, StepNcError, WriteError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.plausibility import implausible, refusal
+from stepnc_model.post.controls import Control
 from stepnc_model.program import Program, Workingstep
-from stepnc_model.unit_profiles import PROFILES, UnitProfile
 from stepnc_model.units import mm_from_um
 from stepnc_model.writeback import Profile
 
 DEFAULT_MILL, DEFAULT_LATHE = "vmc15", "lathe22"
 """machines taken when none is named"""
-
-E = TypeVar("E", bound=StrEnum)
-
-Tell = Callable[[str], None]
-"""where messages go"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,6 +48,8 @@ class Request:
     tool_change: float = 0.0
     dry_run: bool = False
     report: Path | None = None
+    control: str = ""
+    """for which NC code is written too; none when empty"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -83,7 +79,7 @@ class Contents:
         )
 
 
-def optimise(request: Request, *, tell: Tell = lambda _: None) -> Outcome:
+def optimise(request: Request, *, tell: Tell = silent) -> Outcome:
     """Read, optimise, write back.
 
     Raises
@@ -91,13 +87,14 @@ def optimise(request: Request, *, tell: Tell = lambda _: None) -> Outcome:
     StepNcError
         For everything that is wrong with file, names, limits or output; nothing is written.
     """
-    mode = _one_of(Mode, request.mode.upper(), "mode")
-    profile = _one_of(Profile, request.profile, "profile")
-    free = frozenset(_one_of(Free, word.strip(), "free") for word in request.free.split(","))
+    mode = one_of(Mode, request.mode.upper(), "mode")
+    profile = one_of(Profile, request.profile, "profile")
+    free = frozenset(one_of(Free, word.strip(), "free") for word in request.free.split(","))
     _require_positive(request.roughness_um, "roughness", "µm")
     if request.tool_change:
         _require_positive(request.tool_change, "tool change", "s")
     output = _output(request)
+    nc_place = _nc_place(request, output)
     program = read_program(request.file, units=request.units)
     chosen = _selected(program, request.workingsteps)
     findings = program.file.findings + program.model.findings()
@@ -123,15 +120,21 @@ def optimise(request: Request, *, tell: Tell = lambda _: None) -> Outcome:
         progress=Progress(tell, total=len(chosen)),
     )
     plan = _with_file_findings(plan, findings, match)
+    changes = changes_of(plan)
+    data = writeback.write(program, changes, profile) if changes else program.file.data
+    code = _nc_code(program, data, request.control, tell) if request.control else None
     written = None
-    if not request.dry_run:
-        changes = changes_of(plan)
-        if changes:
-            write_atomically(output, writeback.write(program, changes, profile))
-            written = output
-            tell(f"written: {output}")
-        else:
-            tell("nothing was written: no workingstep was advised")
+    if request.dry_run:
+        pass
+    elif changes:
+        write_atomically(output, data)
+        written = output
+        tell(f"written: {output}")
+    else:
+        tell("nothing was written: no workingstep was advised")
+    if code is not None and nc_place is not None:
+        count = write_lines(nc_place, code)
+        tell(f"NC code: {nc_place} ({count} lines)")
     if request.report is not None:
         from service.report import report_page  # noqa: PLC0415 (plotly takes a second)
 
@@ -146,7 +149,7 @@ def optimise(request: Request, *, tell: Tell = lambda _: None) -> Outcome:
 
 def check(path: Path, *, units: str = "iso") -> Contents:
     """What is in a file, and what is wrong with it."""
-    profile = _units(units)
+    profile = unit_profile(units)
     file = Part21File.from_bytes(read_bytes(path), name=path.name)
     try:
         program = Program(file, units=profile, name=path.name)
@@ -181,17 +184,10 @@ def _all_findings(program: Program) -> tuple[Finding, ...]:
 
 def convert(path: Path, *, profile: str, output: Path) -> None:
     """Move the optimisation records of a file into another profile."""
-    wanted = _one_of(Profile, profile, "profile")
+    wanted = one_of(Profile, profile, "profile")
     require_place(output, apart_from=path)
     program = read_program(path, units="iso")
     write_atomically(output, writeback.convert(program, wanted))
-
-
-def read_program(path: Path, *, units: str) -> Program:
-    """A program from a file."""
-    profile = _units(units)
-    file = Part21File.from_bytes(read_bytes(path), name=path.name)
-    return Program(file, units=profile, name=path.name)
 
 
 def library_entries(kind: str) -> tuple[Machine | Material, ...]:
@@ -206,22 +202,6 @@ def library_entry(kind: str, name: str) -> Machine | Material:
     if kind == "machines":
         return load_machine(name)
     return _load_material(name).material
-
-
-def _units(name: str) -> UnitProfile:
-    """Unit profile by name."""
-    if name not in PROFILES:
-        raise StepNcError(f"unknown units '{name}'; known: {', '.join(PROFILES)}")
-    return PROFILES[name]
-
-
-def _one_of(kinds: type[E], word: str, what: str) -> E:
-    """Member of an enumeration by its value."""
-    try:
-        return kinds(word)
-    except ValueError:
-        known = ", ".join(kind.value for kind in kinds)
-        raise StepNcError(f"unknown {what} '{word}'; known: {known}") from None
 
 
 def _require_positive(value: float | None, what: str, unit: str) -> None:
@@ -247,6 +227,27 @@ def _output(request: Request) -> Path:
         require_place(request.report, apart_from=request.file)
         require_place(request.report, apart_from=output)
     return output
+
+
+def _nc_place(request: Request, output: Path) -> Path | None:
+    """Where NC code goes: beside the optimised program."""
+    if not request.control:
+        return None
+    control = one_of(Control, request.control.lower(), "control")
+    place = output.with_suffix(control.suffix)
+    for other in (request.file, output, request.report):
+        if other is not None:
+            require_place(place, apart_from=other)
+    return place
+
+
+def _nc_code(program: Program, data: bytes, control: str, tell: Tell) -> Iterator[str]:
+    """NC code of the program as it is after optimisation."""
+    from service.toolpaths import nc_lines, paths_of  # noqa: PLC0415 (numpy, shapely)
+
+    file = Part21File.from_bytes(data, name=program.name)
+    optimised = Program(file, units=program.units, name=program.name)
+    return nc_lines(paths_of(optimised, tell=tell), Control(control.lower()))
 
 
 def _selected(program: Program, wanted: tuple[str, ...]) -> tuple[Workingstep, ...]:

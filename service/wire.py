@@ -20,14 +20,14 @@ from stepnc_model.units import (
 
 def plan_json(plan: Plan) -> str:
     """A plan as JSON."""
-    return _dump({
+    return dump({
         "program": plan.program,
         "mode": plan.mode.value,
         "machine": plan.machine.name,
         "material": plan.material.material.name,
         "workingsteps": [_advice(advice) for advice in plan.advices],
         "total_time_s": {"before": plan.time_before, "after": plan.time_after},
-        "findings": [_finding(finding) for finding in plan.findings],
+        "findings": [finding_json(finding) for finding in plan.findings],
     })
 
 
@@ -36,7 +36,7 @@ def contents_json(contents: Contents) -> str:
     program = contents.program
     steps = program.workingsteps if program is not None else ()
     executables = program.executables if program is not None else ()
-    return _dump({
+    return dump({
         "program": contents.name,
         "schemas": list(contents.schemas),
         "instances": contents.instances,
@@ -59,18 +59,18 @@ def contents_json(contents: Contents) -> str:
             }
             for step in steps
         ],
-        "findings": [_finding(finding) for finding in contents.findings],
+        "findings": [finding_json(finding) for finding in contents.findings],
     })
 
 
 def entry_json(entry: Machine | Material) -> str:
     """One machine or material as JSON, in canonical units (mm, s, N, W, rev/s)."""
-    return _dump(_finite(asdict(entry)))
+    return dump(_finite(asdict(entry)))
 
 
 def entries_json(entries: Sequence[Machine | Material]) -> str:
     """All machines or materials by name and title."""
-    return _dump([{"name": entry.name, "title": entry.title} for entry in entries])
+    return dump([{"name": entry.name, "title": entry.title} for entry in entries])
 
 
 def _advice(advice: Advice) -> dict[str, Any]:
@@ -154,7 +154,7 @@ def _sensitivity(advice: Advice) -> dict[str, Any] | None:
     }
 
 
-def _finding(finding: Finding) -> dict[str, Any]:
+def finding_json(finding: Finding) -> dict[str, Any]:
     """One finding."""
     return {
         "severity": finding.severity.value,
@@ -175,6 +175,6 @@ def _finite(value: Any) -> Any:
     return None if isinstance(value, float) and not isfinite(value) else value
 
 
-def _dump(value: object) -> str:
+def dump(value: object) -> str:
     """Readable JSON without NaN."""
     return json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False, default=str)

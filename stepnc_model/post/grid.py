@@ -23,8 +23,14 @@ from stepnc_model.toolpath.path import Plane, Point
 
 FULL = 2.0 * pi
 
+LEAST_RADIUS = 0.005
+"""mm; LinuxCNC refuses arcs of smaller radii as points, and no machine could tell"""
+
 WHOLE = 1e-6
 """rad by which a full turn may be missed: noise of the arithmetic"""
+
+NOISE = 1e-9
+"""rad; no arc on a grid is so short: its ends are the same point"""
 
 WIDE = 1.5 * pi
 """rad; the chord of a wider arc is too short to place its centre"""
@@ -200,7 +206,7 @@ def sweep(start: Point, end: Point, centre: Point, plane: Plane, *, sense: float
     a, b = start[first] - centre[first], start[second] - centre[second]
     c, d = end[first] - centre[first], end[second] - centre[second]
     angle = sense * atan2(a * d - b * c, a * c + b * d)
-    return angle if angle > 0.0 else angle + FULL
+    return angle if angle > NOISE else angle + FULL
 
 
 def _arc(at: Point, arc: Circular, places: int) -> Iterator[Circular | Linear]:
@@ -220,7 +226,7 @@ def _fitted(start: Point, arc: Circular, places: int) -> Iterator[Circular | Lin
     size = hypot(start[first] - arc.centre[first], start[second] - arc.centre[second])
     full = round(abs(arc.turn) / FULL)
     is_whole = full > 0 and abs(abs(arc.turn) - full * FULL) < WHOLE
-    if size * 10.0**places >= 1.0 and is_whole:
+    if size >= LEAST_RADIUS and is_whole:
         back = list(end)
         back[first], back[second] = start[first], start[second]
         closed = (back[0], back[1], back[2])
@@ -229,10 +235,8 @@ def _fitted(start: Point, arc: Circular, places: int) -> Iterator[Circular | Lin
         if closed != end:
             yield Linear(end=end, rate=arc.rate)
         return
-    if size * 10.0**places >= 1.0 and (start[first], start[second]) != (
-        end[first],
-        end[second],
-    ):
+    is_closed = (start[first], start[second]) == (end[first], end[second])
+    if size >= LEAST_RADIUS and not is_closed:
         centre = _from(start, _bisected(start, end, arc), arc.plane, places)
         angle = sweep(start, end, centre, arc.plane, sense=sense)
         more = round((abs(arc.turn) - angle) / FULL)

@@ -77,6 +77,7 @@ class Heidenhain:
         self._number = 0
         self._tool: ToolChange | None = None
         self._cooling = False
+        self._helix_end: Point | None = None
         self._makers: dict[type, Callable[..., Iterator[str]]] = {
             ProgramStart: self._start,
             ProgramEnd: self._end,
@@ -188,6 +189,9 @@ class Heidenhain:
 
     def _circular(self, block: Circular) -> Iterator[str]:
         first, second, normal = block.plane.axes
+        if self._helix_end is not None:
+            # A helix ends by its angle, a hair beside: a full circle from there would be none.
+            yield from self._linear(Linear(end=self._helix_end, rate=block.rate))
         rise = block.end[normal] - (self.at[normal] or 0.0)
         centre = [f"{'XYZ'[i]}{_signed(block.centre[i])}" for i in sorted((first, second))]
         yield from self._line("CC", *centre)
@@ -200,6 +204,7 @@ class Heidenhain:
         if is_helix:
             angle = f"IPA{_signed(degrees(block.turn), ANGLE_PLACES)}"
             yield from self._line("CP", angle, f"IZ{_signed(rise)}", sense, rate)
+            self.at, self._helix_end = [None, None, block.end[2]], block.end
             return
         ends = [f"{'XYZ'[i]}{_signed(block.end[i])}" for i in sorted((first, second))]
         yield from self._line("C", *ends, sense, rate)
@@ -243,7 +248,7 @@ class Heidenhain:
             for letter, value, old in zip("XYZ", end, self.at, strict=True)
             if value != old
         ]
-        self.at = list(end)
+        self.at, self._helix_end = list(end), None
         return words
 
     def _rate(self, rate: Rate) -> str:

@@ -221,11 +221,8 @@ class HeidenhainReader:
         plane, centre = self._middle()
         if "IPA" not in words or plane is not Plane.XY:
             raise PostError("CP is read with IPA, about a CC in x and y")
-        turn, rise, sense = (
-            radians(float(words.pop("IPA"))),
-            words.pop("IZ", "0"),
-            _sense(words),
-        )
+        turn, sense = radians(float(words.pop("IPA"))), _sense(words)
+        rise = float(words.pop("IZ", "0"))
         if turn * sense <= 0.0:
             raise PostError("the signs of IPA and DR differ")
         u, v = self.at[0] - centre[0], self.at[1] - centre[1]

@@ -291,7 +291,12 @@ class SinumerikReader(IsoReader):
 
     def _called(self, number: str, texts: list[str]) -> Iterator[Block]:
         """A drilling cycle where the tool is."""
-        arguments = [float(text) if text.strip() else 0.0 for text in texts]
+        filled = [text.strip() for text in texts]
+        if not all(re.fullmatch(NUMBER, text) for text in filled if text):
+            raise PostError(f"CYCLE{number}: its arguments must be numbers")
+        arguments = [float(text or "0") for text in filled]
+        if len(arguments) < 4:
+            raise PostError(f"CYCLE{number}: needs at least RTP, RFP, SDIS and DP")
         top, reference, distance, bottom, *rest = arguments
         rest += [0.0] * (13 - len(rest))
         kind = CYCLES.get(number)

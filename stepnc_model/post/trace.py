@@ -11,11 +11,11 @@ from math import dist, pi
 
 from stepnc_model.post.blocks import Circular, Rate
 from stepnc_model.post.canonical import PLANES, Canonical
-from stepnc_model.post.grid import sweep, turns
+from stepnc_model.post.grid import along, sweep, turns
 from stepnc_model.toolpath.path import Plane, Point
 
-SAME = 1e-9
-"""mm; a line shorter than this is none"""
+LENGTH = 1e-3
+"""mm, the last digit of most controls"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -24,7 +24,8 @@ class Event:
 
     kind: str
     numbers: tuple[float, ...] = ()
-    """mm: end, then centre; of a thread also its lead; s of a dwell"""
+    """mm: end, then the middle of an arc, which short arcs of large radius have better defined
+    than a centre; of a thread also its lead; s of a dwell"""
     state: tuple[str | None, ...] = ()
     """mode of the feed, sense of the spindle, coolant, plane and sense of an arc"""
     speeds: tuple[float, ...] = ()
@@ -32,15 +33,15 @@ class Event:
 
 
 def trace(commands: Iterable[Canonical]) -> tuple[Event, ...]:
-    """The events of canonical commands."""
-    return tuple(_Tracer().events(commands))
+    """The events of canonical commands; a line below the last digit of a control is none."""
+    return tuple(_Tracer(0.5 * LENGTH).events(commands))
 
 
 def difference(
     one: Iterable[Canonical],
     other: Iterable[Canonical],
     *,
-    length: float = 1e-3,
+    length: float = LENGTH,
     speed: float = 1e-3,
 ) -> str:
     """Where two lists part, in words; empty where they never do.
@@ -49,11 +50,11 @@ def difference(
     ----------
     one, other : iterable of Canonical
     length : float, mm
-        By which coordinates may differ; also s, for dwells.
+        By which coordinates may differ, and the longest line that is none; also s, for dwells.
     speed : float
         By which feeds (mm/min, mm/rev) and speeds (rpm, m/min) may differ.
     """
-    pairs = zip_longest(_Tracer().events(one), _Tracer().events(other))
+    pairs = zip_longest(_Tracer(length).events(one), _Tracer(length).events(other))
     for index, (a, b) in enumerate(pairs):
         if a is None or b is None:
             return f"event {index}: {a} against {b}"
@@ -76,7 +77,8 @@ def _are_near(one: tuple[float, ...], other: tuple[float, ...], tolerance: float
 class _Tracer:
     """Running state of a control, as far as canonical commands tell it."""
 
-    def __init__(self) -> None:
+    def __init__(self, least: float) -> None:
+        self.least = least
         self.at: Point = (0.0, 0.0, 0.0)
         self.plane = Plane.XY
         self.feed = 0.0
@@ -103,7 +105,8 @@ class _Tracer:
             case "RIGID_TAP":
                 yield self._cutting("tap", (*numbers, self.lead or 0.0))
             case "DWELL":
-                yield Event(kind="dwell", numbers=numbers)
+                if numbers[0] > 0.0:
+                    yield Event(kind="dwell", numbers=numbers)
             case "CHANGE_TOOL":
                 self.sense = None
                 yield Event(kind="tool", state=(str(command.arguments[0]),))
@@ -139,8 +142,8 @@ class _Tracer:
                 self.coolant.discard(command.name.removesuffix("_OFF"))
 
     def _line(self, name: str, end: Point) -> Iterator[Event]:
-        if dist(self.at, end) > SAME:
-            self.at = end
+        length, self.at = dist(self.at, end), end
+        if length > self.least:
             if name == "STRAIGHT_TRAVERSE":
                 yield Event(kind="traverse", numbers=end)
             elif self.lead is not None:
@@ -161,9 +164,10 @@ class _Tracer:
             end=end, centre=middle, turn=turn, plane=self.plane, rate=Rate(value=0.0)
         )
         for single in turns(self.at, arc):
+            middle = along(self.at, single, 0.5 * single.turn, 0.5)
             self.at = single.end
             words = (self.plane.value, "CCW" if sense > 0.0 else "CW")
-            yield self._cutting("arc", (*single.end, *numbers[2:4]), *words)
+            yield self._cutting("arc", (*single.end, *middle), *words)
 
     def _cutting(self, kind: str, numbers: tuple[float, ...], *words: str) -> Event:
         """An event with feed, spindle and coolant."""

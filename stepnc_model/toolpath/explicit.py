@@ -10,6 +10,8 @@ ISO 14649-10, ``its_toolpath`` of an operation or of a rapid movement. How it is
   security plane, and down in rapid only beside or above the raw part.
 """
 
+from collections.abc import Sequence
+
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.executables import RapidMovement
 from stepnc_model.entities.toolpaths import Toolpath, ToolpathList
@@ -20,7 +22,7 @@ from stepnc_model.program import Executable, Program
 from stepnc_model.toolpath.explicit_walk import Surroundings, Walk
 from stepnc_model.toolpath.frame import Frame, frame_of, workpiece_frame
 from stepnc_model.toolpath.job import Job, stock_of
-from stepnc_model.toolpath.path import ToolPath
+from stepnc_model.toolpath.path import Point, ToolPath
 from stepnc_model.toolpath.pattern import placements
 
 
@@ -45,32 +47,28 @@ def explicit_path(job: Job) -> ToolPath:
         When the operation has no path, or one that cannot be followed.
     """
     step = job.step
-    walk = Walk(
-        Surroundings(
-            program=job.program,
-            security_z=job.security_z,
-            stock=job.stock,
-            tool=job.tool,
-            technology=step.technology_ref,
+    around = Surroundings(
+        program=job.program,
+        security_z=job.security_z,
+        stock=job.stock,
+        tool=job.tool,
+        technology=step.technology_ref,
+    )
+    with job.program.using(step.operation_ref):
+        paths = _paths(job.program, step.operation_ref, step.operation.its_toolpath)
+        walk, start = _walked(around, paths, _frames(job), at=step.operation_ref)
+        return ToolPath(
+            workingstep=step.ref,
+            id=step.id,
+            operation_ref=step.operation_ref,
+            tool_ref=step.tool_ref,
+            technology_ref=step.technology_ref,
+            functions_ref=step.functions_ref,
+            is_turning=isinstance(step.operation, TurningMachiningOperation),
+            start=start,
+            steps=tuple(walk.steps),
+            findings=(*job.findings, *walk.findings),
         )
-    )
-    paths = _paths(job.program, step.operation_ref, step.operation.its_toolpath)
-    for frame in _frames(job):
-        walk.follow(paths, frame)
-    if walk.start is None:
-        raise job.fault("its tool path leads nowhere", step.operation_ref, "its_toolpath")
-    return ToolPath(
-        workingstep=step.ref,
-        id=step.id,
-        operation_ref=step.operation_ref,
-        tool_ref=step.tool_ref,
-        technology_ref=step.technology_ref,
-        functions_ref=step.functions_ref,
-        is_turning=isinstance(step.operation, TurningMachiningOperation),
-        start=walk.start,
-        steps=tuple(walk.steps),
-        findings=(*job.findings, *walk.findings),
-    )
 
 
 def rapid_movement_path(program: Program, executable: Executable) -> ToolPath | None:
@@ -100,30 +98,43 @@ def rapid_movement_path(program: Program, executable: Executable) -> ToolPath | 
         return None
     with program.using(ref):
         plane = frame_of(program, program.get(movement.its_secplane).position)
-    walk = Walk(
-        Surroundings(
+        around = Surroundings(
             program=program,
             security_z=plane.origin[2],
             stock=stock_of(program, executable.setup),
             tool=None,
             technology=None,
         )
-    )
-    walk.follow(_paths(program, ref, movement.its_toolpath), Frame())
+        paths = _paths(program, ref, movement.its_toolpath)
+        walk, start = _walked(around, paths, (Frame(),), at=ref)
+        return ToolPath(
+            workingstep=ref,
+            id=executable.id,
+            operation_ref=ref,
+            tool_ref=None,
+            technology_ref=None,
+            functions_ref=None,
+            is_turning=False,
+            start=start,
+            steps=tuple(walk.steps),
+            findings=tuple(walk.findings),
+        )
+
+
+def _walked(
+    around: Surroundings,
+    paths: Sequence[Ref[Toolpath]],
+    frames: Sequence[Frame],
+    *,
+    at: Ref[Entity],
+) -> tuple[Walk, Point]:
+    """Paths followed in each of some frames, and where they start."""
+    walk = Walk(around)
+    for frame in frames:
+        walk.follow(paths, frame)
     if walk.start is None:
-        raise _fault(program, ref, "its tool path leads nowhere", "its_toolpath")
-    return ToolPath(
-        workingstep=ref,
-        id=executable.id,
-        operation_ref=ref,
-        tool_ref=None,
-        technology_ref=None,
-        functions_ref=None,
-        is_turning=False,
-        start=walk.start,
-        steps=tuple(walk.steps),
-        findings=tuple(walk.findings),
-    )
+        raise _fault(around.program, at, "its tool path leads nowhere", "its_toolpath")
+    return walk, walk.start
 
 
 def _frames(job: Job) -> tuple[Frame, ...]:

@@ -57,7 +57,7 @@ def hole_path(job: Job) -> ToolPath:
             course.rapid(cut.hole.at(cut.retract_z))
             cut_hole(course, cut)
         course.rapid(cuts[-1].hole.at(job.security_z))
-    return course.finished()
+        return course.finished()
 
 
 def _notes(course: Course, job: Job, operation: DrillingTypeOperation) -> None:

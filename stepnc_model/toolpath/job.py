@@ -82,16 +82,17 @@ def job_of(program: Program, step: Workingstep) -> Job:
     SchemaError, PathError
         When its tool or security plane cannot be used.
     """
-    stock = stock_of(program, step.setup)
-    security_z, findings = _security(program, step, stock)
-    return Job(
-        program=program,
-        step=step,
-        tool=tool_of(program, step.tool_ref),
-        security_z=security_z,
-        stock=stock,
-        findings=findings,
-    )
+    with program.using(step.ref):
+        stock = stock_of(program, step.setup)
+        security_z, findings = _security(program, step, stock)
+        return Job(
+            program=program,
+            step=step,
+            tool=tool_of(program, step.tool_ref),
+            security_z=security_z,
+            stock=stock,
+            findings=findings,
+        )
 
 
 def stock_of(program: Program, setup: Ref[Setup] | None) -> Stock | None:

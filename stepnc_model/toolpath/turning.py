@@ -20,11 +20,12 @@ from stepnc_model.toolpath.job import DEFAULT_CLEARANCE, Job
 from stepnc_model.toolpath.path import Point, ToolPath
 from stepnc_model.toolpath.turning_contour import contour, plane_of
 from stepnc_model.toolpath.turning_groove import groove
+from stepnc_model.toolpath.turning_history import bar_of
 from stepnc_model.toolpath.turning_knurl import knurl
 from stepnc_model.toolpath.turning_outline import Outline, outline_of
 from stepnc_model.toolpath.turning_plane import tip_of
 from stepnc_model.toolpath.turning_setting import clearance_of
-from stepnc_model.toolpath.turning_stock import Bar, bar_of, operation_of
+from stepnc_model.toolpath.turning_stock import Bar, operation_of
 from stepnc_model.toolpath.turning_thread import thread, threaded_feature
 
 

@@ -6,6 +6,7 @@ one, so that the insert is never drawn back over its width.
 """
 
 from collections.abc import Sequence
+from itertools import pairwise
 from math import ceil, inf
 
 from stepnc_model.entities.entity import Entity
@@ -18,9 +19,10 @@ from stepnc_model.toolpath.job import Job
 from stepnc_model.toolpath.path import Move, MoveType
 from stepnc_model.toolpath.turning_insert import Insert, insert_of
 from stepnc_model.toolpath.turning_outline import Outline
-from stepnc_model.toolpath.turning_piece import Piece, Spot
+from stepnc_model.toolpath.turning_piece import Piece, Spot, crossings
 from stepnc_model.toolpath.turning_plane import HalfPlane
 from stepnc_model.toolpath.turning_profile import Profile, highest
+from stepnc_model.toolpath.turning_region import SEEN
 from stepnc_model.toolpath.turning_setting import (
     cumulative,
     cutting_feed,
@@ -133,9 +135,13 @@ def _groove(job: Job, plunger: Plunger, bar: Bar, outline: Outline, allowance: f
     ]
     solid = highest(around)
     centres = insert.rolled(solid, allowance)
-    low, high = _room(job, insert, outline, allowance)
+    low, high = _room(job, insert, outline, _mouth(surface, bar.left), allowance)
     bottom = centres.bottom(low - FITS, high + FITS)
     _check_depth(job, plunger, outline, bottom)
+    left = bottom - insert.corner - allowance - outline.radii[0]
+    if left > SEEN:
+        text = f"the insert does not come to the bottom: {left:.3g} mm stay"
+        plunger.course.find(job.warning(text, outline.ref))
     if isinstance(job.step.operation, GroovingFinish):
         _finish(job, plunger, centres, low, high)
         return
@@ -144,9 +150,30 @@ def _groove(job: Job, plunger: Plunger, bar: Bar, outline: Outline, allowance: f
         _plunge(job, plunger, u, plunger.rim.at(u) - floor)
 
 
-def _room(job: Job, insert: Insert, outline: Outline, allowance: float) -> tuple[float, float]:
+def _mouth(surface: Profile, stock: Profile) -> tuple[float, float]:
+    """Where a groove opens in the stock."""
+    cuts = {end for piece in surface.pieces for end in (piece.low, piece.high)}
+    for piece in surface.pieces:
+        for other in stock.pieces:
+            cuts.update(crossings(piece, other))
+    order = sorted(cuts)
+    open_ones = [
+        (a, b)
+        for a, b in pairwise(order)
+        if surface.at(0.5 * (a + b)) < stock.at(0.5 * (a + b)) - FITS
+    ]
+    return (open_ones[0][0], open_ones[-1][1]) if open_ones else (order[0], order[-1])
+
+
+def _room(
+    job: Job,
+    insert: Insert,
+    outline: Outline,
+    mouth: tuple[float, float],
+    allowance: float,
+) -> tuple[float, float]:
     """Where the centre of the left corner may be between the walls, at their widest."""
-    width = outline.high - outline.low
+    width = mouth[1] - mouth[0]
     if width < insert.width + 2.0 * allowance - FITS:
         message = (
             f"{width:g} mm wide with {allowance:g} mm on each wall: "
@@ -154,7 +181,7 @@ def _room(job: Job, insert: Insert, outline: Outline, allowance: float) -> tuple
         )
         raise job.fault(message, outline.ref)
     reach = insert.corner + allowance
-    low, high = outline.low + reach, outline.high - reach - insert.flat
+    low, high = mouth[0] + reach, mouth[1] - reach - insert.flat
     return (low, high) if high > low + FITS else (0.5 * (low + high), 0.5 * (low + high))
 
 

@@ -28,6 +28,9 @@ SEEN = 1e-3
 CLEAR = 1.0
 """mm of room in front of the overcut"""
 
+NEAR = 1e-3
+"""mm beside an end at which its piece is looked at"""
+
 FLAT = 1e-9
 """sine of a surface that is parallel to the passes"""
 
@@ -191,10 +194,12 @@ def _continued(
     if lowest_start < v - JOINT:
         level = lowest_start - length
     elif surface.pieces:
-        along = surface.pieces[-1].tangent(foremost)
-        slope = (along[0], along[1]) if along[0] > 0.0 else (-along[0], -along[1])
-        if slope[1] < -FLAT:
-            end = (u + length * slope[0], v + length * slope[1])
+        last = surface.pieces[-1]
+        inside = last.high - min(NEAR, 0.5 * (last.high - last.low))
+        along = last.tangent(foremost)
+        if last.at(inside) > v and abs(along[1]) > FLAT:
+            # Upright tangents have no sign of their own: it falls towards the front.
+            end = (u + length * abs(along[0]), v - length * abs(along[1]))
             if end[0] - u > JOINT:
                 yield Piece(start=foremost, end=end)
             u, level = end

@@ -103,10 +103,11 @@ def thread(job: Job, course: Course, bar: Bar, outline: Outline) -> None:
     _check_run_in(job, course, bar, helix, start)
     angle = getattr(strategy, "path_return_angle", None)
     home = course.at
-    course.rapid((home[0], 0.0, start), MoveType.APPROACH)
     for index, depth in enumerate(_depths(job, helix, strategy)):
         shift = _shift(job, helix, strategy, depth, index)
         kind = MoveType.RAPID if index else MoveType.APPROACH
+        if index == 0:
+            course.rapid((home[0], 0.0, start + shift), kind)
         one = Pass(
             start=start + shift, end=end, bottom=helix.radius - depth, clear=clear, angle=angle
         )

@@ -20,6 +20,9 @@ from stepnc_model.toolpath.turning_profile import Profile
 RAPID_CLEARANCE = 1.0
 """mm between the tool and the stock in rapid"""
 
+BESIDE = 1e-5
+"""mm off a wall that the tool touches"""
+
 TOUCH = 1e-6
 """mm of overlap that is no contact"""
 
@@ -106,7 +109,7 @@ class Walk:
         if height <= TOUCH:
             return []
         back = next((low for low, _ in self._open(spot)), None)
-        is_free = back is not None and self._rim.top(u, back) <= v + TOUCH
+        is_free = back is not None and self._rim.top(u + BESIDE, back) <= v + TOUCH
         if back is not None and is_free and back - u <= height:
             return [(back, v)]
         return [(u, self._clear.at(u))]

@@ -5,7 +5,7 @@ The lathe here knows nothing of the code under test: it drags a sampled nose ove
 
 from dataclasses import dataclass, field
 from itertools import pairwise
-from math import hypot, isfinite, pi
+from math import hypot, isfinite, pi, tan
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +18,9 @@ from stepnc_model.program import Program
 from stepnc_model.toolpath.job import job_of
 from stepnc_model.toolpath.path import MoveType, Point, ToolPath, points_along
 from stepnc_model.toolpath.turning import turning_path
+from stepnc_model.toolpath.turning_offset import grown
+from stepnc_model.toolpath.turning_piece import Piece, arc_pieces
+from stepnc_model.toolpath.turning_profile import highest
 
 Floats = NDArray[np.float64]
 
@@ -46,13 +49,15 @@ class Lathe:
 
     def run(self, path: ToolPath) -> None:
         for start, move in path.segments():
-            lower = self.swept(start, [start, *points_along(start, move, step=pi / 180)])
+            points = [start, *points_along(start, move, step=pi / 180)]
+            # In rapid the nose is thicker: a clearance of 1 mm, less the sampling.
+            lower = self.swept(points, self.nose + (0.95 if move.feed is None else 0.0))
             if move.feed is None:
                 self.worst_rapid = max(self.worst_rapid, float(np.max(self.radius - lower)))
             else:
                 self.radius = np.minimum(self.radius, lower)
 
-    def swept(self, start: Point, points: list[Point]) -> Floats:
+    def swept(self, points: list[Point], size: float) -> Floats:
         """Lowest radius that the nose comes to over each cell."""
         positions: list[tuple[float, float]] = []
         for a, b in pairwise(points):
@@ -65,10 +70,10 @@ class Lathe:
         if not positions:
             return lower
         x, z = np.array(positions).T + self.nose
-        reach = int(self.nose / CELL) + 1
+        reach = int(size / CELL) + 1
         cells = np.rint((z - LOW) / CELL).astype(int)[:, None] + np.arange(-reach, reach + 1)
         is_on = (cells >= 0) & (cells < len(self.z))
-        inside = self.nose**2 - (LOW + cells * CELL - z[:, None]) ** 2
+        inside = size**2 - (LOW + cells * CELL - z[:, None]) ** 2
         is_on &= inside >= 0.0
         bottoms = x[:, None] - np.sqrt(np.maximum(inside, 0.0))
         np.minimum.at(lower, cells[is_on], bottoms[is_on])
@@ -209,3 +214,41 @@ def test_paths_are_finite_and_end_where_they_start(contour: Contour) -> None:
         assert all(isfinite(c) for move in path.moves for c in move.end)
         assert path.end == path.start
         assert any(move.type is MoveType.CONTACT for move in path.moves)
+
+
+@st.composite
+def surfaces(draw: st.DrawFn) -> list[Piece]:
+    """Lines and arcs, one after the other towards +u."""
+    spot = (0.0, 10.0)
+    pieces: list[Piece] = []
+    for _ in range(draw(st.integers(1, 6))):
+        end = (spot[0] + draw(st.integers(5, 60)) / 10.0, draw(st.integers(50, 150)) / 10.0)
+        bend = draw(st.sampled_from([0.0, 0.6, 1.2, -0.6, -1.2]))
+        if bend == 0.0:
+            pieces.append(Piece(start=spot, end=end))
+        else:
+            middle = (0.5 * (spot[0] + end[0]), 0.5 * (spot[1] + end[1]))
+            away = 0.5 / tan(0.5 * bend)
+            centre = (
+                middle[0] - away * (end[1] - spot[1]),
+                middle[1] + away * (end[0] - spot[0]),
+            )
+            pieces += arc_pieces(spot, end, centre=centre, turn=bend)
+        spot = end
+    return pieces
+
+
+@settings(max_examples=100, deadline=None)
+@given(surfaces(), st.sampled_from([0.2, 0.8, 2.0]))
+def test_a_grown_surface_is_where_a_rolling_disc_has_its_centre(
+    pieces: list[Piece], radius: float
+) -> None:
+    """Against every spot of the surface, sampled: the highest disc about any of them."""
+    spots = np.array([piece.point(i / 200.0) for piece in pieces for i in range(201)])
+    centres = grown(highest(pieces), radius)
+    for u in np.linspace(spots[:, 0].min() + 0.01, spots[:, 0].max() - 0.01, 60):
+        beside = spots[:, 0] - u
+        near = np.abs(beside) <= radius
+        sampled = np.max(spots[near, 1] + np.sqrt(radius**2 - beside[near] ** 2))
+        assert abs(sampled - centres.at(float(u))) < 0.05
+        assert sampled <= centres.at(float(u)) + 1e-6

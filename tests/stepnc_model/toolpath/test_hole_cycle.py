@@ -253,7 +253,7 @@ class TestBoring:
 
     @pytest.mark.parametrize("depth", ["30.", "-1."])
     def test_a_test_cut_that_is_none_is_refused(self, depth: str) -> None:
-        with pytest.raises(PathError, match="depth_of_testcut: .*between 0 and"):
+        with pytest.raises(PathError, match=r"depth_of_testcut: .*between 0 and"):
             path("BORING", rest=f",.F.,{depth},$")
 
 

@@ -46,7 +46,7 @@ def strategy(numbers: str) -> tuple[str, str]:
     return STRATEGY, f"#361=DRILLING_TYPE_STRATEGY({numbers});"
 
 
-def table(found: tuple[Stage, ...]) -> list[tuple[float, float, float]]:
+def table(found: tuple[Stage, ...]) -> list[tuple[object, float, float]]:
     """Depth of the full diameter, ratio of the feed, ratio of the speed."""
     return [(-stage.end_z - POINT, stage.feed.ratio, stage.feed.speed_ratio) for stage in found]
 
@@ -93,7 +93,7 @@ def test_reductions_without_a_depth_are_none() -> None:
 
 @pytest.mark.parametrize("ratio", ["0.", "-0.5", "101."])
 def test_what_is_no_ratio_is_refused(ratio: str) -> None:
-    with pytest.raises(PathError, match="reduced_feed_at_start: .*a ratio from 0 to 1"):
+    with pytest.raises(PathError, match=r"reduced_feed_at_start: .*a ratio from 0 to 1"):
         stages(strategy(f"$,{ratio},2.,$,$,$"))
 
 

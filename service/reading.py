@@ -1,0 +1,44 @@
+"""What every verb begins with: a file becomes a program, a word becomes a choice."""
+
+from collections.abc import Callable
+from enum import StrEnum
+from pathlib import Path
+from typing import TypeVar
+
+from service.files import read_bytes
+from stepnc_model.errors import StepNcError
+from stepnc_model.part21.reader import Part21File
+from stepnc_model.program import Program
+from stepnc_model.unit_profiles import PROFILES, UnitProfile
+
+E = TypeVar("E", bound=StrEnum)
+
+Tell = Callable[[str], None]
+"""where messages go"""
+
+
+def silent(_message: str) -> None:
+    """Messages go nowhere."""
+
+
+def read_program(path: Path, *, units: str) -> Program:
+    """A program from a file."""
+    profile = unit_profile(units)
+    file = Part21File.from_bytes(read_bytes(path), name=path.name)
+    return Program(file, units=profile, name=path.name)
+
+
+def unit_profile(name: str) -> UnitProfile:
+    """Unit profile by name."""
+    if name not in PROFILES:
+        raise StepNcError(f"unknown units '{name}'; known: {', '.join(PROFILES)}")
+    return PROFILES[name]
+
+
+def one_of(kinds: type[E], word: str, what: str) -> E:
+    """Member of an enumeration by its value."""
+    try:
+        return kinds(word)
+    except ValueError:
+        known = ", ".join(kind.value for kind in kinds)
+        raise StepNcError(f"unknown {what} '{word}'; known: {known}") from None

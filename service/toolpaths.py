@@ -1,0 +1,134 @@
+"""Tool paths and NC code of a program: the verbs ``toolpath``, ``post`` and ``canonical``."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from service.files import read_bytes, require_place, write_atomically, write_lines
+from service.progress import Progress
+from service.reading import Tell, one_of, read_program, silent
+from stepnc_model.errors import Finding, PostError, SchemaError, StepNcError, WriteError
+from stepnc_model.post.blocks import Cycles, Machine
+from stepnc_model.post.controls import Control, read, write
+from stepnc_model.post.neutral import blocks_of
+from stepnc_model.program import Program
+from stepnc_model.toolpath.function import Function
+from stepnc_model.toolpath.generate import generate, raised
+from stepnc_model.toolpath.job import stock_of
+from stepnc_model.toolpath.path import ToolPath
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Paths:
+    """What a program makes the tool do."""
+
+    program: Program
+    items: tuple[ToolPath | Function, ...]
+    faults: tuple[SchemaError, ...]
+    """why some executables were left out"""
+
+    @property
+    def paths(self) -> tuple[ToolPath, ...]:
+        """The tool paths without the functions between them."""
+        return tuple(item for item in self.items if isinstance(item, ToolPath))
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What was assumed."""
+        return tuple(finding for path in self.paths for finding in path.findings)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PostRequest:
+    """What the user asks of ``post``."""
+
+    file: Path
+    control: str
+    units: str = "iso"
+    output: Path | None = None
+    cycles: bool = False
+    keep_going: bool = False
+
+
+def tool_paths(
+    path: Path, *, units: str = "iso", keep_going: bool = False, tell: Tell = silent
+) -> Paths:
+    """Tool paths of a program, made or given.
+
+    Raises
+    ------
+    StepNcError
+        At the first executable for which no path can be made, unless it keeps going.
+    """
+    return paths_of(read_program(path, units=units), keep_going=keep_going, tell=tell)
+
+
+def paths_of(program: Program, *, keep_going: bool = False, tell: Tell = silent) -> Paths:
+    """Tool paths of a program that is read already."""
+    faults: list[SchemaError] = []
+    progress = Progress(tell, total=len(program.workingsteps))
+    items = []
+    for item in generate(program, faults.append if keep_going else raised):
+        items.append(item)
+        progress()
+    for fault in faults:
+        tell(f"left out: {fault}")
+    if not any(isinstance(item, ToolPath) for item in items):
+        raise faults[0] if faults else SchemaError("the program has nothing to machine")
+    return Paths(program=program, items=tuple(items), faults=tuple(faults))
+
+
+def plot(paths: Paths, file: Path, picture: Path) -> None:
+    """Draw the tool paths of a file into a PNG file."""
+    from service.path_plot import path_png  # noqa: PLC0415 (matplotlib takes a second)
+
+    if picture.suffix.lower() != ".png":
+        raise WriteError("a picture is a .png file", path=str(picture))
+    require_place(picture, apart_from=file)
+    setup = next((step.setup for step in paths.program.workingsteps), None)
+    stock = stock_of(paths.program, setup)
+    write_atomically(picture, path_png(paths.paths, stock, title=paths.program.name))
+
+
+def post(request: PostRequest, *, tell: Tell = silent) -> Paths:
+    """Write NC code for a control.
+
+    Raises
+    ------
+    StepNcError
+        When the control is unknown, a path cannot be made, or the file cannot be written.
+    """
+    control = one_of(Control, request.control.lower(), "control")
+    output = request.output or request.file.with_suffix(control.suffix)
+    require_place(output, apart_from=request.file)
+    paths = tool_paths(
+        request.file, units=request.units, keep_going=request.keep_going, tell=tell
+    )
+    cycles = Cycles.OWN if request.cycles else Cycles.EXPANDED
+    count = write_lines(output, nc_lines(paths, control, cycles))
+    tell(f"written: {output} ({count} lines)")
+    return paths
+
+
+def nc_lines(paths: Paths, control: Control, cycles: Cycles = Cycles.EXPANDED) -> Iterator[str]:
+    """NC code of tool paths, line by line."""
+    blocks = blocks_of(paths.program, paths.items, name=Path(paths.program.name).stem)
+    return write(blocks, control, cycles=cycles)
+
+
+def canonical_of(path: Path, *, control: str, is_lathe: bool) -> Iterator[str]:
+    """Canonical commands of NC code, as lines.
+
+    Raises
+    ------
+    StepNcError
+        When the control is unknown, or a line cannot be read.
+    """
+    dialect = one_of(Control, control.lower(), "control")
+    machine = Machine.LATHE if is_lathe else Machine.MILL
+    lines = read_bytes(path).decode("utf-8", errors="replace").splitlines()
+    try:
+        commands = read(lines, dialect, machine=machine)
+    except PostError as error:
+        raise StepNcError(f"{path.name}: {error}") from error
+    return (str(command) for command in commands)

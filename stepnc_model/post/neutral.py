@@ -1,0 +1,330 @@
+"""Tool paths as neutral blocks: tools, spindle, coolant and safe ways between workingsteps.
+
+Between workingsteps the tool rises to the highest security plane first, then moves across,
+then down. Tools are numbered from 1 in the order of their first use; the list stands at the
+head of the program.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from math import isfinite
+
+from stepnc_model.entities.entity import Entity
+from stepnc_model.errors import PostError, StepNcError
+from stepnc_model.part21.values import Ref
+from stepnc_model.post.blocks import (
+    Block,
+    Circular,
+    Comment,
+    Coolant,
+    DrillingCycle,
+    Linear,
+    Machine,
+    Message,
+    OptionalStop,
+    Pause,
+    ProgramEnd,
+    ProgramStart,
+    ProgramStop,
+    Rapid,
+    Rate,
+    RateMode,
+    Retract,
+    RigidTap,
+    SpindleOff,
+    SpindleOn,
+    SpindleOrient,
+    SurfaceSpeed,
+    Threading,
+    ToolChange,
+)
+from stepnc_model.post.conditions import Conditions, conditions, constant_speed, coolant_of
+from stepnc_model.program import Program
+from stepnc_model.tool import tool_of
+from stepnc_model.toolpath.function import Function
+from stepnc_model.toolpath.path import (
+    Cycle,
+    CycleKind,
+    Dwell,
+    Feed,
+    Move,
+    Point,
+    SpindleCommand,
+    Step,
+    ToolPath,
+)
+
+FUNCTIONS: dict[str, Callable[[Function], Block]] = {
+    "OPTIONAL_STOP": lambda _: OptionalStop(),
+    "PROGRAM_STOP": lambda _: ProgramStop(),
+    "DISPLAY_MESSAGE": lambda function: Message(text=function.text or function.id),
+}
+
+
+def blocks_of(
+    program: Program, paths: Sequence[ToolPath | Function], *, name: str
+) -> Iterator[Block]:
+    """Neutral blocks of a program, made as they are asked for.
+
+    Parameters
+    ----------
+    program : Program
+        Where tools and technologies are looked up.
+    paths : sequence of ToolPath and Function
+        In the order in which they run.
+    name : str
+
+    Raises
+    ------
+    SchemaError, PostError
+        When a tool cannot be used, or a cut has no feed.
+    """
+    return _Sequence(program, paths).blocks(name)
+
+
+def _is_turning(paths: Sequence[ToolPath | Function]) -> bool:
+    return any(isinstance(path, ToolPath) and path.is_turning for path in paths)
+
+
+class _Sequence:
+    """Running state: tool, spindle, coolant and position between blocks."""
+
+    def __init__(self, program: Program, paths: Sequence[ToolPath | Function]) -> None:
+        self.program = program
+        self.paths = paths
+        self.machine = Machine.LATHE if _is_turning(paths) else Machine.MILL
+        cuts = [path for path in paths if isinstance(path, ToolPath)]
+        used = dict.fromkeys(path.tool_ref for path in cuts if path.tool_ref is not None)
+        self.numbers = {ref: number for number, ref in enumerate(used, 1)}
+        self.safe_z = max((path.start[2] for path in cuts), default=0.0)
+        self.at: Point | None = None
+        self.tool: Ref[Entity] | None = None
+        self.programmed: SpindleOn | SurfaceSpeed | SpindleOff | None = None
+        """what the technology asks for"""
+        self.turning: SpindleOn | SurfaceSpeed | SpindleOff | SpindleOrient | None = None
+        """what the spindle does; None: unknown"""
+        self.coolant = Coolant()
+        self._known: dict[Feed, Conditions] = {}
+        self._notes: set[str] = set()
+
+    def blocks(self, name: str) -> Iterator[Block]:
+        """The program."""
+        yield ProgramStart(name=name, machine=self.machine)
+        for ref, number in self.numbers.items():
+            yield Comment(text=self._listed(ref, number))
+        for path in self.paths:
+            if isinstance(path, Function):
+                yield from self._function(path)
+                continue
+            try:
+                yield from self._path(path)
+            except StepNcError as error:
+                raise PostError(f"'{path.id}': {error}") from error
+        if self.at is not None:
+            yield Retract(z=max(self.safe_z, self.at[2]))
+        yield from self._spindle(SpindleOff())
+        yield from self._cool(Coolant())
+        yield ProgramEnd()
+
+    def _listed(self, ref: Ref[Entity], number: int) -> str:
+        """One line of the list of tools."""
+        tool = tool_of(self.program, ref)
+        size = f" D{tool.diameter:g}" if tool.diameter else ""
+        return f"T{number} {tool.id}{size}"
+
+    def _function(self, function: Function) -> Iterator[Block]:
+        yield Comment(text=function.id)
+        maker = FUNCTIONS.get(function.keyword)
+        if maker is None:
+            yield Comment(text=f"{function.keyword} is not written")
+            return
+        # Many machines stop spindle and coolant with the program.
+        self.turning, self.coolant = None, Coolant()
+        yield maker(function)
+
+    def _path(self, path: ToolPath) -> Iterator[Block]:
+        """One workingstep."""
+        yield Comment(text=path.id)
+        self._known.clear()
+        if path.tool_ref is not None and path.tool_ref != self.tool:
+            yield from self._change(path.tool_ref)
+        if path.technology_ref is not None:
+            feed = Feed(technology=path.technology_ref)
+            yield from self._take(self._conditions(feed))
+            if self.programmed is not None and self.turning != self.programmed:
+                yield from self._spindle(self.programmed)
+        if path.functions_ref is not None:
+            yield from self._cool(coolant_of(self.program, path.functions_ref))
+        yield from self._go(path.start)
+        cycles = {cycle.first: cycle for cycle in path.cycles}
+        index = 0
+        while index < len(path.steps):
+            cycle = cycles.get(index)
+            if cycle is None:
+                yield from self._step(path.steps[index])
+                index += 1
+            else:
+                yield from self._cycle(cycle, path.steps[index : cycle.last + 1])
+                index = cycle.last + 1
+
+    def _change(self, ref: Ref[Entity]) -> Iterator[Block]:
+        """Everything off, up, and the new tool in."""
+        yield from self._spindle(SpindleOff())
+        yield from self._cool(Coolant())
+        if self.at is not None:
+            yield Retract(z=max(self.safe_z, self.at[2]))
+        self.at, self.tool = None, ref
+        self.turning = self.programmed = None
+        yield ToolChange(number=self.numbers[ref], id=tool_of(self.program, ref).id)
+
+    def _go(self, start: Point) -> Iterator[Block]:
+        """Up, across, down."""
+        if self.at == start:
+            return
+        x, y, _ = start
+        safe_z = self.safe_z if self.at is None else max(self.safe_z, self.at[2])
+        if self.at is None or self.at[2] != safe_z:
+            yield Retract(z=safe_z)
+        yield Rapid(end=(x, y, safe_z))
+        if start[2] != safe_z:
+            yield Rapid(end=start)
+        self.at = start
+
+    def _step(self, step: Step) -> Iterator[Block]:
+        if isinstance(step, Move):
+            yield from self._move(step)
+        elif isinstance(step, Dwell):
+            yield Pause(seconds=self._seconds(step))
+        elif step is SpindleCommand.STOP:
+            yield from self._spindle(SpindleOff())
+        elif step is SpindleCommand.ORIENT:
+            self.turning = SpindleOrient()
+            yield SpindleOrient()
+        elif isinstance(self.programmed, (SpindleOn, SurfaceSpeed)):
+            wanted = self.programmed
+            if step is SpindleCommand.REVERSE:
+                wanted = replace(wanted, sense=wanted.sense.opposite)
+            yield from self._spindle(wanted)
+
+    def _move(self, move: Move) -> Iterator[Block]:
+        if move.feed is None:
+            self.at = move.end
+            yield Rapid(end=move.end)
+            return
+        found = self._conditions(move.feed)
+        yield from self._take(found)
+        if self.turning is None and self.programmed is not None:
+            yield from self._spindle(self.programmed)
+        if found.lead is not None:
+            yield from self._constant(move)
+            self.at = move.end
+            yield Threading(end=move.end, lead=found.lead)
+            return
+        self.at = move.end
+        rate = self._rate(found)
+        if move.arc is None:
+            yield Linear(end=move.end, rate=rate)
+        else:
+            arc = move.arc
+            yield Circular(
+                end=move.end, centre=arc.centre, turn=arc.turn, plane=arc.plane, rate=rate
+            )
+
+    def _rate(self, found: Conditions) -> Rate:
+        """A feed that a control can run."""
+        if found.rate is None or not isfinite(found.rate.value) or found.rate.value <= 0.0:
+            raise PostError(f"a cut without feed: {found.note or 'the feed is 0'}")
+        return found.rate
+
+    def _constant(self, move: Move) -> Iterator[Block]:
+        """A thread's spindle keeps its speed."""
+        if isinstance(self.programmed, SurfaceSpeed):
+            radius = max(abs((self.at or move.end)[0]), abs(move.end[0]))
+            fixed = constant_speed(self.programmed, radius)
+            # The first pass decides: later ones must meet its thread.
+            if not isinstance(self.turning, SpindleOn):
+                yield Comment(text="constant spindle speed for the thread")
+                yield from self._spindle(fixed)
+
+    def _cycle(self, cycle: Cycle, steps: Sequence[Step]) -> Iterator[Block]:
+        """A cycle of the control, with what it stands for; a rigid tap has nothing else."""
+        if self.at is None:
+            raise PostError("a cycle before the first move")
+        x, y, _ = self.at
+        found = self._conditions(cycle.feed)
+        yield from self._take(found)
+        if cycle.kind is CycleKind.TAP:
+            yield from self._tap(cycle, found, (x, y))
+            return
+        if self.turning is None and self.programmed is not None:
+            yield from self._spindle(self.programmed)
+        expansion = tuple(block for step in steps for block in self._step(step))
+        yield DrillingCycle(
+            kind=cycle.kind,
+            at=(x, y),
+            retract_z=cycle.retract_z,
+            bottom_z=cycle.bottom_z,
+            rate=self._rate(found),
+            step_depth=cycle.step_depth,
+            retract_distance=cycle.retract_distance,
+            dwell=cycle.dwell,
+            expansion=expansion,
+        )
+
+    def _tap(self, cycle: Cycle, found: Conditions, at: tuple[float, float]) -> Iterator[Block]:
+        spindle = self.programmed
+        if not isinstance(spindle, SpindleOn):
+            raise PostError("a rigid tap needs a constant spindle speed")
+        lead = found.lead
+        if lead is None:
+            rate = self._rate(found)
+            is_timed = rate.mode is RateMode.PER_MINUTE
+            lead = rate.value / spindle.speed if is_timed else rate.value
+        self.at = (*at, cycle.retract_z)
+        yield RigidTap(
+            start=self.at,
+            bottom_z=cycle.bottom_z,
+            lead=lead,
+            speed=spindle.speed,
+            sense=spindle.sense,
+        )
+        # Some controls leave the spindle standing.
+        self.turning = None
+
+    def _conditions(self, feed: Feed) -> Conditions:
+        """Feed and spindle, looked up once a path."""
+        found = self._known.get(feed)
+        if found is None:
+            found = conditions(self.program, feed, self.tool, self.machine)
+            self._known[feed] = found
+        return found
+
+    def _take(self, found: Conditions) -> Iterator[Block]:
+        """What a technology changes: the spindle follows when it asks for something new."""
+        if found.note and found.note not in self._notes:
+            self._notes.add(found.note)
+            yield Comment(text=found.note)
+        if found.spindle is not None and found.spindle != self.programmed:
+            self.programmed = found.spindle
+            yield from self._spindle(found.spindle)
+
+    def _spindle(self, wanted: SpindleOn | SurfaceSpeed | SpindleOff) -> Iterator[Block]:
+        if wanted != self.turning:
+            self.turning = wanted
+            yield wanted
+
+    def _cool(self, wanted: Coolant) -> Iterator[Block]:
+        if wanted != self.coolant:
+            self.coolant = wanted
+            yield wanted
+
+    def _seconds(self, dwell: Dwell) -> float:
+        """Duration of a dwell."""
+        if dwell.seconds is not None:
+            return dwell.seconds
+        spindle = self.turning
+        if isinstance(spindle, SurfaceSpeed):
+            spindle = constant_speed(spindle, abs((self.at or (0.0, 0.0, 0.0))[0]))
+        if dwell.revolutions is None or not isinstance(spindle, SpindleOn):
+            raise PostError("a dwell in revolutions while the spindle stands")
+        return dwell.revolutions / spindle.speed

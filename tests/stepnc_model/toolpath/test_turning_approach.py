@@ -1,0 +1,62 @@
+"""Approach and retract as the operation says."""
+
+from pathlib import Path
+
+import pytest
+
+from stepnc_model.errors import SchemaError
+from stepnc_model.part21.reader import Part21File
+from stepnc_model.program import Program
+from stepnc_model.toolpath.job import Job, job_of
+from stepnc_model.toolpath.path import MoveType, ToolPath
+from stepnc_model.toolpath.turning import turning_path
+
+SHAFT = Path(__file__).parents[3] / "examples" / "parts" / "shaft.stpnc"
+
+
+def job(name: str, *edits: tuple[str, str]) -> Job:
+    """A workingstep of the shaft with some texts replaced."""
+    text = SHAFT.read_text()
+    for before, after in edits:
+        assert before in text
+        text = text.replace(before, after)
+    program = Program(Part21File.from_bytes(text.encode(), name="shaft"), name="shaft")
+    (step,) = (step for step in program.workingsteps if step.id == name)
+    return job_of(program, step)
+
+
+def path_of(name: str, *edits: tuple[str, str]) -> ToolPath:
+    return turning_path(job(name, *edits))
+
+
+END = "ENDSEC;\nEND-"
+
+
+def test_the_first_cut_is_met_tangentially_and_the_last_left_at_an_angle() -> None:
+    path = path_of(
+        "FINISH CONTOUR",
+        (
+            "'FINISH CONTOUR',5.,$,#410,#301,#330,$,$",
+            "'FINISH CONTOUR',5.,$,#410,#301,#330,#600,#601",
+        ),
+        (END, "#600=AP_RETRACT_TANGENT($,3.);\n#601=AP_RETRACT_ANGLE($,45.,2.);\n" + END),
+    )
+    (start, arc), *_ = [(a, m) for a, m in path.segments() if m.feed]
+    assert arc.arc is not None
+    assert arc.type is MoveType.NO_CONTACT
+    assert (start[0] - arc.end[0], start[2] - arc.end[2]) == pytest.approx((3.0, 3.0))
+    moves = list(path.segments())
+    leaving = [(a, m) for a, m in moves if m.feed][-1]
+    assert leaving[1].end[0] - leaving[0][0] == pytest.approx(2.0**0.5)
+
+
+def test_an_angle_without_length_is_refused() -> None:
+    edits = (
+        (
+            "'FINISH CONTOUR',5.,$,#410,#301,#330,$,$",
+            "'FINISH CONTOUR',5.,$,#410,#301,#330,#600,$",
+        ),
+        (END, "#600=AP_RETRACT_ANGLE($,45.,0.);\n" + END),
+    )
+    with pytest.raises(SchemaError, match="no way to the path"):
+        path_of("FINISH CONTOUR", *edits)
