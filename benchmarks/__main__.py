@@ -1,11 +1,12 @@
 """All benchmarks in one run: ``python -m benchmarks``."""
 
-from benchmarks import part21, post, process, workingsteps
+from benchmarks import part21, pockets, post, process, workingsteps
 
 for title, bench in (
     ("Part 21", part21),
     ("Workingsteps", workingsteps),
     ("Whole process", process),
+    ("Pockets", pockets),
     ("NC code", post),
 ):
     print(f"\n== {title}: {(bench.__doc__ or '').splitlines()[0]}")

@@ -167,6 +167,10 @@ class Program:
         """Why some workingsteps cannot be used."""
         return tuple(self._faults.values())
 
+    def fault_of(self, ref: Ref[Entity]) -> SchemaError | None:
+        """Why an executable cannot be used, or None when it can."""
+        return self._faults.get(int(ref))
+
     def findings(self) -> tuple[Finding, ...]:
         """Everything noticed: syntax, schema, and the walk of the program."""
         faults = tuple(

@@ -132,7 +132,7 @@ class Fanuc(IsoCode):
         return LATHE_MODES[mode] if is_lathe else super().mode_code(mode)
 
     def surface_speed(self, speed: str, limit: str, sense: str) -> Iterator[str]:
-        """G50 with the limit, then G96."""
+        """G50 with the limit, then G96; a limit said before stays where none is given."""
         if limit:
             yield from self.line("G50", f"S{limit}")
         yield from self.line("G96", f"S{speed}", sense)

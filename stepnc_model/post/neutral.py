@@ -1,7 +1,8 @@
 """Tool paths as neutral blocks: tools, spindle, coolant and safe ways between workingsteps.
 
 Between workingsteps the tool rises to the highest security plane first, then moves across,
-then down. Tools are numbered from 1 in the order of their first use; the list stands at the
+then down. Tools change there: where a machine has its own place for it, M6 or the turret must
+know. Tools are numbered from 1 in the order of their first use; the list stands at the
 head of the program.
 """
 

@@ -61,7 +61,6 @@ def generate(program: Program, on_fault: OnFault = raised) -> Iterator[ToolPath 
         Unless another ``on_fault`` goes on.
     """
     steps = {int(step.ref): step for step in program.workingsteps}
-    faults = {fault.entity: fault for fault in program.faults}
     skipped: int | None = None
     setup: Ref[Setup] | None = None
     for executable in program.executables:
@@ -76,7 +75,7 @@ def generate(program: Program, on_fault: OnFault = raised) -> Iterator[ToolPath 
                 setup = step.setup
                 yield workingstep_path(program, step)
             else:
-                yield from _other(program, executable, faults)
+                yield from _other(program, executable)
         except SchemaError as error:
             skipped = executable.level
             on_fault(error)
@@ -102,13 +101,11 @@ def workingstep_path(program: Program, step: Workingstep) -> ToolPath:
         return milling_path(job)
 
 
-def _other(
-    program: Program, executable: Executable, faults: dict[str, SchemaError]
-) -> Iterator[ToolPath | Function]:
+def _other(program: Program, executable: Executable) -> Iterator[ToolPath | Function]:
     """An executable that is no usable workingstep."""
-    label = program.label(executable.ref)
-    if label in faults:
-        raise faults[label]
+    fault = program.fault_of(executable.ref)
+    if fault is not None:
+        raise fault
     entity = program.model.entity(int(executable.ref))
     if isinstance(entity, (Workplan, NonSequential)):
         return

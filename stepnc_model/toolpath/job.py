@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.geometry import Block, RightCircularCylinder
 from stepnc_model.entities.setup import Setup
+from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import Finding, PathError, Severity
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program, Workingstep
@@ -132,15 +133,29 @@ def stock_of(program: Program, setup: Ref[Setup] | None) -> Stock | None:
 def _security(
     program: Program, step: Workingstep, stock: Stock | None
 ) -> tuple[float, tuple[Finding, ...]]:
-    """Height of the security plane: the workingstep's, else the setup's, else a default."""
+    """Height of the security plane: the workingstep's, else the setup's, else a default.
+
+    Files give it in the coordinates of the setup, or in those of the feature. The first
+    reading holds where it brings the plane above the feature.
+    """
     entity = program.get(step.ref)
     planes = [getattr(entity, "its_secplane", None)]
     if step.setup is not None:
         planes.append(program.get(step.setup).its_secplane)
-    for plane in planes:
-        if plane is not None:
-            frame = frame_of(program, program.get(plane).position)
-            return frame.origin[2], ()
-    height = max(DEFAULT_SECURITY, (stock.high[2] if stock else 0.0) + DEFAULT_CLEARANCE)
-    text = f"no security plane: z = {height:g} mm assumed"
-    return height, (program.finding(Severity.NOTE, text, step.ref, "its_secplane"),)
+    found = [plane for plane in planes if plane is not None]
+    if not found:
+        height = max(DEFAULT_SECURITY, (stock.high[2] if stock else 0.0) + DEFAULT_CLEARANCE)
+        text = f"no security plane: z = {height:g} mm assumed"
+        return height, (program.finding(Severity.NOTE, text, step.ref, "its_secplane"),)
+    height = frame_of(program, program.get(found[0]).position).origin[2]
+    if isinstance(step.operation, TurningMachiningOperation) or not step.features:
+        return height, ()
+    top = feature_frame(program, step.setup, step.features[0]).origin[2]
+    if height > top or height <= 0.0:
+        return height, ()
+    text = (
+        f"z = {height:g} mm in the setup is not above the feature, which begins at "
+        f"z = {top:g} mm: taken from there, z = {top + height:g} mm"
+    )
+    warning = program.finding(Severity.WARNING, text, step.ref, "its_secplane")
+    return top + height, (warning,)

@@ -122,7 +122,8 @@ def interpreter(tmp_path_factory: pytest.TempPathFactory) -> Interpreter:
         answer = subprocess.run(
             [str(program), *options, "part.ngc", "out.canon"],
             cwd=folder,
-            env={**os.environ, "LD_LIBRARY_PATH": paths},
+            # It maps its tools in a file under HOME, which workers must not share.
+            env={**os.environ, "LD_LIBRARY_PATH": paths, "HOME": str(folder)},
             capture_output=True,
             text=True,
             timeout=60,
