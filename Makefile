@@ -47,7 +47,8 @@ demo: $(READY)
 	@mkdir -p $(DEMO)
 	$(BIN)/stepnc check examples/parts/bracket.stpnc
 	$(BIN)/optimise examples/parts/bracket.stpnc --mode TC --machine vmc15 \
-		-o $(DEMO)/bracket.optimised.stpnc --report $(DEMO)/bracket.html
+		-o $(DEMO)/bracket.optimised.stpnc --report $(DEMO)/bracket.html --nc linuxcnc
+	$(BIN)/stepnc toolpath $(DEMO)/bracket.optimised.stpnc --plot $(DEMO)/bracket.png
 	$(BIN)/optimise examples/parts/paper002.stpnc --mode TC --machine paper002 --json \
 		-o $(DEMO)/paper002.optimised.stpnc
 

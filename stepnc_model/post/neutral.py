@@ -40,6 +40,7 @@ from stepnc_model.post.blocks import (
     ToolChange,
 )
 from stepnc_model.post.conditions import Conditions, conditions, constant_speed, coolant_of
+from stepnc_model.post.unsplit import unsplit
 from stepnc_model.program import Program
 from stepnc_model.tool import tool_of
 from stepnc_model.toolpath.function import Function
@@ -157,6 +158,10 @@ class _Sequence:
         if path.functions_ref is not None:
             yield from self._cool(coolant_of(self.program, path.functions_ref))
         yield from self._go(path.start)
+        if not path.cycles:
+            for step in unsplit(path.start, path.steps):
+                yield from self._step(step)
+            return
         cycles = {cycle.first: cycle for cycle in path.cycles}
         index = 0
         while index < len(path.steps):

@@ -109,6 +109,32 @@ def chain_length(chain: Iterable[Edge]) -> float:
     return sum(edge.length for edge in chain)
 
 
+def divided(chain: Chain, length: float) -> tuple[Chain, Chain]:
+    """The first so many mm of a chain, and the rest of it."""
+    for index, edge in enumerate(chain):
+        if length < edge.length:
+            part = max(length, 0.0) / edge.length
+            cut = (edge.between(0.0, part), edge.between(part, 1.0))
+            head, tail = (tuple(each for each in (one,) if each.length > TINY) for one in cut)
+            return (*chain[:index], *head), (*tail, *chain[index + 1 :])
+        length -= edge.length
+    return chain, ()
+
+
+def stretched(chain: Chain, before: float, after: float) -> Chain:
+    """The chain prolonged straight at its start and its end, or cut back where negative, mm."""
+    total = chain_length(chain)
+    if max(-before, 0.0) + max(-after, 0.0) >= total - TINY:
+        return ()
+    kept = divided(divided(chain, total + min(after, 0.0))[0], -min(before, 0.0))[1]
+    first, last = kept[0], kept[-1]
+    if before > TINY:
+        kept = (line(first.start - before * first.along(0.0), first.start), *kept)
+    if after > TINY:
+        kept = (*kept, line(last.end, last.end + after * last.along(1.0)))
+    return kept
+
+
 def area(loop: Loop) -> float:
     """Area on the left, mm²; negative for a clockwise loop (Green's theorem)."""
     total = 0.0

@@ -124,6 +124,7 @@ def _levels(walls: Sequence[Loop], distance: float, step: float) -> Iterator[tup
         if not loops:
             return
         yield loops
+    raise ValueError(f"steps of {step:g} mm make more than {MOST_RINGS} rings")
 
 
 def _tree(levels: Sequence[tuple[Loop, ...]]) -> list[_Node]:

@@ -7,6 +7,15 @@ from stepnc_model.entities.tools import MillingCuttingTool
 from stepnc_model.toolpath.job import Job
 from stepnc_model.units import rad_from_deg
 
+RUN_OUT = 2.0
+"""mm beyond an open side where no overcut length is given"""
+
+LONGEST = 1000.0
+"""mm of overcut; more is a slip"""
+
+STEEPEST_DEG = 80.0
+"""degrees between the side of a tapered tool and its axis"""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cutter:
@@ -48,10 +57,35 @@ def cutter_of(job: Job) -> Cutter:
     return Cutter(radius=radius, corner=corner, taper=_taper(job))
 
 
+def run_out(job: Job) -> float:
+    """How far the rim of the tool goes beyond an open side: the overcut length, if given.
+
+    Raises
+    ------
+    PathError
+        When it is negative.
+    """
+    overcut = getattr(job.step.operation, "overcut_length", None)
+    if overcut is not None and not 0.0 <= overcut < LONGEST:
+        raise job.fault(
+            f"{overcut:g} mm: it must be at least 0, below {LONGEST:g} mm",
+            job.step.operation_ref,
+            "overcut_length",
+        )
+    return RUN_OUT if overcut is None else float(overcut)
+
+
 def _taper(job: Job) -> float:
     """Tangent of the side's angle to the axis; most tapered end mills of files have none."""
     tool = job.program.get(job.step.tool_ref)
     if not isinstance(tool, MillingCuttingTool):
         return 0.0
     angle = getattr(job.program.get(tool.its_tool_body), "taper_angle", None)
-    return tan(rad_from_deg(angle)) if angle else 0.0
+    if not angle:
+        return 0.0
+    if not 0.0 < angle < STEEPEST_DEG:
+        raise job.fault(
+            f"taper of {angle:g}°: it must lie between 0° and {STEEPEST_DEG:g}°",
+            job.step.tool_ref,
+        )
+    return tan(rad_from_deg(angle))

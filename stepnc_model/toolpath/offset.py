@@ -182,12 +182,30 @@ def _split(edge: Edge, parts: list[float]) -> list[Edge]:
 def _stitched(pieces: list[Edge]) -> tuple[Loop, ...]:
     """Loops of pieces whose ends meet; what does not close or bounds nothing is dropped."""
     loops: list[Loop] = []
+    pieces = _pruned(pieces)
     for chain in _chains(pieces, range(len(pieces))):
         if abs(chain[-1].end - chain[0].start) <= JOIN:
             loop = _closed(chain)
             if abs(area(loop)) > FLAT * chain_length(loop):
                 loops.append(loop)
     return tuple(loops)
+
+
+def _pruned(pieces: list[Edge]) -> list[Edge]:
+    """The pieces without those that lead nowhere.
+
+    Where two edges are almost in line, the pieces behind their crossing are nearer than the
+    distance by less than the slack: they stay, and a chain that follows one never closes.
+    """
+    starts = np.array([piece.start for piece in pieces], dtype=complex)
+    ends = np.array([piece.end for piece in pieces], dtype=complex)
+    follows = np.abs(ends[:, None] - starts) <= JOIN
+    keep = np.ones(len(pieces), dtype=bool)
+    while True:
+        leads = (follows & keep).any(1) & (follows & keep[:, None]).any(0) & keep
+        if (leads == keep).all():
+            return [pieces[index] for index in np.flatnonzero(keep)]
+        keep = leads
 
 
 def _chained(pieces: list[Edge]) -> tuple[Chain, ...]:

@@ -33,6 +33,8 @@ ASIDE = 1e-6
 SHORTEST = 1e-3
 """mm; a shorter stroke is left out"""
 
+MOST_ROWS = 20_000
+
 TOUCH = 1e-6
 """part of a link's length near its ends where it may touch the wall"""
 
@@ -83,6 +85,8 @@ def scan(loops: Sequence[Loop], *, along: complex, step: float) -> list[list[Str
         return []
     low, high = min(heights) + ASIDE, max(heights) - ASIDE
     count = max(1, ceil((high - low) / step - TINY) + 1) if high > low else 1
+    if count > MOST_ROWS:
+        raise ValueError(f"{count} strokes side by side: {MOST_ROWS} are enough")
     rows = np.linspace(low, high, count) if count > 1 else [0.5 * (low + high)]
     return [_row(turned, float(height), along) for height in rows]
 
@@ -132,7 +136,7 @@ def contains_point(point: complex, loops: Sequence[Loop]) -> bool:
 
 def zigzags(rows: Sequence[Sequence[Stroke]], loops: Sequence[Loop]) -> tuple[Pass, ...]:
     """Rows joined to and fro."""
-    return tuple(_zigzag(cell, loops) for cell in _cells(rows))
+    return tuple(found for cell in _cells(rows) for found in _zigzag(cell, loops))
 
 
 def _is_within(point: complex, loops: Sequence[Loop]) -> bool:
@@ -184,16 +188,16 @@ def _overlap(one: Stroke, other: Stroke) -> bool:
     return ends[0] < abs(one.high - one.low) and ends[1] > 0.0
 
 
-def _zigzag(cell: Sequence[Stroke], loops: Sequence[Loop]) -> Pass:
-    """The strokes of a cell to and fro, joined inside the area."""
-    chain: list[Edge] = []
+def _zigzag(cell: Sequence[Stroke], loops: Sequence[Loop]) -> list[Pass]:
+    """The strokes of a cell to and fro, joined where a way between them stays inside."""
+    chains: list[list[Edge]] = []
     for index, stroke in enumerate(cell):
         ends = (stroke.low, stroke.high) if index % 2 == 0 else (stroke.high, stroke.low)
-        if chain:
-            way = linked(chain[-1].end, ends[0], loops)
-            chain += way if way is not None else (line(chain[-1].end, ends[0]),)
-        chain.append(line(*ends))
-    return Pass(tuple(chain), is_closed=False)
+        way = linked(chains[-1][-1].end, ends[0], loops) if chains else None
+        if way is None:
+            chains.append([])
+        chains[-1] += [*(way or ()), line(*ends)]
+    return [Pass(tuple(chain), is_closed=False) for chain in chains]
 
 
 def _along_wall(loop: Loop, start: complex, end: complex) -> Chain | None:

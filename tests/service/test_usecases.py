@@ -6,6 +6,7 @@ import pytest
 
 from optimiser.advice import Status
 from service import usecases
+from service.reading import read_program
 from service.usecases import Request
 from simulator.errors import UnknownMachine, UnknownMaterial
 from stepnc_model.errors import SchemaError, Severity, StepNcError, WriteError
@@ -141,8 +142,8 @@ def test_an_infeasible_workingstep_stays_as_it_is_and_the_others_are_written(
     assert after.issuperset(drilling)
     advised = [each for each in outcome.plan.advices if each.status is Status.ADVISED]
     assert advised
-    changed = usecases.read_program(outcome.written, units="iso")
-    original = usecases.read_program(bracket, units="iso")
+    changed = read_program(outcome.written, units="iso")
+    original = read_program(bracket, units="iso")
     pairs = zip(original.workingsteps, changed.workingsteps, strict=True)
     statuses = {each.workingstep.id: each.status for each in outcome.plan.advices}
     for old, new in pairs:
