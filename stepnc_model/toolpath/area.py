@@ -4,19 +4,22 @@ The walls of an area stand around it, the area on their left. A wall may lean, o
 floor with a radius, so the area shrinks with depth: each wall knows its inset at a height.
 """
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
-from math import sqrt, tan
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import inf, sqrt, tan
 
 from stepnc_model.entities.entity import Entity
 from stepnc_model.part21.values import Ref
-from stepnc_model.toolpath.contour import Chain, Loop
+from stepnc_model.toolpath.contour import TINY, Chain, Loop
 from stepnc_model.toolpath.cutter import Cutter
 from stepnc_model.toolpath.offset import erode
 from stepnc_model.units import rad_from_deg
 
 SAMPLES = 24
 """heights at which a cutter that is not flat is held against a wall that is not straight"""
+
+THIRDS = 60
+"""times that the place of the closest contact is narrowed to two thirds"""
 
 Inset = Callable[[float], float]
 """how far a wall stands in the area at a height above the floor, mm; 0 at the top"""
@@ -28,6 +31,8 @@ class Wall:
 
     loop: Loop
     inset: Inset
+    top: float = inf
+    """z in the setup; the cutter passes over an island that is lower than the area"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,12 +49,12 @@ class Area:
     """a face without walls: what is to be swept, the tool running over its edge"""
     middle: Chain | None = None
     """centre line of a slot"""
+    ends: tuple[float, float] = (0.0, 0.0)
+    """how far the slot goes on beyond the ends of its centre line, mm"""
     solid: Loop | None = None
     """the material of an area with open sides, without what the tool needs to run out"""
     outside: Chain = ()
     """edges of the walls that are none, beyond an open side"""
-    dish: Callable[[float], Loop] | None = None
-    """boundary of a round floor at a z"""
 
     @property
     def depth(self) -> float:
@@ -57,22 +62,26 @@ class Area:
         return self.top - self.bottom
 
     def boundaries(self, z: float, cutter: Cutter) -> tuple[Loop, ...]:
-        """Walls for a flat cutter of the same radius that has its tip at z."""
+        """Walls for a flat cutter of the same radius that has its tip at z.
+
+        Empty where the walls leave no room, or where there are none.
+        """
         loops: list[Loop] = []
         for wall in self.walls:
-            inset = extra(wall.inset, cutter, bottom=z - self.bottom, top=self.depth)
-            loops += erode([wall.loop], inset) if inset > 0.0 else (wall.loop,)
-        if self.dish is not None:
-            loops.append(self.dish(z))
+            if z > wall.top - TINY:
+                continue
+            top = min(self.top, wall.top) - self.bottom
+            inset = extra(wall.inset, cutter, bottom=z - self.bottom, top=top)
+            moved = erode([wall.loop], inset) if inset > 0.0 else (wall.loop,)
+            if not moved:
+                return ()
+            loops += moved
         return tuple(loops)
 
-    def between(self, top: float, bottom: float) -> "Area":
-        """The same area from another height, down to another floor."""
-        raised = bottom - self.bottom
-        walls = tuple(
-            Wall(loop=wall.loop, inset=_raised(wall.inset, raised)) for wall in self.walls
-        )
-        return replace(self, top=top, bottom=bottom, walls=walls)
+    @property
+    def terraces(self) -> list[float]:
+        """Tops of the islands that the cutter passes over, the highest first."""
+        return sorted({wall.top for wall in self.walls if wall.top < self.top}, reverse=True)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -111,11 +120,15 @@ def leaning(*, depth: float, slope_deg: float | None, fillet: float = 0.0) -> In
     return inset
 
 
+def chord(radius: float, height: float) -> float:
+    """Half width of a circle at a height above its lowest point, up to its middle."""
+    up = min(max(height, 0.0), radius)
+    return sqrt(max(radius**2 - (radius - up) ** 2, 0.0))
+
+
 def rounding(height: float, radius: float) -> float:
     """Inset of a radius that is tangent to a straight wall above and to the floor."""
-    if height >= radius:
-        return 0.0
-    return radius - sqrt(max(radius**2 - (radius - max(height, 0.0)) ** 2, 0.0))
+    return radius - chord(radius, height)
 
 
 def extra(inset: Inset, cutter: Cutter, *, bottom: float, top: float) -> float:
@@ -127,19 +140,26 @@ def extra(inset: Inset, cutter: Cutter, *, bottom: float, top: float) -> float:
     if inset is upright and cutter.taper == 0.0:
         return 0.0
     span = max(top - bottom, 0.0)
-    heights = [span * (index / SAMPLES) ** 2 for index in range(SAMPLES + 1)]
-    heights.append(min(cutter.corner, span))
-    most = max(inset(bottom + above) + cutter.reach(above) for above in heights)
+    heights = sorted(
+        {span * (index / SAMPLES) ** 2 for index in range(SAMPLES + 1)}
+        | {min(cutter.corner, span)}
+    )
+
+    def sum_at(above: float) -> float:
+        return inset(bottom + above) + cutter.reach(above)
+
+    index = max(range(len(heights)), key=lambda at: sum_at(heights[at]))
+    low, high = heights[max(index - 1, 0)], heights[min(index + 1, len(heights) - 1)]
+    most = max(sum_at(heights[index]), _greatest(sum_at, low, high))
     return max(0.0, most - cutter.radius)
 
 
-def corners(loops: Sequence[Loop]) -> list[complex]:
-    """Points where edges of loops meet."""
-    return [edge.start for loop in loops for edge in loop]
-
-
-def _raised(inset: Inset, by: float) -> Inset:
-    """The same wall over a floor that lies higher."""
-    if inset is upright or by == 0.0:
-        return inset
-    return lambda height: inset(height + by)
+def _greatest(function: Callable[[float], float], low: float, high: float) -> float:
+    """Maximum of a function that rises and then falls, by thirds."""
+    for _ in range(THIRDS):
+        third = (high - low) / 3.0
+        if function(low + third) < function(high - third):
+            low += third
+        else:
+            high -= third
+    return function(0.5 * (low + high))

@@ -266,8 +266,7 @@ def _parts(geometry: BaseGeometry) -> list[Polygon]:
     return [
         part
         for part in parts
-        if isinstance(part, Polygon)
-        and not part.buffer(-NEGLIGIBLE).is_empty
+        if isinstance(part, Polygon) and not part.buffer(-NEGLIGIBLE).is_empty
     ]
 
 

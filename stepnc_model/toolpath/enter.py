@@ -6,8 +6,7 @@ an arc or a straight line. What does not fit is replaced by what does, and said.
 """
 
 from cmath import rect
-from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil, pi, tan
 
 from stepnc_model.entities.approach import (
@@ -24,21 +23,23 @@ from stepnc_model.toolpath.contour import (
     TINY,
     Chain,
     Edge,
-    Loop,
     chain_length,
+    divided,
     line,
-    nearest,
     reversed_chain,
 )
 from stepnc_model.toolpath.course import Course
 from stepnc_model.toolpath.cover import Pass
 from stepnc_model.toolpath.job import Job
 from stepnc_model.toolpath.path import MoveType, Point
-from stepnc_model.toolpath.strokes import contains_point
+from stepnc_model.toolpath.room import Room
 from stepnc_model.units import rad_from_deg
 
 STEEPEST_DEG = 89.0
 """degrees; a steeper ramp is a plunge"""
+
+MOST_TURNS = 500
+"""laps or legs of a ramp; more lie on too short a piece of the pass"""
 
 HELIX_TRIES = 4
 """times that the radius of a helix that does not fit is halved"""
@@ -56,23 +57,6 @@ class Heights:
     """just above the material of this level"""
     level: float
     """of the pass"""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Room:
-    """Where the tool's centre may be around a pass."""
-
-    loops: Sequence[Loop]
-    """boundary; none where there is nothing to run into"""
-    side: complex
-    """i when the free side is on the left of the way, -i when it is on the right"""
-
-    def holds(self, chain: Chain) -> bool:
-        """Whether a way stays within."""
-        if not self.loops:
-            return True
-        points = [edge.at(i / 8.0) for edge in chain for i in range(9)]
-        return all(contains_point(point, self.loops) for point in points)
 
 
 def enter(
@@ -96,18 +80,11 @@ def enter(
             trace(course, way, z=heights.level, end_z=heights.level, type=MoveType.APPROACH)
             return cut
         course.find(job.note(f"no room for {strategy.express_name()}: straight down", approach))
-    drop = heights.above - heights.level
-    if isinstance(strategy, PlungeRamp) and _is_ramp(strategy.angle):
-        return _ramp(course, cut, heights, drop / tan(rad_from_deg(strategy.angle)))
-    if isinstance(strategy, PlungeZigzag) and _is_ramp(strategy.angle):
-        width = strategy.width if strategy.width and strategy.width > 0.0 else None
-        _zigzag(course, cut, heights, drop / tan(rad_from_deg(strategy.angle)), width)
-        return cut
-    if isinstance(strategy, PlungeHelix) and _is_ramp(strategy.angle):
-        if _helix(course, cut, heights, room, strategy):
-            return cut
-        course.find(job.note("no room for the helix: a ramp along the pass", approach))
-        return _ramp(course, cut, heights, drop / tan(rad_from_deg(strategy.angle)))
+    if isinstance(strategy, (PlungeRamp, PlungeHelix, PlungeZigzag)):
+        angle = strategy.angle
+        if angle is not None and 0.0 < angle <= STEEPEST_DEG:
+            return _slanted(course, job, cut, heights=heights, room=room, approach=approach)
+        course.find(job.note(f"an angle of {angle}° is no ramp: straight down", approach))
     _down(course, cut.start, heights)
     return cut
 
@@ -125,11 +102,18 @@ def leave(
     strategy = job.program.get(retract) if retract is not None else None
     if isinstance(strategy, (ApRetractAngle, ApRetractTangent)):
         back = Pass(reversed_chain(cut.chain), cut.is_closed)
-        mirrored = Room(loops=room.loops, side=-room.side)
+        mirrored = replace(room, side=-room.side)
         way = reversed_chain(_lead(strategy, back, mirrored))
         if way:
             z = heights.level
             trace(course, way, z=z, end_z=z, type=MoveType.RETRACT)
+        else:
+            course.find(
+                job.note(f"no room for {strategy.express_name()}: straight up", retract)
+            )
+    elif isinstance(strategy, AlongPath):
+        text = "a retract along paths of its own is not made: the tool goes straight up"
+        course.find(job.warning(text, retract))
     x, y, _ = course.at
     course.rapid((x, y, heights.travel), MoveType.RETRACT)
 
@@ -149,10 +133,6 @@ def trace(course: Course, chain: Chain, *, z: float, end_z: float, type: MoveTyp
             course.arc(end, type, centre=centre, turn=edge.turn)
 
 
-def _is_ramp(angle: float | None) -> bool:
-    return angle is not None and 0.0 < angle < STEEPEST_DEG
-
-
 def _over(course: Course, at: complex, heights: Heights) -> None:
     """Sideways at the height of travel, then down to just above the material."""
     x, y = at.real, at.imag
@@ -168,66 +148,79 @@ def _down(course: Course, at: complex, heights: Heights) -> None:
     course.line((at.real, at.imag, heights.level), MoveType.APPROACH)
 
 
-def _ramp(course: Course, cut: Pass, heights: Heights, length: float) -> Pass:
-    """Down along the pass: round and round a loop, to and fro on an open one."""
-    if not cut.is_closed:
-        _zigzag(course, cut, heights, length, None)
+def _slanted(
+    course: Course,
+    job: Job,
+    cut: Pass,
+    *,
+    heights: Heights,
+    room: Room,
+    approach: Ref[Entity] | None,
+) -> Pass:
+    """Down at an angle: a helix, round and round a loop, or to and fro."""
+    strategy: Entity = job.program.get(approach)
+    length = (heights.above - heights.level) / tan(rad_from_deg(strategy.angle))
+    if isinstance(strategy, PlungeHelix):
+        if _helix(course, cut, heights, room, radius=strategy.radius, length=length):
+            return cut
+        course.find(job.note("no room for the helix: a ramp along the pass", approach))
+    total = chain_length(cut.chain)
+    limit = total
+    if isinstance(strategy, PlungeZigzag) and strategy.width and strategy.width > 0.0:
+        limit = min(total, strategy.width)
+    if length > MOST_TURNS * limit:
+        text = f"a ramp of {length:.4g} mm on {limit:.4g} mm of the pass: straight down"
+        course.find(job.note(text, approach))
+        _down(course, cut.start, heights)
         return cut
+    if cut.is_closed and not isinstance(strategy, PlungeZigzag):
+        return _around(course, cut, heights, length)
+    _zigzag(course, cut, heights, length, limit)
+    return cut
+
+
+def _around(course: Course, cut: Pass, heights: Heights, length: float) -> Pass:
+    """Down along a loop; the loop from where the level is reached."""
+    laps, rest = divmod(length, chain_length(cut.chain))
+    head, tail = divided(cut.chain, rest)
     _over(course, cut.start, heights)
-    way, rest = _lap(cut.chain, length)
+    way = (*cut.chain * int(laps), *head)
     trace(course, way, z=heights.above, end_z=heights.level, type=MoveType.APPROACH)
-    return Pass(rest, is_closed=True)
+    return Pass((*tail, *head), is_closed=True)
 
 
-def _lap(loop: Loop, length: float) -> tuple[Chain, Loop]:
-    """The first so many mm of going round a loop, and the loop from there on."""
-    way: list[Edge] = []
-    left, index = length, 0
-    while True:
-        edge = loop[index % len(loop)]
-        if edge.length > left - TINY:
-            part = min(1.0, left / edge.length)
-            break
-        way.append(edge)
-        left -= edge.length
-        index += 1
-    at = index % len(loop)
-    head, tail = loop[at].between(0.0, part), loop[at].between(part, 1.0)
-    rest = [tail, *loop[at + 1 :], *loop[:at], head]
-    return (*way, head), tuple(edge for edge in rest if edge.length > TINY)
-
-
-def _zigzag(
-    course: Course, cut: Pass, heights: Heights, length: float, width: float | None
-) -> None:
-    """To and fro along the first edge of the pass, back at its start on the level."""
-    first = cut.chain[0]
-    span = min(first.length, width or first.length, 0.5 * length)
-    count = max(1, ceil(0.5 * length / span - TINY))
-    way = first.between(0.0, span / first.length)
-    drop = (heights.above - heights.level) / (2 * count)
+def _zigzag(course: Course, cut: Pass, heights: Heights, length: float, limit: float) -> None:
+    """To and fro along the beginning of the pass, back at its start on the level."""
+    count = max(1, ceil(0.5 * length / limit - TINY))
+    way, _ = divided(cut.chain, 0.5 * length / count)
+    legs = (way, reversed_chain(way)) * count
     _over(course, cut.start, heights)
-    z = heights.above
-    for _ in range(count):
-        for leg in ((way,), (way.reversed(),)):
-            trace(course, leg, z=z, end_z=z - drop, type=MoveType.APPROACH)
-            z -= drop
+    for index, leg in enumerate(legs):
+        z, end_z = (
+            heights.above + (heights.level - heights.above) * place / len(legs)
+            for place in (index, index + 1)
+        )
+        trace(course, leg, z=z, end_z=end_z, type=MoveType.APPROACH)
     course.line((cut.start.real, cut.start.imag, heights.level), MoveType.APPROACH)
 
 
 def _helix(
-    course: Course, cut: Pass, heights: Heights, room: Room, strategy: PlungeHelix
+    course: Course,
+    cut: Pass,
+    heights: Heights,
+    room: Room,
+    *,
+    radius: float | None,
+    length: float,
 ) -> bool:
-    """Down a helix through the start of the pass, on its free side; whether it fits."""
-    found = _helix_centre(cut, room, strategy.radius)
+    """Down a helix to the start of the pass, on its free side; whether it fits."""
+    found = _helix_centre(cut, room, radius)
     if found is None:
         return False
-    centre, radius = found
-    pitch = 2.0 * pi * radius * tan(rad_from_deg(strategy.angle))
-    turns = max(1, ceil((heights.above - heights.level) / pitch - TINY))
-    _over(course, cut.start, heights)
+    centre, size = found
     # With the free side on the left a counter-clockwise helix cuts as the pass does.
-    turn = 2.0 * pi * turns * (1.0 if room.side.imag > 0.0 else -1.0)
+    turn = length / size * (1.0 if room.side.imag > 0.0 else -1.0)
+    _over(course, centre + (cut.start - centre) * rect(1.0, -turn), heights)
     course.arc(
         (cut.start.real, cut.start.imag, heights.level),
         MoveType.APPROACH,
@@ -247,24 +240,10 @@ def _helix_centre(cut: Pass, room: Room, radius: float | None) -> tuple[complex,
         for turned in (0.5 * pi, 0.25 * pi, 0.75 * pi, 0.0, pi):
             aside = along * rect(1.0, turned if room.side.imag > 0.0 else -turned)
             centre = cut.start + size * aside
-            if _is_clear(centre, size, room):
+            if room.holds_circle(centre, size):
                 return centre, size
         size *= 0.5
     return None
-
-
-def _is_clear(centre: complex, radius: float, room: Room) -> bool:
-    """Whether a circle stays in the room; its ends may touch the boundary."""
-    if not room.loops:
-        return True
-    if not contains_point(centre, room.loops):
-        return False
-    gaps = [
-        abs(loop[index].at(part) - centre)
-        for loop in room.loops
-        for index, part in [nearest(loop, centre)]
-    ]
-    return min(gaps) >= radius - 1e-6
 
 
 def _lead(strategy: ApRetractAngle | ApRetractTangent, cut: Pass, room: Room) -> Chain:

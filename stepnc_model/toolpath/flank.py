@@ -9,20 +9,19 @@ from stepnc_model.toolpath.arrays import Edges, distances
 from stepnc_model.toolpath.clip import inside
 from stepnc_model.toolpath.contour import (
     Loop,
-    line,
     polygon,
     reversed_chain,
     rotated_to,
+    stretched,
 )
 from stepnc_model.toolpath.cover import Pass
-from stepnc_model.toolpath.cutter import Cutter
+from stepnc_model.toolpath.cutter import Cutter, run_out
 from stepnc_model.toolpath.job import Job
 from stepnc_model.toolpath.layer import Layer, Level
 from stepnc_model.toolpath.offset import beside, erode
+from stepnc_model.toolpath.room import Room
+from stepnc_model.toolpath.room import beside as clearance
 from stepnc_model.toolpath.way import Way
-
-RUN_OUT = 2.0
-"""mm beyond the radius by which the ends of an open wall are run over"""
 
 MOST_PASSES = 1000
 
@@ -49,9 +48,15 @@ def flank_layer(
         return None
     if not way.has_wall_on_right:
         passes = [Pass(reversed_chain(cut.chain), cut.is_closed) for cut in passes]
-    side = 1j if way.has_wall_on_right else -1j
     return Layer(
-        z=level.z, above=level.above, passes=tuple(passes), side=side, solid=near_stock
+        z=level.z,
+        above=level.above,
+        passes=tuple(passes),
+        solid=near_stock,
+        room=Room(
+            clearance=clearance(flank.chain, near),
+            side=1j if way.has_wall_on_right else -1j,
+        ),
     )
 
 
@@ -62,14 +67,8 @@ def _at(job: Job, flank: Flank, cutter: Cutter, distance: float) -> list[Pass]:
             Pass(rotated_to(loop, _start(loop)), is_closed=True)
             for loop in erode([flank.chain], distance)
         ]
-    overcut = getattr(job.step.operation, "overcut_length", None)
-    run = cutter.radius + (RUN_OUT if overcut is None else overcut)
-    first, last = flank.chain[0], flank.chain[-1]
-    longer = (
-        line(first.start - run * first.along(0.0), first.start),
-        *flank.chain,
-        line(last.end, last.end + run * last.along(1.0)),
-    )
+    run = cutter.radius + run_out(job)
+    longer = stretched(flank.chain, run, run)
     return [Pass(chain, is_closed=False) for chain in beside(longer, distance)]
 
 
@@ -88,7 +87,13 @@ def _count(job: Job, flank: Flank, way: Way, left: float) -> int:
             return 1
         corners = np.array([edge.start for edge in stock], dtype=complex)
         width = float(distances(corners, Edges.of(flank.chain)).max())
-    return min(MOST_PASSES, max(1, ceil((width - left) / way.step - 1e-6)))
+    count = max(1, ceil((width - left) / way.step - 1e-6))
+    if count > MOST_PASSES:
+        raise job.fault(
+            f"{count} passes of {way.step:g} mm beside its wall: {MOST_PASSES} are enough",
+            flank.ref,
+        )
+    return count
 
 
 def _stock(job: Job) -> Loop | None:

@@ -14,27 +14,21 @@ from stepnc_model.toolpath.contour import (
     Edge,
     Loop,
     chain_length,
-    line,
     moved,
     reversed_chain,
+    stretched,
     vertices,
 )
 from stepnc_model.toolpath.contour import area as contour_area
 from stepnc_model.toolpath.cover import Pass, area_of, rings, swept
-from stepnc_model.toolpath.cutter import Cutter
+from stepnc_model.toolpath.curve import JOINED
+from stepnc_model.toolpath.cutter import Cutter, run_out
 from stepnc_model.toolpath.job import Job
 from stepnc_model.toolpath.offset import erode, offset
-from stepnc_model.toolpath.strokes import (
-    Stroke,
-    rows_at,
-    scan,
-    singles,
-    zigzags,
-)
+from stepnc_model.toolpath.room import Room, nowhere, within
+from stepnc_model.toolpath.spiral import spirals
+from stepnc_model.toolpath.strokes import Stroke, rows_at, scan, singles, zigzags
 from stepnc_model.toolpath.way import Covering, Way
-
-RUN_OUT = 2.0
-"""mm by which a face is run over where no overcut length is given"""
 
 JUST_FITS = 1e-3
 """mm; a slot narrower than the tool by no more than this is as wide as the tool"""
@@ -72,12 +66,11 @@ class Layer:
     above: float
     """z of the material over this level"""
     passes: tuple[Pass, ...]
+    room: Room
     loops: tuple[Loop, ...] = ()
-    """boundary of where the centre may be; none where nothing is in the way"""
+    """boundary of where the centre may be, when it is known"""
     solid: tuple[Loop, ...] = ()
     """boundary of where the cutter touches material; none where it does everywhere"""
-    side: complex = 1j
-    """free side of the passes, i for the left of the way"""
 
 
 def clear(job: Job, area: Area, level: Level, way: Way) -> Layer | None:
@@ -86,63 +79,63 @@ def clear(job: Job, area: Area, level: Level, way: Way) -> Layer | None:
         return _face(job, area, level, way)
     boundaries = area.boundaries(level.z, level.cutter)
     loops = erode(boundaries, level.distance)
-    if not loops:
+    if loops:
+        passes = _covered(area, level, boundaries, loops, way)
+    else:
         passes = _narrow(area, level, boundaries)
-        if not passes:
-            return None
-        return Layer(
-            z=level.z, above=level.above, passes=passes, solid=level.touching(area.solid)
-        )
-    passes = _covered(area, level, loops, way)
-    side = 1j if way.is_counter_clockwise else -1j
-    return Layer(
-        z=level.z,
-        above=level.above,
-        passes=passes,
-        loops=loops,
-        solid=level.touching(area.solid),
-        side=side,
-    )
+    return _layer(area, level, passes, loops, is_left=way.is_counter_clockwise)
 
 
 def wall_passes(area: Area, level: Level, way: Way) -> Layer | None:
     """Passes along the walls of a level; None when the cutter does not fit in."""
     boundaries = area.boundaries(level.z, level.cutter)
-    if not boundaries:
-        return None
     loops = erode(boundaries, level.distance)
-    chains = [piece for loop in loops for piece in _along_walls(area, loop, boundaries)]
+    if loops:
+        passes = tuple(each for loop in loops for each in _along_walls(area, loop, boundaries))
+    else:
+        passes = _narrow(area, level, boundaries)
     if not way.has_wall_on_right:
-        chains = [Pass(reversed_chain(each.chain), each.is_closed) for each in chains]
-    if not chains:
+        passes = tuple(Pass(reversed_chain(cut.chain), cut.is_closed) for cut in passes)
+    return _layer(area, level, passes, loops, is_left=way.has_wall_on_right)
+
+
+def _layer(
+    area: Area,
+    level: Level,
+    passes: tuple[Pass, ...],
+    loops: tuple[Loop, ...],
+    *,
+    is_left: bool,
+) -> Layer | None:
+    """The passes with the room around them, free on their left or on their right."""
+    if not passes:
         return None
-    side = 1j if way.has_wall_on_right else -1j
     return Layer(
         z=level.z,
         above=level.above,
-        passes=tuple(chains),
+        passes=passes,
+        room=Room(clearance=within(loops) if loops else nowhere, side=1j if is_left else -1j),
         loops=loops,
         solid=level.touching(area.solid),
-        side=side,
     )
 
 
-def _covered(area: Area, level: Level, loops: tuple[Loop, ...], way: Way) -> tuple[Pass, ...]:
+def _covered(
+    area: Area,
+    level: Level,
+    boundaries: tuple[Loop, ...],
+    loops: tuple[Loop, ...],
+    way: Way,
+) -> tuple[Pass, ...]:
     """Passes of an area with walls, as the strategy wants them."""
-    radius, distance = level.cutter.radius, level.distance
-    boundaries = area.boundaries(level.z, level.cutter)
+    radius = level.cutter.radius
     walls = tuple(_turned(Pass(loop, is_closed=True), way) for loop in loops)
     if way.covering in {Covering.DEFAULT, Covering.RINGS, Covering.SPIRAL}:
-        found = rings(boundaries, distance=distance, radius=radius, step=way.step)
-        ordered = found if way.is_inside_out else found[::-1]
-        return tuple(_turned(each, way) for each in ordered)
+        return _rings(boundaries, level, loops, way)
     if way.covering is Covering.MIDDLE:
-        middle = _middle(area, level)
-        found = rings(boundaries, distance=distance, radius=radius, step=way.step)
-        return (*middle, *(_turned(each, way) for each in found))
+        return (*_middle(area, level, boundaries), *_rings(boundaries, level, loops, way))
     if way.covering is Covering.WALL_THEN_STROKES:
-        inner = erode(boundaries, distance + way.step)
-        passes = (*walls, *_strokes(inner, way))
+        passes = (*walls, *_strokes(erode(boundaries, level.distance + way.step), way))
         left = area_of(loops).difference(swept(passes, radius)).area
         return passes if left <= LEFT_OVER else (*walls, *_strokes(loops, way))
     strokes = _strokes(loops, way)
@@ -151,6 +144,18 @@ def _covered(area: Area, level: Level, loops: tuple[Loop, ...], way: Way) -> tup
     reach = area_of(loops).buffer(radius, quad_segs=32)
     left = reach.difference(swept(strokes, radius)).area
     return strokes if left <= LEFT_OVER * len(loops) else (*strokes, *walls)
+
+
+def _rings(
+    boundaries: tuple[Loop, ...], level: Level, loops: tuple[Loop, ...], way: Way
+) -> tuple[Pass, ...]:
+    """Rings within rings, in the order and the sense of the strategy."""
+    radius = level.cutter.radius
+    found = rings(boundaries, distance=level.distance, radius=radius, step=way.step)
+    ordered = [_turned(each, way) for each in (found if way.is_inside_out else found[::-1])]
+    if way.covering is Covering.SPIRAL:
+        return spirals(ordered, loops, step=way.step)
+    return tuple(ordered)
 
 
 def _turned(cut: Pass, way: Way) -> Pass:
@@ -162,15 +167,13 @@ def _turned(cut: Pass, way: Way) -> Pass:
 
 def _strokes(loops: Sequence[Loop], way: Way) -> tuple[Pass, ...]:
     """Strokes over an area."""
-    rows = scan(loops, along=way.along, step=way.step)
-    return _joined(rows, loops, way)
+    return _joined(scan(loops, along=way.along, step=way.step), loops, way)
 
 
 def _joined(rows: list[list[Stroke]], loops: Sequence[Loop], way: Way) -> tuple[Pass, ...]:
     """Rows in the order of the strategy, one way or to and fro."""
     ordered = rows if way.steps_left else rows[::-1]
-    is_single = way.covering is Covering.ONE_WAY or way.is_lifted
-    if not is_single:
+    if not way.is_lifted:
         return zigzags(ordered, loops)
     passes = singles(ordered)
     if way.covering is Covering.ONE_WAY:
@@ -181,40 +184,23 @@ def _joined(rows: list[list[Stroke]], loops: Sequence[Loop], way: Way) -> tuple[
     )
 
 
-def _face(job: Job, area: Area, level: Level, way: Way) -> Layer:
+def _face(job: Job, area: Area, level: Level, way: Way) -> Layer | None:
     """Passes over a face, the tool running over its edge."""
     face = area.face
     assert face is not None
     radius, distance = level.cutter.radius, level.distance
-    overcut = getattr(job.step.operation, "overcut_length", None)
-    beyond = radius + (RUN_OUT if overcut is None else overcut)
     islands = area.boundaries(level.z, level.cutter)
     if way.covering in {Covering.RINGS, Covering.SPIRAL}:
         walls = (*offset(face, -distance), *islands)
-        found = rings(walls, distance=distance, radius=radius, step=way.step)
-        ordered = found if way.is_inside_out else found[::-1]
-        passes = tuple(_turned(each, way) for each in ordered)
         loops = erode(walls, distance)
-        return Layer(
-            z=level.z,
-            above=level.above,
-            passes=passes,
-            loops=loops,
-            solid=level.touching(area.solid),
-        )
-    loops = erode((*offset(face, -beyond - distance), *islands), distance)
-    rows = rows_at(loops, _rows(face, way, radius), along=way.along)
-    passes = _joined(rows, loops, way)
-    if islands:
+        passes = _rings(walls, level, loops, way)
+    else:
+        walls = (*offset(face, -radius - run_out(job) - distance), *islands)
+        loops = erode(walls, distance)
+        passes = _joined(rows_at(loops, _rows(face, way, radius), along=way.along), loops, way)
         around = [loop for loop in loops if contour_area(loop) < 0.0]
         passes = (*passes, *(_turned(Pass(loop, is_closed=True), way) for loop in around))
-    return Layer(
-        z=level.z,
-        above=level.above,
-        passes=passes,
-        loops=loops,
-        solid=level.touching(area.solid),
-    )
+    return _layer(area, level, passes, loops, is_left=way.is_counter_clockwise)
 
 
 def _rows(face: Loop, way: Way, radius: float) -> list[float]:
@@ -227,49 +213,25 @@ def _rows(face: Loop, way: Way, radius: float) -> list[float]:
     return [first + index * way.step for index in range(count)]
 
 
-def _narrow(area: Area, level: Level, boundaries: Sequence[Loop]) -> tuple[Pass, ...]:
+def _narrow(area: Area, level: Level, boundaries: tuple[Loop, ...]) -> tuple[Pass, ...]:
     """One pass where the cutter just fits; none where it does not."""
     loops = erode(boundaries, level.distance - JUST_FITS)
     if not loops:
         return ()
-    middle = _middle(area, level)
+    middle = _middle(area, level, boundaries)
     return middle or tuple(Pass(loop, is_closed=True) for loop in loops)
 
 
-def _middle(area: Area, level: Level) -> tuple[Pass, ...]:
+def _middle(area: Area, level: Level, boundaries: tuple[Loop, ...]) -> tuple[Pass, ...]:
     """The centre line of a slot, run out at open ends and short of the walls at others."""
     middle = area.middle
     if middle is None:
         return ()
-    if abs(middle[-1].end - middle[0].start) < 1e-6:
+    if abs(middle[-1].end - middle[0].start) < JOINED:
         return (Pass(middle, is_closed=True),)
-    edges = [edge for wall in area.walls for edge in wall.loop]
-    chain = list(middle)
-    chain = _fitted(chain, edges, level)
-    chain = list(
-        reversed_chain(tuple(_fitted(list(reversed_chain(tuple(chain))), edges, level)))
-    )
-    return (Pass(tuple(chain), is_closed=False),)
-
-
-def _fitted(chain: list[Edge], edges: list[Edge], level: Level) -> list[Edge]:
-    """The chain with its start moved along it to where the cutter touches the end wall."""
-    first = chain[0]
-    ahead = -first.along(0.0)
-    caps = [edge for edge in edges if abs((edge.at(0.5) - first.start) / ahead) > 0.0]
-    # Distance from the start to what closes the slot there, straight ahead.
-    gaps = [
-        ((edge.at(0.5) - first.start) / ahead).real
-        for edge in caps
-        if abs(((edge.at(0.5) - first.start) / ahead).imag) < 1e-6 * max(level.distance, 1.0)
-    ]
-    gap = min((value for value in gaps if value > -TINY), default=0.0)
-    shift = gap - level.distance
-    if shift > TINY:
-        return [line(first.start + shift * ahead, first.start), *chain]
-    if shift < -TINY and -shift < first.length:
-        return [first.between(-shift / first.length, 1.0), *chain[1:]]
-    return chain
+    short = level.distance + _inset(boundaries, area)
+    chain = stretched(middle, area.ends[0] - short, area.ends[1] - short)
+    return (Pass(chain, is_closed=False),) if chain else ()
 
 
 def _along_walls(area: Area, loop: Loop, boundaries: Sequence[Loop]) -> list[Pass]:

@@ -7,6 +7,7 @@ linked at the feed; for all others it is lifted.
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 from math import ceil
 
 from stepnc_model.entities.entity import Entity
@@ -21,11 +22,11 @@ from stepnc_model.entities.milling import (
 )
 from stepnc_model.toolpath.area import Area, Flank
 from stepnc_model.toolpath.clip import Piece, pieces
-from stepnc_model.toolpath.contour import Chain
+from stepnc_model.toolpath.contour import TINY, Chain, line
 from stepnc_model.toolpath.course import Course
 from stepnc_model.toolpath.cover import Pass
 from stepnc_model.toolpath.cutter import Cutter, cutter_of
-from stepnc_model.toolpath.enter import Heights, Room, enter, leave, trace
+from stepnc_model.toolpath.enter import Heights, enter, leave, trace
 from stepnc_model.toolpath.flank import flank_layer
 from stepnc_model.toolpath.job import DEFAULT_CLEARANCE, Job
 from stepnc_model.toolpath.layer import Layer, Level, clear, wall_passes
@@ -40,6 +41,11 @@ GAP = 0.5
 
 LINK = 2.0
 """steps between two passes that are linked at the feed; beyond, the tool would cut full width"""
+
+LARGEST = 1000.0
+"""mm of allowance; more is a slip"""
+
+MOST_LEVELS = 1000
 
 ABOVE_STOCK = 1.0
 """mm over the stock at which the tool may move sideways in rapid"""
@@ -82,10 +88,17 @@ def milling_path(job: Job) -> ToolPath:
     course = Course(job, (first.real, first.imag, job.security_z))
     for finding in way.findings:
         course.find(finding)
-    for shape, layers in found:
-        retract_z = _retract_z(job, course, shape)
+    planes = [_retract_z(job, course, shape) for shape, _ in found]
+    travel_z = _travel_z(job, max(planes))
+    for (shape, layers), retract_z in zip(found, planes, strict=True):
         for layer in layers:
-            _cut_layer(course, job, operation, layer, retract_z=retract_z, way=way)
+            heights = Heights(
+                travel=travel_z,
+                retract=retract_z,
+                above=min(layer.above + GAP, retract_z),
+                level=layer.z,
+            )
+            _cut_layer(course, job, operation, layer, heights=heights, way=way)
         lowest = min(layer.z for layer in layers)
         missing = lowest - shape.bottom - allowance_of(job, operation).bottom
         if missing > 1e-6:
@@ -107,9 +120,9 @@ def allowance_of(job: Job, operation: Entity) -> Allowance:
     values = {}
     for name in ("allowance_side", "allowance_bottom"):
         value = getattr(operation, name, None) or 0.0
-        if value < 0.0:
+        if not 0.0 <= value < LARGEST:
             raise job.fault(
-                f"{value:g} mm: an allowance leaves material, it is not negative",
+                f"{value:g} mm: an allowance lies between 0 and {LARGEST:g} mm",
                 job.step.operation_ref,
                 name,
             )
@@ -129,7 +142,8 @@ def _layers(job: Job, shape: Area | Flank, cutter: Cutter, way: Way) -> Iterator
     earlier = _earlier(job)
     start, floor = _span(job, shape, allowance, earlier)
     above = start
-    for z in levels(start, floor, _axial_depth(job, start - floor)):
+    depth = _axial_depth(job, start - floor)
+    for z in _heights(job, shape, allowance, start=start, floor=floor, depth=depth):
         level = Level(z=z, above=above, cutter=cutter, allowance=allowance.side)
         layer = _layer(job, shape, level, way, floor=floor, earlier=earlier)
         if layer is None or not layer.passes:
@@ -142,6 +156,34 @@ def _layers(job: Job, shape: Area | Flank, cutter: Cutter, way: Way) -> Iterator
             + (f" with {allowance.side:g} mm left on the walls" if allowance.side else ""),
             shape.ref,
         )
+
+
+def _heights(
+    job: Job,
+    shape: Area | Flank,
+    allowance: Allowance,
+    *,
+    start: float,
+    floor: float,
+    depth: float,
+) -> Iterator[float]:
+    """Levels of a shape; the tops of low islands are levels too.
+
+    Yields
+    ------
+    float
+        z in the setup, mm, falling.
+    """
+    tops = shape.terraces if isinstance(shape, Area) else []
+    stops = [top + allowance.bottom for top in tops if floor < top + allowance.bottom < start]
+    if (start - floor) / depth > MOST_LEVELS:
+        raise job.fault(
+            f"{depth:g} mm: more than {MOST_LEVELS} levels over {start - floor:g} mm",
+            job.step.operation_ref,
+            "axial_cutting_depth",
+        )
+    for top, bottom in pairwise([start, *stops, floor]):
+        yield from levels(top, bottom, depth)
 
 
 def _layer(
@@ -159,6 +201,8 @@ def _layer(
         finishes = isinstance(operation, (SideFinishMilling, BottomAndSideFinishMilling))
         return flank_layer(job, shape, level, way, is_single=finishes and earlier is not None)
     if isinstance(operation, SideMilling):
+        if not shape.walls:
+            raise job.fault("has no walls that could be milled from the side", shape.ref)
         return wall_passes(shape, level, way)
     if isinstance(operation, BottomAndSideFinishMilling) and earlier is not None:
         has_floor_left = earlier.bottom > floor - shape.bottom
@@ -184,6 +228,9 @@ def _span(
     start = shape.top
     if isinstance(job.step.operation, PlaneFinishMilling) and earlier is not None:
         start = min(start, shape.bottom + earlier.bottom)
+    if earlier is not None and abs(start - floor) <= 1e-9:
+        # Nothing was left on the floor: one pass smooths it.
+        return floor, floor
     if start - floor <= 1e-9:
         raise job.fault(
             f"leaves {allowance.bottom:g} mm of {start - shape.bottom:g} mm: "
@@ -205,7 +252,7 @@ def _axial_depth(job: Job, total: float) -> float:
             job.step.operation_ref,
             "axial_cutting_depth",
         )
-    return max(float(depth), 1e-3)
+    return float(depth)
 
 
 def _retract_z(job: Job, course: Course, shape: Area | Flank) -> float:
@@ -221,6 +268,13 @@ def _retract_z(job: Job, course: Course, shape: Area | Flank) -> float:
             job.step.operation_ref,
             "retract_plane",
         )
+    if job.security_z <= shape.top:
+        raise job.fault(
+            f"the security plane at z = {job.security_z:g} mm does not lie above the feature, "
+            f"which begins at z = {shape.top:g} mm",
+            job.step.ref,
+            "its_secplane",
+        )
     return min(shape.top + distance, job.security_z)
 
 
@@ -230,17 +284,11 @@ def _cut_layer(
     operation: Two5dMillingOperation,
     layer: Layer,
     *,
-    retract_z: float,
+    heights: Heights,
     way: Way,
 ) -> None:
     """All passes of one level."""
-    heights = Heights(
-        travel=_travel_z(job, retract_z),
-        retract=retract_z,
-        above=min(layer.above + GAP, retract_z),
-        level=layer.z,
-    )
-    room = Room(loops=layer.loops, side=layer.side)
+    room = layer.room
     last: Pass | None = None
     for cut in layer.passes:
         here = complex(course.at[0], course.at[1])
@@ -277,8 +325,10 @@ def _travel_z(job: Job, retract_z: float) -> float:
 def _is_linked(here: complex, following: Pass, layer: Layer, way: Way) -> bool:
     """Whether the way to the next pass may be made at the feed."""
     distance = abs(following.start - here)
-    if distance < 1e-9:
+    if distance < TINY:
         return True
-    return distance <= LINK * way.step and (
-        not layer.loops or is_inside(here, following.start, layer.loops)
-    )
+    if way.is_lifted or distance > LINK * way.step:
+        return False
+    if layer.loops:
+        return is_inside(here, following.start, layer.loops)
+    return layer.room.holds((line(here, following.start),))

@@ -7,7 +7,7 @@ width of a profile is the one at the top; angles of walls are from the vertical.
 
 from collections.abc import Sequence
 from itertools import pairwise
-from math import pi, sqrt, tan
+from math import pi, tan
 
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.features import Slot
@@ -24,7 +24,7 @@ from stepnc_model.entities.profiles import (
     VeeProfile,
 )
 from stepnc_model.part21.values import Ref
-from stepnc_model.toolpath.area import Area, Inset, Wall, rounding
+from stepnc_model.toolpath.area import Area, Inset, Wall, chord, rounding
 from stepnc_model.toolpath.contour import (
     Chain,
     Edge,
@@ -34,16 +34,18 @@ from stepnc_model.toolpath.contour import (
     halved,
     line,
     reversed_chain,
+    stretched,
 )
-from stepnc_model.toolpath.curve import segments_of
+from stepnc_model.toolpath.curve import JOINED, segments_of
+from stepnc_model.toolpath.cutter import run_out
 from stepnc_model.toolpath.frame import Frame
 from stepnc_model.toolpath.job import Job
 from stepnc_model.toolpath.offset import beside, erode, rounded
 from stepnc_model.toolpath.outline import course, size
 from stepnc_model.units import rad_from_deg
 
-RUN_OUT = 2.0
-"""mm beyond a tool's own diameter by which an open end is run over"""
+ROUNDEST = 1e-3
+"""mm by which the radius of a corner stays below half the width"""
 
 
 def slot_area(job: Job, ref: Ref[Entity], slot: Slot, frame: Frame, bottom: float) -> Area:
@@ -59,12 +61,17 @@ def slot_area(job: Job, ref: Ref[Entity], slot: Slot, frame: Frame, bottom: floa
     half, inset = _section(job, slot.swept_shape, top - bottom)
     ends = [job.program.get(end) for end in slot.end_conditions]
     outside: Chain = ()
-    is_loop = abs(middle[-1].end - middle[0].start) < 1e-6
-    if is_loop or any(isinstance(end, LoopSlotEndType) for end in ends):
+    beyond = (0.0, 0.0)
+    if abs(middle[-1].end - middle[0].start) < JOINED:
         loops = _ring(middle, half)
+    elif any(isinstance(end, LoopSlotEndType) for end in ends):
+        gap = abs(middle[-1].end - middle[0].start)
+        raise job.fault(f"its course does not close: a gap of {gap:.4g} mm", ref)
     else:
         # One end condition stands for both ends.
         pair = [*ends, *ends][:2] if ends else [OpenSlotEndType(), OpenSlotEndType()]
+        first, last = (_beyond(job, end, half) for end in pair)
+        beyond = (first, last)
         loops, outside = _band(job, ref, middle, half, pair)
     if not loops:
         raise job.fault(f"its course turns more sharply than its half width {half:g} mm", ref)
@@ -76,6 +83,7 @@ def slot_area(job: Job, ref: Ref[Entity], slot: Slot, frame: Frame, bottom: floa
         solid=_solid(middle, half) if outside else None,
         outside=outside,
         middle=middle,
+        ends=beyond,
     )
 
 
@@ -83,18 +91,12 @@ def _band(
     job: Job, ref: Ref[Entity], middle: Chain, half: float, ends: Sequence[Entity]
 ) -> tuple[tuple[Loop, ...], Chain]:
     """Outline of a slot with two ends, and the edges of it that lie beyond open ends."""
-    overcut = getattr(job.step.operation, "overcut_length", None) or 0.0
-    run_out = job.tool.diameter + overcut + RUN_OUT
-    first, last = middle[0], middle[-1]
-    before = first.start - run_out * first.along(0.0)
-    after = last.end + run_out * last.along(1.0)
-    way = list(middle)
-    if isinstance(ends[0], OpenSlotEndType):
-        way.insert(0, line(before, first.start))
-    if isinstance(ends[1], OpenSlotEndType):
-        way.append(line(last.end, after))
-    left = beside(tuple(way), half)
-    right = beside(reversed_chain(tuple(way)), half)
+    before, after = (
+        _beyond(job, end, half) if isinstance(end, OpenSlotEndType) else 0.0 for end in ends
+    )
+    way = stretched(middle, before, after)
+    left = beside(way, half)
+    right = beside(reversed_chain(way), half)
     if len(left) != 1 or len(right) != 1:
         return (), ()
     caps = (
@@ -108,14 +110,35 @@ def _band(
         for edge in cap
     )
     outline = counter_clockwise(halved((*right[0], *caps[0], *left[0], *caps[1])))
-    radii = [
-        min(size(job, radius, ref) for radius in (end.corner_radius1, end.corner_radius2))
-        for end in ends
-        if isinstance(end, FlatSlotEndType) and end.corner_radius1 and end.corner_radius2
-    ]
-    radius = min(radii, default=0.0)
-    loops = rounded(outline, radius) if 0.0 < radius < half else (outline,)
-    return loops, outside
+    radius = min(
+        (_corner(job, end, half) for end in ends if isinstance(end, FlatSlotEndType)),
+        default=0.0,
+    )
+    return (rounded(outline, radius) if radius > 0.0 else (outline,)), outside
+
+
+def _beyond(job: Job, end: Entity, half: float) -> float:
+    """How far a slot goes on beyond the end of its course, mm."""
+    if isinstance(end, OpenSlotEndType):
+        return job.tool.diameter + run_out(job)
+    return half if isinstance(end, RadiusedSlotEndType) else 0.0
+
+
+def _corner(job: Job, end: FlatSlotEndType, half: float) -> float:
+    """The smaller radius of the corners of a flat end: nothing is cut into."""
+    radii = []
+    for ref in (end.corner_radius1, end.corner_radius2):
+        radius = (job.program.get(ref).theoretical_size or 0.0) if ref is not None else 0.0
+        if not 0.0 <= radius <= half * (1.0 + 1e-9):
+            raise job.fault(
+                f"corner radius {radius:g} mm: it lies between 0 and half the width of the "
+                f"slot, {half:g} mm",
+                ref,
+                "theoretical_size",
+            )
+        radii.append(radius)
+    # Just below half the width, so that a middle line is left to round about.
+    return min(*radii, half - ROUNDEST)
 
 
 def _solid(middle: Chain, half: float) -> Loop:
@@ -154,8 +177,8 @@ def _section(job: Job, ref: Ref[Entity], depth: float) -> tuple[float, Inset]:
         return depth * slope, lambda height: max(depth - height, 0.0) * slope
     if isinstance(profile, PartialCircularProfile):
         radius = size(job, profile.radius, ref)
-        half = _chord(radius, depth)
-        return half, lambda height: half - _chord(radius, min(height, depth))
+        half = chord(radius, depth)
+        return half, lambda height: half - chord(radius, min(height, depth))
     if isinstance(profile, GeneralProfile):
         return _general(job, ref, profile, depth)
     raise job.fault("a slot of this profile cannot be milled", ref)
@@ -182,12 +205,6 @@ def _angle(written: float | None) -> float:
     """Included angle in rad; no vee is as sharp as 3°, so small numbers are radians."""
     angle = written or 0.0
     return angle if angle < pi else rad_from_deg(angle)
-
-
-def _chord(radius: float, height: float) -> float:
-    """Half width of a circle at a height above its lowest point."""
-    up = min(max(height, 0.0), radius)
-    return sqrt(max(radius**2 - (radius - up) ** 2, 0.0))
 
 
 def _general(

@@ -29,12 +29,16 @@ from stepnc_model.entities.strategies import (
 )
 from stepnc_model.entities.tools import MillingCuttingTool
 from stepnc_model.errors import Finding
+from stepnc_model.part21.values import Ref
 from stepnc_model.toolpath.cutter import Cutter
 from stepnc_model.toolpath.frame import direction_of
 from stepnc_model.toolpath.job import Job
 
 WIDEST = 0.95
 """of the diameter: neighbouring passes overlap by the rest at least"""
+
+LEAST = 0.002
+"""of the diameter: smaller steps than this are a slip"""
 
 
 class Covering(StrEnum):
@@ -96,7 +100,7 @@ def way_of(job: Job, cutter: Cutter) -> Way:
     strategy = job.program.get(ref) if ref is not None else None
     if ref is not None and isinstance(strategy, ExplicitStrategy):
         raise job.fault("asks for an explicit tool path, and none is given", ref)
-    step, findings = _step(job, cutter, strategy)
+    step, findings = _step(job, cutter, strategy, ref or job.step.operation_ref)
     along = _along(job, strategy)
     mode = getattr(strategy, "cutmode", None) or getattr(strategy, "spiral_cutmode", None)
     rotation = getattr(strategy, "rotation_direction", None)
@@ -113,7 +117,8 @@ def way_of(job: Job, cutter: Cutter) -> Way:
         along=along,
         # One way and climbing, the uncut material lies on the right.
         steps_left=side is LeftOrRight.LEFT if side is not None else not on_right,
-        is_lifted=connection is StrokeConnectionStrategy.LIFT_SHIFT_PLUNGE,
+        is_lifted=connection is StrokeConnectionStrategy.LIFT_SHIFT_PLUNGE
+        or isinstance(strategy, UnidirectionalMilling),
         is_counter_clockwise=is_ccw,
         is_inside_out=mode is None or is_ccw == on_right,
         has_wall_on_right=on_right if mode is not None else is_ccw,
@@ -121,7 +126,9 @@ def way_of(job: Job, cutter: Cutter) -> Way:
     )
 
 
-def _step(job: Job, cutter: Cutter, strategy: Entity | None) -> tuple[float, list[Finding]]:
+def _step(
+    job: Job, cutter: Cutter, strategy: Entity | None, strategy_ref: Ref[Entity]
+) -> tuple[float, list[Finding]]:
     """Distance of neighbouring passes in mm: from the overlap, at most the radial depth."""
     diameter = 2.0 * cutter.radius
     findings = []
@@ -139,9 +146,19 @@ def _step(job: Job, cutter: Cutter, strategy: Entity | None) -> tuple[float, lis
     if ratio > 1.0:
         ratio /= 100.0
     if not 0.0 <= ratio < 1.0:
-        raise job.fault(f"overlap {overlap:g}: it must be at least 0 and below 1", at)
-    step = diameter * min(1.0 - ratio, WIDEST)
-    return (min(step, radial) if radial else step), findings
+        raise job.fault(
+            f"overlap {overlap:g}: it must be at least 0 and below 1, or 100 in percent",
+            strategy_ref,
+            "overlap",
+        )
+    step = min(diameter * min(1.0 - ratio, WIDEST), radial or diameter)
+    if step < LEAST * diameter:
+        raise job.fault(
+            f"steps of {step:g} mm: at least {LEAST * diameter:g} mm for this tool",
+            at if radial == step else strategy_ref,
+            "radial_cutting_depth" if radial == step else "overlap",
+        )
+    return step, findings
 
 
 def _along(job: Job, strategy: Entity | None) -> complex:

@@ -21,7 +21,7 @@ from stepnc_model.toolpath.path import Feed
 
 BRACKET = Path(__file__).parents[3] / "examples" / "parts" / "bracket.stpnc"
 POINT = 4.9 * tan(radians(20.0))
-STRATEGY = "#361=DRILLING_TYPE_STRATEGY($,0.5,2.,$,0.6,4.);"
+STRATEGY = "#361=DRILLING_TYPE_STRATEGY($,0.5,2.,$,0.6,36.);"
 OPERATION = "#212=DRILLING($,$,'DRILL HOLE 1',5.,$,#450,#311,#330,3.,$,$,$,$,#361);"
 
 
