@@ -58,7 +58,7 @@ class Area:
 
     @property
     def depth(self) -> float:
-        """Mm"""
+        """From the top to the floor, mm."""
         return self.top - self.bottom
 
     def boundaries(self, z: float, cutter: Cutter) -> tuple[Loop, ...]:
@@ -99,7 +99,7 @@ class Flank:
 
     @property
     def depth(self) -> float:
-        """Mm"""
+        """From the top to the floor, mm."""
         return self.top - self.bottom
 
 

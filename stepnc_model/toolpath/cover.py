@@ -213,7 +213,8 @@ def _through(part: Polygon, radius: float) -> list[Pass]:
     stack = [part]
     while stack:
         piece = stack.pop()
-        ring = piece.exterior.simplify(0.02 * radius)
+        # Anything within a radius of the part lies inside: the way need not follow its edge.
+        ring = piece.exterior.simplify(0.5 * radius)
         points = [complex(x, y) for x, y in ring.coords]
         edges = tuple(line(a, b) for a, b in pairwise(points) if abs(a - b) > TINY)
         if not edges:

@@ -40,7 +40,7 @@ GAP = 0.5
 """mm above the material of a level where the way down through air ends"""
 
 LINK = 2.0
-"""steps between two passes that are linked at the feed; beyond, the tool would cut full width"""
+"""steps between two passes that are linked at the feed; further apart the tool is lifted"""
 
 LARGEST = 1000.0
 """mm of allowance; more is a slip"""
@@ -141,7 +141,7 @@ def _layers(job: Job, shape: Area | Flank, cutter: Cutter, way: Way) -> Iterator
     allowance = allowance_of(job, job.step.operation)
     earlier = _earlier(job)
     start, floor = _span(job, shape, allowance, earlier)
-    above = start
+    above, count = start, 0
     depth = _axial_depth(job, start - floor)
     for z in _heights(job, shape, allowance, start=start, floor=floor, depth=depth):
         level = Level(z=z, above=above, cutter=cutter, allowance=allowance.side)
@@ -149,8 +149,8 @@ def _layers(job: Job, shape: Area | Flank, cutter: Cutter, way: Way) -> Iterator
         if layer is None or not layer.passes:
             break
         yield layer
-        above = z
-    if above == start:
+        above, count = z, count + 1
+    if count == 0:
         raise job.fault(
             f"'{job.tool.id}' of {job.tool.diameter:g} mm does not fit in"
             + (f" with {allowance.side:g} mm left on the walls" if allowance.side else ""),
@@ -245,7 +245,7 @@ def _axial_depth(job: Job, total: float) -> float:
     """Depth of a level: as programmed, else what the cutting edge reaches, mm."""
     depth = getattr(job.step.operation, "axial_cutting_depth", None)
     if depth is None:
-        return min(total, job.tool.cutting_edge_length or total)
+        return min(total, job.tool.cutting_edge_length or total) or 1.0
     if not 0.0 < depth < float("inf"):
         raise job.fault(
             f"{depth:g} mm: a depth of cut is positive",

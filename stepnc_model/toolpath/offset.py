@@ -76,7 +76,7 @@ def erode(loops: Sequence[Loop], distance: float) -> tuple[Loop, ...]:
 
 
 def dilate(loops: Sequence[Loop], distance: float) -> tuple[Loop, ...]:
-    """Boundary of the union of discs about every point inside the loops, which have no holes."""
+    """Boundary of all discs about points inside the loops, which have no holes."""
     outside = [reversed_chain(loop) for loop in loops]
     return tuple(reversed_chain(loop) for loop in erode(outside, distance))
 

@@ -33,6 +33,7 @@ from stepnc_model.toolpath.contour import (
     halved,
     line,
     polygon,
+    shape,
 )
 from stepnc_model.toolpath.curve import JOINED, Segment, move_of, segments_of
 from stepnc_model.toolpath.frame import Frame, direction_of, frame_of
@@ -41,7 +42,13 @@ from stepnc_model.toolpath.path import MoveType, Plane, Point
 from stepnc_model.units import rad_from_deg
 
 MOST = 1e6
-"""mm; nothing longer is a length of a part"""
+"""mm; nothing longer is a length of a part, nothing lies further away"""
+
+FLATTEST_DEG = 89.0
+"""degrees from the vertical"""
+
+CHORD = 1e-3
+"""mm of tolerance where an outline is looked at as a polygon"""
 
 
 def size(job: Job, ref: Ref[TolerancedLengthMeasure] | None, owner: Ref[Entity]) -> float:
@@ -60,6 +67,32 @@ def parameter(job: Job, ref: Ref[NumericParameter]) -> float:
     if value is None or not 0.0 < value < MOST:
         raise job.fault(f"{value} mm: it must be positive", ref, "its_parameter_value")
     return float(value)
+
+
+def given(job: Job, ref: Ref[TolerancedLengthMeasure] | None) -> float:
+    """A size that may be absent or 0, mm."""
+    value = (job.program.get(ref).theoretical_size or 0.0) if ref is not None else 0.0
+    if ref is not None and not 0.0 <= value < MOST:
+        raise job.fault(f"size {value:g} mm: it must not be negative", ref, "theoretical_size")
+    return float(value)
+
+
+def slope_of(job: Job, slope: float | None, ref: Ref[Entity]) -> float:
+    """Lean of a wall in degrees from the vertical; 0 where none is given."""
+    value = slope or 0.0
+    if not 0.0 <= value < FLATTEST_DEG:
+        raise job.fault(
+            f"a wall at {value:g}°: it leans by at least 0° and less than {FLATTEST_DEG:g}°, "
+            "wider above than below",
+            ref,
+        )
+    return float(value)
+
+
+def require_simple(job: Job, loop: Loop, ref: Ref[Entity]) -> None:
+    """Refuse a boundary that crosses itself."""
+    if not shape(loop, tolerance=CHORD).is_valid:
+        raise job.fault("its boundary crosses itself", ref)
 
 
 def require_upright(job: Job, frame: Frame, ref: Ref[Entity]) -> None:
@@ -159,6 +192,9 @@ def _chain(job: Job, ref: Ref[Entity], frame: Frame) -> Chain:
     chain = halved(chain_of(tuple(segment.within(frame) for segment in segments)))
     if not chain:
         raise job.fault("has no length", ref)
+    for edge in chain:
+        if not max(abs(edge.start), abs(edge.end)) < MOST:
+            raise job.fault(f"a point at {edge.end:g} mm: no part is so large", ref)
     return chain
 
 

@@ -136,8 +136,8 @@ def test_strokes_with_a_pass_along_the_wall_sweep_it_too(
     check_swept(walls, (*strokes, *walled), radius)
 
 
-@given(walls=pockets(), diameter=st.floats(2.0, 20.0), overlap=st.floats(0.5, 0.95))
-@settings(max_examples=100, deadline=None)
+@given(walls=pockets(), diameter=st.floats(2.0, 20.0), overlap=st.floats(0.05, 0.95))
+@settings(max_examples=300, deadline=None)
 def test_what_is_curved_stays_an_arc(
     walls: list[Loop], diameter: float, overlap: float
 ) -> None:
