@@ -1,7 +1,7 @@
 """Tool paths and NC code of a program: the verbs ``toolpath``, ``post`` and ``canonical``."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from service.files import read_bytes, require_place, write_atomically, write_lines
@@ -12,6 +12,7 @@ from stepnc_model.post.blocks import Cycles, Machine
 from stepnc_model.post.controls import Control, read, write
 from stepnc_model.post.neutral import blocks_of
 from stepnc_model.program import Program
+from stepnc_model.technology import programmed
 from stepnc_model.toolpath.function import Function
 from stepnc_model.toolpath.generate import generate, raised
 from stepnc_model.toolpath.job import stock_of
@@ -104,10 +105,36 @@ def post(request: PostRequest, *, tell: Tell = silent) -> Paths:
     paths = tool_paths(
         request.file, units=request.units, keep_going=request.keep_going, tell=tell
     )
+    paths = with_feeds(paths, keep_going=request.keep_going, tell=tell)
     cycles = Cycles.OWN if request.cycles else Cycles.EXPANDED
     count = write_lines(output, nc_lines(paths, control, cycles))
     tell(f"written: {output} ({count} lines)")
     return paths
+
+
+def with_feeds(paths: Paths, *, keep_going: bool, tell: Tell = silent) -> Paths:
+    """The paths whose technology says how fast to run: a control cannot do without.
+
+    Raises
+    ------
+    SchemaError
+        At the first other path, unless it keeps going.
+    """
+    items: list[ToolPath | Function] = []
+    faults: list[SchemaError] = []
+    for item in paths.items:
+        try:
+            if isinstance(item, ToolPath) and item.technology_ref is not None:
+                programmed(paths.program, item.technology_ref)
+            items.append(item)
+        except SchemaError as fault:
+            if not keep_going:
+                raise
+            faults.append(fault)
+            tell(f"left out: '{item.id}': {fault}")
+    if not any(isinstance(item, ToolPath) for item in items):
+        raise faults[0]
+    return replace(paths, items=tuple(items), faults=(*paths.faults, *faults))
 
 
 def nc_lines(paths: Paths, control: Control, cycles: Cycles = Cycles.EXPANDED) -> Iterator[str]:

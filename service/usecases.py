@@ -124,6 +124,10 @@ def optimise(request: Request, *, tell: Tell = silent) -> Outcome:
     data = writeback.write(program, changes, profile) if changes else program.file.data
     code = _nc_code(program, data, request.control, tell) if request.control else None
     written = None
+    # NC code first: where it cannot be made, nothing is written.
+    if code is not None and nc_place is not None and not request.dry_run:
+        count = write_lines(nc_place, code)
+        tell(f"NC code: {nc_place} ({count} lines)")
     if request.dry_run:
         pass
     elif changes:
@@ -132,9 +136,6 @@ def optimise(request: Request, *, tell: Tell = silent) -> Outcome:
         tell(f"written: {output}")
     else:
         tell("nothing was written: no workingstep was advised")
-    if code is not None and nc_place is not None:
-        count = write_lines(nc_place, code)
-        tell(f"NC code: {nc_place} ({count} lines)")
     if request.report is not None:
         from service.report import report_page  # noqa: PLC0415 (plotly takes a second)
 
@@ -243,11 +244,12 @@ def _nc_place(request: Request, output: Path) -> Path | None:
 
 def _nc_code(program: Program, data: bytes, control: str, tell: Tell) -> Iterator[str]:
     """NC code of the program as it is after optimisation."""
-    from service.toolpaths import nc_lines, paths_of  # noqa: PLC0415 (numpy, shapely)
+    from service.toolpaths import nc_lines, paths_of, with_feeds  # noqa: PLC0415 (numpy, shapely)
 
     file = Part21File.from_bytes(data, name=program.name)
     optimised = Program(file, units=program.units, name=program.name)
-    return nc_lines(paths_of(optimised, tell=tell), Control(control.lower()))
+    paths = with_feeds(paths_of(optimised, tell=tell), keep_going=False)
+    return nc_lines(paths, Control(control.lower()))
 
 
 def _selected(program: Program, wanted: tuple[str, ...]) -> tuple[Workingstep, ...]:

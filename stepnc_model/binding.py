@@ -139,6 +139,23 @@ class Model:
         found += _unknown_findings(self.file)
         return tuple(sorted(found, key=lambda finding: finding.line))
 
+    def fault_near(self, *refs: Ref[Any]) -> Finding | None:
+        """The nearest error among instances and what they refer to, or None.
+
+        Operations are looked at where they are asked for: features list those of others.
+        """
+        queue = list(dict.fromkeys(map(int, refs)))
+        known = set(queue)
+        for id in queue:
+            inspection = _inspect(self.file, id) or Inspection(findings=(), references=())
+            for finding in inspection.findings:
+                if finding.severity is Severity.ERROR:
+                    return finding
+            new = [other for other in inspection.references if other not in known]
+            known.update(new)
+            queue += (n for n in new if not isinstance(self.entity(n), MachiningOperation))
+        return None
+
     def _refusal(self, id: int) -> SchemaError:
         """Why an instance has no entity."""
         if id not in self.file:

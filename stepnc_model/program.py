@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from stepnc_model.binding import Model
 from stepnc_model.entities.entity import Entity
@@ -148,19 +148,25 @@ class Program:
         )
 
     @contextmanager
-    def using(self, ref: Ref[Entity]) -> Iterator[None]:
+    def using(self, ref: Ref[Entity], *near: Ref[Any] | None) -> Iterator[None]:
         """Turn what an instance lacks into an error that names it.
 
         The binding is tolerant: where the schema requires a value, an entity may hold None, or
-        a number that no physics takes. Who works with it finds out, and here it gets a place.
+        a number that no physics takes. Who works with it finds out, and here it gets a place:
+        that of the nearest fault among the instances given and what they refer to, if any.
         """
         try:
             yield
         except ValueError as error:
             raise self.error(str(error), ref) from error
         except (ArithmeticError, AttributeError, IndexError, TypeError) as error:
-            message = "an attribute that it needs is missing, of another kind, or out of range"
-            raise self.error(message, ref) from error
+            fault = self.model.fault_near(ref, *(other for other in near if other is not None))
+            if fault is None:
+                message = "an attribute it needs is missing, of another kind, or out of range"
+                raise self.error(message, ref) from error
+            raise SchemaError(
+                fault.message, entity=fault.entity, attribute=fault.attribute, line=fault.line
+            ) from error
 
     @property
     def faults(self) -> tuple[SchemaError, ...]:

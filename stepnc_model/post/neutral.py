@@ -301,7 +301,8 @@ class _Sequence:
         """Feed and spindle, looked up once a path."""
         found = self._known.get(feed)
         if found is None:
-            found = conditions(self.program, feed, self.tool, self.machine)
+            with self.program.using(feed.technology):
+                found = conditions(self.program, feed, self.tool, self.machine)
             self._known[feed] = found
         return found
 

@@ -83,7 +83,7 @@ def enter(
     if isinstance(strategy, (PlungeRamp, PlungeHelix, PlungeZigzag)):
         angle = strategy.angle
         if angle is not None and 0.0 < angle <= STEEPEST_DEG:
-            return _slanted(course, job, cut, heights=heights, room=room, approach=approach)
+            return _slanted(course, job, cut, strategy, heights=heights, room=room)
         course.find(job.note(f"an angle of {angle}° is no ramp: straight down", approach))
     _down(course, cut.start, heights)
     return cut
@@ -152,25 +152,24 @@ def _slanted(
     course: Course,
     job: Job,
     cut: Pass,
+    strategy: PlungeRamp | PlungeHelix | PlungeZigzag,
     *,
     heights: Heights,
     room: Room,
-    approach: Ref[Entity] | None,
 ) -> Pass:
     """Down at an angle: a helix, round and round a loop, or to and fro."""
-    strategy: Entity = job.program.get(approach)
     length = (heights.above - heights.level) / tan(rad_from_deg(strategy.angle))
     if isinstance(strategy, PlungeHelix):
         if _helix(course, cut, heights, room, radius=strategy.radius, length=length):
             return cut
-        course.find(job.note("no room for the helix: a ramp along the pass", approach))
+        course.find(job.note("no room for the helix: a ramp along the pass", None, "approach"))
     total = chain_length(cut.chain)
     limit = total
     if isinstance(strategy, PlungeZigzag) and strategy.width and strategy.width > 0.0:
         limit = min(total, strategy.width)
     if length > MOST_TURNS * limit:
         text = f"a ramp of {length:.4g} mm on {limit:.4g} mm of the pass: straight down"
-        course.find(job.note(text, approach))
+        course.find(job.note(text, None, "approach"))
         _down(course, cut.start, heights)
         return cut
     if cut.is_closed and not isinstance(strategy, PlungeZigzag):

@@ -54,7 +54,7 @@ def explicit_path(job: Job) -> ToolPath:
         tool=job.tool,
         technology=step.technology_ref,
     )
-    with job.program.using(step.operation_ref):
+    with job.program.using(step.operation_ref, *step.features):
         paths = _paths(job.program, step.operation_ref, step.operation.its_toolpath)
         walk, start = _walked(around, paths, _frames(job), at=step.operation_ref)
         return ToolPath(

@@ -89,7 +89,7 @@ def workingstep_path(program: Program, step: Workingstep) -> ToolPath:
     SchemaError, PathError
         When the file does not say enough, or the tool cannot do it.
     """
-    with program.using(step.operation_ref):
+    with program.using(step.operation_ref, *step.features, step.setup):
         job = job_of(program, step)
         operation = step.operation
         if operation.its_toolpath is not None:

@@ -44,7 +44,7 @@ def hole_path(job: Job) -> ToolPath:
         name = operation.express_name().replace("_", " ")
         message = f"{name} leaves the axis of the hole by an amount that no attribute tells"
         raise job.fault(message, job.step.operation_ref, "its_toolpath")
-    with job.program.using(job.step.operation_ref):
+    with job.program.using(job.step.operation_ref, *job.step.features):
         holes = tuple(holes_of(job, operation))
         if not holes:
             raise job.fault("its pattern omits every hole", job.step.features[0])

@@ -83,7 +83,7 @@ def job_of(program: Program, step: Workingstep) -> Job:
     SchemaError, PathError
         When its tool or security plane cannot be used.
     """
-    with program.using(step.ref):
+    with program.using(step.ref, step.setup):
         stock = stock_of(program, step.setup)
         security_z, findings = _security(program, step, stock)
         return Job(

@@ -47,7 +47,7 @@ def turning_path(job: Job) -> ToolPath:
         When feature, tool, stock or strategy allow no path.
     """
     operation = operation_of(job)
-    with job.program.using(job.step.operation_ref):
+    with job.program.using(job.step.operation_ref, *job.step.features):
         outlines = _outlines(job)
         bar = bar_of(job, outlines)
         course = Course(job, _safe_point(job, bar), is_turning=True)

@@ -200,3 +200,35 @@ def test_nc_code_never_replaces_the_program(tmp_path: Path) -> None:
         optimise_main([str(word) for word in words])
     assert stopped.value.code == BAD_INPUT
     assert [each.name for each in tmp_path.iterdir()] == ["part.ngc"]
+
+
+def test_a_workingstep_without_a_feed_cannot_be_posted_and_others_can(tmp_path: Path) -> None:
+    text = BRACKET.read_text()
+    slow = text.replace("#311=MILLING_TECHNOLOGY(0.0053,", "#311=MILLING_TECHNOLOGY(0.,")
+    assert slow != text
+    part = tmp_path / "part.stpnc"
+    part.write_text(slow)
+    with pytest.raises(SchemaError, match="#311 MILLING_TECHNOLOGY.feedrate: feed 0"):
+        post(PostRequest(file=part, control="fanuc"))
+    told: list[str] = []
+    paths = post(PostRequest(file=part, control="fanuc", keep_going=True), tell=told.append)
+    assert len(paths.faults) == 2
+    assert "left out: 'DRILL HOLE 1': " in told[0]
+
+
+def test_optimise_writes_nothing_where_the_control_cannot_do_it(tmp_path: Path) -> None:
+    part = tmp_path / "shaft.stpnc"
+    part.write_bytes(SHAFT.read_bytes())
+    with pytest.raises(SystemExit) as stopped:
+        optimise_main([str(part), "--nc", "heidenhain"])
+    assert stopped.value.code == BAD_INPUT
+    assert [each.name for each in tmp_path.iterdir()] == ["shaft.stpnc"]
+
+
+def test_a_dry_run_writes_no_nc_code_either(tmp_path: Path) -> None:
+    part = tmp_path / "paper002.stpnc"
+    part.write_bytes((PARTS / "paper002.stpnc").read_bytes())
+    with pytest.raises(SystemExit) as stopped:
+        optimise_main([str(part), "--machine", "paper002", "--nc", "fanuc", "--dry-run"])
+    assert stopped.value.code == OK
+    assert [each.name for each in tmp_path.iterdir()] == ["paper002.stpnc"]
