@@ -36,6 +36,19 @@ def is_same(one: Path, other: Path) -> bool:
         raise StepNcError(f"{str(one)!r} or {str(other)!r} is no file name") from error
 
 
+def beside(path: Path, suffix: str) -> Path:
+    """The file of the same name with another ending.
+
+    Raises
+    ------
+    StepNcError
+        When the path has no name.
+    """
+    if not path.name:
+        raise StepNcError(f"{path}: is no file")
+    return path.with_suffix(suffix)
+
+
 def require_place(path: Path, *, apart_from: Path) -> None:
     """Refuse an output that is another file of the same run, or has no folder."""
     if is_same(path, apart_from):

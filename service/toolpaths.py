@@ -4,7 +4,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from service.files import read_bytes, require_place, write_atomically, write_lines
+from service.files import (
+    beside,
+    read_bytes,
+    require_place,
+    write_atomically,
+    write_lines,
+)
 from service.progress import Progress
 from service.reading import Tell, one_of, read_program, silent
 from stepnc_model.errors import Finding, PostError, SchemaError, StepNcError, WriteError
@@ -100,7 +106,7 @@ def post(request: PostRequest, *, tell: Tell = silent) -> Paths:
         When the control is unknown, a path cannot be made, or the file cannot be written.
     """
     control = one_of(Control, request.control.lower(), "control")
-    output = request.output or request.file.with_suffix(control.suffix)
+    output = request.output or beside(request.file, control.suffix)
     require_place(output, apart_from=request.file)
     paths = tool_paths(
         request.file, units=request.units, keep_going=request.keep_going, tell=tell

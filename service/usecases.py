@@ -8,7 +8,14 @@ from optimiser.advice import Plan, Status
 from optimiser.formulate import Task
 from optimiser.modes import Free, Mode
 from optimiser.optimise import optimise as advise
-from service.files import is_same, read_bytes, require_place, write_atomically, write_lines
+from service.files import (
+    beside,
+    is_same,
+    read_bytes,
+    require_place,
+    write_atomically,
+    write_lines,
+)
 from service.progress import Progress
 from service.reading import Tell, one_of, read_program, silent, unit_profile
 from service.records import changes_of
@@ -218,7 +225,7 @@ def _output(request: Request) -> Path:
             raise StepNcError("--in-place and --output exclude each other")
         output = request.file
     else:
-        output = request.output or request.file.with_suffix(".optimised.stpnc")
+        output = request.output or beside(request.file, ".optimised.stpnc")
         if is_same(request.file, output):
             message = "is the input file; use --in-place to overwrite it"
             raise WriteError(message, path=str(output))
@@ -235,7 +242,7 @@ def _nc_place(request: Request, output: Path) -> Path | None:
     if not request.control:
         return None
     control = one_of(Control, request.control.lower(), "control")
-    place = output.with_suffix(control.suffix)
+    place = beside(output, control.suffix)
     for other in (request.file, output, request.report):
         if other is not None:
             require_place(place, apart_from=other)

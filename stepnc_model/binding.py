@@ -140,21 +140,23 @@ class Model:
         return tuple(sorted(found, key=lambda finding: finding.line))
 
     def fault_near(self, *refs: Ref[Any]) -> Finding | None:
-        """The nearest error among instances and what they refer to, or None.
+        """The nearest error among instances and what they refer to, else a warning, or None.
 
         Operations are looked at where they are asked for: features list those of others.
         """
-        queue = list(dict.fromkeys(map(int, refs)))
+        queue, warning = list(dict.fromkeys(map(int, refs))), None
         known = set(queue)
         for id in queue:
             inspection = _inspect(self.file, id) or Inspection(findings=(), references=())
             for finding in inspection.findings:
                 if finding.severity is Severity.ERROR:
                     return finding
+                is_warning = finding.severity is Severity.WARNING
+                warning = finding if is_warning and warning is None else warning
             new = [other for other in inspection.references if other not in known]
             known.update(new)
             queue += (n for n in new if not isinstance(self.entity(n), MachiningOperation))
-        return None
+        return warning
 
     def _refusal(self, id: int) -> SchemaError:
         """Why an instance has no entity."""

@@ -217,7 +217,11 @@ class Program:
         """The workpiece of the project, or the first one of the file."""
         for project in self._all(Project):
             if project.its_workpieces:
-                return self.get(project.its_workpieces[0])
+                ref = project.its_workpieces[0]
+                workpiece = self.get(ref)
+                if not isinstance(workpiece, Workpiece):
+                    raise self.error("stands where a workpiece belongs", ref)
+                return workpiece
         return next(self._all(Workpiece), None)
 
     def material(self) -> Material | None:

@@ -197,6 +197,8 @@ def _turning(program: Program, ref: Ref[Entity], technology: TurningTechnology) 
         raise program.error("has no spindle speed", ref, "spindle_speed")
     spindle = technology.spindle_speed
     entity: Entity = program.get(spindle)
+    if not isinstance(entity, (ConstSpindleSpeed, ConstCuttingSpeed)):
+        raise program.error("stands where the speed of a spindle belongs", spindle)
     is_constant = isinstance(entity, ConstSpindleSpeed)
     speed = _number(
         program,

@@ -110,6 +110,9 @@ def _turning(program: Program, ref: Ref[Entity], tool: TurningMachineCuttingTool
     edge = program.get(tool.cutting_edge)
     corners = [program.get(corner) for corner in edge.corner_transitions or ()]
     radii = [corner.corner_radius for corner in corners if isinstance(corner, RoundedCorner)]
+    if radii and not 0.0 <= min(radii) <= MAX_DIAMETER:
+        message = f"a corner of {min(radii):g} mm: 0 to {MAX_DIAMETER:g} mm"
+        raise program.error(message, tool.cutting_edge, "corner_transitions")
     angle = edge.tool_cutting_edge_angle
     return Tool(
         id=tool.its_id or tool.keyword.lower().replace("_", " "),

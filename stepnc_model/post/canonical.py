@@ -251,4 +251,4 @@ def _shown(argument: Argument) -> str:
     if isinstance(argument, float):
         text = f"{argument:.4f}"
         return "0.0000" if text == "-0.0000" else text
-    return str(argument).replace("\n", " ")
+    return "".join(c if c.isprintable() else " " for c in str(argument))

@@ -7,6 +7,7 @@ that they keep above the last depth, which is an argument here.
 from collections.abc import Iterator
 from dataclasses import replace
 
+from stepnc_model.errors import PostError
 from stepnc_model.post.blocks import (
     Block,
     DrillingCycle,
@@ -18,6 +19,8 @@ from stepnc_model.post.blocks import (
     SurfaceSpeed,
 )
 from stepnc_model.toolpath.path import CycleKind
+
+MOST_PECKS = 10_000
 
 LEAST = 1e-9
 """mm; a peck that leaves less has reached the bottom"""
@@ -60,6 +63,9 @@ def _expansion(
 def _pecks(cycle: DrillingCycle) -> Iterator[Block]:
     """Down in steps; between them a full or a short retract."""
     x, y = cycle.at
+    count = (cycle.retract_z - cycle.bottom_z) / cycle.step_depth
+    if count > MOST_PECKS:
+        raise PostError(f"a drilling cycle of {count:.4g} pecks: {MOST_PECKS} at most")
     depth = cycle.retract_z - cycle.step_depth
     while depth > cycle.bottom_z + LEAST:
         yield Linear(end=(x, y, depth), rate=cycle.rate)

@@ -196,6 +196,7 @@ class FanucReader(IsoReader):
     """Reader of Fanuc code and its kin."""
 
     quiet: ClassVar[frozenset[str]] = frozenset({"M29"})
+    head: ClassVar[re.Pattern[str]] = re.compile(r"%|O[0-9]{4,5}")
 
     def __init__(self, machine: Machine, manner: Manner = FANUC) -> None:
         super().__init__(machine)
@@ -220,7 +221,7 @@ class FanucReader(IsoReader):
         number = words.take("T")
         if number is not None:
             self.sense = None
-            yield ToolChange(number=whole(number, "T") // 100)
+            yield ToolChange(number=whole(whole(number, "T") // 100, "T"))
 
     def lead(self, end: Point, words: Words) -> float:
         """F, which is the feed as well."""

@@ -7,7 +7,7 @@ Coordinates are absolute and metric; arc centres are relative to the start.
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from math import dist, hypot
+from math import hypot
 from typing import ClassVar
 
 from stepnc_model.errors import PostError
@@ -50,7 +50,6 @@ ROUND = 0.01
 PECK_CLEARANCE = 0.254
 """mm above the last depth: fixed in LinuxCNC, a parameter of the machine elsewhere"""
 
-
 COMMENT = re.compile(r"\(([^()]*)\)")
 
 
@@ -65,6 +64,8 @@ class IsoReader:
     coolant_ends: frozenset[str] = frozenset({"M9"})
     quiet: ClassVar[frozenset[str]] = frozenset()
     """M words that change nothing here"""
+    head: ClassVar[re.Pattern[str]] = re.compile("%")
+    """lines that hold no words"""
 
     def __init__(self, machine: Machine) -> None:
         self.machine = machine
@@ -104,7 +105,7 @@ class IsoReader:
         for found in COMMENT.finditer(line):
             yield self.comment(found[1])
         text = COMMENT.sub(" ", line).strip()
-        if text and text != "%" and not text.startswith("O"):
+        if text and not self.head.fullmatch(text):
             yield from self.block(Words(pairs(text)))
 
     def comment(self, text: str) -> Block:
@@ -190,6 +191,8 @@ class IsoReader:
 
     def settle(self, acts: list[Act], words: Words) -> None:
         """Take in what holds from here on."""
+        if any(sum(act in group for act in acts) > 1 for group in (PLANES, MODES)):
+            raise PostError("two G codes of one group in one block")
         for act in acts:
             if act in PLANES:
                 self.plane = PLANES[act]
@@ -211,6 +214,8 @@ class IsoReader:
         self.feed = words.take("F") if "F" in words else self.feed
 
     def _spindle(self, words: Words, *, changed: bool) -> Iterator[Block]:
+        if sum(code == "M5" or code in SENSES for code in words.functions) > 1:
+            raise PostError("two words for the spindle in one block")
         speed = words.take("S")
         if speed is not None:
             self.speed, changed = speed, True
@@ -293,9 +298,13 @@ class IsoReader:
 
     def _thread(self, words: Words) -> Block:
         end = self.end(words)
-        block = Threading(end=end, lead=self.lead(end, words))
+        if end == self.at:
+            raise PostError("a thread leads to where the tool is")
+        lead = self.lead(end, words)
+        if lead <= 0.0:
+            raise PostError(f"a thread with a lead of {lead:g} mm: it must be positive")
         self.at = end
-        return block
+        return Threading(end=end, lead=lead)
 
     def turns(self, words: Words) -> int:
         """Full turns of an arc, besides what its end points say."""
@@ -368,8 +377,8 @@ class IsoReader:
 
     def tapped(self, bottom: float, lead: float, sense: Sense) -> Block:
         """A rigid tap where the tool is."""
-        if self.speed is None:
-            raise PostError("a rigid tap without S")
+        if not self.speed or lead <= 0.0:
+            raise PostError("a rigid tap without S, or without a lead")
         return RigidTap(
             start=self.at,
             bottom_z=bottom,
@@ -389,9 +398,3 @@ class IsoReader:
             if code in stops:
                 words.functions.remove(code)
                 yield stops[code]()
-
-
-def along_path(start: Point, end: Point, lead: float) -> float:
-    """Lead along the axis that moves most, from one along the path."""
-    most = max(abs(e - s) for s, e in zip(start, end, strict=True))
-    return lead * most / dist(start, end)

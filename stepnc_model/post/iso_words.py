@@ -5,8 +5,17 @@ from collections.abc import Iterator
 
 from stepnc_model.errors import PostError
 
-NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)"
+NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)"
 WORD = re.compile(rf"\s*([A-Z])\s*({NUMBER})")
+
+LARGEST = 1e9
+"""no word of NC code means more: coordinates are mm"""
+
+UNSIGNED = frozenset("DFHNPQST")
+"""words that are never negative: feeds, speeds, tools, pauses"""
+
+LONGEST = 60
+"""characters of a line that a message shows"""
 
 
 class Words:
@@ -19,13 +28,16 @@ class Words:
         """M words, shortened: ``M3``"""
         self._values: dict[str, float] = {}
         for letter, text in pairs:
+            value = number_of(letter, text)
             if letter in {"G", "M"}:
                 kind = self.codes if letter == "G" else self.functions
-                kind.append(f"{letter}{float(text):g}")
+                kind.append(f"{letter}{value:g}")
             elif letter in self._values:
                 raise PostError(f"word {letter}{text}: a second {letter} in one block")
+            elif letter in UNSIGNED and value < 0.0:
+                raise PostError(f"word {letter}{text}: must not be negative")
             else:
-                self._values[letter] = float(text)
+                self._values[letter] = value
 
     def __contains__(self, letter: str) -> bool:
         return letter in self._values
@@ -61,9 +73,29 @@ def pairs(text: str) -> Iterator[tuple[str, str]]:
     while at < end:
         found = WORD.match(text, at)
         if found is None:
-            raise PostError(f"'{text[at:end].strip()}': no word of NC code")
+            raise PostError(f"'{shown(text[at:end])}': no word of NC code")
         yield found[1], found[2]
         at = found.end()
+
+
+def number_of(word: str, text: str) -> float:
+    """Value of a word.
+
+    Raises
+    ------
+    PostError
+        When no machine is so large.
+    """
+    value = float(text)
+    if not abs(value) <= LARGEST:
+        raise PostError(f"word {word}{shown(text)}: beyond {LARGEST:g}")
+    return value
+
+
+def shown(text: str) -> str:
+    """What a message shows of a line: its beginning, on one line."""
+    plain = " ".join(text.split())
+    return plain if len(plain) <= LONGEST else f"{plain[:LONGEST]}…"
 
 
 def whole(value: float, word: str) -> int:

@@ -6,6 +6,7 @@ with a fixed retract of 0.254 mm.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
+from math import dist
 from typing import ClassVar
 
 from stepnc_model.errors import PostError
@@ -24,7 +25,7 @@ from stepnc_model.post.canonical import synchronised
 from stepnc_model.post.grid import FULL
 from stepnc_model.post.iso_acts import CANNED, COMMON, LENGTHS, PER_TIME, Act
 from stepnc_model.post.iso_code import SENSE_CODES, IsoCode
-from stepnc_model.post.iso_reader import IsoReader, along_path
+from stepnc_model.post.iso_reader import IsoReader
 from stepnc_model.post.iso_words import Words
 from stepnc_model.post.words import ascii_text, bracketed
 from stepnc_model.toolpath.path import CycleKind, Plane, Point
@@ -155,3 +156,9 @@ class LinuxCncReader(IsoReader):
             raise PostError("G33.1 while the spindle stands")
         bottom = self.end(words)[2]
         yield self.tapped(bottom, words.need("K", "G33.1"), self.sense)
+
+
+def along_path(start: Point, end: Point, lead: float) -> float:
+    """Lead along the axis that moves most, from one along the path."""
+    most = max(abs(e - s) for s, e in zip(start, end, strict=True))
+    return lead * most / dist(start, end)

@@ -62,6 +62,15 @@ FUNCTIONS: dict[str, Callable[[Function], Block]] = {
     "DISPLAY_MESSAGE": lambda function: Message(text=function.text or function.id),
 }
 
+MOST = {RateMode.PER_MINUTE: 1e4, RateMode.PER_REVOLUTION: 1e3}
+"""mm/s and mm; no machine feeds faster"""
+
+ON_LATHE = 1e-6
+"""mm that y may differ from 0 on a lathe"""
+
+FASTEST = 1e4
+"""rev/s; no spindle turns faster"""
+
 
 def blocks_of(
     program: Program, paths: Sequence[ToolPath | Function], *, name: str
@@ -147,6 +156,9 @@ class _Sequence:
     def _path(self, path: ToolPath) -> Iterator[Block]:
         """One workingstep."""
         yield Comment(text=path.id)
+        beside = max(abs(point[1]) for point in (path.start, *(m.end for m in path.moves)))
+        if self.machine is Machine.LATHE and beside > ON_LATHE:
+            raise PostError(f"y = {beside:g} mm: the program turns, and a lathe has no y")
         self._known.clear()
         if path.tool_ref is not None and path.tool_ref != self.tool:
             yield from self._change(path.tool_ref)
@@ -240,6 +252,10 @@ class _Sequence:
         """A feed that a control can run."""
         if found.rate is None or not isfinite(found.rate.value) or found.rate.value <= 0.0:
             raise PostError(f"a cut without feed: {found.note or 'the feed is 0'}")
+        if found.rate.value > MOST[found.rate.mode]:
+            value, mode, most = found.rate.value, found.rate.mode, MOST[found.rate.mode]
+            unit = "mm/s" if mode is RateMode.PER_MINUTE else "mm/rev"
+            raise PostError(f"a feed of {value:g} {unit}: {most:g} {unit} at most")
         return found.rate
 
     def _constant(self, move: Move) -> Iterator[Block]:
@@ -316,6 +332,8 @@ class _Sequence:
             yield from self._spindle(found.spindle)
 
     def _spindle(self, wanted: SpindleOn | SurfaceSpeed | SpindleOff) -> Iterator[Block]:
+        if isinstance(wanted, SpindleOn) and wanted.speed > FASTEST:
+            raise PostError(f"a spindle at {wanted.speed:g} rev/s: {FASTEST:g} rev/s at most")
         if wanted != self.turning:
             self.turning = wanted
             yield wanted

@@ -2,12 +2,14 @@
 
 import re
 from collections.abc import Iterable, Iterator
+from math import isfinite
 
 from stepnc_model.errors import PostError
 from stepnc_model.post.canonical import Argument, Canonical
+from stepnc_model.post.iso_words import shown
 
 LINE = re.compile(r"\s*(?:\d+\s+)?(?:N\S+\s+)?([A-Z][A-Z0-9_]*)\((.*)\)\s*")
-NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 
 NUMBERS = {
     "STRAIGHT_TRAVERSE": slice(0, 3),
@@ -78,20 +80,23 @@ def _parsed(line: str, number: int) -> Canonical:
     """One command."""
     found = LINE.fullmatch(line)
     if found is None or (found[1] not in NUMBERS and found[1] not in NAMES):
-        raise PostError(f"'{line.strip()}' is no canonical command", line=number)
+        raise PostError(f"'{shown(line)}' is no canonical command", line=number)
     name, text = found[1], found[2]
     if name in TEXTS:
         return Canonical(name, (text.strip('"'),))
     parts = [part for part in re.split(r"[,\s]+", text) if part]
     if name not in NUMBERS:
         return Canonical(name, () if name.startswith("START_SPINDLE") else (text,))
-    if not all(NUMBER.fullmatch(part) for part in parts):
-        raise PostError(f"{name}({text}): its arguments must be numbers", line=number)
+    if not all(NUMBER.fullmatch(part) and isfinite(float(part)) for part in parts):
+        raise PostError(f"{name}({shown(text)}): its arguments must be numbers", line=number)
     values: list[Argument] = [float(part) for part in parts]
     chosen = values[NUMBERS[name]] if len(values) > 1 else values
     wanted = {"ARC_FEED": 6}.get(name, 3 if NUMBERS[name] == slice(0, 3) else 1)
     if len(chosen) != wanted:
         raise PostError(f"{name} has {len(chosen)} arguments: it needs {wanted}", line=number)
     if name == "ARC_FEED":
-        chosen[4] = int(chosen[4])
+        turns = float(chosen[4])
+        if not turns or turns != int(turns):
+            raise PostError(f"{name}: {turns:g} turns: whole ones are needed", line=number)
+        chosen[4] = int(turns)
     return Canonical(name, tuple(chosen))

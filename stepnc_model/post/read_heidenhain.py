@@ -34,16 +34,19 @@ from stepnc_model.post.blocks import (
 )
 from stepnc_model.post.cycles import expanded
 from stepnc_model.post.grid import sweep
-from stepnc_model.post.iso_words import NUMBER
+from stepnc_model.post.iso_words import NUMBER, number_of, shown, whole
 from stepnc_model.toolpath.path import CycleKind, Plane, Point
 from stepnc_model.units import rev_s_from_rpm, speed_from_mm_min
 
 ROUND = 0.016
 """mm by which the radii to both ends of an arc may differ (iTNC 530, MP7431)"""
 
-WORD = re.compile(rf"(DR|IPA|IZ|FU|[XYZF])({NUMBER}|[+-])|(FMAX|R0)|\S+")
-PARAMETER = re.compile(rf"(Q\d+)\s*=\s*({NUMBER})")
-TOOL = re.compile(rf"TOOL CALL(?: (\d+) Z)?(?: S({NUMBER}))?")
+WORD = re.compile(
+    rf"(DR(?=[+-](?:\s|$))|(?:IPA|IZ|FU|[XYZF])(?={NUMBER}))({NUMBER}|[+-])|(FMAX|R0)|\S+"
+)
+PARAMETER = re.compile(rf"(Q[0-9]+)\s*=\s*({NUMBER})")
+TITLE = re.compile(r"[A-Z ]*")
+TOOL = re.compile(rf"TOOL CALL(?: ([0-9]+) Z)?(?: S({NUMBER}))?")
 DWELL = re.compile(rf"CYCL DEF 9\.1 DWELL ({NUMBER})")
 DEFINITION = re.compile(r"CYCL DEF (200|201|205|207)\b(.*)")
 SILENT = re.compile(
@@ -51,6 +54,14 @@ SILENT = re.compile(
     r"CYCL DEF 13\.0 ORIENTATION|CYCL DEF 13\.1 ANGLE 0"
 )
 PLANES = {"XY": Plane.XY, "XZ": Plane.ZX, "YZ": Plane.YZ}
+
+READ = frozenset({
+    "Q200", "Q201", "Q202", "Q203", "Q206", "Q211", "Q239", "Q256", "Q257", "Q258", "Q259",
+})  # fmt: skip
+"""parameters of cycles that count"""
+
+ZERO = frozenset({"Q204", "Q205", "Q208", "Q210", "Q212"})
+"""those that are read as 0 only"""
 
 
 class HeidenhainReader:
@@ -107,7 +118,7 @@ class HeidenhainReader:
     def _block(self, numbered: str) -> Iterator[Block]:
         number, _, text = numbered.partition(" ")
         if not number.isdigit():
-            raise PostError(f"'{numbered}': a block begins with its number")
+            raise PostError(f"'{shown(numbered)}': a block begins with its number")
         text = text.strip()
         if not text or SILENT.fullmatch(text):
             return
@@ -121,18 +132,17 @@ class HeidenhainReader:
         elif found := TOOL.fullmatch(text):
             yield from self._tool(found[1], found[2])
         elif found := DWELL.fullmatch(text):
-            yield Pause(seconds=float(found[1]))
+            yield Pause(seconds=_unsigned("DWELL ", found[1]))
         elif found := DEFINITION.fullmatch(text):
-            parameters = {name: float(v) for name, v in PARAMETER.findall(found[2])}
-            self._cycle = (found[1], parameters)
+            self._cycle = (found[1], _parameters(found[2]))
         else:
-            raise PostError(f"'{text}': not known")
+            raise PostError(f"'{shown(text)}': not known")
 
     def _tool(self, number: str | None, speed: str | None) -> Iterator[Block]:
         if speed is not None:
-            self.speed = float(speed)
+            self.speed = _unsigned("S", speed)
         if number is not None:
-            yield ToolChange(number=int(number))
+            yield ToolChange(number=whole(number_of("TOOL CALL ", number), "TOOL CALL "))
 
     def _spindle(self, sense: Sense) -> Block:
         return SpindleOn(speed=self._rpm(), sense=sense)
@@ -147,10 +157,12 @@ class HeidenhainReader:
         for found in WORD.finditer(text):
             letter = found[1] or found[3]
             if letter is None or letter in words:
-                raise PostError(f"word {found[0]}: not known here, or said twice")
+                raise PostError(f"word {shown(found[0])}: not known here, or said twice")
             words[letter] = found[2] or ""
         if kind == "CC":
-            self.centre = {letter: float(value) for letter, value in words.items()}
+            if len(words) != 2 or not set(words) <= set("XYZ"):
+                raise PostError("CC needs two of X, Y and Z, and nothing else")
+            self.centre = {letter: number_of(letter, text) for letter, text in words.items()}
             return
         is_rapid = words.pop("FMAX", None) is not None
         words.pop("R0", None)
@@ -164,9 +176,9 @@ class HeidenhainReader:
 
     def _set_rate(self, words: dict[str, str]) -> None:
         if "F" in words:
-            self.rate = Rate(value=speed_from_mm_min(float(words.pop("F"))))
+            self.rate = Rate(value=speed_from_mm_min(number_of("F", words.pop("F"))))
         elif "FU" in words:
-            value = float(words.pop("FU"))
+            value = number_of("FU", words.pop("FU"))
             self.rate = Rate(value=value, mode=RateMode.PER_REVOLUTION)
 
     def _feed(self) -> Rate:
@@ -176,7 +188,7 @@ class HeidenhainReader:
 
     def _end(self, words: dict[str, str]) -> Point:
         x, y, z = (
-            float(words.pop(letter)) if letter in words else value
+            number_of(letter, words.pop(letter)) if letter in words else value
             for letter, value in zip("XYZ", self.at, strict=True)
         )
         return x, y, z
@@ -221,8 +233,8 @@ class HeidenhainReader:
         plane, centre = self._middle()
         if "IPA" not in words or plane is not Plane.XY:
             raise PostError("CP is read with IPA, about a CC in x and y")
-        turn, sense = radians(float(words.pop("IPA"))), _sense(words)
-        rise = float(words.pop("IZ", "0"))
+        turn, sense = radians(number_of("IPA", words.pop("IPA"))), _sense(words)
+        rise = number_of("IZ", words.pop("IZ", "0"))
         if turn * sense <= 0.0:
             raise PostError("the signs of IPA and DR differ")
         u, v = self.at[0] - centre[0], self.at[1] - centre[1]
@@ -243,6 +255,8 @@ class HeidenhainReader:
         if not wanted <= set(values):
             missing = " ".join(sorted(wanted - set(values)))
             raise PostError(f"cycle {number}: {missing} is missing")
+        if values["Q201"] >= 0.0:
+            raise PostError(f"cycle {number}: Q201={values['Q201']:g} must lead down")
         surface, bottom = values["Q203"], values["Q203"] + values["Q201"]
         at = (self.at[0], self.at[1], surface + values["Q200"])
         if at[2] != self.at[2]:
@@ -257,6 +271,8 @@ class HeidenhainReader:
                 sense=Sense.CLOCKWISE if values["Q239"] > 0.0 else Sense.COUNTERCLOCKWISE,
             )
             return
+        if values["Q206"] <= 0.0:
+            raise PostError(f"cycle {number}: Q206={values['Q206']:g} is no feed")
         kind, step, above = _kind(number, values)
         yield expanded(
             DrillingCycle(
@@ -270,6 +286,31 @@ class HeidenhainReader:
                 dwell=values.get("Q211", 0.0),
             )
         )
+
+
+def _parameters(text: str) -> dict[str, float]:
+    """Parameters of a cycle, behind its title."""
+    found: dict[str, float] = {}
+    for name, value in PARAMETER.findall(text):
+        number = number_of(f"{name}=", value)
+        is_zero = name in ZERO and not number
+        if name in found or not (name in READ or is_zero):
+            raise PostError(f"word {name}={value}: not read, or said twice")
+        if number < 0.0 and name not in {"Q201", "Q203", "Q239"}:
+            raise PostError(f"word {name}={value}: must not be negative")
+        found[name] = number
+    rest = PARAMETER.sub("", text)
+    if not TITLE.fullmatch(rest):
+        raise PostError(f"'{shown(rest)}': not known in a cycle")
+    return found
+
+
+def _unsigned(word: str, text: str) -> float:
+    """A number that must not be negative."""
+    value = number_of(word, text)
+    if value < 0.0:
+        raise PostError(f"word {word}{text}: must not be negative")
+    return value
 
 
 def _kind(number: str, values: dict[str, float]) -> tuple[CycleKind, float, float]:

@@ -33,7 +33,7 @@ from stepnc_model.post.grid import FULL, NARROW, end_of, turns
 from stepnc_model.post.iso_acts import COMMON, PER_TIME, Act
 from stepnc_model.post.iso_code import IsoCode
 from stepnc_model.post.iso_reader import ROUND, IsoReader
-from stepnc_model.post.iso_words import NUMBER, Words, pairs, whole
+from stepnc_model.post.iso_words import NUMBER, Words, number_of, pairs, whole
 from stepnc_model.post.words import ascii_text
 from stepnc_model.toolpath.path import CycleKind, Plane, Point
 from stepnc_model.units import rev_s_from_rpm
@@ -214,8 +214,9 @@ class SinumerikReader(IsoReader):
 
     def line(self, line: str) -> Iterator[Block]:
         """A comment, a call, or words."""
-        code, mark, text = line.partition(";")
-        message, call = MESSAGE.fullmatch(code.strip()), CALL.fullmatch(code.strip())
+        message = MESSAGE.fullmatch(line.strip())
+        code, mark, text = ("", "", "") if message else line.partition(";")
+        call = CALL.fullmatch(code.strip())
         if message:
             yield Message(text=message[1])
         elif call:
@@ -230,10 +231,14 @@ class SinumerikReader(IsoReader):
         if DIAMETER.search(code):
             self.machine, self.is_diameter = Machine.LATHE, True
             code = DIAMETER.sub(" ", code)
-        self._assigned = {name: float(value) for name, value in ASSIGNED.findall(code)}
+        self._assigned = {}
+        for name, text in ASSIGNED.findall(code):
+            if name in self._assigned:
+                raise PostError(f"word {name}={text}: a second {name} in one block")
+            self._assigned[name] = number_of(f"{name}=", text)
         words = Words(pairs(ASSIGNED.sub(" ", code)))
         if "LIMS" in self._assigned:
-            self.limit = rev_s_from_rpm(self._assigned.pop("LIMS"))
+            self.limit = rev_s_from_rpm(whole(self._assigned.pop("LIMS"), "LIMS="))
         yield from self.block(words)
         if self._assigned:
             raise PostError(f"word {next(iter(self._assigned))}=: nothing here uses it")
@@ -263,8 +268,10 @@ class SinumerikReader(IsoReader):
 
     def extra(self, words: Words) -> Iterator[Block]:
         """Spindle at an angle."""
-        if "SPOS" in self._assigned:
-            del self._assigned["SPOS"]
+        angle = self._assigned.pop("SPOS", None)
+        if angle:
+            raise PostError(f"word SPOS={angle:g}: an angle of 0 is read")
+        if angle is not None:
             yield SpindleOrient()
 
     def turns(self, words: Words) -> int:
@@ -294,7 +301,7 @@ class SinumerikReader(IsoReader):
         filled = [text.strip() for text in texts]
         if not all(re.fullmatch(NUMBER, text) for text in filled if text):
             raise PostError(f"CYCLE{number}: its arguments must be numbers")
-        arguments = [float(text or "0") for text in filled]
+        arguments = [number_of(f"CYCLE{number} ", text or "0") for text in filled]
         if len(arguments) < 4:
             raise PostError(f"CYCLE{number}: needs at least RTP, RFP, SDIS and DP")
         top, reference, distance, bottom, *rest = arguments

@@ -1,6 +1,8 @@
 """A tool path while it is being made: running state, one object for one workingstep."""
 
+from stepnc_model.entities.entity import Entity
 from stepnc_model.errors import Finding
+from stepnc_model.part21.values import Ref
 from stepnc_model.toolpath.job import Job
 from stepnc_model.toolpath.path import (
     Arc,
@@ -42,6 +44,13 @@ class Course:
         """Straight, in rapid."""
         self.add(Move(end=end, type=type))
 
+    def descend(self, end: Point, type: MoveType = MoveType.RAPID) -> None:
+        """Straight down: in rapid as far as no stock can stand, at the feed from there on."""
+        x, y, z = end
+        safe_z = min(self._job.rapid_z(end), self.at[2])
+        self.rapid((x, y, max(safe_z, z)), type)
+        self.line(end, MoveType.NO_CONTACT)
+
     def line(self, end: Point, type: MoveType, feed: Feed | None = None) -> None:
         """Straight, at the programmed feed or at another one."""
         self.add(Move(end=end, type=type, feed=feed or self._job.feed))
@@ -82,6 +91,10 @@ class Course:
         """Say what was assumed, once."""
         if finding not in self._findings:
             self._findings.append(finding)
+
+    def warn(self, message: str, ref: Ref[Entity], attribute: str = "") -> None:
+        """Say what a machinist would want to see, once."""
+        self.find(self._job.warning(message, ref, attribute))
 
     def finished(self) -> ToolPath:
         """The path."""

@@ -41,6 +41,15 @@ ON_CIRCLE = 1e-2
 
 MOST_CHORDS = 4096
 
+MOST_NESTED = 20
+"""curves within curves"""
+
+MOST_CURVES = 20_000
+"""curves that one curve is made of"""
+
+MOST_TURNS = 10_000
+"""of a helix"""
+
 PRINCIPAL = 1e-9
 
 
@@ -87,9 +96,11 @@ def segments_of(program: Program, ref: Ref[Entity]) -> tuple[Segment, ...]:
         When the curve is of another kind, has no length, or its parts do not join.
     """
     with program.using(ref):
-        segments = tuple(
-            segment for segment in _segments(program, ref) if not _is_point(segment)
-        )
+        budget = iter(range(MOST_CURVES))
+        found = _segments(program, ref, _Visit(budget))
+        segments = tuple(segment for segment in found if not _is_point(segment))
+    if not segments:
+        raise _fault(program, ref, "has no length")
     for one, other in pairwise(segments):
         gap = dist(one.end, other.start)
         if gap > JOINED:
@@ -114,21 +125,37 @@ def move_of(segment: Segment, type: MoveType, feed: Feed | None) -> Iterator[Mov
         yield Move(end=point, type=type, feed=feed)
 
 
-def _segments(program: Program, ref: Ref[Entity]) -> Iterator[Segment]:
+@dataclass(frozen=True, slots=True)
+class _Visit:
+    """How deep a curve lies within others, and how many may still be followed."""
+
+    budget: Iterator[int]
+    level: int = 0
+
+    def inner(self) -> "_Visit":
+        return _Visit(self.budget, self.level + 1)
+
+
+def _segments(program: Program, ref: Ref[Entity], visit: _Visit) -> Iterator[Segment]:
     """Lines and arcs of a curve."""
+    if visit.level > MOST_NESTED or next(visit.budget, None) is None:
+        message = f"contains itself, or more than {MOST_NESTED} levels or {MOST_CURVES} curves"
+        raise _fault(program, ref, message)
     curve = program.get(ref)
     if isinstance(curve, Polyline):
         points = [point_of(program, point) for point in curve.points]
         yield from (Segment(start=a, end=b) for a, b in pairwise(points))
     elif isinstance(curve, CompositeCurve):
         for each in map(program.get, curve.segments):
-            inner = tuple(_segments(program, each.parent_curve))
+            inner = tuple(_segments(program, each.parent_curve, visit.inner()))
             yield from inner if each.same_sense is not False else _backwards(inner)
     elif isinstance(curve, TrimmedCurve):
-        yield from _trimmed(program, ref, curve)
+        yield from _trimmed(program, ref, curve, visit)
     elif isinstance(curve, BSplineCurve):
         yield from _spline(program, ref)
     elif isinstance(curve, (Circle, Ellipse)):
+        if isinstance(curve, Circle) and not curve.radius > 0.0:
+            raise _fault(program, ref, f"radius {curve.radius:g} mm: it must be positive")
         yield from _conic(program, curve, 0.0, 2.0 * pi)
     else:
         raise _fault(program, ref, "a curve of this kind cannot be followed")
@@ -138,7 +165,9 @@ def _backwards(segments: Sequence[Segment]) -> Iterator[Segment]:
     return (segment.reversed() for segment in reversed(segments))
 
 
-def _trimmed(program: Program, ref: Ref[Entity], curve: TrimmedCurve) -> Iterator[Segment]:
+def _trimmed(
+    program: Program, ref: Ref[Entity], curve: TrimmedCurve, visit: _Visit
+) -> Iterator[Segment]:
     """Part of a line, circle, ellipse or helix."""
     basis = program.get(curve.basis_curve)
     sense = curve.sense_agreement is not False
@@ -160,7 +189,7 @@ def _trimmed(program: Program, ref: Ref[Entity], curve: TrimmedCurve) -> Iterato
         yield from _exact_ends(program, curve, segments)
     elif isinstance(basis, (Polyline, CompositeCurve, BSplineCurve)):
         # A bounded curve that is trimmed at its own ends.
-        inner = tuple(_segments(program, curve.basis_curve))
+        inner = tuple(_segments(program, curve.basis_curve, visit.inner()))
         yield from inner if sense else _backwards(inner)
     else:
         raise _fault(program, ref, "a curve of this kind cannot be trimmed")
@@ -297,6 +326,9 @@ def _helix(
     whole = 2.0 * pi * rise / helix.pitch
     rest = (second - first) % (2.0 * pi)
     turn = rest + 2.0 * pi * round((whole - rest) / (2.0 * pi))
+    if not abs(turn) <= MOST_TURNS * 2.0 * pi:
+        message = f"a pitch of {helix.pitch:g} mm: more than {MOST_TURNS} turns"
+        raise _fault(program, ref, message)
     bend = Bend(centre=frame.origin, normal=frame.z, turn=turn)
     yield Segment(start=ends[0], end=ends[1], bend=bend)
 

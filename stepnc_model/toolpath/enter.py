@@ -138,7 +138,7 @@ def _over(course: Course, at: complex, heights: Heights) -> None:
     x, y = at.real, at.imag
     course.rapid((x, y, heights.travel))
     if heights.retract < heights.travel:
-        course.rapid((x, y, heights.retract), MoveType.APPROACH)
+        course.descend((x, y, heights.retract), MoveType.APPROACH)
     course.line((x, y, min(heights.above, heights.retract)), MoveType.NO_CONTACT)
 
 

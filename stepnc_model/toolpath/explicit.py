@@ -20,7 +20,7 @@ from stepnc_model.errors import PathError
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Executable, Program
 from stepnc_model.toolpath.explicit_walk import Surroundings, Walk
-from stepnc_model.toolpath.frame import Frame, frame_of, workpiece_frame
+from stepnc_model.toolpath.frame import Frame, compound_of, frame_of, workpiece_frame
 from stepnc_model.toolpath.job import Job, stock_of
 from stepnc_model.toolpath.path import Point, ToolPath
 from stepnc_model.toolpath.pattern import placements
@@ -138,10 +138,16 @@ def _walked(
 
 
 def _frames(job: Job) -> tuple[Frame, ...]:
-    """Frames that the path is followed in: one for each copy of a pattern."""
+    """Frames that the path is followed in: one for each copy of a pattern.
+
+    A path for an element of a compound feature is given in the coordinates of the compound:
+    so it is in example 3 of ISO 14649-11, where it begins on the security plane.
+    """
     if not job.step.features:
         return (workpiece_frame(job.program, job.step.setup),)
-    placed = placements(job.program, job.step.setup, job.step.features[0])
+    feature = job.step.features[0]
+    feature = compound_of(job.program, feature) or feature
+    placed = placements(job.program, job.step.setup, feature)
     return tuple(each.frame for each in placed)
 
 

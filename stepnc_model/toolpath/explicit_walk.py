@@ -84,6 +84,8 @@ class Walk:
         """Append one tool path; those after it tell where a connector leads."""
         program = self._around.program
         path = program.get(ref)
+        if not isinstance(path, Toolpath):
+            raise program.error("stands where a tool path belongs", ref)
         pace = pace_of(program, ref, self._around.technology)
         if path.its_machine_functions is not None:
             self._note("machine functions of a single tool path are not switched", ref)

@@ -117,8 +117,14 @@ def workpiece_frame(program: Program, setup: Ref[Setup] | None) -> Frame:
     """Frame of the workpiece in its setup."""
     if setup is None:
         return Frame()
-    placed = program.get(setup).its_workpiece_setup
-    return frame_of(program, program.get(placed[0]).its_origin) if placed else Frame()
+    entity = program.get(setup)
+    if not isinstance(entity, Setup):
+        raise _fault(program, setup, "stands where a setup belongs")
+    placed = entity.its_workpiece_setup
+    if not placed:
+        return Frame()
+    with program.using(setup):
+        return frame_of(program, program.get(placed[0]).its_origin)
 
 
 def compound_of(program: Program, feature: Ref[Entity]) -> Ref[CompoundFeature] | None:

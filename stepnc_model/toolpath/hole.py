@@ -4,15 +4,19 @@ Over the hole on the security plane, in rapid down to the retract plane, into th
 to the next hole. Not one rapid goes below the retract plane, but those of a drill that pecks.
 """
 
+from collections.abc import Iterator
 from math import hypot, inf
 
 from stepnc_model.entities.drilling import BackBoring, DrillingTypeOperation, ThreadDrilling
 from stepnc_model.toolpath.course import Course
 from stepnc_model.toolpath.frame import point_of
+from stepnc_model.toolpath.hole_back import back_findings, bore_back, bore_of
+from stepnc_model.toolpath.hole_back_feature import back_holes
 from stepnc_model.toolpath.hole_cycle import HoleCut, cut_hole
 from stepnc_model.toolpath.hole_depth import depth_findings, depth_of
 from stepnc_model.toolpath.hole_feature import Hole, holes_of
-from stepnc_model.toolpath.hole_feed import stages_of
+from stepnc_model.toolpath.hole_feed import Stage, stages_of
+from stepnc_model.toolpath.hole_thread import drill_thread, threaded_holes
 from stepnc_model.toolpath.job import DEFAULT_CLEARANCE, Job
 from stepnc_model.toolpath.path import ToolPath
 
@@ -35,17 +39,13 @@ def hole_path(job: Job) -> ToolPath:
     Raises
     ------
     PathError
-        When the operation needs a path of its own, or the hole and the tool do not fit.
+        When the file does not say enough, or the hole and the tool do not fit.
     """
     operation = job.step.operation
     if not isinstance(operation, DrillingTypeOperation):
         raise job.fault("is no operation that makes holes", job.step.operation_ref)
-    if isinstance(operation, (BackBoring, ThreadDrilling)):
-        name = operation.express_name().replace("_", " ")
-        message = f"{name} leaves the axis of the hole by an amount that no attribute tells"
-        raise job.fault(message, job.step.operation_ref, "its_toolpath")
     with job.program.using(job.step.operation_ref, *job.step.features):
-        holes = tuple(holes_of(job, operation))
+        holes = tuple(_holes(job, operation))
         if not holes:
             raise job.fault("its pattern omits every hole", job.step.features[0])
         course = Course(job, holes[0].at(job.security_z))
@@ -54,10 +54,29 @@ def hole_path(job: Job) -> ToolPath:
         for last, cut in zip([None, *cuts[:-1]], cuts, strict=True):
             if last is not None:
                 _link(course, last, cut)
-            course.rapid(cut.hole.at(cut.retract_z))
-            cut_hole(course, cut)
+            course.descend(cut.hole.at(cut.retract_z))
+            _make(course, cut)
         course.rapid(cuts[-1].hole.at(job.security_z))
         return course.finished()
+
+
+def _holes(job: Job, operation: DrillingTypeOperation) -> Iterator[Hole]:
+    """Holes that the operation makes."""
+    if isinstance(operation, BackBoring):
+        return back_holes(job)
+    if isinstance(operation, ThreadDrilling):
+        return threaded_holes(job, operation)
+    return holes_of(job, operation)
+
+
+def _make(course: Course, cut: HoleCut) -> None:
+    """Make one hole; the tool stands above it on the retract plane, and ends there."""
+    if isinstance(cut.operation, BackBoring):
+        bore_back(course, cut)
+    elif isinstance(cut.operation, ThreadDrilling):
+        drill_thread(course, cut, cut.operation)
+    else:
+        cut_hole(course, cut)
 
 
 def _notes(course: Course, job: Job, operation: DrillingTypeOperation) -> None:
@@ -74,6 +93,8 @@ def _notes(course: Course, job: Job, operation: DrillingTypeOperation) -> None:
 
 def _cut(course: Course, job: Job, operation: DrillingTypeOperation, hole: Hole) -> HoleCut:
     """How one hole is made."""
+    if isinstance(operation, BackBoring):
+        return _back_cut(course, job, operation, hole)
     depth = depth_of(job, operation, hole)
     for finding in depth_findings(job, operation, hole, depth):
         course.find(finding)
@@ -84,6 +105,21 @@ def _cut(course: Course, job: Job, operation: DrillingTypeOperation, hole: Hole)
         retract_z=_retract_z(job, operation, hole),
         bottom_z=hole.top[2] - depth.tip,
         stages=stages_of(job, operation, hole, depth),
+    )
+
+
+def _back_cut(course: Course, job: Job, operation: BackBoring, hole: Hole) -> HoleCut:
+    """How one hole is bored from behind."""
+    bore = bore_of(job, operation, hole)
+    for finding in back_findings(job, operation, hole, bore):
+        course.find(finding)
+    return HoleCut(
+        job=job,
+        operation=operation,
+        hole=hole,
+        retract_z=_retract_z(job, operation, hole),
+        bottom_z=bore.below_z,
+        stages=(Stage(end_z=bore.below_z, feed=job.feed),),
     )
 
 

@@ -68,9 +68,9 @@ def cut_hole(course: Course, cut: HoleCut) -> None:
 def _drill(course: Course, cut: HoleCut) -> None:
     """In and out."""
     first = course.count
-    _feed_to(course, cut, cut.bottom_z)
-    _dwell(course, cut, cut.operation.dwell_time_bottom, "dwell_time_bottom")
-    _retract(course, cut)
+    feed_to(course, cut, cut.bottom_z)
+    dwell(course, cut, cut.operation.dwell_time_bottom, "dwell_time_bottom")
+    retract(course, cut)
     if not cut.is_one_feed:
         return
     if cut.operation.feed_on_retract is None:
@@ -89,17 +89,17 @@ def _peck(course: Course, cut: HoleCut, operation: MultistepDrilling) -> None:
     first = course.count
     distance = operation.retract_distance or 0.0
     for z in _pecks(cut, operation):
-        _feed_to(course, cut, z)
-        _dwell(course, cut, operation.dwell_time_step, "dwell_time_step")
+        feed_to(course, cut, z)
+        dwell(course, cut, operation.dwell_time_step, "dwell_time_step")
         if distance > 0.0:
             course.rapid(cut.hole.at(min(z + distance, cut.retract_z)), MoveType.RETRACT)
         else:
             course.rapid(cut.hole.at(cut.retract_z), MoveType.RETRACT)
             course.rapid(cut.hole.at(min(z + PECK_CLEARANCE, cut.retract_z)))
-    _feed_to(course, cut, cut.bottom_z)
-    _dwell(course, cut, operation.dwell_time_bottom, "dwell_time_bottom")
+    feed_to(course, cut, cut.bottom_z)
+    dwell(course, cut, operation.dwell_time_bottom, "dwell_time_bottom")
     if operation.feed_on_retract is not None:
-        _retract(course, cut)
+        retract(course, cut)
         return
     course.rapid(cut.hole.at(cut.retract_z), MoveType.RETRACT)
     is_even = abs(operation.first_depth - operation.depth_of_step) < SAME_DEPTH
@@ -133,16 +133,16 @@ def _bore(course: Course, cut: HoleCut, operation: BoringOperation) -> None:
     if operation.depth_of_testcut:
         _test_cut(course, cut, operation, operation.depth_of_testcut)
     first = course.count
-    _feed_to(course, cut, cut.bottom_z)
-    _dwell(course, cut, operation.dwell_time_bottom, "dwell_time_bottom")
+    feed_to(course, cut, cut.bottom_z)
+    dwell(course, cut, operation.dwell_time_bottom, "dwell_time_bottom")
     if not operation.spindle_stop_at_bottom:
-        _retract(course, cut)
+        retract(course, cut)
         if cut.is_one_feed and retract_feed(cut.job, operation, cut.feed) == cut.feed:
             _name_cycle(course, cut, CycleKind.BORE, first)
         return
     stop = SpindleCommand.ORIENT if _is_oriented(cut) else SpindleCommand.STOP
     course.spindle(stop)
-    _retract(course, cut)
+    retract(course, cut)
     course.spindle(SpindleCommand.START)
     is_plain = cut.is_one_feed and operation.feed_on_retract is None
     if stop is SpindleCommand.STOP and is_plain:
@@ -166,8 +166,8 @@ def _test_cut(course: Course, cut: HoleCut, operation: BoringOperation, depth: f
         whole = cut.hole.top[2] - cut.bottom_z
         message = f"{depth:g} mm: it must lie between 0 and the depth of {whole:g} mm"
         raise cut.job.fault(message, cut.job.step.operation_ref, "depth_of_testcut")
-    _feed_to(course, cut, z)
-    _retract(course, cut)
+    feed_to(course, cut, z)
+    retract(course, cut)
     course.spindle(SpindleCommand.STOP)
     if operation.waiting_position is not None:
         x, y, wanted = cut.hole.point(cut.job, operation.waiting_position)
@@ -184,15 +184,15 @@ def _test_cut(course: Course, cut: HoleCut, operation: BoringOperation, depth: f
 def _tap(course: Course, cut: HoleCut) -> None:
     """In by one pitch per revolution, and out the same way with the spindle reversed."""
     first = course.count
-    _feed_to(course, cut, cut.bottom_z)
-    _dwell(course, cut, cut.operation.dwell_time_bottom, "dwell_time_bottom")
+    feed_to(course, cut, cut.bottom_z)
+    dwell(course, cut, cut.operation.dwell_time_bottom, "dwell_time_bottom")
     course.spindle(SpindleCommand.REVERSE)
-    _retract(course, cut)
+    retract(course, cut)
     course.spindle(SpindleCommand.START)
     _name_cycle(course, cut, CycleKind.TAP, first)
 
 
-def _feed_to(course: Course, cut: HoleCut, z: float) -> None:
+def feed_to(course: Course, cut: HoleCut, z: float) -> None:
     """Down to a height, with the feed of each stage."""
     for stage in cut.stages:
         if course.at[2] > stage.end_z + SAME_DEPTH and course.at[2] > z + SAME_DEPTH:
@@ -200,13 +200,13 @@ def _feed_to(course: Course, cut: HoleCut, z: float) -> None:
             course.line(end, MoveType.CONTACT, stage.feed)
 
 
-def _retract(course: Course, cut: HoleCut) -> None:
+def retract(course: Course, cut: HoleCut) -> None:
     """Out to the retract plane at a feed."""
     feed = retract_feed(cut.job, cut.operation, cut.feed)
     course.line(cut.hole.at(cut.retract_z), MoveType.RETRACT, feed)
 
 
-def _dwell(course: Course, cut: HoleCut, seconds: float | None, attribute: str) -> None:
+def dwell(course: Course, cut: HoleCut, seconds: float | None, attribute: str) -> None:
     """Pause where one is given."""
     if not seconds:
         return

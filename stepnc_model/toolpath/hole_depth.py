@@ -20,6 +20,7 @@ from stepnc_model.entities.drilling import (
     DrillingTypeOperation,
     MultistepDrilling,
     Reaming,
+    ThreadDrilling,
 )
 from stepnc_model.entities.tools import BallEndmill, MillingCuttingTool, MillingToolBody
 from stepnc_model.errors import Finding
@@ -31,7 +32,7 @@ from stepnc_model.units import rad_from_deg
 TOLERANCE = 1e-6
 """mm"""
 
-FITTING = (Drilling, MultistepDrilling, Reaming, Boring)
+FITTING = (Drilling, MultistepDrilling, Reaming, Boring, ThreadDrilling)
 """operations whose tool must not be wider than the hole"""
 
 TAPERED_TOOLS = ("TAPERED_DRILL", "TAPERED_REAMER")
@@ -88,7 +89,7 @@ def tip_length(job: Job) -> float:
     radius = 0.5 * job.tool.diameter
     if isinstance(body, BallEndmill):
         return radius
-    angle = _lip_angle(job)
+    angle = lip_angle(job)
     dimension = job.program.get(body.dimension)
     corner = dimension.edge_radius or 0.0
     if corner <= 0.0:
@@ -173,7 +174,7 @@ def _body(job: Job) -> MillingToolBody:
     return body
 
 
-def _lip_angle(job: Job) -> float:
+def lip_angle(job: Job) -> float:
     """Angle in rad between lip and face plane; small numbers are radians already."""
     ref = _body(job).dimension
     top = job.program.get(ref).tool_top_angle or 0.0
@@ -220,7 +221,7 @@ def _sink(job: Job, hole: Hole) -> float:
     if hole.diameter > job.tool.diameter + TOLERANCE:
         message = f"tool of {job.tool.diameter:g} mm for a sink of {hole.diameter:g} mm"
         raise job.fault(message, job.step.operation_ref, "its_tool")
-    angle = _lip_angle(job)
+    angle = lip_angle(job)
     if angle <= 0.0:
         raise job.fault("has no point that could sink a cone", job.step.tool_ref)
     return tip_length(job) - 0.5 * (job.tool.diameter - hole.diameter) * tan(angle)

@@ -138,7 +138,7 @@ def _element(
     """
     holes = ((each, job.program.get(each)) for each in elements)
     widths = {
-        each: _size(job, each, hole) for each, hole in holes if isinstance(hole, RoundHole)
+        each: size_of(job, each, hole) for each, hole in holes if isinstance(hole, RoundHole)
     }
     if not widths:
         raise job.fault("has no round hole among its elements", ref, "elements")
@@ -168,11 +168,11 @@ def _has_taper(job: Job, element: Ref[Entity]) -> bool:
 def _sized(job: Job, ref: Ref[Entity], placed: Placed, own: Frame, *, entry_z: float) -> Hole:
     """A hole with its sizes; its depth counts from the top of the feature that is named."""
     entity = job.program.get(ref)
-    depth = _depth(job, ref)
+    depth = feature_depth(job, ref)
     diameter = narrowest = None
     if isinstance(entity, RoundHole):
-        diameter = _size(job, ref, entity)
-        narrowest = _narrowest(job, entity, diameter, depth)
+        diameter = size_of(job, ref, entity)
+        narrowest = narrowest_of(job, entity, diameter, depth)
     x, y, z = own.origin
     top_z = placed.frame.origin[2]
     bottom = getattr(entity, "bottom_condition", None)
@@ -184,12 +184,12 @@ def _sized(job: Job, ref: Ref[Entity], placed: Placed, own: Frame, *, entry_z: f
         depth=None if depth is None else depth + top_z - z,
         diameter=diameter,
         narrowest=narrowest,
-        tolerance=_tolerance(job, entity),
+        tolerance=tolerance_of(job, entity),
         bottom=job.program.get(bottom) if bottom is not None else None,
     )
 
 
-def _depth(job: Job, ref: Ref[Entity]) -> float | None:
+def feature_depth(job: Job, ref: Ref[Entity]) -> float | None:
     """Depth of a feature: where its depth plane lies in its own coordinates.
 
     Files write the plane below the placement, at a negative z; the positive depth of an older
@@ -207,7 +207,7 @@ def _depth(job: Job, ref: Ref[Entity]) -> float | None:
     return depth
 
 
-def _size(job: Job, ref: Ref[Entity], hole: RoundHole) -> float:
+def size_of(job: Job, ref: Ref[Entity], hole: RoundHole) -> float:
     """Diameter at the top."""
     diameter = float(job.program.get(hole.diameter).theoretical_size)
     if not 0.0 < diameter < inf:
@@ -215,7 +215,7 @@ def _size(job: Job, ref: Ref[Entity], hole: RoundHole) -> float:
     return diameter
 
 
-def _narrowest(job: Job, hole: RoundHole, diameter: float, depth: float | None) -> float:
+def narrowest_of(job: Job, hole: RoundHole, diameter: float, depth: float | None) -> float:
     """Diameter at the depth plane of a tapered hole; its own where it does not narrow."""
     if hole.change_in_diameter is None:
         return diameter
@@ -228,7 +228,7 @@ def _narrowest(job: Job, hole: RoundHole, diameter: float, depth: float | None) 
     return min(diameter, max(0.0, end))
 
 
-def _tolerance(job: Job, entity: Entity) -> float:
+def tolerance_of(job: Job, entity: Entity) -> float:
     """Upper limit of a hole's diameter."""
     if isinstance(entity, RoundHole):
         given = job.program.get(entity.diameter).implicit_tolerance

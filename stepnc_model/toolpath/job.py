@@ -11,10 +11,13 @@ from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program, Workingstep
 from stepnc_model.tool import Tool, tool_of
 from stepnc_model.toolpath.frame import Frame, feature_frame, frame_of, workpiece_frame
-from stepnc_model.toolpath.path import Feed
+from stepnc_model.toolpath.path import FARTHEST, Feed, Point
 
 DEFAULT_CLEARANCE = 5.0
 """mm from the feature up to the retract plane where the file gives none"""
+
+ABOVE_STOCK = 1.0
+"""mm over the stock at which the tool may move in rapid"""
 
 DEFAULT_SECURITY = 50.0
 """mm above zero where a file gives no security plane"""
@@ -46,6 +49,20 @@ class Job:
     def feed(self) -> Feed:
         """The programmed feed."""
         return Feed(technology=self.step.technology_ref)
+
+    def rapid_z(self, at: Point) -> float:
+        """How far down over a point the tool may come in rapid: there, or above the stock.
+
+        Nobody keeps account of what is cut away: the stock counts as it was bought.
+        """
+        stock, half = self.stock, 0.5 * self.tool.diameter
+        if stock is None:
+            return at[2]
+        is_beside = any(
+            at[axis] + half < stock.low[axis] or at[axis] - half > stock.high[axis]
+            for axis in (0, 1)
+        )
+        return at[2] if is_beside else max(at[2], stock.high[2] + ABOVE_STOCK)
 
     def frame(self, feature: Ref[Entity]) -> Frame:
         """Frame of a feature in the setup."""
@@ -83,7 +100,7 @@ def job_of(program: Program, step: Workingstep) -> Job:
     SchemaError, PathError
         When its tool or security plane cannot be used.
     """
-    with program.using(step.ref, step.setup):
+    with program.using(step.ref, step.operation_ref, step.setup):
         stock = stock_of(program, step.setup)
         security_z, findings = _security(program, step, stock)
         return Job(
@@ -109,6 +126,12 @@ def stock_of(program: Program, setup: Ref[Setup] | None) -> Stock | None:
     if not isinstance(shape, (Block, RightCircularCylinder)):
         return None
     frame = workpiece_frame(program, setup).inner(frame_of(program, shape.position))
+    with program.using(reference):
+        return _placed(shape, frame)
+
+
+def _placed(shape: Block | RightCircularCylinder, frame: Frame) -> Stock:
+    """The box around a body in a frame."""
     radius = None
     if isinstance(shape, Block):
         low, high = (0.0, 0.0, 0.0), (shape.x, shape.y, shape.z)
@@ -116,6 +139,8 @@ def stock_of(program: Program, setup: Ref[Setup] | None) -> Stock | None:
         low = (-shape.radius, -shape.radius, 0.0)
         high = (shape.radius, shape.radius, shape.height)
         radius = shape.radius
+    if max(map(abs, (*low, *high))) > FARTHEST:
+        raise ValueError(f"a size beyond {FARTHEST:g} mm")
     corners = [
         frame.point((x, y, z))
         for x in (low[0], high[0])
@@ -141,7 +166,8 @@ def _security(
     entity = program.get(step.ref)
     planes = [getattr(entity, "its_secplane", None)]
     if step.setup is not None:
-        planes.append(program.get(step.setup).its_secplane)
+        setup = program.get(step.setup)
+        planes.append(setup.its_secplane if isinstance(setup, Setup) else None)
     found = [plane for plane in planes if plane is not None]
     if not found:
         height = max(DEFAULT_SECURITY, (stock.high[2] if stock else 0.0) + DEFAULT_CLEARANCE)
@@ -150,12 +176,28 @@ def _security(
     height = frame_of(program, program.get(found[0]).position).origin[2]
     if isinstance(step.operation, TurningMachiningOperation) or not step.features:
         return height, ()
+    return _raised(program, step, stock, height)
+
+
+def _raised(
+    program: Program, step: Workingstep, stock: Stock | None, height: float
+) -> tuple[float, tuple[Finding, ...]]:
+    """A security plane that lies above the feature and above the stock."""
+    findings: list[Finding] = []
     top = feature_frame(program, step.setup, step.features[0]).origin[2]
-    if height > top or height <= 0.0:
-        return height, ()
-    text = (
-        f"z = {height:g} mm in the setup is not above the feature, which begins at "
-        f"z = {top:g} mm: taken from there, z = {top + height:g} mm"
-    )
-    warning = program.finding(Severity.WARNING, text, step.ref, "its_secplane")
-    return top + height, (warning,)
+    if 0.0 < height <= top:
+        text = (
+            f"z = {height:g} mm in the setup is not above the feature, which begins at "
+            f"z = {top:g} mm: taken from there, z = {top + height:g} mm"
+        )
+        height += top
+        findings.append(program.finding(Severity.WARNING, text, step.ref, "its_secplane"))
+    if stock is not None and height < stock.high[2] + ABOVE_STOCK:
+        safe = stock.high[2] + DEFAULT_CLEARANCE
+        text = (
+            f"z = {height:g} mm is not above the stock, which ends at "
+            f"z = {stock.high[2]:g} mm: z = {safe:g} mm taken"
+        )
+        height = safe
+        findings.append(program.finding(Severity.WARNING, text, step.ref, "its_secplane"))
+    return height, tuple(findings)

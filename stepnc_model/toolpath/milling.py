@@ -28,7 +28,7 @@ from stepnc_model.toolpath.cover import Pass
 from stepnc_model.toolpath.cutter import Cutter, cutter_of
 from stepnc_model.toolpath.enter import Heights, enter, leave, trace
 from stepnc_model.toolpath.flank import flank_layer
-from stepnc_model.toolpath.job import DEFAULT_CLEARANCE, Job
+from stepnc_model.toolpath.job import ABOVE_STOCK, DEFAULT_CLEARANCE, Job
 from stepnc_model.toolpath.layer import Layer, Level, clear, wall_passes
 from stepnc_model.toolpath.milled import shapes
 from stepnc_model.toolpath.path import MoveType, ToolPath
@@ -46,9 +46,6 @@ LARGEST = 1000.0
 """mm of allowance; more is a slip"""
 
 MOST_LEVELS = 1000
-
-ABOVE_STOCK = 1.0
-"""mm over the stock at which the tool may move sideways in rapid"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

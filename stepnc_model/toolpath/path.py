@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import StrEnum
 from itertools import accumulate
-from math import atan2, cos, dist, hypot, isfinite, pi, sin
+from math import atan2, cos, dist, hypot, pi, sin
 
 from stepnc_model.entities.entity import Entity
 from stepnc_model.errors import Finding
@@ -19,6 +19,9 @@ from stepnc_model.part21.values import Ref
 
 Point = tuple[float, float, float]
 """x, y, z in mm"""
+
+FARTHEST = 1e5
+"""mm; no machine goes there"""
 
 
 class MoveType(StrEnum):
@@ -165,8 +168,10 @@ class ToolPath:
 
     def __post_init__(self) -> None:
         for point in (self.start, *(move.end for move in self.moves)):
-            if not all(map(isfinite, point)):
-                raise ValueError(f"'{self.id}': position {point} mm is not finite")
+            if not all(abs(coordinate) <= FARTHEST for coordinate in point):
+                shown = ", ".join(f"{coordinate:g}" for coordinate in point)
+                message = f"is not finite, or lies beyond {FARTHEST:g} mm"
+                raise ValueError(f"'{self.id}': position ({shown}) mm {message}")
 
     @property
     def moves(self) -> tuple[Move, ...]:

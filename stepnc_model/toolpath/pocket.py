@@ -22,7 +22,7 @@ from stepnc_model.toolpath.contour import (
     shape,
 )
 from stepnc_model.toolpath.cutter import run_out
-from stepnc_model.toolpath.frame import Frame, point_of
+from stepnc_model.toolpath.frame import Frame, frame_of, point_of
 from stepnc_model.toolpath.job import Job
 from stepnc_model.toolpath.offset import rounded
 from stepnc_model.toolpath.outline import (
@@ -89,11 +89,12 @@ def islands(
     job: Job, owner: Ref[Entity], bosses: tuple[Ref[Boss], ...], frame: Frame, bottom: float
 ) -> Iterator[Island]:
     """Bosses that reach above the floor; they are placed beside the feature, not within it."""
-    # In a pattern the bosses of the base move along with it.
-    copied = frame.inner(job.frame(owner).inverse())
+    # In a pattern or a compound feature the bosses move along with their feature.
+    placement = getattr(job.program.get(owner), "feature_placement", None)
+    beside = frame.inner(frame_of(job.program, placement).inverse())
     for ref in bosses or ():
         boss = job.program.get(ref)
-        within = copied.inner(job.frame(ref))
+        within = beside.inner(frame_of(job.program, boss.feature_placement))
         top = within.origin[2]
         if top <= bottom:
             continue

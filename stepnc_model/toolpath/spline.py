@@ -68,8 +68,9 @@ def spline_of(program: Program, ref: Ref[Entity]) -> Spline:
     if degree < 1 or len(poles) <= degree:
         raise _fault(program, ref, f"degree {degree} with {len(poles)} control points")
     knots = _knots(program, ref, curve)
-    is_falling = any(a > b for a, b in pairwise(knots))
-    if len(knots) != len(poles) + degree + 1 or is_falling:
+    if any(a > b for a, b in pairwise(knots)):
+        raise _fault(program, ref, "its knots fall: each must be at least the one before")
+    if len(knots) != len(poles) + degree + 1:
         message = f"{len(knots)} knots for {len(poles)} control points of degree {degree}"
         raise _fault(program, ref, message)
     return Spline(degree=degree, knots=knots, poles=poles)
@@ -83,6 +84,10 @@ def _knots(program: Program, ref: Ref[Entity], curve: BSplineCurve) -> tuple[flo
                 f"{len(curve.knots)} knots, {len(curve.knot_multiplicities)} multiplicities"
             )
             raise _fault(program, ref, counts)
+        for times in curve.knot_multiplicities:
+            if not 1 <= times <= curve.degree + 1:
+                message = f"multiplicity {times}: 1 to {curve.degree + 1} for its degree"
+                raise _fault(program, ref, message)
         return tuple(
             float(knot)
             for knot, times in zip(curve.knots, curve.knot_multiplicities, strict=True)

@@ -15,26 +15,31 @@ from stepnc_model.entities.approach import (
 )
 from stepnc_model.part21.values import Ref
 from stepnc_model.toolpath.job import Job
+from stepnc_model.toolpath.turning_link import Link
+from stepnc_model.toolpath.turning_onward import lift_off, onward
 from stepnc_model.toolpath.turning_piece import Piece, Spot, arc_pieces
 from stepnc_model.toolpath.turning_stock import operation_of
 from stepnc_model.toolpath.turning_walk import Walk
 from stepnc_model.units import rad_from_deg
 
 
-def entrance(job: Job, walk: Walk, pieces: Sequence[Piece]) -> None:
-    """Travel to where a chain starts; before the first cut as the approach says."""
+def entrance(job: Job, walk: Walk, pieces: Sequence[Piece], link: Link) -> None:
+    """Go to where a chain starts; before the first cut as the approach says."""
     start = pieces[0].start
     along = pieces[0].tangent(start)
     lead = () if walk.has_cut else _lead(job, operation_of(job).approach, start, along)
-    walk.travel(lead[0].start if lead else start)
+    onward(walk, link, lead[0].start if lead else start)
     walk.feed(lead)
 
 
-def departure(job: Job, walk: Walk) -> None:
-    """Leave the last cut as the retract says."""
+def departure(job: Job, walk: Walk, link: Link) -> None:
+    """Leave the last cut as the retract says, else by the lift of every pass."""
     back = (-walk.heading[0], -walk.heading[1])
     lead = _lead(job, operation_of(job).retract, walk.at, back)
-    walk.feed([piece.reversed() for piece in reversed(lead)])
+    if lead:
+        walk.feed([piece.reversed() for piece in reversed(lead)])
+    elif walk.has_cut:
+        lift_off(walk, link)
 
 
 def _lead(

@@ -9,6 +9,7 @@ from stepnc_model.entities.turning import Contouring, ContouringFinish, Facing, 
 from stepnc_model.toolpath.course import Course
 from stepnc_model.toolpath.job import Job
 from stepnc_model.toolpath.turning_approach import departure, entrance
+from stepnc_model.toolpath.turning_link import direction_in
 from stepnc_model.toolpath.turning_offset import thickness
 from stepnc_model.toolpath.turning_outline import Outline
 from stepnc_model.toolpath.turning_passes import oriented, scan, shortened, touching
@@ -19,11 +20,13 @@ from stepnc_model.toolpath.turning_setting import (
     MOST_PASSES,
     Setting,
     cumulative,
-    direction_in,
     setting_of,
 )
 from stepnc_model.toolpath.turning_stock import Bar, allowance_of, operation_of
 from stepnc_model.toolpath.turning_walk import Walk
+
+DEEP = 3.0
+"""mm in one pass that a turner would not take unasked"""
 
 
 def contour(
@@ -42,19 +45,21 @@ def contour(
     region = region_of(
         job, bar, outlines, plane=plane, allowance=allowance, overcut=setting.overcut
     )
-    for finding in leftovers(job, region, outlines):
+    for finding in (*setting.link.findings, *leftovers(job, region, outlines)):
         course.find(finding)
     walk = Walk(course, plane, region.stock, nose=nose, feeds=setting.feeds)
-    own = region.surface.within(region.low, max(region.low, region.own_high))
+    # Right at the end stands what is no feature: it is not to be taken off.
+    own = region.surface.within(region.low + SEEN, max(region.low + SEEN, region.own_high))
     deep = thickness(region.stock, own) if own.pieces else 0.0
     _check_stock(job, region, deep, allowance)
+    _find_one_pass(job, course, setting, deep - allowance)
     if isinstance(job.step.operation, (ContouringFinish, FacingFinish)):
         _finish(job, walk, region, setting, allowance=allowance, total=deep - allowance)
     elif setting.is_along_contour:
         _along(job, walk, region, setting, allowance=allowance, total=deep - allowance)
     else:
         _scanned(job, walk, region, setting, allowance)
-    departure(job, walk)
+    departure(job, walk, setting.link)
     walk.home()
 
 
@@ -81,6 +86,15 @@ def _check_stock(job: Job, region: Region, deep: float, allowance: float) -> Non
     if allowance >= deep > SEEN:
         message = f"an allowance of {allowance:g} mm where {deep:.4g} mm of stock stand"
         raise job.fault(message, job.step.operation_ref, "allowance")
+
+
+def _find_one_pass(job: Job, course: Course, setting: Setting, total: float) -> None:
+    """Say so where all is taken at once because nothing tells a depth."""
+    if setting.depths or setting.is_one_pass or total <= SEEN:
+        return
+    text = f"no cutting depth is given: {total:.3g} mm in one pass"
+    find = job.warning if total >= DEEP else job.note
+    course.find(find(text, operation_of(job).its_machining_strategy, "cutting_depth"))
 
 
 def _scanned(job: Job, walk: Walk, region: Region, setting: Setting, allowance: float) -> None:
@@ -128,7 +142,7 @@ def _finish(
     start = max(start, region.own_high + region.nose + allowance)
     towards = 1 if setting.is_reversed else -1
     pieces = oriented(shortened(chain, start), towards=towards)
-    entrance(job, walk, pieces)
+    entrance(job, walk, pieces, setting.link)
     walk.feed(pieces)
 
 
@@ -137,6 +151,5 @@ def _follow(job: Job, walk: Walk, region: Region, setting: Setting, allowance: f
     towards = 1 if setting.is_reversed else -1
     pieces = touching(walk, oriented(region.chain(allowance), towards=towards), setting.overcut)
     if pieces:
-        entrance(job, walk, pieces)
+        entrance(job, walk, pieces, setting.link)
         walk.feed(pieces)
-        walk.lift(setting.lift, setting.lift_height)

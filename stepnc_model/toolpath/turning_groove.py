@@ -18,6 +18,7 @@ from stepnc_model.toolpath.course import Course
 from stepnc_model.toolpath.job import Job
 from stepnc_model.toolpath.path import Move, MoveType
 from stepnc_model.toolpath.turning_insert import Insert, insert_of
+from stepnc_model.toolpath.turning_link import direction_in
 from stepnc_model.toolpath.turning_outline import Outline
 from stepnc_model.toolpath.turning_piece import Piece, Spot, crossings
 from stepnc_model.toolpath.turning_plane import HalfPlane
@@ -27,7 +28,6 @@ from stepnc_model.toolpath.turning_setting import (
     cumulative,
     cutting_feed,
     depths_of,
-    direction_in,
 )
 from stepnc_model.toolpath.turning_stock import Bar, allowance_of, operation_of, surface_of
 from stepnc_model.toolpath.turning_walk import RAPID_CLEARANCE, split
@@ -135,9 +135,10 @@ def _groove(job: Job, plunger: Plunger, bar: Bar, outline: Outline, allowance: f
     ]
     solid = highest(around)
     centres = insert.rolled(solid, allowance)
-    low, high = _room(job, insert, outline, _mouth(surface, bar.left), allowance)
+    mouth = _mouth(surface, bar.left)
+    low, high = _room(job, insert, outline, mouth, allowance)
     bottom = centres.bottom(low - FITS, high + FITS)
-    _check_depth(job, plunger, outline, bottom)
+    _check_depth(job, plunger, outline, bar.left.top(*mouth) + insert.corner - bottom)
     left = bottom - insert.corner - allowance - outline.radii[0]
     if left > SEEN:
         text = f"the insert does not come to the bottom: {left:.3g} mm stay"
@@ -185,9 +186,8 @@ def _room(
     return (low, high) if high > low + FITS else (0.5 * (low + high), 0.5 * (low + high))
 
 
-def _check_depth(job: Job, plunger: Plunger, outline: Outline, bottom: float) -> None:
+def _check_depth(job: Job, plunger: Plunger, outline: Outline, depth: float) -> None:
     """The insert must reach the floor, and there must be something above it."""
-    depth = plunger.rim.top(outline.low, outline.high) - bottom
     if depth > plunger.insert.reach + FITS:
         message = (
             f"{depth:.4g} mm deep: the insert reaches {plunger.insert.reach:g} mm "
@@ -276,5 +276,5 @@ def _cut_in(job: Job, plunger: Plunger, outline: Outline, feature: Entity) -> No
         u = outline.low - insert.corner - insert.flat
     bottom = least + insert.corner if least > 0.0 else 0.0
     depth = plunger.rim.at(u) - bottom
-    _check_depth(job, plunger, outline, bottom)
+    _check_depth(job, plunger, outline, depth)
     _plunge(job, plunger, u, depth)

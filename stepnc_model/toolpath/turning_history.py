@@ -7,6 +7,7 @@ for what their noses left in corners. What no feature of the program removes is 
 from dataclasses import replace
 
 from stepnc_model.entities.turning import Contouring, Facing, Grooving
+from stepnc_model.entities.turning_features import Groove
 from stepnc_model.errors import Finding, SchemaError, Severity
 from stepnc_model.program import Workingstep
 from stepnc_model.toolpath.job import Job, job_of
@@ -36,7 +37,7 @@ def bar_of(job: Job, outlines: tuple[Outline, ...]) -> Bar:
         surfaces = _outlines(job, step, reach, known)
         if surfaces:
             part = lowered(part, surface_of(surfaces, HalfPlane()))
-    bar = Bar(raw=raw, left=raw, part=_trimmed(part, known), findings=findings)
+    bar = Bar(raw=raw, left=raw, part=_trimmed(job, part, known), findings=findings)
     for step in job.program.workingsteps[: job.step.index]:
         surfaces = _outlines(job, step, reach, known)
         if surfaces:
@@ -116,9 +117,10 @@ def _faced(outlines: tuple[Outline, ...], allowance: float, left: Profile) -> Pr
     return _without_front(left)
 
 
-def _trimmed(part: Profile, known: Known) -> Profile:
-    """A part without the bar in front of its foremost feature."""
-    fronts = [outline.high for outline in known.values() if outline is not None]
+def _trimmed(job: Job, part: Profile, known: Known) -> Profile:
+    """A part without the bar in front of its foremost feature; a groove's walls are none."""
+    outlines = [outline for outline in known.values() if outline is not None]
+    fronts = [o.high for o in outlines if not isinstance(job.program.get(o.ref), Groove)]
     front = max(fronts, default=part.high)
     return part.within(part.low, front) if front > part.high - FACING_STOCK else part
 

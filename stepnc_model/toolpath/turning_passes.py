@@ -8,6 +8,7 @@ that stays, the tool comes down along it.
 from collections.abc import Sequence
 from itertools import pairwise
 
+from stepnc_model.toolpath.turning_onward import onward, step_over
 from stepnc_model.toolpath.turning_piece import Piece, Spot
 from stepnc_model.toolpath.turning_profile import NARROW, Profile
 from stepnc_model.toolpath.turning_setting import Setting
@@ -59,14 +60,21 @@ def _line(
     else:
         u = bound
         lead = _descent(walk, centres, u, towards)
-    walk.travel(lead[0].start if lead else (u, level))
+    start = lead[0].start if lead else (u, level)
+    if not setting.is_to_and_fro:
+        onward(walk, setting.link, start)
+    elif lead:
+        walk.travel(start)
+    else:
+        u, level = step_over(walk, setting.link, start, towards)
     foot = lead[-1].end if lead else (u, level)
     if lead and abs(foot[1] - level) > TOUCH:
         lead = [*lead, Piece(start=foot, end=(foot[0], level))]
         foot = (foot[0], level)
+    if setting.is_to_and_fro:
+        walk.step(lead)
+        lead = ()
     walk.feed([*lead, Piece(start=foot, end=(end, level))])
-    if not setting.is_to_and_fro:
-        walk.lift(setting.lift, setting.lift_height)
 
 
 def _descent(walk: Walk, centres: Profile, u: float, towards: float) -> list[Piece]:

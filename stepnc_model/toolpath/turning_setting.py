@@ -1,16 +1,19 @@
 """What the strategy of a turning operation says, as numbers: depths, overcut, lift, feeds."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import accumulate, chain, repeat
-from math import ceil, hypot, isfinite
+from math import ceil, isfinite
 
-from stepnc_model.entities.geometry import Direction
-from stepnc_model.entities.turning_strategies import BidirectionalTurning, ContourTurning
-from stepnc_model.part21.values import Ref, Typed
+from stepnc_model.entities.turning_strategies import (
+    BidirectionalTurning,
+    ContourTurning,
+    TurningMachiningStrategy,
+)
+from stepnc_model.part21.values import Typed
 from stepnc_model.toolpath.job import DEFAULT_CLEARANCE, Job
 from stepnc_model.toolpath.path import Feed
-from stepnc_model.toolpath.turning_piece import Spot
+from stepnc_model.toolpath.turning_link import Link, link_of
 from stepnc_model.toolpath.turning_plane import HalfPlane
 from stepnc_model.toolpath.turning_stock import operation_of
 from stepnc_model.toolpath.turning_walk import RAPID_CLEARANCE, Feeds
@@ -36,15 +39,14 @@ class Setting:
     """mm: of each pass, the last one for all that follow; none: all at once"""
     overcut: float
     """mm"""
-    lift: Spot
-    """unit vector"""
-    lift_height: float
-    """mm"""
+    link: Link
     feeds: Feeds
     is_reversed: bool
     """passes run towards +u"""
     is_to_and_fro: bool
     is_along_contour: bool
+    is_one_pass: bool
+    """the strategy allows no second one"""
 
 
 def setting_of(job: Job, plane: HalfPlane) -> Setting:
@@ -58,27 +60,19 @@ def setting_of(job: Job, plane: HalfPlane) -> Setting:
     reference = operation_of(job).its_machining_strategy
     strategy = job.program.get(reference) if reference is not None else None
     overcut = getattr(strategy, "overcut_length", None)
-    ahead = direction_in(job, plane, getattr(strategy, "feed_direction", None))
-    lift = direction_in(job, plane, getattr(strategy, "lift_direction", None))
-    height = getattr(strategy, "lift_height", None)
-    is_reversed = ahead is not None and ahead[0] > abs(ahead[1])
-    back = -(0.5**0.5) if is_reversed else 0.5**0.5
-    for name, length in (("overcut_length", overcut), ("lift_height", height)):
-        if length is not None and not (0.0 <= length < 1e4):
-            raise job.fault(f"{length:g} mm is no such length", reference or job.step.ref, name)
+    link = link_of(job, plane)
+    if overcut is not None and not 0.0 <= overcut < 1e4:
+        at = reference or job.step.ref
+        raise job.fault(f"{overcut:g} mm is no such length", at, "overcut_length")
     return Setting(
         depths=depths_of(job),
         overcut=DEFAULT_OVERCUT if overcut is None else float(overcut),
-        lift=lift if lift is not None and lift[1] > 0.0 else (back, 0.5**0.5),
-        lift_height=RAPID_CLEARANCE if height is None else float(height),
-        feeds=Feeds(
-            cutting=cutting_feed(job),
-            lift=_feed(job, getattr(strategy, "lift_feed", None), "lift_feed"),
-            stepover=_feed(job, getattr(strategy, "stepover_feed", None), "stepover_feed"),
-        ),
-        is_reversed=is_reversed,
+        link=link,
+        feeds=_feeds(job, strategy),
+        is_reversed=link.ahead[0] > 0.0,
         is_to_and_fro=isinstance(strategy, BidirectionalTurning),
         is_along_contour=isinstance(strategy, ContourTurning),
+        is_one_pass=strategy is not None and strategy.allow_multiple_passes is False,
     )
 
 
@@ -148,22 +142,42 @@ def cumulative(total: float, depths: Sequence[float]) -> list[float]:
     return [*sums, total]
 
 
-def direction_in(job: Job, plane: HalfPlane, ref: Ref[Direction] | None) -> Spot | None:
-    """A direction of the file in a half plane, as a unit vector."""
-    if ref is None:
-        return None
-    ratios = (*job.program.get(ref).direction_ratios, 0.0, 0.0, 0.0)[:3]
-    x, z = float(ratios[0]), float(ratios[2])
-    length = hypot(x, z)
-    if not 0.0 < length < 1e12:
-        return None
-    return (x / length, z / length) if plane.is_across else (z / length, x / length)
+def _feeds(job: Job, strategy: TurningMachiningStrategy | None) -> Feeds:
+    """Feeds of the passes and of the ways between them.
+
+    ISO 14649-12 does not say what ``variable_stepover_feed`` is a ratio for: here it scales
+    the feed of a step over where that one cuts, as ``variable_feedrate`` scales the passes.
+    """
+    cutting = cutting_feed(job)
+    stepover = _feed(job, getattr(strategy, "stepover_feed", None), "stepover_feed")
+    entering = stepover or cutting
+    ratio = getattr(strategy, "variable_stepover_feed", None)
+    if ratio is not None:
+        if not 0.0 < ratio < 100.0:
+            at = operation_of(job).its_machining_strategy or job.step.ref
+            raise job.fault(f"{ratio:g} is no ratio of a feed", at, "variable_stepover_feed")
+        entering = _scaled(entering, float(ratio))
+    return Feeds(
+        cutting=cutting,
+        lift=_feed(job, getattr(strategy, "lift_feed", None), "lift_feed") or job.feed,
+        stepover=stepover or job.feed,
+        entering=entering,
+    )
 
 
-def _feed(job: Job, written: Typed | float | None, name: str) -> Feed:
-    """A feed of the strategy, the programmed one where it gives none."""
+def _scaled(feed: Feed, ratio: float) -> Feed:
+    """A feed by a ratio, in whichever way it is given."""
+    if feed.velocity is not None:
+        return replace(feed, velocity=feed.velocity * ratio)
+    if feed.per_revolution is not None:
+        return replace(feed, per_revolution=feed.per_revolution * ratio)
+    return replace(feed, ratio=feed.ratio * ratio)
+
+
+def _feed(job: Job, written: Typed | float | None, name: str) -> Feed | None:
+    """A feed of the strategy, if it gives one."""
     if written is None:
-        return job.feed
+        return None
     value = written.value if isinstance(written, Typed) else written
     if not isinstance(value, (int, float)) or not 0.0 < value < 1e6:
         reference = operation_of(job).its_machining_strategy or job.step.operation_ref

@@ -15,6 +15,7 @@ from stepnc_model.entities.profiles import (
     PartialCircularProfile,
     RoundedUProfile,
     SquareUProfile,
+    TeeProfile,
     VeeProfile,
 )
 from stepnc_model.entities.turning_features import Groove
@@ -49,9 +50,15 @@ def groove_pieces(job: Job, feature: Groove, frame: Frame, reach: float) -> tupl
     """Section of a groove, pieces of z and x from the front wall to the one at the chuck."""
     program = job.program
     profile = program.get(feature.sweep)
+    _check_face(job, feature, frame)
     placed = frame.inner(frame_of(program, profile.placement))
     middle, bottom = placed.origin[2], feature.radius
-    height = max(reach - bottom, 0.0)
+    if bottom >= reach:
+        message = (
+            f"its bottom at a radius of {bottom:g} mm lies outside the stock: {reach:g} mm"
+        )
+        raise job.fault(message, feature.sweep)
+    height = reach - bottom
     if isinstance(profile, SquareUProfile):
         return tuple(_square(job, profile, (middle, bottom), height))
     if isinstance(profile, RoundedUProfile):
@@ -63,8 +70,37 @@ def groove_pieces(job: Job, feature: Groove, frame: Frame, reach: float) -> tupl
         radius, turn = size_of(job, profile.radius), rad_from_deg(profile.sweep_angle)
         return tuple(_bowl(radius, turn, (middle, bottom)))
     if isinstance(profile, GeneralProfile):
-        return tuple(_general(job, feature, profile, placed))
+        pieces = tuple(_general(job, feature, profile, placed))
+        _check_open(job, feature, pieces)
+        return pieces
+    if isinstance(profile, TeeProfile):
+        message = "a tee groove is wider below than at its mouth: no plunge comes to it"
+        raise job.fault(message, feature.sweep)
     raise job.fault("a groove of this profile cannot be turned", feature.sweep)
+
+
+def _check_face(job: Job, feature: Groove, frame: Frame) -> None:
+    """Material below the groove, not towards the chuck: it opens outwards."""
+    side = feature.material_side
+    if side is None:
+        return
+    ratios = (*job.program.get(side).direction_ratios, 0.0, 0.0, 0.0)[:3]
+    x, y, z = map(float, ratios)
+    if abs(frame.direction((x, y, z))[2]) > abs(x):
+        message = "its material lies along the axis: a groove on a face is not supported"
+        raise job.fault(message, side)
+
+
+def _check_open(job: Job, feature: Groove, pieces: Sequence[Piece]) -> None:
+    """All of the section must be seen from outside, from one wall to the other."""
+    if not pieces:
+        return
+    towards = 1.0 if pieces[-1].end[0] > pieces[0].start[0] else -1.0
+    if any((piece.end[0] - piece.start[0]) * towards < -STRAIGHT for piece in pieces):
+        message = (
+            "its section opens to a face or is undercut: no plunge from outside comes to it"
+        )
+        raise job.fault(message, feature.sweep)
 
 
 def rounded(corners: Sequence[Spot], radii: Sequence[float]) -> Iterator[Piece]:

@@ -12,7 +12,7 @@ References
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from math import ceil, sqrt, tan
+from math import ceil, copysign, sqrt, tan
 
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.enums import (
@@ -28,7 +28,7 @@ from stepnc_model.entities.turning_tools import TurningThreadingTool
 from stepnc_model.part21.values import Ref
 from stepnc_model.toolpath.course import Course
 from stepnc_model.toolpath.job import Job
-from stepnc_model.toolpath.path import Feed, Move, MoveType
+from stepnc_model.toolpath.path import MoveType
 from stepnc_model.toolpath.turning_outline import Outline
 from stepnc_model.toolpath.turning_setting import (
     MOST_PASSES,
@@ -36,6 +36,7 @@ from stepnc_model.toolpath.turning_setting import (
     depths_of,
 )
 from stepnc_model.toolpath.turning_stock import Bar, allowance_of, operation_of
+from stepnc_model.toolpath.turning_thread_pass import Pass, cut_thread
 from stepnc_model.toolpath.turning_walk import RAPID_CLEARANCE
 from stepnc_model.units import rad_from_deg
 
@@ -47,6 +48,9 @@ RUN_IN = 2.0
 
 HALF_ANGLE_DEG = 30.0
 """degrees, of the metric profile [1]_"""
+
+HALF_INSERT = 0.5
+"""of the pitch: the widest that the profile is on each side of its tip [1]_"""
 
 FEWEST_PASSES = 4
 PASSES_PER_MM = 4.0
@@ -93,60 +97,34 @@ def thread(job: Job, course: Course, bar: Bar, outline: Outline) -> None:
     strategy = _strategy(job)
     pitch = _pitch(job, course)
     helix = _helix(job, outline, pitch)
-    run_in = max(RUN_IN * pitch, getattr(strategy, "overcut_length", None) or 0.0)
+    half = _half_angle(job)
+    shifts = [_shift(helix, strategy, 0.0, index) * tan(half) for index in (0, 1)]
+    outwards = max(0.0, *(-helix.towards * shift for shift in shifts))
+    run_in = _run_in(job, course, bar, helix, strategy, outwards)
     run_out = _run_out(job, course, bar, helix, strategy)
     start = helix.start - helix.towards * run_in
     end = helix.end + helix.towards * run_out
     lift = getattr(strategy, "lift_height", None) or RAPID_CLEARANCE
     outside = bar.left.top(min(start, end), max(start, end))
     clear = max(outside, helix.radius) + max(lift, RAPID_CLEARANCE)
-    _check_run_in(job, course, bar, helix, start)
     angle = getattr(strategy, "path_return_angle", None)
     home = course.at
     for index, depth in enumerate(_depths(job, helix, strategy)):
-        shift = _shift(job, helix, strategy, depth, index)
+        shift = _shift(helix, strategy, depth, index) * tan(half)
         kind = MoveType.RAPID if index else MoveType.APPROACH
         if index == 0:
             course.rapid((home[0], 0.0, start + shift), kind)
         one = Pass(
-            start=start + shift, end=end, bottom=helix.radius - depth, clear=clear, angle=angle
+            start=start + shift,
+            end=end,
+            bottom=helix.radius - depth,
+            clear=clear,
+            angle=angle,
+            has_relief=run_out > 0.0,
         )
-        _pass(job, course, one, pitch=pitch, kind=kind)
+        cut_thread(job, course, one, stock=bar.left, pitch=pitch, kind=kind)
     course.rapid((home[0], 0.0, course.at[2]), MoveType.RETRACT)
     course.rapid(home, MoveType.RETRACT)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Pass:
-    """One pass of a thread, mm."""
-
-    start: float
-    """z where the tool gathers speed"""
-    end: float
-    bottom: float
-    """radius of the tip"""
-    clear: float
-    """radius of the way back"""
-    angle: float | None
-    """degrees from the axis at which the tool leaves; None: straight out"""
-
-
-def _pass(job: Job, course: Course, one: Pass, *, pitch: float, kind: MoveType) -> None:
-    """In, along, and out."""
-    start, end, bottom, clear = one.start, one.end, one.bottom, one.clear
-    bound = Feed(technology=job.step.technology_ref, per_revolution=pitch, is_synchronised=True)
-    course.rapid((clear, 0.0, start), kind)
-    course.line((bottom, 0.0, start), MoveType.NO_CONTACT)
-    if one.angle is not None and 0.0 < one.angle < 90.0:
-        out = (clear - bottom) / tan(rad_from_deg(one.angle))
-        part = min(out / abs(end - start), 0.5)
-        turning = end + part * (start - end)
-        course.add(Move(end=(bottom, 0.0, turning), type=MoveType.CONTACT, feed=bound))
-        course.add(Move(end=(clear, 0.0, end), type=MoveType.CONTACT, feed=bound))
-        return
-    course.add(Move(end=(bottom, 0.0, end), type=MoveType.CONTACT, feed=bound))
-    # Nothing stands beside the tool but the thread itself: it must leave at once.
-    course.add(Move(end=(clear, 0.0, end), type=MoveType.RAPID))
 
 
 def _strategy(job: Job) -> ThreadStrategy | None:
@@ -202,27 +180,55 @@ def _run_out(
     """Length behind the thread: the overcut where a relief or the end of the bar has room."""
     wanted = getattr(strategy, "overcut_length", None)
     wanted = helix.pitch if wanted is None else wanted
-    root = helix.radius - helix.depth
-    length = wanted
-    while length > 0.0:
-        ends = sorted((helix.end, helix.end + helix.towards * length))
-        inside = (ends[0] + SAME_PITCH, ends[1] - SAME_PITCH)
-        if bar.left.within(*inside).top(*inside) <= root:
-            return float(length)
-        length -= 0.125 * wanted
+    beside = HALF_INSERT * helix.pitch
+    length = _room(bar, helix, helix.end, helix.towards * wanted, beside)
+    if length > 0.0:
+        return length
     if not getattr(strategy, "path_return_angle", None):
         text = "no relief behind the thread: the tool leaves at its end, in the material"
-        course.find(job.warning(text, job.step.features[0]))
-    return 0.0
+        course.warn(text, job.step.features[0])
+    if length < 0.0:
+        text = f"the thread ends {-length:.3g} mm before the shoulder: the insert has no room"
+        course.warn(text, job.step.features[0])
+    return length
 
 
-def _check_run_in(job: Job, course: Course, bar: Bar, helix: Helix, start: float) -> None:
-    """Nothing may stand where the tool gathers speed."""
-    ends = sorted((helix.start, start))
-    inside = (ends[0] + SAME_PITCH, ends[1])
-    if bar.left.within(*inside).top(*inside) > helix.radius - helix.depth:
-        text = f"material stands in the {abs(start - helix.start):g} mm before the thread"
-        course.find(job.warning(text, job.step.features[0]))
+def _run_in(
+    job: Job,
+    course: Course,
+    bar: Bar,
+    helix: Helix,
+    strategy: ThreadStrategy | None,
+    outwards: float,
+) -> float:
+    """Length before the thread, to gather speed; some passes start further out."""
+    wanted = max(RUN_IN * helix.pitch, getattr(strategy, "overcut_length", None) or 0.0)
+    beside = HALF_INSERT * helix.pitch + outwards
+    length = _room(bar, helix, helix.start, -helix.towards * wanted, beside)
+    if length < RUN_IN * helix.pitch - SAME_PITCH:
+        text = f"material stands before the thread: a run-in of {max(length, 0.0):.3g} mm"
+        course.warn(f"{text}, not of {wanted:.3g} mm", job.step.features[0])
+    return length
+
+
+def _room(bar: Bar, helix: Helix, at: float, reach: float, beside: float) -> float:
+    """How far the tip may go beyond an end of the thread, mm, with room beside it.
+
+    Negative at a shoulder, where the insert must stop short.
+    """
+    half = copysign(beside, reach)
+    for eighths in range(8, 0, -1):
+        part = reach * eighths / 8.0
+        if part and _top(bar, at, at + part + half) <= helix.radius - helix.depth:
+            return abs(part)
+    is_shoulder = _top(bar, at, at + half) > helix.radius + SAME_PITCH
+    return -abs(half) if is_shoulder else 0.0
+
+
+def _top(bar: Bar, start: float, end: float) -> float:
+    """Greatest radius of the stock between two z, but for what stands right at them."""
+    low, high = min(start, end) + SAME_PITCH, max(start, end) - SAME_PITCH
+    return bar.left.within(low, high).top(low, high)
 
 
 def _depths(job: Job, helix: Helix, strategy: ThreadStrategy | None) -> Iterator[float]:
@@ -262,20 +268,25 @@ def _sums(
     return [total * (i / count if is_even else sqrt(i / count)) for i in range(1, count + 1)]
 
 
-def _shift(
-    job: Job, helix: Helix, strategy: ThreadStrategy | None, depth: float, index: int
-) -> float:
-    """Shift of a pass along z so that one flank stays where it is."""
-    direction = strategy.threading_direction if strategy else ThreadingDirectionType.CENTER
+def _half_angle(job: Job) -> float:
+    """Half the angle of the thread's profile, rad."""
     tool = job.program.get(job.step.tool_ref)
     included = None
     if isinstance(tool, TurningThreadingTool):
         included = job.program.get(tool.cutting_edge).tool_included_angle
-    half = rad_from_deg(0.5 * included if included else HALF_ANGLE_DEG)
+    if included is not None and not 0.0 < included < 180.0:
+        message = f"an included angle of {included:g} degrees is no profile of a thread"
+        raise job.fault(message, job.step.tool_ref, "tool_included_angle")
+    return rad_from_deg(0.5 * included if included else HALF_ANGLE_DEG)
+
+
+def _shift(helix: Helix, strategy: ThreadStrategy | None, depth: float, index: int) -> float:
+    """Depth that is still to come, signed as the passes shift so that a flank stays."""
+    direction = strategy.threading_direction if strategy else ThreadingDirectionType.CENTER
     side = {
         ThreadingDirectionType.RIGHT: 1.0,
         ThreadingDirectionType.LEFT: -1.0,
         ThreadingDirectionType.RIGHT_ZIGZAG: 1.0 if index % 2 == 0 else -1.0,
         ThreadingDirectionType.LEFT_ZIGZAG: -1.0 if index % 2 == 0 else 1.0,
     }.get(direction, 0.0)
-    return side * max(0.0, helix.depth - depth) * tan(half)
+    return side * max(0.0, helix.depth - depth)

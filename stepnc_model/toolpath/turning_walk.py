@@ -34,6 +34,9 @@ class Feeds:
     cutting: Feed
     lift: Feed
     stepover: Feed
+    """of ways through air to the next pass"""
+    entering: Feed
+    """of such ways where they cut"""
 
 
 class Walk:
@@ -68,13 +71,37 @@ class Walk:
         """Go back to where the path started."""
         self._travel(self._home, MoveType.RETRACT)
 
-    def feed(self, pieces: Sequence[Piece], feed: Feed | None = None) -> None:
+    def feed(self, pieces: Sequence[Piece]) -> None:
         """Feed along pieces and take off what is in the way."""
+        self._run(pieces, air=self.feeds.cutting, contact=self.feeds.cutting)
+
+    def step(self, pieces: Sequence[Piece]) -> None:
+        """The same on the way to a pass, at the feeds of the step over."""
+        self._run(pieces, air=self.feeds.stepover, contact=self.feeds.entering)
+
+    def rush(self, end: Spot, margin: float) -> None:
+        """Straight to a spot, in rapid where the stock is at least a margin away."""
+        clear = grown(self.stock, self.nose + margin)
+        for part, is_near in split(Piece(start=self.at, end=end), clear):
+            if is_near:
+                self._straight(part.end, MoveType.NO_CONTACT, self.feeds.stepover)
+            else:
+                self._straight(part.end, MoveType.RAPID, None)
+
+    def meets(self, piece: Piece) -> bool:
+        """Whether the tool would cut on a way; along a wall that it touches it does not."""
+        return any(self._is_in(part.point(0.5)) for part in _parts(piece, self._rim))
+
+    def _is_in(self, spot: Spot) -> bool:
+        u, v = spot
+        return v < min(self._rim.at(u - BESIDE), self._rim.at(u + BESIDE)) - BESIDE
+
+    def _run(self, pieces: Sequence[Piece], *, air: Feed, contact: Feed) -> None:
         for piece in pieces:
             for part, is_contact in split(piece, self._rim):
                 kind = MoveType.CONTACT if is_contact else MoveType.NO_CONTACT
                 self.has_cut = self.has_cut or is_contact
-                self._emit(part, kind, feed or self.feeds.cutting)
+                self._emit(part, kind, contact if is_contact else air)
         if pieces:
             self.heading = pieces[-1].tangent(pieces[-1].end)
             left = cut(self.stock, pieces, self.nose)
@@ -100,7 +127,7 @@ class Walk:
         for spot in self._corners(self.at, way_in[0] if way_in else end):
             self._straight(spot, kind, None)
         for start, spot in pairwise([*way_in, end]):
-            self.feed([Piece(start=start, end=spot)], self.feeds.stepover)
+            self.step([Piece(start=start, end=spot)])
 
     def _way_out(self, spot: Spot) -> list[Spot]:
         """Where the tool has room above or behind a spot; nothing when it has there."""

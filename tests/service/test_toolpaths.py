@@ -208,7 +208,7 @@ def test_a_workingstep_without_a_feed_cannot_be_posted_and_others_can(tmp_path: 
     assert slow != text
     part = tmp_path / "part.stpnc"
     part.write_text(slow)
-    with pytest.raises(SchemaError, match="#311 MILLING_TECHNOLOGY.feedrate: feed 0"):
+    with pytest.raises(SchemaError, match="#311 MILLING_TECHNOLOGY"):
         post(PostRequest(file=part, control="fanuc"))
     told: list[str] = []
     paths = post(PostRequest(file=part, control="fanuc", keep_going=True), tell=told.append)

@@ -24,8 +24,7 @@ from stepnc_model.post.blocks import (
     ToolChange,
 )
 from stepnc_model.post.fanuc import FanucReader
-from stepnc_model.post.iso_reader import along_path
-from stepnc_model.post.linuxcnc import LinuxCncReader
+from stepnc_model.post.linuxcnc import LinuxCncReader, along_path
 from stepnc_model.toolpath.path import CycleKind, Plane
 
 
@@ -70,7 +69,7 @@ def test_nothing_is_skipped_in_silence(line: str, message: str) -> None:
 
 
 def test_frames_numbers_and_comments_are_no_words() -> None:
-    found = read("%", "O0001 (NAME)", "N10 G0 Z5 (up)", "", "%")
+    found = read("%", "(NAME)", "N10 G0 Z5 (up)", "", "%")
     assert [type(block).__name__ for block in found] == ["Comment", "Comment", "Retract"]
     assert found[2] == Retract(z=5.0)
 

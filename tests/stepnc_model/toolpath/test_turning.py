@@ -1,32 +1,11 @@
 """The tool paths of the shaft, and what cannot be turned."""
 
-from pathlib import Path
+from collections.abc import Callable
 
 import pytest
 
 from stepnc_model.errors import SchemaError
-from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
-from stepnc_model.toolpath.job import Job, job_of
 from stepnc_model.toolpath.path import Move, MoveType, ToolPath
-from stepnc_model.toolpath.turning import turning_path
-
-SHAFT = Path(__file__).parents[3] / "examples" / "parts" / "shaft.stpnc"
-
-
-def job(name: str, *edits: tuple[str, str]) -> Job:
-    """A workingstep of the shaft with some texts replaced."""
-    text = SHAFT.read_text()
-    for before, after in edits:
-        assert before in text
-        text = text.replace(before, after)
-    program = Program(Part21File.from_bytes(text.encode(), name="shaft"), name="shaft")
-    (step,) = (step for step in program.workingsteps if step.id == name)
-    return job_of(program, step)
-
-
-def path_of(name: str, *edits: tuple[str, str]) -> ToolPath:
-    return turning_path(job(name, *edits))
 
 
 def cuts(path: ToolPath) -> list[Move]:
@@ -44,7 +23,9 @@ NAMES = [
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_every_path_of_the_shaft_starts_and_ends_at_the_safe_point(name: str) -> None:
+def test_every_path_of_the_shaft_starts_and_ends_at_the_safe_point(
+    path_of: Callable[..., ToolPath], name: str
+) -> None:
     """5 mm outside the bar of 60 mm, on the security plane at 10 mm."""
     path = path_of(name)
     assert path.start == path.end == (35.0, 0.0, 10.0)
@@ -53,12 +34,16 @@ def test_every_path_of_the_shaft_starts_and_ends_at_the_safe_point(name: str) ->
     assert path.findings == ()
 
 
-def test_without_retract_plane_the_clearance_is_a_note() -> None:
+def test_without_retract_plane_the_clearance_is_a_note(
+    path_of: Callable[..., ToolPath],
+) -> None:
     path = path_of("ROUGH FACE", ("'ROUGH FACE',5.", "'ROUGH FACE',$"))
     assert "5 mm off the stock assumed" in str(path.findings[0])
 
 
-def test_without_nose_radius_the_tool_is_sharp_and_it_is_said() -> None:
+def test_without_nose_radius_the_tool_is_sharp_and_it_is_said(
+    path_of: Callable[..., ToolPath],
+) -> None:
     path = path_of("FINISH CONTOUR", ("93.,$,55.,(#412)", "93.,$,55.,()"))
     assert "no nose radius" in str(path.findings)
     assert all(move.arc is None for move in path.moves)
@@ -75,7 +60,9 @@ def test_without_nose_radius_the_tool_is_sharp_and_it_is_said() -> None:
         (("(2.),$,#504", "(-2.),$,#504"), "must be positive"),
     ],
 )
-def test_what_cannot_be_turned_is_said(edit: tuple[str, str], message: str) -> None:
+def test_what_cannot_be_turned_is_said(
+    path_of: Callable[..., ToolPath], edit: tuple[str, str], message: str
+) -> None:
     edits = [edit]
     if "62." in edit[1]:
         edits.append(("(0.,0.,-150.)", "(0.,0.,-60.)"))

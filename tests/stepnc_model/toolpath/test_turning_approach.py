@@ -1,38 +1,18 @@
 """Approach and retract as the operation says."""
 
-from pathlib import Path
+from collections.abc import Callable
 
 import pytest
 
 from stepnc_model.errors import SchemaError
-from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
-from stepnc_model.toolpath.job import Job, job_of
 from stepnc_model.toolpath.path import MoveType, ToolPath
-from stepnc_model.toolpath.turning import turning_path
-
-SHAFT = Path(__file__).parents[3] / "examples" / "parts" / "shaft.stpnc"
-
-
-def job(name: str, *edits: tuple[str, str]) -> Job:
-    """A workingstep of the shaft with some texts replaced."""
-    text = SHAFT.read_text()
-    for before, after in edits:
-        assert before in text
-        text = text.replace(before, after)
-    program = Program(Part21File.from_bytes(text.encode(), name="shaft"), name="shaft")
-    (step,) = (step for step in program.workingsteps if step.id == name)
-    return job_of(program, step)
-
-
-def path_of(name: str, *edits: tuple[str, str]) -> ToolPath:
-    return turning_path(job(name, *edits))
-
 
 END = "ENDSEC;\nEND-"
 
 
-def test_the_first_cut_is_met_tangentially_and_the_last_left_at_an_angle() -> None:
+def test_the_first_cut_is_met_tangentially_and_the_last_left_at_an_angle(
+    path_of: Callable[..., ToolPath],
+) -> None:
     path = path_of(
         "FINISH CONTOUR",
         (
@@ -50,7 +30,7 @@ def test_the_first_cut_is_met_tangentially_and_the_last_left_at_an_angle() -> No
     assert leaving[1].end[0] - leaving[0][0] == pytest.approx(2.0**0.5)
 
 
-def test_an_angle_without_length_is_refused() -> None:
+def test_an_angle_without_length_is_refused(path_of: Callable[..., ToolPath]) -> None:
     edits = (
         (
             "'FINISH CONTOUR',5.,$,#410,#301,#330,$,$",

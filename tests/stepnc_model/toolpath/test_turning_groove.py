@@ -1,32 +1,11 @@
 """Grooves of the shaft: plunges, pecks, dwells and walls."""
 
-from pathlib import Path
+from collections.abc import Callable
 
 import pytest
 
 from stepnc_model.errors import SchemaError
-from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
-from stepnc_model.toolpath.job import Job, job_of
 from stepnc_model.toolpath.path import Move, MoveType, ToolPath
-from stepnc_model.toolpath.turning import turning_path
-
-SHAFT = Path(__file__).parents[3] / "examples" / "parts" / "shaft.stpnc"
-
-
-def job(name: str, *edits: tuple[str, str]) -> Job:
-    """A workingstep of the shaft with some texts replaced."""
-    text = SHAFT.read_text()
-    for before, after in edits:
-        assert before in text
-        text = text.replace(before, after)
-    program = Program(Part21File.from_bytes(text.encode(), name="shaft"), name="shaft")
-    (step,) = (step for step in program.workingsteps if step.id == name)
-    return job_of(program, step)
-
-
-def path_of(name: str, *edits: tuple[str, str]) -> ToolPath:
-    return turning_path(job(name, *edits))
 
 
 def cuts(path: ToolPath) -> list[Move]:
@@ -36,7 +15,7 @@ def cuts(path: ToolPath) -> list[Move]:
 SQUARE = "SQUARE_U_PROFILE($,#134,#135,0.,#135,0.)"
 
 
-def test_two_plunges_of_three_make_a_groove_of_four() -> None:
+def test_two_plunges_of_three_make_a_groove_of_four(path_of: Callable[..., ToolPath]) -> None:
     """From −29 to −25 mm: the left corner at −29 and at −28 mm, down to 12.5 mm."""
     assert [m.end for m in cuts(path_of("THREAD RELIEF"))] == [
         pytest.approx((12.5, 0.0, -29.0)),
@@ -44,14 +23,18 @@ def test_two_plunges_of_three_make_a_groove_of_four() -> None:
     ]
 
 
-def test_a_finish_comes_down_both_walls_and_meets_in_the_middle() -> None:
+def test_a_finish_comes_down_both_walls_and_meets_in_the_middle(
+    path_of: Callable[..., ToolPath],
+) -> None:
     path = path_of("THREAD RELIEF", ("#204=GROOVING_ROUGH", "#204=GROOVING_FINISH"))
     ends = [(round(m.end[0], 3), round(m.end[2], 3)) for m in cuts(path)]
     assert ends.count((12.5, -28.5)) == 2
     assert {(12.5, -28.0), (12.5, -29.0)} <= set(ends)
 
 
-def test_pecks_go_back_and_the_tool_dwells_on_the_floor() -> None:
+def test_pecks_go_back_and_the_tool_dwells_on_the_floor(
+    path_of: Callable[..., ToolPath],
+) -> None:
     path = path_of(
         "THREAD RELIEF",
         ("$,$,#354,$,0.)", "$,$,#354,DWELL_REVOLUTION(2.),0.)"),
@@ -66,7 +49,9 @@ def test_pecks_go_back_and_the_tool_dwells_on_the_floor() -> None:
     ] * 2
 
 
-def test_cutting_in_goes_to_the_axis_and_past_it_by_the_corner() -> None:
+def test_cutting_in_goes_to_the_axis_and_past_it_by_the_corner(
+    path_of: Callable[..., ToolPath],
+) -> None:
     path = path_of(
         "THREAD RELIEF",
         ("#204=GROOVING_ROUGH", "#204=CUTTING_IN"),
@@ -76,7 +61,7 @@ def test_cutting_in_goes_to_the_axis_and_past_it_by_the_corner() -> None:
     assert min(m.end[0] for m in path.moves) == pytest.approx(-0.2)
 
 
-def test_a_vee_too_sharp_for_the_insert_is_said() -> None:
+def test_a_vee_too_sharp_for_the_insert_is_said(path_of: Callable[..., ToolPath]) -> None:
     path = path_of("THREAD RELIEF", (SQUARE, "VEE_PROFILE($,#135,90.,0.)"))
     assert "does not come to the bottom" in str(path.findings)
 
@@ -90,6 +75,8 @@ def test_a_vee_too_sharp_for_the_insert_is_said() -> None:
         (("(),$,#506,$)", "(),$,#506,9.)"), "a step of 9 mm"),
     ],
 )
-def test_what_an_insert_cannot_do_is_said(edit: tuple[str, str], message: str) -> None:
+def test_what_an_insert_cannot_do_is_said(
+    path_of: Callable[..., ToolPath], edit: tuple[str, str], message: str
+) -> None:
     with pytest.raises(SchemaError, match=message):
         path_of("THREAD RELIEF", edit)

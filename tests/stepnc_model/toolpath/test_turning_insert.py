@@ -1,29 +1,13 @@
 """Grooving inserts: two corners and a flat."""
 
-from pathlib import Path
+from collections.abc import Callable
 
 import pytest
 
 from stepnc_model.errors import SchemaError
-from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
-from stepnc_model.toolpath.job import Job, job_of
+from stepnc_model.toolpath.job import Job
 from stepnc_model.toolpath.turning_insert import Insert, insert_of
 from stepnc_model.toolpath.turning_profile import highest, level_line
-
-SHAFT = Path(__file__).parents[3] / "examples" / "parts" / "shaft.stpnc"
-
-
-def job(name: str, *edits: tuple[str, str]) -> Job:
-    """A workingstep of the shaft with some texts replaced."""
-    text = SHAFT.read_text()
-    for before, after in edits:
-        assert before in text
-        text = text.replace(before, after)
-    program = Program(Part21File.from_bytes(text.encode(), name="shaft"), name="shaft")
-    (step,) = (step for step in program.workingsteps if step.id == name)
-    return job_of(program, step)
-
 
 WALL = highest([
     level_line(15.0, -50.0, -29.0),
@@ -32,7 +16,7 @@ WALL = highest([
 ])
 
 
-def test_the_insert_of_the_shaft_is_that_of_its_tool() -> None:
+def test_the_insert_of_the_shaft_is_that_of_its_tool(job: Callable[..., Job]) -> None:
     assert insert_of(job("THREAD RELIEF")) == Insert(width=3.0, corner=0.2, reach=12.0)
 
 
@@ -55,6 +39,8 @@ def test_an_insert_does_not_sink_into_a_narrow_groove() -> None:
         (("5.,$,#420,#303", "5.,$,#400,#303"), "is no grooving tool"),
     ],
 )
-def test_what_is_no_grooving_insert_is_refused(edit: tuple[str, str], message: str) -> None:
+def test_what_is_no_grooving_insert_is_refused(
+    job: Callable[..., Job], edit: tuple[str, str], message: str
+) -> None:
     with pytest.raises(SchemaError, match=message):
         insert_of(job("THREAD RELIEF", edit))

@@ -1,71 +1,58 @@
 """Outlines of turning features, read off the shaft and its variations."""
 
+from collections.abc import Callable
 from math import pi, tan
-from pathlib import Path
 
 import pytest
 
 from stepnc_model.errors import SchemaError
-from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
-from stepnc_model.toolpath.job import Job, job_of
+from stepnc_model.toolpath.job import Job
 from stepnc_model.toolpath.turning_outline import Outline, outline_of
-
-SHAFT = Path(__file__).parents[3] / "examples" / "parts" / "shaft.stpnc"
-
-
-def job(name: str, *edits: tuple[str, str]) -> Job:
-    """A workingstep of the shaft with some texts replaced."""
-    text = SHAFT.read_text()
-    for before, after in edits:
-        assert before in text
-        text = text.replace(before, after)
-    program = Program(Part21File.from_bytes(text.encode(), name="shaft"), name="shaft")
-    (step,) = (step for step in program.workingsteps if step.id == name)
-    return job_of(program, step)
-
 
 END = "ENDSEC;\nEND-"
 
 
-def outlines(*edits: tuple[str, str]) -> list[Outline]:
+def outlines(job: Callable[..., Job], *edits: tuple[str, str]) -> list[Outline]:
     at = job("ROUGH CONTOUR", *edits)
     return [outline_of(at, ref, 30.0) for ref in at.step.features]
 
 
-def collar(text: str, extra: str = "") -> Outline:
+def collar(job: Callable[..., Job], text: str, extra: str = "") -> Outline:
     """The second feature, written anew."""
     old = "#120=OUTER_DIAMETER('COLLAR',#30,(#202,#203),#121,#123,#124,$)"
-    return outlines((old, f"#120={text}"), (END, extra + END))[1]
+    return outlines(job, (old, f"#120={text}"), (END, extra + END))[1]
 
 
-def test_a_contour_runs_from_the_front_to_the_chuck() -> None:
-    contour = outlines()[0]
+def test_a_contour_runs_from_the_front_to_the_chuck(job: Callable[..., Job]) -> None:
+    contour = outlines(job)[0]
     assert contour.pieces[0].start == (0.0, 13.5)
     assert contour.pieces[-1].end == (-80.0, 27.0)
     assert contour.radii == (13.5, 27.0)
 
 
-def test_a_diameter_reaches_from_its_placement_to_the_chuck() -> None:
-    (piece,) = outlines()[1].pieces
+def test_a_diameter_reaches_from_its_placement_to_the_chuck(job: Callable[..., Job]) -> None:
+    (piece,) = outlines(job)[1].pieces
     assert (piece.start, piece.end) == ((-80.0, 27.0), (-110.0, 27.0))
 
 
-def test_a_taper_reduces_the_diameter() -> None:
+def test_a_taper_reduces_the_diameter(job: Callable[..., Job]) -> None:
     head = "OUTER_DIAMETER('C',#30,(),#121,#123,#124,#600)"
     by_diameter = "#600=DIAMETER_TAPER(#601);\n#601=TOLERANCED_LENGTH_MEASURE(50.,#510);\n"
-    assert collar(head, by_diameter).pieces[0].end == (-110.0, 25.0)
-    by_angle = collar(head, "#600=ANGLE_TAPER(10.);\n").pieces[0].end
+    assert collar(job, head, by_diameter).pieces[0].end == (-110.0, 25.0)
+    by_angle = collar(job, head, "#600=ANGLE_TAPER(10.);\n").pieces[0].end
     assert by_angle == pytest.approx((-110.0, 27.0 - 30.0 * tan(pi / 18.0)))
 
 
-def test_a_taper_beyond_the_axis_is_refused() -> None:
+def test_a_taper_beyond_the_axis_is_refused(job: Callable[..., Job]) -> None:
     with pytest.raises(SchemaError, match="beyond the axis"):
-        collar("OUTER_DIAMETER('C',#30,(),#121,#123,#124,#600)", "#600=ANGLE_TAPER(45.);\n")
+        collar(
+            job, "OUTER_DIAMETER('C',#30,(),#121,#123,#124,#600)", "#600=ANGLE_TAPER(45.);\n"
+        )
 
 
-def test_a_shoulder_has_a_radius_and_reaches_the_outside() -> None:
+def test_a_shoulder_has_a_radius_and_reaches_the_outside(job: Callable[..., Job]) -> None:
     shape = collar(
+        job,
         "OUTER_DIAMETER_TO_SHOULDER('C',#30,(),#121,#123,#600)",
         "#600=VEE_PROFILE(#601,#135,90.,0.);\n#601=AXIS2_PLACEMENT_3D('',#602,#501,#502);\n"
         "#602=CARTESIAN_POINT('',(0.,0.,-30.));\n",
@@ -75,8 +62,9 @@ def test_a_shoulder_has_a_radius_and_reaches_the_outside() -> None:
     assert shape.pieces[-1].end == pytest.approx((-110.0, 30.0))
 
 
-def test_a_rounded_edge_is_an_arc_from_x_towards_z() -> None:
+def test_a_rounded_edge_is_an_arc_from_x_towards_z(job: Callable[..., Job]) -> None:
     shape = collar(
+        job,
         "REVOLVED_ROUND('C',#30,(),#121,#505,20.,#600)",
         "#600=PARTIAL_CIRCULAR_PROFILE($,#601,90.);\n"
         "#601=TOLERANCED_LENGTH_MEASURE(3.,#510);\n",
@@ -96,7 +84,7 @@ def test_a_rounded_edge_is_an_arc_from_x_towards_z() -> None:
     ],
 )
 def test_what_does_not_turn_about_the_axis_is_refused(
-    edit: tuple[str, str], message: str
+    job: Callable[..., Job], edit: tuple[str, str], message: str
 ) -> None:
     with pytest.raises(SchemaError, match=message):
-        outlines(edit)
+        outlines(job, edit)

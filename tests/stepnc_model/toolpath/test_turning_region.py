@@ -1,33 +1,18 @@
 """Removal volumes of the shaft."""
 
-from pathlib import Path
+from collections.abc import Callable
 
 import pytest
 
-from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
-from stepnc_model.toolpath.job import Job, job_of
+from stepnc_model.toolpath.job import Job
 from stepnc_model.toolpath.turning_history import bar_of
 from stepnc_model.toolpath.turning_outline import outline_of
 from stepnc_model.toolpath.turning_plane import HalfPlane
 from stepnc_model.toolpath.turning_region import Region, edges_of, region_of
 from stepnc_model.units import deg_from_rad
 
-SHAFT = Path(__file__).parents[3] / "examples" / "parts" / "shaft.stpnc"
 
-
-def job(name: str, *edits: tuple[str, str]) -> Job:
-    """A workingstep of the shaft with some texts replaced."""
-    text = SHAFT.read_text()
-    for before, after in edits:
-        assert before in text
-        text = text.replace(before, after)
-    program = Program(Part21File.from_bytes(text.encode(), name="shaft"), name="shaft")
-    (step,) = (step for step in program.workingsteps if step.id == name)
-    return job_of(program, step)
-
-
-def region(name: str, *edits: tuple[str, str]) -> Region:
+def region(job: Callable[..., Job], name: str, *edits: tuple[str, str]) -> Region:
     at = job(name, *edits)
     outlines = tuple(outline_of(at, ref, 30.0) for ref in at.step.features)
     bar = bar_of(at, outlines)
@@ -35,24 +20,24 @@ def region(name: str, *edits: tuple[str, str]) -> Region:
     return region_of(at, bar, outlines, plane=plane, allowance=0.5, overcut=1.0)
 
 
-def test_the_part_beside_the_features_is_a_wall() -> None:
-    contour = region("ROUGH CONTOUR")
+def test_the_part_beside_the_features_is_a_wall(job: Callable[..., Job]) -> None:
+    contour = region(job, "ROUGH CONTOUR")
     assert (contour.low, contour.own_high, contour.floor) == (-110.0, 0.0, 13.5)
     assert contour.wall == 30.0
 
 
-def test_the_centre_stops_beside_the_wall_and_goes_up_it() -> None:
-    chain = region("ROUGH CONTOUR").chain(0.5)
+def test_the_centre_stops_beside_the_wall_and_goes_up_it(job: Callable[..., Job]) -> None:
+    chain = region(job, "ROUGH CONTOUR").chain(0.5)
     assert chain[-1].is_upright
     assert chain[-1].end == pytest.approx((-110.0 + 0.8 + 0.5, 30.0))
 
 
-def test_a_face_has_no_wall_at_the_axis() -> None:
-    face = region("ROUGH FACE")
+def test_a_face_has_no_wall_at_the_axis(job: Callable[..., Job]) -> None:
+    face = region(job, "ROUGH FACE")
     assert (face.low, face.own_high, face.wall) == (0.0, 30.0, None)
 
 
-def test_edges_are_those_of_the_insert() -> None:
+def test_edges_are_those_of_the_insert(job: Callable[..., Job]) -> None:
     """95 and 80 degrees: 5 behind the nose along the axis, 5 across it."""
     at = job("ROUGH CONTOUR")
     assert deg_from_rad(edges_of(at, HalfPlane()).behind) == pytest.approx(5.0)

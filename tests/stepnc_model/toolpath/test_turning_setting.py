@@ -1,15 +1,13 @@
 """Numbers of a strategy."""
 
-from pathlib import Path
+from collections.abc import Callable
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from stepnc_model.errors import SchemaError
-from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
-from stepnc_model.toolpath.job import Job, job_of
+from stepnc_model.toolpath.job import Job
 from stepnc_model.toolpath.turning_plane import HalfPlane
 from stepnc_model.toolpath.turning_setting import (
     DEFAULT_OVERCUT,
@@ -17,19 +15,6 @@ from stepnc_model.toolpath.turning_setting import (
     cumulative,
     setting_of,
 )
-
-SHAFT = Path(__file__).parents[3] / "examples" / "parts" / "shaft.stpnc"
-
-
-def job(name: str, *edits: tuple[str, str]) -> Job:
-    """A workingstep of the shaft with some texts replaced."""
-    text = SHAFT.read_text()
-    for before, after in edits:
-        assert before in text
-        text = text.replace(before, after)
-    program = Program(Part21File.from_bytes(text.encode(), name="shaft"), name="shaft")
-    (step,) = (step for step in program.workingsteps if step.id == name)
-    return job_of(program, step)
 
 
 def test_depths_end_at_the_total_and_the_last_is_shallower() -> None:
@@ -56,19 +41,19 @@ def test_no_pass_is_deeper_than_asked(total: float, depth: float) -> None:
     assert all(0.0 < b - a <= depth + 1e-5 for a, b in zip([0.0, *sums], sums, strict=False))
 
 
-def test_directions_and_lengths_are_those_of_the_file() -> None:
+def test_directions_and_lengths_are_those_of_the_file(job: Callable[..., Job]) -> None:
     setting = setting_of(job("ROUGH CONTOUR"), HalfPlane())
-    assert (setting.overcut, setting.lift, setting.lift_height) == (1.0, (0.0, 1.0), 1.0)
+    assert (setting.overcut, setting.link.lift_height) == (1.0, 1.0)
     assert not setting.is_reversed
     assert setting_of(job("FINISH CONTOUR"), HalfPlane()).overcut == DEFAULT_OVERCUT
 
 
-def test_a_ratio_scales_the_feed() -> None:
+def test_a_ratio_scales_the_feed(job: Callable[..., Job]) -> None:
     at = job("ROUGH CONTOUR", ("(2.),$,#504", "(2.),0.5,#504"))
     assert setting_of(at, HalfPlane()).feeds.cutting.ratio == 0.5
 
 
-def test_the_clearance_is_the_retract_plane() -> None:
+def test_the_clearance_is_the_retract_plane(job: Callable[..., Job]) -> None:
     assert (
         clearance_of(job("ROUGH CONTOUR", ("'ROUGH CONTOUR',5.", "'ROUGH CONTOUR',7."))) == 7.0
     )

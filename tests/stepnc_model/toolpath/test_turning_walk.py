@@ -1,61 +1,45 @@
 """Rapids keep clear of what is left, and feeds take it off."""
 
-from pathlib import Path
+from collections.abc import Callable
 
 import pytest
 
-from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program
 from stepnc_model.toolpath.course import Course
-from stepnc_model.toolpath.job import Job, job_of
+from stepnc_model.toolpath.job import Job
 from stepnc_model.toolpath.path import Feed, MoveType
 from stepnc_model.toolpath.turning_piece import Piece
 from stepnc_model.toolpath.turning_plane import HalfPlane
 from stepnc_model.toolpath.turning_profile import Profile, level_line
 from stepnc_model.toolpath.turning_walk import Feeds, Walk, split
 
-SHAFT = Path(__file__).parents[3] / "examples" / "parts" / "shaft.stpnc"
-
-
-def job(name: str, *edits: tuple[str, str]) -> Job:
-    """A workingstep of the shaft with some texts replaced."""
-    text = SHAFT.read_text()
-    for before, after in edits:
-        assert before in text
-        text = text.replace(before, after)
-    program = Program(Part21File.from_bytes(text.encode(), name="shaft"), name="shaft")
-    (step,) = (step for step in program.workingsteps if step.id == name)
-    return job_of(program, step)
-
-
 FEED = Feed(technology=Ref(1))
 BAR = Profile(pieces=(level_line(30.0, -100.0, 0.0),))
 
 
-def walk() -> tuple[Walk, Course]:
+def walk(job: Callable[..., Job]) -> tuple[Walk, Course]:
     course = Course(job("ROUGH CONTOUR"), (40.0, 0.0, 20.0), is_turning=True)
-    feeds = Feeds(cutting=FEED, lift=FEED, stepover=FEED)
+    feeds = Feeds(cutting=FEED, lift=FEED, stepover=FEED, entering=FEED)
     return Walk(course, HalfPlane(), BAR, nose=0.8, feeds=feeds), course
 
 
-def test_a_place_in_front_of_the_bar_is_reached_in_rapid() -> None:
-    tool, course = walk()
+def test_a_place_in_front_of_the_bar_is_reached_in_rapid(job: Callable[..., Job]) -> None:
+    tool, course = walk(job)
     tool.travel((5.0, 20.0))
     assert all(m.feed is None and m.type is MoveType.APPROACH for m in course.finished().moves)
     assert tool.at == (5.0, 20.0)
 
 
-def test_the_last_millimetre_to_the_bar_is_fed() -> None:
-    tool, course = walk()
+def test_the_last_millimetre_to_the_bar_is_fed(job: Callable[..., Job]) -> None:
+    tool, course = walk(job)
     tool.travel((0.9, 20.0))
     *rapids, last = course.finished().moves
     assert rapids[-1].end[2] == pytest.approx(1.8, abs=1e-5)
     assert (last.feed, last.type) == (FEED, MoveType.NO_CONTACT)
 
 
-def test_a_feed_cuts_where_it_meets_the_bar_and_takes_it_off() -> None:
-    tool, course = walk()
+def test_a_feed_cuts_where_it_meets_the_bar_and_takes_it_off(job: Callable[..., Job]) -> None:
+    tool, course = walk(job)
     tool.travel((5.0, 28.8))
     tool.feed([Piece(start=(5.0, 28.8), end=(-50.0, 28.8))])
     kinds = [m.type for m in course.finished().moves if m.feed]
@@ -64,8 +48,8 @@ def test_a_feed_cuts_where_it_meets_the_bar_and_takes_it_off() -> None:
     assert tool.stock.at(-60.0) == 30.0
 
 
-def test_a_rapid_behind_the_bar_goes_over_it() -> None:
-    tool, course = walk()
+def test_a_rapid_behind_the_bar_goes_over_it(job: Callable[..., Job]) -> None:
+    tool, course = walk(job)
     tool.travel((5.0, 20.0))
     before = course.count
     tool.travel((-110.0, 20.0))
@@ -73,8 +57,8 @@ def test_a_rapid_behind_the_bar_goes_over_it() -> None:
     assert max(m.end[0] for m in moves) == pytest.approx(31.8)
 
 
-def test_a_line_is_split_where_it_touches() -> None:
-    tool, _ = walk()
+def test_a_line_is_split_where_it_touches(job: Callable[..., Job]) -> None:
+    tool, _ = walk(job)
     line = Piece(start=(5.0, 20.0), end=(-5.0, 20.0))
     assert [(p.end[0], c) for p, c in split(line, tool.rim)] == [
         (pytest.approx(0.8), False),

@@ -1,0 +1,137 @@
+"""Damaged NC code is read as what it says, or refused with its line; nothing else comes out."""
+
+import random
+import re
+from functools import cache
+from math import isfinite
+from pathlib import Path
+
+import pytest
+
+from stepnc_model.errors import PostError
+from stepnc_model.post.blocks import Cycles, Machine
+from stepnc_model.post.canonical import Canonical
+from stepnc_model.post.controls import Control, read, write
+from stepnc_model.post.neutral import blocks_of
+from stepnc_model.program import Program
+from stepnc_model.toolpath.generate import generate
+
+PARTS = Path(__file__).parents[2] / "examples" / "parts"
+PROGRAMS = [(Machine.MILL, control, cycles) for control in Control for cycles in Cycles] + [
+    (Machine.LATHE, control, Cycles.EXPANDED)
+    for control in Control
+    if control is not Control.HEIDENHAIN
+]
+
+CHARACTERS = "XYZFSGMTNRIJKPQHLABCODE0123456789.-+()%;=,\"'#[]* \t<>/$\\\x00é²٣~\u2028"
+"""what is typed where it does not belong"""
+
+NUMBERS = ("0", "-1", "9" * 400, "-" + "9" * 30, "1.5", "00", "1E5", "nan", "inf", "٣")
+
+RUNS = 120
+"""of each program"""
+
+QUIET = {"COMMENT", "MESSAGE"}
+
+
+@cache
+def code_of(machine: Machine, control: Control, cycles: Cycles) -> tuple[str, ...]:
+    """NC code of an example: each kind of line a few times, so that it is short."""
+    name = "bracket" if machine is Machine.MILL else "shaft"
+    program = Program.load(PARTS / f"{name}.stpnc")
+    blocks = blocks_of(program, list(generate(program)), name="P")
+    lines = list(write(blocks, control, cycles=cycles))
+    return tuple(lines[:150] + lines[-60:])
+
+
+def damaged(code: tuple[str, ...], chance: random.Random) -> list[str]:
+    """Code with one to five faults."""
+    lines = list(code)
+    for _ in range(chance.choice((1, 1, 2, 5))):
+        at = chance.randrange(len(lines))
+        line = lines[at]
+        place = chance.randrange(len(line) + 1)
+        kind = chance.randrange(6)
+        numbers = list(re.finditer(r"-?[0-9]+\.?[0-9]*", line))
+        if kind == 0:
+            lines[at] = line[:place] + line[place + 1 :]
+        elif kind == 1:
+            lines[at] = line[:place] + chance.choice(CHARACTERS) + line[place:]
+        elif kind == 2:
+            lines[at] = line[:place] + line[max(0, place - 1) :]
+        elif kind == 3:
+            lines.insert(at, chance.choice(lines))
+        elif kind == 4:
+            lines[at], lines[0] = lines[0], line
+        elif numbers:
+            found = chance.choice(numbers)
+            lines[at] = line[: found.start()] + chance.choice(NUMBERS) + line[found.end() :]
+    return lines
+
+
+def require_finite(commands: tuple[Canonical, ...]) -> None:
+    """Every number of a command that moves or sets something."""
+    for command in commands:
+        numbers = [each for each in command.arguments if isinstance(each, (int, float))]
+        assert command.name in QUIET or all(map(isfinite, numbers))
+
+
+@pytest.mark.parametrize(("machine", "control", "cycles"), PROGRAMS)
+def test_damaged_code_is_read_or_refused_with_its_line(
+    machine: Machine, control: Control, cycles: Cycles
+) -> None:
+    code = code_of(machine, control, cycles)
+    for seed in range(RUNS):
+        lines = damaged(code, random.Random(seed))
+        refusal = PostError("", line=1)
+        try:
+            require_finite(read(lines, control, machine=machine))
+        except PostError as error:
+            refusal = error
+        assert refusal.line > 0, seed
+        assert len(str(refusal)) < 300, seed
+
+
+@pytest.mark.parametrize(("machine", "control", "cycles"), PROGRAMS)
+def test_a_word_that_no_control_knows_is_never_skipped(
+    machine: Machine, control: Control, cycles: Cycles
+) -> None:
+    code = code_of(machine, control, cycles)
+    bare = [at for at, line in enumerate(code) if line and not re.search(r"[;(%]", line)]
+    for seed in range(RUNS):
+        at = random.Random(seed).choice(bare or [1])
+        if "~" in code[at]:
+            continue
+        lines = [*code[:at], f"{code[at]} ?7", *code[at + 1 :]]
+        with pytest.raises(PostError):
+            read(lines, control, machine=machine)
+
+
+@pytest.mark.parametrize(
+    ("control", "lines", "words"),
+    [
+        (Control.LINUXCNC, ["O100 CALL"], "no word of NC code"),
+        (Control.FANUC, ["O1 G0 X5"], "nothing in this block uses it"),
+        (Control.FANUC, ["M3 M4 S100"], "two words for the spindle"),
+        (Control.FANUC, ["G17 G18"], "two G codes of one group"),
+        (Control.FANUC, ["G0 X" + "9" * 400], "beyond 1e"),
+        (Control.FANUC, ["G1 X5 F-100"], "word F-100: must not be negative"),
+        (Control.LINUXCNC, ["G33 K1"], "a thread leads to where the tool is"),
+        (Control.LINUXCNC, ["G33 Z-5 K-1"], "it must be positive"),
+        (Control.LINUXCNC, ["F60 G83 X0 Y0 Z-1000 R1 Q0.0001"], "pecks: 10000 at most"),
+        (Control.SINUMERIK, ["SPOS=90"], "an angle of 0 is read"),
+        (Control.HEIDENHAIN, ["0 TOOL CALL " + "9" * 5000 + " Z S100"], "beyond 1e"),
+        (Control.HEIDENHAIN, ["0 CC X+1 FMAX"], "CC needs two"),
+        (Control.HEIDENHAIN, ["0 L X+ FMAX"], "not known here"),
+        (Control.HEIDENHAIN, ["0 CYCL DEF 200 DRILLING Q200=+0 what?"], "not known in a cycle"),
+        (Control.HEIDENHAIN, ["0 CYCL DEF 200 DRILLING Q204=+50"], "Q204=+50: not read"),
+        (Control.CANONICAL, ["1 STRAIGHT_FEED(1E999, 0, 0)"], "must be numbers"),
+        (Control.CANONICAL, ["1 ARC_FEED(1, 1, 0, 0, 1.5, 0)"], "whole ones are needed"),
+    ],
+)
+def test_what_is_no_code_is_refused_with_what_is_wrong(
+    control: Control, lines: list[str], words: str
+) -> None:
+    with pytest.raises(PostError, match=re.escape(words)) as caught:
+        read(lines, control)
+    assert caught.value.line == 1
