@@ -15,9 +15,16 @@ from random import Random
 
 import pyclipper
 
-from stepnc_model.toolpath.contour import Edge, Loop, circle, clockwise, polygon, vertices
-from stepnc_model.toolpath.cover import rings
-from stepnc_model.toolpath.offset import rounded
+from stepnc_model.toolpath.milling.contour import (
+    Edge,
+    Loop,
+    circle,
+    clockwise,
+    polygon,
+    vertices,
+)
+from stepnc_model.toolpath.milling.cover import rings
+from stepnc_model.toolpath.milling.offset import rounded
 
 CHORD = 1e-3
 """mm of tolerance of the polygons"""
@@ -40,9 +47,7 @@ def pockets(count: int) -> Iterator[Pocket]:
     random = Random(14649)
     while count:
         sides = random.randint(4, 8)
-        corners = [
-            rect(random.uniform(35.0, 70.0), 2.0 * pi * k / sides) for k in range(sides)
-        ]
+        corners = [rect(random.uniform(35.0, 70.0), 2.0 * pi * k / sides) for k in range(sides)]
         radius = random.uniform(3.0, 6.0)
         outline = rounded(polygon(corners), radius)
         if len(outline) != 1:
@@ -59,9 +64,7 @@ def pockets(count: int) -> Iterator[Pocket]:
 
 def by_arcs(pocket: Pocket) -> list[str]:
     """Rings of lines and arcs."""
-    passes = rings(
-        pocket.walls, distance=pocket.radius, radius=pocket.radius, step=pocket.step
-    )
+    passes = rings(pocket.walls, distance=pocket.radius, radius=pocket.radius, step=pocket.step)
     return [code(edge) for each in passes for edge in each.chain]
 
 
@@ -72,9 +75,7 @@ def code(edge: Edge) -> str:
         return f"G1 X{end.real:.4f} Y{end.imag:.4f}"
     word = "G3" if edge.turn > 0.0 else "G2"
     to_centre = edge.centre - edge.start
-    return (
-        f"{word} X{end.real:.4f} Y{end.imag:.4f} I{to_centre.real:.4f} J{to_centre.imag:.4f}"
-    )
+    return f"{word} X{end.real:.4f} Y{end.imag:.4f} I{to_centre.real:.4f} J{to_centre.imag:.4f}"
 
 
 def by_clipper(pocket: Pocket) -> list[str]:

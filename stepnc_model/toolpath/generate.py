@@ -24,13 +24,13 @@ from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import SchemaError
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Executable, Program, Workingstep
-from stepnc_model.toolpath.explicit import explicit_path, rapid_movement_path
+from stepnc_model.toolpath.explicit.operation import explicit_path, rapid_movement_path
 from stepnc_model.toolpath.function import Function
-from stepnc_model.toolpath.hole import hole_path
+from stepnc_model.toolpath.hole.operation import hole_path
 from stepnc_model.toolpath.job import job_of
-from stepnc_model.toolpath.milling import milling_path
+from stepnc_model.toolpath.milling.operation import milling_path
 from stepnc_model.toolpath.path import ToolPath
-from stepnc_model.toolpath.turning import turning_path
+from stepnc_model.toolpath.turning.operation import turning_path
 
 OnFault = Callable[[SchemaError], None]
 """where executables go for which no path can be made"""

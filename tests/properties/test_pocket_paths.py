@@ -14,10 +14,17 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from shapely import LineString, Polygon
 
-from stepnc_model.toolpath.contour import Loop, circle, clockwise, polygon, shape, vertices
-from stepnc_model.toolpath.cover import Pass, area_of, rings, swept
-from stepnc_model.toolpath.offset import erode, rounded
-from stepnc_model.toolpath.strokes import scan, to_and_fro
+from stepnc_model.toolpath.milling.contour import (
+    Loop,
+    circle,
+    clockwise,
+    polygon,
+    shape,
+    vertices,
+)
+from stepnc_model.toolpath.milling.cover import Pass, area_of, rings, swept
+from stepnc_model.toolpath.milling.offset import erode, rounded
+from stepnc_model.toolpath.milling.strokes import scan, to_and_fro
 
 FINE = 1e-4
 """mm, chord tolerance of the judge"""

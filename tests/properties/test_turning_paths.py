@@ -17,10 +17,10 @@ from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
 from stepnc_model.toolpath.job import job_of
 from stepnc_model.toolpath.path import MoveType, Point, ToolPath, points_along
-from stepnc_model.toolpath.turning import turning_path
-from stepnc_model.toolpath.turning_offset import grown
-from stepnc_model.toolpath.turning_piece import Piece, arc_pieces
-from stepnc_model.toolpath.turning_profile import highest
+from stepnc_model.toolpath.turning.offset import grown
+from stepnc_model.toolpath.turning.operation import turning_path
+from stepnc_model.toolpath.turning.piece import Piece, arc_pieces
+from stepnc_model.toolpath.turning.profile import highest
 
 Floats = NDArray[np.float64]
 

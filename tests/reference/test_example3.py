@@ -25,4 +25,4 @@ def test_the_path_lies_in_the_compound_feature_and_begins_on_the_security_plane(
     job = job_of(program, step)
     path = workingstep_path(program, step)
     x, y, z = job.frame(compound).origin
-    assert path.start == (x, y, pytest.approx(z + 50.0))
+    assert path.start == pytest.approx((x, y, z + 50.0))

@@ -16,8 +16,8 @@ from pathlib import Path
 import pytest
 
 from stepnc_model.program import Program
-from stepnc_model.toolpath.explicit import explicit_path, rapid_movement_path
-from stepnc_model.toolpath.hole import hole_path
+from stepnc_model.toolpath.explicit.operation import explicit_path, rapid_movement_path
+from stepnc_model.toolpath.hole.operation import hole_path
 from stepnc_model.toolpath.job import job_of
 from stepnc_model.toolpath.path import MoveType, Point, SpindleCommand, ToolPath
 

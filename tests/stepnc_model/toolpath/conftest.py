@@ -9,7 +9,7 @@ from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
 from stepnc_model.toolpath.job import Job, job_of
 from stepnc_model.toolpath.path import ToolPath
-from stepnc_model.toolpath.turning import turning_path
+from stepnc_model.toolpath.turning.operation import turning_path
 
 SHAFT = Path(__file__).parents[3] / "examples" / "parts" / "shaft.stpnc"
 

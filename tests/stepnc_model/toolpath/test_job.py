@@ -126,24 +126,3 @@ def test_a_security_plane_below_the_stock_is_raised_above_it() -> None:
     ))
     job = job_of(program, program.workingsteps[-1])
     assert job.frame(job.step.features[0]).origin == pytest.approx((127.0, 65.0, 0.0))
-
-
-def test_a_rapid_comes_down_beside_the_stock_and_stops_above_it() -> None:
-    """The stock of the bracket: x −3 to 153 mm, up to z = 2 mm; the face mill has 63 mm."""
-    job = first(edited())
-    assert job.rapid_z((75.0, 45.0, 12.0)) == 12.0
-    assert job.rapid_z((75.0, 45.0, -5.0)) == 2.0 + ABOVE_STOCK
-    assert job.rapid_z((-34.4, 45.0, -5.0)) == 2.0 + ABOVE_STOCK
-    assert job.rapid_z((-34.6, 45.0, -5.0)) == -5.0
-
-
-def test_a_security_plane_below_the_stock_is_raised_above_it() -> None:
-    text = (PARTS / "bracket.stpnc").read_text()
-    low = text.replace(
-        "#45=CARTESIAN_POINT('',(0.,0.,50.));", "#45=CARTESIAN_POINT('',(0.,0.,2.5));"
-    )
-    assert low != text
-    program = Program(Part21File.from_bytes(low.encode(), name="low"), name="low")
-    job = job_of(program, program.workingsteps[-1])
-    assert job.security_z == 2.0 + DEFAULT_CLEARANCE
-    assert "z = 2.5 mm is not above the stock" in job.findings[0].message

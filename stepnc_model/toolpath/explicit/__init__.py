@@ -1,0 +1,1 @@
+"""Tool paths that the file gives, used as they are."""

@@ -1,0 +1,167 @@
+"""Tool paths that the file itself gives: lists of trajectories, connectors and pauses.
+
+ISO 14649-10, ``its_toolpath`` of an operation or of a rapid movement. How it is read here:
+
+* trajectories of a workingstep are in the coordinates of its feature, those of a rapid
+  movement and of machine axes in the coordinates of the setup;
+* a connector (``CONNECT``) runs at feed, unless its speed is rapid: what a tool path leaves
+  out it takes from its operation, and a file may connect within a pocket;
+* trajectories that do not meet are joined straight where the gap is short, else over the
+  security plane, and down in rapid only beside or above the raw part.
+"""
+
+from collections.abc import Sequence
+
+from stepnc_model.entities.entity import Entity
+from stepnc_model.entities.executables import RapidMovement
+from stepnc_model.entities.toolpaths import Toolpath, ToolpathList
+from stepnc_model.entities.turning import TurningMachiningOperation
+from stepnc_model.errors import PathError
+from stepnc_model.part21.values import Ref
+from stepnc_model.program import Executable, Program
+from stepnc_model.toolpath.explicit.walk import Surroundings, Walk
+from stepnc_model.toolpath.frame import Frame, compound_of, frame_of, workpiece_frame
+from stepnc_model.toolpath.job import Job, stock_of
+from stepnc_model.toolpath.path import Point, ToolPath
+from stepnc_model.toolpath.pattern import placements
+
+
+def explicit_path(job: Job) -> ToolPath:
+    """Tool path of an operation that has one in the file, exactly as given.
+
+    It starts at the first point of the first trajectory and ends at the last point of the
+    last: no way from the security plane and back is added, so that workingsteps which go on
+    where the one before ended can be joined without one.
+
+    Parameters
+    ----------
+    job : Job
+
+    Returns
+    -------
+    ToolPath
+
+    Raises
+    ------
+    PathError
+        When the operation has no path, or one that cannot be followed.
+    """
+    step = job.step
+    around = Surroundings(
+        program=job.program,
+        security_z=job.security_z,
+        stock=job.stock,
+        tool=job.tool,
+        technology=step.technology_ref,
+    )
+    with job.program.using(step.operation_ref, *step.features):
+        paths = _paths(job.program, step.operation_ref, step.operation.its_toolpath)
+        walk, start = _walked(around, paths, _frames(job), at=step.operation_ref)
+        return ToolPath(
+            workingstep=step.ref,
+            id=step.id,
+            operation_ref=step.operation_ref,
+            tool_ref=step.tool_ref,
+            technology_ref=step.technology_ref,
+            functions_ref=step.functions_ref,
+            is_turning=isinstance(step.operation, TurningMachiningOperation),
+            start=start,
+            steps=tuple(walk.steps),
+            findings=(*job.findings, *walk.findings),
+        )
+
+
+def rapid_movement_path(program: Program, executable: Executable) -> ToolPath | None:
+    """Path of a ``RAPID_MOVEMENT`` or ``RETURN_HOME``, all of it in rapid.
+
+    Parameters
+    ----------
+    program : Program
+    executable : Executable
+
+    Returns
+    -------
+    ToolPath or None
+        None where the file leaves the way to the control: over the security plane to the next
+        workingstep (ISO 14649-10).
+
+    Raises
+    ------
+    PathError
+        When the executable is no rapid movement, or its path cannot be followed.
+    """
+    ref = executable.ref
+    movement = program.get(ref)
+    if not isinstance(movement, RapidMovement):
+        raise _fault(program, ref, "is no rapid movement")
+    if movement.its_toolpath is None:
+        return None
+    with program.using(ref):
+        plane = frame_of(program, program.get(movement.its_secplane).position)
+        around = Surroundings(
+            program=program,
+            security_z=plane.origin[2],
+            stock=stock_of(program, executable.setup),
+            tool=None,
+            technology=None,
+        )
+        paths = _paths(program, ref, movement.its_toolpath)
+        walk, start = _walked(around, paths, (Frame(),), at=ref)
+        return ToolPath(
+            workingstep=ref,
+            id=executable.id,
+            operation_ref=ref,
+            tool_ref=None,
+            technology_ref=None,
+            functions_ref=None,
+            is_turning=False,
+            start=start,
+            steps=tuple(walk.steps),
+            findings=tuple(walk.findings),
+        )
+
+
+def _walked(
+    around: Surroundings,
+    paths: Sequence[Ref[Toolpath]],
+    frames: Sequence[Frame],
+    *,
+    at: Ref[Entity],
+) -> tuple[Walk, Point]:
+    """Paths followed in each of some frames, and where they start."""
+    walk = Walk(around)
+    for frame in frames:
+        walk.follow(paths, frame)
+    if walk.start is None:
+        raise _fault(around.program, at, "its tool path leads nowhere", "its_toolpath")
+    return walk, walk.start
+
+
+def _frames(job: Job) -> tuple[Frame, ...]:
+    """Frames that the path is followed in: one for each copy of a pattern.
+
+    A path for an element of a compound feature is given in the coordinates of the compound:
+    so it is in example 3 of ISO 14649-11, where it begins on the security plane.
+    """
+    if not job.step.features:
+        return (workpiece_frame(job.program, job.step.setup),)
+    feature = job.step.features[0]
+    feature = compound_of(job.program, feature) or feature
+    placed = placements(job.program, job.step.setup, feature)
+    return tuple(each.frame for each in placed)
+
+
+def _paths(
+    program: Program, ref: Ref[Entity], paths: Ref[ToolpathList] | None
+) -> tuple[Ref[Toolpath], ...]:
+    """Tool paths in their order."""
+    if paths is None:
+        raise _fault(program, ref, "has no tool path of its own", "its_toolpath")
+    with program.using(paths):
+        return tuple(program.get(paths).its_list)
+
+
+def _fault(program: Program, ref: Ref[Entity], message: str, attribute: str = "") -> PathError:
+    return PathError(
+        message, entity=program.label(ref), attribute=attribute, line=program.line(ref)
+    )

@@ -1,0 +1,1 @@
+"""Holes: depths, feeds and the steps of the drilling family."""

@@ -1,0 +1,296 @@
+"""Boring from behind: through a narrower hole, then up into its back (ISO 14649-11).
+
+Above the hole the spindle stops with the edge in a known direction, and the tool is shifted the
+opposite way; so it passes the hole, stands below it back on the axis, turns, and feeds up. It
+leaves the way it came. No move inside the workpiece is rapid.
+
+How a file is read here:
+
+* ``cutting_depth`` counts from the back of the part up;
+* the programmed point is the tip of the tool. The edge that bores lies above it: by
+  ``cutting_edge_length``, or where the tool is a cone of lip angle α by the height of the cone
+  from the tool's diameter D to that of the hole, ``(D − d)/2 · tan α``. Where neither is given
+  it is the programmed point. EXAMPLE3 of ISO 14649-11, which brings its path, feeds up by 3 mm
+  and stops with the tip below the back of the part: how high its tool is, no attribute tells;
+* the diameter d of the hole that is passed is the narrowest of ``previous_diameter`` and of the
+  other holes in the compound feature; where neither is known, that of the widest tool which
+  went through the same feature before;
+* the edge points along ``direction_for_spindle_orientation``, else along the
+  ``oriented_spindle_stop`` of the machine functions.
+
+Tools whose edge folds away need no shift; their paths are for the file to give.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import hypot, inf, tan
+
+from stepnc_model.entities.drilling import (
+    BackBoring,
+    CenterDrilling,
+    CounterSinking,
+    DrillingTypeOperation,
+)
+from stepnc_model.entities.features import RoundHole
+from stepnc_model.entities.strategies import DrillingTypeStrategy
+from stepnc_model.entities.technology import MillingMachineFunctions
+from stepnc_model.entities.tools import MillingCuttingTool
+from stepnc_model.errors import Finding
+from stepnc_model.tool import tool_of
+from stepnc_model.toolpath.course import Course
+from stepnc_model.toolpath.frame import PARALLEL, compound_of, direction_of
+from stepnc_model.toolpath.hole.cycle import HoleCut, dwell
+from stepnc_model.toolpath.hole.depth import TOLERANCE, lip_angle
+from stepnc_model.toolpath.hole.feature import Hole, feature_depth, narrowest_of, size_of
+from stepnc_model.toolpath.hole.feed import retract_feed
+from stepnc_model.toolpath.job import Job
+from stepnc_model.toolpath.path import MoveType, SpindleCommand
+
+SHIFT_CLEARANCE = 0.5
+"""mm between the edge and the wall of the hole that it passes, customary"""
+
+MOUTH_CLEARANCE = 1.0
+"""mm between the edge and the back of the part where no overcut is given, customary"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Bore:
+    """How one hole is bored from behind; mm, heights are those of the tip."""
+
+    shift: tuple[float, float]
+    """from the axis, away from the edge"""
+    below_z: float
+    """where the edge is clear of the back of the part"""
+    shoulder_z: float
+    """where the edge reaches the shoulder"""
+
+
+def bore_of(job: Job, operation: DrillingTypeOperation, hole: Hole) -> Bore:
+    """Shift and heights of a bore.
+
+    Raises
+    ------
+    PathError
+        When the tool does not pass the hole, or does not fit the bore behind it.
+    """
+    passed = _passed(job, operation, hole)
+    _check_tool(job, hole, passed)
+    size = 0.5 * (job.tool.diameter - passed) + SHIFT_CLEARANCE
+    _check_bar(job, size, passed)
+    x, y = _direction(job) or (1.0, 0.0)
+    length = _length(job, operation, hole)
+    mouth_z = _mouth_z(hole)
+    edge = _edge(job, passed) or 0.0
+    return Bore(
+        shift=(-size * x, -size * y),
+        below_z=mouth_z - _clearance(job, operation) - edge,
+        shoulder_z=mouth_z + length - edge,
+    )
+
+
+def bore_back(course: Course, cut: HoleCut) -> None:
+    """Bore one hole; the tool stands above it on the retract plane, and ends there."""
+    bore = bore_of(cut.job, cut.operation, cut.hole)
+    above, below = cut.hole.at(cut.retract_z), cut.hole.at(bore.below_z)
+    x, y = above[0] + bore.shift[0], above[1] + bore.shift[1]
+    feed = retract_feed(cut.job, cut.operation, cut.feed)
+    course.spindle(SpindleCommand.ORIENT)
+    course.line((x, y, cut.retract_z), MoveType.NO_CONTACT)
+    course.line((x, y, bore.below_z), MoveType.NO_CONTACT)
+    course.line(below, MoveType.NO_CONTACT)
+    course.spindle(SpindleCommand.START)
+    course.line(cut.hole.at(bore.shoulder_z), MoveType.CONTACT)
+    dwell(course, cut, cut.operation.dwell_time_bottom, "dwell_time_bottom")
+    course.line(below, MoveType.NO_CONTACT)
+    course.spindle(SpindleCommand.ORIENT)
+    course.line((x, y, bore.below_z), MoveType.NO_CONTACT)
+    course.line((x, y, cut.retract_z), MoveType.RETRACT, feed)
+    course.line(above, MoveType.NO_CONTACT)
+    course.spindle(SpindleCommand.START)
+
+
+def back_findings(
+    job: Job, operation: DrillingTypeOperation, hole: Hole, bore: Bore
+) -> Iterator[Finding]:
+    """What is assumed of a bore, and what a machinist would want to see.
+
+    Yields
+    ------
+    Finding
+    """
+    tool = job.program.get(job.step.tool_ref)
+    if _direction(job) is None:
+        text = "nothing tells where the edge of the stopped tool points: along +x assumed"
+        yield job.note(text, job.step.tool_ref, "direction_for_spindle_orientation")
+    if _bar(job) is None:
+        text = "no diameter of the bar: whether it passes the hole is not checked"
+        yield job.note(text, job.step.tool_ref, "tool_holder_diameter_for_spindle_orientation")
+    if _edge(job, _passed(job, operation, hole)) is None:
+        text = "no length of the edge: its upper end is taken as the programmed point"
+        yield job.warning(text, job.step.tool_ref, "its_tool_body")
+    if _is_reduced(job, operation):
+        text = "one feed from behind: reductions at start and end are not used"
+        yield job.note(text, attribute="its_machining_strategy")
+    given = operation.cutting_depth
+    if given is not None and hole.depth is not None and given > hole.depth + TOLERANCE:
+        text = f"{given:g} mm is deeper than the bore of {hole.depth:g} mm"
+        yield job.warning(text, attribute="cutting_depth")
+    reach = hole.entry_z - bore.below_z
+    overall = tool.overall_assembly_length if isinstance(tool, MillingCuttingTool) else None
+    if overall and reach > overall:
+        text = f"{overall:g} mm of tool for a depth of {reach:.4g} mm"
+        yield job.warning(text, job.step.tool_ref, "overall_assembly_length")
+    mouth_z = _mouth_z(hole)
+    if job.stock is not None and mouth_z > job.stock.low[2] + TOLERANCE:
+        text = (
+            f"the bore opens at z = {mouth_z:g} mm, above the bottom of the workpiece at "
+            f"z = {job.stock.low[2]:g} mm: the tool shifts there"
+        )
+        yield job.warning(text, hole.ref, "depth")
+
+
+def _length(job: Job, operation: DrillingTypeOperation, hole: Hole) -> float:
+    """Length of the bore from its mouth, which must leave a shoulder."""
+    at = job.step.operation_ref
+    given = operation.cutting_depth
+    if given is not None and not 0.0 < given < inf:
+        message = f"{given:g} mm removes nothing: it must be positive"
+        raise job.fault(message, at, "cutting_depth")
+    length = (hole.depth or 0.0) if given is None else given
+    shoulder_z = _mouth_z(hole) + length
+    if shoulder_z > hole.entry_z - TOLERANCE:
+        message = (
+            f"a bore of {length:g} mm from behind, up to z = {shoulder_z:g} mm, leaves no "
+            "shoulder below the top of the part"
+        )
+        raise job.fault(message, at, "cutting_depth")
+    return length
+
+
+def _is_reduced(job: Job, operation: DrillingTypeOperation) -> bool:
+    """Whether a strategy asks for other feeds or speeds at the start or the end."""
+    ref = operation.its_machining_strategy
+    strategy = job.program.get(ref) if ref is not None else None
+    return isinstance(strategy, DrillingTypeStrategy) and any(
+        ratio is not None
+        for ratio in (
+            strategy.reduced_cut_at_start,
+            strategy.reduced_feed_at_start,
+            strategy.reduced_cut_at_end,
+            strategy.reduced_feed_at_end,
+        )
+    )
+
+
+def _mouth_z(hole: Hole) -> float:
+    """Height where a bore opens at the back of the part."""
+    return hole.top[2] - (hole.depth or 0.0)
+
+
+def _passed(job: Job, operation: DrillingTypeOperation, hole: Hole) -> float:
+    """Diameter in mm of the hole that the tool passes on its way."""
+    at = job.step.operation_ref
+    given = operation.previous_diameter
+    if given is not None and not 0.0 < given < inf:
+        raise job.fault(f"{given:g} mm: it must be positive", at, "previous_diameter")
+    widths = [*_narrower(job, hole), *([given] if given is not None else [])]
+    widths = widths or _drilled(job)[-1:]
+    if not widths:
+        message = "nothing tells the diameter of the hole that the tool passes"
+        raise job.fault(message, at, "previous_diameter")
+    return min(widths)
+
+
+def _narrower(job: Job, hole: Hole) -> Iterator[float]:
+    """Least diameters of the other holes of the same compound feature."""
+    ref = compound_of(job.program, hole.ref)
+    for element in job.program.get(ref).elements if ref is not None else ():
+        entity = job.program.get(element)
+        if element != hole.ref and isinstance(entity, RoundHole):
+            width = size_of(job, element, entity)
+            yield narrowest_of(job, entity, width, feature_depth(job, element))
+
+
+def _drilled(job: Job) -> list[float]:
+    """Diameters of the tools that went through the same feature before, narrow ones first."""
+    return sorted(
+        tool_of(job.program, before.tool_ref).diameter
+        for before in job.program.before(job.step)
+        if isinstance(before.operation, DrillingTypeOperation)
+        and not isinstance(before.operation, (BackBoring, CenterDrilling, CounterSinking))
+    )
+
+
+def _check_tool(job: Job, hole: Hole, passed: float) -> None:
+    """Refuse a tool that bores nothing, too much, or has an edge on the other side too."""
+    at, width = job.step.operation_ref, job.tool.diameter
+    if width <= passed + TOLERANCE:
+        message = f"tool of {width:g} mm bores nothing behind a hole of {passed:g} mm"
+        raise job.fault(message, at, "its_tool")
+    is_tapered = getattr(job.program.get(hole.ref), "change_in_diameter", None) is not None
+    if hole.diameter is not None and not is_tapered and width > hole.diameter + hole.tolerance:
+        message = (
+            f"tool of {width:g} mm for a bore of {hole.diameter:g} mm "
+            f"that may be {hole.tolerance:g} mm wider"
+        )
+        raise job.fault(message, at, "its_tool")
+    if job.tool.teeth > 1:
+        message = f"{job.tool.teeth} teeth: a tool passes a narrower hole with one edge only"
+        raise job.fault(message, job.step.tool_ref, "its_tool_body")
+
+
+def _check_bar(job: Job, shift: float, passed: float) -> None:
+    """Refuse a bar that does not pass the hole beside its axis."""
+    bar = _bar(job)
+    if shift + 0.5 * (bar or 0.0) > 0.5 * passed + TOLERANCE:
+        what = "its axis" if bar is None else f"a bar of {bar:g} mm"
+        message = f"{what}, {shift:g} mm off that of the hole, does not pass {passed:g} mm"
+        attribute = "tool_holder_diameter_for_spindle_orientation"
+        raise job.fault(message, job.step.tool_ref, attribute)
+
+
+def _bar(job: Job) -> float | None:
+    """Diameter in mm of the bar that carries the edge."""
+    tool = job.program.get(job.step.tool_ref)
+    if not isinstance(tool, MillingCuttingTool):
+        raise job.fault("is no rotating tool: it bores no hole", job.step.tool_ref)
+    bar = tool.tool_holder_diameter_for_spindle_orientation
+    if bar is not None and not 0.0 < bar < inf:
+        attribute = "tool_holder_diameter_for_spindle_orientation"
+        raise job.fault(f"{bar:g} mm: it must be positive", job.step.tool_ref, attribute)
+    return bar
+
+
+def _direction(job: Job) -> tuple[float, float] | None:
+    """Where the edge of the stopped tool points, across its axis; None where nothing tells."""
+    tool = job.program.get(job.step.tool_ref)
+    ref = (
+        tool.direction_for_spindle_orientation if isinstance(tool, MillingCuttingTool) else None
+    )
+    functions = job.program.get(job.step.functions_ref) if job.step.functions_ref else None
+    if ref is None and isinstance(functions, MillingMachineFunctions):
+        ref = functions.oriented_spindle_stop
+    if ref is None:
+        return None
+    x, y, _ = direction_of(job.program, ref)
+    size = hypot(x, y)
+    if size < PARALLEL:
+        raise job.fault("the edge points along the axis of its tool", ref, "direction_ratios")
+    return x / size, y / size
+
+
+def _edge(job: Job, passed: float) -> float | None:
+    """Height in mm of the boring edge above the tip; None where nothing tells."""
+    angle = lip_angle(job)
+    if angle > 0.0:
+        return 0.5 * (job.tool.diameter - passed) * tan(angle)
+    return job.tool.cutting_edge_length
+
+
+def _clearance(job: Job, operation: DrillingTypeOperation) -> float:
+    """Way in mm from the back of the part down to where the edge is clear of it."""
+    overcut = operation.overcut_length or MOUTH_CLEARANCE
+    if not 0.0 < overcut < inf:
+        message = f"{overcut:g} mm: it must not be negative"
+        raise job.fault(message, job.step.operation_ref, "overcut_length")
+    return overcut

@@ -1,0 +1,238 @@
+"""What a tool does in one hole, from the retract plane and back to it.
+
+ISO 14649-11: on its way out a tool feeds. Cycles of controls that drill, and those that stop
+the spindle, come out in rapid; they are named all the same where ``feed_on_retract`` is not
+given, for they leave the same hole.
+"""
+
+from dataclasses import dataclass
+from math import inf
+
+from stepnc_model.entities.drilling import (
+    BoringOperation,
+    DrillingTypeOperation,
+    MultistepDrilling,
+    Tapping,
+)
+from stepnc_model.entities.technology import MillingMachineFunctions
+from stepnc_model.toolpath.course import Course
+from stepnc_model.toolpath.hole.feature import Hole
+from stepnc_model.toolpath.hole.feed import Stage, retract_feed
+from stepnc_model.toolpath.job import Job
+from stepnc_model.toolpath.path import Cycle, CycleKind, Feed, MoveType, SpindleCommand
+
+PECK_CLEARANCE = 1.0
+"""mm above the last depth where a drill that comes back begins to feed, customary"""
+
+MOST_PECKS = 1000
+
+SAME_DEPTH = 1e-6
+"""mm"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HoleCut:
+    """One hole with what its making needs; heights in mm, in the setup."""
+
+    job: Job
+    operation: DrillingTypeOperation
+    hole: Hole
+    retract_z: float
+    bottom_z: float
+    """of the tip"""
+    stages: tuple[Stage, ...]
+
+    @property
+    def feed(self) -> Feed:
+        """Feed at the bottom."""
+        return self.stages[-1].feed
+
+    @property
+    def is_one_feed(self) -> bool:
+        """Whether one feed goes all the way."""
+        return len(self.stages) == 1
+
+
+def cut_hole(course: Course, cut: HoleCut) -> None:
+    """Make one hole; the tool stands above it on the retract plane, and ends there."""
+    if isinstance(cut.operation, Tapping):
+        _tap(course, cut)
+    elif isinstance(cut.operation, MultistepDrilling):
+        _peck(course, cut, cut.operation)
+    elif isinstance(cut.operation, BoringOperation):
+        _bore(course, cut, cut.operation)
+    else:
+        _drill(course, cut)
+
+
+def _drill(course: Course, cut: HoleCut) -> None:
+    """In and out."""
+    first = course.count
+    feed_to(course, cut, cut.bottom_z)
+    dwell(course, cut, cut.operation.dwell_time_bottom, "dwell_time_bottom")
+    retract(course, cut)
+    if not cut.is_one_feed:
+        return
+    if cut.operation.feed_on_retract is None:
+        kind = CycleKind.DWELL if cut.operation.dwell_time_bottom else CycleKind.DRILL
+        _name_cycle(course, cut, kind, first)
+    elif retract_feed(cut.job, cut.operation, cut.feed) == cut.feed:
+        _name_cycle(course, cut, CycleKind.BORE, first)
+
+
+def _peck(course: Course, cut: HoleCut, operation: MultistepDrilling) -> None:
+    """Step by step, with a short retract that breaks the chip or a full one that clears it.
+
+    ISO 14649-11: a retract distance of 0 or less means the retract plane. The depths are those
+    of the tip. Retracts are rapid, the last one too unless ``feed_on_retract`` is given.
+    """
+    first = course.count
+    distance = operation.retract_distance or 0.0
+    for z in _pecks(cut, operation):
+        feed_to(course, cut, z)
+        dwell(course, cut, operation.dwell_time_step, "dwell_time_step")
+        if distance > 0.0:
+            course.rapid(cut.hole.at(min(z + distance, cut.retract_z)), MoveType.RETRACT)
+        else:
+            course.rapid(cut.hole.at(cut.retract_z), MoveType.RETRACT)
+            course.rapid(cut.hole.at(min(z + PECK_CLEARANCE, cut.retract_z)))
+    feed_to(course, cut, cut.bottom_z)
+    dwell(course, cut, operation.dwell_time_bottom, "dwell_time_bottom")
+    if operation.feed_on_retract is not None:
+        retract(course, cut)
+        return
+    course.rapid(cut.hole.at(cut.retract_z), MoveType.RETRACT)
+    is_even = abs(operation.first_depth - operation.depth_of_step) < SAME_DEPTH
+    if cut.is_one_feed and is_even and not operation.dwell_time_step:
+        kind = CycleKind.CHIP_BREAK if distance > 0.0 else CycleKind.PECK
+        _name_cycle(course, cut, kind, first)
+
+
+def _pecks(cut: HoleCut, operation: MultistepDrilling) -> list[float]:
+    """Heights of the tip after each step but the last."""
+    at = cut.job.step.operation_ref
+    for name in ("first_depth", "depth_of_step"):
+        value = getattr(operation, name)
+        if value is None or not 0.0 < value < inf:
+            raise cut.job.fault(f"{value} mm: it must be positive", at, name)
+    top = cut.hole.top[2]
+    count = (top - operation.first_depth - cut.bottom_z - SAME_DEPTH) / operation.depth_of_step
+    if count > MOST_PECKS:
+        message = f"{count:.0f} steps to the bottom: {MOST_PECKS} at most"
+        raise cut.job.fault(message, at, "depth_of_step")
+    heights: list[float] = []
+    z = top - operation.first_depth
+    while z > cut.bottom_z + SAME_DEPTH:
+        heights.append(z)
+        z = top - operation.first_depth - len(heights) * operation.depth_of_step
+    return heights
+
+
+def _bore(course: Course, cut: HoleCut, operation: BoringOperation) -> None:
+    """In and out, with a test cut before and a stop of the spindle where they are given."""
+    if operation.depth_of_testcut:
+        _test_cut(course, cut, operation, operation.depth_of_testcut)
+    first = course.count
+    feed_to(course, cut, cut.bottom_z)
+    dwell(course, cut, operation.dwell_time_bottom, "dwell_time_bottom")
+    if not operation.spindle_stop_at_bottom:
+        retract(course, cut)
+        if cut.is_one_feed and retract_feed(cut.job, operation, cut.feed) == cut.feed:
+            _name_cycle(course, cut, CycleKind.BORE, first)
+        return
+    stop = SpindleCommand.ORIENT if _is_oriented(cut) else SpindleCommand.STOP
+    course.spindle(stop)
+    retract(course, cut)
+    course.spindle(SpindleCommand.START)
+    is_plain = cut.is_one_feed and operation.feed_on_retract is None
+    if stop is SpindleCommand.STOP and is_plain:
+        _name_cycle(course, cut, CycleKind.BORE_STOP, first)
+
+
+def _is_oriented(cut: HoleCut) -> bool:
+    """Whether the spindle stops at an angle."""
+    ref = cut.job.step.functions_ref
+    functions = cut.job.program.get(ref) if ref is not None else None
+    return (
+        isinstance(functions, MillingMachineFunctions)
+        and functions.oriented_spindle_stop is not None
+    )
+
+
+def _test_cut(course: Course, cut: HoleCut, operation: BoringOperation, depth: float) -> None:
+    """A short cut, then out of the way to be measured, ISO 14649-11."""
+    z = cut.hole.top[2] - depth
+    if not cut.bottom_z < z < cut.hole.top[2]:
+        whole = cut.hole.top[2] - cut.bottom_z
+        message = f"{depth:g} mm: it must lie between 0 and the depth of {whole:g} mm"
+        raise cut.job.fault(message, cut.job.step.operation_ref, "depth_of_testcut")
+    feed_to(course, cut, z)
+    retract(course, cut)
+    course.spindle(SpindleCommand.STOP)
+    if operation.waiting_position is not None:
+        x, y, wanted = cut.hole.point(cut.job, operation.waiting_position)
+        height = min(max(wanted, cut.retract_z), max(cut.job.security_z, cut.retract_z))
+        course.rapid(cut.hole.at(height))
+        course.rapid((x, y, height))
+        course.rapid(cut.hole.at(height))
+    text = "the hole is to be measured after the test cut: the path has no stop for it"
+    course.find(cut.job.warning(text, attribute="depth_of_testcut"))
+    course.spindle(SpindleCommand.START)
+    course.rapid(cut.hole.at(cut.retract_z))
+
+
+def _tap(course: Course, cut: HoleCut) -> None:
+    """In by one pitch per revolution, and out the same way with the spindle reversed."""
+    first = course.count
+    feed_to(course, cut, cut.bottom_z)
+    dwell(course, cut, cut.operation.dwell_time_bottom, "dwell_time_bottom")
+    course.spindle(SpindleCommand.REVERSE)
+    retract(course, cut)
+    course.spindle(SpindleCommand.START)
+    _name_cycle(course, cut, CycleKind.TAP, first)
+
+
+def feed_to(course: Course, cut: HoleCut, z: float) -> None:
+    """Down to a height, with the feed of each stage."""
+    for stage in cut.stages:
+        if course.at[2] > stage.end_z + SAME_DEPTH and course.at[2] > z + SAME_DEPTH:
+            end = cut.hole.at(max(z, stage.end_z))
+            course.line(end, MoveType.CONTACT, stage.feed)
+
+
+def retract(course: Course, cut: HoleCut) -> None:
+    """Out to the retract plane at a feed."""
+    feed = retract_feed(cut.job, cut.operation, cut.feed)
+    course.line(cut.hole.at(cut.retract_z), MoveType.RETRACT, feed)
+
+
+def dwell(course: Course, cut: HoleCut, seconds: float | None, attribute: str) -> None:
+    """Pause where one is given."""
+    if not seconds:
+        return
+    if not 0.0 < seconds < inf:
+        message = f"{seconds:g} s: it must not be negative"
+        raise cut.job.fault(message, cut.job.step.operation_ref, attribute)
+    course.dwell(seconds=seconds)
+
+
+def _name_cycle(course: Course, cut: HoleCut, kind: CycleKind, first: int) -> None:
+    """Say that the steps since the first one are a cycle of controls."""
+    operation = cut.operation
+    step_depth = retract_distance = 0.0
+    if isinstance(operation, MultistepDrilling):
+        step_depth = operation.depth_of_step
+        retract_distance = max(0.0, operation.retract_distance or 0.0)
+    course.cycle(
+        Cycle(
+            kind=kind,
+            first=first,
+            last=course.count - 1,
+            retract_z=cut.retract_z,
+            bottom_z=cut.bottom_z,
+            feed=cut.feed,
+            step_depth=step_depth,
+            retract_distance=retract_distance,
+            dwell=operation.dwell_time_bottom or 0.0,
+        )
+    )

@@ -1,0 +1,277 @@
+"""Contour-parallel passes over an area: rings within rings, and what they would leave uncut.
+
+Rings are offsets of the wall. With a step above the cutter's radius they leave islands, in the
+corners where ``s > R·(1 + sin(θ/2))`` and in the middle; those get passes of their own, so that
+the area is swept whatever the overlap is.
+"""
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+from math import inf
+
+import shapely
+from shapely import LineString, MultiPolygon, Polygon
+from shapely.geometry.base import BaseGeometry
+
+from stepnc_model.toolpath.milling.contour import (
+    TINY,
+    Chain,
+    Loop,
+    area,
+    line,
+    rotated_to,
+    shape,
+    vertices,
+)
+from stepnc_model.toolpath.milling.offset import erode
+
+CHORD = 2e-3
+"""mm of tolerance where areas are compared by polygons"""
+
+NEGLIGIBLE = 2.0 * CHORD
+"""mm; a part that is nowhere thicker than twice this is an error of the chords"""
+
+MOST_RINGS = 2000
+
+
+@dataclass(frozen=True, slots=True)
+class Pass:
+    """One cut at constant depth: a loop, or a chain with two ends."""
+
+    chain: Chain
+    is_closed: bool
+
+    def from_near(self, point: complex | None) -> "Pass":
+        """The same pass, a loop started where it comes nearest to a point."""
+        if point is None or not self.is_closed:
+            return self
+        return Pass(rotated_to(self.chain, point), is_closed=True)
+
+    @property
+    def start(self) -> complex:
+        """Where it starts."""
+        return self.chain[0].start
+
+    @property
+    def end(self) -> complex:
+        """Where it ends."""
+        return self.chain[-1].end
+
+
+@dataclass(slots=True)
+class _Node:
+    """A part of the area at one level of offset, with the parts inside it."""
+
+    polygon: Polygon
+    loops: list[Loop]
+    children: list["_Node"] = field(default_factory=list)
+
+
+def rings(
+    walls: Sequence[Loop], *, distance: float, radius: float, step: float
+) -> tuple[Pass, ...]:
+    """Passes that clear an area, from the inside out.
+
+    Parameters
+    ----------
+    walls : sequence of Loop
+        The area lies on the left of each.
+    distance : float, mm
+        Of the outermost passes from the walls.
+    radius : float, mm
+        Of the cutter.
+    step : float, mm
+        Between neighbouring passes.
+
+    Returns
+    -------
+    tuple of Pass
+        Outer passes counter-clockwise, passes around islands clockwise. Empty when the cutter
+        does not fit in.
+    """
+    levels = list(_levels(walls, distance, step))
+    if not levels:
+        return ()
+    nodes = _tree(levels)
+    ordered = [Pass(loop, is_closed=True) for node in nodes for loop in _inside_out(node)]
+    if step <= radius * (1.0 + TINY):
+        return tuple(ordered)
+    between = (erode(walls, distance + (i + 0.5) * step) for i in range(len(levels)))
+    extra = _uncut(levels, between, radius)
+    return tuple(_interleaved(ordered, extra))
+
+
+def swept(passes: Sequence[Pass], radius: float, *, tolerance: float = CHORD) -> BaseGeometry:
+    """Area that a cutter sweeps along passes."""
+    return shapely.union_all([
+        LineString(_coordinates(each.chain, tolerance)).buffer(radius, quad_segs=32)
+        for each in passes
+    ])
+
+
+def area_of(loops: Sequence[Loop], *, tolerance: float = CHORD) -> BaseGeometry:
+    """Area of rings as polygons: outer ones less those that run clockwise."""
+    outer = [shape(loop, tolerance=tolerance) for loop in loops if area(loop) > 0.0]
+    holes = [shape(loop, tolerance=tolerance) for loop in loops if area(loop) <= 0.0]
+    return shapely.difference(shapely.union_all(outer), shapely.union_all(holes))
+
+
+def _levels(walls: Sequence[Loop], distance: float, step: float) -> Iterator[tuple[Loop, ...]]:
+    """Rings at growing distance from the walls, until there is no room."""
+    for index in range(MOST_RINGS):
+        loops = erode(walls, distance + index * step)
+        if not loops:
+            return
+        yield loops
+    raise ValueError(f"steps of {step:g} mm make more than {MOST_RINGS} rings")
+
+
+def _tree(levels: Sequence[tuple[Loop, ...]]) -> list[_Node]:
+    """Parts of the area, each with what lies inside it at the next level."""
+    roots: list[_Node] = []
+    above: list[_Node] = []
+    for loops in levels:
+        nodes = _nodes(loops)
+        for node in nodes:
+            if not above:
+                roots.append(node)
+                continue
+            inside = node.polygon.representative_point()
+            parent = min(above, key=lambda other: other.polygon.distance(inside))
+            parent.children.append(node)
+        above = nodes
+    return roots
+
+
+def _nodes(loops: Sequence[Loop]) -> list[_Node]:
+    """Outer rings of one level, each with the rings around islands within it."""
+    nodes = [
+        _Node(_valid(shape(loop, tolerance=0.1)), [loop]) for loop in loops if area(loop) > 0.0
+    ]
+    for loop in loops:
+        if area(loop) <= 0.0 and nodes:
+            at = shapely.Point(loop[0].start.real, loop[0].start.imag)
+            node = min(nodes, key=lambda other: other.polygon.distance(at))
+            node.loops.append(loop)
+    return nodes
+
+
+def _valid(polygon: Polygon) -> Polygon:
+    """The polygon, mended where coarse chords make it touch itself."""
+    if polygon.is_valid:
+        return polygon
+    mended = polygon.buffer(0.0)
+    if isinstance(mended, MultiPolygon):
+        mended = max(mended.geoms, key=lambda part: part.area)
+    return mended if not mended.is_empty else polygon.convex_hull
+
+
+def _inside_out(node: _Node) -> Iterator[Loop]:
+    """Loops of a part after those of what lies inside it; no recursion."""
+    stack, found = [node], []
+    while stack:
+        top = stack.pop()
+        found.append(top)
+        stack.extend(top.children)
+    for each in reversed(found):
+        yield from reversed(each.loops)
+
+
+def _uncut(
+    levels: Sequence[tuple[Loop, ...]],
+    between: Iterable[tuple[Loop, ...]],
+    radius: float,
+) -> list[Pass]:
+    """Passes through what the rings leave: rings half way between two levels, then strokes."""
+    passes = [Pass(loop, is_closed=True) for loops in levels for loop in loops]
+    left = _parts(area_of(levels[0]).difference(swept(passes, radius)))
+    found: list[Pass] = []
+    if not left:
+        return found
+    for loop in (loop for loops in between for loop in loops):
+        trace = LineString(_coordinates(loop, CHORD))
+        if any(trace.intersects(part) for part in left):
+            reached = trace.buffer(radius, quad_segs=32)
+            whole = [part for part in left if reached.covers(part)]
+            # A ring is worth its way only where it runs through what is left.
+            if sum(part.length for part in whole) >= 0.5 * trace.length:
+                found.append(Pass(loop, is_closed=True))
+                left = [part for part in left if not reached.covers(part)]
+    for part in left:
+        found += _through(part, radius)
+    return found
+
+
+def _through(part: Polygon, radius: float) -> list[Pass]:
+    """A stroke through a part that is left, or passes along its edge and within."""
+    stroke = _axis(part)
+    if stroke is not None and stroke.buffer(radius * 0.999).covers(part):
+        (x0, y0), (x1, y1) = stroke.coords
+        return [Pass((line(complex(x0, y0), complex(x1, y1)),), is_closed=False)]
+    found: list[Pass] = []
+    stack = [part]
+    while stack:
+        piece = stack.pop()
+        # Anything within a radius of the part lies inside: the way need not follow its edge.
+        ring = piece.exterior.simplify(0.5 * radius)
+        points = [complex(x, y) for x, y in ring.coords]
+        edges = tuple(line(a, b) for a, b in pairwise(points) if abs(a - b) > TINY)
+        if not edges:
+            continue
+        found.append(Pass(edges, is_closed=True))
+        stack += _parts(piece.difference(ring.buffer(radius * 0.97)))
+    return found
+
+
+def _axis(part: Polygon) -> LineString | None:
+    """Longest line of symmetry of the narrowest box about a part, if it stays inside."""
+    box = part.minimum_rotated_rectangle
+    if not isinstance(box, Polygon):
+        return None
+    corners = [complex(x, y) for x, y in box.exterior.coords][:4]
+    if len(corners) < 4:
+        return None
+    if abs(corners[1] - corners[0]) > abs(corners[2] - corners[1]):
+        corners = [*corners[1:], corners[0]]
+    ends = [0.5 * (corners[0] + corners[1]), 0.5 * (corners[2] + corners[3])]
+    if abs(ends[0] - ends[1]) < CHORD:
+        return None
+    axis = LineString([(end.real, end.imag) for end in ends])
+    inner = axis.intersection(part)
+    if isinstance(inner, LineString) and inner.length > CHORD:
+        start, end = inner.coords[0], inner.coords[-1]
+        return LineString([start, end])
+    return None
+
+
+def _interleaved(ordered: list[Pass], extra: list[Pass]) -> Iterator[Pass]:
+    """Each extra pass before the first ring that runs close to it."""
+    if not extra:
+        yield from ordered
+        return
+    traces = [LineString(_coordinates(each.chain, 0.1)) for each in ordered]
+    places: dict[int, list[Pass]] = {}
+    for each in extra:
+        trace = LineString(_coordinates(each.chain, 0.1))
+        gaps = [trace.distance(other) for other in traces]
+        places.setdefault(gaps.index(min(gaps, default=inf)), []).append(each)
+    for index, each in enumerate(ordered):
+        yield each
+        yield from places.get(index, ())
+
+
+def _parts(geometry: BaseGeometry) -> list[Polygon]:
+    """Polygons of a geometry that are worth a pass."""
+    parts = shapely.get_parts(geometry).tolist()
+    return [
+        part
+        for part in parts
+        if isinstance(part, Polygon) and not part.buffer(-NEGLIGIBLE).is_empty
+    ]
+
+
+def _coordinates(chain: Chain, tolerance: float) -> list[tuple[float, float]]:
+    """Points of a chain for shapely, its last end among them."""
+    points = [*vertices(chain, tolerance=tolerance), chain[-1].end]
+    return [(point.real, point.imag) for point in points]

@@ -1,0 +1,280 @@
+"""Grooving and cutting in: plunges side by side, then the walls and the floor.
+
+Plunges start in the middle, or at the side that the grooving direction comes from, and their
+step leaves no strip. A finish comes down each wall and runs on the floor towards the other
+one, so that the insert is never drawn back over its width.
+"""
+
+from collections.abc import Sequence
+from itertools import pairwise
+from math import ceil, inf
+
+from stepnc_model.entities.entity import Entity
+from stepnc_model.entities.turning import CuttingIn, Grooving, GroovingFinish
+from stepnc_model.entities.turning_features import Groove
+from stepnc_model.entities.turning_strategies import GroovingStrategy, MultistepGroovingStrategy
+from stepnc_model.part21.values import Typed
+from stepnc_model.toolpath.course import Course
+from stepnc_model.toolpath.job import Job
+from stepnc_model.toolpath.path import Move, MoveType
+from stepnc_model.toolpath.turning.insert import Insert, insert_of
+from stepnc_model.toolpath.turning.link import direction_in
+from stepnc_model.toolpath.turning.outline import Outline
+from stepnc_model.toolpath.turning.piece import Piece, Spot, crossings
+from stepnc_model.toolpath.turning.plane import HalfPlane
+from stepnc_model.toolpath.turning.profile import Profile, highest
+from stepnc_model.toolpath.turning.region import SEEN
+from stepnc_model.toolpath.turning.setting import (
+    cumulative,
+    cutting_feed,
+    depths_of,
+)
+from stepnc_model.toolpath.turning.stock import Bar, allowance_of, operation_of, surface_of
+from stepnc_model.toolpath.turning.walk import RAPID_CLEARANCE, split
+
+FITS = 1e-6
+"""mm by which an insert may be wider than its groove"""
+
+OVERLAP = 0.8
+"""of the flat of an insert: the greatest step between plunges where none is given"""
+
+
+class Plunger:
+    """Plunges an insert; running state: what it cut so far."""
+
+    def __init__(self, job: Job, course: Course, bar: Bar, insert: Insert) -> None:
+        self.job = job
+        self.course = course
+        self.insert = insert
+        self.feed = cutting_feed(job)
+        self.plane = HalfPlane(tip_x=-insert.corner, tip_z=-insert.corner)
+        self.rim = insert.rolled(bar.left)
+        """where the insert touches the stock"""
+        self.home = course.at
+
+    def over(self, u: float) -> None:
+        """Go over a place, in rapid."""
+        kind = MoveType.RAPID if self.course.count else MoveType.APPROACH
+        at, v = self.plane.spot(self.course.at)
+        level = max(v, self._clear(min(at, u), max(at, u)))
+        for spot in ((at, level), (u, level), (u, self._clear(u, u))):
+            self.course.rapid(self.plane.point(spot), kind)
+
+    def down(self, pieces: Sequence[Piece]) -> None:
+        """Feed along pieces."""
+        for piece in pieces:
+            for part, is_contact in split(piece, self.rim):
+                kind = MoveType.CONTACT if is_contact else MoveType.NO_CONTACT
+                end, arc = self.plane.point(part.end), self.plane.arc(part)
+                self.course.add(Move(end=end, type=kind, feed=self.feed, arc=arc))
+
+    def up(self, u: float) -> None:
+        """Feed out of the groove: its walls are too near for a rapid."""
+        self._feed((u, self._clear(u, u)))
+
+    def go_home(self) -> None:
+        """Back to the safe point."""
+        self.course.rapid((self.home[0], 0.0, self.course.at[2]), MoveType.RETRACT)
+        self.course.rapid(self.home, MoveType.RETRACT)
+
+    def peck(self, u: float, depths: Sequence[float], back: float) -> None:
+        """Plunge in steps, each followed by a short way back."""
+        top = self.rim.at(u)
+        start = self._clear(u, u)
+        for index, depth in enumerate(depths):
+            self.down([Piece(start=(u, start), end=(u, top - depth))])
+            start = top - depth
+            if back > 0.0 and index + 1 < len(depths):
+                start = min(start + back, top)
+                self._feed((u, start))
+
+    def start_of(self, u: float) -> Spot:
+        """Where a plunge begins."""
+        return u, self._clear(u, u)
+
+    def _clear(self, low: float, high: float) -> float:
+        """Level at which all is clear over an interval."""
+        beside = self.rim.top(low - RAPID_CLEARANCE, high + RAPID_CLEARANCE)
+        return max(beside, 0.0) + RAPID_CLEARANCE
+
+    def _feed(self, spot: Spot) -> None:
+        end = self.plane.point(spot)
+        self.course.add(Move(end=end, type=MoveType.NO_CONTACT, feed=self.feed))
+
+
+def groove(job: Job, course: Course, bar: Bar, outlines: tuple[Outline, ...]) -> None:
+    """Make the path of a grooving or cutting-in operation.
+
+    Raises
+    ------
+    PathError
+        When the insert is too wide or too short, or there is nothing to remove.
+    """
+    insert = insert_of(job)
+    allowance = allowance_of(job, job.step.operation_ref, job.step.operation)
+    plunger = Plunger(job, course, bar, insert)
+    for outline in outlines:
+        feature = job.program.get(outline.ref)
+        if isinstance(job.step.operation, CuttingIn):
+            _cut_in(job, plunger, outline, feature)
+        else:
+            _groove(job, plunger, bar, outline, allowance)
+    plunger.go_home()
+
+
+def _groove(job: Job, plunger: Plunger, bar: Bar, outline: Outline, allowance: float) -> None:
+    """One groove: plunges, or its walls and floor."""
+    insert = plunger.insert
+    surface = surface_of((outline,), HalfPlane())
+    if not surface.pieces:
+        raise job.fault("a groove needs a floor", outline.ref)
+    around = [
+        *bar.left.within(-inf, surface.low).pieces,
+        *surface.pieces,
+        *bar.left.within(surface.high, inf).pieces,
+    ]
+    solid = highest(around)
+    centres = insert.rolled(solid, allowance)
+    mouth = _mouth(surface, bar.left)
+    low, high = _room(job, insert, outline, mouth, allowance)
+    bottom = centres.bottom(low - FITS, high + FITS)
+    _check_depth(job, plunger, outline, bar.left.top(*mouth) + insert.corner - bottom)
+    left = bottom - insert.corner - allowance - outline.radii[0]
+    if left > SEEN:
+        text = f"the insert does not come to the bottom: {left:.3g} mm stay"
+        plunger.course.find(job.warning(text, outline.ref))
+    if isinstance(job.step.operation, GroovingFinish):
+        _finish(job, plunger, centres, low, high)
+        return
+    for u in _places(job, insert, low, high):
+        floor = centres.bottom(u - 2.0 * FITS, u + 2.0 * FITS)
+        _plunge(job, plunger, u, plunger.rim.at(u) - floor)
+
+
+def _mouth(surface: Profile, stock: Profile) -> tuple[float, float]:
+    """Where a groove opens in the stock."""
+    cuts = {end for piece in surface.pieces for end in (piece.low, piece.high)}
+    for piece in surface.pieces:
+        for other in stock.pieces:
+            cuts.update(crossings(piece, other))
+    order = sorted(cuts)
+    open_ones = [
+        (a, b)
+        for a, b in pairwise(order)
+        if surface.at(0.5 * (a + b)) < stock.at(0.5 * (a + b)) - FITS
+    ]
+    return (open_ones[0][0], open_ones[-1][1]) if open_ones else (order[0], order[-1])
+
+
+def _room(
+    job: Job,
+    insert: Insert,
+    outline: Outline,
+    mouth: tuple[float, float],
+    allowance: float,
+) -> tuple[float, float]:
+    """Where the centre of the left corner may be between the walls, at their widest."""
+    width = mouth[1] - mouth[0]
+    if width < insert.width + 2.0 * allowance - FITS:
+        message = (
+            f"{width:g} mm wide with {allowance:g} mm on each wall: "
+            f"too narrow for an insert of {insert.width:g} mm"
+        )
+        raise job.fault(message, outline.ref)
+    reach = insert.corner + allowance
+    low, high = mouth[0] + reach, mouth[1] - reach - insert.flat
+    return (low, high) if high > low + FITS else (0.5 * (low + high), 0.5 * (low + high))
+
+
+def _check_depth(job: Job, plunger: Plunger, outline: Outline, depth: float) -> None:
+    """The insert must reach the floor, and there must be something above it."""
+    if depth > plunger.insert.reach + FITS:
+        message = (
+            f"{depth:.4g} mm deep: the insert reaches {plunger.insert.reach:g} mm "
+            "(maximum_grooving_depth)"
+        )
+        raise job.fault(message, outline.ref)
+    if depth <= FITS:
+        raise job.fault("there is nothing to remove: the stock lies on the floor", outline.ref)
+
+
+def _places(job: Job, insert: Insert, low: float, high: float) -> list[float]:
+    """Where plunges go down, in their order."""
+    reference = operation_of(job).its_machining_strategy
+    strategy = job.program.get(reference) if reference is not None else None
+    step = max(OVERLAP * insert.flat, 0.25 * insert.width)
+    direction = None
+    if isinstance(strategy, GroovingStrategy):
+        direction = direction_in(job, HalfPlane(), strategy.grooving_direction)
+        if strategy.travel_distance is not None:
+            step = strategy.travel_distance
+            if not 0.0 < step <= insert.width:
+                message = f"a step of {step:g} mm with an insert of {insert.width:g} mm"
+                raise job.fault(message, reference or job.step.ref, "travel_distance")
+    count = ceil((high - low) / step - FITS)
+    if count <= 0:
+        return [low]
+    places = [low + (high - low) * i / count for i in range(count + 1)]
+    if direction is not None and abs(direction[0]) > abs(direction[1]):
+        return places if direction[0] > 0.0 else places[::-1]
+    middle = 0.5 * (low + high)
+    return sorted(places, key=lambda u: (round(abs(u - middle), 6), u))
+
+
+def _plunge(job: Job, plunger: Plunger, u: float, depth: float) -> None:
+    """One plunge, in pecks if the strategy says so, and a pause on the floor."""
+    if depth <= FITS:
+        return
+    reference = operation_of(job).its_machining_strategy
+    strategy = job.program.get(reference) if reference is not None else None
+    back = strategy.retract_distance if isinstance(strategy, MultistepGroovingStrategy) else 0.0
+    depths = depths_of(job) or ((plunger.insert.width,) if back else ())
+    plunger.over(u)
+    plunger.peck(u, cumulative(depth, depths) if back else [depth], back or 0.0)
+    _dwell(job, plunger.course)
+    plunger.up(u)
+
+
+def _dwell(job: Job, course: Course) -> None:
+    """Pause on the floor, in seconds or revolutions as the file says."""
+    operation = job.step.operation
+    written = operation.dwell if isinstance(operation, Grooving) else None
+    if written is None:
+        return
+    value = written.value if isinstance(written, Typed) else written
+    if not isinstance(value, (int, float)) or not 0.0 <= value < 1e4:
+        raise job.fault("a dwell must not be negative", job.step.operation_ref, "dwell")
+    if isinstance(written, Typed) and "REV" in written.keyword.upper():
+        course.dwell(revolutions=float(value))
+    elif value > 0.0:
+        course.dwell(seconds=float(value))
+
+
+def _finish(job: Job, plunger: Plunger, centres: Profile, low: float, high: float) -> None:
+    """Down the wall at the front and along the floor, then down the one at the chuck."""
+    middle = 0.5 * (low + high)
+    floor = centres.within(low - FITS, high + FITS)
+    chuck_side = list(floor.within(floor.low, middle).chain())
+    front_side = [p.reversed() for p in reversed(floor.within(middle, floor.high).chain())]
+    for side in (front_side, chuck_side):
+        if not side:
+            continue
+        start = side[0].start
+        plunger.over(start[0])
+        plunger.down([Piece(start=plunger.start_of(start[0]), end=start), *side])
+        _dwell(job, plunger.course)
+        plunger.up(side[-1].end[0])
+
+
+def _cut_in(job: Job, plunger: Plunger, outline: Outline, feature: Entity) -> None:
+    """One plunge to the feature's radius; past the axis by the corner where it is 0."""
+    insert = plunger.insert
+    least = outline.radii[0]
+    if isinstance(feature, Groove):
+        u = 0.5 * (outline.low + outline.high - insert.flat)
+    else:
+        u = outline.low - insert.corner - insert.flat
+    bottom = least + insert.corner if least > 0.0 else 0.0
+    depth = plunger.rim.at(u) - bottom
+    _check_depth(job, plunger, outline, depth)
+    _plunge(job, plunger, u, depth)

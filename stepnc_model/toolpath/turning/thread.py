@@ -1,0 +1,292 @@
+"""Threading: passes of a profiled insert, bound to the spindle's angle.
+
+The programmed point is the tip of the thread's profile, in the middle of the insert. A
+right-hand thread is cut towards the chuck, a left-hand one away from it. Feeding in along a
+flank shifts each pass so that the last one lies where the thread shall be.
+
+References
+----------
+.. [1] ISO 68-1:1998, ISO 965-1:2013: basic profile of metric threads. An external thread
+   with a root rounded by H/6 is 17/24 · H = 0.61343 · P deep, H = √3/2 · P.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import ceil, copysign, sqrt, tan
+
+from stepnc_model.entities.entity import Entity
+from stepnc_model.entities.enums import (
+    ThreadCutDepthType,
+    ThreadHandType,
+    ThreadingDirectionType,
+    ThreadType,
+)
+from stepnc_model.entities.threads import DefinedThread, Thread
+from stepnc_model.entities.turning import ThreadingFinish, TurningTechnology
+from stepnc_model.entities.turning_strategies import ThreadStrategy
+from stepnc_model.entities.turning_tools import TurningThreadingTool
+from stepnc_model.part21.values import Ref
+from stepnc_model.toolpath.course import Course
+from stepnc_model.toolpath.job import Job
+from stepnc_model.toolpath.path import MoveType
+from stepnc_model.toolpath.turning.outline import Outline
+from stepnc_model.toolpath.turning.setting import (
+    MOST_PASSES,
+    cumulative,
+    depths_of,
+)
+from stepnc_model.toolpath.turning.stock import Bar, allowance_of, operation_of
+from stepnc_model.toolpath.turning.thread_pass import Pass, cut_thread
+from stepnc_model.toolpath.turning.walk import RAPID_CLEARANCE
+from stepnc_model.units import rad_from_deg
+
+EXTERNAL_DEPTH = 17.0 / 24.0 * sqrt(3.0) / 2.0
+"""of the pitch, [1]_"""
+
+RUN_IN = 2.0
+"""pitches in which the slide catches up with the spindle, customary"""
+
+HALF_ANGLE_DEG = 30.0
+"""degrees, of the metric profile [1]_"""
+
+HALF_INSERT = 0.5
+"""of the pitch: the widest that the profile is on each side of its tip [1]_"""
+
+FEWEST_PASSES = 4
+PASSES_PER_MM = 4.0
+"""passes for each mm of pitch where the strategy gives no depths, customary"""
+
+SAME_PITCH = 1e-6
+"""mm"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Helix:
+    """A thread to be cut; z of its start and end in the sense of cutting."""
+
+    pitch: float
+    depth: float
+    radius: float
+    start: float
+    end: float
+
+    @property
+    def towards(self) -> float:
+        """−1 towards the chuck."""
+        return -1.0 if self.end < self.start else 1.0
+
+
+def threaded_feature(job: Job, ref: Ref[Entity]) -> Ref[Entity]:
+    """The shape that a thread lies on; the feature itself where it is no thread."""
+    feature = job.program.get(ref)
+    if not isinstance(feature, Thread):
+        return ref
+    if not feature.applied_shape:
+        raise job.fault("a thread needs a shape to lie on", ref, "applied_shape")
+    return feature.applied_shape[0]
+
+
+def thread(job: Job, course: Course, bar: Bar, outline: Outline) -> None:
+    """Make the path of a threading operation.
+
+    Raises
+    ------
+    PathError
+        When no pitch is given, it is an inside thread, or the thread is too deep.
+    """
+    strategy = _strategy(job)
+    pitch = _pitch(job, course)
+    helix = _helix(job, outline, pitch)
+    half = _half_angle(job)
+    shifts = [_shift(helix, strategy, 0.0, index) * tan(half) for index in (0, 1)]
+    outwards = max(0.0, *(-helix.towards * shift for shift in shifts))
+    run_in = _run_in(job, course, bar, helix, strategy, outwards)
+    run_out = _run_out(job, course, bar, helix, strategy)
+    start = helix.start - helix.towards * run_in
+    end = helix.end + helix.towards * run_out
+    lift = getattr(strategy, "lift_height", None) or RAPID_CLEARANCE
+    outside = bar.left.top(min(start, end), max(start, end))
+    clear = max(outside, helix.radius) + max(lift, RAPID_CLEARANCE)
+    angle = getattr(strategy, "path_return_angle", None)
+    home = course.at
+    for index, depth in enumerate(_depths(job, helix, strategy)):
+        shift = _shift(helix, strategy, depth, index) * tan(half)
+        kind = MoveType.RAPID if index else MoveType.APPROACH
+        if index == 0:
+            course.rapid((home[0], 0.0, start + shift), kind)
+        one = Pass(
+            start=start + shift,
+            end=end,
+            bottom=helix.radius - depth,
+            clear=clear,
+            angle=angle,
+            has_relief=run_out > 0.0,
+        )
+        cut_thread(job, course, one, stock=bar.left, pitch=pitch, kind=kind)
+    course.rapid((home[0], 0.0, course.at[2]), MoveType.RETRACT)
+    course.rapid(home, MoveType.RETRACT)
+
+
+def _strategy(job: Job) -> ThreadStrategy | None:
+    reference = operation_of(job).its_machining_strategy
+    strategy = job.program.get(reference) if reference is not None else None
+    return strategy if isinstance(strategy, ThreadStrategy) else None
+
+
+def _pitch(job: Job, course: Course) -> float:
+    """Pitch of the tool, else the feed per revolution of the technology."""
+    tool = job.program.get(job.step.tool_ref)
+    technology = job.program.get(job.step.technology_ref)
+    fed = technology.feed_per_revolution if isinstance(technology, TurningTechnology) else None
+    pitch = tool.threading_pitch if isinstance(tool, TurningThreadingTool) else None
+    pitch = fed if pitch is None else pitch
+    if pitch is None or not 0.0 < pitch < 1e3:
+        raise job.fault(f"a pitch of {pitch} mm: it must be positive", job.step.tool_ref)
+    if fed is not None and abs(fed - pitch) > SAME_PITCH:
+        text = f"a feed of {fed:g} mm per revolution, a pitch of {pitch:g} mm: the pitch counts"
+        course.find(job.warning(text, job.step.technology_ref, "feed_per_revolution"))
+    return float(pitch)
+
+
+def _helix(job: Job, outline: Outline, pitch: float) -> Helix:
+    """Where the thread lies and how deep it is."""
+    tool = job.program.get(job.step.tool_ref)
+    feature = job.program.get(job.step.features[0])
+    is_left = False
+    if isinstance(tool, TurningThreadingTool):
+        is_left = tool.thread_hand is ThreadHandType.LEFT
+        if tool.its_thread_type is ThreadType.INTERNAL:
+            raise job.fault("an inside thread is not supported", job.step.tool_ref)
+    depth = EXTERNAL_DEPTH * pitch
+    least, radius = outline.radii
+    if radius - least > SAME_PITCH:
+        raise job.fault("a taper thread is not supported", outline.ref)
+    low, high = outline.low, outline.high
+    if isinstance(feature, Thread):
+        area = job.program.get(feature.partial_profile)
+        low = max(low, high - area.effective_length)
+        if isinstance(feature, DefinedThread) and feature.minor_diameter:
+            depth = radius - 0.5 * feature.minor_diameter
+    if not 0.0 < depth < radius:
+        message = f"a depth of {depth:.4g} mm at a radius of {radius:g} mm"
+        raise job.fault(message, job.step.features[0])
+    start, end = (low, high) if is_left else (high, low)
+    return Helix(pitch=pitch, depth=depth, radius=radius, start=start, end=end)
+
+
+def _run_out(
+    job: Job, course: Course, bar: Bar, helix: Helix, strategy: ThreadStrategy | None
+) -> float:
+    """Length behind the thread: the overcut where a relief or the end of the bar has room."""
+    wanted = getattr(strategy, "overcut_length", None)
+    wanted = helix.pitch if wanted is None else wanted
+    beside = HALF_INSERT * helix.pitch
+    length = _room(bar, helix, helix.end, helix.towards * wanted, beside)
+    if length > 0.0:
+        return length
+    if not getattr(strategy, "path_return_angle", None):
+        text = "no relief behind the thread: the tool leaves at its end, in the material"
+        course.warn(text, job.step.features[0])
+    if length < 0.0:
+        text = f"the thread ends {-length:.3g} mm before the shoulder: the insert has no room"
+        course.warn(text, job.step.features[0])
+    return length
+
+
+def _run_in(
+    job: Job,
+    course: Course,
+    bar: Bar,
+    helix: Helix,
+    strategy: ThreadStrategy | None,
+    outwards: float,
+) -> float:
+    """Length before the thread, to gather speed; some passes start further out."""
+    wanted = max(RUN_IN * helix.pitch, getattr(strategy, "overcut_length", None) or 0.0)
+    beside = HALF_INSERT * helix.pitch + outwards
+    length = _room(bar, helix, helix.start, -helix.towards * wanted, beside)
+    if length < RUN_IN * helix.pitch - SAME_PITCH:
+        text = f"material stands before the thread: a run-in of {max(length, 0.0):.3g} mm"
+        course.warn(f"{text}, not of {wanted:.3g} mm", job.step.features[0])
+    return length
+
+
+def _room(bar: Bar, helix: Helix, at: float, reach: float, beside: float) -> float:
+    """How far the tip may go beyond an end of the thread, mm, with room beside it.
+
+    Negative at a shoulder, where the insert must stop short.
+    """
+    half = copysign(beside, reach)
+    for eighths in range(8, 0, -1):
+        part = reach * eighths / 8.0
+        if part and _top(bar, at, at + part + half) <= helix.radius - helix.depth:
+            return abs(part)
+    is_shoulder = _top(bar, at, at + half) > helix.radius + SAME_PITCH
+    return -abs(half) if is_shoulder else 0.0
+
+
+def _top(bar: Bar, start: float, end: float) -> float:
+    """Greatest radius of the stock between two z, but for what stands right at them."""
+    low, high = min(start, end) + SAME_PITCH, max(start, end) - SAME_PITCH
+    return bar.left.within(low, high).top(low, high)
+
+
+def _depths(job: Job, helix: Helix, strategy: ThreadStrategy | None) -> Iterator[float]:
+    """Depth of each pass from the crest, mm."""
+    allowance = allowance_of(job, job.step.operation_ref, job.step.operation)
+    depths = depths_of(job)
+    full = sum(depths) if len(depths) > 1 else helix.depth
+    total = full - allowance
+    if total <= 0.0 or total >= helix.radius:
+        message = f"a depth of {full:.4g} mm less an allowance of {allowance:g} mm"
+        raise job.fault(message, job.step.operation_ref, "allowance")
+    done = 0.0
+    if isinstance(job.step.operation, ThreadingFinish):
+        left = [
+            getattr(e.operation, "allowance", None) or 0.0 for e in job.program.before(job.step)
+        ]
+        done = full - left[-1] if left and left[-1] > 0.0 else 0.0
+    for depth in _sums(total, depths, strategy, helix.pitch):
+        if depth > done + SAME_PITCH:
+            yield depth
+
+
+def _sums(
+    total: float, depths: tuple[float, ...], strategy: ThreadStrategy | None, pitch: float
+) -> list[float]:
+    """Depths as the list gives them, of equal area, or equal."""
+    if len(depths) > 1:
+        return cumulative(total, depths)
+    is_even = strategy is not None and (
+        strategy.cut_in_amount_function is ThreadCutDepthType.CONSTANT_DEPTH
+    )
+    count = max(FEWEST_PASSES, ceil(PASSES_PER_MM * pitch))
+    if depths:
+        ratio = total / depths[0]
+        count = ceil((ratio if is_even else ratio * ratio) - SAME_PITCH)
+    count = min(max(count, 1), MOST_PASSES)
+    return [total * (i / count if is_even else sqrt(i / count)) for i in range(1, count + 1)]
+
+
+def _half_angle(job: Job) -> float:
+    """Half the angle of the thread's profile, rad."""
+    tool = job.program.get(job.step.tool_ref)
+    included = None
+    if isinstance(tool, TurningThreadingTool):
+        included = job.program.get(tool.cutting_edge).tool_included_angle
+    if included is not None and not 0.0 < included < 180.0:
+        message = f"an included angle of {included:g} degrees is no profile of a thread"
+        raise job.fault(message, job.step.tool_ref, "tool_included_angle")
+    return rad_from_deg(0.5 * included if included else HALF_ANGLE_DEG)
+
+
+def _shift(helix: Helix, strategy: ThreadStrategy | None, depth: float, index: int) -> float:
+    """Depth that is still to come, signed as the passes shift so that a flank stays."""
+    direction = strategy.threading_direction if strategy else ThreadingDirectionType.CENTER
+    side = {
+        ThreadingDirectionType.RIGHT: 1.0,
+        ThreadingDirectionType.LEFT: -1.0,
+        ThreadingDirectionType.RIGHT_ZIGZAG: 1.0 if index % 2 == 0 else -1.0,
+        ThreadingDirectionType.LEFT_ZIGZAG: -1.0 if index % 2 == 0 else 1.0,
+    }.get(direction, 0.0)
+    return side * max(0.0, helix.depth - depth)

@@ -1,0 +1,36 @@
+"""Scan lines and passes along a surface."""
+
+from collections.abc import Callable
+
+import pytest
+
+from stepnc_model.toolpath.path import MoveType, ToolPath
+from stepnc_model.toolpath.turning.passes import is_joined, oriented, shortened
+from stepnc_model.toolpath.turning.piece import Piece
+
+CHAIN = [
+    Piece(start=(5.0, 1.0), end=(0.0, 1.0)),
+    Piece(start=(0.0, 1.0), end=(0.0, 4.0)),
+    Piece(start=(0.0, 4.0), end=(-5.0, 4.0)),
+]
+
+
+def test_a_chain_turned_round_is_still_joined() -> None:
+    back = oriented(CHAIN, towards=1)
+    assert is_joined(back)
+    assert back[0].start == (-5.0, 4.0)
+
+
+def test_a_chain_begins_where_it_is_cut_off() -> None:
+    assert shortened(CHAIN, 2.0)[0].start == (2.0, 1.0)
+    assert shortened(CHAIN, -1.0)[0].start == (-1.0, 4.0)
+
+
+@pytest.mark.parametrize("name", ["ROUGH CONTOUR", "FINISH CONTOUR", "ROUGH FACE"])
+def test_the_first_contact_is_met_at_the_overcut(
+    path_of: Callable[..., ToolPath], name: str
+) -> None:
+    """No cut begins in rapid: a feed through air comes first."""
+    moves = path_of(name).moves
+    first = next(i for i, move in enumerate(moves) if move.type is MoveType.CONTACT)
+    assert moves[first - 1].type is MoveType.NO_CONTACT
