@@ -14,10 +14,11 @@ from service.files import (
 from service.progress import Progress
 from service.reading import Tell, one_of, read_program, silent
 from stepnc_model.errors import Finding, PostError, SchemaError, StepNcError, WriteError
+from stepnc_model.plausibility import refusal
 from stepnc_model.post.blocks import Cycles, Machine
 from stepnc_model.post.controls import Control, read, write
 from stepnc_model.post.neutral import blocks_of
-from stepnc_model.program import Program
+from stepnc_model.program import Executable, Program
 from stepnc_model.technology import programmed
 from stepnc_model.toolpath.function import Function
 from stepnc_model.toolpath.generate import generate, raised
@@ -75,11 +76,14 @@ def paths_of(program: Program, *, keep_going: bool = False, tell: Tell = silent)
     faults: list[SchemaError] = []
     progress = Progress(tell, total=len(program.workingsteps))
     items = []
-    for item in generate(program, faults.append if keep_going else raised):
+
+    def left_out(executable: Executable, fault: SchemaError) -> None:
+        faults.append(fault)
+        tell(f"left out: '{executable.id}': {fault}")
+
+    for item in generate(program, left_out if keep_going else raised):
         items.append(item)
         progress()
-    for fault in faults:
-        tell(f"left out: {fault}")
     if not any(isinstance(item, ToolPath) for item in items):
         raise faults[0] if faults else SchemaError("the program has nothing to machine")
     return Paths(program=program, items=tuple(items), faults=tuple(faults))
@@ -108,9 +112,11 @@ def post(request: PostRequest, *, tell: Tell = silent) -> Paths:
     control = one_of(Control, request.control.lower(), "control")
     output = request.output or beside(request.file, control.suffix)
     require_place(output, apart_from=request.file)
-    paths = tool_paths(
-        request.file, units=request.units, keep_going=request.keep_going, tell=tell
-    )
+    program = read_program(request.file, units=request.units)
+    error = refusal(program, program.workingsteps)
+    if error is not None:
+        raise error
+    paths = paths_of(program, keep_going=request.keep_going, tell=tell)
     paths = with_feeds(paths, keep_going=request.keep_going, tell=tell)
     cycles = Cycles.OWN if request.cycles else Cycles.EXPANDED
     count = write_lines(output, nc_lines(paths, control, cycles))

@@ -20,6 +20,9 @@ LEAST_TOP_ANGLE_DEG = 2.0
 """no drill is so blunt: a smaller number is in radians, as some files write it"""
 
 
+LEAST_DIAMETER = 0.01
+"""mm; the finest drills and end mills that are made"""
+
 MAX_DIAMETER = 2000.0
 """mm; the largest face mills are below one metre"""
 
@@ -82,8 +85,11 @@ def _rotating(program: Program, ref: Ref[Entity], tool: MillingCuttingTool) -> T
         raise program.error("has no dimension", tool.its_tool_body, "dimension")
     dimension = program.get(body.dimension)
     diameter = dimension.diameter
-    if diameter is None or not 0.0 < diameter <= MAX_DIAMETER:
-        message = f"diameter {diameter} mm: it must be positive, {MAX_DIAMETER:g} mm at most"
+    if diameter is None or not LEAST_DIAMETER <= diameter <= MAX_DIAMETER:
+        message = (
+            f"diameter {diameter} mm: it must be positive, "
+            f"{LEAST_DIAMETER:g} mm to {MAX_DIAMETER:g} mm"
+        )
         raise program.error(message, body.dimension, "diameter")
     teeth = body.number_of_teeth
     if teeth is not None and not 1 <= teeth <= MAX_TEETH:

@@ -80,7 +80,8 @@ def conditions(
     cutter = tool_of(program, tool) if tool is not None else None
     if machine is Machine.LATHE:
         spindle, speed = _lathe_spindle(found, feed)
-        clash = ""
+        is_unlimited = isinstance(spindle, SurfaceSpeed) and spindle.limit is None
+        clash = "no limit of the spindle speed is given" if is_unlimited else ""
     else:
         spindle, clash = _mill_spindle(program, found, feed, tool=tool, cutter=cutter)
         speed = spindle.speed

@@ -51,8 +51,8 @@ class Manner:
     """number of the program"""
     seconds: Callable[[float], str]
     """P word of a dwell"""
-    seconds_of: Callable[[float], float]
-    """dwell in s of a P word"""
+    seconds_of: Callable[[float, bool], float]
+    """dwell in s of a P word, and of one that has no point"""
     coolant: Mapping[CoolantKind, str]
     coolant_ends: tuple[str, ...]
     threads: Mapping[Machine, str]
@@ -68,7 +68,7 @@ class Manner:
 FANUC = Manner(
     head="O0001",
     seconds=lambda value: f"P{round(1000.0 * value)}",
-    seconds_of=lambda value: value / 1000.0,
+    seconds_of=lambda value, _pointless: value / 1000.0,
     coolant={CoolantKind.FLOOD: "M8", CoolantKind.MIST: "M7", CoolantKind.THROUGH: "M8"},
     coolant_ends=("M9",),
     threads={Machine.MILL: "G33", Machine.LATHE: "G32"},
@@ -211,7 +211,8 @@ class FanucReader(IsoReader):
 
     def seconds(self, words: Words) -> float:
         """P word of a dwell."""
-        return self.manner.seconds_of(words.need("P", "G4"))
+        value = words.need("P", "G4")
+        return self.manner.seconds_of(value, "P" in words.pointless)
 
     def tool(self, words: Words) -> Iterator[Block]:
         """T and M6; on a lathe T alone, its offset behind."""

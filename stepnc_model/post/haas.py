@@ -14,7 +14,7 @@ from stepnc_model.post.words import pointed
 HAAS = Manner(
     head="O00001",
     seconds=lambda value: f"P{pointed(value, 3)}",
-    seconds_of=lambda value: value,
+    seconds_of=lambda value, pointless: value / 1000.0 if pointless else value,
     coolant={CoolantKind.FLOOD: "M8", CoolantKind.MIST: "M7", CoolantKind.THROUGH: "M88"},
     coolant_ends=("M9", "M89"),
     threads={Machine.LATHE: "G32"},

@@ -26,9 +26,13 @@ class Words:
         """G words, shortened: ``G1``"""
         self.functions: list[str] = []
         """M words, shortened: ``M3``"""
+        self.pointless: set[str] = set()
+        """letters of numbers without a point: some controls count those in thousandths"""
         self._values: dict[str, float] = {}
         for letter, text in pairs:
             value = number_of(letter, text)
+            if "." not in text:
+                self.pointless.add(letter)
             if letter in {"G", "M"}:
                 kind = self.codes if letter == "G" else self.functions
                 kind.append(f"{letter}{value:g}")

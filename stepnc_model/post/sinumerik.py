@@ -182,6 +182,9 @@ class Sinumerik(IsoCode):
 
 
 CYCLES = {"81": CycleKind.DRILL, "82": CycleKind.DWELL, "85": CycleKind.BORE}
+READ = {"81": (), "82": (1,), "83": (2, 4, 6, 7, 10, 12), "85": (1, 2, 3)}
+"""arguments after RTP, RFP, SDIS and DP that are read"""
+
 CALL = re.compile(r"(?:N\d+\s*)?CYCLE(8[1235])\(([^()]*)\)")
 MESSAGE = re.compile(r'(?:N\d+\s*)?MSG\("([^"]*)"\)')
 ASSIGNED = re.compile(rf"\b(LIMS|SPOS|TURN)\s*=\s*({NUMBER})")
@@ -306,6 +309,7 @@ class SinumerikReader(IsoReader):
             raise PostError(f"CYCLE{number}: needs at least RTP, RFP, SDIS and DP")
         top, reference, distance, bottom, *rest = arguments
         rest += [0.0] * (13 - len(rest))
+        self._refuse_more(number, rest)
         kind = CYCLES.get(number)
         if kind is None:
             kind = CycleKind.PECK if rest[7] == 1.0 else CycleKind.CHIP_BREAK
@@ -324,3 +328,13 @@ class SinumerikReader(IsoReader):
         if top != self.at[2]:
             self.at = (*cycle.at, top)
             yield Retract(z=top)
+
+    def _refuse_more(self, number: str, rest: list[float]) -> None:
+        """Arguments that would change the cycle and are not read must not be there."""
+        for index, value in enumerate(rest):
+            if value and index not in READ[number]:
+                raise PostError(f"CYCLE{number}: argument {index + 5}, {value:g}, is not read")
+        if number == "83" and rest[6] not in {0.0, 1.0}:
+            raise PostError(f"CYCLE83: a feed of {rest[6]:g} at the first peck is not read")
+        if number == "85" and any(f not in {0.0, self.feed} for f in rest[2:4]):
+            raise PostError("CYCLE85: feeds other than the one in force are not read")

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from typing import NoReturn
 
 from stepnc_model.entities.drilling import DrillingTypeOperation
+from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.executables import (
     NonSequential,
     RapidMovement,
@@ -15,7 +16,6 @@ from stepnc_model.entities.executables import (
 )
 from stepnc_model.entities.functions import (
     DisplayMessage,
-    NcFunction,
     OptionalStop,
     ProgramStop,
 )
@@ -32,11 +32,11 @@ from stepnc_model.toolpath.milling.operation import milling_path
 from stepnc_model.toolpath.path import ToolPath
 from stepnc_model.toolpath.turning.operation import turning_path
 
-OnFault = Callable[[SchemaError], None]
-"""where executables go for which no path can be made"""
+OnFault = Callable[[Executable, SchemaError], None]
+"""where executables go for which no path can be made, with the reason"""
 
 
-def raised(error: SchemaError) -> NoReturn:
+def raised(_executable: Executable, error: SchemaError) -> NoReturn:
     """End with the first executable for which no path can be made."""
     raise error
 
@@ -48,7 +48,7 @@ def generate(program: Program, on_fault: OnFault = raised) -> Iterator[ToolPath 
     ----------
     program : Program
     on_fault : callable
-        Called with the error of each executable that is left out; raises it unless given.
+        Called with each executable that is left out, and its error; raises it unless given.
 
     Yields
     ------
@@ -78,7 +78,7 @@ def generate(program: Program, on_fault: OnFault = raised) -> Iterator[ToolPath 
                 yield from _other(program, executable)
         except SchemaError as error:
             skipped = executable.level
-            on_fault(error)
+            on_fault(executable, error)
 
 
 def workingstep_path(program: Program, step: Workingstep) -> ToolPath:
@@ -110,9 +110,9 @@ def _other(program: Program, executable: Executable) -> Iterator[ToolPath | Func
     if isinstance(entity, (Workplan, NonSequential)):
         return
     if isinstance(entity, RapidMovement):
+        # Without a path the way is the control's: over the security plane to what follows.
         path = rapid_movement_path(program, executable)
-        if path is not None:
-            yield path
+        yield path if path is not None else _function(executable, entity)
     elif isinstance(entity, (OptionalStop, ProgramStop, DisplayMessage)):
         yield _function(executable, entity)
     else:
@@ -120,8 +120,8 @@ def _other(program: Program, executable: Executable) -> Iterator[ToolPath | Func
         raise program.error(message, executable.ref)
 
 
-def _function(executable: Executable, entity: NcFunction) -> Function:
-    """A stop or a message."""
+def _function(executable: Executable, entity: Entity) -> Function:
+    """A stop, a message, or a movement that is left to the control."""
     return Function(
         ref=executable.ref,
         keyword=executable.keyword,

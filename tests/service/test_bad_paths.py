@@ -167,11 +167,11 @@ def test_a_program_that_cannot_be_machined_is_refused_by_both_verbs(
     [
         ((FEED, FEED.replace("0.0064", "$")), "#304 MILLING_TECHNOLOGY.feedrate: has neither"),
         ((FEED, FEED.replace("0.0064", "-1.")), "feed -1 cuts nothing"),
-        ((FEED, FEED.replace("0.0064", "1.E300")), "mm/s at most"),
-        ((FEED, FEED.replace("0.0064", "1.E-300")), "below what an F word can say"),
+        ((FEED, FEED.replace("0.0064", "1.E300")), "exceeds the radius"),
+        ((FEED, FEED.replace("0.0064", "1.E-300")), "is below 0.0005 mm"),
         ((FEED, FEED.replace("-40.", "$")), "#304 MILLING_TECHNOLOGY"),
         ((FEED, FEED.replace("-40.", "0.")), "cuts nothing"),
-        ((FEED, FEED.replace("-40.", "1.E300")), "rev/s at most"),
+        ((FEED, FEED.replace("-40.", "1.E300")), "exceeds 300 rev/s"),
     ],
 )
 def test_a_feed_or_speed_that_no_control_runs_is_not_written(

@@ -146,13 +146,18 @@ def _check_width(job: Job, operation: DrillingTypeOperation, hole: Hole) -> None
 
 
 def _check_stock(job: Job, hole: Hole, depth: Depth) -> None:
-    """Refuse a blind hole that leaves the workpiece through its bottom."""
-    if job.stock is None or hole.is_through:
+    """Refuse a hole whose depth leaves the workpiece through its bottom.
+
+    A through hole ends there; what its tool needs to break through is no depth of the hole.
+    """
+    if job.stock is None:
         return
-    reach, bottom = hole.top[2] - depth.full, job.stock.low[2]
+    full = (hole.depth or 0.0) if hole.is_through else depth.full
+    reach, bottom = hole.top[2] - full, job.stock.low[2]
     if reach < bottom - TOLERANCE:
+        kind = "through" if hole.is_through else "blind"
         message = (
-            f"a blind hole down to z = {reach:g} mm leaves the workpiece, "
+            f"a {kind} hole down to z = {reach:g} mm leaves the workpiece, "
             f"whose bottom lies at z = {bottom:g} mm"
         )
         raise job.fault(message, hole.ref, "depth")

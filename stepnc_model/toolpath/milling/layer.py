@@ -37,6 +37,10 @@ LEFT_OVER = 0.01
 """mm² that strokes may leave at the wall before a pass along it is added"""
 
 
+MOST_ROWS = 10_000
+"""strokes over one face; more is a slip of the pen"""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Level:
     """One height, and the cutter that comes there."""
@@ -197,18 +201,25 @@ def _face(job: Job, area: Area, level: Level, way: Way) -> Layer | None:
     else:
         walls = (*offset(face, -radius - run_out(job) - distance), *islands)
         loops = erode(walls, distance)
-        passes = _joined(rows_at(loops, _rows(face, way, radius), along=way.along), loops, way)
+        passes = _joined(
+            rows_at(loops, _rows(job, face, way, radius), along=way.along), loops, way
+        )
         around = [loop for loop in loops if contour_area(loop) < 0.0]
         passes = (*passes, *(_turned(Pass(loop, is_closed=True), way) for loop in around))
     return _layer(area, level, passes, loops, is_left=way.is_counter_clockwise)
 
 
-def _rows(face: Loop, way: Way, radius: float) -> list[float]:
+def _rows(job: Job, face: Loop, way: Way, radius: float) -> list[float]:
     """Places of the strokes across a face: full steps, overhanging equally on both sides."""
     turned = moved(face, turned=way.along.conjugate())
     heights = [point.imag for point in vertices(turned, tolerance=1e-3)]
     low, high = min(heights), max(heights)
     count = max(1, ceil((high - low - 2.0 * radius) / way.step - TINY) + 1)
+    if count > MOST_ROWS:
+        raise job.fault(
+            f"steps of {way.step:g} mm make {count} strokes: {MOST_ROWS} at most",
+            job.step.operation_ref,
+        )
     first = 0.5 * (low + high) - 0.5 * (count - 1) * way.step
     return [first + index * way.step for index in range(count)]
 

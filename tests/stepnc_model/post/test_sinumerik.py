@@ -189,3 +189,17 @@ def test_nothing_is_skipped_in_silence(line: str, message: str) -> None:
     with pytest.raises(PostError, match=message) as caught:
         read("G17", line)
     assert caught.value.line == 2
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        ("CYCLE81(5,5,0,-10,3)", "argument 5, 3, is not read"),
+        ("CYCLE83(5,5,0,-10,,-4,3,0,0,0,1,1)", "argument 6, -4, is not read"),
+        ("CYCLE83(5,5,0,-10,,,3,0,0,0,0.5,1)", "a feed of 0.5 at the first peck"),
+        ("CYCLE85(5,5,0,-10,,0,90,90)", "feeds other than the one in force"),
+    ],
+)
+def test_arguments_that_would_change_a_cycle_are_refused(call: str, message: str) -> None:
+    with pytest.raises(PostError, match=message):
+        read("N10 G94 F100", "N20 S500 M3", "N30 G0 X0 Y0 Z5", call)

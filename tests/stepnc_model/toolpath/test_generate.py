@@ -25,7 +25,7 @@ def edited(*changes: tuple[str, str], more: str = "", name: str = "bracket") -> 
 
 
 def names(program: Program, faults: list[SchemaError]) -> list[str]:
-    return [item.id for item in generate(program, faults.append)]
+    return [item.id for item in generate(program, lambda _, fault: faults.append(fault))]
 
 
 def test_paths_and_functions_come_in_the_order_of_the_program() -> None:
