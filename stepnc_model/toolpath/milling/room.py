@@ -8,17 +8,17 @@ import numpy as np
 import shapely
 
 from stepnc_model.toolpath.milling.arrays import Edges, distances
-from stepnc_model.toolpath.milling.contour import Chain, Loop
+from stepnc_model.toolpath.milling.contour import Chain, Edge, Loop
 from stepnc_model.toolpath.milling.cover import area_of
 
 CHORD = 1e-4
 """mm of tolerance where a point is looked for in an area"""
 
-HAIR = 1e-5
-"""mm; a point nearer to the boundary than this lies on it"""
+HAIR = CHORD
+"""mm; a point nearer to the boundary than this lies on it: chords cannot tell"""
 
-SAMPLES = 16
-"""points looked at along each edge of a way"""
+SHORTEST = 0.02
+"""mm; between points of a way so close it cannot come nearer by more than a hair"""
 
 Clearance = Callable[[complex], float]
 """how far a point lies from the boundary of the room, mm; negative outside"""
@@ -34,8 +34,20 @@ class Room:
 
     def holds(self, chain: Chain) -> bool:
         """Whether a way stays within."""
-        points = (edge.at(i / SAMPLES) for edge in chain for i in range(SAMPLES + 1))
-        return all(self.clearance(point) >= -HAIR for point in points)
+        return all(self._holds(edge) for edge in chain)
+
+    def _holds(self, edge: Edge) -> bool:
+        """The clearance changes by no more than the way: halves until that settles it."""
+        parts = [(0.0, 1.0)]
+        while parts:
+            low, high = parts.pop()
+            middle, size = 0.5 * (low + high), (high - low) * edge.length
+            gap = self.clearance(edge.at(middle))
+            if gap < -HAIR:
+                return False
+            if gap < 0.5 * size and size > SHORTEST:
+                parts += [(low, middle), (middle, high)]
+        return all(self.clearance(point) >= -HAIR for point in (edge.start, edge.end))
 
     def holds_circle(self, centre: complex, radius: float) -> bool:
         """Whether a circle lies within."""
