@@ -27,7 +27,6 @@ from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import Finding, SchemaError, Severity, StepNcError, WriteError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.plausibility import implausible, refusal
-from stepnc_model.post.controls import Control
 from stepnc_model.program import Program, Workingstep
 from stepnc_model.units import mm_from_um
 from stepnc_model.writeback import Profile
@@ -241,6 +240,8 @@ def _nc_place(request: Request, output: Path) -> Path | None:
     """Where NC code goes: beside the optimised program."""
     if not request.control:
         return None
+    from stepnc_model.post.controls import Control  # noqa: PLC0415 (all dialects)
+
     control = one_of(Control, request.control.lower(), "control")
     place = beside(output, control.suffix)
     for other in (request.file, output, request.report):
@@ -252,6 +253,7 @@ def _nc_place(request: Request, output: Path) -> Path | None:
 def _nc_code(program: Program, data: bytes, control: str, tell: Tell) -> Iterator[str]:
     """NC code of the program as it is after optimisation."""
     from service.toolpaths import nc_lines, paths_of, with_feeds  # noqa: PLC0415 (numpy, shapely)
+    from stepnc_model.post.controls import Control  # noqa: PLC0415 (all dialects)
 
     file = Part21File.from_bytes(data, name=program.name)
     optimised = Program(file, units=program.units, name=program.name)
