@@ -5,7 +5,7 @@ from typing import Any
 from service.toolpaths import Paths
 from service.wire import dump, finding_json
 from stepnc_model.toolpath.function import Function
-from stepnc_model.toolpath.path import Dwell, Move, Step, ToolPath
+from stepnc_model.toolpath.path import Dwell, Move, SpindleSpeed, Step, ToolPath
 from stepnc_model.units import deg_from_rad, mm_min_from_speed
 
 
@@ -37,6 +37,8 @@ def _step(step: Step) -> dict[str, Any]:
     """A move, a pause, or what the spindle does."""
     if isinstance(step, Dwell):
         return {"dwell_s": step.seconds, "dwell_revolutions": step.revolutions}
+    if isinstance(step, SpindleSpeed):
+        return {"spindle_technology": str(step.technology)}
     if not isinstance(step, Move):
         return {"spindle": step.value}
     found: dict[str, Any] = {"type": step.type.value, "end_mm": step.end}

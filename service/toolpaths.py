@@ -13,15 +13,17 @@ from service.files import (
 )
 from service.progress import Progress
 from service.reading import Tell, one_of, read_program, silent
+from stepnc_model.entities.entity import Entity
 from stepnc_model.errors import Finding, PostError, SchemaError, StepNcError, WriteError
+from stepnc_model.part21.values import Ref
 from stepnc_model.plausibility import refusal
 from stepnc_model.post.blocks import Cycles, Machine
 from stepnc_model.post.controls import Control, read, write
 from stepnc_model.post.neutral import blocks_of
 from stepnc_model.program import Executable, Program
 from stepnc_model.technology import programmed
-from stepnc_model.toolpath.function import Function
-from stepnc_model.toolpath.generate import generate, raised
+from stepnc_model.toolpath.function import LEFT_OUT, Function
+from stepnc_model.toolpath.generate import generate, raised, require_ready
 from stepnc_model.toolpath.job import stock_of
 from stepnc_model.toolpath.path import ToolPath
 
@@ -75,10 +77,11 @@ def paths_of(program: Program, *, keep_going: bool = False, tell: Tell = silent)
     """Tool paths of a program that is read already."""
     faults: list[SchemaError] = []
     progress = Progress(tell, total=len(program.workingsteps))
-    items = []
+    items: list[ToolPath | Function] = []
 
     def left_out(executable: Executable, fault: SchemaError) -> None:
         faults.append(fault)
+        items.append(_left_out(executable.ref, executable.id))
         tell(f"left out: '{executable.id}': {fault}")
 
     for item in generate(program, left_out if keep_going else raised):
@@ -134,19 +137,31 @@ def with_feeds(paths: Paths, *, keep_going: bool, tell: Tell = silent) -> Paths:
     """
     items: list[ToolPath | Function] = []
     faults: list[SchemaError] = []
+    steps = {int(step.ref): step for step in paths.program.workingsteps}
+    missing: dict[int, str] = {}
     for item in paths.items:
+        step = steps.get(int(item.workingstep)) if isinstance(item, ToolPath) else None
         try:
-            if isinstance(item, ToolPath) and item.technology_ref is not None:
-                programmed(paths.program, item.technology_ref)
+            if step is not None:
+                require_ready(paths.program, step, missing)
+                programmed(paths.program, step.technology_ref)
             items.append(item)
         except SchemaError as fault:
             if not keep_going:
                 raise
+            if step is not None:
+                missing |= {int(feature): step.id for feature in step.features}
+                items.append(_left_out(step.ref, step.id))
             faults.append(fault)
             tell(f"left out: '{item.id}': {fault}")
     if not any(isinstance(item, ToolPath) for item in items):
         raise faults[0]
     return replace(paths, items=tuple(items), faults=(*paths.faults, *faults))
+
+
+def _left_out(ref: Ref[Entity], name: str) -> Function:
+    """Where a workingstep is missing, so that NC code says so."""
+    return Function(ref=ref, keyword=LEFT_OUT, id=name)
 
 
 def nc_lines(paths: Paths, control: Control, cycles: Cycles = Cycles.EXPANDED) -> Iterator[str]:
@@ -169,5 +184,7 @@ def canonical_of(path: Path, *, control: str, is_lathe: bool) -> Iterator[str]:
     try:
         commands = read(lines, dialect, machine=machine)
     except PostError as error:
-        raise StepNcError(f"{path.name}: {error}") from error
+        may_be_lathe = dialect in {Control.FANUC, Control.HAAS} and not is_lathe
+        hint = " (code for a lathe is read with --lathe)" if may_be_lathe else ""
+        raise StepNcError(f"{path.name}: {error}{hint}") from error
     return (str(command) for command in commands)

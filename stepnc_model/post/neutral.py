@@ -43,7 +43,7 @@ from stepnc_model.post.conditions import Conditions, conditions, constant_speed,
 from stepnc_model.post.unsplit import unsplit
 from stepnc_model.program import Program
 from stepnc_model.tool import tool_of
-from stepnc_model.toolpath.function import Function
+from stepnc_model.toolpath.function import LEFT_OUT, Function
 from stepnc_model.toolpath.path import (
     Cycle,
     CycleKind,
@@ -52,13 +52,17 @@ from stepnc_model.toolpath.path import (
     Move,
     Point,
     SpindleCommand,
+    SpindleSpeed,
     Step,
     ToolPath,
 )
 
+STOPS = frozenset({"OPTIONAL_STOP", "PROGRAM_STOP"})
+
 FUNCTIONS: dict[str, Callable[[Function], Block]] = {
     "OPTIONAL_STOP": lambda _: OptionalStop(),
     "PROGRAM_STOP": lambda _: ProgramStop(),
+    LEFT_OUT: lambda _: Comment(text="THIS WORKINGSTEP IS LEFT OUT"),
     "DISPLAY_MESSAGE": lambda function: Message(text=function.text or function.id),
 }
 
@@ -97,6 +101,16 @@ def _is_turning(paths: Sequence[ToolPath | Function]) -> bool:
     return any(isinstance(path, ToolPath) and path.is_turning for path in paths)
 
 
+def _turns_first(path: ToolPath) -> bool:
+    """Whether a path begins with a spindle speed of its own."""
+    return bool(path.steps) and isinstance(path.steps[0], SpindleSpeed)
+
+
+def _safe_z(path: ToolPath) -> float:
+    """Height over which the tool comes to a path."""
+    return path.start[2] if path.safe_z is None else max(path.safe_z, path.start[2])
+
+
 class _Sequence:
     """Running state: tool, spindle, coolant and position between blocks."""
 
@@ -107,7 +121,7 @@ class _Sequence:
         cuts = [path for path in paths if isinstance(path, ToolPath)]
         used = dict.fromkeys(path.tool_ref for path in cuts if path.tool_ref is not None)
         self.numbers = {ref: number for number, ref in enumerate(used, 1)}
-        self.safe_z = max((path.start[2] for path in cuts), default=0.0)
+        self.safe_z = max(map(_safe_z, cuts), default=0.0)
         self.at: Point | None = None
         self.tool: Ref[Entity] | None = None
         self.programmed: SpindleOn | SurfaceSpeed | SpindleOff | None = None
@@ -149,8 +163,10 @@ class _Sequence:
         if maker is None:
             yield Comment(text=f"{function.keyword} is not written")
             return
-        # Many machines stop spindle and coolant with the program.
-        self.turning, self.coolant = None, Coolant()
+        if function.keyword in STOPS:
+            # Hands may reach in.
+            yield from self._spindle(SpindleOff())
+            yield from self._cool(Coolant())
         yield maker(function)
 
     def _path(self, path: ToolPath) -> Iterator[Block]:
@@ -162,7 +178,7 @@ class _Sequence:
         self._known.clear()
         if path.tool_ref is not None and path.tool_ref != self.tool:
             yield from self._change(path.tool_ref)
-        if path.technology_ref is not None:
+        if path.technology_ref is not None and not _turns_first(path):
             feed = Feed(technology=path.technology_ref)
             yield from self._take(self._conditions(feed))
             if self.programmed is not None and self.turning != self.programmed:
@@ -213,6 +229,8 @@ class _Sequence:
             yield from self._move(step)
         elif isinstance(step, Dwell):
             yield Pause(seconds=self._seconds(step))
+        elif isinstance(step, SpindleSpeed):
+            yield from self._take(self._conditions(Feed(technology=step.technology)))
         elif step is SpindleCommand.STOP:
             yield from self._spindle(SpindleOff())
         elif step is SpindleCommand.ORIENT:

@@ -5,6 +5,9 @@ from dataclasses import dataclass
 from stepnc_model.entities.entity import Entity
 from stepnc_model.part21.values import Ref
 
+LEFT_OUT = "LEFT_OUT"
+"""keyword that no file has: here a workingstep is missing"""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Function:

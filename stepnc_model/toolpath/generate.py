@@ -4,7 +4,7 @@ An executable for which no path can be made raises, or is handed to the caller, 
 with the rest: the other workingsteps do not depend on it.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from typing import NoReturn
 
 from stepnc_model.entities.drilling import DrillingTypeOperation
@@ -21,7 +21,7 @@ from stepnc_model.entities.functions import (
 )
 from stepnc_model.entities.setup import Setup
 from stepnc_model.entities.turning import TurningMachiningOperation
-from stepnc_model.errors import SchemaError
+from stepnc_model.errors import PathError, SchemaError
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Executable, Program, Workingstep
 from stepnc_model.toolpath.explicit.operation import explicit_path, rapid_movement_path
@@ -62,6 +62,7 @@ def generate(program: Program, on_fault: OnFault = raised) -> Iterator[ToolPath 
     """
     steps = {int(step.ref): step for step in program.workingsteps}
     skipped: int | None = None
+    missing: dict[int, str] = {}
     setup: Ref[Setup] | None = None
     for executable in program.executables:
         if skipped is not None and executable.level > skipped:
@@ -73,12 +74,32 @@ def generate(program: Program, on_fault: OnFault = raised) -> Iterator[ToolPath 
                 if setup is not None and step.setup != setup:
                     yield _new_setup(program, step)
                 setup = step.setup
+                require_ready(program, step, missing)
                 yield workingstep_path(program, step)
             else:
                 yield from _other(program, executable)
         except SchemaError as error:
             skipped = executable.level
+            if step is not None:
+                missing |= {int(feature): step.id for feature in step.features}
             on_fault(executable, error)
+
+
+def require_ready(program: Program, step: Workingstep, missing: Mapping[int, str]) -> None:
+    """Refuse to go on with a feature on which an earlier workingstep was left out.
+
+    A finishing cutter or a reamer would meet what the one before it should have removed.
+
+    Parameters
+    ----------
+    missing : mapping
+        Workingstep left out by the instance number of its feature.
+    """
+    for feature in step.features:
+        if int(feature) in missing:
+            message = f"its feature is not ready: '{missing[int(feature)]}' was left out"
+            at = step.ref
+            raise PathError(message, entity=program.label(at), line=program.line(at))
 
 
 def workingstep_path(program: Program, step: Workingstep) -> ToolPath:

@@ -109,7 +109,14 @@ class SpindleCommand(StrEnum):
     ORIENT = "orient"
 
 
-Step = Move | Dwell | SpindleCommand
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SpindleSpeed:
+    """The spindle turns as a technology programs it, from here on, also in rapid."""
+
+    technology: Ref[Entity]
+
+
+Step = Move | Dwell | SpindleCommand | SpindleSpeed
 
 
 class CycleKind(StrEnum):
@@ -162,6 +169,8 @@ class ToolPath:
     is_turning: bool
     start: Point
     steps: tuple[Step, ...]
+    safe_z: float | None = None
+    """height over which the tool comes and goes; that of the start unless given"""
     cycles: tuple[Cycle, ...] = ()
     findings: tuple[Finding, ...] = ()
     """what was assumed"""

@@ -9,6 +9,7 @@ from service.cli import main, optimise_main
 from service.toolpaths import PostRequest, canonical_of, plot, post, tool_paths
 from stepnc_model.errors import SchemaError, StepNcError, WriteError
 from stepnc_model.post.controls import Control, read
+from stepnc_model.toolpath.function import Function
 from stepnc_model.toolpath.path import MoveType, ToolPath
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
@@ -212,8 +213,15 @@ def test_a_workingstep_without_a_feed_cannot_be_posted_and_others_can(tmp_path: 
         post(PostRequest(file=part, control="fanuc"))
     told: list[str] = []
     paths = post(PostRequest(file=part, control="fanuc", keep_going=True), tell=told.append)
-    assert len(paths.faults) == 2
+    # Nobody reams a hole that is not drilled.
+    assert [item.id for item in paths.items if isinstance(item, Function)] == [
+        "LOOK AT THE CLAMPING", "DRILL HOLE 1", "DRILL HOLE 2", "REAM HOLE 1", "REAM HOLE 2",
+    ]  # fmt: skip
     assert "left out: 'DRILL HOLE 1': " in told[0]
+    assert "left out: 'REAM HOLE 2': " in told[3]
+    assert "its feature is not ready: 'DRILL HOLE 2' was left out" in told[3]
+    code = part.with_suffix(".nc").read_text()
+    assert "(THIS WORKINGSTEP IS LEFT OUT)" in code
 
 
 def test_optimise_writes_nothing_where_the_control_cannot_do_it(tmp_path: Path) -> None:

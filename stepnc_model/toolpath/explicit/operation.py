@@ -67,6 +67,7 @@ def explicit_path(job: Job) -> ToolPath:
             is_turning=isinstance(step.operation, TurningMachiningOperation),
             start=start,
             steps=tuple(walk.steps),
+            safe_z=around.security_z,
             findings=(*job.findings, *walk.findings),
         )
 
@@ -117,6 +118,7 @@ def rapid_movement_path(program: Program, executable: Executable) -> ToolPath | 
             is_turning=False,
             start=start,
             steps=tuple(walk.steps),
+            safe_z=around.security_z,
             findings=tuple(walk.findings),
         )
 

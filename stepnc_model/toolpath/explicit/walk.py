@@ -34,6 +34,7 @@ from stepnc_model.toolpath.path import (
     Move,
     MoveType,
     Point,
+    SpindleSpeed,
     Step,
     points_along,
 )
@@ -89,6 +90,9 @@ class Walk:
         pace = pace_of(program, ref, self._around.technology)
         if path.its_machine_functions is not None:
             self._note("machine functions of a single tool path are not switched", ref)
+        if pace.feed is None and path.its_technology is not None:
+            # Tools that fold open by the sense of the spindle depend on it.
+            self.steps.append(SpindleSpeed(technology=path.its_technology))
         if isinstance(path, Trajectory):
             self._trace(self._segments(Ref(ref), frame), pace)
         elif isinstance(path, Feedstop):

@@ -136,6 +136,7 @@ def trace(course: Course, chain: Chain, *, z: float, end_z: float, type: MoveTyp
 def _over(course: Course, at: complex, heights: Heights) -> None:
     """Sideways at the height of travel, then down to just above the material."""
     x, y = at.real, at.imag
+    course.rapid((x, y, max(course.at[2], heights.travel)))
     course.rapid((x, y, heights.travel))
     if heights.retract < heights.travel:
         course.descend((x, y, heights.retract), MoveType.APPROACH)

@@ -10,12 +10,15 @@ from dataclasses import dataclass
 from itertools import pairwise
 from math import ceil
 
+from stepnc_model.entities.approach import PlungeToolaxis
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.milling import (
     BottomAndSideFinishMilling,
     BottomAndSideMilling,
+    BottomAndSideRoughMilling,
     PlaneFinishMilling,
     PlaneMilling,
+    PlaneRoughMilling,
     SideFinishMilling,
     SideMilling,
     Two5dMillingOperation,
@@ -30,6 +33,7 @@ from stepnc_model.toolpath.milling.cutter import Cutter, cutter_of
 from stepnc_model.toolpath.milling.enter import Heights, enter, leave, trace
 from stepnc_model.toolpath.milling.flank import flank_layer
 from stepnc_model.toolpath.milling.layer import Layer, Level, clear, wall_passes
+from stepnc_model.toolpath.milling.offset import contains
 from stepnc_model.toolpath.milling.shapes import shapes
 from stepnc_model.toolpath.milling.strokes import is_inside
 from stepnc_model.toolpath.milling.way import Way, way_of
@@ -85,6 +89,8 @@ def milling_path(job: Job) -> ToolPath:
     course = Course(job, (first.real, first.imag, job.security_z))
     for finding in way.findings:
         course.find(finding)
+    for shape, _ in found:
+        _warn_beside_stock(course, job, shape)
     planes = [_retract_z(job, course, shape) for shape, _ in found]
     travel_z = _travel_z(job, max(planes))
     for (shape, layers), retract_z in zip(found, planes, strict=True):
@@ -104,6 +110,21 @@ def milling_path(job: Job) -> ToolPath:
     x, y, _ = course.at
     course.rapid((x, y, job.security_z), MoveType.RETRACT)
     return course.finished()
+
+
+def _warn_beside_stock(course: Course, job: Job, shape: Area | Flank) -> None:
+    """Say that a feature lies wholly beside the stock: a placement may count twice."""
+    if job.stock is None:
+        return
+    chains = (shape.chain,) if isinstance(shape, Flank) else [wall.loop for wall in shape.walls]
+    faces = [shape.face] if isinstance(shape, Area) and shape.face is not None else []
+    points = [edge.start for chain in (*chains, *faces) for edge in chain]
+    for pick, axis in ((lambda at: at.real, 0), (lambda at: at.imag, 1)):
+        low, high = min(map(pick, points)), max(map(pick, points))
+        if low > job.stock.high[axis] or high < job.stock.low[axis]:
+            text = f"lies beside the stock: {'xy'[axis]} from {low:g} to {high:g} mm"
+            course.find(job.warning(text, shape.ref))
+            return
 
 
 def allowance_of(job: Job, operation: Entity) -> Allowance:
@@ -298,10 +319,26 @@ def _cut_layer(
             current = enter(
                 course, job, current, heights=heights, room=room, approach=operation.approach
             )
+            _warn_of_plunge(course, job, operation, layer, current)
         _cut(course, current.chain, layer)
         last = current
     if last is not None:
         leave(course, job, last, heights=heights, room=room, retract=operation.retract)
+
+
+def _warn_of_plunge(
+    course: Course, job: Job, operation: Two5dMillingOperation, layer: Layer, cut: Pass
+) -> None:
+    """Say that an end mill goes straight down into solid material, where it does."""
+    if not isinstance(operation, (PlaneRoughMilling, BottomAndSideRoughMilling)):
+        return
+    strategy = job.program.get(operation.approach) if operation.approach is not None else None
+    is_straight = strategy is None or isinstance(strategy, PlungeToolaxis)
+    if is_straight and (
+        not layer.solid or any(contains(layer.solid, [cut.start], tolerance=1e-3))
+    ):
+        text = "straight down into the material at the feed of the cut: a ramp spares the tool"
+        course.find(job.warning(text, attribute="approach"))
 
 
 def _cut(course: Course, chain: Chain, layer: Layer) -> None:

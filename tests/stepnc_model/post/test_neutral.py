@@ -279,8 +279,10 @@ def test_functions_stand_between_workingsteps(part: Program) -> None:
         function("EXCHANGE_PALLET"),
     )
     at = found.index(OptionalStop())
-    assert found[at - 1 : at + 4] == [
+    assert found[at - 3 : at + 4] == [
         Comment(text="F"),
+        SpindleOff(),
+        Coolant(),
         OptionalStop(),
         Comment(text="WS"),
         SpindleOn(speed=20.0),

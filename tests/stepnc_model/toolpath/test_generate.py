@@ -112,3 +112,22 @@ def test_a_new_setup_stops_the_program() -> None:
     assert isinstance(hole, ToolPath)
     # The hole at x = 110 mm of a workpiece that stands 100 mm further.
     assert hole.start[:2] == (210.0, 65.0)
+
+
+def test_going_straight_down_into_solid_material_is_a_warning() -> None:
+    """The open pocket asks for it; the closed one comes down a ramp."""
+    program = edited()
+    steps = {step.id: step for step in program.workingsteps}
+    for name, is_warned in (("ROUGH OPEN POCKET", True), ("ROUGH POCKET", False)):
+        texts = [each.message for each in workingstep_path(program, steps[name]).findings]
+        assert any("straight down into the material" in text for text in texts) is is_warned
+
+
+def test_a_feature_beside_the_stock_is_a_warning() -> None:
+    program = edited((
+        "#142=CARTESIAN_POINT('',(42.,45.,0.));",
+        "#142=CARTESIAN_POINT('',(242.,45.,0.));",
+    ))
+    step = next(step for step in program.workingsteps if step.id == "ROUGH POCKET")
+    texts = [str(each) for each in workingstep_path(program, step).findings]
+    assert any("beside the stock: x from 212 to 272 mm" in text for text in texts)

@@ -70,7 +70,7 @@ def shown(found: ToolPath) -> list[str]:
             lines.append(f"{'rapid' if step.feed is None else 'feed'} {step.end[2]:g}")
         elif isinstance(step, Dwell):
             lines.append(f"dwell {step.seconds:g}")
-        else:
+        elif isinstance(step, SpindleCommand):
             lines.append(step.value)
     return lines
 

@@ -71,6 +71,7 @@ def at_start(path: ToolPath, cut: Pass) -> bool:
 def test_plunge_goes_straight_down_in_rapid_to_the_retract_plane_and_then_feeds() -> None:
     path, rest = entered("PLUNGE_TOOLAXIS($)")
     assert [(m.end[2], m.feed is None) for m in path.moves] == [
+        (50.0, True),
         (20.0, True),
         (10.0, True),
         (0.5, False),
@@ -83,7 +84,7 @@ def test_plunge_goes_straight_down_in_rapid_to_the_retract_plane_and_then_feeds(
 def test_ramp_goes_round_the_ring_at_its_angle_and_leaves_a_whole_ring() -> None:
     path, rest = entered("PLUNGE_RAMP($,1.)")
     assert slopes(path) == pytest.approx([tan(radians(1.0))] * len(slopes(path)), abs=1e-9)
-    assert all(move.arc is not None for move in path.moves[3:])
+    assert all(move.arc is not None for move in path.moves[4:])
     assert at_start(path, rest)
     assert sum(edge.length for edge in rest.chain) == pytest.approx(40.0 * pi)
     sunk = sum(
@@ -176,7 +177,7 @@ def test_angle_that_is_no_ramp_is_said(angle: str) -> None:
 def test_ramp_on_a_speck_is_a_plunge_and_said() -> None:
     path, _ = entered("PLUNGE_RAMP($,1.)", Pass(circle(0j, 0.01), is_closed=True))
     assert "straight down" in path.findings[0].message
-    assert len(path.moves) == 4
+    assert len(path.moves) == 5
 
 
 def left(strategy: str, clearance: Clearance = ROOM) -> ToolPath:
