@@ -176,7 +176,13 @@ def _add_post(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -
     parser = commands.add_parser("post", help="write NC code for a control")
     _add_file(parser)
     parser.add_argument("--control", required=True, metavar="NAME", help=CONTROLS)
-    parser.add_argument("-o", "--output", type=Path, metavar="FILE")
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=Path,
+        metavar="FILE",
+        help="default: beside the program, with the ending of the control",
+    )
     parser.add_argument(
         "--cycles", action="store_true", help="drill with the control's own cycles"
     )
