@@ -37,7 +37,9 @@ MOST_PANELS = 40
 """workingsteps drawn one by one; more are drawn in the overall view only"""
 
 
-def path_png(paths: Sequence[ToolPath], stock: Stock | None, *, title: str) -> bytes:
+def path_png(
+    paths: Sequence[ToolPath], stock: Stock | None, clamps: Sequence[Point] = (), *, title: str
+) -> bytes:
     """The program from above, or along the lathe's axis, and each workingstep by itself."""
     shown = [path for path in paths if path.moves]
     panels = shown if len(shown) <= MOST_PANELS else []
@@ -49,9 +51,16 @@ def path_png(paths: Sequence[ToolPath], stock: Stock | None, *, title: str) -> b
     for path in shown:
         _draw(overall, path, (2, 0) if path.is_turning else (0, 1))
     _stock(overall, stock, is_turning=any(path.is_turning for path in shown))
+    across, up = (2, 0) if any(path.is_turning for path in shown) else (0, 1)
+    xs, ys = [clamp[across] for clamp in clamps], [clamp[up] for clamp in clamps]
+    overall.plot(xs, ys, "x", color="#5f6368", markersize=9, markeredgewidth=2)
     overall.set_title(title)
     used = [kind for kind in MoveType if any(_has(path, kind) for path in shown)]
     handles = [Line2D([], [], color=COLOURS[kind], label=kind.value) for kind in used]
+    handles.append(Line2D([], [], color="#5f6368", linestyle="--", label="stock"))
+    if clamps:
+        clamp = Line2D([], [], color="#5f6368", marker="x", linestyle="", label="clamping")
+        handles.append(clamp)
     overall.legend(handles=handles, loc="upper right")
     for index, path in enumerate(panels):
         axes = figure.add_subplot(grid[2 + index // COLUMNS, index % COLUMNS])

@@ -13,6 +13,7 @@ def paths_json(paths: Paths) -> str:
     """Every move of every tool path."""
     return dump({
         "program": paths.program.name,
+        "clamping_positions_mm": paths.clamps,
         "items": [_item(item) for item in paths.items],
         "left_out": [str(fault) for fault in paths.faults],
         "findings": [finding_json(finding) for finding in paths.findings],

@@ -14,6 +14,7 @@ from service.files import (
 from service.progress import Progress
 from service.reading import Tell, one_of, read_program, silent
 from stepnc_model.entities.entity import Entity
+from stepnc_model.entities.setup import Setup
 from stepnc_model.errors import Finding, PostError, SchemaError, StepNcError, WriteError
 from stepnc_model.part21.values import Ref
 from stepnc_model.plausibility import refusal
@@ -24,8 +25,8 @@ from stepnc_model.program import Executable, Program
 from stepnc_model.technology import programmed
 from stepnc_model.toolpath.function import LEFT_OUT, Function
 from stepnc_model.toolpath.generate import generate, raised, require_ready
-from stepnc_model.toolpath.job import stock_of
-from stepnc_model.toolpath.path import ToolPath
+from stepnc_model.toolpath.job import Stock, clamps_of, stock_of
+from stepnc_model.toolpath.path import Point, ToolPath
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,6 +42,20 @@ class Paths:
     def paths(self) -> tuple[ToolPath, ...]:
         """The tool paths without the functions between them."""
         return tuple(item for item in self.items if isinstance(item, ToolPath))
+
+    @property
+    def clamps(self) -> tuple[Point, ...]:
+        """Where the workpiece is clamped, in the setup of the first workingstep."""
+        return clamps_of(self.program, self._setup)
+
+    @property
+    def stock(self) -> Stock | None:
+        """The raw part there."""
+        return stock_of(self.program, self._setup)
+
+    @property
+    def _setup(self) -> Ref[Setup] | None:
+        return next((step.setup for step in self.program.workingsteps), None)
 
     @property
     def findings(self) -> tuple[Finding, ...]:
@@ -99,9 +114,8 @@ def plot(paths: Paths, file: Path, picture: Path) -> None:
     if picture.suffix.lower() != ".png":
         raise WriteError("a picture is a .png file", path=str(picture))
     require_place(picture, apart_from=file)
-    setup = next((step.setup for step in paths.program.workingsteps), None)
-    stock = stock_of(paths.program, setup)
-    write_atomically(picture, path_png(paths.paths, stock, title=paths.program.name))
+    data = path_png(paths.paths, paths.stock, paths.clamps, title=paths.program.name)
+    write_atomically(picture, data)
 
 
 def post(request: PostRequest, *, tell: Tell = silent) -> Paths:

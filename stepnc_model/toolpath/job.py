@@ -10,7 +10,13 @@ from stepnc_model.errors import Finding, PathError, Severity
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program, Workingstep
 from stepnc_model.tool import Tool, tool_of
-from stepnc_model.toolpath.frame import Frame, feature_frame, frame_of, workpiece_frame
+from stepnc_model.toolpath.frame import (
+    Frame,
+    feature_frame,
+    frame_of,
+    point_of,
+    workpiece_frame,
+)
 from stepnc_model.toolpath.path import FARTHEST, Feed, Point
 
 DEFAULT_CLEARANCE = 5.0
@@ -152,6 +158,17 @@ def _placed(shape: Block | RightCircularCylinder, frame: Frame) -> Stock:
         low=(min(columns[0]), min(columns[1]), min(columns[2])),
         high=(max(columns[0]), max(columns[1]), max(columns[2])),
         radius=radius,
+    )
+
+
+def clamps_of(program: Program, setup: Ref[Setup] | None) -> tuple[Point, ...]:
+    """Where the workpiece is clamped, in the coordinates of the setup."""
+    workpiece = program.workpiece()
+    if workpiece is None:
+        return ()
+    frame = workpiece_frame(program, setup)
+    return tuple(
+        frame.point(point_of(program, point)) for point in workpiece.clamping_positions or ()
     )
 
 

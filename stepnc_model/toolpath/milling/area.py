@@ -51,6 +51,8 @@ class Area:
     """centre line of a slot"""
     ends: tuple[float, float] = (0.0, 0.0)
     """how far the slot goes on beyond the ends of its centre line, mm"""
+    rises: tuple[Inset, Inset] | None = None
+    """how much of each end of a slot stands in it at a height above the floor, mm"""
     solid: Loop | None = None
     """the material of an area with open sides, without what the tool needs to run out"""
     outside: Chain = ()

@@ -8,7 +8,7 @@ import numpy as np
 
 from stepnc_model.toolpath.curve import JOINED
 from stepnc_model.toolpath.job import Job
-from stepnc_model.toolpath.milling.area import Area
+from stepnc_model.toolpath.milling.area import Area, upright
 from stepnc_model.toolpath.milling.arrays import Edges, distances
 from stepnc_model.toolpath.milling.contour import (
     TINY,
@@ -241,7 +241,11 @@ def _middle(area: Area, level: Level, boundaries: tuple[Loop, ...]) -> tuple[Pas
     if abs(middle[-1].end - middle[0].start) < JOINED:
         return (Pass(middle, is_closed=True),)
     short = level.distance + _inset(boundaries, area)
-    chain = stretched(middle, area.ends[0] - short, area.ends[1] - short)
+    first, last = (
+        end - short - rise(level.z - area.bottom)
+        for end, rise in zip(area.ends, area.rises or (upright, upright), strict=True)
+    )
+    chain = stretched(middle, first, last)
     return (Pass(chain, is_closed=False),) if chain else ()
 
 

@@ -1,8 +1,9 @@
 """Slots: an open profile swept along a course of travel (ISO 14649-10).
 
 The course runs through the middle of the profile. An open end is run out of; a radiused end is
-a half circle about the end of the course, beyond it; a flat or Woodruff end stops there. The
-width of a profile is the one at the top; angles of walls are from the vertical.
+a half circle about the end of the course, beyond it; a flat end stops there. So does a Woodruff
+end at the top, and runs down to the floor along the arc that a disc leaves. The width of a
+profile is the one at the top; angles of walls are from the vertical.
 """
 
 from collections.abc import Sequence
@@ -22,20 +23,23 @@ from stepnc_model.entities.profiles import (
     SquareUProfile,
     TeeProfile,
     VeeProfile,
+    WoodruffSlotEndType,
 )
 from stepnc_model.part21.values import Ref
 from stepnc_model.toolpath.curve import JOINED, segments_of
 from stepnc_model.toolpath.frame import Frame
 from stepnc_model.toolpath.job import Job
-from stepnc_model.toolpath.milling.area import Area, Inset, Wall, chord, rounding
+from stepnc_model.toolpath.milling.area import Area, Inset, Wall, chord, rounding, upright
 from stepnc_model.toolpath.milling.contour import (
     Chain,
     Edge,
     Loop,
+    chain_length,
     clockwise,
     counter_clockwise,
     halved,
     line,
+    polygon,
     reversed_chain,
     stretched,
 )
@@ -62,6 +66,8 @@ def slot_area(job: Job, ref: Ref[Entity], slot: Slot, frame: Frame, bottom: floa
     ends = [job.program.get(end) for end in slot.end_conditions]
     outside: Chain = ()
     beyond = (0.0, 0.0)
+    rises: tuple[Inset, Inset] = (upright, upright)
+    stops: list[Wall] = []
     if abs(middle[-1].end - middle[0].start) < JOINED:
         loops = _ring(middle, half)
     elif any(isinstance(end, LoopSlotEndType) for end in ends):
@@ -73,17 +79,26 @@ def slot_area(job: Job, ref: Ref[Entity], slot: Slot, frame: Frame, bottom: floa
         first, last = (_beyond(job, end, half) for end in pair)
         beyond = (first, last)
         loops, outside = _band(job, ref, middle, half, pair)
+        before, after = (_rise(job, end, top - bottom) for end in pair)
+        rises = (before, after)
+        ways = (reversed_chain(middle), middle)
+        stops = [
+            Wall(loop=_stop(way), inset=rise)
+            for way, rise in zip(ways, rises, strict=True)
+            if rise is not upright
+        ]
     if not loops:
         raise job.fault(f"its course turns more sharply than its half width {half:g} mm", ref)
     return Area(
         ref=ref,
-        walls=tuple(Wall(loop=loop, inset=inset) for loop in loops),
+        walls=(*(Wall(loop=loop, inset=inset) for loop in loops), *stops),
         top=top,
         bottom=bottom,
         solid=_solid(middle, half) if outside else None,
         outside=outside,
         middle=middle,
         ends=beyond,
+        rises=rises,
     )
 
 
@@ -122,6 +137,24 @@ def _beyond(job: Job, end: Entity, half: float) -> float:
     if isinstance(end, OpenSlotEndType):
         return job.tool.diameter + run_out(job)
     return half if isinstance(end, RadiusedSlotEndType) else 0.0
+
+
+def _rise(job: Job, end: Entity, depth: float) -> Inset:
+    """How far an end stands in the slot: upright, or the arc of a Woodruff end."""
+    if not isinstance(end, WoodruffSlotEndType):
+        return upright
+    radius = size(job, end.radius, job.step.features[0])
+    reach = chord(radius, depth)
+    return lambda height: reach - chord(radius, min(height, depth))
+
+
+def _stop(way: Chain) -> Loop:
+    """Everything behind the end of a course: a square far larger than the slot."""
+    end, along = way[-1].end, way[-1].along(1.0)
+    far = 4.0 * chain_length(way)
+    right, left = end - 1j * far * along, end + 1j * far * along
+    back = 2.0 * far * along
+    return polygon([right, left, left - back, right - back])
 
 
 def _corner(job: Job, end: FlatSlotEndType, half: float) -> float:

@@ -12,6 +12,7 @@ from stepnc_model.toolpath.job import (
     DEFAULT_CLEARANCE,
     DEFAULT_SECURITY,
     Job,
+    clamps_of,
     job_of,
     stock_of,
 )
@@ -126,3 +127,13 @@ def test_a_security_plane_below_the_stock_is_raised_above_it() -> None:
     ))
     job = job_of(program, program.workingsteps[-1])
     assert job.frame(job.step.features[0]).origin == pytest.approx((127.0, 65.0, 0.0))
+
+
+def test_clamping_positions_come_out_in_the_setup() -> None:
+    """The jaws of the bracket, with the workpiece standing 100 mm further along x."""
+    program = edited(("#42=WORKPIECE_SETUP(#30,#41,$,$,());",
+                      "#42=WORKPIECE_SETUP(#30,#900,$,$,());\n"
+                      "#900=AXIS2_PLACEMENT_3D('MOVED',#901,#501,#502);\n"
+                      "#901=CARTESIAN_POINT('',(100.,0.,0.));"))  # fmt: skip
+    setup = program.workingsteps[0].setup
+    assert clamps_of(program, setup) == ((175.0, 93.0, -32.0), (175.0, -3.0, -32.0))

@@ -11,9 +11,10 @@ from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
 from stepnc_model.toolpath.job import Job, job_of
 from stepnc_model.toolpath.milling.area import Area
-from stepnc_model.toolpath.milling.contour import area, chain_length
+from stepnc_model.toolpath.milling.contour import area, chain_length, vertices
 from stepnc_model.toolpath.milling.cutter import Cutter, cutter_of
 from stepnc_model.toolpath.milling.layer import Level, clear
+from stepnc_model.toolpath.milling.offset import erode
 from stepnc_model.toolpath.milling.slot import slot_area
 from stepnc_model.toolpath.milling.way import way_of
 
@@ -94,6 +95,17 @@ def test_woodruff_end_stops_at_the_course() -> None:
     change, more = ended("WOODRUFF_SLOT_END_TYPE(#904)", "OPEN_SLOT_END_TYPE()")
     found = slot(change, more=more)
     assert area(found.walls[0].loop) == pytest.approx(12.0 * (90.0 + 17.0))
+
+
+@pytest.mark.parametrize("z", [-1.0, -3.0, -5.0, -6.0])
+def test_woodruff_end_is_not_cut_into_at_any_level(z: float) -> None:
+    """A tool of 10 mm in the slot of 12 mm: its rim stays on the arc or inside."""
+    change, more = ended("WOODRUFF_SLOT_END_TYPE(#904)", "OPEN_SLOT_END_TYPE()")
+    found = slot(change, more=more)
+    loops = erode(found.boundaries(z, Cutter(radius=5.0)), 5.0)
+    rim = min(point.imag for loop in loops for point in vertices(loop, tolerance=1e-4)) - 5.0
+    height = 6.0 + z
+    assert rim == pytest.approx(6.0 - sqrt(36.0 - (6.0 - height) ** 2), abs=1e-6)
 
 
 def test_corner_larger_than_half_the_width_is_refused() -> None:
@@ -209,14 +221,15 @@ def test_profile_that_no_mill_makes_is_refused() -> None:
         ("RADIUSED_SLOT_END_TYPE()", "RADIUSED_SLOT_END_TYPE()", 0.0, 90.0),
         ("FLAT_SLOT_END_TYPE(#905,#905)", "FLAT_SLOT_END_TYPE(#905,#905)", 6.0, 84.0),
         ("RADIUSED_SLOT_END_TYPE()", "FLAT_SLOT_END_TYPE(#905,#905)", 0.0, 84.0),
-        ("WOODRUFF_SLOT_END_TYPE(#904)", "OPEN_SLOT_END_TYPE()", 6.0, 101.0),
+        ("WOODRUFF_SLOT_END_TYPE(#904)", "OPEN_SLOT_END_TYPE()", 12.0 - sqrt(27.0), 101.0),
     ],
 )
 def test_one_pass_along_the_middle_touches_the_end_walls(
     one: str, other: str, low: float, high: float
 ) -> None:
     """A tool of 12 mm in a slot of 12 mm: its middle stays 6 mm from a flat end, goes to the
-    middle of a round one, and 6 + 5 mm beyond an open one."""
+    middle of a round one, and 6 + 5 mm beyond an open one. Half way down a Woodruff end of 6 mm
+    radius the arc stands √27 mm from where it meets the floor, 6 mm from the end."""
     change, more = ended(one, other)
     job = job_at("MILL SLOT", change, more=more)
     found = slot(change, more=more)
