@@ -36,6 +36,18 @@ class Wall:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Bar:
+    """The wide part of a tee slot, at its floor."""
+
+    width: float
+    """mm"""
+    depth: float
+    """mm, its height above the floor"""
+    is_open: bool
+    """at both ends"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Area:
     """Area to be cleared down to a floor."""
 
@@ -53,6 +65,8 @@ class Area:
     """how far the slot goes on beyond the ends of its centre line, mm"""
     rises: tuple[Inset, Inset] | None = None
     """how much of each end of a slot stands in it at a height above the floor, mm"""
+    bar: Bar | None = None
+    """of a tee slot"""
     solid: Loop | None = None
     """the material of an area with open sides, without what the tool needs to run out"""
     outside: Chain = ()

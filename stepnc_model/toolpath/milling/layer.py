@@ -75,6 +75,8 @@ class Layer:
     """boundary of where the centre may be, when it is known"""
     solid: tuple[Loop, ...] = ()
     """boundary of where the cutter touches material; none where it does everywhere"""
+    is_from_outside: bool = False
+    """every pass begins and ends beside the part, straight down and up"""
 
 
 def clear(job: Job, area: Area, level: Level, way: Way) -> Layer | None:

@@ -36,9 +36,13 @@ from stepnc_model.toolpath.milling.layer import Layer, Level, clear, wall_passes
 from stepnc_model.toolpath.milling.offset import contains
 from stepnc_model.toolpath.milling.shapes import shapes
 from stepnc_model.toolpath.milling.strokes import is_inside
+from stepnc_model.toolpath.milling.tee import tee_layers
 from stepnc_model.toolpath.milling.way import Way, way_of
 from stepnc_model.toolpath.path import MoveType, ToolPath
 from stepnc_model.toolpath.pattern import placements
+
+T_SLOT_MILL = "T_SLOT_MILL"
+"""body of the only tool that makes the bar of a tee slot"""
 
 GAP = 0.5
 """mm above the material of a level where the way down through air ends"""
@@ -102,6 +106,13 @@ def milling_path(job: Job) -> ToolPath:
                 level=layer.z,
             )
             _cut_layer(course, job, operation, layer, heights=heights, way=way)
+        if (
+            isinstance(shape, Area)
+            and shape.bar is not None
+            and job.tool.keyword != T_SLOT_MILL
+        ):
+            text = "only the neck of the tee slot is made: its bar takes a T-slot mill"
+            course.find(job.warning(text, shape.ref))
         lowest = min(layer.z for layer in layers)
         missing = lowest - shape.bottom - allowance_of(job, operation).bottom
         if missing > 1e-6:
@@ -156,6 +167,9 @@ def levels(top: float, bottom: float, depth: float) -> list[float]:
 
 def _layers(job: Job, shape: Area | Flank, cutter: Cutter, way: Way) -> Iterator[Layer]:
     """Passes of one shape, from the top down as far as the cutter fits in."""
+    if isinstance(shape, Area) and shape.bar is not None and job.tool.keyword == T_SLOT_MILL:
+        yield from tee_layers(job, shape, shape.bar, cutter)
+        return
     allowance = allowance_of(job, job.step.operation)
     earlier = _earlier(job)
     start, floor = _span(job, shape, allowance, earlier)
@@ -316,14 +330,14 @@ def _cut_layer(
         else:
             if last is not None:
                 leave(course, job, last, heights=heights, room=room, retract=None)
-            current = enter(
-                course, job, current, heights=heights, room=room, approach=operation.approach
-            )
+            approach = None if layer.is_from_outside else operation.approach
+            current = enter(course, job, current, heights=heights, room=room, approach=approach)
             _warn_of_plunge(course, job, operation, layer, current)
         _cut(course, current.chain, layer)
         last = current
     if last is not None:
-        leave(course, job, last, heights=heights, room=room, retract=operation.retract)
+        retract = None if layer.is_from_outside else operation.retract
+        leave(course, job, last, heights=heights, room=room, retract=retract)
 
 
 def _warn_of_plunge(

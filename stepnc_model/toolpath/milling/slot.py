@@ -29,7 +29,7 @@ from stepnc_model.part21.values import Ref
 from stepnc_model.toolpath.curve import JOINED, segments_of
 from stepnc_model.toolpath.frame import Frame
 from stepnc_model.toolpath.job import Job
-from stepnc_model.toolpath.milling.area import Area, Inset, Wall, chord, rounding, upright
+from stepnc_model.toolpath.milling.area import Area, Bar, Inset, Wall, chord, rounding, upright
 from stepnc_model.toolpath.milling.contour import (
     Chain,
     Edge,
@@ -99,6 +99,7 @@ def slot_area(job: Job, ref: Ref[Entity], slot: Slot, frame: Frame, bottom: floa
         middle=middle,
         ends=beyond,
         rises=rises,
+        bar=_bar(job, slot.swept_shape, is_open=len(outside) > 1),
     )
 
 
@@ -137,6 +138,18 @@ def _beyond(job: Job, end: Entity, half: float) -> float:
     if isinstance(end, OpenSlotEndType):
         return job.tool.diameter + run_out(job)
     return half if isinstance(end, RadiusedSlotEndType) else 0.0
+
+
+def _bar(job: Job, ref: Ref[Entity], *, is_open: bool) -> Bar | None:
+    """The wide part of a tee slot."""
+    profile = job.program.get(ref)
+    if not isinstance(profile, TeeProfile):
+        return None
+    return Bar(
+        width=size(job, profile.cross_bar_width, ref),
+        depth=size(job, profile.cross_bar_depth, ref),
+        is_open=is_open,
+    )
 
 
 def _rise(job: Job, end: Entity, depth: float) -> Inset:
