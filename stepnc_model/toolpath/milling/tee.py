@@ -59,8 +59,8 @@ def _chains(job: Job, area: Area, bar: Bar, cutter: Cutter) -> list[Chain]:
     aside = 0.5 * bar.width - cutter.radius
     if aside < -FITS or aside > cutter.radius:
         raise job.fault(
-            f"'{job.tool.id}' of {job.tool.diameter:g} mm for a bar of {bar.width:g} mm: it may "
-            "not be wider, nor narrower than half of it",
+            f"'{job.tool.id}' of {job.tool.diameter:g} mm for a bar of {bar.width:g} mm: "
+            "it may not be wider, nor narrower than half of it",
             area.ref,
         )
     way = stretched(area.middle or (), *area.ends)
