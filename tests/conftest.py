@@ -5,8 +5,8 @@ import os
 import pytest
 from hypothesis import HealthCheck, settings
 
-# Drawn anew, a rare example would turn a run red that has nothing to do with the change; and how
-# long one takes says nothing on a machine that others use as well.
+# Drawn anew, a rare example would turn a run red that has nothing to do with the change, and
+# how long one takes says nothing on a machine that others use as well.
 settings.register_profile(
     "ci",
     derandomize=True,
