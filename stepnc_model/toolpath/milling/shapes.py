@@ -6,9 +6,14 @@ bosses and steps are cut along.
 """
 
 from collections.abc import Iterator
-from math import atan
+from math import atan, pi, sqrt, tan
 
-from stepnc_model.entities.bottoms import FlatWithRadiusHoleBottom
+from stepnc_model.entities.bottoms import (
+    ConicalHoleBottom,
+    FlatWithRadiusHoleBottom,
+    HoleBottomCondition,
+    SphericalHoleBottom,
+)
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.features import (
     Boss,
@@ -28,7 +33,15 @@ from stepnc_model.entities.profiles import AngleTaper, DiameterTaper
 from stepnc_model.part21.values import Ref
 from stepnc_model.toolpath.frame import Frame, frame_of
 from stepnc_model.toolpath.job import Job
-from stepnc_model.toolpath.milling.area import Area, Flank, Wall, leaning
+from stepnc_model.toolpath.milling.area import (
+    Area,
+    Flank,
+    Inset,
+    Wall,
+    chord,
+    leaning,
+    upright,
+)
 from stepnc_model.toolpath.milling.contour import Loop, circle, counter_clockwise, polygon
 from stepnc_model.toolpath.milling.outline import (
     MOST,
@@ -155,7 +168,7 @@ def _swept(job: Job, feature: PlanarFace, frame: Frame) -> Loop:
 
 
 def _hole(job: Job, ref: Ref[Entity], feature: RoundHole, frame: Frame, bottom: float) -> Area:
-    """Round hole, straight or tapered."""
+    """Round hole, straight or tapered; a cone or cap lies below its depth plane."""
     radius = 0.5 * size(job, feature.diameter, ref)
     top = frame.origin[2]
     centre = complex(frame.origin[0], frame.origin[1])
@@ -167,9 +180,38 @@ def _hole(job: Job, ref: Ref[Entity], feature: RoundHole, frame: Frame, bottom: 
     fillet = 0.0
     if isinstance(condition, FlatWithRadiusHoleBottom):
         fillet = given(job, condition.corner_radius)
-    inset = leaning(depth=top - bottom, slope_deg=angle, fillet=fillet)
-    wall = Wall(loop=circle(centre, radius), inset=inset)
-    return Area(ref=ref, walls=(wall,), top=top, bottom=bottom)
+    side = leaning(depth=top - bottom, slope_deg=angle, fillet=fillet)
+    deeper, half = _below(job, ref, condition, radius - side(0.0))
+
+    def inset(height: float) -> float:
+        return side(height - deeper) if height >= deeper else radius - half(height)
+
+    wall = Wall(loop=circle(centre, radius), inset=inset if deeper > 0.0 else side)
+    return Area(ref=ref, walls=(wall,), top=top, bottom=bottom - deeper)
+
+
+def _below(
+    job: Job, ref: Ref[Entity], condition: HoleBottomCondition | None, radius: float
+) -> tuple[float, Inset]:
+    """Depth of a cone or cap under the cylinder, and its half width over its lowest point."""
+    if isinstance(condition, ConicalHoleBottom):
+        written = condition.tip_angle or 0.0
+        angle = written if written < pi else rad_from_deg(written)
+        if not 0.0 < angle < pi:
+            raise job.fault(f"a tip of {written:g} degrees is no cone", ref, "bottom_condition")
+        deep = radius / tan(0.5 * angle)
+        return deep, lambda height: radius * max(height, 0.0) / deep
+    if isinstance(condition, SphericalHoleBottom):
+        sphere = size(job, condition.radius, ref)
+        if sphere < radius * (1.0 - 1e-9):
+            raise job.fault(
+                f"sphere of radius {sphere:g} mm below a hole of radius {radius:g} mm",
+                ref,
+                "bottom_condition",
+            )
+        deep = sphere - sqrt(max(sphere**2 - radius**2, 0.0))
+        return deep, lambda height: chord(sphere, height)
+    return 0.0, upright
 
 
 def _taper_angle(

@@ -1,6 +1,6 @@
 """Milling features as areas and flanks, against the drawing of the bracket."""
 
-from math import pi, radians, tan
+from math import pi, radians, sqrt, tan
 from pathlib import Path
 
 import pytest
@@ -82,6 +82,45 @@ def test_hole_is_a_circle_and_its_edge_may_be_round() -> None:
     assert area(found.walls[0].loop) == pytest.approx(900.0 * pi)
     assert found.walls[0].inset(0.0) == pytest.approx(8.0)
     assert found.walls[0].inset(8.0) == pytest.approx(0.0)
+
+
+@pytest.mark.parametrize(
+    ("bottom", "deep", "half_way"),
+    [
+        # A cone of 90° is as deep as its radius, and half as wide half way down.
+        ("CONICAL_HOLE_BOTTOM(90.,$)", 30.0, 15.0),
+        # Half a sphere: at half its depth √3/2 of its radius.
+        ("SPHERICAL_HOLE_BOTTOM(#180)", None, None),
+        ("SPHERICAL_HOLE_BOTTOM(#902)", 30.0, 30.0 * sqrt(0.75)),
+    ],
+)
+def test_bottom_of_a_hole_reaches_below_its_depth_plane(
+    bottom: str, deep: float | None, half_way: float | None
+) -> None:
+    """60 mm wide, its cylinder 12 mm deep."""
+    more = (
+        "#900=ROUND_HOLE('H',#30,(),#141,#143,#180,$,#901);"
+        f"#901={bottom};#902=TOLERANCED_LENGTH_MEASURE(30.,#510);"
+    )
+    found = shape_of("ROUGH POCKET", on("#900"), more=more)
+    assert isinstance(found, Area)
+    if deep is None or half_way is None:
+        # A sphere of 60 mm radius: 60 − √(60² − 30²) deep.
+        assert found.bottom == pytest.approx(-12.0 - (60.0 - sqrt(2700.0)))
+        return
+    assert found.bottom == pytest.approx(-12.0 - deep)
+    (wall,) = found.walls
+    assert wall.inset(0.5 * deep) == pytest.approx(30.0 - half_way)
+    assert wall.inset(deep + 1.0) == 0.0
+
+
+def test_sphere_smaller_than_its_hole_is_refused() -> None:
+    more = (
+        "#900=ROUND_HOLE('H',#30,(),#141,#143,#180,$,#901);"
+        "#901=SPHERICAL_HOLE_BOTTOM(#902);#902=TOLERANCED_LENGTH_MEASURE(20.,#510);"
+    )
+    with pytest.raises(PathError, match="sphere of radius 20 mm below a hole of radius 30 mm"):
+        shape_of("ROUGH POCKET", on("#900"), more=more)
 
 
 @pytest.mark.parametrize(
