@@ -31,11 +31,11 @@ def _row(paths: Paths, item: ToolPath | Function) -> tuple[str, ...]:
         else:
             air += size
     program = paths.program
-    tool = program.get(item.tool_ref).its_id if item.tool_ref is not None else ""  # type: ignore[attr-defined]
+    tool = program.get(item.tool_ref) if item.tool_ref is not None else None
     return (
         item.id,
         program.file.keyword(int(item.operation_ref)).lower(),
-        tool,
+        getattr(tool, "its_id", ""),
         str(len(item.moves)),
         str(sum(move.arc is not None for move in item.moves)),
         f"{contact:.0f}",

@@ -35,6 +35,9 @@ DEFAULT_MILL, DEFAULT_LATHE = "vmc15", "lathe22"
 """machines taken when none is named"""
 
 
+NOTHING_WRITTEN = "nothing was written: no workingstep was advised"
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Request:
     """What the user asks of ``optimise``, in the user's units."""
@@ -93,12 +96,8 @@ def optimise(request: Request, *, tell: Tell = silent) -> Outcome:
     StepNcError
         For everything that is wrong with file, names, limits or output; nothing is written.
     """
-    mode = one_of(Mode, request.mode.upper(), "mode")
+    task = _task(request)
     profile = one_of(Profile, request.profile, "profile")
-    free = frozenset(one_of(Free, word.strip(), "free") for word in request.free.split(","))
-    _require_positive(request.roughness_um, "roughness", "µm")
-    if request.tool_change:
-        _require_positive(request.tool_change, "tool change", "s")
     output = _output(request)
     nc_place = _nc_place(request, output)
     program = read_program(request.file, units=request.units)
@@ -113,35 +112,24 @@ def optimise(request: Request, *, tell: Tell = silent) -> Outcome:
         program,
         machine=machine,
         material=match,
-        task=Task(
-            mode=mode,
-            free=free,
-            roughness=None
-            if request.roughness_um is None
-            else mm_from_um(request.roughness_um),
-            tool_change=request.tool_change,
-            front=request.pareto,
-        ),
+        task=task,
         selected=lambda step: int(step.ref) in wanted,
         progress=Progress(tell, total=len(chosen)),
     )
     plan = _with_file_findings(plan, findings, match)
     changes = changes_of(plan)
     data = writeback.write(program, changes, profile) if changes else program.file.data
-    code = _nc_code(program, data, request.control, tell) if request.control else None
+    if nc_place is not None:
+        # NC code first: where it cannot be made, nothing is written.
+        code = _nc_code(program, data, request.control, tell)
+        if not request.dry_run:
+            tell(f"NC code: {nc_place} ({write_lines(nc_place, code)} lines)")
     written = None
-    # NC code first: where it cannot be made, nothing is written.
-    if code is not None and nc_place is not None and not request.dry_run:
-        count = write_lines(nc_place, code)
-        tell(f"NC code: {nc_place} ({count} lines)")
-    if request.dry_run:
-        pass
-    elif changes:
+    if changes and not request.dry_run:
         write_atomically(output, data)
         written = output
-        tell(f"written: {output}")
-    else:
-        tell("nothing was written: no workingstep was advised")
+    if not request.dry_run:
+        tell(f"written: {output}" if changes else NOTHING_WRITTEN)
     if request.report is not None:
         from service.report import report_page  # noqa: PLC0415 (plotly takes a second)
 
@@ -234,6 +222,23 @@ def _output(request: Request) -> Path:
         require_place(request.report, apart_from=request.file)
         require_place(request.report, apart_from=output)
     return output
+
+
+def _task(request: Request) -> Task:
+    """What is asked, in the units inside."""
+    mode = one_of(Mode, request.mode.upper(), "mode")
+    free = frozenset(one_of(Free, word.strip(), "free") for word in request.free.split(","))
+    _require_positive(request.roughness_um, "roughness", "µm")
+    if request.tool_change:
+        _require_positive(request.tool_change, "tool change", "s")
+    roughness = request.roughness_um
+    return Task(
+        mode=mode,
+        free=free,
+        roughness=None if roughness is None else mm_from_um(roughness),
+        tool_change=request.tool_change,
+        front=request.pareto,
+    )
 
 
 def _nc_place(request: Request, output: Path) -> Path | None:

@@ -3,6 +3,7 @@
 A dialect derives from :class:`IsoCode` and says what it does otherwise.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import ClassVar
 
@@ -46,7 +47,7 @@ SENSE_CODES = {Sense.CLOCKWISE: "M3", Sense.COUNTERCLOCKWISE: "M4"}
 RATE_PLACES = {RateMode.PER_MINUTE: 3, RateMode.PER_REVOLUTION: 4}
 
 
-class IsoCode:
+class IsoCode(ABC):
     """Writer of one program. Running state: what is in force, and where the tool is."""
 
     places: ClassVar[int] = 3
@@ -131,37 +132,37 @@ class IsoCode:
             and (not cycle.dwell or cycle.kind in self.dwelling)
         )
 
+    @abstractmethod
     def start(self, name: str) -> Iterator[str]:
         """Head of the program."""
-        raise NotImplementedError
 
+    @abstractmethod
     def end(self, _: ProgramEnd) -> Iterator[str]:
         """Foot of the program."""
-        raise NotImplementedError
 
+    @abstractmethod
     def text(self, text: str) -> str:
         """A comment with its marks."""
-        raise NotImplementedError
 
+    @abstractmethod
     def tool_change(self, block: ToolChange) -> Iterator[str]:
         """Tool change and length offset."""
-        raise NotImplementedError
 
     def mode_code(self, mode: RateMode) -> str:
         """Word for a mode of feed."""
         return "G94" if mode is RateMode.PER_MINUTE else "G95"
 
+    @abstractmethod
     def surface_speed(self, speed: str, limit: str, sense: str) -> Iterator[str]:
         """Lines of a constant surface speed in m/min with its limit in rpm, or none."""
-        raise NotImplementedError
 
+    @abstractmethod
     def thread_words(self, start: Point, block: Threading) -> list[str]:
         """Motion and lead of a synchronised line."""
-        raise NotImplementedError
 
+    @abstractmethod
     def rigid_tap(self, block: RigidTap) -> Iterator[str]:
         """Lines of a rigid tap at the current position."""
-        raise NotImplementedError
 
     def seconds(self, value: float) -> str:
         """Duration of a dwell, with its letter."""

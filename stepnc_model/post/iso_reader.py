@@ -6,6 +6,7 @@ Coordinates are absolute and metric; arc centres are relative to the start.
 """
 
 import re
+from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Mapping
 from math import hypot
 from typing import ClassVar
@@ -53,7 +54,7 @@ PECK_CLEARANCE = 0.254
 COMMENT = re.compile(r"\(([^()]*)\)")
 
 
-class IsoReader:
+class IsoReader(ABC):
     """Reader of one program. Running state: what is in force, and where the tool is."""
 
     codes: Mapping[Machine, Mapping[str, Act]] = {}
@@ -116,13 +117,13 @@ class IsoReader:
         """Duration of a dwell."""
         return words.need("P", "G4")
 
+    @abstractmethod
     def lead(self, end: Point, words: Words) -> float:
         """Lead of a thread along the axis that moves most, mm."""
-        raise NotImplementedError
 
+    @abstractmethod
     def tap(self, words: Words, act: Act) -> Iterator[Block]:
         """Blocks of a rigid tap."""
-        raise NotImplementedError
 
     def surface_limit(self, words: Words) -> float | None:
         """Greatest speed at constant surface speed, rev/s."""
@@ -379,13 +380,8 @@ class IsoReader:
         """A rigid tap where the tool is."""
         if not self.speed or lead <= 0.0:
             raise PostError("a rigid tap without S, or without a lead")
-        return RigidTap(
-            start=self.at,
-            bottom_z=bottom,
-            lead=lead,
-            speed=rev_s_from_rpm(self.speed),
-            sense=sense,
-        )
+        speed = rev_s_from_rpm(self.speed)
+        return RigidTap(start=self.at, bottom_z=bottom, lead=lead, speed=speed, sense=sense)
 
     def _stops(self, words: Words) -> Iterator[Block]:
         stops: dict[str, type[ProgramStop | OptionalStop | ProgramEnd]] = {

@@ -24,7 +24,7 @@ from stepnc_model.toolpath.milling.contour import (
 )
 from stepnc_model.toolpath.milling.cover import Pass, area_of, rings, swept
 from stepnc_model.toolpath.milling.offset import erode, rounded
-from stepnc_model.toolpath.milling.strokes import scan, to_and_fro
+from stepnc_model.toolpath.milling.strokes import scan, zigzags
 
 FINE = 1e-4
 """mm, chord tolerance of the judge"""
@@ -138,7 +138,7 @@ def test_strokes_with_a_pass_along_the_wall_sweep_it_too(
     step = max(diameter * (1.0 - overlap), 0.5)
     loops = erode(walls, radius)
     assume(loops)
-    strokes = to_and_fro(loops, along=rect(1.0, angle), step=step)
+    strokes = zigzags(scan(loops, along=rect(1.0, angle), step=step), loops)
     walled = tuple(Pass(loop, is_closed=True) for loop in loops)
     check_swept(walls, (*strokes, *walled), radius)
 

@@ -47,26 +47,6 @@ class Stroke:
     high: complex
 
 
-def to_and_fro(loops: Sequence[Loop], *, along: complex, step: float) -> tuple[Pass, ...]:
-    """Strokes in alternating directions, joined where the link stays inside.
-
-    Parameters
-    ----------
-    loops : sequence of Loop
-        Boundary of where the cutter's centre may be, islands clockwise.
-    along : complex
-        Unit vector of the first stroke; the next ones lie to its left.
-    step : float, mm
-        Greatest distance of neighbouring strokes.
-    """
-    return zigzags(scan(loops, along=along, step=step), loops)
-
-
-def one_way(loops: Sequence[Loop], *, along: complex, step: float) -> tuple[Pass, ...]:
-    """Strokes that all run along a direction, each a pass of its own, from right to left."""
-    return singles(scan(loops, along=along, step=step))
-
-
 def singles(rows: Sequence[Sequence[Stroke]]) -> tuple[Pass, ...]:
     """Each stroke a pass of its own."""
     return tuple(

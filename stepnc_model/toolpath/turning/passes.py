@@ -6,7 +6,6 @@ that stays, the tool comes down along it.
 """
 
 from collections.abc import Sequence
-from itertools import pairwise
 
 from stepnc_model.toolpath.turning.onward import onward, step_over
 from stepnc_model.toolpath.turning.piece import Piece, Spot
@@ -122,14 +121,6 @@ def shortened(chain: Sequence[Piece], start: float) -> list[Piece]:
     while found and found[0].is_upright:
         found.pop(0)
     return found
-
-
-def is_joined(chain: Sequence[Piece]) -> bool:
-    """Whether each piece starts where the one before ends."""
-    return all(
-        abs(a.end[0] - b.start[0]) + abs(a.end[1] - b.start[1]) < 1e-4
-        for a, b in pairwise(chain)
-    )
 
 
 def _is_cut(part: Piece) -> bool:

@@ -1,5 +1,7 @@
 """Parallel strokes: where they lie, how they are joined, and that no link cuts a corner."""
 
+from collections.abc import Sequence
+
 import pytest
 import shapely
 from shapely import LineString
@@ -17,16 +19,21 @@ from stepnc_model.toolpath.milling.strokes import (
     contains_point,
     is_inside,
     linked,
-    one_way,
     rows_at,
     scan,
-    to_and_fro,
+    singles,
+    zigzags,
 )
 
 FIELD = polygon([0j, 40 + 0j, 40 + 20j, 20j])
 ISLAND = clockwise(circle(20 + 10j, 5.0))
 COMB = polygon([0j, 30, 30 + 20j, 20 + 20j, 20 + 5j, 10 + 5j, 10 + 20j, 20j])
 """two teeth upwards"""
+
+
+def to_and_fro(loops: Sequence[Loop], *, along: complex, step: float) -> tuple[Pass, ...]:
+    """Strokes over an area in alternating directions."""
+    return zigzags(scan(loops, along=along, step=step), loops)
 
 
 def stays_inside(passes: tuple[Pass, ...], loops: list[Loop]) -> bool:
@@ -48,7 +55,7 @@ def test_strokes_alternate_and_are_joined_to_one_pass() -> None:
 
 
 def test_strokes_one_way_are_passes_of_their_own_in_one_direction() -> None:
-    found = one_way([FIELD], along=-1 + 0j, step=10.0)
+    found = singles(scan([FIELD], along=-1 + 0j, step=10.0))
     assert len(found) == 3
     assert all(cut.chain[0].along(0.0) == pytest.approx(-1 + 0j) for cut in found)
     # The right of a way along -x is the side of greater y.
