@@ -83,6 +83,8 @@ class Comment:
     """Remark for the reader."""
 
     text: str
+    workingstep: str = ""
+    """id of the workingstep that begins here"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -171,7 +171,7 @@ class _Sequence:
 
     def _path(self, path: ToolPath) -> Iterator[Block]:
         """One workingstep."""
-        yield Comment(text=path.id)
+        yield Comment(text=path.id, workingstep=path.id)
         beside = max(abs(point[1]) for point in (path.start, *(m.end for m in path.moves)))
         if self.machine is Machine.LATHE and beside > ON_LATHE:
             raise PostError(f"y = {beside:g} mm: the program turns, and a lathe has no y")

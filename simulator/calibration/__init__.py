@@ -1,0 +1,1 @@
+"""Machine and cutting parameters fitted to measured runs."""

@@ -1,0 +1,195 @@
+"""Lines and arcs of a path as arrays, and where the tool is on them.
+
+One row a segment, each beginning where the one before it ends. Units mm, mm/s, rad.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+FIRST, SECOND = (1, 2, 0), (2, 0, 1)
+"""axes that span the plane whose normal is axis 0, 1 or 2: YZ, ZX, XY"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Segments:
+    """N lines and arcs, one after another.
+
+    Raises
+    ------
+    ValueError
+        When shapes differ or a number is not finite; a rapid's speed may be infinite.
+    """
+
+    start: Floats
+    """(N, 3), mm"""
+    end: Floats
+    """(N, 3), mm"""
+    speed: Floats
+    """(N,) commanded along the path, mm/s; infinite: as fast as the axes go"""
+    is_rapid: Bools
+    """(N,)"""
+    centre: Floats
+    """(N, 3), mm, of arcs; its coordinate along the normal means nothing"""
+    turn: Floats
+    """(N,) rad about the normal, positive counter-clockwise; 0: a line"""
+    normal: Ints
+    """(N,) axis of the plane's normal: 0, 1 or 2"""
+    block: Ints
+    """(N,) number of the block from which a segment comes"""
+
+    def __post_init__(self) -> None:
+        count = len(self.turn)
+        for name, shape in (
+            ("start", (count, 3)),
+            ("end", (count, 3)),
+            ("centre", (count, 3)),
+            ("turn", (count,)),
+        ):
+            value = getattr(self, name)
+            if value.shape != shape or not np.isfinite(value).all():
+                raise ValueError(f"{name} must be finite and of shape {shape}")
+        for name in ("speed", "is_rapid", "normal", "block"):
+            if getattr(self, name).shape != (count,):
+                raise ValueError(f"{name} must have shape {(count,)}")
+        if not (self.speed > 0.0).all():
+            raise ValueError("speed must be positive")
+
+    def __len__(self) -> int:
+        return len(self.turn)
+
+    def __getitem__(self, rows: slice | Ints | Bools) -> "Segments":
+        """Some of the rows."""
+        return Segments(
+            start=self.start[rows],
+            end=self.end[rows],
+            speed=self.speed[rows],
+            is_rapid=self.is_rapid[rows],
+            centre=self.centre[rows],
+            turn=self.turn[rows],
+            normal=self.normal[rows],
+            block=self.block[rows],
+        )
+
+    @cached_property
+    def length(self) -> Floats:
+        """(N,) mm along the path."""
+        rows = np.arange(len(self))
+        straight = np.linalg.norm(self.end - self.start, axis=1)
+        rise = (self.end - self.start)[rows, self.normal]
+        return np.where(self.turn == 0.0, straight, np.hypot(self.radius * self.turn, rise))
+
+    @cached_property
+    def radius(self) -> Floats:
+        """(N,) mm, of arcs; 0 for lines."""
+        first, second = self._plane(np.arange(len(self)))
+        return np.where(self.turn == 0.0, 0.0, np.hypot(first, second))
+
+    @cached_property
+    def _start_angle(self) -> Floats:
+        """(N,) rad, of the arm from the centre to the start."""
+        first, second = self._plane(np.arange(len(self)))
+        return np.arctan2(second, first)
+
+    def _plane(self, rows: Ints) -> tuple[Floats, Floats]:
+        """Arm from centre to start in its plane."""
+        arm = self.start[rows] - self.centre[rows]
+        order = np.arange(len(rows))
+        normal = self.normal[rows]
+        return arm[order, _FIRST[normal]], arm[order, _SECOND[normal]]
+
+    def position(self, rows: Ints, station: Floats) -> Floats:
+        """Where the tool is.
+
+        Parameters
+        ----------
+        rows : (M,) array of int
+            Which segments.
+        station : (M,) array, mm
+            Along each of them, from 0 to its length.
+
+        Returns
+        -------
+        (M, 3) array, mm
+        """
+        part = self._part(rows, station)
+        point = self.start[rows] + part[:, None] * (self.end[rows] - self.start[rows])
+        bent = np.flatnonzero(self.turn[rows] != 0.0)
+        if len(bent):
+            row = rows[bent]
+            normal, size = self.normal[row], self.radius[row]
+            angle = self._start_angle[row] + part[bent] * self.turn[row]
+            first, second = _FIRST[normal], _SECOND[normal]
+            point[bent, first] = self.centre[row, first] + size * np.cos(angle)
+            point[bent, second] = self.centre[row, second] + size * np.sin(angle)
+        return point
+
+    def direction(self, rows: Ints, station: Floats) -> Floats:
+        """Unit vectors along the path; zero where a segment has no length.
+
+        Returns
+        -------
+        (M, 3) array
+        """
+        length = self.length[rows]
+        whole = np.where(length > 0.0, length, 1.0)
+        along = (self.end[rows] - self.start[rows]) / whole[:, None]
+        bent = np.flatnonzero(self.turn[rows] != 0.0)
+        if len(bent):
+            row = rows[bent]
+            normal, turn = self.normal[row], self.turn[row]
+            angle = self._start_angle[row] + self._part(row, station[bent]) * turn
+            rate = self.radius[row] * turn / whole[bent]
+            along[bent, _FIRST[normal]] = -rate * np.sin(angle)
+            along[bent, _SECOND[normal]] = rate * np.cos(angle)
+        return along
+
+    def curvature(self, rows: Ints, station: Floats) -> Floats:
+        """Change of direction along the path, a vector towards the centre; 0 on lines.
+
+        Returns
+        -------
+        (M, 3) array, 1/mm
+        """
+        bend = np.zeros((len(rows), 3))
+        bent = np.flatnonzero(self.turn[rows] != 0.0)
+        if len(bent):
+            row = rows[bent]
+            normal, turn = self.normal[row], self.turn[row]
+            angle = self._start_angle[row] + self._part(row, station[bent]) * turn
+            rate = -self.radius[row] * (turn / self.length[row]) ** 2
+            bend[bent, _FIRST[normal]] = rate * np.cos(angle)
+            bend[bent, _SECOND[normal]] = rate * np.sin(angle)
+        return bend
+
+    def _part(self, rows: Ints, station: Floats) -> Floats:
+        """Share of the segment that lies behind."""
+        length = self.length[rows]
+        return np.divide(station, length, out=np.zeros(len(rows)), where=length > 0.0)
+
+
+_FIRST = np.array(FIRST)
+_SECOND = np.array(SECOND)
+
+
+def lines(points: Sequence[Sequence[float]], *, speed: float = np.inf) -> Segments:
+    """Straight segments through points, rapid unless a speed in mm/s is given."""
+    corners = np.asarray(points, dtype=np.float64).reshape(-1, 3)
+    count = max(0, len(corners) - 1)
+    return Segments(
+        start=corners[:-1],
+        end=corners[1:],
+        speed=np.full(count, float(speed)),
+        is_rapid=np.full(count, not np.isfinite(speed)),
+        centre=np.zeros((count, 3)),
+        turn=np.zeros(count),
+        normal=np.full(count, 2),
+        block=np.arange(count),
+    )
