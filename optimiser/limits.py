@@ -11,8 +11,8 @@ from math import inf, pi, sqrt
 from optimiser import loads
 from optimiser.cut import Cut, CutKind, Texture
 from optimiser.limit import Limit, LimitName, Monomial, Sense
+from simulator.edge_material import correction_of
 from simulator.library import find_window
-from simulator.physics.cutting import ForceCorrection, rake_factor, speed_factor
 from simulator.physics.engagement import mean_chip_ratio
 from simulator.physics.spindle import CurveSegment, curve_segments
 from simulator.physics.strength import deflection, equivalent_diameter, force_for_stress
@@ -52,14 +52,7 @@ class Conditions:
 
 def force_factor(at: Conditions) -> float:
     """K = K_γ·K_v times the accepted correction; 1 for a material of constant k_s."""
-    if at.grade is None:
-        return at.force_factor
-    reference = at.material.kienzle.rake_angle
-    rake = at.grade.rake_angle
-    correction = ForceCorrection(
-        rake=1.0 if reference is None or rake is None else rake_factor(rake, reference),
-        speed=speed_factor(at.cutting_material),
-    )
+    correction = correction_of(at.material, at.grade, at.cutting_material)
     return at.force_factor * correction.factor
 
 

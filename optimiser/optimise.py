@@ -21,6 +21,7 @@ from optimiser.limits import Conditions, roughness_load
 from optimiser.modes import Mode
 from optimiser.problem import Problem
 from optimiser.requirement import required_roughness
+from simulator.edge_material import edge_material
 from simulator.errors import LibraryError
 from simulator.library import find_grade
 from simulator.spec import CuttingMaterial, Grade, Machine, MachineKind, MaterialMatch
@@ -229,7 +230,7 @@ def _conditions(
 ) -> tuple[Conditions, list[Finding]]:
     """Grade, cutting material and roughness of a cut."""
     findings: list[Finding] = []
-    cutting_material = _cutting_material(cut.tool)
+    cutting_material = edge_material(cut.tool.edge_material)
     if cutting_material is None:
         cutting_material = CuttingMaterial.CARBIDE
         text = f"tool '{cut.tool.id}' names no cutting material: carbide assumed"
@@ -283,19 +284,6 @@ def _roughness(
         )
         findings.append(program.finding(Severity.NOTE, text, step.operation_ref))
     return asked
-
-
-def _cutting_material(tool: Tool) -> CuttingMaterial | None:
-    """What the edge is made of, by the words the file has for it."""
-    words = " ".join(tool.edge_material).lower()
-    for material, names in (
-        (CuttingMaterial.CERAMIC, ("ceramic",)),
-        (CuttingMaterial.CARBIDE, ("carbide", "hartmetall", "metal duro")),
-        (CuttingMaterial.HSS, ("hss", "high speed steel", "high-speed steel")),
-    ):
-        if any(name in words for name in names):
-            return material
-    return None
 
 
 def _passed_limits(program: Program, advice: Advice) -> list[Finding]:

@@ -7,19 +7,30 @@ INTERVAL = 2.0
 """s between two messages, and before the first"""
 
 
+class Ticker:
+    """Says now and then how far something is; running state."""
+
+    def __init__(self, tell: Callable[[str], None]) -> None:
+        self._tell = tell
+        self._last = time.monotonic()
+
+    def __call__(self, words: Callable[[], str]) -> None:
+        """Say it, when it is time again."""
+        now = time.monotonic()
+        if now - self._last >= INTERVAL:
+            self._last = now
+            self._tell(words())
+
+
 class Progress:
     """Counts, and tells how far it is every now and then; running state."""
 
     def __init__(self, tell: Callable[[str], None], *, total: int) -> None:
-        self._tell = tell
+        self._ticker = Ticker(tell)
         self._total = total
         self._done = 0
-        self._last = time.monotonic()
 
     def __call__(self) -> None:
         """One more is done."""
         self._done += 1
-        now = time.monotonic()
-        if now - self._last >= INTERVAL:
-            self._last = now
-            self._tell(f"{self._done} of {self._total} workingsteps")
+        self._ticker(lambda: f"{self._done} of {self._total} workingsteps")

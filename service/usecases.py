@@ -104,8 +104,8 @@ def optimise(request: Request, *, tell: Tell = silent) -> Outcome:
     chosen = _selected(program, request.workingsteps)
     findings = program.file.findings + program.model.findings()
     _require_usable(program, chosen, findings)
-    machine = _machine(request.machine, program)
-    match = _material(request.material, program)
+    machine = machine_for(request.machine, program)
+    match = material_for(request.material, program)
     tell(f"material: {match.reason}")
     wanted = {int(step.ref) for step in chosen}
     plan = advise(
@@ -305,7 +305,7 @@ def _require_usable(
         raise error
 
 
-def _machine(name: str, program: Program) -> Machine:
+def machine_for(name: str, program: Program) -> Machine:
     """The machine named, or one that suits the program's first workingstep."""
     if name:
         return load_machine(name)
@@ -314,7 +314,7 @@ def _machine(name: str, program: Program) -> Machine:
     return load_machine(DEFAULT_LATHE if is_turning else DEFAULT_MILL)
 
 
-def _material(name: str, program: Program) -> MaterialMatch:
+def material_for(name: str, program: Program) -> MaterialMatch:
     """The material named, or the one the file names."""
     if name:
         return _load_material(name)

@@ -8,7 +8,7 @@ from itertools import pairwise
 from math import inf
 
 from simulator.physics.spindle import curve_segments
-from simulator.spec import Axis, Machine, MachineKind, Spindle, SpindlePoint
+from simulator.spec import Axis, AxisDrive, Machine, MachineKind, Spindle, SpindlePoint
 from simulator.toml_file import Range, Table
 from stepnc_model.units import nmm_from_nm, rev_s_from_rpm, speed_from_mm_min, watts_from_kw
 
@@ -16,6 +16,8 @@ SPEED = Range(low=0.1, high=500_000, unit="rpm")
 POWER = Range(low=0.001, high=1_000, unit="kW")
 AUXILIARY_POWER = Range(low=0, high=100_000, unit="W")
 IDLE_POWER_PER_SPEED = Range(low=0, high=10_000, unit="W/(rev/s)")
+IDLE_POWER_PER_SPEED_SQUARED = Range(low=0, high=1_000, unit="W/(rev/s)²")
+REGENERATION = Range(low=0, high=1)
 UNLIMITED_POWER = watts_from_kw(POWER.high)
 """W, stands for the motor power that a source does not give: no cut reaches it"""
 TORQUE = Range(low=0.001, high=1_000_000, unit="N·m")
@@ -30,6 +32,15 @@ FORCE = Range(low=1, high=10_000_000, unit="N")
 DEPTH = Range(low=0.01, high=1_000, unit="mm")
 BLOCK_TIME = Range(low=1e-5, high=1, unit="s")
 TOOL_CHANGE = Range(low=0, high=600, unit="s")
+LEAD = Range(low=0.1, high=500, unit="mm")
+MOVED_MASS = Range(low=0.1, high=200_000, unit="kg")
+MASS = Range(low=0, high=200_000, unit="kg")
+SCREW_DIAMETER = Range(low=1, high=500, unit="mm")
+DRIVE_INERTIA = Range(low=0, high=100, unit="kg·m²")
+FRICTION = Range(low=0, high=1)
+PRELOAD = Range(low=0, high=1_000_000, unit="N")
+VISCOUS = Range(low=0, high=100, unit="N·m·s/rad")
+GEAR_RATIO = Range(low=0.01, high=1_000)
 
 
 def read_machine(table: Table, *, name: str) -> Machine:
@@ -51,9 +62,9 @@ def read_machine(table: Table, *, name: str) -> Machine:
         max_cutting_force=table.optional_number("max_cutting_force_n", FORCE),
         max_axial_depth=table.optional_number("max_axial_depth_mm", DEPTH),
         block_time=table.optional_number("block_time_s", BLOCK_TIME),
-        base_power=table.optional_number("base_power_w", AUXILIARY_POWER) or 0.0,
-        coolant_power=table.optional_number("coolant_power_w", AUXILIARY_POWER) or 0.0,
-        tool_change=table.optional_number("tool_change_s", TOOL_CHANGE) or 0.0,
+        base_power=_amount(table, "base_power_w", AUXILIARY_POWER),
+        coolant_power=_amount(table, "coolant_power_w", AUXILIARY_POWER),
+        tool_change=_amount(table, "tool_change_s", TOOL_CHANGE),
         source=table.text("source"),
         remarks=table.texts("remarks"),
     )
@@ -72,11 +83,12 @@ def _spindle(table: Table) -> Spindle:
         max_speed=None if high is None else rev_s_from_rpm(high),
         acceleration=table.optional_number("acceleration_rev_s2", SPINDLE_ACCELERATION),
         inertia=table.optional_number("inertia_kg_m2", INERTIA),
-        idle_power=table.optional_number("idle_power_w", AUXILIARY_POWER) or 0.0,
-        idle_power_per_speed=table.optional_number(
-            "idle_power_w_per_rev_s", IDLE_POWER_PER_SPEED
-        )
-        or 0.0,
+        idle_power=_amount(table, "idle_power_w", AUXILIARY_POWER),
+        idle_power_per_speed=_amount(table, "idle_power_w_per_rev_s", IDLE_POWER_PER_SPEED),
+        idle_power_per_speed_squared=_amount(
+            table, "idle_power_w_per_rev2_s2", IDLE_POWER_PER_SPEED_SQUARED
+        ),
+        regeneration=_amount(table, "regeneration", REGENERATION),
     )
     try:
         curve_segments(spindle)
@@ -120,7 +132,34 @@ def _axis(table: Table) -> Axis:
         max_feed=rapid if max_feed is None else max_feed,
         acceleration=table.number("acceleration_mm_s2", ACCELERATION),
         jerk=table.optional_number("jerk_mm_s3", JERK),
+        drive=_drive(table.table("drive")) if "drive" in table else None,
     )
+
+
+def _drive(table: Table) -> AxisDrive:
+    """Drive of an ``[axis.drive]`` table; what is absent is 0, the gear 1."""
+    table.text("source")
+    return AxisDrive(
+        lead=table.number("lead_mm", LEAD),
+        table_mass=table.number("table_mass_kg", MOVED_MASS),
+        workpiece_mass=_amount(table, "workpiece_mass_kg", MASS),
+        screw_mass=_amount(table, "screw_mass_kg", MASS),
+        screw_diameter=table.number("screw_diameter_mm", SCREW_DIAMETER),
+        coupling_inertia=_amount(table, "coupling_inertia_kg_m2", DRIVE_INERTIA),
+        motor_inertia=_amount(table, "motor_inertia_kg_m2", DRIVE_INERTIA),
+        guide_friction=table.number("guide_friction", FRICTION),
+        bearing_friction=_amount(table, "bearing_friction", FRICTION),
+        preload=_amount(table, "preload_n", PRELOAD),
+        viscous=nmm_from_nm(_amount(table, "viscous_nm_s_per_rad", VISCOUS)),
+        gear_ratio=table.optional_number("gear_ratio", GEAR_RATIO) or 1.0,
+        efficiency=table.number("efficiency", EFFICIENCY),
+        regeneration=_amount(table, "regeneration", REGENERATION),
+    )
+
+
+def _amount(table: Table, key: str, allowed: Range) -> float:
+    """Number of an optional key; 0 when it is absent."""
+    return table.optional_number(key, allowed) or 0.0
 
 
 def _feed(table: Table, key: str) -> float | None:

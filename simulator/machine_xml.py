@@ -3,7 +3,7 @@
 The form is one ``Machine`` element whose attributes carry no units. This is the audited
 reading: powers in W although their names say energy, the rapid in hundredths of a metre per
 minute, the spindle's acceleration in rev/s², the pitch of the feed screw in metres per
-revolution, times in ms. Each assumption is a remark of the machine. The names are kept as
+revolution, its diameter in metres, times in ms. Each assumption is a remark of the machine. The names are kept as
 printed, slips included; the corrected spelling is read too.
 
 References
@@ -18,14 +18,21 @@ from pathlib import Path
 from simulator.errors import LibraryError
 from simulator.machine_file import (
     AUXILIARY_POWER,
+    DRIVE_INERTIA,
     EFFICIENCY,
+    FRICTION,
+    GEAR_RATIO,
     INERTIA,
+    MASS,
+    MOVED_MASS,
+    PRELOAD,
     SPINDLE_ACCELERATION,
     UNLIMITED_POWER,
+    VISCOUS,
 )
-from simulator.spec import Axis, Machine, MachineKind, Spindle, SpindlePoint
+from simulator.spec import Axis, AxisDrive, Machine, MachineKind, Spindle, SpindlePoint
 from simulator.toml_file import Range, Table
-from stepnc_model.units import speed_from_m_min, speed_from_m_s
+from stepnc_model.units import MM_PER_M, nmm_from_nm, speed_from_m_min, speed_from_m_s
 
 RAPID = Range(low=10, high=30_000, unit="1/100 m/min")
 STATE_TIME = Range(low=0, high=1e8, unit="ms")
@@ -51,35 +58,43 @@ UNUSED = {
     "partEjectionEnergy": AUXILIARY_POWER,
     "batchSetupEnergy": AUXILIARY_POWER,
     "batchEjectionEnergy": AUXILIARY_POWER,
-    "pitchFeedScrew": Range(low=1e-4, high=1, unit="m/rev"),
-    "frictionCoefficientGuide": Range(low=0, high=1),
-    "tableMass": Range(low=0, high=1e6, unit="kg"),
-    "workpieceMass": Range(low=0, high=1e6, unit="kg"),
     "gravity": Range(low=9.7, high=9.9, unit="m/s²"),
-    "frictionCoefficientBearing": Range(low=0, high=1),
-    "feedScrewDiameter": Range(low=1e-3, high=1, unit="m"),
-    "preloadForce": Range(low=0, high=1e6, unit="N"),
-    "gearReductionRatio": Range(low=1e-3, high=1e3),
-    "leadScrewMass": Range(low=0, high=1e4, unit="kg"),
-    "couplingInertia": Range(low=0, high=10, unit="kg·m²"),
-    "viscousDampingCoefficient": Range(low=0, high=10, unit="N·m·s/rad"),
-    "axisServoMotorEfficent": EFFICIENCY,
     "rotorDiameter": Range(low=0, high=1e4, unit="mm"),
     "rotorLength": Range(low=0, high=1e4, unit="mm"),
     "frictionCoefficient": Range(low=0, high=1e4, unit="N·s/mm²"),
 }
 """numbers that are checked but that no model of ours asks for"""
 
+DRIVE = {
+    "pitchFeedScrew": Range(low=1e-4, high=0.5, unit="m/rev"),
+    "tableMass": MOVED_MASS,
+    "workpieceMass": MASS,
+    "leadScrewMass": MASS,
+    "feedScrewDiameter": Range(low=1e-3, high=0.5, unit="m"),
+    "couplingInertia": DRIVE_INERTIA,
+    "frictionCoefficientGuide": FRICTION,
+    "frictionCoefficientBearing": FRICTION,
+    "preloadForce": PRELOAD,
+    "viscousDampingCoefficient": VISCOUS,
+    "gearReductionRatio": GEAR_RATIO,
+    "axisServoMotorEfficent": EFFICIENCY,
+}
+"""what the feed drive needs: all of it, or there is none"""
+
 REMARKS = (
     "basicRapidSpeed is read in hundredths of a metre per minute; the form gives no unit.",
     "angularAcceleration is read in rev/s²; the form gives no unit, Table 1 says rad/s².",
-    "pitchFeedScrew is read as a lead in m per revolution; Table 1 says m/rad.",
+    "pitchFeedScrew is read as a lead in m per revolution; Table 1 says m/rad, but the torques "
+    "of the paper divide by 2π.",
+    "feedScrewDiameter is read in m; the form gives no inertia of the servomotor, none is added.",
     "axisAccelation is read in m/s² and holds for X, Y and Z alike.",
     "pDefaultLoad, pDefaultCool and the attributes called Energy are read as powers in W: as "
     "energies in J the setup would draw less than the basic load.",
     "The form gives no motor power, spindle speed range, travel, greatest feed, block time or "
     "tool change time: these do not limit; 1000 kW stands for the motor power.",
-    "Feed screw, masses, friction, rotor, setup and ejection are checked but not used.",
+    "rotorDiameter, rotorLength and frictionCoefficient are checked but not used: 0.2 N·s/mm² is "
+    "no viscosity of air or oil and the gap is missing, so they give no running torque.",
+    "gravity, setup and ejection are checked but not used.",
 )
 
 
@@ -97,6 +112,7 @@ def read_machine_xml(path: Path) -> Machine:
     )
     rapid = speed_from_m_min(table.number("basicRapidSpeed", RAPID) / RAPID_UNITS_PER_M_MIN)
     title = table.text("id")
+    drive, lacking = _drive(table)
     for key, allowed in UNUSED.items():
         table.optional_number(key, allowed)
     for key in TEXTS[1:]:
@@ -107,7 +123,9 @@ def read_machine_xml(path: Path) -> Machine:
         title=title,
         kind=MachineKind.MILL,
         spindle=_spindle(table),
-        axes=tuple(_axis(name, rapid, acceleration) for name in "XYZ"),
+        axes=tuple(
+            _axis(name, rapid=rapid, acceleration=acceleration, drive=drive) for name in "XYZ"
+        ),
         rapid=rapid,
         max_feed=None,
         max_cutting_force=None,
@@ -117,7 +135,7 @@ def read_machine_xml(path: Path) -> Machine:
         coolant_power=table.number("pDefaultCool", AUXILIARY_POWER),
         tool_change=0.0,
         source=f"{path.name}, in the XML form of paper 003, Fig. 5",
-        remarks=(*_kind_remark(title), *REMARKS),
+        remarks=(*_kind_remark(title), *lacking, *REMARKS),
     )
     table.finish()
     return machine
@@ -136,10 +154,39 @@ def _spindle(table: Table) -> Spindle:
     )
 
 
-def _axis(name: str, rapid: float, acceleration: float) -> Axis:
+def _drive(table: Table) -> tuple[AxisDrive | None, tuple[str, ...]]:
+    """Feed drive of every axis, or none and the remark that says why."""
+    values = {key: table.optional_number(key, allowed) for key, allowed in DRIVE.items()}
+    given = {key: value for key, value in values.items() if value is not None}
+    if len(given) < len(DRIVE):
+        absent = ", ".join(key for key in DRIVE if key not in given)
+        return None, (f"Without {absent} the feed drives are unknown: axes draw no power.",)
+    drive = AxisDrive(
+        lead=MM_PER_M * given["pitchFeedScrew"],
+        table_mass=given["tableMass"],
+        workpiece_mass=given["workpieceMass"],
+        screw_mass=given["leadScrewMass"],
+        screw_diameter=MM_PER_M * given["feedScrewDiameter"],
+        coupling_inertia=given["couplingInertia"],
+        guide_friction=given["frictionCoefficientGuide"],
+        bearing_friction=given["frictionCoefficientBearing"],
+        preload=given["preloadForce"],
+        viscous=nmm_from_nm(given["viscousDampingCoefficient"]),
+        gear_ratio=given["gearReductionRatio"],
+        efficiency=given["axisServoMotorEfficent"],
+    )
+    return drive, ()
+
+
+def _axis(name: str, *, rapid: float, acceleration: float, drive: AxisDrive | None) -> Axis:
     """One of three equal axes of unlimited travel."""
     return Axis(
-        name=name, travel=(-inf, inf), rapid=rapid, max_feed=rapid, acceleration=acceleration
+        name=name,
+        travel=(-inf, inf),
+        rapid=rapid,
+        max_feed=rapid,
+        acceleration=acceleration,
+        drive=drive,
     )
 
 

@@ -48,11 +48,52 @@ class Spindle:
     acceleration: float | None
     """rev/s²"""
     inertia: float | None = None
-    """kg·m²"""
+    """kg·m², at the spindle; ``None``: ramps draw no power of their own"""
     idle_power: float = 0.0
-    """W, turning without cutting, independent of speed"""
+    """motor power in W, turning without cutting, independent of speed"""
     idle_power_per_speed: float = 0.0
-    """W per rev/s"""
+    """W per rev/s: friction of constant torque"""
+    idle_power_per_speed_squared: float = 0.0
+    """W per (rev/s)²: viscous friction"""
+    regeneration: float = 0.0
+    """share of the braking power that returns to the mains; 0: a braking resistor"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AxisDrive:
+    """Servomotor, gear, feed screw and guide of one linear axis.
+
+    The screw turns once per lead, the motor ``gear_ratio`` times as fast.
+    """
+
+    lead: float
+    """mm per revolution of the screw"""
+    table_mass: float
+    """kg, all that the axis moves apart from the workpiece"""
+    workpiece_mass: float = 0.0
+    """kg, 0 where the workpiece does not ride on the axis"""
+    screw_mass: float = 0.0
+    """kg"""
+    screw_diameter: float = 0.0
+    """mm"""
+    coupling_inertia: float = 0.0
+    """kg·m², on the motor's shaft"""
+    motor_inertia: float = 0.0
+    """kg·m²"""
+    guide_friction: float = 0.0
+    """coefficient of the guide"""
+    bearing_friction: float = 0.0
+    """coefficient of the screw's bearing, at the screw's diameter"""
+    preload: float = 0.0
+    """N, in the bearing"""
+    viscous: float = 0.0
+    """N·mm·s/rad, on the motor's shaft"""
+    gear_ratio: float = 1.0
+    """turns of the motor per turn of the screw"""
+    efficiency: float = 1.0
+    """mechanical over electrical power of the motor, 0 < η ≤ 1"""
+    regeneration: float = 0.0
+    """share of the braking power that returns to the mains; 0: a braking resistor"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,6 +112,8 @@ class Axis:
     """mm/s²"""
     jerk: float | None = None
     """mm/s³"""
+    drive: AxisDrive | None = None
+    """``None``: unknown; the axis draws no power of its own"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -4,7 +4,7 @@ A control model plans one stretch of path that begins and ends at rest. What it 
 closed form in time: any sampling rate is exact. Units mm, s.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
@@ -27,6 +27,8 @@ class AxisLimits:
     """(3,) mm/s, greatest feed"""
     block_time: float = 0.0
     """s, the control's processing time of one block"""
+    jerk: Floats = field(default_factory=lambda: np.full(3, np.inf))
+    """(3,) mm/s³"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -79,15 +81,17 @@ class ControlModel(Protocol):
 def axis_limits(machine: Machine) -> AxisLimits:
     """Limits of a machine's axes in the order X, Y, Z."""
     axes = {axis.name: axis for axis in machine.axes}
-    acceleration, rapid, feed = (np.full(3, np.inf) for _ in range(3))
+    acceleration, rapid, feed, jerk = (np.full(3, np.inf) for _ in range(4))
     for row, name in enumerate(AXES):
         if name in axes:
             acceleration[row] = axes[name].acceleration
             rapid[row] = axes[name].rapid
             feed[row] = axes[name].max_feed
+            jerk[row] = axes[name].jerk or np.inf
     return AxisLimits(
         acceleration=acceleration,
         rapid=rapid,
         feed=feed,
         block_time=machine.block_time or 0.0,
+        jerk=jerk,
     )

@@ -93,6 +93,19 @@ class Segments:
         return np.where(self.turn == 0.0, 0.0, np.hypot(first, second))
 
     @cached_property
+    def _along(self) -> Floats:
+        """(N, 3) way of each axis per length of path, of arcs on the mean; 0 without length."""
+        length = np.where(self.length > 0.0, self.length, 1.0)
+        return (self.end - self.start) / length[:, None]
+
+    @cached_property
+    def _turn_rate(self) -> Floats:
+        """(N,) rad/mm; 0 for lines."""
+        return np.divide(
+            self.turn, self.length, out=np.zeros(len(self)), where=self.length > 0.0
+        )
+
+    @cached_property
     def _start_angle(self) -> Floats:
         """(N,) rad, of the arm from the centre to the start."""
         first, second = self._plane(np.arange(len(self)))
@@ -119,13 +132,12 @@ class Segments:
         -------
         (M, 3) array, mm
         """
-        part = self._part(rows, station)
-        point = self.start[rows] + part[:, None] * (self.end[rows] - self.start[rows])
-        bent = np.flatnonzero(self.turn[rows] != 0.0)
+        point = self.start[rows] + station[:, None] * self._along[rows]
+        bent = self._bent(rows)
         if len(bent):
             row = rows[bent]
             normal, size = self.normal[row], self.radius[row]
-            angle = self._start_angle[row] + part[bent] * self.turn[row]
+            angle = self._angle(row, station[bent])
             first, second = _FIRST[normal], _SECOND[normal]
             point[bent, first] = self.centre[row, first] + size * np.cos(angle)
             point[bent, second] = self.centre[row, second] + size * np.sin(angle)
@@ -138,15 +150,12 @@ class Segments:
         -------
         (M, 3) array
         """
-        length = self.length[rows]
-        whole = np.where(length > 0.0, length, 1.0)
-        along = (self.end[rows] - self.start[rows]) / whole[:, None]
-        bent = np.flatnonzero(self.turn[rows] != 0.0)
+        along = self._along[rows]
+        bent = self._bent(rows)
         if len(bent):
             row = rows[bent]
-            normal, turn = self.normal[row], self.turn[row]
-            angle = self._start_angle[row] + self._part(row, station[bent]) * turn
-            rate = self.radius[row] * turn / whole[bent]
+            normal, angle = self.normal[row], self._angle(row, station[bent])
+            rate = self.radius[row] * self._turn_rate[row]
             along[bent, _FIRST[normal]] = -rate * np.sin(angle)
             along[bent, _SECOND[normal]] = rate * np.cos(angle)
         return along
@@ -159,20 +168,22 @@ class Segments:
         (M, 3) array, 1/mm
         """
         bend = np.zeros((len(rows), 3))
-        bent = np.flatnonzero(self.turn[rows] != 0.0)
+        bent = self._bent(rows)
         if len(bent):
             row = rows[bent]
-            normal, turn = self.normal[row], self.turn[row]
-            angle = self._start_angle[row] + self._part(row, station[bent]) * turn
-            rate = -self.radius[row] * (turn / self.length[row]) ** 2
+            normal, angle = self.normal[row], self._angle(row, station[bent])
+            rate = -self.radius[row] * self._turn_rate[row] ** 2
             bend[bent, _FIRST[normal]] = rate * np.cos(angle)
             bend[bent, _SECOND[normal]] = rate * np.sin(angle)
         return bend
 
-    def _part(self, rows: Ints, station: Floats) -> Floats:
-        """Share of the segment that lies behind."""
-        length = self.length[rows]
-        return np.divide(station, length, out=np.zeros(len(rows)), where=length > 0.0)
+    def _bent(self, rows: Ints) -> Ints:
+        """Which of the rows are arcs."""
+        return np.flatnonzero(self.turn[rows])
+
+    def _angle(self, rows: Ints, station: Floats) -> Floats:
+        """Angle of the arm from the centre of arcs, rad."""
+        return self._start_angle[rows] + station * self._turn_rate[rows]
 
 
 _FIRST = np.array(FIRST)

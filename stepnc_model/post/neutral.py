@@ -6,7 +6,7 @@ know. Tools are numbered from 1 in the order of their first use; the list stands
 head of the program.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from math import isfinite
 
@@ -97,6 +97,12 @@ def blocks_of(
     return _Sequence(program, paths).blocks(name)
 
 
+def tool_numbers(paths: Iterable[ToolPath]) -> dict[Ref[Entity], int]:
+    """Numbers of the tools, from 1 in the order of their first use."""
+    used = dict.fromkeys(path.tool_ref for path in paths if path.tool_ref is not None)
+    return {ref: number for number, ref in enumerate(used, 1)}
+
+
 def _is_turning(paths: Sequence[ToolPath | Function]) -> bool:
     return any(isinstance(path, ToolPath) and path.is_turning for path in paths)
 
@@ -119,8 +125,7 @@ class _Sequence:
         self.paths = paths
         self.machine = Machine.LATHE if _is_turning(paths) else Machine.MILL
         cuts = [path for path in paths if isinstance(path, ToolPath)]
-        used = dict.fromkeys(path.tool_ref for path in cuts if path.tool_ref is not None)
-        self.numbers = {ref: number for number, ref in enumerate(used, 1)}
+        self.numbers = tool_numbers(cuts)
         self.safe_z = max(map(_safe_z, cuts), default=0.0)
         self.at: Point | None = None
         self.tool: Ref[Entity] | None = None

@@ -1,0 +1,236 @@
+"""A measured run: what the sensors of a machine showed, one row a sample.
+
+The file is CSV with the column names of the virtual machine's timeline; columns that a machine
+has not are absent. What cannot be a run at all is a :class:`CalibrationError`; what a fit can
+live with, but somebody should know, is a :class:`~stepnc_model.errors.Finding`. Units mm, s, W.
+"""
+
+import csv
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from pathlib import Path
+
+import numpy as np
+
+from simulator.errors import CalibrationError
+from simulator.motion.segments import Floats, Ints
+from stepnc_model.errors import Finding, Severity
+
+TIME = "time_s"
+POSITIONS = tuple(f"{axis}_axis_position_actual" for axis in "xyz")
+FEWEST_SAMPLES = 10
+GAP = 3.0
+"""a sampling interval this many times the median is a gap"""
+AXIS_SPEED = 5_000.0  # mm/s: several times the rapid of the fastest machine tools
+PEAK_POWER = (10.0, 1e6)  # W: of a spindle or a whole machine that does anything
+INTERVAL = (1e-5, 60.0)  # s between samples: 100 kHz to one a minute
+
+
+class Component(StrEnum):
+    """What a power belongs to, by the name of its column."""
+
+    X = "x_axis_wattage"
+    Y = "y_axis_wattage"
+    Z = "z_axis_wattage"
+    SPINDLE = "c_axis_wattage"
+    COOLANT = "coolant_wattage"
+    TOTAL = "load_wattage"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class MeasuredRun:
+    """N samples of one run."""
+
+    name: str
+    time: Floats
+    """(N,) s, ascending"""
+    position: Floats
+    """(N, 3) mm; NaN for an axis without a column"""
+    power: Mapping[Component, Floats]
+    """each (N,) W"""
+    commanded: Floats | None = None
+    """(N, 3) mm"""
+    block: Ints | None = None
+    """(N,) number of the block that runs"""
+    findings: tuple[Finding, ...] = ()
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    @property
+    def durations(self) -> Floats:
+        """(N,) s that each sample stands for: up to the next one, 0 before a gap."""
+        steps = np.diff(self.time)
+        usual = float(np.median(steps))
+        return np.append(np.where(steps > GAP * usual, 0.0, steps), usual)
+
+
+def read_run(path: Path) -> MeasuredRun:
+    """Run of a CSV file, checked.
+
+    Rows with an empty cell are left out and leave a gap.
+
+    Raises
+    ------
+    CalibrationError
+        A column is missing or holds no numbers, time does not ascend, a value is beyond any
+        machine tool in the unit of its column, or no power ever changes.
+    """
+    columns, lines = read_columns(path, wanted=(TIME, *POSITIONS, *Component))
+    if TIME not in columns:
+        raise CalibrationError("missing; time in s", path=str(path), column=TIME)
+    power = {part: columns[part] for part in Component if part in columns}
+    if not power:
+        names = ", ".join(Component)
+        raise CalibrationError(f"no power in W; one of {names} is needed", path=str(path))
+    absent = np.full(len(lines), np.nan)
+    run = MeasuredRun(
+        name=path.stem,
+        time=columns[TIME],
+        position=np.stack([columns.get(name, absent) for name in POSITIONS], axis=1),
+        power=power,
+    )
+    return checked(run, lines=lines, path=str(path))
+
+
+def read_columns(path: Path, *, wanted: Sequence[str]) -> tuple[dict[str, Floats], Ints]:
+    """Those columns of a CSV file that it has, and the line of each row.
+
+    Returns
+    -------
+    dict of (N,) arrays by heading, (N,) array of int
+
+    Raises
+    ------
+    CalibrationError
+        No such text, too few rows, a row of another length, or a cell that is no number.
+    """
+    try:
+        with path.open(encoding="utf-8-sig", newline="") as stream:
+            table = list(csv.reader(stream))
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise CalibrationError(str(error), path=str(path)) from error
+    headings = table[0] if table else []
+    columns = {name: headings.index(name) for name in wanted if name in headings}
+    numbers = [
+        (line, _numbers(row, columns, width=len(headings), path=str(path), line=line))
+        for line, row in enumerate(table[1:], start=2)
+    ]
+    whole = [(line, row) for line, row in numbers if None not in row]
+    if len(whole) < FEWEST_SAMPLES:
+        message = f"{len(whole)} whole samples, at least {FEWEST_SAMPLES} are needed"
+        raise CalibrationError(message, path=str(path))
+    values = np.array([row for _, row in whole], dtype=np.float64)
+    lines = np.array([line for line, _ in whole])
+    return dict(zip(columns, values.T, strict=True)), lines
+
+
+def _numbers(
+    row: list[str], columns: Mapping[str, int], *, width: int, path: str, line: int
+) -> list[float | None]:
+    """Cells of a row; ``None`` where one is empty."""
+    if len(row) != width:
+        message = f"{len(row)} values under {width} headings"
+        raise CalibrationError(message, path=path, line=line)
+    values: list[float | None] = []
+    for name, index in columns.items():
+        cell = row[index].strip()
+        try:
+            value = float(cell) if cell else None
+        except ValueError:
+            value = np.nan
+        if value is not None and not np.isfinite(value):
+            raise CalibrationError(f"'{cell}' is no number", path=path, line=line, column=name)
+        values.append(value)
+    return values
+
+
+def checked(run: MeasuredRun, *, lines: Ints, path: str) -> MeasuredRun:
+    """The run with its findings, and without powers that are constant.
+
+    Parameters
+    ----------
+    run : MeasuredRun
+    lines : (N,) array of int
+        Line of the file of each sample.
+    path : str
+
+    Raises
+    ------
+    CalibrationError
+        Time does not ascend, a value is beyond any machine tool, or no power ever changes.
+    """
+    _check_time(run.time, lines=lines, path=path)
+    _check_units(run, lines=lines, path=path)
+    constant = [part for part, watts in run.power.items() if float(np.ptp(watts)) == 0.0]
+    if len(constant) == len(run.power):
+        level = run.power[constant[0]][0]
+        message = f"constant at {level:g} W like every power; nothing can be fitted to it"
+        raise CalibrationError(message, path=path, column=constant[0])
+    findings = (
+        *run.findings,
+        *_gaps(run.time, lines=lines),
+        *(_warning(f"constant at {run.power[part][0]:g} W, left out", part) for part in constant),
+    )
+    kept = {part: watts for part, watts in run.power.items() if part not in constant}
+    return replace(run, power=kept, findings=findings)
+
+
+def _check_time(time: Floats, *, lines: Ints, path: str) -> None:
+    """Time ascends, by intervals that a logger could have."""
+    steps = np.diff(time)
+    if (steps <= 0.0).any():
+        row = int(np.argmax(steps <= 0.0)) + 1
+        message = f"{time[row]:g} s after {time[row - 1]:g} s; time must ascend"
+        raise CalibrationError(message, path=path, line=int(lines[row]), column=TIME)
+    usual = float(np.median(steps))
+    low, high = INTERVAL
+    if not low <= usual <= high:
+        message = f"a sample every {usual:g} s, expected {low:g} to {high:g} s: another unit?"
+        raise CalibrationError(message, path=path, column=TIME)
+
+
+def _check_units(run: MeasuredRun, *, lines: Ints, path: str) -> None:
+    """Speeds in mm/s and powers in W are those of a machine tool."""
+    speed = np.abs(np.diff(run.position, axis=0)) / np.diff(run.time)[:, None]
+    for axis, name in enumerate(POSITIONS):
+        fast = np.flatnonzero(speed[:, axis] > AXIS_SPEED)
+        if len(fast):
+            message = (
+                f"{speed[fast[0], axis]:g} mm/s between two samples exceeds {AXIS_SPEED:g} mm/s;"
+                " positions in mm, time in s?"
+            )
+            line = int(lines[fast[0] + 1])
+            raise CalibrationError(message, path=path, line=line, column=name)
+    low, high = PEAK_POWER
+    for part in (Component.SPINDLE, Component.TOTAL):
+        peak = float(np.max(np.abs(run.power.get(part, np.full(1, low)))))
+        if 0.0 < peak < low or peak > high:
+            message = f"peak {peak:g} W, expected {low:g} to {high:g} W: another unit, kW?"
+            raise CalibrationError(message, path=path, column=part)
+
+
+def _gaps(time: Floats, *, lines: Ints) -> list[Finding]:
+    """One finding for each interval that is far above the usual one."""
+    steps = np.diff(time)
+    bound = GAP * float(np.median(steps))
+    return [
+        _warning(
+            f"gap of {steps[row]:g} s, above {bound:g} s; its energy is left out",
+            TIME,
+            line=int(lines[row + 1]),
+        )
+        for row in np.flatnonzero(steps > bound)
+    ]
+
+
+def _warning(message: str, column: str, *, line: int = 0) -> Finding:
+    """A finding about a column."""
+    return Finding(
+        severity=Severity.WARNING,
+        message=message,
+        entity="measured run",
+        attribute=column,
+        line=line,
+    )

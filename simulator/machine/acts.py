@@ -1,0 +1,91 @@
+"""What a program makes the machine do, one act after another.
+
+Between the neutral blocks of a program and the run of the machine: feeds are speeds in mm/s,
+cycles and threads are moves, and moves that follow each other without a pause are one stretch.
+"""
+
+from dataclasses import dataclass, field
+
+from simulator.motion.segments import Floats, Segments
+from stepnc_model.post.blocks import Coolant
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Stretch:
+    """Moves from rest to rest."""
+
+    segments: Segments
+    spindle_speed: Floats
+    """(N,) rev/s that the spindle has at the end of each segment; NaN: it keeps its speed"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SpindleTo:
+    """The spindle goes to a speed; moves may begin meanwhile."""
+
+    speed: float
+    """rev/s, positive clockwise (M3), 0: stop"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SpindleReached:
+    """Wait until the spindle has its speed: the feed is held back until then."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Wait:
+    """Dwell."""
+
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ToolTo:
+    """Tool change."""
+
+    number: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CoolantTo:
+    """Coolant on or off."""
+
+    coolant: Coolant = field(default_factory=Coolant)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WorkingstepTo:
+    """A workingstep begins."""
+
+    id: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stop:
+    """The program stops until somebody starts it again; takes no time here."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class End:
+    """The program has ended."""
+
+
+Act = (
+    Stretch
+    | SpindleTo
+    | SpindleReached
+    | Wait
+    | ToolTo
+    | CoolantTo
+    | WorkingstepTo
+    | Stop
+    | End
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Step:
+    """An act and the line of the program from which it comes."""
+
+    line: int
+    act: Act

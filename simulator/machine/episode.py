@@ -1,0 +1,126 @@
+"""One stretch of time in the machine's run, in closed form: everything at any time in it.
+
+During an episode the tool, the coolant and the running workingstep do not change; the axes move
+along one stretch of path, or stand. Units mm, s, rev/s.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from simulator.machine.cutting import Edge
+from simulator.machine.samples import Execution
+from simulator.machine.spindle_course import SpindleCourse
+from simulator.machine.wear import Wear
+from simulator.motion.motion import Kinematics, Motion
+from simulator.motion.segments import Floats, Ints, Segments
+from simulator.removal.stations import Stations
+
+ARC_STEP = 0.2
+"""rad of an arc over which the power of its axes counts as smooth"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class State:
+    """What does not change during an episode."""
+
+    execution: Execution
+    line: int
+    tool: int = 0
+    workingstep: int = 0
+    coolant_on: bool = False
+    spindle_programmed: float = 0.0
+    """rev/s, signed"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Course:
+    """The way along a stretch, what it meets, and what cuts."""
+
+    segments: Segments
+    motion: Motion
+    stations: Stations
+    edge: Edge | None
+    """None: nothing is known of tool or stock, all is air"""
+    wear: Wear
+
+    @cached_property
+    def offsets(self) -> Floats:
+        """(N + 1,) mm of path before each segment."""
+        return np.concatenate(([0.0], np.cumsum(self.segments.length)))
+
+    @cached_property
+    def station_ends(self) -> Floats:
+        """(M,) mm of path at which each station ends."""
+        return self.offsets[self.stations.segment] + self.stations.station
+
+    def stations_at(self, kinematics: Kinematics) -> Ints:
+        """Which station holds at each of some times."""
+        along = self.offsets[kinematics.segment] + kinematics.station
+        rows = np.searchsorted(self.station_ends, along, side="left")
+        return np.minimum(rows, len(self.stations) - 1)
+
+    @cached_property
+    def clock(self) -> tuple[Floats, Floats]:
+        """Times from the start, s, and mm of path behind: fine enough to be joined straight."""
+        knots = self.motion.knots
+        parts = np.array([0.25, 0.5, 0.75, 1.0])
+        inside = knots[:-1, None] + np.diff(knots)[:, None] * parts
+        times = np.concatenate((knots[:1], inside.ravel()))
+        at = self.motion.at(times)
+        along = self.offsets[at.segment] + at.station
+        return times, np.maximum.accumulate(along)
+
+    @cached_property
+    def nodes(self) -> Floats:
+        """(K,) times between which all powers are smooth, as far as that is known."""
+        times, along = self.clock
+        places = [self.station_ends, self._arc_places()]
+        met = np.interp(np.concatenate(places), along, times)
+        return np.unique(np.concatenate((self.motion.knots, met)))
+
+    def _arc_places(self) -> Floats:
+        """Mm of path at which the directions of arcs have changed noticeably."""
+        turn = np.abs(self.segments.turn)
+        count = np.ceil(turn / ARC_STEP).astype(np.int64)
+        rows = np.repeat(np.arange(len(turn)), count)
+        first = np.repeat(np.cumsum(count) - count, count)
+        part = (np.arange(len(rows)) - first) / np.maximum(count[rows], 1)
+        return self.offsets[rows] + part * self.segments.length[rows]
+
+    def worn(self, times: Floats) -> Floats:
+        """Factor on the force at times from the start of the stretch."""
+        if not self.wear.grows:
+            return np.full(len(times), self.wear.factor(0.0))
+        return self.wear.factors(np.interp(times, self.clock[0], self._cut_clock))
+
+    @property
+    def cutting_seconds(self) -> float:
+        """Time with chips, s."""
+        return float(self._cut_clock[-1])
+
+    @cached_property
+    def _cut_clock(self) -> Floats:
+        """(K,) s with chips until each time of the clock."""
+        times, along = self.clock
+        rows = np.searchsorted(self.station_ends, along[1:], side="left")
+        cuts = self.stations.section[np.minimum(rows, len(self.stations) - 1)] > 0.0
+        return np.concatenate(([0.0], np.cumsum(np.diff(times) * cuts)))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Episode:
+    """The machine between two times."""
+
+    begin: float
+    """s"""
+    end: float
+    """s"""
+    state: State
+    spindle: SpindleCourse
+    """by time from the start of the program"""
+    position: Floats
+    """(3,) mm where the tool stands, or where the stretch begins"""
+    course: Course | None = None
+    """None: the axes stand"""

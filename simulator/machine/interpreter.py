@@ -1,0 +1,304 @@
+"""From neutral blocks to acts of the machine: the virtual control reads a program.
+
+Feeds per revolution become speeds along the path; where the spindle follows a constant surface
+speed, a move is split so that its speed changes by at most a few per cent from piece to piece.
+Cycles, threads and taps become moves. Memory is bounded: moves are handed on in stretches.
+"""
+
+from collections.abc import Callable, Iterable, Iterator
+from math import ceil, copysign, inf, isfinite, isnan, log, nan, pi
+
+from simulator.errors import ProgramFault
+from simulator.machine.acts import (
+    Act,
+    CoolantTo,
+    End,
+    SpindleReached,
+    SpindleTo,
+    Step,
+    Stop,
+    ToolTo,
+    Wait,
+    WorkingstepTo,
+)
+from simulator.machine.rows import Rows
+from simulator.spec import Machine
+from stepnc_model.post.blocks import (
+    Block,
+    Circular,
+    Comment,
+    Coolant,
+    DrillingCycle,
+    Linear,
+    Pause,
+    ProgramEnd,
+    ProgramStop,
+    Rapid,
+    Rate,
+    RateMode,
+    Retract,
+    RigidTap,
+    Sense,
+    SpindleOff,
+    SpindleOn,
+    SpindleOrient,
+    SurfaceSpeed,
+    Threading,
+    ToolChange,
+)
+from stepnc_model.post.canonical import synchronised
+from stepnc_model.toolpath.path import Point
+
+Numbered = tuple[int, Block]
+"""line of the program and what it says"""
+
+LONGEST = 20_000
+"""segments in one stretch; a longer one stops once, for the sake of memory"""
+
+PIECE = 0.02
+"""relative change of the radius within one piece at constant surface speed"""
+
+MOST_PIECES = 400
+
+
+def interpret(blocks: Iterable[Numbered], machine: Machine) -> Iterator[Step]:
+    """Acts of a program.
+
+    Parameters
+    ----------
+    blocks : iterable of (int, Block)
+        Lines, counted from 1, and what they say; read as they are needed.
+    machine : Machine
+        For the greatest speed of its spindle.
+
+    Raises
+    ------
+    ProgramFault
+        At a feed per revolution while the spindle stands, with the line.
+    """
+    return _Interpreter(machine).steps(blocks)
+
+
+class _Interpreter:
+    """Running state: where the tool is and what the spindle was told."""
+
+    def __init__(self, machine: Machine) -> None:
+        self.fastest = machine.spindle.max_speed or inf
+        self.at: list[float] = [nan, nan, nan]
+        """unknown until the first move says it"""
+        self.surface: SurfaceSpeed | None = None
+        self.speed = 0.0
+        """rev/s that the spindle was told, signed"""
+        self.is_awaited = False
+        """whether the next feed waits for the spindle"""
+        self.rows = Rows()
+        self.line = 0
+        self._readers: dict[type, Callable[..., Iterator[Act]]] = {
+            Comment: self._comment,
+            ToolChange: self._tool,
+            SpindleOn: self._spindle_on,
+            SurfaceSpeed: self._surface_speed,
+            SpindleOff: self._spindle_off,
+            SpindleOrient: self._spindle_off,
+            Coolant: self._cool,
+            Retract: self._retract,
+            Rapid: self._rapid,
+            Linear: self._linear,
+            Circular: self._circular,
+            Threading: self._threading,
+            RigidTap: self._tap,
+            Pause: self._pause,
+            ProgramStop: self._stop,
+            ProgramEnd: self._end,
+            DrillingCycle: self._cycle,
+        }
+
+    def steps(self, blocks: Iterable[Numbered]) -> Iterator[Step]:
+        """Acts, each with its line; moves are handed on when something else comes."""
+        for line, block in blocks:
+            self.line = line
+            yield from (Step(line=line, act=act) for act in self._read(block))
+        yield from (Step(line=self.line, act=act) for act in self._flush())
+
+    def _read(self, block: Block) -> Iterator[Act]:
+        reader = self._readers.get(type(block))
+        if reader is not None:
+            yield from reader(block)
+        if len(self.rows) >= LONGEST:
+            yield from self._flush()
+
+    def _flush(self) -> Iterator[Act]:
+        if self.rows:
+            yield self.rows.taken()
+
+    def _comment(self, block: Comment) -> Iterator[Act]:
+        if block.workingstep:
+            yield from self._flush()
+            yield WorkingstepTo(id=block.workingstep)
+
+    def _tool(self, block: ToolChange) -> Iterator[Act]:
+        yield from self._flush()
+        yield ToolTo(number=block.number)
+
+    def _spindle_on(self, block: SpindleOn) -> Iterator[Act]:
+        self.surface = None
+        yield from self._turn(_signed(block.speed, block.sense))
+
+    def _surface_speed(self, block: SurfaceSpeed) -> Iterator[Act]:
+        self.surface = block
+        if not isnan(self.at[0]):
+            yield from self._turn(_signed(self._speed_at(self.at[0]), block.sense))
+
+    def _spindle_off(self, _block: SpindleOff | SpindleOrient) -> Iterator[Act]:
+        self.surface = None
+        yield from self._turn(0.0)
+        self.is_awaited = False
+
+    def _turn(self, speed: float) -> Iterator[Act]:
+        if speed == self.speed:
+            return
+        yield from self._flush()
+        self.speed = speed
+        self.is_awaited = True
+        yield SpindleTo(speed=speed)
+
+    def _speed_at(self, radius: float) -> float:
+        """Speed at constant surface speed, rev/s."""
+        surface = self.surface
+        if surface is None:
+            return abs(self.speed)
+        most = min(self.fastest, surface.limit or inf)
+        around = 2.0 * pi * abs(radius)
+        speed = surface.speed / around if around > 0.0 else inf
+        if not isfinite(min(speed, most)):
+            raise ProgramFault("surface speed at the axis without a greatest speed", self.line)
+        return min(speed, most)
+
+    def _cool(self, block: Coolant) -> Iterator[Act]:
+        yield from self._flush()
+        yield CoolantTo(coolant=block)
+
+    def _pause(self, block: Pause) -> Iterator[Act]:
+        yield from self._flush()
+        yield Wait(seconds=block.seconds)
+
+    def _stop(self, _block: ProgramStop) -> Iterator[Act]:
+        yield from self._flush()
+        yield Stop()
+
+    def _end(self, _block: ProgramEnd) -> Iterator[Act]:
+        yield from self._flush()
+        yield End()
+
+    def _cycle(self, block: DrillingCycle) -> Iterator[Act]:
+        for part in block.expansion:
+            yield from self._read(part)
+
+    # Moves.
+
+    def _start(self, end: Point) -> Point:
+        """Where a move begins; what is not known yet is where it ends."""
+        known = [e if isnan(a) else a for a, e in zip(self.at, end, strict=True)]
+        return known[0], known[1], known[2]
+
+    def _retract(self, block: Retract) -> Iterator[Act]:
+        start = self._start((self.at[0], self.at[1], block.z))
+        if isnan(start[0]) or isnan(start[1]):
+            # Along z only, from nobody knows where: the machine stands there already.
+            self.at[2] = block.z
+            return
+        yield from self._rapid(Rapid(end=(start[0], start[1], block.z)))
+
+    def _rapid(self, block: Rapid) -> Iterator[Act]:
+        start = self._start(block.end)
+        if self.surface is not None:
+            wanted = _signed(self._speed_at(block.end[0]), self.surface.sense)
+            yield from self._turn(wanted)
+        if start != block.end:
+            self.rows.line(start, block.end, speed=inf, line=self.line)
+        self.at = list(block.end)
+
+    def _linear(self, block: Linear) -> Iterator[Act]:
+        start = self._start(block.end)
+        yield from self._cut_begins()
+        pieces = self._pieces(start[0], block.end[0])
+        at = start
+        for index in range(1, pieces + 1):
+            part = index / pieces
+            to = block.end if index == pieces else _between(start, block.end, part)
+            middle = 0.5 * (at[0] + to[0])
+            speed, spindle = self._speeds(block.rate, middle, to[0])
+            if at != to:
+                self.rows.line(at, to, speed=speed, line=self.line, spindle=spindle)
+            at = to
+        self.at = list(block.end)
+
+    def _circular(self, block: Circular) -> Iterator[Act]:
+        start = self._start(block.end)
+        yield from self._cut_begins()
+        pieces = self._pieces(start[0], block.end[0])
+        self.rows.arc(
+            start,
+            block,
+            pieces=pieces,
+            speeds=lambda middle, end: self._speeds(block.rate, middle, end),
+            line=self.line,
+        )
+        self.at = list(block.end)
+
+    def _pieces(self, one: float, other: float) -> int:
+        """Into how many pieces a move is split because the spindle follows the radius."""
+        if self.surface is None:
+            return 1
+        low, high = sorted((abs(one), abs(other)))
+        low = max(low, self.surface.speed / (2.0 * pi * self._speed_at(0.0)))
+        if high <= low:
+            return 1
+        return min(MOST_PIECES, ceil(log(high / low) / PIECE))
+
+    def _speeds(self, rate: Rate, middle: float, end: float) -> tuple[float, float]:
+        """Speed along the path in mm/s, and of the spindle at the end in rev/s."""
+        if self.surface is not None:
+            self.speed = _signed(self._speed_at(end), self.surface.sense)
+        spindle = self._speed_at(middle) if self.surface is not None else abs(self.speed)
+        speed = rate.value
+        if rate.mode is RateMode.PER_REVOLUTION:
+            speed *= spindle
+        if speed <= 0.0:
+            raise ProgramFault("a feed per revolution while the spindle stands", self.line)
+        return speed, self.speed if self.surface is not None else nan
+
+    def _cut_begins(self) -> Iterator[Act]:
+        """The feed waits for the spindle."""
+        if self.is_awaited:
+            yield from self._flush()
+            yield SpindleReached()
+            self.is_awaited = False
+
+    def _threading(self, block: Threading) -> Iterator[Act]:
+        lead = synchronised(self._start(block.end), block.end, block.lead)
+        rate = Rate(value=lead, mode=RateMode.PER_REVOLUTION)
+        yield from self._linear(Linear(end=block.end, rate=rate))
+
+    def _tap(self, block: RigidTap) -> Iterator[Act]:
+        """Down, the spindle turns round, up."""
+        self.surface = None
+        rate = Rate(value=block.lead, mode=RateMode.PER_REVOLUTION)
+        x, y, _ = block.start
+        yield from self._rapid(Rapid(end=block.start))
+        for sense, z in (
+            (block.sense, block.bottom_z),
+            (block.sense.opposite, block.start[2]),
+        ):
+            yield from self._turn(_signed(block.speed, sense))
+            yield from self._linear(Linear(end=(x, y, z), rate=rate))
+        yield from self._turn(_signed(block.speed, block.sense))
+
+
+def _signed(speed: float, sense: Sense) -> float:
+    return copysign(speed, 1.0 if sense is Sense.CLOCKWISE else -1.0)
+
+
+def _between(start: Point, end: Point, part: float) -> Point:
+    x, y, z = (a + part * (b - a) for a, b in zip(start, end, strict=True))
+    return x, y, z

@@ -1,0 +1,159 @@
+"""What the sensors show at any times of an episode, exactly.
+
+Units mm, s, N, W, rev/s.
+"""
+
+from collections.abc import Iterator
+from math import ceil
+
+import numpy as np
+
+from simulator.machine.cutting import CuttingLoads, cutting_loads
+from simulator.machine.drives import axes_power, main_power, overload
+from simulator.machine.episode import Episode
+from simulator.machine.samples import Execution, PathMode, Samples
+from simulator.motion.motion import Kinematics
+from simulator.motion.segments import Floats, Ints
+from simulator.spec import Machine
+
+ROUNDING = 1e-9
+"""share of a sampling interval by which a sample may miss the end of an episode"""
+
+MOST = 65_536
+"""samples made at once"""
+
+
+class Sampler:
+    """Takes samples at a constant rate, the first at the start of the program. Running state.
+
+    Parameters
+    ----------
+    machine : Machine
+    rate : float, 1/s
+    """
+
+    def __init__(self, machine: Machine, *, rate: float) -> None:
+        self._machine = machine
+        self._rate = rate
+        self._next = 0
+
+    def samples(self, episode: Episode) -> Iterator[Samples]:
+        """Samples of the next episode, in parts; an episode shorter than the interval may
+        have none.
+        """
+        beyond = ceil(episode.end * self._rate - ROUNDING)
+        if episode.state.execution is Execution.PROGRAM_COMPLETED:
+            beyond = self._next + 1
+        while self._next < beyond:
+            to = min(beyond, self._next + MOST)
+            yield sensed(episode, self._machine, np.arange(self._next, to) / self._rate)
+            self._next = to
+
+
+def sensed(episode: Episode, machine: Machine, times: Floats) -> Samples:
+    """Samples at (M,) times of an episode, s from the start of the program."""
+    kinematics = _kinematics(episode, times)
+    rows = None if episode.course is None else episode.course.stations_at(kinematics)
+    state, spindle = episode.state, episode.spindle
+    speed = spindle.speed(times)
+    loads = _loads(episode, kinematics, rows, speed=speed, times=times)
+    power = main_power(machine, speed, spindle.acceleration(times), cutting_power=loads.power)
+    count = len(times)
+    programmed, mode, line = _programmed(episode, kinematics, count)
+    return Samples(
+        time=times,
+        position=kinematics.position,
+        velocity=kinematics.velocity,
+        feed_programmed=programmed,
+        spindle_programmed=np.full(count, state.spindle_programmed),
+        spindle_speed=speed,
+        axis_power=axes_power(
+            machine,
+            kinematics.velocity,
+            kinematics.acceleration,
+            feed_force=loads.feed_force,
+        ),
+        spindle_power=power,
+        coolant_power=np.full(count, machine.coolant_power * state.coolant_on),
+        base_power=np.full(count, machine.base_power),
+        cutting_power=loads.power,
+        cutting_force=loads.force,
+        feed_force=loads.feed_force,
+        back_force=loads.back_force,
+        removal_rate=loads.removal_rate,
+        chip_thickness=loads.chip_thickness,
+        axial_depth=_along(episode, rows, "axial_depth", count),
+        radial_width=_along(episode, rows, "radial_width", count),
+        execution=np.full(count, int(state.execution)),
+        path_mode=mode,
+        coolant=np.full(count, int(state.coolant_on)),
+        overload=overload(machine, power, speed, force=loads.force),
+        line=line,
+        tool=np.full(count, state.tool),
+        workingstep=np.full(count, state.workingstep),
+    )
+
+
+def _kinematics(episode: Episode, times: Floats) -> Kinematics:
+    if episode.course is not None:
+        since = np.clip(times - episode.begin, 0.0, episode.course.motion.duration)
+        return episode.course.motion.at(since)
+    count = len(times)
+    return Kinematics(
+        position=np.tile(episode.position, (count, 1)),
+        velocity=np.zeros((count, 3)),
+        acceleration=np.zeros((count, 3)),
+        segment=np.zeros(count, dtype=np.int64),
+        station=np.zeros(count),
+    )
+
+
+def _loads(
+    episode: Episode,
+    kinematics: Kinematics,
+    rows: Ints | None,
+    *,
+    speed: Floats,
+    times: Floats,
+) -> CuttingLoads:
+    course = episode.course
+    if course is None or rows is None or course.edge is None:
+        nothing = np.zeros(len(times))
+        return CuttingLoads(
+            removal_rate=nothing,
+            chip_thickness=nothing,
+            power=nothing,
+            force=nothing,
+            feed_force=nothing,
+            back_force=nothing,
+        )
+    return cutting_loads(
+        course.stations,
+        rows,
+        speed=np.linalg.norm(kinematics.velocity, axis=1),
+        spindle_speed=np.abs(speed),
+        edge=course.edge,
+        wear=course.worn(times - episode.begin),
+    )
+
+
+def _along(episode: Episode, rows: Ints | None, name: str, count: int) -> Floats:
+    """A column of the stations; 0 at rest."""
+    if episode.course is None or rows is None:
+        return np.zeros(count)
+    column: Floats = getattr(episode.course.stations, name)
+    return column[rows]
+
+
+def _programmed(
+    episode: Episode, kinematics: Kinematics, count: int
+) -> tuple[Floats, Ints, Ints]:
+    """Programmed feed, mode of the path, and line."""
+    if episode.course is None:
+        still = np.full(count, int(PathMode.NONE))
+        return np.zeros(count), still, np.full(count, episode.state.line)
+    segments, at = episode.course.segments, kinematics.segment
+    is_rapid = segments.is_rapid[at]
+    feed = np.where(is_rapid, 0.0, segments.speed[at])
+    mode = np.where(is_rapid, int(PathMode.RAPID), int(PathMode.FEED))
+    return feed, mode, segments.block[at]

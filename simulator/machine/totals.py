@@ -1,0 +1,159 @@
+"""Time, energy and peaks of a run by workingstep, whatever the sampling rate.
+
+Powers are integrated by two Gauss points between the times at which they are not smooth: exact
+for straight moves, whose powers are quadratic in time; elsewhere as good as the stations are
+fine. Units s, J, W, N, mm³.
+"""
+
+from dataclasses import dataclass, field, replace
+from math import sqrt
+
+import numpy as np
+
+from simulator.machine.episode import Episode
+from simulator.machine.samples import Condition, PathMode, Samples
+from simulator.machine.sensing import sensed
+from simulator.motion.segments import Floats
+from simulator.spec import Machine
+
+KILOWATT_HOUR = 3.6e6
+"""J"""
+
+GAUSS = np.array([0.5 - 0.5 / sqrt(3.0), 0.5 + 0.5 / sqrt(3.0)])
+"""abscissae of the two-point rule on 0 to 1; both weights are a half"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Energy:
+    """Energy by component, J."""
+
+    x_axis: float = 0.0
+    y_axis: float = 0.0
+    z_axis: float = 0.0
+    spindle: float = 0.0
+    """cutting included"""
+    coolant: float = 0.0
+    base: float = 0.0
+
+    @property
+    def total(self) -> float:
+        """Of all components."""
+        axes = self.x_axis + self.y_axis + self.z_axis
+        return axes + self.spindle + self.coolant + self.base
+
+    def __add__(self, other: "Energy") -> "Energy":
+        return Energy(
+            x_axis=self.x_axis + other.x_axis,
+            y_axis=self.y_axis + other.y_axis,
+            z_axis=self.z_axis + other.z_axis,
+            spindle=self.spindle + other.spindle,
+            coolant=self.coolant + other.coolant,
+            base=self.base + other.base,
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Peak:
+    """Greatest value of something, and where."""
+
+    value: float = 0.0
+    time: float = 0.0
+    """s"""
+    line: int = 0
+
+    def or_greater(self, values: Floats, samples: Samples) -> "Peak":
+        """The greatest of this one and more values."""
+        at = int(values.argmax())
+        if values[at] <= self.value:
+            return self
+        return Peak(
+            value=float(values[at]), time=float(samples.time[at]), line=int(samples.line[at])
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Total:
+    """One workingstep, or what stands between them."""
+
+    duration: float = 0.0
+    """s"""
+    cutting_time: float = 0.0
+    """s with chips"""
+    rapid_time: float = 0.0
+    """s"""
+    energy: Energy = field(default_factory=Energy)
+    cutting_energy: float = 0.0
+    """J at the edge"""
+    volume: float = 0.0
+    """mm³ removed"""
+    power: Peak = field(default_factory=Peak)
+    """W of the spindle drive"""
+    force: Peak = field(default_factory=Peak)
+    """N, tangential"""
+    chip: Peak = field(default_factory=Peak)
+    """mm, mean thickness"""
+    overload_time: float = 0.0
+    """s above the continuous power or the permitted force"""
+
+    def plus(self, other: "Total") -> "Total":
+        """Both together; the greater peaks."""
+        return Total(
+            duration=self.duration + other.duration,
+            cutting_time=self.cutting_time + other.cutting_time,
+            rapid_time=self.rapid_time + other.rapid_time,
+            energy=self.energy + other.energy,
+            cutting_energy=self.cutting_energy + other.cutting_energy,
+            volume=self.volume + other.volume,
+            power=max(self.power, other.power, key=_value),
+            force=max(self.force, other.force, key=_value),
+            chip=max(self.chip, other.chip, key=_value),
+            overload_time=self.overload_time + other.overload_time,
+        )
+
+
+def _value(peak: Peak) -> float:
+    return peak.value
+
+
+def added(total: Total, episode: Episode, machine: Machine) -> Total:
+    """A total with one more episode."""
+    nodes = _nodes(episode)
+    spans = np.diff(nodes)
+    total = replace(total, duration=total.duration + episode.end - episode.begin)
+    if not len(spans):
+        return total
+    times = (nodes[:-1, None] + spans[:, None] * GAUSS).ravel()
+    weights = np.repeat(0.5 * spans, 2)
+    samples = sensed(episode, machine, times)
+    axes = weights @ samples.axis_power
+    energy = Energy(
+        x_axis=float(axes[0]),
+        y_axis=float(axes[1]),
+        z_axis=float(axes[2]),
+        spindle=float(weights @ samples.spindle_power),
+        coolant=float(weights @ samples.coolant_power),
+        base=float(weights @ samples.base_power),
+    )
+    is_loaded = samples.overload != Condition.NORMAL
+    return replace(
+        total,
+        cutting_time=total.cutting_time + float(weights @ (samples.removal_rate > 0.0)),
+        rapid_time=total.rapid_time + float(weights @ (samples.path_mode == PathMode.RAPID)),
+        energy=total.energy + energy,
+        cutting_energy=total.cutting_energy + float(weights @ samples.cutting_power),
+        volume=total.volume + float(weights @ samples.removal_rate),
+        power=total.power.or_greater(samples.spindle_power, samples),
+        force=total.force.or_greater(samples.cutting_force, samples),
+        chip=total.chip.or_greater(samples.chip_thickness, samples),
+        overload_time=total.overload_time + float(weights @ is_loaded),
+    )
+
+
+def _nodes(episode: Episode) -> Floats:
+    """Times at which some power is not smooth, ends included."""
+    ends = np.array([episode.begin, episode.end])
+    places = [ends, episode.spindle.times]
+    if episode.course is not None:
+        places.append(episode.begin + episode.course.nodes)
+    nodes = np.unique(np.concatenate(places))
+    return nodes[(nodes >= episode.begin) & (nodes <= episode.end)]

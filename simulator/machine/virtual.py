@@ -1,0 +1,254 @@
+"""The virtual machine: acts in, episodes out. Its state lives here.
+
+Rapid moves may begin while the spindle speeds up; a feed waits until it has its speed. A
+stretch begins and ends at rest. Everything is decided by path and time alone: same program,
+same machine, same run. Units mm, s, rev/s.
+"""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from math import copysign, inf
+from typing import Protocol
+
+import numpy as np
+
+from simulator.errors import OutOfTravel, UnknownTool
+from simulator.machine.acts import (
+    CoolantTo,
+    End,
+    SpindleReached,
+    SpindleTo,
+    Step,
+    Stop,
+    Stretch,
+    ToolTo,
+    Wait,
+    WorkingstepTo,
+)
+from simulator.machine.cutting import Edge
+from simulator.machine.episode import Course, Episode, State
+from simulator.machine.samples import Execution
+from simulator.machine.spindle_course import following, ramped, standing
+from simulator.machine.wear import Wear
+from simulator.motion.motion import AXES, ControlModel, axis_limits
+from simulator.motion.segments import Floats, Segments
+from simulator.removal.cutter import Cutter, Insert
+from simulator.removal.stations import Stations, air
+from simulator.spec import Machine
+from stepnc_model.errors import Finding, Severity
+
+Shape = Cutter | Insert
+
+
+class StockMap(Protocol):
+    """What is left of the stock."""
+
+    def cut(self, segments: Segments, shape: Shape, *, is_clockwise: bool) -> Stations:
+        """Take away what the tool sweeps; what it met."""
+        ...
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LoadedTool:
+    """A tool in the magazine."""
+
+    number: int
+    id: str
+    shape: Shape
+    edge: Edge
+    wear: Wear = field(default_factory=Wear)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Setup:
+    """The machine as somebody prepared it."""
+
+    machine: Machine
+    control: ControlModel
+    tools: Mapping[int, LoadedTool] | None = None
+    """by number; None: no tool is known, and nothing is cut"""
+    stock: Callable[[str], StockMap | None] = lambda _: None
+    """what is clamped when a workingstep begins; None: nothing is known of it"""
+    zero: tuple[float, float, float] | None = None
+    """mm, place of the program's zero on the axes; None: travel is not looked at"""
+
+
+class VirtualMachine:
+    """A machine that runs one program. Running state."""
+
+    def __init__(self, setup: Setup) -> None:
+        self.setup = setup
+        self.machine = setup.machine
+        self.limits = axis_limits(setup.machine)
+        self.now = 0.0
+        self.position: Floats | None = None
+        self.spindle = standing(0.0)
+        self.state = State(execution=Execution.ACTIVE, line=0)
+        self.workingsteps: list[str] = []
+        """ids in the order of their beginning; numbered from 1 in the episodes"""
+        self.tool: LoadedTool | None = None
+        self.findings: list[Finding] = []
+        self._stock = setup.stock("")
+        self._wear: dict[int, Wear] = {}
+        self._said: set[str] = set()
+
+    def run(self, steps: Iterable[Step]) -> Iterator[Episode]:
+        """Episodes of a program, one after another without a gap."""
+        for step in steps:
+            self.state = replace(self.state, line=step.line)
+            yield from self._act(step)
+        yield self._still(0.0, Execution.PROGRAM_COMPLETED)
+
+    def _act(self, step: Step) -> Iterator[Episode]:
+        match step.act:
+            case Stretch() as stretch:
+                yield self._move(stretch)
+            case SpindleTo(speed=speed):
+                self._turn(speed)
+            case SpindleReached():
+                yield from self._wait(self.spindle.reached - self.now)
+            case Wait(seconds=seconds):
+                yield from self._wait(seconds)
+            case ToolTo(number=number):
+                yield from self._wait(max(self.spindle.reached - self.now, 0.0))
+                yield from self._wait(self.machine.tool_change)
+                self._load(number)
+            case CoolantTo(coolant=coolant):
+                self.state = replace(self.state, coolant_on=bool(coolant.kinds))
+            case WorkingstepTo(id=name):
+                self.workingsteps.append(name)
+                self.state = replace(self.state, workingstep=len(self.workingsteps))
+                self._stock = self.setup.stock(name)
+            case Stop():
+                yield from self._wait(self.spindle.reached - self.now)
+            case End():
+                self._turn(0.0)
+                self.state = replace(self.state, coolant_on=False)
+                yield from self._wait(self.spindle.reached - self.now)
+
+    def _wait(self, seconds: float) -> Iterator[Episode]:
+        if seconds > 0.0:
+            yield self._still(seconds, Execution.WAIT)
+
+    def _still(self, seconds: float, execution: Execution) -> Episode:
+        begin, self.now = self.now, self.now + seconds
+        return Episode(
+            begin=begin,
+            end=self.now,
+            state=replace(self.state, execution=execution),
+            spindle=self.spindle,
+            position=np.zeros(3) if self.position is None else self.position,
+        )
+
+    def _turn(self, speed: float) -> None:
+        most = self.machine.spindle.max_speed or inf
+        if abs(speed) > most:
+            self._say(
+                f"spindle {abs(speed) * 60:g} rpm exceeds {most * 60:g} rpm: "
+                f"{most * 60:g} rpm taken"
+            )
+            speed = copysign(most, speed)
+        acceleration = self.machine.spindle.acceleration
+        self.spindle = ramped(self.spindle, self.now, speed, acceleration=acceleration)
+        self.state = replace(self.state, spindle_programmed=speed)
+
+    def _load(self, number: int) -> None:
+        if self.tool is not None and self.tool.number == number:
+            return
+        if self.setup.tools is not None:
+            if number not in self.setup.tools:
+                known = ", ".join(f"T{each}" for each in sorted(self.setup.tools))
+                raise UnknownTool(number, known, self.state.line)
+            self.tool = self.setup.tools[number]
+        self.state = replace(self.state, tool=number)
+
+    def _move(self, stretch: Stretch) -> Episode:
+        segments = stretch.segments
+        self._require_travel(segments)
+        motion = self.setup.control.plan(segments, self.limits)
+        begin, self.now = self.now, self.now + motion.duration
+        self._follow(stretch, begin + motion.ends, begin)
+        course = Course(
+            segments=segments,
+            motion=motion,
+            stations=self._cut(segments),
+            edge=None if self.tool is None else self.tool.edge,
+            wear=self._worn(),
+        )
+        self._wear_on(course)
+        episode = Episode(
+            begin=begin,
+            end=self.now,
+            state=self.state,
+            spindle=self.spindle,
+            position=segments.start[0],
+            course=course,
+        )
+        self.position = segments.end[-1]
+        return episode
+
+    def _follow(self, stretch: Stretch, ends: Floats, begin: float) -> None:
+        """The spindle follows the radius where it keeps a surface speed."""
+        wanted = stretch.spindle_speed
+        if not np.isnan(wanted).all():
+            self.spindle = following(
+                self.spindle,
+                begin,
+                ends,
+                wanted=wanted,
+                acceleration=self.machine.spindle.acceleration or inf,
+            )
+            last = float(wanted[~np.isnan(wanted)][-1])
+            self.state = replace(self.state, spindle_programmed=last)
+
+    def _cut(self, segments: Segments) -> Stations:
+        if self._stock is None or self.tool is None:
+            return air(np.arange(len(segments)), segments.length)
+        is_clockwise = self.state.spindle_programmed >= 0.0
+        stations = self._stock.cut(segments, self.tool.shape, is_clockwise=is_clockwise)
+        cuts = np.flatnonzero(stations.section > 0.0)
+        if len(cuts) and self.spindle.target == 0.0:
+            line = int(segments.block[stations.segment[cuts[0]]])
+            self._say("cuts while the spindle stands: its force is not known", line)
+        return stations
+
+    def _worn(self) -> Wear:
+        if self.tool is None:
+            return Wear()
+        return self._wear.get(self.tool.number, self.tool.wear)
+
+    def _wear_on(self, course: Course) -> None:
+        """The edge after the stretch."""
+        if self.tool is not None and course.wear.grows:
+            seconds = course.cutting_seconds
+            self._wear[self.tool.number] = course.wear.after(seconds)
+
+    def _require_travel(self, segments: Segments) -> None:
+        """Refuse a stretch that leaves the travel of an axis."""
+        if self.setup.zero is None:
+            return
+        turned = np.flatnonzero(segments.turn)
+        arms = np.repeat(turned, 8)
+        part = np.tile(np.arange(1, 9) / 8.0, len(turned))
+        points = np.concatenate((
+            segments.start[:1],
+            segments.end,
+            segments.position(arms, part * segments.length[arms]),
+        ))
+        lines = np.concatenate((segments.block[:1], segments.block, segments.block[arms]))
+        for axis in self.machine.axes:
+            row = AXES.index(axis.name)
+            low, high = (end - self.setup.zero[row] for end in axis.travel)
+            beyond = np.flatnonzero((points[:, row] < low) | (points[:, row] > high))
+            if len(beyond):
+                at = float(points[beyond[0], row])
+                raise OutOfTravel(axis.name, at, travel=(low, high), line=int(lines[beyond[0]]))
+
+    def _say(self, text: str, line: int = 0) -> None:
+        """A warning, once."""
+        if text not in self._said:
+            self._said.add(text)
+            finding = Finding(
+                severity=Severity.WARNING, message=text, line=line or self.state.line
+            )
+            self.findings.append(finding)

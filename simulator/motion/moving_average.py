@@ -1,0 +1,147 @@
+"""Two moving averages over a path that is run at piecewise constant speed, in closed form.
+
+With p the path by time and P its double integral, averages over the T1 and then the T2 seconds
+before t give ``q(t) = [P(t) − P(t−T1) − P(t−T2) + P(t−T1−T2)]/(T1·T2)``; the velocity is the
+same of the first integral and the acceleration the same of p itself. Large numbers would
+cancel, so time and position count from where the path was at t−T1−T2, and the integrals walk
+from there over the pieces within the window. Units mm, s, rad.
+
+References
+----------
+.. [1] K. Stumpff, "Himmelsmechanik", vol. 1, 1959: the functions c_k, which here integrate a
+   turning velocity without division by its rate.
+"""
+
+from math import cos, sin
+
+import numpy as np
+from numba import njit
+
+from simulator.motion.segments import Floats, Ints
+
+SERIES_BELOW = 0.5
+"""rad; below it the closed forms of c_3 and c_4 lose digits"""
+
+TERMS = 5
+"""of the series; the first one left out is below 10⁻¹⁵ of the sum"""
+
+STRAIGHT, SPIN, CROSS = 0, 1, 2
+"""rows of a velocity: the part that stays, the part that turns, and that a quarter turn on"""
+
+WAY, ONCE, TWICE = 0, 1, 2
+"""rows of a state: position from the origin, its integral, the integral of that"""
+
+
+@njit(cache=True)
+def averaged(
+    begin: Floats,
+    piece: Ints,
+    pieces: tuple[Floats, Floats, Floats, Floats],
+    first: float,
+    second: float,
+) -> Floats:
+    """State after both averages.
+
+    Parameters
+    ----------
+    begin : (M,) array, s
+        T1 + T2 before the times asked for.
+    piece : (M,) array of int
+        In which of K pieces these lie.
+    pieces : tuple of four arrays
+        (K+1,) s at which pieces begin and the last one ends; (K, 3) mm where they begin;
+        (K, 3, 3) mm/s velocity there, in rows as above; (K,) rad/s at which it turns.
+    first, second : float, s
+        T1 ≥ T2 > 0.
+
+    Returns
+    -------
+    (3, M, 3) array
+        Acceleration, velocity and position in mm/s², mm/s and mm.
+    """
+    time, start, velocity, rate = pieces
+    result = np.zeros((3, len(begin), 3))
+    state, there, leg = np.zeros((3, 3)), np.zeros((3, 3)), np.zeros((3, 3))
+    origin = np.zeros(3)
+    taps = ((second, -1.0), (first, -1.0), (first + second, 1.0))
+    scale = 1.0 / (first * second)
+    for row in range(len(begin)):
+        now = piece[row]
+        passed = begin[row] - time[now]
+        state.fill(0.0)
+        _enter(velocity, now, 0.0, leg)
+        _advance(state, leg, rate[now], passed, there)
+        for axis in range(3):
+            origin[axis] = start[now, axis] + there[WAY, axis]
+        _enter(velocity, now, rate[now] * passed, leg)
+        gone, left = 0.0, time[now + 1] - begin[row]
+        for tap, sign in taps:
+            while tap - gone > left and now + 1 < len(rate):
+                _advance(state, leg, rate[now], left, state)
+                now += 1
+                gone += left
+                left = time[now + 1] - time[now]
+                _enter(velocity, now, 0.0, leg)
+                for axis in range(3):
+                    state[WAY, axis] = start[now, axis] - origin[axis]
+            _advance(state, leg, rate[now], tap - gone, there)
+            for level in range(3):
+                for axis in range(3):
+                    result[level, row, axis] += sign * scale * there[level, axis]
+        for axis in range(3):
+            result[TWICE, row, axis] += origin[axis]
+    return result
+
+
+@njit(cache=True)
+def _enter(velocity: Floats, now: int, angle: float, leg: Floats) -> None:
+    """Velocity on a piece after its turning part has turned by an angle."""
+    cosine, sine = cos(angle), sin(angle)
+    for axis in range(3):
+        spin, cross = velocity[now, SPIN, axis], velocity[now, CROSS, axis]
+        leg[STRAIGHT, axis] = velocity[now, STRAIGHT, axis]
+        leg[SPIN, axis] = cosine * spin + sine * cross
+        leg[CROSS, axis] = cosine * cross - sine * spin
+
+
+@njit(cache=True)
+def _advance(state: Floats, leg: Floats, rate: float, time: float, there: Floats) -> None:
+    """State after a time on a leg, written to the last argument, which may be the first."""
+    angle = rate * time
+    c_1, c_2, c_3, c_4 = _stumpff(angle)
+    square, cube = time * time, time * time * time
+    for axis in range(3):
+        way, once = state[WAY, axis], state[ONCE, axis]
+        stay, spin, cross = leg[STRAIGHT, axis], leg[SPIN, axis], leg[CROSS, axis]
+        there[TWICE, axis] = (
+            state[TWICE, axis]
+            + once * time
+            + way * square / 2.0
+            + cube * (stay / 6.0 + c_3 * spin + angle * c_4 * cross)
+        )
+        there[ONCE, axis] = (
+            once + way * time + square * (stay / 2.0 + c_2 * spin + angle * c_3 * cross)
+        )
+        there[WAY, axis] = way + time * (stay + c_1 * spin + angle * c_2 * cross)
+
+
+@njit(cache=True)
+def _stumpff(angle: float) -> tuple[float, float, float, float]:
+    """c_1 to c_4 of the squared angle: ``c_k = 1/k! − x²/(k+2)! + x⁴/(k+4)! − …``, [1]_."""
+    square = angle * angle
+    if square == 0.0:
+        return 1.0, 1.0 / 2.0, 1.0 / 6.0, 1.0 / 24.0
+    if abs(angle) > SERIES_BELOW:
+        cosine, sine = cos(angle), sin(angle)
+        return (
+            sine / angle,
+            (1.0 - cosine) / square,
+            (angle - sine) / (square * angle),
+            (square / 2.0 - 1.0 + cosine) / (square * square),
+        )
+    third, fourth = 1.0, 1.0
+    for term in range(TERMS, 0, -1):
+        third = 1.0 - third * square / ((2 * term + 2) * (2 * term + 3))
+        fourth = 1.0 - fourth * square / ((2 * term + 3) * (2 * term + 4))
+    c_3, c_4 = third / 6.0, fourth / 24.0
+    return 1.0 - square * c_3, 0.5 - square * c_4, c_3, c_4

@@ -1,0 +1,95 @@
+"""Fastest motion along a path within its limits and the speeds that its corners allow.
+
+In b = v² an acceleration limit reads ``|Δb| ≤ 2·a·L``, so a sweep backward and one forward
+over the corners give the greatest b at each, [2]_, and each segment is a trapezoid or a
+triangle between the speeds at its ends, [1]_. Units mm, s.
+
+References
+----------
+.. [1] S.-J. Shin et al., "Developing a virtual machining model to generate MTConnect
+   machine-monitoring data from STEP-NC", Int. J. Prod. Res., 2016, Appendix 1 (1)-(4),
+   doi:10.1080/00207543.2015.1064182. Printed from rest to rest, without the triangle of moves
+   too short to reach their speed, and with v where the deceleration wants its own symbol.
+.. [2] D. Verscheure et al., "Time-optimal path tracking for robots: a convex optimization
+   approach", IEEE Trans. Autom. Control 54 (2009) 2318-2327: b = v² over the station.
+"""
+
+import numpy as np
+
+from simulator.motion.path_limits import PathLimits
+from simulator.motion.phases import Phases
+from simulator.motion.segments import Floats, Ints, Segments
+
+
+def swept(
+    segments: Segments, rows: Ints, *, limits: PathLimits, corner: Floats, pause: float = 0.0
+) -> Phases:
+    """Fastest motion from rest to rest.
+
+    Parameters
+    ----------
+    segments : Segments
+        N of them.
+    rows : (R,) array of int
+        Those that take time, ascending.
+    limits : PathLimits
+        Of all N.
+    corner : (R−1,) array, mm²/s²
+        Greatest squared speed between one of the rows and the next.
+    pause : float, s
+        Time of a row without length.
+
+    Returns
+    -------
+    Phases
+    """
+    if not len(rows):
+        rows, corner, pause = np.array([0]), np.empty(0), 0.0
+    length, acceleration = segments.length[rows], limits.acceleration[rows]
+    cap = limits.speed[rows] ** 2
+    reach = np.zeros(len(rows))
+    np.multiply(2.0 * acceleration, length, out=reach, where=length > 0.0)
+    squares = _node_squares(np.minimum(corner, np.minimum(cap[1:], cap[:-1])), reach)
+    before, after = squares[:-1], squares[1:]
+    top = np.minimum(cap, 0.5 * (before + after + reach))
+    top = np.maximum(top, np.maximum(before, after))
+    entry, peak, leave = np.sqrt(before), np.sqrt(top), np.sqrt(after)
+    rise, fall = 0.5 * (top - before) / acceleration, 0.5 * (top - after) / acceleration
+    run = np.full(len(rows), pause)
+    np.divide(np.maximum(length - rise - fall, 0.0), peak, out=run, where=peak > 0.0)
+    times = _threes((peak - entry) / acceleration, run, (peak - leave) / acceleration)
+    clock = np.append(0.0, np.cumsum(times))
+    kept = np.diff(clock) > 0.0
+    kept[0] |= not kept.any()
+    return Phases(
+        segments=segments,
+        ends=ends_of_all(len(segments), rows, clock[3::3]),
+        segment=np.repeat(rows, 3)[kept],
+        start=clock[:-1][kept],
+        time=times[kept],
+        station=_threes(np.zeros(len(rows)), rise, length - fall)[kept],
+        speed=_threes(entry, peak, peak)[kept],
+        acceleration=_threes(acceleration, np.zeros(len(rows)), -acceleration)[kept],
+    )
+
+
+def _node_squares(corner: Floats, reach: Floats) -> Floats:
+    """(R+1,) greatest squared speeds from rest to rest, each within reach of its neighbours."""
+    squares: list[float] = [0.0, *corner.tolist(), 0.0]
+    steps: list[float] = reach.tolist()
+    for row in range(len(steps) - 1, -1, -1):
+        squares[row] = min(squares[row], squares[row + 1] + steps[row])
+    for row, step in enumerate(steps):
+        squares[row + 1] = min(squares[row + 1], squares[row] + step)
+    return np.array(squares)
+
+
+def _threes(first: Floats, second: Floats, third: Floats) -> Floats:
+    """Values of the three phases of each row, one after another."""
+    return np.stack((first, second, third), axis=1).ravel()
+
+
+def ends_of_all(count: int, rows: Ints, ends: Floats) -> Floats:
+    """(N,) end of each segment; one that takes no time ends with the row before it."""
+    known = np.append(0.0, ends)
+    return known[np.searchsorted(rows, np.arange(count), side="right")]

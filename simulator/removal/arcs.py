@@ -1,0 +1,314 @@
+"""Exact arcs of contact: the front half of the tool's circle minus what earlier moves swept.
+
+At one height a level move of any cutter sweeps a stadium or the sector of a ring with round
+ends, and a flat cutter does so on a slope too, with the part of its path that lies below that
+height. Each cuts a few intervals out of the circle; their union is free, the rest is contact.
+Angles φ count from the normal to the feed in the direction of rotation, as in
+``simulator.physics.engagement``: 0 ≤ φ ≤ π is the front half. Units mm and rad.
+"""
+
+from math import atan2, cos, hypot, pi, sin, sqrt
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from simulator.motion.segments import Floats
+from simulator.removal.carve import LEVEL, Way, arc_distance, way_between
+from simulator.removal.profile import Profile, is_plain, radius_at
+from simulator.removal.zmap import Grid
+
+TOUCH = 1e-9
+"""mm within which two outlines are the same: a tool does not free its own front"""
+
+NARROW = 1e-6
+"""rad; what is narrower is rounding"""
+
+MOST_INTERVALS = 512
+RECORD = 20
+"""columns of a remembered move: its row, and the profile of its tool"""
+
+
+class Circle(NamedTuple):
+    """Section of the tool at one height, and where it goes."""
+
+    x: float
+    y: float
+    radius: float
+    ahead_x: float
+    ahead_y: float
+    """unit vector of the feed in the plane"""
+    side: float
+    """1: the spindle turns clockwise, seen from above; −1: counter-clockwise"""
+
+
+class Intervals(NamedTuple):
+    """Room for the work on one circle."""
+
+    cuts: Floats
+    """(16,) rad, where one outline crosses the circle"""
+    free: Floats
+    """(MOST_INTERVALS, 2) rad"""
+    contact: Floats
+    """(MOST_INTERVALS, 2) rad"""
+
+
+def intervals() -> Intervals:
+    """Room for the work on one circle."""
+    return Intervals(
+        np.empty(16), np.empty((MOST_INTERVALS, 2)), np.empty((MOST_INTERVALS, 2))
+    )
+
+
+def remembered(row: Floats, profile: Profile) -> NDArray[np.float64]:
+    """Record of a move for :func:`free_by_move`: its row and its tool."""
+    return np.concatenate([row, np.array(profile)])
+
+
+@njit(cache=True)
+def free_by_move(
+    room: Intervals, count: int, circle: Circle, record: Floats, level: float
+) -> int:
+    """Add what an earlier move freed at a height.
+
+    Parameters
+    ----------
+    room : Intervals
+        Its free intervals are added to.
+    count : int
+        Number of free intervals so far.
+    circle : Circle
+    record : (RECORD,) array
+        Row of the move, then the profile of its tool.
+    level : float, mm
+
+    Returns
+    -------
+    int
+        Number of free intervals; −1 when this move has no exact outline at this height.
+    """
+    profile = Profile(
+        record[13], record[14], record[15], record[16], record[17], record[18], record[19]
+    )
+    begin, end, radius = _cleared(record, profile, level)
+    if radius <= 0.0:
+        return -1
+    way = way_between(record, begin, end)
+    size = circle.radius
+    reach = radius + size + way.radius * abs(way.turn) + hypot(way.end_x - way.x, way.end_y - way.y)
+    if hypot(circle.x - way.x, circle.y - way.y) > reach:
+        return count
+    if way.turn == 0.0:
+        cuts = _line_cuts(room.cuts, circle, way, radius)
+    else:
+        cuts = _arc_cuts(room.cuts, circle, way, radius)
+    return _add_inside(room, count, cuts, circle, way, radius)
+
+
+@njit(cache=True)
+def _cleared(record: Floats, profile: Profile, level: float) -> tuple[float, float, float]:
+    """Part of a move that lies below a height, and the radius it clears there."""
+    low, high = min(record[2], record[5]), max(record[2], record[5])
+    if low > level + TOUCH:
+        return 0.0, 0.0, 0.0
+    bends_out = record[11] != 0.0 and record[12] != 2.0
+    upright = record[11] == 0.0 and hypot(record[3] - record[0], record[4] - record[1]) < TOUCH
+    if high - low <= LEVEL or (upright and not bends_out):
+        return 0.0, 1.0, radius_at(profile, max(level - low, 0.0))
+    if bends_out or not is_plain(profile):
+        return 0.0, 0.0, 0.0
+    part = min((level - record[2]) / (record[5] - record[2]), 1.0)
+    if record[5] > record[2]:
+        return 0.0, part, profile.radius
+    return max(part, 0.0), 1.0, profile.radius
+
+
+@njit(cache=True)
+def _front(circle: Circle, x: float, y: float) -> float:
+    """φ of a direction; negative behind."""
+    left = circle.side * (y * circle.ahead_x - x * circle.ahead_y)
+    return atan2(x * circle.ahead_x + y * circle.ahead_y, left)
+
+
+@njit(cache=True)
+def _line_cuts(cuts: Floats, circle: Circle, way: Way, radius: float) -> int:
+    """Where the outline of a stadium crosses the front half."""
+    along_x, along_y = way.end_x - way.x, way.end_y - way.y
+    length = hypot(along_x, along_y)
+    if length < TOUCH:
+        return _disc_cuts(cuts, 0, circle, (way.x, way.y), radius)
+    along_x, along_y = along_x / length, along_y / length
+    u = (circle.x - way.x) * along_x + (circle.y - way.y) * along_y
+    v = (circle.y - way.y) * along_x - (circle.x - way.x) * along_y
+    count = 0
+    for side in (-radius, radius):
+        square = circle.radius**2 - (side - v) ** 2
+        if square <= 0.0:
+            continue
+        for du in (-sqrt(square), sqrt(square)):
+            if 0.0 <= u + du <= length:
+                x = du * along_x - (side - v) * along_y
+                y = du * along_y + (side - v) * along_x
+                count = _cut(cuts, count, _front(circle, x, y))
+    count = _disc_cuts(cuts, count, circle, (way.x, way.y), radius)
+    return _disc_cuts(cuts, count, circle, (way.end_x, way.end_y), radius)
+
+
+@njit(cache=True)
+def _arc_cuts(cuts: Floats, circle: Circle, way: Way, radius: float) -> int:
+    """Where the outline of the sector of a ring crosses the front half."""
+    centre = (way.centre_x, way.centre_y)
+    count = _disc_cuts(cuts, 0, circle, centre, way.radius + radius)
+    count = _disc_cuts(cuts, count, circle, centre, abs(way.radius - radius))
+    count = _disc_cuts(cuts, count, circle, (way.x, way.y), radius)
+    return _disc_cuts(cuts, count, circle, (way.end_x, way.end_y), radius)
+
+
+@njit(cache=True)
+def _disc_cuts(
+    cuts: Floats, count: int, circle: Circle, centre: tuple[float, float], radius: float
+) -> int:
+    """Where another circle crosses the front half."""
+    x, y = centre[0] - circle.x, centre[1] - circle.y
+    away = hypot(x, y)
+    if away < TOUCH:
+        return count
+    along = (circle.radius**2 - radius * radius + away * away) / (2.0 * away)
+    square = circle.radius**2 - along * along
+    if square <= 0.0:
+        return count
+    x, y, across = x / away, y / away, sqrt(square)
+    for offset in (-across, across):
+        angle = _front(circle, along * x - offset * y, along * y + offset * x)
+        count = _cut(cuts, count, angle)
+    return count
+
+
+@njit(cache=True)
+def _cut(cuts: Floats, count: int, angle: float) -> int:
+    """Keep a crossing of the front half, in order."""
+    if not 0.0 < angle < pi or count == len(cuts):
+        return count
+    place = count
+    while place > 0 and cuts[place - 1] > angle:
+        cuts[place] = cuts[place - 1]
+        place -= 1
+    cuts[place] = angle
+    return count + 1
+
+
+@njit(cache=True)
+def _add_inside(
+    room: Intervals, count: int, cuts: int, circle: Circle, way: Way, radius: float
+) -> int:
+    """Add the intervals between crossings whose middles lie within a sweep."""
+    low = 0.0
+    for index in range(cuts + 1):
+        high = room.cuts[index] if index < cuts else pi
+        if high - low > NARROW:
+            middle = 0.5 * (low + high)
+            across, onward = circle.radius * cos(middle), circle.radius * sin(middle)
+            across *= circle.side
+            x = circle.x + onward * circle.ahead_x - across * circle.ahead_y
+            y = circle.y + onward * circle.ahead_y + across * circle.ahead_x
+            if _way_distance(way, x, y) < radius - TOUCH:
+                count = add_free(room, count, low, high)
+        low = high
+    return count
+
+
+@njit(cache=True)
+def _way_distance(way: Way, x: float, y: float) -> float:
+    """Distance of a point from a line or an arc in the plane."""
+    if way.turn != 0.0:
+        return arc_distance(way, x - way.centre_x, y - way.centre_y)
+    along_x, along_y = way.end_x - way.x, way.end_y - way.y
+    square = along_x * along_x + along_y * along_y
+    x, y = x - way.x, y - way.y
+    part = 0.0
+    if square > 0.0:
+        part = min(max((x * along_x + y * along_y) / square, 0.0), 1.0)
+    return hypot(x - part * along_x, y - part * along_y)
+
+
+@njit(cache=True)
+def add_free(room: Intervals, count: int, low: float, high: float) -> int:
+    """Add an interval, or widen the last one; past the room it is left out."""
+    if count > 0 and room.free[count - 1, 0] <= low <= room.free[count - 1, 1]:
+        room.free[count - 1, 1] = max(room.free[count - 1, 1], high)
+        return count
+    if count == len(room.free):
+        return count
+    room.free[count, 0], room.free[count, 1] = low, high
+    return count + 1
+
+
+@njit(cache=True)
+def free_by_outline(room: Intervals, count: int, circle: Circle, grid: Grid) -> int:
+    """Add what lies beside the raw stock."""
+    width = grid.heights.shape[0] * grid.dx
+    depth = grid.heights.shape[1] * grid.dy
+    cuts = 0
+    if grid.radius > 0.0:
+        centre = (grid.x + 0.5 * width, grid.y + 0.5 * depth)
+        cuts = _disc_cuts(room.cuts, 0, circle, centre, grid.radius)
+    for wall in (grid.x - circle.x, grid.x + width - circle.x):
+        square = circle.radius**2 - wall * wall
+        if square > 0.0 and grid.radius == 0.0:
+            cuts = _cut(room.cuts, cuts, _front(circle, wall, -sqrt(square)))
+            cuts = _cut(room.cuts, cuts, _front(circle, wall, sqrt(square)))
+    for wall in (grid.y - circle.y, grid.y + depth - circle.y):
+        square = circle.radius**2 - wall * wall
+        if square > 0.0 and grid.radius == 0.0:
+            cuts = _cut(room.cuts, cuts, _front(circle, -sqrt(square), wall))
+            cuts = _cut(room.cuts, cuts, _front(circle, sqrt(square), wall))
+    low = 0.0
+    for index in range(cuts + 1):
+        high = room.cuts[index] if index < cuts else pi
+        if high - low > NARROW:
+            middle = 0.5 * (low + high)
+            across = circle.side * circle.radius * cos(middle)
+            onward = circle.radius * sin(middle)
+            x = circle.x + onward * circle.ahead_x - across * circle.ahead_y
+            y = circle.y + onward * circle.ahead_y + across * circle.ahead_x
+            if is_beside(grid, x, y):
+                count = add_free(room, count, low, high)
+        low = high
+    return count
+
+
+@njit(cache=True)
+def is_beside(grid: Grid, x: float, y: float) -> bool:
+    """Whether a place lies beside the raw stock."""
+    across = (x - grid.x) / (grid.heights.shape[0] * grid.dx)
+    along = (y - grid.y) / (grid.heights.shape[1] * grid.dy)
+    if not (0.0 <= across <= 1.0 and 0.0 <= along <= 1.0):
+        return True
+    if grid.radius == 0.0:
+        return False
+    x -= grid.x + 0.5 * grid.heights.shape[0] * grid.dx
+    y -= grid.y + 0.5 * grid.heights.shape[1] * grid.dy
+    return hypot(x, y) > grid.radius
+
+
+@njit(cache=True)
+def contact_arcs(room: Intervals, count: int) -> int:
+    """What the free intervals leave of the front half; gives the number of contact arcs."""
+    free, contact = room.free, room.contact
+    for index in range(1, count):
+        low, high, place = free[index, 0], free[index, 1], index
+        while place > 0 and free[place - 1, 0] > low:
+            free[place, 0], free[place, 1] = free[place - 1, 0], free[place - 1, 1]
+            place -= 1
+        free[place, 0], free[place, 1] = low, high
+    found, reached = 0, 0.0
+    for index in range(count):
+        if free[index, 0] - reached > NARROW:
+            contact[found, 0], contact[found, 1] = reached, free[index, 0]
+            found += 1
+        reached = max(reached, free[index, 1])
+    if pi - reached > NARROW and found < len(contact):
+        contact[found, 0], contact[found, 1] = reached, pi
+        found += 1
+    return found

@@ -1,0 +1,362 @@
+"""How low a rotating cutter reaches over each cell of a height map, and the cutting itself.
+
+Over a cell at the distance u along a line and v beside it the tool reaches down to the least of
+``z(s) + f(√((u − s)² + v²))``, f the profile. f is convex and never falls, so this is convex in
+s: level lines take the nearest point, flat and ball tools have a closed form on any slope, and
+bull-nose, cone and taper are bisected to rounding. On level arcs the nearest point decides as
+well, and a flat tool on a helix has a closed form. What remains (arcs out of the XY plane;
+ball, bull-nose, cone and taper on a helix) runs on chords that leave the arc by at most
+``CHORD_SHARE`` of a cell. Units mm and rad.
+"""
+
+from math import acos, atan2, ceil, cos, floor, hypot, inf, pi, sin, sqrt
+from typing import NamedTuple
+
+from numba import njit
+
+from simulator.motion.segments import Floats
+from simulator.removal.profile import Profile, is_plain, rise, steepness
+from simulator.removal.zmap import Grid
+
+LEAST = 1e-9
+"""mm; what is thinner is rounding, and stays"""
+
+LEVEL = 1e-9
+"""mm of rise over a move that still is level"""
+
+CHORD_SHARE = 0.01
+"""of a cell: by how much chords may leave an arc that has no closed form"""
+
+MEASURE = -1
+"""number of a move that only measures and cuts nothing"""
+
+_NUDGE = 1e-7
+"""mm by which cells are looked at beside their middles, so that of the two walls of a slot that
+run through middles of cells only one takes its cells"""
+
+_BISECTIONS = 44
+"""halvings that bring a length of some mm down to rounding"""
+
+
+class Way(NamedTuple):
+    """A line, or an arc or helix in the XY plane, of the tip of the tool."""
+
+    x: float
+    y: float
+    z: float
+    end_x: float
+    end_y: float
+    end_z: float
+    centre_x: float
+    centre_y: float
+    radius: float
+    angle: float
+    """of the arm from the centre to the start"""
+    turn: float
+    """0: a line"""
+
+
+@njit(cache=True)
+def place(row: Floats, part: float) -> tuple[float, float, float]:
+    """Point of a row of :func:`rows_of` at a share of its length."""
+    x = row[0] + part * (row[3] - row[0])
+    y = row[1] + part * (row[4] - row[1])
+    z = row[2] + part * (row[5] - row[2])
+    if row[11] == 0.0:
+        return x, y, z
+    angle = row[10] + part * row[11]
+    first, second = row[9] * cos(angle), row[9] * sin(angle)
+    if row[12] == 2.0:
+        return row[6] + first, row[7] + second, z
+    if row[12] == 0.0:
+        return x, row[7] + first, row[8] + second
+    return row[6] + second, y, row[8] + first
+
+
+@njit(cache=True)
+def way_between(row: Floats, begin: float, end: float) -> Way:
+    """Part of a row between two shares of its length, a chord when it bends out of XY."""
+    x, y, z = place(row, begin)
+    end_x, end_y, end_z = place(row, end)
+    if row[11] == 0.0 or row[12] != 2.0:
+        return Way(x, y, z, end_x, end_y, end_z, 0.0, 0.0, 0.0, 0.0, 0.0)
+    angle, turn = row[10] + begin * row[11], (end - begin) * row[11]
+    return Way(x, y, z, end_x, end_y, end_z, row[6], row[7], row[9], angle, turn)
+
+
+@njit(cache=True)
+def carve_part(
+    grid: Grid, profile: Profile, row: Floats, span: tuple[float, float], number: int
+) -> tuple[float, float, float, float]:
+    """Lower the cells under a part of a row, at most a quarter turn of an arc.
+
+    Parameters
+    ----------
+    grid : Grid
+        Changed, unless the number is ``MEASURE``.
+    profile : Profile
+    row : (13,) array
+    span : (float, float)
+        Shares of the row's length.
+    number : int
+        Under which the cells remember who cut them.
+
+    Returns
+    -------
+    volume : float, mm³
+    deepest : float, mm
+        Greatest height that a cell loses.
+    x, y : float, mm
+        The cell that loses most.
+    """
+    way = way_between(row, span[0], span[1])
+    if row[11] == 0.0:
+        return _line(grid, profile, way, number)
+    level = abs(way.end_z - way.z) <= LEVEL
+    if row[12] == 2.0 and (level or is_plain(profile)):
+        return _arc(grid, profile, way, number)
+    sagitta = CHORD_SHARE * max(grid.dx, grid.dy)
+    turn = abs(row[11]) * (span[1] - span[0])
+    chords = max(1, ceil(turn * sqrt(row[9] / (8.0 * sagitta))))
+    step = (span[1] - span[0]) / chords
+    volume, deepest, x, y = 0.0, 0.0, way.x, way.y
+    for index in range(chords):
+        begin = span[0] + index * step
+        start, stop = place(row, begin), place(row, begin + step)
+        chord = Way(
+            start[0], start[1], start[2], stop[0], stop[1], stop[2], 0.0, 0.0, 0.0, 0.0, 0.0
+        )
+        lost, depth, at_x, at_y = _line(grid, profile, chord, number)
+        volume += lost
+        if depth > deepest:
+            deepest, x, y = depth, at_x, at_y
+    return volume, deepest, x, y
+
+
+@njit(cache=True)
+def _range(low: float, high: float, origin: float, size: float, count: int) -> tuple[int, int]:
+    """First cell and the one after the last whose middles lie between two coordinates."""
+    first = ceil((low - origin - _NUDGE) / size - 0.5)
+    last = floor((high - origin - _NUDGE) / size - 0.5)
+    return max(first, 0), min(last + 1, count)
+
+
+@njit(cache=True)
+def _line(
+    grid: Grid, profile: Profile, way: Way, number: int
+) -> tuple[float, float, float, float]:
+    """Cut along a line of any direction."""
+    length = hypot(way.end_x - way.x, way.end_y - way.y)
+    climb = way.end_z - way.z
+    floor_z = min(way.z, way.end_z)
+    if floor_z >= grid.top:
+        return 0.0, 0.0, way.x, way.y
+    along_x, along_y, slope, start_z = 1.0, 0.0, 0.0, floor_z
+    if length > LEAST:
+        along_x, along_y = (way.end_x - way.x) / length, (way.end_y - way.y) / length
+        slope, start_z = (climb / length, way.z) if abs(climb) > LEVEL else (0.0, floor_z)
+    reach = profile.radius
+    plain = is_plain(profile)
+    heights = grid.heights
+    volume, deepest, found_x, found_y = 0.0, 0.0, way.x, way.y
+    first, last = _range(
+        min(way.x, way.end_x) - reach,
+        max(way.x, way.end_x) + reach,
+        grid.x,
+        grid.dx,
+        heights.shape[0],
+    )
+    for column in range(first, last):
+        x = grid.x + (column + 0.5) * grid.dx + _NUDGE
+        low, high = _chord(way, x, reach, along_x, along_y, length)
+        begin, end = _range(low, high, grid.y, grid.dy, heights.shape[1])
+        for row in range(begin, end):
+            height = heights[column, row]
+            if height <= floor_z:
+                continue
+            new = start_z
+            if slope != 0.0 or not plain:
+                y = grid.y + (row + 0.5) * grid.dy + _NUDGE
+                u = (x - way.x) * along_x + (y - way.y) * along_y
+                v = abs((y - way.y) * along_x - (x - way.x) * along_y)
+                new += lowest(profile, u, v, length, slope)
+            new = max(new, grid.bottom)
+            if height - new > LEAST:
+                volume += height - new
+                if height - new > deepest:
+                    deepest, found_x = height - new, x
+                    found_y = grid.y + (row + 0.5) * grid.dy
+                if number >= 0:
+                    heights[column, row] = new
+                    grid.owner[column, row] = number
+    return volume * grid.dx * grid.dy, deepest, found_x, found_y
+
+
+@njit(cache=True)
+def _chord(
+    way: Way, x: float, reach: float, along_x: float, along_y: float, length: float
+) -> tuple[float, float]:
+    """From where to where a column of cells runs through the swept outline of a line."""
+    low, high = inf, -inf
+    for end_x, end_y in ((way.x, way.y), (way.end_x, way.end_y)):
+        square = reach * reach - (x - end_x) ** 2
+        if square > 0.0:
+            half = sqrt(square)
+            low, high = min(low, end_y - half), max(high, end_y + half)
+    if along_x != 0.0:
+        for side in (-reach, reach):
+            part = (x - way.x + side * along_y) / along_x
+            if 0.0 <= part <= length:
+                y = way.y + side * along_x + part * along_y
+                low, high = min(low, y), max(high, y)
+    return low, high
+
+
+@njit(cache=True)
+def lowest(profile: Profile, u: float, v: float, length: float, slope: float) -> float:
+    """Least height of the tool over a cell, above the start of a line; infinite beside it.
+
+    Parameters
+    ----------
+    profile : Profile
+    u, v : float, mm
+        Where the cell is along the line and beside it, in the plane.
+    length : float, mm
+        Of the line in the plane.
+    slope : float
+        Rise of the line per mm in the plane.
+
+    Returns
+    -------
+    float, mm
+    """
+    if slope == 0.0:
+        distance = hypot(u - min(max(u, 0.0), length), v)
+        return rise(profile, distance) if distance <= profile.radius else inf
+    square = profile.radius**2 - v * v
+    if square < 0.0:
+        return inf
+    half = sqrt(square)
+    low, high = max(-u, -half), min(length - u, half)
+    if low > high:
+        return inf
+    if is_plain(profile):
+        return slope * (u + (low if slope > 0.0 else high))
+    if profile.flat == 0.0 and profile.corner == profile.radius:
+        best = min(max(-slope * half / sqrt(1.0 + slope * slope), low), high)
+        return slope * (u + best) + profile.radius - sqrt(max(square - best * best, 0.0))
+    return _bisected(profile, u, v, slope, (low, high))
+
+
+@njit(cache=True)
+def _bisected(
+    profile: Profile, u: float, v: float, slope: float, span: tuple[float, float]
+) -> float:
+    """Least value of a convex function by the sign of its derivative."""
+    low, high = span
+    for _ in range(_BISECTIONS):
+        middle = 0.5 * (low + high)
+        distance = max(hypot(middle, v), LEAST)
+        if slope + steepness(profile, distance) * middle / distance > 0.0:
+            high = middle
+        else:
+            low = middle
+    middle = 0.5 * (low + high)
+    return slope * (u + middle) + rise(profile, min(hypot(middle, v), profile.radius))
+
+
+@njit(cache=True)
+def _arc(
+    grid: Grid, profile: Profile, way: Way, number: int
+) -> tuple[float, float, float, float]:
+    """Cut along an arc of at most half a turn in XY: level, or a helix of a flat tool."""
+    floor_z = min(way.z, way.end_z)
+    if floor_z >= grid.top:
+        return 0.0, 0.0, way.x, way.y
+    level = abs(way.end_z - way.z) <= LEVEL
+    reach, outer = profile.radius, way.radius + profile.radius
+    inner = max(way.radius - profile.radius, 0.0)
+    plain = is_plain(profile)
+    heights = grid.heights
+    volume, deepest, found_x, found_y = 0.0, 0.0, way.x, way.y
+    low_x, high_x, low_y, high_y = _bounds(way, reach)
+    first, last = _range(low_x, high_x, grid.x, grid.dx, heights.shape[0])
+    for column in range(first, last):
+        x = grid.x + (column + 0.5) * grid.dx + _NUDGE - way.centre_x
+        half = sqrt(max(outer * outer - x * x, 0.0))
+        low, high = max(low_y, way.centre_y - half), min(high_y, way.centre_y + half)
+        begin, end = _range(low, high, grid.y, grid.dy, heights.shape[1])
+        for row in range(begin, end):
+            height = heights[column, row]
+            if height <= floor_z:
+                continue
+            y = grid.y + (row + 0.5) * grid.dy + _NUDGE - way.centre_y
+            away = hypot(x, y)
+            if away > outer or away < inner:
+                continue
+            if level:
+                distance = arc_distance(way, x, y)
+                if distance > reach:
+                    continue
+                new = floor_z if plain else floor_z + rise(profile, distance)
+            else:
+                new = _helix(way, x, y, reach)
+            new = max(new, grid.bottom)
+            if height - new > LEAST:
+                volume += height - new
+                if height - new > deepest:
+                    deepest = height - new
+                    found_x, found_y = x + way.centre_x, y + way.centre_y
+                if number >= 0:
+                    heights[column, row] = new
+                    grid.owner[column, row] = number
+    return volume * grid.dx * grid.dy, deepest, found_x, found_y
+
+
+@njit(cache=True)
+def _bounds(way: Way, reach: float) -> tuple[float, float, float, float]:
+    """Box around the sweep of an arc."""
+    low_x, high_x = min(way.x, way.end_x), max(way.x, way.end_x)
+    low_y, high_y = min(way.y, way.end_y), max(way.y, way.end_y)
+    for quarter in range(4):
+        turned = (0.5 * pi * quarter - way.angle) * (1.0 if way.turn > 0.0 else -1.0)
+        if turned % (2.0 * pi) < abs(way.turn):
+            x = way.centre_x + way.radius * cos(0.5 * pi * quarter)
+            y = way.centre_y + way.radius * sin(0.5 * pi * quarter)
+            low_x, high_x = min(low_x, x), max(high_x, x)
+            low_y, high_y = min(low_y, y), max(high_y, y)
+    return low_x - reach, high_x + reach, low_y - reach, high_y + reach
+
+
+@njit(cache=True)
+def arc_distance(way: Way, x: float, y: float) -> float:
+    """Distance of a point, seen from the centre, from an arc of at most half a turn."""
+    start_x, start_y = way.x - way.centre_x, way.y - way.centre_y
+    end_x, end_y = way.end_x - way.centre_x, way.end_y - way.centre_y
+    sign = 1.0 if way.turn > 0.0 else -1.0
+    after = sign * (start_x * y - start_y * x)
+    before = sign * (x * end_y - y * end_x)
+    if after >= 0.0 and before >= 0.0:
+        return abs(hypot(x, y) - way.radius)
+    return min(hypot(x - start_x, y - start_y), hypot(x - end_x, y - end_y))
+
+
+@njit(cache=True)
+def _helix(way: Way, x: float, y: float, reach: float) -> float:
+    """Least height over a point of a flat tool on a helix of at most half a turn."""
+    sign = 1.0 if way.turn > 0.0 else -1.0
+    whole = abs(way.turn)
+    away = hypot(x, y)
+    span = (away * away + way.radius**2 - reach * reach) / (2.0 * max(away, LEAST) * way.radius)
+    if span >= 1.0:
+        return inf
+    half = acos(max(span, -1.0))
+    turned = sign * (atan2(y, x) - way.angle) % (2.0 * pi)
+    best = inf
+    for shift in (-2.0 * pi, 0.0, 2.0 * pi):
+        low = max(turned + shift - half, 0.0)
+        high = min(turned + shift + half, whole)
+        if low <= high:
+            part = (low if way.end_z > way.z else high) / whole
+            best = min(best, way.z + part * (way.end_z - way.z))
+    return best

@@ -1,0 +1,246 @@
+"""Stock on a lathe as radii over the spindle axis; what turning, grooving and drilling take.
+
+The bar is a map: over each cell along z an outer radius and the radius of a bore. An insert
+lowers the one or widens the other in closed form (:mod:`simulator.removal.lathe_carve`); a
+drill on the axis widens the bore. The radius is known in the middle of each cell: smooth
+surfaces are right to the square of the cell, a wall across the axis to half a cell.
+
+Not modelled: what overhangs (an edge beyond 90° counts as upright, a groove in a face goes
+through to the front), the cusps that the feed leaves and threads (all that is cut is a body of
+revolution), the ends of the edges and the shank, a part that is cut off (it stays in the map),
+tools beside the axis. A box counts as the cylinder around it: no contact is missed, and the
+volume is too large until it is round.
+
+Units mm and rad. x is the radius, z the spindle axis, away from the chuck.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import ceil, hypot, inf, pi, sin, tan
+
+import numpy as np
+
+from simulator.errors import SimulationError
+from simulator.motion.segments import Floats, Segments
+from simulator.physics.domain import require_positive
+from simulator.removal.cutter import Cutter, Insert
+from simulator.removal.lathe_carve import Grid, bore, carve
+from simulator.removal.lathe_edge import chip_ratios, edge_angles
+from simulator.removal.lathe_ways import UPRIGHT, body_of, ways_of
+from simulator.removal.lathe_windows import Removed, Windows, grouped, windows_of
+from simulator.removal.stations import CutKind, Stations
+from stepnc_model.toolpath.job import Stock
+
+DEFAULT_CELL = 0.01
+"""mm; longer bars than MOST_CELLS of it have longer cells"""
+
+MOST_CELLS = 1_000_000
+
+ON_AXIS = 1e-3
+"""mm of radius at which a drill still stands on the axis"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RapidContact:
+    """A rapid that met material."""
+
+    block: int
+    """number of the block"""
+    volume: float
+    """mm³"""
+    position: tuple[float, float, float]
+    """where the rapid ends"""
+
+
+class TurningStock:
+    """A bar that turns; running state: what is left of it.
+
+    Parameters
+    ----------
+    stock : Stock
+        A bar, or a box, about the axis x = y = 0.
+    cell : float, mm
+        Length along the axis; None: 0.01 mm, and at most a million cells.
+
+    Raises
+    ------
+    ValueError
+        When the stock has no length or radius, or there would be more than a million cells.
+    """
+
+    def __init__(self, stock: Stock, cell: float | None = None) -> None:
+        length = stock.high[2] - stock.low[2]
+        require_positive(length, "length of the bar", "mm")
+        radius = stock.radius if stock.radius is not None else _around(stock)
+        require_positive(radius, "radius of the bar", "mm")
+        wanted = max(DEFAULT_CELL, length / MOST_CELLS) if cell is None else cell
+        require_positive(wanted, "cell", "mm")
+        count = max(1, ceil(length / wanted - 1e-6))
+        if count > MOST_CELLS:
+            raise ValueError(
+                f"cell {wanted:g} mm must be at least {length / MOST_CELLS:g} mm: "
+                f"the bar is {length:g} mm long"
+            )
+        self._grid = Grid(float(stock.low[2]), length / count)
+        self.outer: Floats = np.full(count, float(radius))
+        """(C,) mm, radius of the outside over each cell"""
+        self.inner: Floats = np.zeros(count)
+        """(C,) mm, radius of the bore; where it is that of the outside nothing is left"""
+        self.collisions: list[RapidContact] = []
+        """rapids that met material, in order"""
+
+    @property
+    def cell(self) -> float:
+        """Length of a cell, mm."""
+        return self._grid.cell
+
+    @property
+    def z(self) -> Floats:
+        """(C,) middles of the cells, mm."""
+        middles: Floats = self._grid.start + (np.arange(len(self.outer)) + 0.5) * self.cell
+        return middles
+
+    @property
+    def volume(self) -> float:
+        """What is left, mm³."""
+        return float(pi * self.cell * (self.outer**2 - self.inner**2).sum())
+
+    def cut(
+        self, segments: Segments, shape: Cutter | Insert, *, is_clockwise: bool = True
+    ) -> Stations:
+        """Turn, face, groove or bore with an insert, drill on the axis with a rotating tool.
+
+        Parameters
+        ----------
+        segments : Segments
+            Of the programmed point of the insert, or of the tip of the tool.
+        shape : Insert or Cutter
+        is_clockwise : bool
+            Sense of the spindle; the cut is the same in both.
+
+        Returns
+        -------
+        Stations
+            ``section = π · diameter · axial_depth``. Of an insert ``axial_depth`` is a_p
+            across the feed, ``chip_ratio`` sin κ of the edge that really cuts, and
+            ``radial_width`` the width of the chip, a_p/sin κ. Of a drill they are those of
+            one lip, and the depth half of the diameter less that of the hole.
+
+        Raises
+        ------
+        SimulationError
+            When an arc of an insert lies in another plane than ZX, or a rotating tool meets
+            the bar beside its axis.
+        """
+        windows = windows_of(segments, self.cell)
+        if isinstance(shape, Insert):
+            removed = self._turned(segments, windows, shape)
+            ratio = _ratios(segments, removed, shape)
+            return _stations(removed, CutKind.TURNING, ratio)
+        removed = self._drilled(segments, windows, shape)
+        ratio = np.full(len(removed.area), sin(0.5 * shape.point_angle))
+        return _stations(removed, CutKind.DRILLING, ratio)
+
+    def _turned(self, segments: Segments, windows: Windows, insert: Insert) -> Removed:
+        """What an insert removes."""
+        body, ways = body_of(insert), ways_of(segments, windows, insert)
+        if insert.is_inside:
+            taken = self._in_bore(lambda s, bed: carve(s, bed, self._grid, body, ways))
+        else:
+            taken = carve(self.outer, self.inner, self._grid, body, ways)
+        return self._counted(segments, windows, taken)
+
+    def _drilled(self, segments: Segments, windows: Windows, cutter: Cutter) -> Removed:
+        """What a rotating tool on the axis removes."""
+        self._require_axis(segments, cutter)
+        start = segments.position(windows.segment, windows.start)
+        end = segments.position(windows.segment, windows.end)
+        is_beside = np.maximum(np.abs(start[:, 0]), np.abs(end[:, 0])) > ON_AXIS
+        tips = np.where(is_beside, inf, np.minimum(start[:, 2], end[:, 2]))
+        half = 0.5 * cutter.point_angle
+        cotangent = 1.0 / tan(half) if half < UPRIGHT else 0.0
+        profile = np.array([0.5 * cutter.diameter, cotangent, cutter.corner_radius])
+        taken = self._in_bore(lambda s, bed: bore(s, bed, self._grid, profile, tips))
+        return self._counted(segments, windows, taken)
+
+    def _in_bore(
+        self, cut: Callable[[Floats, Floats], tuple[Floats, Floats]]
+    ) -> tuple[Floats, Floats]:
+        """Cut in the mirror: a bore widens as its negative radius falls."""
+        surface = -self.inner
+        taken = cut(surface, -self.outer)
+        self.inner[:] = -surface
+        return taken
+
+    def _counted(
+        self, segments: Segments, windows: Windows, taken: tuple[Floats, Floats]
+    ) -> Removed:
+        """What was removed, alike together; rapids that met material are noted."""
+        area, volume = taken
+        for row in np.flatnonzero(segments.is_rapid[windows.segment] & (volume > 0.0)):
+            segment = windows.segment[row]
+            x, y, z = segments.end[segment].tolist()
+            self.collisions.append(
+                RapidContact(
+                    block=int(segments.block[segment]),
+                    volume=float(volume[row]),
+                    position=(x, y, z),
+                )
+            )
+        return grouped(Removed(windows=windows, area=area, volume=volume), self.cell)
+
+    def _require_axis(self, segments: Segments, cutter: Cutter) -> None:
+        """Beside the axis there must be air: such holes are no bodies of revolution."""
+        beside = np.maximum(np.abs(segments.start[:, 0]), np.abs(segments.end[:, 0])) > ON_AXIS
+        inward = np.minimum(segments.start[:, 0], segments.end[:, 0]) - 0.5 * cutter.diameter
+        deep = np.minimum(segments.start[:, 2], segments.end[:, 2])
+        top = self._grid.start + len(self.outer) * self.cell
+        wrong = np.flatnonzero(beside & (inward < self.outer.max()) & (deep < top))
+        if len(wrong):
+            x, _, z = segments.end[wrong[0]].tolist()
+            raise SimulationError(
+                f"block {segments.block[wrong[0]]}: a rotating tool meets the bar beside its "
+                f"axis, at x = {x:g} mm, z = {z:g} mm: only holes on the axis are modelled"
+            )
+
+
+def _around(stock: Stock) -> float:
+    """Radius of the cylinder around a box."""
+    x = max(abs(stock.low[0]), abs(stock.high[0]))
+    y = max(abs(stock.low[1]), abs(stock.high[1]))
+    return hypot(x, y)
+
+
+def _ratios(segments: Segments, removed: Removed, insert: Insert) -> Floats:
+    """Chip thickness over feed by stretch."""
+    windows = removed.windows
+    middle = 0.5 * (windows.start + windows.end)
+    angle = edge_angles(insert, segments.direction(windows.segment, middle))
+    return chip_ratios(insert, _per_length(removed.area, windows.length), angle)
+
+
+def _per_length(amount: Floats, length: Floats) -> Floats:
+    """Amount per mm of path; 0 where there is no path."""
+    return np.divide(amount, length, out=np.zeros(len(length)), where=length > 0.0)
+
+
+def _stations(removed: Removed, kind: CutKind, chip_ratio: Floats) -> Stations:
+    """Stations of what was removed; air where nothing was."""
+    windows = removed.windows
+    section = _per_length(removed.volume, windows.length)
+    is_cut = section > 0.0
+    depth = np.where(is_cut, _per_length(removed.area, windows.length), 0.0)
+    nothing = np.zeros(len(depth))
+    return Stations(
+        segment=windows.segment,
+        station=windows.end,
+        kind=np.where(is_cut, int(kind), int(CutKind.AIR)),
+        section=section,
+        axial_depth=depth,
+        radial_width=depth / np.where(is_cut, chip_ratio, 1.0),
+        entry_angle=nothing,
+        exit_angle=nothing,
+        contact_angle=nothing,
+        chip_ratio=np.where(is_cut, chip_ratio, 0.0),
+        diameter=section / (pi * np.where(is_cut, depth, 1.0)),
+    )

@@ -1,0 +1,296 @@
+"""How low a turning insert reaches over each cell of a bar, in closed form.
+
+The insert is the region above a convex curve: the arc of its nose (of a blade: two corners and
+the flat between them), and on each side a straight edge that rises at its angle and has no
+end. Moved along a line or an arc it reaches, over a place z, down to the least of
+``x(s) + g(z − z(s))``: g the curve, (z, x)(s) the centre of the nose. On a line this is convex
+in s, and its least value lies where the slope of g is that of the path, or at an end. On an
+arc every stationary point is looked at: the two ends, the nose on the circles of radius R ± r,
+the flat, and either edge where it touches the path. No height is reached that some position
+of the insert does not reach, and none is missed.
+
+A bore is the same in a mirror: heights are negative radii. Units mm and rad.
+"""
+# mypy: disable-error-code="untyped-decorator, no-any-return"
+
+from math import acos, atan2, ceil, cos, floor, inf, pi, sin, sqrt
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from simulator.motion.segments import Floats
+
+LEAST = 1e-9
+"""mm; what is thinner is rounding, and stays"""
+
+BLOCK = 64
+"""cells of which the greatest height is kept: edges pass quickly over what they do not touch"""
+
+
+class Body(NamedTuple):
+    """Curve of an insert about the centre of its nose; upright edges have infinite slope."""
+
+    nose: float
+    """mm, radius"""
+    flat: float
+    """mm between the centres of the corners of a blade"""
+    back_slope: float
+    """of the edge towards −z"""
+    back_foot: float
+    """mm before the centre where it leaves the nose"""
+    front_slope: float
+    """of the edge towards +z"""
+    front_foot: float
+    """mm behind the centre of the other corner"""
+
+
+class Grid(NamedTuple):
+    """Cells along the axis, looked at in their middles."""
+
+    start: float
+    """z where the first cell begins, mm"""
+    cell: float
+    """mm"""
+
+
+class Way(NamedTuple):
+    """A line or an arc of the centre of the nose, mm and rad."""
+
+    start_z: float
+    start_x: float
+    end_z: float
+    end_x: float
+    centre_z: float
+    centre_x: float
+    radius: float
+    """0: a line"""
+    low: float
+    """lesser of the two angles at which an arc begins and ends"""
+    span: float
+    """angle between them"""
+
+
+@njit(cache=True)
+def carve(
+    surface: Floats, bed: Floats, grid: Grid, body: Body, ways: Floats
+) -> tuple[Floats, Floats]:
+    """Lower a surface to where an insert reaches.
+
+    Parameters
+    ----------
+    surface : (C,) array, mm
+        Heights over the cells; lowered in place.
+    bed : (C,) array, mm
+        Below it there is nothing.
+    grid : Grid
+    body : Body
+    ways : (M, 9) array
+        Rows of :class:`Way`, one after another.
+
+    Returns
+    -------
+    (M,) array, mm²
+        Area that each way removes in the half plane.
+    (M,) array, mm³
+        Volume that it removes.
+    """
+    areas, volumes = np.zeros(len(ways)), np.zeros(len(ways))
+    tops = _tops(surface)
+    tallest = tops.max()
+    for row in range(len(ways)):
+        w = ways[row]
+        way = Way(w[0], w[1], w[2], w[3], w[4], w[5], w[6], w[7], w[8])
+        low, high, least = _extent(way)
+        low, high, least = low - body.nose, high + body.flat + body.nose, least - body.nose
+        if least >= tallest:
+            continue
+        first = _cell(grid, low - _reach(tallest - least, body.back_slope), len(surface))
+        last = _cell(grid, high + _reach(tallest - least, body.front_slope), len(surface))
+        for block in range(first // BLOCK, last // BLOCK + 1):
+            begin, end = max(first, block * BLOCK), min(last, block * BLOCK + BLOCK - 1)
+            nearest = min(max(0.5 * (low + high), _middle(grid, begin)), _middle(grid, end))
+            # Beside the path the edges only rise: nothing here is lower than the nearest cell.
+            is_beside = nearest < low or nearest > high
+            if is_beside and _height(body, way, nearest) >= tops[block]:
+                continue
+            for index in range(begin, end + 1):
+                reached = max(_height(body, way, _middle(grid, index)), bed[index])
+                old = surface[index]
+                if old - reached > LEAST:
+                    surface[index] = reached
+                    areas[row] += (old - reached) * grid.cell
+                    volumes[row] += pi * abs(old * old - reached * reached) * grid.cell
+            tops[block] = surface[block * BLOCK : (block + 1) * BLOCK].max()
+    return areas, volumes
+
+
+@njit(cache=True)
+def bore(
+    surface: Floats, bed: Floats, grid: Grid, profile: Floats, tips: Floats
+) -> tuple[Floats, Floats]:
+    """Lower a surface to where a rotating tool on the axis reaches.
+
+    Parameters
+    ----------
+    surface, bed : (C,) array, mm
+        As of :func:`carve`, of a bore: negative radii.
+    grid : Grid
+    profile : (3,) array
+        Radius in mm, cotangent of half the point angle, corner radius in mm.
+    tips : (M,) array, mm
+        Least z of the tip in each stretch.
+
+    Returns
+    -------
+    (M,) array, mm²
+    (M,) array, mm³
+        As of :func:`carve`.
+    """
+    areas, volumes = np.zeros(len(tips)), np.zeros(len(tips))
+    for row in range(len(tips)):
+        for index in range(_cell(grid, tips[row], len(surface)), len(surface)):
+            above = _middle(grid, index) - tips[row]
+            if above <= 0.0:
+                continue
+            reached = max(-_radius(profile, above), bed[index])
+            old = surface[index]
+            if old - reached > LEAST:
+                surface[index] = reached
+                areas[row] += (old - reached) * grid.cell
+                volumes[row] += pi * abs(old * old - reached * reached) * grid.cell
+    return areas, volumes
+
+
+@njit(cache=True)
+def _radius(profile: Floats, above: float) -> float:
+    """Radius of a rotating tool at a height above its tip."""
+    radius, cotangent, corner = profile[0], profile[1], profile[2]
+    if cotangent > 0.0:
+        return min(radius, above / cotangent)
+    if above < corner:
+        return radius - corner + sqrt(above * (2.0 * corner - above))
+    return radius
+
+
+@njit(cache=True)
+def _tops(surface: Floats) -> Floats:
+    """Greatest height of each block."""
+    count = ceil(len(surface) / BLOCK)
+    tops = np.empty(count)
+    for block in range(count):
+        tops[block] = surface[block * BLOCK : (block + 1) * BLOCK].max()
+    return tops
+
+
+@njit(cache=True)
+def _middle(grid: Grid, index: int) -> float:
+    """Middle of a cell."""
+    return grid.start + (index + 0.5) * grid.cell
+
+
+@njit(cache=True)
+def _cell(grid: Grid, z: float, count: int) -> int:
+    """Cell at z, or the nearest one."""
+    return int(min(max(floor((z - grid.start) / grid.cell), 0.0), count - 1.0))
+
+
+@njit(cache=True)
+def _reach(height: float, slope: float) -> float:
+    """How far an edge goes until it has risen by a height."""
+    return height / slope if slope > 0.0 else inf
+
+
+@njit(cache=True)
+def _extent(way: Way) -> tuple[float, float, float]:
+    """Least and greatest z and least x of a way."""
+    low, high = min(way.start_z, way.end_z), max(way.start_z, way.end_z)
+    least = min(way.start_x, way.end_x)
+    if way.radius > 0.0:
+        if _is_passed(way, pi):
+            low = way.centre_z - way.radius
+        if _is_passed(way, 0.0):
+            high = way.centre_z + way.radius
+        if _is_passed(way, -0.5 * pi):
+            least = way.centre_x - way.radius
+    return low, high, least
+
+
+@njit(cache=True)
+def _is_passed(way: Way, angle: float) -> bool:
+    """Whether an arc has a point at an angle."""
+    return bool((angle - way.low) % (2.0 * pi) <= way.span)
+
+
+@njit(cache=True)
+def _height(body: Body, way: Way, z: float) -> float:
+    """Least height that the insert reaches over a place."""
+    if way.radius > 0.0:
+        return _height_of_arc(body, way, z)
+    return _height_of_line(body, way, z)
+
+
+@njit(cache=True)
+def _curve(body: Body, t: float) -> float:
+    """Height of the insert's curve over the centre of its nose; t along the axis from there."""
+    if t < -body.back_foot - LEAST:
+        foot = -sqrt(max(0.0, body.nose**2 - body.back_foot**2))
+        return foot + (-body.back_foot - t) * body.back_slope
+    beyond = t - body.flat
+    if beyond > body.front_foot + LEAST:
+        foot = -sqrt(max(0.0, body.nose**2 - body.front_foot**2))
+        return foot + (beyond - body.front_foot) * body.front_slope
+    beside = t if t < 0.0 else max(beyond, 0.0)
+    return -sqrt(max(0.0, body.nose**2 - beside**2))
+
+
+@njit(cache=True)
+def _height_of_line(body: Body, way: Way, z: float) -> float:
+    """Least height over a place of a line."""
+    run, rise = way.end_z - way.start_z, way.end_x - way.start_x
+    if run == 0.0:
+        return min(way.start_x, way.end_x) + _curve(body, z - way.start_z)
+    slope = rise / run
+    # Steeper than an edge: the least height lies at an end.
+    if -slope >= body.back_slope:
+        touch = -inf
+    elif slope >= body.front_slope:
+        touch = inf
+    else:
+        touch = body.nose * slope / sqrt(1.0 + slope * slope)
+        if slope > 0.0:
+            touch += body.flat
+    part = (z - way.start_z - touch) / run
+    if 0.0 < part < 1.0:
+        return way.start_x + part * rise + _curve(body, touch)
+    if part <= 0.0:
+        return way.start_x + _curve(body, z - way.start_z)
+    return way.end_x + _curve(body, z - way.end_z)
+
+
+@njit(cache=True)
+def _height_of_arc(body: Body, way: Way, z: float) -> float:
+    """Least height over a place of an arc: of all stationary points and both ends."""
+    least = min(
+        way.start_x + _curve(body, z - way.start_z), way.end_x + _curve(body, z - way.end_z)
+    )
+    for offset in (0.0, body.flat):
+        for size in (way.radius + body.nose, way.radius - body.nose):
+            along = z - way.centre_z - offset
+            if abs(along) < abs(size):
+                angle = acos(along / size)
+                least = min(least, _at(body, way, angle, z), _at(body, way, -angle, z))
+    back = atan2(1.0, body.back_slope)
+    front = atan2(-1.0, body.front_slope)
+    for angle in (back, back + pi, front, front + pi, 0.5 * pi, -0.5 * pi):
+        least = min(least, _at(body, way, angle, z))
+    return least
+
+
+@njit(cache=True)
+def _at(body: Body, way: Way, angle: float, z: float) -> float:
+    """Height over a place with the nose at an angle of an arc; none beside the arc."""
+    if not _is_passed(way, angle):
+        return inf
+    x = way.centre_x + way.radius * sin(angle)
+    return x + _curve(body, z - way.centre_z - way.radius * cos(angle))

@@ -1,0 +1,153 @@
+"""Stretches of a path over which the removal on a lathe is counted, and stations made of them.
+
+The map knows whole cells only: counted over less than some tens of them, a wall that moves
+along the axis comes in jumps. So a stretch spans at least :data:`WINDOW` cells, on a line a
+whole number of them, and what short segments remove is spread over their neighbours. Volumes
+are never lost by this: section times length adds up to what left the map. Units mm.
+"""
+# mypy: disable-error-code="untyped-decorator, no-any-return"
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from simulator.motion.segments import Floats, Ints, Segments
+
+WINDOW = 50
+"""cells along the path of the shortest stretch; jumps of a cell stay below 2 %"""
+
+ALIKE = 0.01
+"""relative difference of section or depth below which stretches become one"""
+
+_ROUNDING = 1e-6  # share of a stretch
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Windows:
+    """M stretches, each of one segment, in order."""
+
+    segment: Ints
+    """(M,)"""
+    start: Floats
+    """(M,) mm along the segment"""
+    end: Floats
+    """(M,) mm"""
+
+    @property
+    def length(self) -> Floats:
+        """(M,) mm."""
+        return self.end - self.start
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Removed:
+    """What was removed, by stretch."""
+
+    windows: Windows
+    area: Floats
+    """(M,) mm², in the half plane"""
+    volume: Floats
+    """(M,) mm³"""
+
+
+def windows_of(segments: Segments, cell: float) -> Windows:
+    """Cut segments in stretches; a rapid is one.
+
+    Parameters
+    ----------
+    segments : Segments
+    cell : float, mm
+
+    Returns
+    -------
+    Windows
+    """
+    length = segments.length
+    along = np.abs(segments.end[:, 2] - segments.start[:, 2])
+    share = np.divide(along, length, out=np.zeros(len(length)), where=length > 0.0)
+    step = np.full(len(length), WINDOW * cell)
+    lines = (segments.turn == 0.0) & (share * WINDOW >= 1.0)
+    step[lines] = np.ceil(share[lines] * WINDOW - _ROUNDING) * cell / share[lines]
+    count = np.maximum(1, (length / step + _ROUNDING).astype(np.int64))
+    count[segments.is_rapid] = 1
+    segment = np.repeat(np.arange(len(length)), count)
+    rank = np.arange(len(segment)) - np.repeat(np.cumsum(count) - count, count)
+    is_last = rank == count[segment] - 1
+    return Windows(
+        segment=segment,
+        start=rank * step[segment],
+        end=np.where(is_last, length[segment], (rank + 1) * step[segment]),
+    )
+
+
+def grouped(removed: Removed, cell: float) -> Removed:
+    """Stretches that remove alike as one; lengths too short to count become as their group.
+
+    Parameters
+    ----------
+    removed : Removed
+    cell : float, mm
+
+    Returns
+    -------
+    Removed
+        At least one stretch a segment, the last one up to its end.
+    """
+    windows, length = removed.windows, removed.windows.length
+    if len(length) == 0:
+        return removed
+    group = _groups(removed.area, removed.volume, length, WINDOW * cell * (1.0 - _ROUNDING))
+    first = np.flatnonzero(np.diff(group, prepend=-1))
+    whole = np.add.reduceat(length, first)
+    whole = np.where(whole > 0.0, whole, 1.0)
+    depth = (np.add.reduceat(removed.area, first) / whole)[group]
+    section = (np.add.reduceat(removed.volume, first) / whole)[group]
+    is_new = (np.diff(group, prepend=-1) != 0) | (np.diff(windows.segment, prepend=-1) != 0)
+    begin = np.flatnonzero(is_new)
+    end = np.append(begin[1:], len(length)) - 1
+    kept = windows.end[end] - windows.start[begin]
+    return Removed(
+        windows=Windows(
+            segment=windows.segment[end], start=windows.start[begin], end=windows.end[end]
+        ),
+        area=depth[end] * kept,
+        volume=section[end] * kept,
+    )
+
+
+@njit(cache=True)
+def _groups(area: Floats, volume: Floats, length: Floats, least: float) -> NDArray[np.int64]:
+    """Number of the group of each stretch, from 0 up."""
+    group = np.zeros(len(area), np.int64)
+    total, depth, section = length[0], area[0], volume[0]
+    for row in range(1, len(area)):
+        is_air = volume[row] == 0.0
+        # All of a group is in the cut, or all in air; it grows until it is long enough to
+        # count in, and from there as long as what follows is like it.
+        is_same = is_air == (section == 0.0)
+        if is_same and not is_air and min(total, length[row]) >= least:
+            per_total, per_row = 1.0 / total, 1.0 / length[row]
+            is_same = _alike(depth * per_total, area[row] * per_row) and _alike(
+                section * per_total, volume[row] * per_row
+            )
+        elif is_same and not is_air and total >= least:
+            is_same = False
+        if is_same:
+            total, depth, section = (
+                total + length[row],
+                depth + area[row],
+                section + volume[row],
+            )
+            group[row] = group[row - 1]
+        else:
+            total, depth, section = length[row], area[row], volume[row]
+            group[row] = group[row - 1] + 1
+    return group
+
+
+@njit(cache=True)
+def _alike(one: float, other: float) -> bool:
+    """Whether two values are one within the tolerance."""
+    return bool(abs(one - other) <= ALIKE * abs(one))

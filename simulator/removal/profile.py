@@ -1,0 +1,119 @@
+"""Body of revolution that a rotating cutter sweeps, as a few numbers for the kernels.
+
+Height over the tip against the distance from the axis, convex and never falling: a flat or a
+conical point, an arc of the corner radius, a conical or cylindrical flank. The arc ends where
+it touches the flank, so that a ball with a tapered neck stays a ball at its tip. Above the
+edge the shank is a cylinder as wide as the edge is there. Units mm.
+"""
+
+from math import cos, inf, pi, sin, sqrt, tan
+from typing import NamedTuple
+
+from numba import njit
+
+from simulator.removal.cutter import Cutter
+
+_STRAIGHT = 1e-9  # rad; a smaller taper is none
+
+
+class Profile(NamedTuple):
+    """Profile of revolution."""
+
+    slope: float
+    """rise per mm of the point; 0: flat"""
+    flat: float
+    """mm from the axis to where the point or flat ends and the corner begins"""
+    corner: float
+    """mm, radius of the corner"""
+    tangent: float
+    """mm from the axis to where the corner ends and the flank begins"""
+    shoulder: float
+    """mm over the tip, there"""
+    flank: float
+    """rise per mm of the flank; 0: a cylinder, which has no width"""
+    radius: float
+    """mm, greatest"""
+
+
+def profile_of(cutter: Cutter, *, reach: float) -> Profile:
+    """Profile of a cutter.
+
+    Parameters
+    ----------
+    cutter : Cutter
+    reach : float, mm
+        Height over the tip up to which a tapered flank without an end is followed.
+
+    Raises
+    ------
+    ValueError
+        If the diameter is not positive, the corner does not fit, or the tool is wider at its
+        tip than above, which no height map can show.
+    """
+    radius, corner = 0.5 * cutter.diameter, cutter.corner_radius
+    if not 0.0 < radius < inf:
+        raise ValueError(f"diameter {cutter.diameter:g} mm must be positive and finite")
+    if not 0.0 <= corner <= radius * (1.0 + 1e-9):
+        raise ValueError(f"corner radius {corner:g} mm must lie between 0 and {radius:g} mm")
+    if not 0.0 <= cutter.taper_angle < 0.5 * pi:
+        raise ValueError(f"taper {cutter.taper_angle:g} rad must lie between 0 and π/2 rad")
+    if not 0.0 < cutter.point_angle <= pi:
+        raise ValueError(f"point angle {cutter.point_angle:g} rad must lie in (0, π] rad")
+    if cutter.point_angle < pi:
+        slope = 1.0 / tan(0.5 * cutter.point_angle)
+        return Profile(slope, radius, 0.0, radius, slope * radius, 0.0, radius)
+    flat = max(radius - corner, 0.0)
+    if cutter.taper_angle < _STRAIGHT:
+        return Profile(0.0, flat, corner, radius, corner, 0.0, radius)
+    tangent = flat + corner * cos(cutter.taper_angle)
+    shoulder = corner * (1.0 - sin(cutter.taper_angle))
+    flank = 1.0 / tan(cutter.taper_angle)
+    top = max(min(cutter.edge_length, reach), shoulder)
+    widest = tangent + (top - shoulder) / flank
+    return Profile(0.0, flat, corner, tangent, shoulder, flank, widest)
+
+
+def cylinder(radius: float) -> Profile:
+    """Profile of a plain cylinder."""
+    return Profile(0.0, radius, 0.0, radius, 0.0, 0.0, radius)
+
+
+@njit(cache=True)
+def is_plain(profile: Profile) -> bool:
+    """Whether the tool is a cylinder with a flat end."""
+    return profile.slope == 0.0 and profile.flat == profile.radius
+
+
+@njit(cache=True)
+def rise(profile: Profile, distance: float) -> float:
+    """Height over the tip at a distance from the axis, mm."""
+    if distance <= profile.flat:
+        return profile.slope * distance
+    if distance <= profile.tangent:
+        beyond = distance - profile.flat
+        return profile.corner - sqrt(max(profile.corner**2 - beyond**2, 0.0))
+    return profile.shoulder + profile.flank * (distance - profile.tangent)
+
+
+@njit(cache=True)
+def steepness(profile: Profile, distance: float) -> float:
+    """Derivative of :func:`rise`."""
+    if distance <= profile.flat:
+        return profile.slope
+    if distance <= profile.tangent:
+        beyond = distance - profile.flat
+        return beyond / sqrt(max(profile.corner**2 - beyond**2, 1e-24))
+    return profile.flank
+
+
+@njit(cache=True)
+def radius_at(profile: Profile, height: float) -> float:
+    """Distance from the axis to the surface at a height over the tip, mm."""
+    if profile.slope > 0.0:
+        return min(height / profile.slope, profile.radius)
+    if height < profile.shoulder:
+        return profile.flat + sqrt(max(height * (2.0 * profile.corner - height), 0.0))
+    if profile.flank > 0.0:
+        beyond = (height - profile.shoulder) / profile.flank
+        return min(profile.tangent + beyond, profile.radius)
+    return profile.radius

@@ -1,0 +1,73 @@
+"""The columns of a run as the outside reads them: names and units of the data items.
+
+Names after the data items of Shin et al., "Developing a virtual machining model to generate
+MTConnect machine-monitoring data from STEP-NC", Int. J. Prod. Res. 54 (2016), Table 2, with the
+total as in Lechevalier et al. (2018), Table 2; units are those of MTConnect: MILLIMETER,
+MILLIMETER/SECOND, REVOLUTION/MINUTE, WATT, NEWTON.
+"""
+
+from dataclasses import dataclass
+
+RPM = 60.0
+"""rpm in one rev/s"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Column:
+    """One data item."""
+
+    name: str
+    source: str
+    """attribute of the samples"""
+    unit: str = ""
+    scale: float = 1.0
+    """the outside's units in one of ours"""
+    axis: int | None = None
+    """which column of an array of three"""
+    words: tuple[str, ...] | None = None
+    """what the numbers of an event mean, from 0"""
+
+
+def _axes(suffix: str, source: str, unit: str) -> tuple[Column, ...]:
+    return tuple(
+        Column(name=f"{name}_axis_{suffix}", source=source, unit=unit, axis=row)
+        for row, name in enumerate("xyz")
+    )
+
+
+COLUMNS = (
+    Column(name="time_s", source="time", unit="s"),
+    *_axes("position_actual", "position", "mm"),
+    *_axes("velocity_actual", "velocity", "mm/s"),
+    *_axes("wattage", "axis_power", "W"),
+    Column(name="c_axis_wattage", source="spindle_power", unit="W"),
+    Column(name="coolant_wattage", source="coolant_power", unit="W"),
+    Column(name="load_wattage", source="base_power", unit="W"),
+    Column(name="electric_wattage", source="total_power", unit="W"),
+    Column(name="path_feedrate_programmed", source="feed_programmed", unit="mm/s"),
+    Column(name="path_feedrate_actual", source="path_speed", unit="mm/s"),
+    Column(
+        name="rotary_velocity_programmed", source="spindle_programmed", unit="rpm", scale=RPM
+    ),
+    Column(name="rotary_velocity_actual", source="spindle_speed", unit="rpm", scale=RPM),
+    Column(name="cutting_wattage", source="cutting_power", unit="W"),
+    Column(name="cutting_force", source="cutting_force", unit="N"),
+    Column(name="feed_force", source="feed_force", unit="N"),
+    Column(name="back_force", source="back_force", unit="N"),
+    Column(name="removal_rate", source="removal_rate", unit="mm³/s"),
+    Column(name="chip_thickness", source="chip_thickness", unit="mm"),
+    Column(name="axial_depth", source="axial_depth", unit="mm"),
+    Column(name="radial_width", source="radial_width", unit="mm"),
+    Column(
+        name="execution",
+        source="execution",
+        words=("READY", "ACTIVE", "WAIT", "PROGRAM_STOPPED", "PROGRAM_COMPLETED"),
+    ),
+    Column(name="path_mode", source="path_mode", words=("NONE", "RAPID", "FEED")),
+    Column(name="coolant", source="coolant", words=("OFF", "ON")),
+    Column(name="overload", source="overload", words=("NORMAL", "WARNING", "FAULT")),
+    Column(name="line", source="line"),
+    Column(name="tool_number", source="tool"),
+    Column(name="workingstep", source="workingstep"),
+)
+"""in the order of the file; the words of the last one are the ids of the program"""
