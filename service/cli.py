@@ -11,9 +11,18 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-OK, BAD_INPUT, INFEASIBLE, INTERRUPTED = 0, 3, 4, 130
-
-CONTROLS = "linuxcnc, fanuc, haas, sinumerik, heidenhain or canonical"
+from service.cli_machine import add_machine_commands
+from service.cli_options import (
+    BAD_INPUT,
+    CONTROLS,
+    INFEASIBLE,
+    INTERRUPTED,
+    OK,
+    Commands,
+    add_file,
+    add_json,
+)
+from service.cli_paths import add_path_commands
 
 EXAMPLES = """examples:
   optimise part.stpnc --mode TC --machine vmc15
@@ -48,13 +57,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
     add_optimise_options(optimise)
     _add_check(commands)
     _add_convert(commands)
-    _add_toolpath(commands)
-    _add_post(commands)
-    _add_canonical(commands)
+    add_path_commands(commands)
+    add_machine_commands(commands)
     for kind in ("machines", "materials"):
         listing = commands.add_parser(kind, help=f"list the {kind}, or show one")
         listing.add_argument("name", nargs="?", default="", help="show this one in full")
-        _add_json(listing)
+        add_json(listing)
         listing.set_defaults(run=_show_library)
     options = parser.parse_args(arguments)
     if options.print_completion:
@@ -84,7 +92,7 @@ def optimise_main(arguments: Sequence[str] | None = None) -> None:
 def add_optimise_options(parser: argparse.ArgumentParser) -> None:
     """Options of ``optimise``."""
     add = parser.add_argument
-    _add_file(parser)
+    add_file(parser)
     add(
         "--mode",
         default="TC",
@@ -134,21 +142,21 @@ def add_optimise_options(parser: argparse.ArgumentParser) -> None:
     )
     add("--dry-run", action="store_true", help="write no STEP-NC file")
     add("--report", type=Path, metavar="HTML", help="write a self-contained page with plots")
-    _add_json(parser)
+    add_json(parser)
     parser.set_defaults(run=_optimise)
 
 
-def _add_check(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+def _add_check(commands: Commands) -> None:
     """``stepnc check``."""
     parser = commands.add_parser(
         "check", help="show what is in a program and what is wrong; exit 3: cannot be used"
     )
-    _add_file(parser)
-    _add_json(parser)
+    add_file(parser)
+    add_json(parser)
     parser.set_defaults(run=_check)
 
 
-def _add_convert(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
+def _add_convert(commands: Commands) -> None:
     """``stepnc convert``."""
     parser = commands.add_parser(
         "convert", help="move optimisation records into the other profile, losing nothing"
@@ -157,70 +165,6 @@ def _add_convert(commands: "argparse._SubParsersAction[argparse.ArgumentParser]"
     parser.add_argument("--profile", required=True, help="optimisation or standard")
     parser.add_argument("-o", "--output", type=Path, required=True, metavar="FILE")
     parser.set_defaults(run=_convert)
-
-
-def _add_toolpath(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
-    """``stepnc toolpath``."""
-    parser = commands.add_parser(
-        "toolpath", help="make the tool paths of a program, or take those it gives"
-    )
-    _add_file(parser)
-    _add_keep_going(parser)
-    parser.add_argument("--plot", type=Path, metavar="PNG", help="draw them, coloured by type")
-    _add_json(parser)
-    parser.set_defaults(run=_toolpath)
-
-
-def _add_post(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
-    """``stepnc post``."""
-    parser = commands.add_parser("post", help="write NC code for a control")
-    _add_file(parser)
-    parser.add_argument("--control", required=True, metavar="NAME", help=CONTROLS)
-    parser.add_argument(
-        "-o",
-        "--output",
-        type=Path,
-        metavar="FILE",
-        help="default: beside the program, with the ending of the control",
-    )
-    parser.add_argument(
-        "--cycles", action="store_true", help="drill with the control's own cycles"
-    )
-    _add_keep_going(parser)
-    parser.set_defaults(run=_post)
-
-
-def _add_canonical(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
-    """``stepnc canonical``."""
-    parser = commands.add_parser(
-        "canonical", help="show NC code as canonical commands, to compare programs"
-    )
-    parser.add_argument("file", type=Path, metavar="FILE", help="NC code")
-    parser.add_argument("--control", required=True, metavar="NAME", help=CONTROLS)
-    parser.add_argument("--lathe", action="store_true", help="Fanuc or Haas code for a lathe")
-    parser.set_defaults(run=_canonical)
-
-
-def _add_keep_going(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--keep-going",
-        action="store_true",
-        help="leave out workingsteps for which no path can be made; exit 3 all the same",
-    )
-
-
-def _add_file(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", type=Path, metavar="FILE", help="a STEP-NC program (Part 21)")
-    parser.add_argument(
-        "--units",
-        default="iso",
-        help="units of feeds and speeds in the file: iso (m/s, rev/s; default), rpm-mmin, "
-        "rpm-mmtooth, rpm-mmrev, revs-mmtooth or revs-mmrev",
-    )
-
-
-def _add_json(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--json", action="store_true", help="print JSON instead of a table")
 
 
 def _run(options: argparse.Namespace) -> None:
@@ -316,59 +260,6 @@ def _convert(options: argparse.Namespace) -> int:
 
     usecases.convert(options.file, profile=options.profile, output=options.output)
     tell(f"{options.output}: records in profile '{options.profile}'")
-    return OK
-
-
-def _toolpath(options: argparse.Namespace) -> int:
-    """``stepnc toolpath``."""
-    from service import toolpaths
-    from service.terminal import tell, write_out
-
-    paths = toolpaths.tool_paths(
-        options.file, units=options.units, keep_going=options.keep_going, tell=tell
-    )
-    if options.plot is not None:
-        toolpaths.plot(paths, options.file, options.plot)
-        tell(f"picture: {options.plot}")
-    if options.json:
-        from service.path_wire import paths_json
-
-        write_out(paths_json(paths))
-    else:
-        from service.path_table import print_paths
-
-        print_paths(paths)
-    return BAD_INPUT if paths.faults else OK
-
-
-def _post(options: argparse.Namespace) -> int:
-    """``stepnc post``."""
-    from service import toolpaths
-    from service.terminal import tell
-
-    paths = toolpaths.post(
-        toolpaths.PostRequest(
-            file=options.file,
-            control=options.control,
-            units=options.units,
-            output=options.output,
-            cycles=options.cycles,
-            keep_going=options.keep_going,
-        ),
-        tell=tell,
-    )
-    return BAD_INPUT if paths.faults else OK
-
-
-def _canonical(options: argparse.Namespace) -> int:
-    """``stepnc canonical``."""
-    from service import toolpaths
-    from service.terminal import write_out
-
-    for line in toolpaths.canonical_of(
-        options.file, control=options.control, is_lathe=options.lathe
-    ):
-        write_out(line)
     return OK
 
 

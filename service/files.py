@@ -18,6 +18,25 @@ def read_bytes(path: Path) -> bytes:
         raise StepNcError(f"{str(path)!r} is no file name: {error}") from error
 
 
+def open_lines(path: Path) -> Iterator[str]:
+    """Lines of a text file, read as they are asked for; its first fault at once."""
+    try:
+        file = path.open(encoding="utf-8", errors="replace")
+    except OSError as error:
+        raise StepNcError(f"{path}: {_reason(error)}") from error
+    except ValueError as error:
+        raise StepNcError(f"{str(path)!r} is no file name: {error}") from error
+
+    def lines() -> Iterator[str]:
+        with file:
+            try:
+                yield from file
+            except OSError as error:
+                raise StepNcError(f"{path}: {_reason(error)}") from error
+
+    return lines()
+
+
 def is_same(one: Path, other: Path) -> bool:
     """Whether two paths lead to one file.
 

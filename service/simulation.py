@@ -1,27 +1,24 @@
 """The verb ``simulate``: a program on the virtual machine."""
 
-from collections.abc import Callable, Iterator
-from contextlib import ExitStack
-from dataclasses import dataclass, field
+from contextlib import nullcontext
+from dataclasses import dataclass
 from pathlib import Path
 
-from service.files import read_bytes, require_place
+from service.files import require_place
 from service.progress import Ticker
-from service.reading import Tell, one_of, read_program, silent
+from service.reading import Tell, one_of, silent
+from service.simulation_setup import CodeRequest, Prepared, from_code, from_program
 from service.timeline_file import TimelineFile
-from service.toolpaths import paths_of, with_feeds
-from service.usecases import machine_for, material_for
-from simulator.machine.interpreter import Numbered, interpret
+from simulator.machine.episode import Episode
+from simulator.machine.interpreter import interpret
 from simulator.machine.sensing import Sampler
-from simulator.machine.tooling import loaded_tool
 from simulator.machine.totals import Total, added
-from simulator.machine.virtual import LoadedTool, Setup, VirtualMachine
+from simulator.machine.travel import Zero, zero_of
+from simulator.machine.virtual import Setup, VirtualMachine
 from simulator.motion.control import Control, control_model
 from simulator.motion.motion import axis_limits
-from simulator.spec import Machine, Material
+from simulator.spec import Machine
 from stepnc_model.errors import Finding, StepNcError
-from stepnc_model.post.neutral import blocks_of, tool_numbers
-from stepnc_model.program import Program
 
 MOST_RATE = 10_000.0
 """1/s"""
@@ -31,13 +28,16 @@ MOST_RATE = 10_000.0
 class SimulationRequest:
     """What the user asks of ``simulate``, in the user's units."""
 
-    file: Path
+    file: Path | None = None
+    code: CodeRequest | None = None
     machine: str = ""
     material: str = ""
     units: str = "iso"
     rate: float = 10.0
-    control: str = "fir"
+    control: str = Control.FIR.value
+    zero: str = ""
     output: Path | None = None
+    report: Path | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,20 +46,20 @@ class Simulation:
 
     program: str
     machine: Machine
-    material: Material
+    control: Control
     totals: tuple[tuple[str, Total], ...]
     """by workingstep in the order of their beginning; the first is what comes before them"""
     findings: tuple[Finding, ...]
-    written: Path | None = None
     samples: int = 0
+    """that were written"""
 
     @property
-    def total(self) -> Total:
+    def whole(self) -> Total:
         """Of the whole run."""
-        whole = Total()
+        total = Total()
         for _, part in self.totals:
-            whole = whole.plus(part)
-        return whole
+            total = total.plus(part)
+        return total
 
 
 def simulate(request: SimulationRequest, *, tell: Tell = silent) -> Simulation:
@@ -70,55 +70,104 @@ def simulate(request: SimulationRequest, *, tell: Tell = silent) -> Simulation:
     StepNcError
         For everything that is wrong with file, names, numbers or output.
     """
-    _require_rate(request.rate)
+    _require(request)
     control = one_of(Control, request.control, "control")
-    if request.output is not None:
-        require_place(request.output, apart_from=request.file)
-    program = read_program(request.file, units=request.units)
-    machine = machine_for(request.machine, program)
-    match = material_for(request.material, program)
-    tell(f"material: {match.reason}")
-    paths = with_feeds(paths_of(program, tell=tell), keep_going=False)
-    numbers = tool_numbers(paths.paths)
-    tools = {
-        number: loaded_tool(program, ref, number, match.material)
-        for ref, number in numbers.items()
-    }
-    blocks = enumerate(blocks_of(program, paths.items, name=request.file.stem), 1)
+    prepared = _prepared(request, tell)
+    machine = prepared.machine
     virtual = VirtualMachine(
         Setup(
             machine=machine,
             control=control_model(control, axis_limits(machine)),
-            tools=tools,
+            tools=prepared.tools,
+            stock=prepared.stock,
+            zero=_zero(request.zero, prepared),
         )
     )
+    episodes = virtual.run(interpret(prepared.blocks, machine))
+    run = _Run(machine, rate=request.rate)
     ticker = Ticker(tell)
-    totals = [Total()]
-    sampler = Sampler(machine, rate=request.rate)
-    with ExitStack() as stack:
-        file = None
-        if request.output is not None:
-            file = stack.enter_context(TimelineFile(request.output, virtual.workingsteps))
-        for episode in virtual.run(interpret(blocks, machine)):
-            while len(totals) <= episode.state.workingstep:
-                totals.append(Total())
-            at = episode.state.workingstep
-            totals[at] = added(totals[at], episode, machine)
-            if file is not None:
-                for samples in sampler.samples(episode):
-                    file.add(samples)
-            ticker(lambda: f"{episode.end:.0f} s of machining, line {episode.state.line}")
+    with _timeline(request, virtual) as file:
+        for episode in episodes:
+            run.add(episode, file)
+            ticker(lambda: f"{prepared.done():4.0%}  {virtual.now:.0f} s of machining")
+    if request.output is not None:
+        tell(f"written: {request.output} ({run.samples} samples)")
     return Simulation(
-        program=program.name,
+        program=prepared.name,
         machine=machine,
-        material=match.material,
-        totals=tuple(zip(("", *virtual.workingsteps), totals, strict=True)),
-        findings=(*paths.findings, *virtual.findings),
-        written=request.output,
-        samples=0 if file is None else file.rows,
+        control=control,
+        totals=tuple(zip(("", *virtual.workingsteps), run.totals, strict=True)),
+        findings=(*prepared.findings, *virtual.findings),
+        samples=run.samples,
     )
 
 
-def _require_rate(rate: float) -> None:
-    if not 1.0 <= rate <= MOST_RATE:
-        raise StepNcError(f"rate {rate:g} Hz: it must be 1 to {MOST_RATE:g} Hz")
+class _Run:
+    """What is gathered on the way. Running state."""
+
+    def __init__(self, machine: Machine, *, rate: float) -> None:
+        self.totals = [Total()]
+        self.samples = 0
+        self._machine = machine
+        self._sampler = Sampler(machine, rate=rate)
+
+    def add(self, episode: Episode, file: TimelineFile | None) -> None:
+        """One more episode."""
+        at = episode.state.workingstep
+        self.totals += [Total() for _ in range(len(self.totals), at + 1)]
+        self.totals[at] = added(self.totals[at], episode, self._machine)
+        if file is not None:
+            for samples in self._sampler.samples(episode):
+                file.add(samples)
+                self.samples += len(samples)
+
+
+def _timeline(
+    request: SimulationRequest, virtual: VirtualMachine
+) -> TimelineFile | nullcontext[None]:
+    if request.output is None:
+        return nullcontext()
+    return TimelineFile(request.output, virtual.workingsteps)
+
+
+def _prepared(request: SimulationRequest, tell: Tell) -> Prepared:
+    if request.code is not None:
+        return from_code(
+            request.code,
+            program=request.file,
+            units=request.units,
+            machine=request.machine,
+            material=request.material,
+        )
+    if request.file is None:
+        raise StepNcError("name a STEP-NC program, or NC code with --nc")
+    return from_program(
+        request.file,
+        units=request.units,
+        machine=request.machine,
+        material=request.material,
+        tell=tell,
+    )
+
+
+def _require(request: SimulationRequest) -> None:
+    """Refuse what cannot be, before anything is read."""
+    if not 1.0 <= request.rate <= MOST_RATE:
+        raise StepNcError(f"rate {request.rate:g} Hz: it must be 1 to {MOST_RATE:g} Hz")
+    inputs = [request.file, request.code.code if request.code else None]
+    outputs = [request.output, request.report]
+    for row, place in enumerate(outputs):
+        for other in (*inputs, *outputs[:row]):
+            if place is not None and other is not None:
+                require_place(place, apart_from=other)
+
+
+def _zero(text: str, prepared: Prepared) -> Zero | None:
+    """Place of the program's zero: as the user says, or by the stock."""
+    if not text:
+        return None if prepared.raw is None else zero_of(prepared.machine, prepared.raw)
+    try:
+        x, y, z = (float(word) for word in text.split(","))
+    except ValueError:
+        raise StepNcError(f"--zero {text}: three numbers in mm with commas") from None
+    return x, y, z

@@ -12,8 +12,7 @@ from types import TracebackType
 
 import numpy as np
 import pyarrow as pa
-import pyarrow.csv
-import pyarrow.parquet
+from pyarrow import csv, parquet
 
 from simulator.machine.samples import Samples, joined
 from simulator.timeline import COLUMNS, Column
@@ -93,17 +92,17 @@ class TimelineFile:
         if sum(map(len, self._waiting)) >= ROWS:
             self._flush()
 
-    def _opened(self) -> "pa.parquet.ParquetWriter | pa.csv.CSVWriter":
+    def _opened(self) -> parquet.ParquetWriter | csv.CSVWriter:
         if self.path.suffix.lower() == ".csv":
-            return pa.csv.CSVWriter(self._name, _schema(np.str_))
-        return pa.parquet.ParquetWriter(self._name, _schema(np.int32), compression="zstd")
+            return csv.CSVWriter(self._name, _schema(np.str_))
+        return parquet.ParquetWriter(self._name, _schema(np.int32), compression="zstd")
 
     def _flush(self) -> None:
         if not self._waiting:
             return
         samples, self._waiting = joined(self._waiting), []
         words = ("", *self._workingsteps)
-        is_text = isinstance(self._writer, pa.csv.CSVWriter)
+        is_text = isinstance(self._writer, csv.CSVWriter)
         arrays = [_array(column, samples, words) for column in COLUMNS]
         if is_text:
             arrays = [

@@ -196,7 +196,7 @@ def library_entry(kind: str, name: str) -> Machine | Material:
     """One machine or material, by name or file."""
     if kind == "machines":
         return load_machine(name)
-    return _load_material(name).material
+    return load_material_named(name).material
 
 
 def _require_positive(value: float | None, what: str, unit: str) -> None:
@@ -317,7 +317,7 @@ def machine_for(name: str, program: Program) -> Machine:
 def material_for(name: str, program: Program) -> MaterialMatch:
     """The material named, or the one the file names."""
     if name:
-        return _load_material(name)
+        return load_material_named(name)
     material = program.material()
     if material is None:
         raise StepNcError(
@@ -327,7 +327,7 @@ def material_for(name: str, program: Program) -> MaterialMatch:
     return match_material((material.standard_identifier, material.material_identifier))
 
 
-def _load_material(name: str) -> MaterialMatch:
+def load_material_named(name: str) -> MaterialMatch:
     """A material by library name, file, or any name that catalogues give it."""
     if name in material_names() or Path(name).suffix == ".toml":
         return MaterialMatch(

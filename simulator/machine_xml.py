@@ -3,8 +3,8 @@
 The form is one ``Machine`` element whose attributes carry no units. This is the audited
 reading: powers in W although their names say energy, the rapid in hundredths of a metre per
 minute, the spindle's acceleration in rev/s², the pitch of the feed screw in metres per
-revolution, its diameter in metres, times in ms. Each assumption is a remark of the machine. The names are kept as
-printed, slips included; the corrected spelling is read too.
+revolution, its diameter in metres, times in ms. Each assumption is a remark of the machine. The
+names are kept as printed, slips included; the corrected spelling is read too.
 
 References
 ----------
@@ -86,14 +86,15 @@ REMARKS = (
     "angularAcceleration is read in rev/s²; the form gives no unit, Table 1 says rad/s².",
     "pitchFeedScrew is read as a lead in m per revolution; Table 1 says m/rad, but the torques "
     "of the paper divide by 2π.",
-    "feedScrewDiameter is read in m; the form gives no inertia of the servomotor, none is added.",
+    "feedScrewDiameter is read in m. The form gives no inertia of the servomotor; none is "
+    "added.",
     "axisAccelation is read in m/s² and holds for X, Y and Z alike.",
     "pDefaultLoad, pDefaultCool and the attributes called Energy are read as powers in W: as "
     "energies in J the setup would draw less than the basic load.",
     "The form gives no motor power, spindle speed range, travel, greatest feed, block time or "
     "tool change time: these do not limit; 1000 kW stands for the motor power.",
-    "rotorDiameter, rotorLength and frictionCoefficient are checked but not used: 0.2 N·s/mm² is "
-    "no viscosity of air or oil and the gap is missing, so they give no running torque.",
+    "rotorDiameter, rotorLength and frictionCoefficient are checked but not used: 0.2 N·s/mm² "
+    "is no viscosity of air or oil and the gap is missing, so they give no running torque.",
     "gravity, setup and ejection are checked but not used.",
 )
 

@@ -38,9 +38,7 @@ class Sampler:
         self._next = 0
 
     def samples(self, episode: Episode) -> Iterator[Samples]:
-        """Samples of the next episode, in parts; an episode shorter than the interval may
-        have none.
-        """
+        """Samples of the next episode in parts; a short episode may have none."""
         beyond = ceil(episode.end * self._rate - ROUNDING)
         if episode.state.execution is Execution.PROGRAM_COMPLETED:
             beyond = self._next + 1

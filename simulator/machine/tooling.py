@@ -1,5 +1,6 @@
 """Tools of a program as the virtual machine holds them: shape, edge and wear."""
 
+from dataclasses import replace
 from math import inf, pi
 
 from simulator.edge_material import correction_of, edge_material
@@ -9,6 +10,7 @@ from simulator.machine.cutting import Edge
 from simulator.machine.virtual import LoadedTool
 from simulator.removal.cutter import Cutter, Holder, Insert
 from simulator.spec import CuttingMaterial, Grade, Material, ToolKind
+from simulator.tool_table import ENDS, TableTool
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.enums import HandOfToolType
 from stepnc_model.entities.tools import CuttingTool, MillingCuttingTool, TaperedEndmill
@@ -44,10 +46,6 @@ KINDS = {
 }
 """by the EXPRESS name of the tool; all others are end mills"""
 
-ENDS = {ToolKind.DRILL, ToolKind.CENTER_DRILL, ToolKind.REAMER, ToolKind.COUNTERSINK}
-"""tools that cut with their end only"""
-
-
 def loaded_tool(
     program: Program, ref: Ref[Entity], number: int, material: Material, *, factor: float = 1.0
 ) -> LoadedTool:
@@ -74,22 +72,36 @@ def loaded_tool(
     entity = program.get(ref)
     is_turning = isinstance(entity, TurningMachineCuttingTool)
     shape = _insert(tool, entity) if is_turning else _cutter(program, tool, entity)
+    # Carbide where nothing is said, as in the optimiser.
+    cutting_material = edge_material(tool.edge_material) or CuttingMaterial.CARBIDE
+    kind = KINDS.get(tool.keyword, ToolKind.ENDMILL)
+    edge = _edge(kind, cutting_material, tool.teeth, material=material)
     return LoadedTool(
         number=number,
         id=tool.id,
         shape=shape,
-        edge=edge_of(tool, material, factor=factor),
+        edge=replace(edge, factor=factor * edge.factor),
     )
 
 
-def edge_of(tool: Tool, material: Material, *, factor: float = 1.0) -> Edge:
-    """What a tool cuts a material with; carbide where nothing is said."""
-    kind = KINDS.get(tool.keyword, ToolKind.ENDMILL)
-    cutting_material = edge_material(tool.edge_material) or CuttingMaterial.CARBIDE
-    correction = correction_of(
-        material, _grade(kind, cutting_material, material), cutting_material
+def table_tool(tool: TableTool, material: Material, *, factor: float = 1.0) -> LoadedTool:
+    """A tool of a tool table."""
+    edge = _edge(tool.kind, tool.cutting_material, tool.teeth, material=material)
+    return LoadedTool(
+        number=tool.number,
+        id=tool.id,
+        shape=tool.shape,
+        edge=replace(edge, factor=factor * edge.factor),
     )
-    return Edge(teeth=tool.teeth, kienzle=material.kienzle, factor=factor * correction.factor)
+
+
+def _edge(
+    kind: ToolKind, cutting_material: CuttingMaterial, teeth: int, *, material: Material
+) -> Edge:
+    """What a tool cuts a material with."""
+    grade = _grade(kind, cutting_material, material)
+    correction = correction_of(material, grade, cutting_material)
+    return Edge(teeth=teeth, kienzle=material.kienzle, factor=correction.factor)
 
 
 def _grade(

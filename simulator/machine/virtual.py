@@ -12,7 +12,7 @@ from typing import Protocol
 
 import numpy as np
 
-from simulator.errors import OutOfTravel, UnknownTool
+from simulator.errors import UnknownTool
 from simulator.machine.acts import (
     CoolantTo,
     End,
@@ -29,8 +29,9 @@ from simulator.machine.cutting import Edge
 from simulator.machine.episode import Course, Episode, State
 from simulator.machine.samples import Execution
 from simulator.machine.spindle_course import following, ramped, standing
+from simulator.machine.travel import Zero, require_travel
 from simulator.machine.wear import Wear
-from simulator.motion.motion import AXES, ControlModel, axis_limits
+from simulator.motion.motion import ControlModel, axis_limits
 from simulator.motion.segments import Floats, Segments
 from simulator.removal.cutter import Cutter, Insert
 from simulator.removal.stations import Stations, air
@@ -69,8 +70,8 @@ class Setup:
     """by number; None: no tool is known, and nothing is cut"""
     stock: Callable[[str], StockMap | None] = lambda _: None
     """what is clamped when a workingstep begins; None: nothing is known of it"""
-    zero: tuple[float, float, float] | None = None
-    """mm, place of the program's zero on the axes; None: travel is not looked at"""
+    zero: Zero | None = None
+    """None: travel is not looked at"""
 
 
 class VirtualMachine:
@@ -93,13 +94,26 @@ class VirtualMachine:
         self._said: set[str] = set()
 
     def run(self, steps: Iterable[Step]) -> Iterator[Episode]:
-        """Episodes of a program, one after another without a gap."""
+        """Episodes of a program, one after another without a gap.
+
+        The machine stands where the first move begins, wherever that is.
+        """
+        waiting: list[Step] = []
         for step in steps:
-            self.state = replace(self.state, line=step.line)
-            yield from self._act(step)
+            waiting.append(step)
+            if self.position is None:
+                if not isinstance(step.act, Stretch):
+                    continue
+                self.position = step.act.segments.start[0]
+            for held in waiting:
+                yield from self._act(held)
+            waiting.clear()
+        for held in waiting:
+            yield from self._act(held)
         yield self._still(0.0, Execution.PROGRAM_COMPLETED)
 
     def _act(self, step: Step) -> Iterator[Episode]:
+        self.state = replace(self.state, line=step.line)
         match step.act:
             case Stretch() as stretch:
                 yield self._move(stretch)
@@ -164,7 +178,8 @@ class VirtualMachine:
 
     def _move(self, stretch: Stretch) -> Episode:
         segments = stretch.segments
-        self._require_travel(segments)
+        if self.setup.zero is not None:
+            require_travel(self.machine, segments, self.setup.zero)
         motion = self.setup.control.plan(segments, self.limits)
         begin, self.now = self.now, self.now + motion.duration
         self._follow(stretch, begin + motion.ends, begin)
@@ -222,27 +237,6 @@ class VirtualMachine:
         if self.tool is not None and course.wear.grows:
             seconds = course.cutting_seconds
             self._wear[self.tool.number] = course.wear.after(seconds)
-
-    def _require_travel(self, segments: Segments) -> None:
-        """Refuse a stretch that leaves the travel of an axis."""
-        if self.setup.zero is None:
-            return
-        turned = np.flatnonzero(segments.turn)
-        arms = np.repeat(turned, 8)
-        part = np.tile(np.arange(1, 9) / 8.0, len(turned))
-        points = np.concatenate((
-            segments.start[:1],
-            segments.end,
-            segments.position(arms, part * segments.length[arms]),
-        ))
-        lines = np.concatenate((segments.block[:1], segments.block, segments.block[arms]))
-        for axis in self.machine.axes:
-            row = AXES.index(axis.name)
-            low, high = (end - self.setup.zero[row] for end in axis.travel)
-            beyond = np.flatnonzero((points[:, row] < low) | (points[:, row] > high))
-            if len(beyond):
-                at = float(points[beyond[0], row])
-                raise OutOfTravel(axis.name, at, travel=(low, high), line=int(lines[beyond[0]]))
 
     def _say(self, text: str, line: int = 0) -> None:
         """A warning, once."""

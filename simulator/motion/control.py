@@ -41,7 +41,7 @@ def control_model(
     Raises
     ------
     ValueError
-        When the deviation is negative, or the limits give the filter no times.
+        When the deviation is not positive, or the limits give the filter no times.
     """
     match control:
         case Control.EXACT_STOP:

@@ -156,7 +156,7 @@ class FilteredMotion:
         """State at (M,) times in s between 0 and the duration."""
         window, pieces = self.filter.window, self.pieces
         before = np.maximum(times - window, pieces.time[0])
-        piece = np.searchsorted(pieces.time[:-1], before, side="right") - 1
+        piece = np.searchsorted(pieces.time[1:-1], before, side="right")
         acceleration, velocity, position = averaged(
             before,
             piece,

@@ -33,15 +33,15 @@ class JunctionDeviation:
     Raises
     ------
     ValueError
-        When the deviation is negative.
+        When the deviation is not positive.
     """
 
     deviation: float
-    """mm; 0: exact stop at every corner"""
+    """mm, e"""
 
     def __post_init__(self) -> None:
-        if not self.deviation >= 0.0:
-            raise ValueError(f"deviation {self.deviation} mm must not be negative")
+        if not 0.0 < self.deviation < np.inf:
+            raise ValueError(f"junction deviation {self.deviation:g} mm must be positive")
 
     def plan(self, segments: Segments, limits: AxisLimits) -> Phases:
         """Motion along segments, from rest to rest.
@@ -77,14 +77,11 @@ def corner_squares(segments: Segments, acceleration: Floats, *, deviation: float
     """
     before, after = corners(segments)
     change = np.linalg.norm(after - before, axis=1)
-    sine = np.minimum(0.5 * np.linalg.norm(after + before, axis=1), 1.0)
-    share = np.divide(
-        np.abs(after - before),
-        change[:, None],
-        out=np.zeros_like(after),
-        where=change[:, None] > 0.0,
-    )
+    sine = 0.5 * np.linalg.norm(after + before, axis=1)
+    squares = np.full(len(change), np.inf)
+    bent = np.flatnonzero(change > 0.0)
+    share = np.abs(after - before)[bent] / change[bent, None]
     # 1 − S = (1 − S²)/(1 + S) = (|Δd|/2)²/(1 + S), without cancellation near straight on.
-    factor = np.full(len(change), np.inf)
-    np.divide(4.0 * sine * (1.0 + sine), change**2, out=factor, where=change > 0.0)
-    return least(acceleration, share) * deviation * factor
+    radius = deviation * sine[bent] * (1.0 + sine[bent]) * (2.0 / change[bent]) ** 2
+    squares[bent] = least(acceleration, share) * radius
+    return squares

@@ -17,7 +17,13 @@ AXES = ("X", "Y", "Z")
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class AxisLimits:
-    """What the axes can do; an axis that the machine has not is not limited."""
+    """What the axes can do; an axis that the machine has not is not limited.
+
+    Raises
+    ------
+    ValueError
+        When a limit of an axis is not positive, or the block time is negative.
+    """
 
     acceleration: Floats
     """(3,) mm/s²"""
@@ -29,6 +35,14 @@ class AxisLimits:
     """s, the control's processing time of one block"""
     jerk: Floats = field(default_factory=lambda: np.full(3, np.inf))
     """(3,) mm/s³"""
+
+    def __post_init__(self) -> None:
+        for name in ("acceleration", "rapid", "feed", "jerk"):
+            value = getattr(self, name)
+            if value.shape != (3,) or not (value > 0.0).all():
+                raise ValueError(f"{name} of X, Y and Z must be positive, got {value}")
+        if not 0.0 <= self.block_time < np.inf:
+            raise ValueError(f"block time {self.block_time:g} s must not be negative")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

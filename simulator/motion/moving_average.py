@@ -12,6 +12,9 @@ References
    turning velocity without division by its rate.
 """
 
+# numba carries no types.
+# mypy: disable-error-code="untyped-decorator"
+
 from math import cos, sin
 
 import numpy as np

@@ -59,65 +59,81 @@ def path_limits(segments: Segments, limits: AxisLimits) -> PathLimits:
     """
     if not len(segments):
         raise ValueError("a stretch of path needs at least one segment, got 0")
-    share = _shares(segments)
-    greatest = np.where(segments.is_rapid[:, None], limits.rapid, limits.feed)
-    speed = np.minimum(segments.speed, least(greatest, share))
-    speed = np.minimum(speed, _block_speed(segments, limits.block_time))
-    speed = np.where(segments.length > 0.0, speed, 0.0)
-    acceleration = least(np.broadcast_to(limits.acceleration, share.shape), share)
-    _bound_arcs(segments, limits.acceleration, speed, acceleration)
-    endless = np.flatnonzero(~np.isfinite(speed))
+    turn_rate = _over(segments.turn, segments.length, 0.0)
+    in_plane = segments.radius * np.abs(turn_rate)
+    bend = in_plane * np.abs(turn_rate)
+    share = _shares(segments, in_plane)
+    grip = _slower_in_plane(segments, limits.acceleration)
+    speeds = (
+        segments.speed,
+        least(np.where(segments.is_rapid[:, None], limits.rapid, limits.feed), share),
+        _block_speed(segments, limits.block_time),
+        np.sqrt(_over(CENTRIPETAL_SHARE * grip, bend, np.inf)),
+    )
+    speed = np.where(segments.length > 0.0, np.min(speeds, axis=0), 0.0)
+    endless = np.flatnonzero(np.isinf(speed))
     if len(endless):
         raise ValueError(f"segment {endless[0]}: neither command nor axis bounds its speed")
+    left = grip * np.sqrt(1.0 - (speed**2 * bend / grip) ** 2)
+    acceleration = np.minimum(least(limits.acceleration, share), _over(left, in_plane, np.inf))
     return PathLimits(speed=speed, acceleration=acceleration)
 
 
-def _shares(segments: Segments) -> Floats:
+def _over(value: Floats, divisor: Floats, otherwise: float) -> Floats:
+    """Quotient, or another value where the divisor is 0."""
+    quotient = np.full(divisor.shape, otherwise)
+    np.divide(value, divisor, out=quotient, where=divisor > 0.0)
+    return quotient
+
+
+def _shares(segments: Segments, in_plane: Floats) -> Floats:
     """(N, 3) how much each axis moves at most per length of path."""
-    length = np.where(segments.length > 0.0, segments.length, 1.0)
-    share: Floats = np.abs(segments.end - segments.start) / length[:, None]
-    bent = np.flatnonzero(segments.turn != 0.0)
-    normal = segments.normal[bent]
-    along_normal = share[bent, normal]
-    in_plane = segments.radius[bent] * np.abs(segments.turn[bent]) / length[bent]
-    share[bent] = in_plane[:, None]
-    share[bent, normal] = along_normal
-    return share
+    moved = np.abs(segments.end - segments.start)
+    share = _over(moved, np.broadcast_to(segments.length[:, None], moved.shape), 0.0)
+    is_in_plane = np.arange(3) != segments.normal[:, None]
+    is_arc = segments.turn[:, None] != 0.0
+    return np.where(is_arc & is_in_plane, in_plane[:, None], share)
+
+
+def _slower_in_plane(segments: Segments, acceleration: Floats) -> Floats:
+    """(N,) acceleration of the slower of the two axes in a segment's plane, mm/s²."""
+    is_normal = np.arange(3) == segments.normal[:, None]
+    slower: Floats = np.where(is_normal, np.inf, acceleration).min(axis=1)
+    return slower
 
 
 def least(limit: Floats, share: Floats) -> Floats:
-    """Least path value at which an axis reaches its own."""
-    whole = np.full(share.shape, np.inf)
-    np.divide(limit, share, out=whole, where=share > 0.0)
-    return whole.min(axis=1)
+    """Value along the path at which the first axis reaches its limit.
+
+    Parameters
+    ----------
+    limit : (3,) or (N, 3) array
+        Of the axes.
+    share : (N, 3) array
+        How much of the path's value each axis has.
+
+    Returns
+    -------
+    (N,) array
+        In the unit of the limit.
+    """
+    first: Floats = _over(np.broadcast_to(limit, share.shape), share, np.inf).min(axis=1)
+    return first
 
 
 def block_lengths(segments: Segments) -> Floats:
-    """(N,) length of the whole block to which each segment belongs, mm."""
+    """(N,) length of the whole block of which each segment is a piece, mm."""
     is_new = np.append(True, segments.block[1:] != segments.block[:-1])
     block = np.cumsum(is_new) - 1
-    return np.bincount(block, weights=segments.length)[block]
+    whole: Floats = np.bincount(block, weights=segments.length)[block]
+    return whole
 
 
 def _block_speed(segments: Segments, block_time: float) -> Floats:
     """Speed at which the control keeps up with the blocks, [1]_; rapids are not held back."""
-    free = np.full(len(segments), np.inf)
     if block_time == 0.0:
-        return free
-    return np.where(segments.is_rapid, free, block_lengths(segments) / block_time)
-
-
-def _bound_arcs(segments: Segments, axis: Floats, speed: Floats, acceleration: Floats) -> None:
-    """Lower speed and acceleration of arcs in place, by the split of the module's head."""
-    bent = np.flatnonzero((segments.turn != 0.0) & (segments.radius > 0.0))
-    turn_rate = segments.turn[bent] / segments.length[bent]
-    bend = segments.radius[bent] * turn_rate**2
-    in_plane = segments.radius[bent] * np.abs(turn_rate)
-    grip = np.where(np.arange(3) == segments.normal[bent][:, None], np.inf, axis).min(axis=1)
-    speed[bent] = np.minimum(speed[bent], np.sqrt(CENTRIPETAL_SHARE * grip / bend))
-    used = np.where(np.isfinite(grip), speed[bent] ** 2 * bend / grip, 0.0)
-    left = grip * np.sqrt(1.0 - used**2) / in_plane
-    acceleration[bent] = np.minimum(acceleration[bent], left)
+        return np.full(len(segments), np.inf)
+    return np.where(segments.is_rapid, np.inf, block_lengths(segments) / block_time)
 
 
 def corners(segments: Segments) -> tuple[Floats, Floats]:
@@ -131,11 +147,10 @@ def corners(segments: Segments) -> tuple[Floats, Floats]:
 def goes_on(segments: Segments) -> Bools:
     """(N−1,) whether both segments are pieces of one block that goes straight on."""
     before, after = corners(segments)
-    is_straight = np.linalg.norm(after - before, axis=1) <= STRAIGHT_ON
-    is_same = (segments.block[1:] == segments.block[:-1]) & (
-        segments.is_rapid[1:] == segments.is_rapid[:-1]
-    )
-    return is_same & is_straight
+    goes: Bools = np.linalg.norm(after - before, axis=1) <= STRAIGHT_ON
+    goes &= segments.block[1:] == segments.block[:-1]
+    goes &= segments.is_rapid[1:] == segments.is_rapid[:-1]
+    return goes
 
 
 def is_stop(segments: Segments) -> Bools:

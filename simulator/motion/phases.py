@@ -52,8 +52,8 @@ class Phases:
 
     def at(self, times: Floats) -> Kinematics:
         """State at (M,) times in s between 0 and the duration."""
-        phase = np.searchsorted(self.start, times, side="right") - 1
-        passed = np.minimum(times - self.start[phase], self.time[phase])
+        phase = np.searchsorted(self.start[1:], times, side="right")
+        passed = np.clip(times - self.start[phase], 0.0, self.time[phase])
         along = self.acceleration[phase]
         speed = np.maximum(self.speed[phase] + along * passed, 0.0)
         row = self.segment[phase]

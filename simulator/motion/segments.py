@@ -4,7 +4,7 @@ One row a segment, each beginning where the one before it ends. Units mm, mm/s, 
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
 import numpy as np
@@ -61,6 +61,8 @@ class Segments:
                 raise ValueError(f"{name} must have shape {(count,)}")
         if not (self.speed > 0.0).all():
             raise ValueError("speed must be positive")
+        if not ((self.normal >= 0) & (self.normal <= 2)).all():
+            raise ValueError("normal must be 0, 1 or 2")
 
     def __len__(self) -> int:
         return len(self.turn)
@@ -190,7 +192,7 @@ _FIRST = np.array(FIRST)
 _SECOND = np.array(SECOND)
 
 
-def lines(points: Sequence[Sequence[float]], *, speed: float = np.inf) -> Segments:
+def lines(points: Sequence[Sequence[float] | Floats], *, speed: float = np.inf) -> Segments:
     """Straight segments through points, rapid unless a speed in mm/s is given."""
     corners = np.asarray(points, dtype=np.float64).reshape(-1, 3)
     count = max(0, len(corners) - 1)
@@ -204,3 +206,50 @@ def lines(points: Sequence[Sequence[float]], *, speed: float = np.inf) -> Segmen
         normal=np.full(count, 2),
         block=np.arange(count),
     )
+
+
+def arc(
+    start: Sequence[float],
+    centre: Sequence[float],
+    turn: float,
+    *,
+    normal: int = 2,
+    rise: float = 0.0,
+    speed: float = np.inf,
+) -> Segments:
+    """One arc, or a helix when it rises along its normal (axis 0, 1 or 2).
+
+    Parameters
+    ----------
+    start, centre : sequence of 3 floats, mm
+        The centre's coordinate along the normal means nothing.
+    turn : float, rad
+        Positive counter-clockwise, more than 2π for several turns.
+    normal : int
+        Axis of the plane's normal.
+    rise : float, mm
+    speed : float, mm/s
+        Infinite: a rapid.
+    """
+    first, second = FIRST[normal], SECOND[normal]
+    end = np.array(start, dtype=np.float64)
+    arm = complex(start[first] - centre[first], start[second] - centre[second])
+    turned = arm * complex(np.cos(turn), np.sin(turn))
+    end[first], end[second] = centre[first] + turned.real, centre[second] + turned.imag
+    end[normal] += rise
+    return replace(
+        lines([start, end], speed=speed),
+        centre=np.array([centre], dtype=np.float64),
+        turn=np.array([float(turn)]),
+        normal=np.array([normal]),
+    )
+
+
+def chained(parts: Sequence[Segments]) -> Segments:
+    """Segments of several parts one after another, each segment a block of its own."""
+    columns = {
+        field.name: np.concatenate([getattr(part, field.name) for part in parts])
+        for field in fields(Segments)
+    }
+    columns["block"] = np.arange(len(columns["turn"]))
+    return Segments(**columns)

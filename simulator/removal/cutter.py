@@ -100,7 +100,7 @@ class Insert:
 
     @property
     def centre(self) -> tuple[float, float]:
-        """Centre of the nose, of a blade that of its corner at the chuck, off the path: x, z."""
+        """Centre of the nose, or of a blade's corner at the chuck, from its tip: x, z in mm."""
         x = -self.nose_radius if self.is_inside else self.nose_radius
         if self.width is not None or self.hand is HandOfToolType.RIGHT:
             return x, self.nose_radius

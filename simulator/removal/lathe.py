@@ -41,15 +41,15 @@ ON_AXIS = 1e-3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RapidContact:
-    """A rapid that met material."""
+class Collision:
+    """A rapid that met material, or a tool that stood in it before it moved."""
 
     block: int
     """number of the block"""
     volume: float
     """mm³"""
     position: tuple[float, float, float]
-    """where the rapid ends"""
+    """where it ends"""
 
 
 class TurningStock:
@@ -86,8 +86,8 @@ class TurningStock:
         """(C,) mm, radius of the outside over each cell"""
         self.inner: Floats = np.zeros(count)
         """(C,) mm, radius of the bore; where it is that of the outside nothing is left"""
-        self.collisions: list[RapidContact] = []
-        """rapids that met material, in order"""
+        self.collisions: list[Collision] = []
+        """in order"""
 
     @property
     def cell(self) -> float:
@@ -97,8 +97,8 @@ class TurningStock:
     @property
     def z(self) -> Floats:
         """(C,) middles of the cells, mm."""
-        middles: Floats = self._grid.start + (np.arange(len(self.outer)) + 0.5) * self.cell
-        return middles
+        middles: Floats = np.arange(len(self.outer), dtype=np.float64) + 0.5
+        return self._grid.start + middles * self.cell
 
     @property
     def volume(self) -> float:
@@ -175,19 +175,23 @@ class TurningStock:
     def _counted(
         self, segments: Segments, windows: Windows, taken: tuple[Floats, Floats]
     ) -> Removed:
-        """What was removed, alike together; rapids that met material are noted."""
+        """What was removed, alike together; what no cut removes is noted instead."""
         area, volume = taken
-        for row in np.flatnonzero(segments.is_rapid[windows.segment] & (volume > 0.0)):
-            segment = windows.segment[row]
-            x, y, z = segments.end[segment].tolist()
+        is_wrong = segments.is_rapid[windows.segment]
+        is_wrong[:1] = True
+        for row in np.flatnonzero(is_wrong & (volume > 0.0)):
+            x, y, z = segments.position(windows.segment, windows.end)[row].tolist()
             self.collisions.append(
-                RapidContact(
-                    block=int(segments.block[segment]),
+                Collision(
+                    block=int(segments.block[windows.segment[row]]),
                     volume=float(volume[row]),
                     position=(x, y, z),
                 )
             )
-        return grouped(Removed(windows=windows, area=area, volume=volume), self.cell)
+        rest = Windows(
+            segment=windows.segment[1:], start=windows.start[1:], end=windows.end[1:]
+        )
+        return grouped(Removed(windows=rest, area=area[1:], volume=volume[1:]), self.cell)
 
     def _require_axis(self, segments: Segments, cutter: Cutter) -> None:
         """Beside the axis there must be air: such holes are no bodies of revolution."""

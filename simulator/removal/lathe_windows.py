@@ -55,6 +55,8 @@ class Removed:
 def windows_of(segments: Segments, cell: float) -> Windows:
     """Cut segments in stretches; a rapid is one.
 
+    Before them comes one without length: where the tool stands.
+
     Parameters
     ----------
     segments : Segments
@@ -75,10 +77,12 @@ def windows_of(segments: Segments, cell: float) -> Windows:
     segment = np.repeat(np.arange(len(length)), count)
     rank = np.arange(len(segment)) - np.repeat(np.cumsum(count) - count, count)
     is_last = rank == count[segment] - 1
+    start, end = rank * step[segment], (rank + 1) * step[segment]
+    end[is_last] = length[segment[is_last]]
     return Windows(
-        segment=segment,
-        start=rank * step[segment],
-        end=np.where(is_last, length[segment], (rank + 1) * step[segment]),
+        segment=np.insert(segment, 0, segment[:1]),
+        start=np.insert(start, 0, start[:1]),
+        end=np.insert(end, 0, start[:1]),
     )
 
 

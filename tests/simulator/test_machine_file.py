@@ -7,7 +7,10 @@ import pytest
 
 from simulator.errors import LibraryError
 from simulator.library import load_machine, machine_names
-from simulator.spec import Machine, MachineKind
+from simulator.physics.axis import axis_power, motor_speed
+from simulator.physics.spindle_motion import spindle_power
+from simulator.spec import AxisDrive, Machine, MachineKind
+from stepnc_model.units import rpm_from_rev_s
 
 GOOD = """
 title = "My mill"
@@ -37,6 +40,25 @@ rapid_mm_min = 30_000
 acceleration_mm_s2 = 3_000
 """
 
+DRIVE = """
+[axis.drive]
+lead_mm = 12
+table_mass_kg = 300
+workpiece_mass_kg = 80
+screw_mass_kg = 8
+screw_diameter_mm = 36
+coupling_inertia_kg_m2 = 0.0003
+motor_inertia_kg_m2 = 0.005
+guide_friction = 0.01
+bearing_friction = 0.004
+preload_n = 3_000
+viscous_nm_s_per_rad = 0.003
+gear_ratio = 2
+efficiency = 0.9
+regeneration = 0.6
+source = "drawing"
+"""
+
 
 def machine_of(text: str, folder: Path) -> Machine:
     path = folder / "my.toml"
@@ -60,6 +82,35 @@ def test_what_a_file_does_not_say_does_not_limit(tmp_path: Path) -> None:
     assert machine.axes[0].travel == (-inf, inf)
     assert machine.axes[0].max_feed == machine.axes[0].rapid
     assert machine.base_power == machine.tool_change == 0.0
+
+
+def test_a_feed_drive_is_read_in_canonical_units(tmp_path: Path) -> None:
+    assert machine_of(GOOD + DRIVE, tmp_path).axes[0].drive == AxisDrive(
+        lead=12.0,
+        table_mass=300.0,
+        workpiece_mass=80.0,
+        screw_mass=8.0,
+        screw_diameter=36.0,
+        coupling_inertia=0.0003,
+        motor_inertia=0.005,
+        guide_friction=0.01,
+        bearing_friction=0.004,
+        preload=3000.0,
+        viscous=3.0,
+        gear_ratio=2.0,
+        efficiency=0.9,
+        regeneration=0.6,
+    )
+
+
+def test_an_axis_without_a_drive_has_none(tmp_path: Path) -> None:
+    assert machine_of(GOOD, tmp_path).axes[0].drive is None
+
+
+def test_losses_and_regeneration_of_the_spindle_are_read(tmp_path: Path) -> None:
+    losses = "idle_power_w_per_rev2_s2 = 0.02\nregeneration = 0.7\nmin_speed_rpm"
+    spindle = machine_of(GOOD.replace("min_speed_rpm", losses, 1), tmp_path).spindle
+    assert (spindle.idle_power_per_speed_squared, spindle.regeneration) == (0.02, 0.7)
 
 
 def test_a_spindle_without_a_curve_is_told(tmp_path: Path) -> None:
@@ -109,6 +160,47 @@ def test_a_bad_value_is_told_with_key_value_and_bound(
         machine_of(GOOD.replace(good, bad, 1), tmp_path)
     assert message in str(caught.value)
     assert str(tmp_path / "my.toml") in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("good", "bad", "message"),
+    [
+        ("lead_mm = 12", "lead_mm = 0.012", "axis[1].drive.lead_mm: 0.012 mm is below 0.1 mm"),
+        ("lead_mm = 12", "", "axis[1].drive.lead_mm: missing"),
+        ("preload_n = 3_000", "preload_kn = 3", "drive.preload_kn: unknown key"),
+        ("efficiency = 0.9", "efficiency = 90", "drive.efficiency: 90 exceeds 1"),
+        ("viscous_nm_s_per_rad = 0.003", "viscous_nm_s_per_rad = -1", "-1 N·m·s/rad is below"),
+        ("gear_ratio = 2", "gear_ratio = 0", "drive.gear_ratio: 0 is below 0.01"),
+        ("regeneration = 0.6", "regeneration = 1.6", "drive.regeneration: 1.6 exceeds 1"),
+        ('source = "drawing"', "", "drive.source: missing"),
+    ],
+)
+def test_a_bad_drive_is_told(good: str, bad: str, message: str, tmp_path: Path) -> None:
+    assert good in DRIVE
+    with pytest.raises(LibraryError) as caught:
+        machine_of(GOOD + DRIVE.replace(good, bad, 1), tmp_path)
+    assert message in str(caught.value)
+
+
+@pytest.mark.parametrize("name", ["vmc15", "lathe22"])
+def test_typical_feed_drives_are_servomotors_that_one_can_buy(name: str) -> None:
+    """Up to 3000 rpm; some hundred watts at steady rapid, some kilowatts at its end."""
+    for axis in load_machine(name).axes:
+        assert axis.drive is not None
+        motor_rpm = rpm_from_rev_s(motor_speed(axis.drive, axis.rapid) / (2 * pi))
+        assert 1500 <= motor_rpm <= 3000
+        assert 150 < axis_power(axis.drive, axis.rapid) < 500
+        assert 2000 < axis_power(axis.drive, axis.rapid, axis.acceleration) < 6000
+
+
+@pytest.mark.parametrize("name", ["vmc15", "lathe22"])
+def test_typical_spindles_reach_their_speed_within_twice_their_power(name: str) -> None:
+    spindle = load_machine(name).spindle
+    assert spindle.max_speed is not None
+    assert spindle.acceleration is not None
+    peak = spindle_power(spindle, spindle.max_speed, spindle.acceleration)
+    greatest = max(point.power for point in spindle.curve)
+    assert 0.5 * greatest < peak < 2.0 * greatest
 
 
 @pytest.mark.parametrize("name", machine_names())

@@ -40,9 +40,30 @@ def test_the_xml_and_the_library_say_the_same_of_paper_003() -> None:
 
 def test_every_assumed_unit_is_a_remark() -> None:
     remarks = " ".join(read_machine_xml(EXAMPLE).remarks)
-    for name in ("basicRapidSpeed", "angularAcceleration", "pitchFeedScrew", "Energy"):
+    for name in (
+        "basicRapidSpeed",
+        "angularAcceleration",
+        "pitchFeedScrew",
+        "feedScrewDiameter",
+        "frictionCoefficient",
+        "Energy",
+    ):
         assert name in remarks
     assert "'TurningMc1', but the form describes a mill" in remarks
+
+
+def test_the_drive_is_read_in_canonical_units() -> None:
+    drives = [axis.drive for axis in read_machine_xml(EXAMPLE).axes]
+    assert drives[0] is not None
+    assert drives == [drives[0]] * 3
+    assert (drives[0].lead, drives[0].screw_diameter) == (15.0, 30.0)  # mm
+    assert drives[0].viscous == 5.0  # N·mm·s/rad
+
+
+def test_a_drive_that_is_half_given_is_none_and_says_so(tmp_path: Path) -> None:
+    machine = read_machine_xml(with_change(tmp_path, 'preloadForce="1800"', ""))
+    assert [axis.drive for axis in machine.axes] == [None] * 3
+    assert any("Without preloadForce" in remark for remark in machine.remarks)
 
 
 def test_the_corrected_spelling_is_read_too(tmp_path: Path) -> None:
@@ -68,6 +89,11 @@ def test_an_id_that_looks_like_a_number_is_a_name(tmp_path: Path) -> None:
         ('gravity="9.81"', 'gravitation="9.81"', "Machine.gravitation: unknown key"),
         ('gravity="9.81"', 'gravity="981"', "Machine.gravity: 981 m/s² exceeds 9.9 m/s²"),
         ('basicRapidSpeed="1600"', 'basicRapidSpeed="1.6"', "1.6 1/100 m/min is below 10"),
+        (
+            'pitchFeedScrew="0.015"',
+            'pitchFeedScrew="15"',
+            "Machine.pitchFeedScrew: 15 m/rev exceeds 0.5 m/rev",
+        ),
         ("<Machines>", "<Machines", "is no XML"),
         ("<Machine\n", "<Robot\n", "has no Machine element"),
     ],

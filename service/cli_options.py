@@ -1,0 +1,30 @@
+"""What the commands of the command line share: exit codes and options. Imports nothing slow."""
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+OK, BAD_INPUT, INFEASIBLE, LIMIT_EXCEEDED, INTERRUPTED = 0, 3, 4, 5, 130
+
+CONTROLS = "linuxcnc, fanuc, haas, sinumerik, heidenhain or canonical"
+
+if TYPE_CHECKING:
+    Commands = argparse._SubParsersAction[argparse.ArgumentParser]
+else:
+    Commands = object
+
+
+def add_file(parser: argparse.ArgumentParser) -> None:
+    """The program, and the units it is written in."""
+    parser.add_argument("file", type=Path, metavar="FILE", help="a STEP-NC program (Part 21)")
+    parser.add_argument(
+        "--units",
+        default="iso",
+        help="units of feeds and speeds in the file: iso (m/s, rev/s; default), rpm-mmin, "
+        "rpm-mmtooth, rpm-mmrev, revs-mmtooth or revs-mmrev",
+    )
+
+
+def add_json(parser: argparse.ArgumentParser) -> None:
+    """JSON instead of a table."""
+    parser.add_argument("--json", action="store_true", help="print JSON instead of a table")

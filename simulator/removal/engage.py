@@ -1,0 +1,236 @@
+"""Milling and drilling of one stock: removal and engagement along a program, move by move.
+
+The section of a flat cutter on level moves comes from exact arcs wherever every arc is known
+exactly; its volume then agrees with the map's to what the map's cells can tell. Everywhere else
+the section comes from the volume that the map loses, over windows of at least ten cells,
+because less is noise, and is shared among the stations in proportion to what the rim sees.
+Units mm and rad.
+"""
+
+from dataclasses import dataclass
+from math import inf, pi, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simulator.motion.segments import Floats, Segments
+from simulator.removal.cutter import Cutter
+from simulator.removal.march import (
+    AXIAL,
+    CHIP,
+    COLUMNS,
+    CONTACT,
+    DEPTH,
+    DIAMETER,
+    ENTRY,
+    EXACT,
+    EXIT,
+    FINDINGS,
+    HOLDER,
+    HOLDER_X,
+    HOLDER_Y,
+    KIND,
+    LENGTH,
+    ROOM_FOR_ROW,
+    ROW,
+    SECTION,
+    SHANK,
+    SPOT_X,
+    SPOT_Y,
+    SPOT_Z,
+    STATION,
+    VOLUME,
+    March,
+    march,
+    rows_of,
+)
+from simulator.removal.profile import cylinder, profile_of
+from simulator.removal.rim import Tool, past, room
+from simulator.removal.stations import CutKind, Stations
+from simulator.removal.zmap import ZMap, cell_size, zmap_of
+from stepnc_model.toolpath.job import Stock
+
+WINDOW = 10.0
+"""cells of path over which the map's volume is a measure"""
+
+STEP_SHARE = 0.25
+"""of the tool's radius: the longest stretch between two stations"""
+
+LEAST_SHARE = 0.01
+"""of the tool's radius: the shortest one"""
+
+_CHUNK = 16_384  # rows that are marched in one go
+_LINES = 4 * ROOM_FOR_ROW
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Collision:
+    """What met the stock and should not have."""
+
+    segment: int
+    """row"""
+    block: int
+    depth: float
+    """mm, deepest"""
+    position: tuple[float, float, float]
+    """mm, where"""
+    volume: float = 0.0
+    """mm³ removed, of rapid moves"""
+
+
+class MillingStock:
+    """A stock that is cut away: running state.
+
+    Parameters
+    ----------
+    stock : Stock
+    cell : float, mm
+        Size of the map's cells; chosen from the stock and the smallest tool unless given.
+    smallest_diameter : float, mm
+        Of the tools to come.
+    """
+
+    def __init__(
+        self, stock: Stock, *, cell: float | None = None, smallest_diameter: float = inf
+    ) -> None:
+        size = cell_size(stock, smallest_diameter=smallest_diameter) if cell is None else cell
+        self.map: ZMap = zmap_of(stock, cell=size)
+        self.volume = 0.0
+        """mm³ removed so far, by the map"""
+        self.collisions: list[Collision] = []
+        """rapid moves that removed material"""
+        self.holder_collisions: list[Collision] = []
+        """where the holder would have met material, its depth there"""
+        self.shank_collisions: list[Collision] = []
+        """material above the cutting edge, its height over the edge's end"""
+        self._past = past()
+        self._room = room()
+
+    def cut(
+        self, segments: Segments, cutter: Cutter, *, is_clockwise: bool = True
+    ) -> Stations:
+        """Cut along segments, in order, and tell what the tool met.
+
+        Parameters
+        ----------
+        segments : Segments
+            Path of the tip of the tool.
+        cutter : Cutter
+        is_clockwise : bool
+            How the spindle turns, seen from above.
+
+        Returns
+        -------
+        Stations
+            At least one row a segment.
+
+        Raises
+        ------
+        ValueError
+            If the cutter's shape is impossible.
+        """
+        grid = self.map.grid
+        profile = profile_of(cutter, reach=grid.top - grid.bottom)
+        flank = sin(cutter.cutting_edge_angle)
+        tool = Tool(profile, flank, 1.0 if is_clockwise else -1.0)
+        how = _how(cutter, profile.radius, self.map.cell)
+        parts: list[Floats] = []
+        for first in range(0, len(segments), _CHUNK):
+            parts += self._chunk(segments[first : first + _CHUNK], tool, how, first)
+        lines = np.concatenate(parts) if parts else np.empty((0, COLUMNS))
+        _windowed(lines, WINDOW * self.map.cell)
+        return _stations(lines)
+
+    def _chunk(self, segments: Segments, tool: Tool, how: March, first: int) -> list[Floats]:
+        """March along some rows."""
+        state = (self.map.grid, self._past, self._room)
+        rows, lengths = rows_of(segments), segments.length
+        out = np.empty((_LINES, COLUMNS))
+        found = np.zeros((len(segments), FINDINGS))
+        parts: list[NDArray[np.float64]] = []
+        row = 0
+        while row < len(segments):
+            row, count = march(state, tool, how, rows, lengths, row, out, found)
+            parts.append(out[:count].copy())
+            parts[-1][:, ROW] += first
+        self.volume += float(found[:, VOLUME].sum())
+        self._note(segments, found, first)
+        return parts
+
+    def _note(self, segments: Segments, found: Floats, first: int) -> None:
+        """Keep the collisions of some rows."""
+        for row in np.flatnonzero((found[:, VOLUME] > 0.0) & segments.is_rapid):
+            spot = tuple(found[row, [SPOT_X, SPOT_Y, SPOT_Z]].tolist())
+            self.collisions.append(
+                Collision(
+                    segment=first + int(row),
+                    block=int(segments.block[row]),
+                    depth=float(found[row, DEPTH]),
+                    position=spot,
+                    volume=float(found[row, VOLUME]),
+                )
+            )
+        for column, kept in ((HOLDER, self.holder_collisions), (SHANK, self.shank_collisions)):
+            for row in np.flatnonzero(found[:, column] > 0.0):
+                where = [HOLDER_X, HOLDER_Y] if column == HOLDER else [SPOT_X, SPOT_Y]
+                x, y = found[row, where].tolist()
+                kept.append(
+                    Collision(
+                        segment=first + int(row),
+                        block=int(segments.block[row]),
+                        depth=float(found[row, column]),
+                        position=(x, y, float(segments.end[row, 2])),
+                    )
+                )
+
+
+def _how(cutter: Cutter, radius: float, cell: float) -> March:
+    """How to march with a cutter over cells of a size."""
+    holder = cutter.holder
+    return March(
+        step=max(STEP_SHARE * radius, 4.0 * cell),
+        least=max(LEAST_SHARE * radius, 0.1 * cell),
+        shank=cutter.edge_length,
+        holder=cylinder(0.5 * holder.diameter if holder else 1.0),
+        overhang=holder.overhang if holder else inf,
+        tip_sine=sin(0.5 * cutter.point_angle),
+    )
+
+
+def _windowed(lines: Floats, window: float) -> None:
+    """Share the map's volume anew over windows of neighbouring stretches."""
+    is_shared = (lines[:, KIND] == CutKind.MILLING) & (lines[:, EXACT] == 0.0)
+    rows = np.flatnonzero(is_shared)
+    if not len(rows):
+        return
+    length = lines[rows, LENGTH]
+    is_break = np.diff(rows, prepend=-2) != 1
+    run = np.cumsum(is_break)
+    before = np.cumsum(length) - length
+    start = before[is_break][run - 1]
+    bins = run * 1e9 + np.floor((before - start) / window)
+    edges = np.flatnonzero(np.diff(bins, prepend=-1.0) != 0.0)
+    volume = np.add.reduceat(lines[rows, SECTION] * length, edges)
+    whole = np.add.reduceat(length, edges)
+    counts = np.diff(np.append(edges, len(rows)))
+    lines[rows, SECTION] = np.repeat(volume / whole, counts)
+
+
+def _stations(lines: Floats) -> Stations:
+    """Stations of the march's lines."""
+    axial, section = lines[:, AXIAL], lines[:, SECTION]
+    width = np.divide(section, axial, out=np.zeros(len(lines)), where=axial > 0.0)
+    kind = lines[:, KIND].astype(np.int64)
+    return Stations(
+        segment=lines[:, ROW].astype(np.int64),
+        station=lines[:, STATION].copy(),
+        kind=kind,
+        section=section.copy(),
+        axial_depth=axial.copy(),
+        radial_width=np.where(kind == CutKind.DRILLING, axial, width),
+        entry_angle=lines[:, ENTRY].copy(),
+        exit_angle=lines[:, EXIT].copy(),
+        contact_angle=lines[:, CONTACT].copy(),
+        chip_ratio=lines[:, CHIP].copy(),
+        diameter=lines[:, DIAMETER].copy(),
+    )

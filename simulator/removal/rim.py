@@ -1,0 +1,402 @@
+"""Where a cutter touches the stock: its rim against the height map, in slices.
+
+At each slice a ring of samples one cell outside the rim says what is solid, because nearer to
+the rim the cells of the tool's own last step read as air. A sample that reads as free knows
+who freed it: where that was a move with an exact outline, the move's outline decides and the
+map only named it; where it was not (a rounded tool on a slope, a move long forgotten), the
+sample itself decides, to about a cell. So the map is the index of the exact arcs.
+
+Slices of flat cutters lie between the heights that the ring meets; those of rounded ones
+divide the depth. Mean chip over feed per tooth is ``∫∫ sin φ dφ dz / ∫∫ dφ dl``, l along the
+edge, which is ``sin κ·(cos φ_st − cos φ_ex)/(φ_ex − φ_st)`` for one arc. Units mm and rad.
+"""
+
+from math import acos, asin, atan2, cos, floor, hypot, pi, sin, sqrt
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from simulator.motion.segments import Floats, Ints
+from simulator.removal.arcs import (
+    MOST_INTERVALS,
+    RECORD,
+    Circle,
+    Intervals,
+    add_free,
+    contact_arcs,
+    free_by_move,
+    free_by_outline,
+    intervals,
+    is_beside,
+)
+from simulator.removal.carve import LEAST, LEVEL
+from simulator.removal.profile import Profile, is_plain, radius_at, rise
+from simulator.removal.zmap import OUTSIDE, Grid
+
+SAMPLES = 128
+"""of the front half of a ring"""
+
+ROUND_SAMPLES = 48
+"""of each ring of a rounded tool"""
+
+CORNER_SLICES = 6
+FLANK_SLICES = 4
+MOST_LEVELS = 8
+"""heights that a flat cutter tells apart; where there are more, so many slices divide the depth"""
+
+FORGETTING = 32_768
+"""moves whose outline is remembered"""
+
+RECENT = 3
+"""last moves, whose outlines count whether the map names them or not"""
+
+MOST_CANDIDATES = 96
+
+
+class Past(NamedTuple):
+    """Outlines of the last moves that cut."""
+
+    records: Floats
+    """(FORGETTING, RECORD)"""
+    next: Ints
+    """(1,) number of the next move"""
+
+
+class Room(NamedTuple):
+    """Room for the work of one station."""
+
+    arcs: Intervals
+    total: Intervals
+    heights: Floats
+    """(SAMPLES,) mm, of the ring"""
+    owner: Ints
+    """(SAMPLES,)"""
+    bounds: Floats
+    """(MOST_LEVELS + 2,) mm between slices"""
+    candidates: Ints
+    """(MOST_CANDIDATES,)"""
+
+
+class Tool(NamedTuple):
+    """A cutter as the rim sees it."""
+
+    profile: Profile
+    sine: float
+    """sin κ of the flank"""
+    side: float
+    """1: turns clockwise"""
+
+
+class Pose(NamedTuple):
+    """Where the tip is and where it goes."""
+
+    x: float
+    y: float
+    z: float
+    ahead_x: float
+    ahead_y: float
+    """unit vector of the feed in the plane"""
+    climb: float
+    """rise per mm in the plane"""
+
+
+class Contact(NamedTuple):
+    """Engagement at one place."""
+
+    section: float
+    """mm² across the feed"""
+    axial_depth: float
+    entry: float
+    exit: float
+    contact: float
+    """rad, all arcs together"""
+    chip_ratio: float
+    diameter: float
+    exact: bool
+    """all outlines were exact, the tool is flat and moves level"""
+
+
+def past() -> Past:
+    """No moves yet."""
+    return Past(np.zeros((FORGETTING, RECORD)), np.zeros(1, dtype=np.int64))
+
+
+def room() -> Room:
+    """Room for the work of one station."""
+    whole: NDArray[np.int64] = np.empty(SAMPLES, dtype=np.int64)
+    return Room(
+        intervals(),
+        intervals(),
+        np.empty(SAMPLES),
+        whole,
+        np.empty(MOST_LEVELS + 2),
+        np.empty(MOST_CANDIDATES, dtype=np.int64),
+    )
+
+
+@njit(cache=True)
+def nothing() -> Contact:
+    """No contact."""
+    return Contact(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, True)
+
+
+@njit(cache=True)
+def look(grid: Grid, before: Past, work: Room, tool: Tool, pose: Pose) -> Contact:
+    """Engagement of a tool at a place, before it cuts there."""
+    profile = tool.profile
+    plain = is_plain(profile)
+    gap = max(grid.dx, grid.dy)
+    base = max(pose.z, grid.bottom)
+    samples = SAMPLES if plain else ROUND_SAMPLES
+    if plain:
+        circle = _circle(pose, profile.radius, tool.side)
+        _read(grid, work, circle, gap, samples)
+        slices = _levels(work, base)
+    else:
+        slices = _slices(grid, work, tool, pose, base)
+    count_all, is_known = 0, True
+    area, across, edges, top, widest = 0.0, 0.0, 0.0, 0.0, 0.0
+    for index in range(slices):
+        low, high = work.bounds[index], work.bounds[index + 1]
+        middle = 0.5 * (low + high)
+        radius = radius_at(profile, middle - pose.z)
+        circle = _circle(pose, radius, tool.side)
+        if not plain:
+            _read(grid, work, circle, gap, samples)
+        found, known = _slice(grid, before, work, circle, middle, samples)
+        if not plain and pose.climb > 0.0:
+            found = _leading(work, found, profile, middle - pose.z, pose.climb)
+        is_known = is_known and known
+        if found == 0:
+            continue
+        sines, angle = 0.0, 0.0
+        for arc in range(found):
+            begin, end = work.arcs.contact[arc, 0], work.arcs.contact[arc, 1]
+            sines += 2.0 * sin(0.5 * (begin + end)) * sin(0.5 * (end - begin))
+            angle += end - begin
+            count_all = add_free(work.total, count_all, begin, end)
+        area += (high - low) * radius * sines
+        across += (high - low) * sines
+        edges += _edge(profile, low - pose.z, high - pose.z, tool.sine) * angle
+        top = high - base
+        widest = 2.0 * radius_at(profile, high - pose.z)
+    if count_all == 0:
+        return nothing()
+    entry, leave, contact = _hull(work.total, contact_arcs(work.total, count_all))
+    exact = plain and is_known and abs(pose.climb) <= LEVEL
+    return Contact(area, top, entry, leave, contact, across / edges, widest, exact)
+
+
+@njit(cache=True)
+def _circle(pose: Pose, radius: float, side: float) -> Circle:
+    """Section of the tool."""
+    return Circle(pose.x, pose.y, radius, pose.ahead_x, pose.ahead_y, side)
+
+
+@njit(cache=True)
+def _read(grid: Grid, work: Room, circle: Circle, gap: float, samples: int) -> None:
+    """Heights and owners on the front half of a ring outside a circle."""
+    radius = circle.radius + gap
+    step = pi / samples
+    turn_cos, turn_sin = cos(step), sin(step)
+    across, onward = radius * cos(0.5 * step) * circle.side, radius * sin(0.5 * step)
+    turn_sin *= circle.side
+    columns, rows = grid.heights.shape
+    for index in range(samples):
+        x = circle.x + onward * circle.ahead_x - across * circle.ahead_y
+        y = circle.y + onward * circle.ahead_y + across * circle.ahead_x
+        column, row = floor((x - grid.x) / grid.dx), floor((y - grid.y) / grid.dy)
+        if 0 <= column < columns and 0 <= row < rows:
+            work.heights[index] = grid.heights[column, row]
+            work.owner[index] = grid.owner[column, row]
+        else:
+            work.heights[index] = grid.bottom
+            work.owner[index] = OUTSIDE
+        across, onward = (
+            across * turn_cos - onward * turn_sin,
+            onward * turn_cos + across * turn_sin,
+        )
+
+
+@njit(cache=True)
+def _levels(work: Room, base: float) -> int:
+    """Slices of a flat cutter: between the heights that its ring meets."""
+    bounds = work.bounds
+    bounds[0] = base
+    count, top = 0, base
+    for height in work.heights:
+        top = max(top, height)
+        if height <= base + LEAST or count > MOST_LEVELS:
+            continue
+        place = count + 1
+        while bounds[place - 1] > height + LEAST:
+            place -= 1
+        if abs(bounds[place - 1] - height) <= LEAST:
+            continue
+        if count == MOST_LEVELS:
+            count += 1
+            continue
+        for index in range(count, place - 1, -1):
+            bounds[index + 1] = bounds[index]
+        bounds[place] = height
+        count += 1
+    if count > MOST_LEVELS:
+        count = MOST_LEVELS
+        for index in range(1, count + 1):
+            bounds[index] = base + (top - base) * index / count
+    return count
+
+
+@njit(cache=True)
+def _slices(grid: Grid, work: Room, tool: Tool, pose: Pose, base: float) -> int:
+    """Slices of a rounded tool: up to the highest place that it touches ahead."""
+    profile, gap = tool.profile, max(grid.dx, grid.dy)
+    top = base
+    for quarter in range(1, 5):
+        radius = 0.25 * quarter * profile.radius
+        _read(grid, work, _circle(pose, radius, tool.side), gap, ROUND_SAMPLES)
+        lowest = pose.z + rise(profile, radius) + LEAST
+        for index in range(ROUND_SAMPLES):
+            if work.heights[index] > lowest:
+                top = max(top, work.heights[index])
+    if top <= base:
+        return 0
+    shoulder = min(max(pose.z + profile.shoulder, base), top)
+    count = 0
+    work.bounds[0] = base
+    if shoulder > base + LEAST:
+        for index in range(1, CORNER_SLICES + 1):
+            work.bounds[index] = base + (shoulder - base) * index / CORNER_SLICES
+        count = CORNER_SLICES
+    if top > shoulder + LEAST:
+        for index in range(1, FLANK_SLICES + 1):
+            work.bounds[count + index] = shoulder + (top - shoulder) * index / FLANK_SLICES
+        count += FLANK_SLICES
+    return count
+
+
+@njit(cache=True)
+def _slice(
+    grid: Grid, before: Past, work: Room, circle: Circle, level: float, samples: int
+) -> tuple[int, bool]:
+    """Contact arcs of one slice, and whether all outlines were exact."""
+    latest = before.next[0]
+    step = pi / samples
+    free, known, is_solid, is_at_border = 0, True, False, grid.radius > 0.0
+    candidates = 0
+    for number in range(max(latest - RECENT, 0), latest):
+        work.candidates[candidates] = number
+        candidates += 1
+        tried = free_by_move(
+            work.arcs, free, circle, before.records[number % FORGETTING], level
+        )
+        free = max(tried, free)
+    for index in range(samples):
+        if work.heights[index] > level:
+            is_solid = True
+            continue
+        owner = work.owner[index]
+        if owner == OUTSIDE:
+            is_at_border = True
+            continue
+        seen = candidates - 1
+        while seen >= 0 and work.candidates[seen] != owner:
+            seen -= 1
+        if seen >= 0:
+            continue
+        if owner >= max(latest - FORGETTING, 0) and candidates < MOST_CANDIDATES:
+            tried = free_by_move(
+                work.arcs, free, circle, before.records[owner % FORGETTING], level
+            )
+            if tried >= 0:
+                free = tried
+                work.candidates[candidates] = owner
+                candidates += 1
+                continue
+        known = False
+        free = add_free(work.arcs, free, index * step, (index + 1) * step)
+    if not is_solid:
+        return 0, known
+    if is_at_border:
+        free = free_by_outline(work.arcs, free, circle, grid)
+    return contact_arcs(work.arcs, free), known
+
+
+@njit(cache=True)
+def _leading(work: Room, count: int, profile: Profile, height: float, climb: float) -> int:
+    """Contact arcs without what a climbing tool leaves behind: ``n·v ≤ 0`` on its surface."""
+    radius = radius_at(profile, height)
+    if profile.slope > 0.0 and radius < profile.radius:
+        tangent = profile.slope
+    elif height < profile.shoulder:
+        tangent = (radius - profile.flat) / max(profile.corner - height, LEAST)
+    elif profile.flank > 0.0:
+        tangent = profile.flank
+    else:
+        return count
+    if tangent <= climb:
+        return 0
+    least = asin(climb / tangent)
+    kept = 0
+    for index in range(count):
+        begin = max(work.arcs.contact[index, 0], least)
+        end = min(work.arcs.contact[index, 1], pi - least)
+        if begin < end:
+            work.arcs.contact[kept, 0], work.arcs.contact[kept, 1] = begin, end
+            kept += 1
+    return kept
+
+
+@njit(cache=True)
+def _edge(profile: Profile, low: float, high: float, sine: float) -> float:
+    """Length of the edge between two heights over the tip."""
+    if profile.slope > 0.0:
+        return (high - low) * sqrt(1.0 + 1.0 / profile.slope**2)
+    corner = 0.0
+    if low < profile.shoulder:
+        end = min(high, profile.shoulder)
+        corner = profile.corner * (
+            acos(max(1.0 - end / profile.corner, -1.0))
+            - acos(max(1.0 - max(low, 0.0) / profile.corner, -1.0))
+        )
+    straight = max(high - max(low, profile.shoulder), 0.0)
+    if profile.flank > 0.0:
+        straight *= sqrt(1.0 + 1.0 / profile.flank**2)
+    return corner + straight / sine
+
+
+@njit(cache=True)
+def _hull(total: Intervals, gaps: int) -> tuple[float, float, float]:
+    """Entry, exit and sum of arcs, from the gaps between them."""
+    entry, leave, contact = 0.0, pi, pi
+    for index in range(gaps):
+        begin, end = total.contact[index, 0], total.contact[index, 1]
+        contact -= end - begin
+        if begin == 0.0:
+            entry = end
+        if end == pi:
+            leave = begin
+    return entry, leave, contact
+
+
+@njit(cache=True)
+def lip(grid: Grid, profile: Profile, x: float, y: float, z: float) -> tuple[float, float]:
+    """Inner and outer radius of what a tool that sinks down to a place cuts there, mm."""
+    rings, spokes = 16, 16
+    inner, outer = profile.radius, 0.0
+    columns, rows = grid.heights.shape
+    for ring in range(rings):
+        radius = (ring + 0.5) / rings * profile.radius
+        height = z + rise(profile, radius) + LEAST
+        for spoke in range(spokes):
+            angle = 2.0 * pi * (spoke + 0.5) / spokes
+            column = floor((x + radius * cos(angle) - grid.x) / grid.dx)
+            row = floor((y + radius * sin(angle) - grid.y) / grid.dy)
+            if not (0 <= column < columns and 0 <= row < rows):
+                continue
+            if grid.heights[column, row] > max(height, grid.bottom):
+                inner = min(inner, ring / rings * profile.radius)
+                outer = max(outer, (ring + 1) / rings * profile.radius)
+    return inner, outer

@@ -1,0 +1,128 @@
+"""A tool table: tools by their numbers, for NC code that comes without a STEP-NC program.
+
+One ``[[tool]]`` table a tool, units in the keys; what is absent is customary.
+"""
+
+from dataclasses import dataclass
+from math import inf, pi
+from pathlib import Path
+
+from simulator.errors import LibraryError
+from simulator.removal.cutter import Cutter, Holder, Insert
+from simulator.spec import CuttingMaterial, ToolKind
+from simulator.toml_file import Range, Table, read_toml
+from stepnc_model.entities.enums import HandOfToolType
+from stepnc_model.units import rad_from_deg
+
+NUMBER = Range(low=1, high=1e6)
+DIAMETER = Range(low=0.01, high=2_000, unit="mm")
+LENGTH = Range(low=0, high=2_000, unit="mm")
+TEETH = Range(low=1, high=500)
+ANGLE = Range(low=0, high=179, unit="°")
+TAPER = Range(low=0, high=80, unit="°")
+POINT = Range(low=30, high=180, unit="°")
+
+TURNED = {ToolKind.TURNING, ToolKind.GROOVING, ToolKind.THREADING}
+ENDS = {ToolKind.DRILL, ToolKind.CENTER_DRILL, ToolKind.REAMER, ToolKind.COUNTERSINK}
+"""kinds that cut with their end only"""
+
+CUSTOMARY_POINT_DEG = {ToolKind.DRILL: 118.0, ToolKind.COUNTERSINK: 90.0}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TableTool:
+    """One tool of the table."""
+
+    number: int
+    id: str
+    kind: ToolKind
+    cutting_material: CuttingMaterial
+    teeth: int
+    shape: Cutter | Insert
+
+
+def read_tool_table(path: Path) -> tuple[TableTool, ...]:
+    """Tools of a TOML file.
+
+    Raises
+    ------
+    LibraryError
+        A key is missing, unknown or out of its range, or a number is there twice.
+    """
+    root = read_toml(path)
+    rows = root.tables("tool")
+    tools = tuple(_tool(row) for row in rows)
+    root.finish()
+    if not tools:
+        raise LibraryError("has no [[tool]]", path=str(path))
+    numbers = [tool.number for tool in tools]
+    for row, number in zip(rows, numbers, strict=True):
+        if numbers.count(number) > 1:
+            raise row.error("number", f"T{number} is there twice")
+    return tools
+
+
+def _tool(row: Table) -> TableTool:
+    kind = row.choice("kind", ToolKind)
+    number = row.number("number", NUMBER)
+    if number != int(number):
+        raise row.error("number", f"{number:g} is no whole number")
+    name = row.text("id") if "id" in row else f"{kind} T{number:g}"
+    material = CuttingMaterial.CARBIDE
+    if "cutting_material" in row:
+        material = row.choice("cutting_material", CuttingMaterial)
+    teeth = int(row.optional_number("teeth", TEETH) or 1)
+    return TableTool(
+        number=int(number),
+        id=name,
+        kind=kind,
+        cutting_material=material,
+        teeth=teeth,
+        shape=_insert(row, kind) if kind in TURNED else _cutter(row, kind, teeth),
+    )
+
+
+def _insert(row: Table, kind: ToolKind) -> Insert:
+    angle = row.optional_number("cutting_edge_angle_deg", ANGLE)
+    width = row.optional_number("width_mm", DIAMETER)
+    if kind is ToolKind.GROOVING and width is None:
+        raise row.error("width_mm", "missing; a grooving blade has a width")
+    hand = row.choice("hand", HandOfToolType) if "hand" in row else HandOfToolType.RIGHT
+    try:
+        return Insert(
+            nose_radius=row.optional_number("nose_radius_mm", LENGTH) or 0.0,
+            cutting_edge_angle=pi / 2.0 if angle is None else rad_from_deg(angle),
+            width=width,
+            hand=hand,
+        )
+    except ValueError as error:
+        raise row.error("", str(error)) from error
+
+
+def _cutter(row: Table, kind: ToolKind, teeth: int) -> Cutter:
+    diameter = row.number("diameter_mm", DIAMETER)
+    corner = row.optional_number("corner_radius_mm", LENGTH) or 0.0
+    if 2.0 * corner > diameter:
+        message = f"{corner:g} mm exceeds half the diameter, {0.5 * diameter:g} mm"
+        raise row.error("corner_radius_mm", message)
+    point = row.optional_number("point_angle_deg", POINT)
+    if point is None:
+        point = CUSTOMARY_POINT_DEG.get(kind, 180.0)
+    return Cutter(
+        diameter=diameter,
+        corner_radius=corner,
+        taper_angle=rad_from_deg(row.optional_number("taper_angle_deg", TAPER) or 0.0),
+        point_angle=rad_from_deg(point),
+        teeth=teeth,
+        edge_length=row.optional_number("edge_length_mm", LENGTH) or inf,
+        is_drill=kind in ENDS,
+        holder=_holder(row),
+    )
+
+
+def _holder(row: Table) -> Holder | None:
+    diameter = row.optional_number("holder_diameter_mm", DIAMETER)
+    overhang = row.optional_number("overhang_mm", LENGTH)
+    if diameter is None or overhang is None:
+        return None
+    return Holder(diameter=diameter, overhang=overhang)

@@ -1,0 +1,163 @@
+"""A machine written and read again."""
+
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from simulator import machine_file as allowed
+from simulator.library import load_machine, machine_names
+from simulator.machine_file import read_machine
+from simulator.machine_toml import machine_toml
+from simulator.spec import Axis, AxisDrive, Machine, MachineKind, Spindle, SpindlePoint
+from simulator.toml_file import Range, Table, read_toml_head
+from stepnc_model.units import nmm_from_nm, rev_s_from_rpm, speed_from_mm_min, watts_from_kw
+
+XML = Path(__file__).parent / "data" / "paper003.xml"
+
+
+def read(text: str, name: str = "my") -> Machine:
+    return read_machine(Table(tomllib.loads(text), path=Path("my.toml")), name=name)
+
+
+def within(span: Range) -> st.SearchStrategy[float]:
+    return st.floats(span.low, span.high)
+
+
+def maybe(values: st.SearchStrategy[float]) -> st.SearchStrategy[float | None]:
+    return st.none() | values
+
+
+FEEDS = within(allowed.FEED).map(speed_from_mm_min)
+WATTS = within(allowed.AUXILIARY_POWER)
+TEXTS = st.text(st.characters(exclude_categories=["Cs"]), max_size=20)
+DRIVES = st.builds(
+    AxisDrive,
+    lead=within(allowed.LEAD),
+    table_mass=within(allowed.MOVED_MASS),
+    workpiece_mass=within(allowed.MASS),
+    screw_mass=within(allowed.MASS),
+    screw_diameter=within(allowed.SCREW_DIAMETER),
+    coupling_inertia=within(allowed.DRIVE_INERTIA),
+    motor_inertia=within(allowed.DRIVE_INERTIA),
+    guide_friction=within(allowed.FRICTION),
+    bearing_friction=within(allowed.FRICTION),
+    preload=within(allowed.PRELOAD),
+    viscous=within(allowed.VISCOUS).map(nmm_from_nm),
+    gear_ratio=within(allowed.GEAR_RATIO),
+    efficiency=within(allowed.EFFICIENCY),
+    regeneration=within(allowed.REGENERATION),
+)
+AXES = st.builds(
+    Axis,
+    name=st.sampled_from("XYZ"),
+    travel=st.sampled_from([(-float("inf"), 10.5), (-0.1, float("inf")), (0.0, 1 / 3)]),
+    rapid=FEEDS,
+    max_feed=FEEDS,
+    acceleration=within(allowed.ACCELERATION),
+    jerk=maybe(within(allowed.JERK)),
+    drive=st.none() | DRIVES,
+)
+
+
+@st.composite
+def spindles(draw: st.DrawFn) -> Spindle:
+    """A curve of up to three points, far enough apart to be no step."""
+    slowest = draw(st.floats(1.0, 1000.0))
+    points = [
+        SpindlePoint(
+            speed=rev_s_from_rpm(slowest * 3.0**row),
+            power=watts_from_kw(draw(st.floats(0.1, 100.0))),
+            torque=draw(maybe(st.floats(0.1, 1000.0).map(nmm_from_nm))),
+        )
+        for row in range(draw(st.integers(1, 3)))
+    ]
+    return Spindle(
+        curve=tuple(points),
+        efficiency=draw(within(allowed.EFFICIENCY)),
+        min_speed=draw(maybe(st.floats(0.1, 10.0).map(rev_s_from_rpm))),
+        max_speed=draw(maybe(st.floats(11.0, 500_000.0).map(rev_s_from_rpm))),
+        acceleration=draw(maybe(within(allowed.SPINDLE_ACCELERATION))),
+        inertia=draw(maybe(within(allowed.INERTIA))),
+        idle_power=draw(WATTS),
+        idle_power_per_speed=draw(within(allowed.IDLE_POWER_PER_SPEED)),
+        idle_power_per_speed_squared=draw(within(allowed.IDLE_POWER_PER_SPEED_SQUARED)),
+        regeneration=draw(within(allowed.REGENERATION)),
+    )
+
+
+MACHINES = st.builds(
+    Machine,
+    name=st.just("my"),
+    title=TEXTS,
+    kind=st.sampled_from(MachineKind),
+    spindle=spindles(),
+    axes=st.lists(AXES, max_size=3).map(tuple),
+    rapid=maybe(FEEDS),
+    max_feed=maybe(FEEDS),
+    max_cutting_force=maybe(within(allowed.FORCE)),
+    max_axial_depth=maybe(within(allowed.DEPTH)),
+    block_time=maybe(within(allowed.BLOCK_TIME)),
+    base_power=WATTS,
+    coolant_power=WATTS,
+    tool_change=within(allowed.TOOL_CHANGE),
+    source=TEXTS,
+    remarks=st.lists(TEXTS, max_size=3).map(tuple),
+)
+
+
+@settings(max_examples=60)
+@given(machine=MACHINES, notes=st.lists(TEXTS, max_size=3))
+def test_a_machine_reads_back_equal(machine: Machine, notes: list[str]) -> None:
+    assert read(machine_toml(machine, notes=notes)) == machine
+
+
+@pytest.mark.parametrize("name", machine_names())
+def test_every_machine_of_the_library_reads_back_equal(name: str) -> None:
+    machine = load_machine(name)
+    assert read(machine_toml(machine), name) == machine
+
+
+def test_a_machine_from_xml_reads_back_equal() -> None:
+    machine = load_machine(str(XML))
+    assert read(machine_toml(machine), "paper003") == machine
+
+
+def test_numbers_are_as_short_as_they_were_typed() -> None:
+    text = machine_toml(load_machine("vmc15"))
+    for line in (
+        "rapid_mm_min = 36000",
+        "speed_rpm = 1500",
+        "torque_nm = 81.2",
+        "viscous_nm_s_per_rad = 0.003",
+        "inertia_kg_m2 = 0.02",
+    ):
+        assert f"\n{line}\n" in text
+
+
+def test_a_value_that_no_rpm_gives_is_at_most_a_bit_off() -> None:
+    machine = load_machine("vmc15")
+    for speed in (100.0 / 3.0, 199.99999999999997, 30.000000000000004):
+        fitted = replace(machine, spindle=replace(machine.spindle, max_speed=speed))
+        found = read(machine_toml(fitted)).spindle.max_speed
+        assert found == pytest.approx(speed, rel=3e-16)
+
+
+def test_notes_are_comments_whatever_they_hold() -> None:
+    notes = ("fitted to four runs\nbase power 371 to 384 W (95 %)", "bell\x07 and [table]")
+    text = machine_toml(load_machine("paper002"), notes=notes)
+    assert text.splitlines()[:3] == [
+        "# fitted to four runs",
+        "# base power 371 to 384 W (95 %)",
+        "# bell  and [table]",
+    ]
+
+
+def test_the_head_of_the_file_is_read_without_the_rest(tmp_path: Path) -> None:
+    path = tmp_path / "my.toml"
+    path.write_text(machine_toml(load_machine("vmc15")), encoding="utf-8")
+    assert read_toml_head(path).text("title") == "Vertical machining centre, 15 kW"
+    assert load_machine(str(path)).spindle == load_machine("vmc15").spindle
