@@ -28,14 +28,15 @@ INTERVAL = (1e-5, 60.0)  # s between samples: 100 kHz to one a minute
 
 
 class Component(StrEnum):
-    """What a power belongs to, by the name of its column."""
+    """What a power belongs to, by the name of its column in :mod:`simulator.timeline`."""
 
     X = "x_axis_wattage"
     Y = "y_axis_wattage"
     Z = "z_axis_wattage"
     SPINDLE = "c_axis_wattage"
     COOLANT = "coolant_wattage"
-    TOTAL = "load_wattage"
+    BASE = "load_wattage"
+    TOTAL = "electric_wattage"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

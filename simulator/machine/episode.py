@@ -12,6 +12,7 @@ import numpy as np
 from simulator.machine.cutting import Edge
 from simulator.machine.samples import Execution
 from simulator.machine.spindle_course import SpindleCourse
+from simulator.machine.tooth_loads import Teeth
 from simulator.machine.wear import Wear
 from simulator.motion.motion import Kinematics, Motion
 from simulator.motion.segments import Floats, Ints, Segments
@@ -44,6 +45,8 @@ class Course:
     edge: Edge | None
     """None: nothing is known of tool or stock, all is air"""
     wear: Wear
+    teeth: Teeth | None = None
+    """None: forces are means over a revolution"""
 
     @cached_property
     def offsets(self) -> Floats:

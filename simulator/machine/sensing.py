@@ -8,10 +8,11 @@ from math import ceil
 
 import numpy as np
 
-from simulator.machine.cutting import CuttingLoads, cutting_loads
+from simulator.machine.cutting import CuttingLoads, cutting_loads, no_loads
 from simulator.machine.drives import axes_power, main_power, overload
 from simulator.machine.episode import Episode
 from simulator.machine.samples import Execution, PathMode, Samples
+from simulator.machine.tooth_loads import tooth_loads
 from simulator.motion.motion import Kinematics
 from simulator.motion.segments import Floats, Ints
 from simulator.spec import Machine
@@ -116,22 +117,24 @@ def _loads(
 ) -> CuttingLoads:
     course = episode.course
     if course is None or rows is None or course.edge is None:
-        nothing = np.zeros(len(times))
-        return CuttingLoads(
-            removal_rate=nothing,
-            chip_thickness=nothing,
-            power=nothing,
-            force=nothing,
-            feed_force=nothing,
-            back_force=nothing,
-        )
-    return cutting_loads(
+        return no_loads(len(times))
+    loads = cutting_loads(
         course.stations,
         rows,
         speed=np.linalg.norm(kinematics.velocity, axis=1),
         spindle_speed=np.abs(speed),
         edge=course.edge,
         wear=course.worn(times - episode.begin),
+    )
+    if course.teeth is None:
+        return loads
+    return tooth_loads(
+        loads,
+        course.stations,
+        rows,
+        turned=episode.spindle.revolutions(times),
+        edge=course.edge,
+        teeth=course.teeth,
     )
 
 

@@ -46,6 +46,9 @@ KINDS = {
 }
 """by the EXPRESS name of the tool; all others are end mills"""
 
+THREADS = {ToolKind.TAP, ToolKind.THREADING}
+
+
 def loaded_tool(
     program: Program, ref: Ref[Entity], number: int, material: Material, *, factor: float = 1.0
 ) -> LoadedTool:
@@ -71,10 +74,12 @@ def loaded_tool(
     tool = tool_of(program, ref)
     entity = program.get(ref)
     is_turning = isinstance(entity, TurningMachineCuttingTool)
-    shape = _insert(tool, entity) if is_turning else _cutter(program, tool, entity)
+    kind = KINDS.get(tool.keyword, ToolKind.ENDMILL)
+    shape: Cutter | Insert | None = None
+    if kind not in THREADS:
+        shape = _insert(tool, entity) if is_turning else _cutter(program, tool, entity)
     # Carbide where nothing is said, as in the optimiser.
     cutting_material = edge_material(tool.edge_material) or CuttingMaterial.CARBIDE
-    kind = KINDS.get(tool.keyword, ToolKind.ENDMILL)
     edge = _edge(kind, cutting_material, tool.teeth, material=material)
     return LoadedTool(
         number=number,
@@ -90,7 +95,7 @@ def table_tool(tool: TableTool, material: Material, *, factor: float = 1.0) -> L
     return LoadedTool(
         number=tool.number,
         id=tool.id,
-        shape=tool.shape,
+        shape=None if tool.kind in THREADS else tool.shape,
         edge=replace(edge, factor=factor * edge.factor),
     )
 

@@ -62,7 +62,7 @@ def tooth_angles(rotation: Floats, teeth: int) -> Floats:
     return np.mod(rotation[:, None] - 2.0 * pi / teeth * np.arange(teeth), 2.0 * pi)
 
 
-def chip_thickness(angle: Floats, *, feed_per_tooth: float, runout: Floats) -> Floats:
+def chip_thickness(angle: Floats, *, feed_per_tooth: Floats | float, runout: Floats) -> Floats:
     """Chip of each tooth on the surface that the teeth before it left.
 
     ``h_j = max(0, min over k = 1…z of k·f_z·sin φ + ρ_j − ρ_{j−k})``: a low tooth cuts less or
@@ -72,7 +72,7 @@ def chip_thickness(angle: Floats, *, feed_per_tooth: float, runout: Floats) -> F
     Parameters
     ----------
     angle : (M, z) array, rad
-    feed_per_tooth : float, mm
+    feed_per_tooth : (M, 1) array or float, mm
     runout : (z,) array, mm
         ρ, radius of each tooth over the nominal one.
 

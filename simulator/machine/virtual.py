@@ -29,6 +29,7 @@ from simulator.machine.cutting import Edge
 from simulator.machine.episode import Course, Episode, State
 from simulator.machine.samples import Execution
 from simulator.machine.spindle_course import following, ramped, standing
+from simulator.machine.tooth_loads import Teeth
 from simulator.machine.travel import Zero, require_travel
 from simulator.machine.wear import Wear
 from simulator.motion.motion import ControlModel, axis_limits
@@ -55,7 +56,8 @@ class LoadedTool:
 
     number: int
     id: str
-    shape: Shape
+    shape: Shape | None
+    """None: threads; what they take is not modelled"""
     edge: Edge
     wear: Wear = field(default_factory=Wear)
 
@@ -70,6 +72,8 @@ class Setup:
     """by number; None: no tool is known, and nothing is cut"""
     stock: Callable[[str], StockMap | None] = lambda _: None
     """what is clamped when a workingstep begins; None: nothing is known of it"""
+    teeth: Teeth | None = None
+    """None: forces are means over a revolution"""
     zero: Zero | None = None
     """None: travel is not looked at"""
 
@@ -189,6 +193,7 @@ class VirtualMachine:
             stations=self._cut(segments),
             edge=None if self.tool is None else self.tool.edge,
             wear=self._worn(),
+            teeth=self.setup.teeth,
         )
         self._wear_on(course)
         episode = Episode(
@@ -217,7 +222,9 @@ class VirtualMachine:
             self.state = replace(self.state, spindle_programmed=last)
 
     def _cut(self, segments: Segments) -> Stations:
-        if self._stock is None or self.tool is None:
+        if self.tool is not None and self.tool.shape is None:
+            self._say(f"{self.tool.id}: the force of a thread is not modelled, nothing is cut")
+        if self._stock is None or self.tool is None or self.tool.shape is None:
             return air(np.arange(len(segments)), segments.length)
         is_clockwise = self.state.spindle_programmed >= 0.0
         stations = self._stock.cut(segments, self.tool.shape, is_clockwise=is_clockwise)

@@ -7,19 +7,16 @@ which the path turns, and arcs shrink. A run takes ``Σ L/v + T1 + T2``. Before,
 between rapids the control waits until the filter has run out. It reads blocks ahead: one
 without length takes no time. Units mm, s.
 
-References
-----------
-.. [1] B. Sencer, K. Ishizaki and E. Shamoto, "High speed cornering strategy with confined
-   contour error and vibration suppression for CNC machine tools", CIRP Annals 64 (2015)
-   369-372: corners under moving averages.
+A state costs time in proportion to the pieces of path within one window.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from simulator.motion.motion import AxisLimits, Kinematics, Motion
-from simulator.motion.moving_average import averaged
+from simulator.motion.moving_average import averaged, states_at_ends
 from simulator.motion.path_limits import is_stop, path_limits
 from simulator.motion.segments import Floats, Ints, Segments
 from simulator.motion.sweep import ends_of_all, swept
@@ -84,31 +81,7 @@ class FixedTimeFilter:
         )
 
 
-def filter_within(limits: AxisLimits) -> FixedTimeFilter:
-    """The shortest filter that keeps every axis within its acceleration, whatever the path.
-
-    T1 is the longest time of an axis from rest to rapid, or from greatest feed to as much the
-    other way: rapids begin and end at rest, feeds do not. T2 is the longest time of an axis
-    to its acceleration, at most T1; a quarter of T1 where no jerk is known.
-
-    Raises
-    ------
-    ValueError
-        When no axis limits both speed and acceleration.
-    """
-    known = np.isfinite(limits.acceleration)
-    acceleration = limits.acceleration[known]
-    change = np.maximum(limits.rapid, 2.0 * limits.feed)[known]
-    first = float(np.max(change / acceleration, initial=0.0))
-    if not 0.0 < first < np.inf:
-        raise ValueError("a filter needs axes with finite rapid, feed and acceleration")
-    second = float(np.max(acceleration / limits.jerk[known], initial=0.0))
-    return FixedTimeFilter(
-        first=first, second=min(first, second) if second > 0.0 else SECOND_SHARE * first
-    )
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Pieces:
     """K lines, arcs and rests of the path before the filter, each at constant speed."""
 
@@ -120,6 +93,12 @@ class Pieces:
     """(K, 3, 3) mm/s where they start, in rows as in :mod:`simulator.motion.moving_average`"""
     rate: Floats
     """(K,) rad/s at which the velocity turns"""
+
+    @cached_property
+    def columns(self) -> tuple[Floats, Floats, Floats, Floats, Floats]:
+        """What the averages need."""
+        ends = states_at_ends(self.time, self.velocity, self.rate)
+        return self.time, self.start, self.velocity, self.rate, ends
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -160,7 +139,7 @@ class FilteredMotion:
         acceleration, velocity, position = averaged(
             before,
             piece,
-            (pieces.time, pieces.start, pieces.velocity, pieces.rate),
+            pieces.columns,
             self.filter.first,
             self.filter.second,
         )
@@ -173,6 +152,30 @@ class FilteredMotion:
             segment=row,
             station=np.minimum(self.speed[row] * passed, self.segments.length[row]),
         )
+
+
+def filter_within(limits: AxisLimits) -> FixedTimeFilter:
+    """The shortest filter that keeps every axis within its acceleration, whatever the path.
+
+    T1 is the longest time of an axis from rest to rapid, or from greatest feed to as much the
+    other way: rapids begin and end at rest, feeds do not. T2 is the longest time of an axis
+    to its acceleration, at most T1; a quarter of T1 where no jerk is known.
+
+    Raises
+    ------
+    ValueError
+        When no axis limits both speed and acceleration.
+    """
+    known = np.isfinite(limits.acceleration)
+    acceleration = limits.acceleration[known]
+    change = np.maximum(limits.rapid, 2.0 * limits.feed)[known]
+    first = float(np.max(change / acceleration, initial=0.0))
+    if not 0.0 < first < np.inf:
+        raise ValueError("a filter needs axes with finite rapid, feed and acceleration")
+    second = float(np.max(acceleration / limits.jerk[known], initial=0.0))
+    return FixedTimeFilter(
+        first=first, second=min(first, second) if second > 0.0 else SECOND_SHARE * first
+    )
 
 
 def _pieces(segments: Segments, speed: Floats, *, rests: Ints, window: float) -> Pieces:

@@ -12,7 +12,8 @@ takes no time. Units mm, s.
 References
 ----------
 .. [1] S. K. Jeon, "Improving Grbl: Cornering algorithm", 2011: junction deviation.
-.. [2] B. Beaudin et al., Grbl 1.1: acceleration of the axes in the direction of the change.
+.. [2] S. S. Skogsrud and S. K. Jeon, Grbl 1.1, planner: the acceleration that the axes reach
+   in the direction in which the velocity changes.
 """
 
 from dataclasses import dataclass
@@ -67,7 +68,7 @@ def corner_squares(segments: Segments, acceleration: Floats, *, deviation: float
     segments : Segments
         N of them, each with a length.
     acceleration : (3,) array, mm/s²
-        Of the axes; a is what they reach in the direction in which the velocity changes, [2]_.
+        Of the axes; a is what they reach along the change of velocity, [2]_.
     deviation : float, mm
 
     Returns

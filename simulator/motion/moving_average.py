@@ -6,10 +6,8 @@ same of the first integral and the acceleration the same of p itself. Large numb
 cancel, so time and position count from where the path was at t−T1−T2, and the integrals walk
 from there over the pieces within the window. Units mm, s, rad.
 
-References
-----------
-.. [1] K. Stumpff, "Himmelsmechanik", vol. 1, 1959: the functions c_k, which here integrate a
-   turning velocity without division by its rate.
+The functions c_k are those of Stumpff: they integrate a turning velocity without division by
+its rate, so that flat arcs and lines lose no digits.
 """
 
 # numba carries no types.
@@ -36,10 +34,30 @@ WAY, ONCE, TWICE = 0, 1, 2
 
 
 @njit(cache=True)
+def states_at_ends(time: Floats, velocity: Floats, rate: Floats) -> Floats:
+    """What each piece adds when all of it is passed.
+
+    Parameters
+    ----------
+    time, velocity, rate : arrays
+        As in :func:`averaged`.
+
+    Returns
+    -------
+    (K, 3, 3) array
+        State at the end of each piece, with its start as origin, in rows as above.
+    """
+    ends = np.zeros((len(rate), 3, 3))
+    for now in range(len(rate)):
+        _advance(ends[now], velocity[now], rate[now], time[now + 1] - time[now], ends[now])
+    return ends
+
+
+@njit(cache=True)
 def averaged(
     begin: Floats,
     piece: Ints,
-    pieces: tuple[Floats, Floats, Floats, Floats],
+    pieces: tuple[Floats, Floats, Floats, Floats, Floats],
     first: float,
     second: float,
 ) -> Floats:
@@ -51,9 +69,10 @@ def averaged(
         T1 + T2 before the times asked for.
     piece : (M,) array of int
         In which of K pieces these lie.
-    pieces : tuple of four arrays
+    pieces : tuple of five arrays
         (K+1,) s at which pieces begin and the last one ends; (K, 3) mm where they begin;
-        (K, 3, 3) mm/s velocity there, in rows as above; (K,) rad/s at which it turns.
+        (K, 3, 3) mm/s velocity there, in rows as above; (K,) rad/s at which it turns; and
+        their states at the ends.
     first, second : float, s
         T1 ≥ T2 > 0.
 
@@ -62,7 +81,7 @@ def averaged(
     (3, M, 3) array
         Acceleration, velocity and position in mm/s², mm/s and mm.
     """
-    time, start, velocity, rate = pieces
+    time, start, velocity, rate, ends = pieces
     result = np.zeros((3, len(begin), 3))
     state, there, leg = np.zeros((3, 3)), np.zeros((3, 3)), np.zeros((3, 3))
     origin = np.zeros(3)
@@ -77,16 +96,21 @@ def averaged(
         for axis in range(3):
             origin[axis] = start[now, axis] + there[WAY, axis]
         _enter(velocity, now, rate[now] * passed, leg)
-        gone, left = 0.0, time[now + 1] - begin[row]
+        entered, gone, left = now, 0.0, time[now + 1] - begin[row]
         for tap, sign in taps:
             while tap - gone > left and now + 1 < len(rate):
-                _advance(state, leg, rate[now], left, state)
+                if now == piece[row]:
+                    _advance(state, leg, rate[now], left, state)
+                else:
+                    _pass(state, ends, now, left)
                 now += 1
                 gone += left
                 left = time[now + 1] - time[now]
-                _enter(velocity, now, 0.0, leg)
                 for axis in range(3):
                     state[WAY, axis] = start[now, axis] - origin[axis]
+            if now != entered:
+                _enter(velocity, now, 0.0, leg)
+                entered = now
             _advance(state, leg, rate[now], tap - gone, there)
             for level in range(3):
                 for axis in range(3):
@@ -94,6 +118,15 @@ def averaged(
         for axis in range(3):
             result[TWICE, row, axis] += origin[axis]
     return result
+
+
+@njit(cache=True)
+def _pass(state: Floats, ends: Floats, now: int, time: float) -> None:
+    """Integrals after a whole piece, in place."""
+    for axis in range(3):
+        way, once = state[WAY, axis], state[ONCE, axis]
+        state[TWICE, axis] += (once + 0.5 * way * time) * time + ends[now, TWICE, axis]
+        state[ONCE, axis] += way * time + ends[now, ONCE, axis]
 
 
 @njit(cache=True)
@@ -130,7 +163,7 @@ def _advance(state: Floats, leg: Floats, rate: float, time: float, there: Floats
 
 @njit(cache=True)
 def _stumpff(angle: float) -> tuple[float, float, float, float]:
-    """c_1 to c_4 of the squared angle: ``c_k = 1/k! − x²/(k+2)! + x⁴/(k+4)! − …``, [1]_."""
+    """c_1 to c_4 of the squared angle: ``c_k = 1/k! − x²/(k+2)! + x⁴/(k+4)! − …``."""
     square = angle * angle
     if square == 0.0:
         return 1.0, 1.0 / 2.0, 1.0 / 6.0, 1.0 / 24.0

@@ -60,7 +60,7 @@ def swept(
     times = _threes((peak - entry) / acceleration, run, (peak - leave) / acceleration)
     clock = np.append(0.0, np.cumsum(times))
     kept = np.diff(clock) > 0.0
-    kept[0] |= not kept.any()
+    kept[1] |= not kept.any()  # a path without length stands
     return Phases(
         segments=segments,
         ends=ends_of_all(len(segments), rows, clock[3::3]),

@@ -27,8 +27,8 @@ from simulator.physics.engagement import Engagement
 from simulator.spec import Kienzle, LinearEdge
 
 RADIAL_SHARE = 0.3
-"""F_r/F_t where only k_c is known: the median of K_rc/K_tc of the seven aluminium alloys in
-[2]_, which lie between 0.16 and 0.60"""
+"""F_r/F_t where only k_c is known: the median of K_rc/K_tc of the seven measurements on
+aluminium in [2]_, which lie between 0.16 and 0.60"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -15,7 +15,7 @@ from typing import NamedTuple
 from numba import njit
 
 from simulator.motion.segments import Floats
-from simulator.removal.profile import Profile, is_plain, rise, steepness
+from simulator.removal.profile import INNER, Profile, is_plain, rise, steepness
 from simulator.removal.zmap import Grid
 
 LEAST = 1e-9
@@ -56,7 +56,7 @@ class Way(NamedTuple):
     """0: a line"""
 
 
-@njit(cache=True)
+@njit(**INNER)
 def place(row: Floats, part: float) -> tuple[float, float, float]:
     """Point of a row of :func:`rows_of` at a share of its length."""
     x = row[0] + part * (row[3] - row[0])
@@ -73,7 +73,7 @@ def place(row: Floats, part: float) -> tuple[float, float, float]:
     return row[6] + second, y, row[8] + first
 
 
-@njit(cache=True)
+@njit(**INNER)
 def way_between(row: Floats, begin: float, end: float) -> Way:
     """Part of a row between two shares of its length, a chord when it bends out of XY."""
     x, y, z = place(row, begin)
@@ -84,7 +84,7 @@ def way_between(row: Floats, begin: float, end: float) -> Way:
     return Way(x, y, z, end_x, end_y, end_z, row[6], row[7], row[9], angle, turn)
 
 
-@njit(cache=True)
+@njit(**INNER)
 def carve_part(
     grid: Grid, profile: Profile, row: Floats, span: tuple[float, float], number: int
 ) -> tuple[float, float, float, float]:
@@ -133,7 +133,7 @@ def carve_part(
     return volume, deepest, x, y
 
 
-@njit(cache=True)
+@njit(**INNER)
 def _range(low: float, high: float, origin: float, size: float, count: int) -> tuple[int, int]:
     """First cell and the one after the last whose middles lie between two coordinates."""
     first = ceil((low - origin - _NUDGE) / size - 0.5)
@@ -141,7 +141,7 @@ def _range(low: float, high: float, origin: float, size: float, count: int) -> t
     return max(first, 0), min(last + 1, count)
 
 
-@njit(cache=True)
+@njit(**INNER)
 def _line(
     grid: Grid, profile: Profile, way: Way, number: int
 ) -> tuple[float, float, float, float]:
@@ -192,7 +192,7 @@ def _line(
     return volume * grid.dx * grid.dy, deepest, found_x, found_y
 
 
-@njit(cache=True)
+@njit(**INNER)
 def _chord(
     way: Way, x: float, reach: float, along_x: float, along_y: float, length: float
 ) -> tuple[float, float]:
@@ -212,7 +212,7 @@ def _chord(
     return low, high
 
 
-@njit(cache=True)
+@njit(**INNER)
 def lowest(profile: Profile, u: float, v: float, length: float, slope: float) -> float:
     """Least height of the tool over a cell, above the start of a line; infinite beside it.
 
@@ -248,7 +248,7 @@ def lowest(profile: Profile, u: float, v: float, length: float, slope: float) ->
     return _bisected(profile, u, v, slope, (low, high))
 
 
-@njit(cache=True)
+@njit(**INNER)
 def _bisected(
     profile: Profile, u: float, v: float, slope: float, span: tuple[float, float]
 ) -> float:
@@ -265,7 +265,7 @@ def _bisected(
     return slope * (u + middle) + rise(profile, min(hypot(middle, v), profile.radius))
 
 
-@njit(cache=True)
+@njit(**INNER)
 def _arc(
     grid: Grid, profile: Profile, way: Way, number: int
 ) -> tuple[float, float, float, float]:
@@ -313,7 +313,7 @@ def _arc(
     return volume * grid.dx * grid.dy, deepest, found_x, found_y
 
 
-@njit(cache=True)
+@njit(**INNER)
 def _bounds(way: Way, reach: float) -> tuple[float, float, float, float]:
     """Box around the sweep of an arc."""
     low_x, high_x = min(way.x, way.end_x), max(way.x, way.end_x)
@@ -328,7 +328,7 @@ def _bounds(way: Way, reach: float) -> tuple[float, float, float, float]:
     return low_x - reach, high_x + reach, low_y - reach, high_y + reach
 
 
-@njit(cache=True)
+@njit(**INNER)
 def arc_distance(way: Way, x: float, y: float) -> float:
     """Distance of a point, seen from the centre, from an arc of at most half a turn."""
     start_x, start_y = way.x - way.centre_x, way.y - way.centre_y
@@ -341,7 +341,7 @@ def arc_distance(way: Way, x: float, y: float) -> float:
     return min(hypot(x - start_x, y - start_y), hypot(x - end_x, y - end_y))
 
 
-@njit(cache=True)
+@njit(**INNER)
 def _helix(way: Way, x: float, y: float, reach: float) -> float:
     """Least height over a point of a flat tool on a helix of at most half a turn."""
     sign = 1.0 if way.turn > 0.0 else -1.0

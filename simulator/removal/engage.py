@@ -45,7 +45,7 @@ from simulator.removal.march import (
     rows_of,
 )
 from simulator.removal.profile import cylinder, profile_of
-from simulator.removal.rim import Tool, past, room
+from simulator.removal.rim import Tool, past
 from simulator.removal.stations import CutKind, Stations
 from simulator.removal.zmap import ZMap, cell_size, zmap_of
 from stepnc_model.toolpath.job import Stock
@@ -104,7 +104,6 @@ class MillingStock:
         self.shank_collisions: list[Collision] = []
         """material above the cutting edge, its height over the edge's end"""
         self._past = past()
-        self._room = room()
 
     def cut(
         self, segments: Segments, cutter: Cutter, *, is_clockwise: bool = True
@@ -143,7 +142,7 @@ class MillingStock:
 
     def _chunk(self, segments: Segments, tool: Tool, how: March, first: int) -> list[Floats]:
         """March along some rows."""
-        state = (self.map.grid, self._past, self._room)
+        state = (self.map.grid, self._past)
         rows, lengths = rows_of(segments), segments.length
         out = np.empty((_LINES, COLUMNS))
         found = np.zeros((len(segments), FINDINGS))

@@ -12,13 +12,12 @@ from numba import njit
 
 from simulator.motion.segments import Floats, Segments
 from simulator.removal.carve import MEASURE, carve_part, place
-from simulator.removal.profile import Profile
+from simulator.removal.profile import INNER, Profile
 from simulator.removal.rim import (
     FORGETTING,
     Contact,
     Past,
     Pose,
-    Room,
     Tool,
     lip,
     look,
@@ -101,7 +100,7 @@ def rows_of(segments: Segments) -> Floats:
 
 @njit(cache=True)
 def march(
-    state: tuple[Grid, Past, Room],
+    state: tuple[Grid, Past],
     tool: Tool,
     how: March,
     rows: Floats,
@@ -118,7 +117,7 @@ def march(
     return row, count
 
 
-@njit(cache=True)
+@njit(**INNER)
 def _row(state, tool, how, segment, out, count, found):
     """Cut one row; gives the number of stations so far."""
     row, length, index = segment
@@ -137,7 +136,7 @@ def _row(state, tool, how, segment, out, count, found):
     return count
 
 
-@njit(cache=True)
+@njit(**INNER)
 def _air(out, count, index, station, length):
     """Write a stretch of air, or lengthen the one before."""
     if count > 0 and out[count - 1, ROW] == index and out[count - 1, KIND] == _AIR:
@@ -152,7 +151,7 @@ def _air(out, count, index, station, length):
     return count + 1
 
 
-@njit(cache=True)
+@njit(**INNER)
 def _guard(state, tool, how, row, span, found, before):
     """Measure what the shank meets before the cut, or the holder after it."""
     grid = state[0]
@@ -176,10 +175,10 @@ def _guard(state, tool, how, row, span, found, before):
         found[HOLDER], found[HOLDER_X], found[HOLDER_Y] = lost[1], lost[2], lost[3]
 
 
-@njit(cache=True)
+@njit(**INNER)
 def _cut(state, tool, how, row, span, found):
     """Cut a part of a row and keep account; gives the volume."""
-    grid, past, _ = state
+    grid, past = state
     _guard(state, tool, how, row, span, found, True)
     number = past.next[0]
     volume, depth, x, y = carve_part(grid, tool.profile, row, span, number)
@@ -206,7 +205,7 @@ def _cut(state, tool, how, row, span, found):
     return volume
 
 
-@njit(cache=True)
+@njit(**INNER)
 def _sink(state, tool, how, segment, out, count, found):
     """Cut a plunge by stretches, or what a tool meets on its way up."""
     row, length, index = segment
@@ -235,10 +234,10 @@ def _sink(state, tool, how, segment, out, count, found):
     return count
 
 
-@njit(cache=True)
+@njit(**INNER)
 def _look(state, tool, row, part):
     """Engagement at a share of a row."""
-    grid, past, work = state
+    grid, past = state
     x, y, z = place(row, part)
     if row[11] == 0.0:
         ahead_x, ahead_y, climb = row[3] - row[0], row[4] - row[1], row[5] - row[2]
@@ -254,10 +253,10 @@ def _look(state, tool, row, part):
     if flat == 0.0:
         return nothing()
     pose = Pose(x, y, z, ahead_x / flat, ahead_y / flat, climb / flat)
-    return look(grid, past, work, tool, pose)
+    return look(grid, past, tool, pose)
 
 
-@njit(cache=True)
+@njit(**INNER)
 def _differs(one: Contact, other: Contact) -> bool:
     """Whether there should be a station between two."""
     change = abs(one.section - other.section)
@@ -266,7 +265,7 @@ def _differs(one: Contact, other: Contact) -> bool:
     return abs(one.contact - other.contact) > CHANGE_OF_ANGLE
 
 
-@njit(cache=True)
+@njit(**INNER)
 def _mill(state, tool, how, segment, span, out, count, found):
     """Look along a part, cut it, and share its volume among the stretches."""
     row, length, index = segment
@@ -278,7 +277,7 @@ def _mill(state, tool, how, segment, span, out, count, found):
     return _shared(tool, how, out, begin, count, volume)
 
 
-@njit(cache=True)
+@njit(**INNER)
 def _stations(state, tool, how, segment, span, out, count):
     """Write a line for each stretch of a part: the fuller of its ends, and the mean section."""
     row, length, index = segment
@@ -312,7 +311,7 @@ def _stations(state, tool, how, segment, span, out, count):
     return count
 
 
-@njit(cache=True)
+@njit(**INNER)
 def _shared(tool, how, out, begin, count, volume):
     """Sections of a part that hold its volume, and air where there is none."""
     exact, shape, length = True, 0.0, 0.0

@@ -32,7 +32,7 @@ from simulator.removal.arcs import (
     is_beside,
 )
 from simulator.removal.carve import LEAST, LEVEL
-from simulator.removal.profile import Profile, is_plain, radius_at, rise
+from simulator.removal.profile import INNER, Profile, is_plain, radius_at, rise
 from simulator.removal.zmap import OUTSIDE, Grid
 
 SAMPLES = 128
@@ -70,9 +70,9 @@ class Room(NamedTuple):
     arcs: Intervals
     total: Intervals
     heights: Floats
-    """(SAMPLES,) mm, of the ring"""
+    """(S,) mm, of the ring"""
     owner: Ints
-    """(SAMPLES,)"""
+    """(S,)"""
     bounds: Floats
     """(MOST_LEVELS + 2,) mm between slices"""
     candidates: Ints
@@ -123,36 +123,23 @@ def past() -> Past:
     return Past(np.zeros((FORGETTING, RECORD)), np.zeros(1, dtype=np.int64))
 
 
-def room() -> Room:
-    """Room for the work of one station."""
-    whole: NDArray[np.int64] = np.empty(SAMPLES, dtype=np.int64)
-    return Room(
-        intervals(),
-        intervals(),
-        np.empty(SAMPLES),
-        whole,
-        np.empty(MOST_LEVELS + 2),
-        np.empty(MOST_CANDIDATES, dtype=np.int64),
-    )
-
-
-@njit(cache=True)
+@njit(**INNER)
 def nothing() -> Contact:
     """No contact."""
     return Contact(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, True)
 
 
-@njit(cache=True)
-def look(grid: Grid, before: Past, work: Room, tool: Tool, pose: Pose) -> Contact:
+@njit(**INNER)
+def look(grid: Grid, before: Past, tool: Tool, pose: Pose) -> Contact:
     """Engagement of a tool at a place, before it cuts there."""
     profile = tool.profile
+    work = _room(SAMPLES if is_plain(profile) else ROUND_SAMPLES)
     plain = is_plain(profile)
     gap = max(grid.dx, grid.dy)
     base = max(pose.z, grid.bottom)
-    samples = SAMPLES if plain else ROUND_SAMPLES
     if plain:
         circle = _circle(pose, profile.radius, tool.side)
-        _read(grid, work, circle, gap, samples)
+        _read(grid, work, circle, gap)
         slices = _levels(work, base)
     else:
         slices = _slices(grid, work, tool, pose, base)
@@ -164,8 +151,8 @@ def look(grid: Grid, before: Past, work: Room, tool: Tool, pose: Pose) -> Contac
         radius = radius_at(profile, middle - pose.z)
         circle = _circle(pose, radius, tool.side)
         if not plain:
-            _read(grid, work, circle, gap, samples)
-        found, known = _slice(grid, before, work, circle, middle, samples)
+            _read(grid, work, circle, gap)
+        found, known = _slice(grid, before, work, circle, middle)
         if not plain and pose.climb > 0.0:
             found = _leading(work, found, profile, middle - pose.z, pose.climb)
         is_known = is_known and known
@@ -189,15 +176,29 @@ def look(grid: Grid, before: Past, work: Room, tool: Tool, pose: Pose) -> Contac
     return Contact(area, top, entry, leave, contact, across / edges, widest, exact)
 
 
-@njit(cache=True)
+@njit(**INNER)
+def _room(samples: int) -> Room:
+    """Room for the work of one station."""
+    return Room(
+        intervals(),
+        intervals(),
+        np.empty(samples),
+        np.empty(samples, dtype=np.int64),
+        np.empty(MOST_LEVELS + 3),
+        np.empty(MOST_CANDIDATES, dtype=np.int64),
+    )
+
+
+@njit(**INNER)
 def _circle(pose: Pose, radius: float, side: float) -> Circle:
     """Section of the tool."""
     return Circle(pose.x, pose.y, radius, pose.ahead_x, pose.ahead_y, side)
 
 
-@njit(cache=True)
-def _read(grid: Grid, work: Room, circle: Circle, gap: float, samples: int) -> None:
+@njit(**INNER)
+def _read(grid: Grid, work: Room, circle: Circle, gap: float) -> None:
     """Heights and owners on the front half of a ring outside a circle."""
+    samples = len(work.heights)
     radius = circle.radius + gap
     step = pi / samples
     turn_cos, turn_sin = cos(step), sin(step)
@@ -220,7 +221,7 @@ def _read(grid: Grid, work: Room, circle: Circle, gap: float, samples: int) -> N
         )
 
 
-@njit(cache=True)
+@njit(**INNER)
 def _levels(work: Room, base: float) -> int:
     """Slices of a flat cutter: between the heights that its ring meets."""
     bounds = work.bounds
@@ -249,18 +250,18 @@ def _levels(work: Room, base: float) -> int:
     return count
 
 
-@njit(cache=True)
+@njit(**INNER)
 def _slices(grid: Grid, work: Room, tool: Tool, pose: Pose, base: float) -> int:
     """Slices of a rounded tool: up to the highest place that it touches ahead."""
     profile, gap = tool.profile, max(grid.dx, grid.dy)
     top = base
     for quarter in range(1, 5):
         radius = 0.25 * quarter * profile.radius
-        _read(grid, work, _circle(pose, radius, tool.side), gap, ROUND_SAMPLES)
+        _read(grid, work, _circle(pose, radius, tool.side), gap)
         lowest = pose.z + rise(profile, radius) + LEAST
-        for index in range(ROUND_SAMPLES):
-            if work.heights[index] > lowest:
-                top = max(top, work.heights[index])
+        for height in work.heights:
+            if height > lowest:
+                top = max(top, height)
     if top <= base:
         return 0
     shoulder = min(max(pose.z + profile.shoulder, base), top)
@@ -277,12 +278,13 @@ def _slices(grid: Grid, work: Room, tool: Tool, pose: Pose, base: float) -> int:
     return count
 
 
-@njit(cache=True)
+@njit(**INNER)
 def _slice(
-    grid: Grid, before: Past, work: Room, circle: Circle, level: float, samples: int
+    grid: Grid, before: Past, work: Room, circle: Circle, level: float
 ) -> tuple[int, bool]:
     """Contact arcs of one slice, and whether all outlines were exact."""
     latest = before.next[0]
+    samples = len(work.heights)
     step = pi / samples
     free, known, is_solid, is_at_border = 0, True, False, grid.radius > 0.0
     candidates = 0
@@ -324,7 +326,7 @@ def _slice(
     return contact_arcs(work.arcs, free), known
 
 
-@njit(cache=True)
+@njit(**INNER)
 def _leading(work: Room, count: int, profile: Profile, height: float, climb: float) -> int:
     """Contact arcs without what a climbing tool leaves behind: ``n·v ≤ 0`` on its surface."""
     radius = radius_at(profile, height)
@@ -349,7 +351,7 @@ def _leading(work: Room, count: int, profile: Profile, height: float, climb: flo
     return kept
 
 
-@njit(cache=True)
+@njit(**INNER)
 def _edge(profile: Profile, low: float, high: float, sine: float) -> float:
     """Length of the edge between two heights over the tip."""
     if profile.slope > 0.0:
@@ -367,7 +369,7 @@ def _edge(profile: Profile, low: float, high: float, sine: float) -> float:
     return corner + straight / sine
 
 
-@njit(cache=True)
+@njit(**INNER)
 def _hull(total: Intervals, gaps: int) -> tuple[float, float, float]:
     """Entry, exit and sum of arcs, from the gaps between them."""
     entry, leave, contact = 0.0, pi, pi
@@ -381,7 +383,7 @@ def _hull(total: Intervals, gaps: int) -> tuple[float, float, float]:
     return entry, leave, contact
 
 
-@njit(cache=True)
+@njit(**INNER)
 def lip(grid: Grid, profile: Profile, x: float, y: float, z: float) -> tuple[float, float]:
     """Inner and outer radius of what a tool that sinks down to a place cuts there, mm."""
     rings, spokes = 16, 16

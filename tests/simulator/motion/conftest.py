@@ -23,7 +23,7 @@ def limits() -> AxisLimits:
 
 @pytest.fixture(scope="session")
 def wander() -> Wander:
-    """Random feeds and rapids along lines, arcs and helices in all planes, some of no length."""
+    """Random feeds and rapids: lines, arcs and helices in all planes, some without length."""
 
     def path(seed: int) -> Segments:
         random = np.random.default_rng(seed)

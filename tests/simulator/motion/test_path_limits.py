@@ -111,14 +111,12 @@ def _around() -> Segments:
     bend = arc([10, 0, 0], [10, 5, 0], pi / 2, speed=10.0)
     end = list(bend.end[0])
     up = [[end[0], end[1], z] for z in (0.0, 4.0, 9.0)]
-    return chained(
-        [
-            lines([(0, 0, 0), (10, 0, 0)], speed=10.0),
-            bend,
-            lines(up),
-            lines([up[-1], (0, 0, 9)], speed=10.0),
-        ]
-    )
+    return chained([
+        lines([(0, 0, 0), (10, 0, 0)], speed=10.0),
+        bend,
+        lines(up),
+        lines([up[-1], (0, 0, 9)], speed=10.0),
+    ])
 
 
 def test_continuous_control_stops_before_after_and_between_rapids() -> None:

@@ -1,0 +1,144 @@
+"""What drives the power of a machine, sample by sample, and the power that follows from it.
+
+Every component's power is linear in the parameters, but never negative: braking energy is burnt.
+With ``n`` the spindle's speed, ``v`` and ``a`` an axis' speed and acceleration, ``P_c`` the power
+at the edge for a factor of 1 on the specific cutting force and ``η`` the spindle's efficiency::
+
+    spindle  P = P_0 + p_1·|n| + (2π)²·J·n·ṅ/η + k·P_c/η
+    axis     P = F_0·|v| + B·v² + m·a·v
+    base     P = P_b                      coolant  P = P_k while it flows
+    total    the sum
+
+as in :mod:`simulator.physics.spindle_motion` and :mod:`simulator.physics.axis`, the axis'
+parameters seen from the mains: friction ``F_0`` in N, ``B`` in N·s/mm, mass ``m`` in kg, each
+divided by the drive's efficiency. Units mm, s, N, W, rev/s, kg·m².
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from math import pi
+
+import numpy as np
+
+from simulator.calibration.measured_run import Component
+from simulator.motion.segments import Floats
+
+_NMM_S_PER_WATT = 1000.0
+_MM2_PER_M2 = 1e6
+
+
+class Parameter(StrEnum):
+    """What may be fitted."""
+
+    BASE = "base power"
+    COOLANT = "coolant power"
+    IDLE = "spindle idle power"
+    IDLE_PER_SPEED = "spindle idle power per speed"
+    INERTIA = "spindle inertia"
+    CUTTING = "factor on specific cutting force"
+    FRICTION_X = "X friction"
+    VISCOUS_X = "X viscous friction"
+    MASS_X = "X moved mass"
+    FRICTION_Y = "Y friction"
+    VISCOUS_Y = "Y viscous friction"
+    MASS_Y = "Y moved mass"
+    FRICTION_Z = "Z friction"
+    VISCOUS_Z = "Z viscous friction"
+    MASS_Z = "Z moved mass"
+
+
+PARAMETERS = tuple(Parameter)
+UNITS = {
+    Parameter.BASE: "W",
+    Parameter.COOLANT: "W",
+    Parameter.IDLE: "W",
+    Parameter.IDLE_PER_SPEED: "W/(rev/s)",
+    Parameter.INERTIA: "kg·m²",
+    Parameter.CUTTING: "",
+    **dict.fromkeys((Parameter.FRICTION_X, Parameter.FRICTION_Y, Parameter.FRICTION_Z), "N"),
+    **dict.fromkeys((Parameter.VISCOUS_X, Parameter.VISCOUS_Y, Parameter.VISCOUS_Z), "N·s/mm"),
+    **dict.fromkeys((Parameter.MASS_X, Parameter.MASS_Y, Parameter.MASS_Z), "kg"),
+}
+AXIS_COMPONENTS = (Component.X, Component.Y, Component.Z)
+AXIS_PARAMETERS = (
+    (Parameter.FRICTION_X, Parameter.VISCOUS_X, Parameter.MASS_X),
+    (Parameter.FRICTION_Y, Parameter.VISCOUS_Y, Parameter.MASS_Y),
+    (Parameter.FRICTION_Z, Parameter.VISCOUS_Z, Parameter.MASS_Z),
+)
+PARTS = tuple(part for part in Component if part is not Component.TOTAL)
+"""components that the total is the sum of"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class RunFeatures:
+    """N samples of one run, by what was commanded, measured or simulated."""
+
+    name: str
+    duration: Floats
+    """(N,) s that each sample stands for"""
+    spindle_speed: Floats
+    """(N,) rev/s"""
+    spindle_acceleration: Floats
+    """(N,) rev/s²"""
+    velocity: Floats
+    """(N, 3) mm/s"""
+    acceleration: Floats
+    """(N, 3) mm/s²"""
+    cutting_power: Floats
+    """(N,) W at the edge, for a factor of 1 on the specific cutting force"""
+    coolant: Floats
+    """(N,) share of the coolant's power, 0 to 1"""
+    measured: Mapping[Component, Floats]
+    """each (N,) W; empty when the run is only predicted"""
+
+    def __len__(self) -> int:
+        return len(self.duration)
+
+
+Design = Mapping[Component, Floats]
+"""(N, P) for each component but the total: W per unit of each parameter"""
+
+
+def design(run: RunFeatures, *, efficiency: float) -> Design:
+    """What each parameter adds to each component's power, sample by sample.
+
+    Parameters
+    ----------
+    run : RunFeatures
+    efficiency : float
+        Of the spindle.
+    """
+    count = len(run)
+    table = {part: np.zeros((count, len(PARAMETERS))) for part in PARTS}
+
+    def put(part: Component, parameter: Parameter, values: Floats | float) -> None:
+        table[part][:, PARAMETERS.index(parameter)] = values
+
+    speed = np.abs(run.spindle_speed)
+    change = (2.0 * pi) ** 2 * run.spindle_speed * run.spindle_acceleration
+    put(Component.BASE, Parameter.BASE, 1.0)
+    put(Component.COOLANT, Parameter.COOLANT, run.coolant)
+    put(Component.SPINDLE, Parameter.IDLE, (speed > 0.0).astype(np.float64))
+    put(Component.SPINDLE, Parameter.IDLE_PER_SPEED, speed)
+    put(Component.SPINDLE, Parameter.INERTIA, change / efficiency)
+    put(Component.SPINDLE, Parameter.CUTTING, run.cutting_power / efficiency)
+    for axis, (part, parameters) in enumerate(zip(AXIS_COMPONENTS, AXIS_PARAMETERS, strict=True)):
+        pace = np.abs(run.velocity[:, axis])
+        push = run.velocity[:, axis] * run.acceleration[:, axis]
+        put(part, parameters[0], pace / _NMM_S_PER_WATT)
+        put(part, parameters[1], pace**2 / _NMM_S_PER_WATT)
+        put(part, parameters[2], push / _MM2_PER_M2)
+    return table
+
+
+def powers(table: Design, values: Floats) -> dict[Component, Floats]:
+    """Power of every component and their total for (P,) parameter values, each (N,) W."""
+    watts = {part: np.maximum(0.0, table[part] @ values) for part in PARTS}
+    return {**watts, Component.TOTAL: np.sum(list(watts.values()), axis=0)}
+
+
+def slopes(table: Design, values: Floats) -> dict[Component, Floats]:
+    """Change of every component's power and of their total with each parameter, (N, P)."""
+    parts = {part: table[part] * (table[part] @ values > 0.0)[:, None] for part in PARTS}
+    return {**parts, Component.TOTAL: np.sum(list(parts.values()), axis=0)}

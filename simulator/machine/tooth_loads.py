@@ -1,0 +1,75 @@
+"""Forces of a milling cutter tooth by tooth, as a dynamometer would show them.
+
+At each time the teeth stand where the spindle has turned them; straight edges, with runout.
+What is not milling keeps its mean. Units mm, N, rad.
+"""
+
+from dataclasses import dataclass, replace
+from math import pi
+
+import numpy as np
+
+from simulator.machine.cutting import NMM_S_PER_WATT, CuttingLoads, Edge
+from simulator.machine.tooth_forces import chip_thickness, tooth_angles
+from simulator.machine.transients import eccentric_runout
+from simulator.motion.segments import Floats, Ints
+from simulator.physics.milling_forces import RADIAL_SHARE
+from simulator.removal.stations import CutKind, Stations
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Teeth:
+    """How forces of single teeth are shown."""
+
+    eccentricity: float = 0.0
+    """mm, of the cutter's axis off the spindle's"""
+
+
+def tooth_loads(
+    mean: CuttingLoads,
+    stations: Stations,
+    rows: Ints,
+    *,
+    turned: Floats,
+    edge: Edge,
+    teeth: Teeth,
+) -> CuttingLoads:
+    """Loads with the forces of the teeth that are in the cut at each time.
+
+    Parameters
+    ----------
+    mean : CuttingLoads
+        Means over a revolution at M times; power and removal rate stay means.
+    stations : Stations
+    rows : (M,) array of int
+        Which station holds.
+    turned : (M,) array
+        Revolutions of the spindle.
+    edge : Edge
+    teeth : Teeth
+    """
+    is_milling = (stations.kind[rows] == CutKind.MILLING) & (mean.force > 0.0)
+    at = np.flatnonzero(is_milling)
+    station, runout = rows[at], eccentric_runout(teeth.eccentricity, edge.teeth)
+    per_tooth = mean.chip_thickness[at] / stations.chip_ratio[station]
+    angle = tooth_angles(2.0 * pi * np.abs(turned[at]), edge.teeth)
+    chip = chip_thickness(angle, feed_per_tooth=per_tooth[:, None], runout=runout)
+    entry, exit_ = stations.entry_angle[station], stations.exit_angle[station]
+    in_cut = (chip > 0.0) & (angle >= entry[:, None]) & (angle <= exit_[:, None])
+    chip_force = np.where(in_cut, chip, 1.0) ** (1.0 - edge.kienzle.m_c) * in_cut
+    # Means take k_c at the mean chip; what wear and edge add to them, teeth get too.
+    worn = _factor(mean, edge, at)
+    tangential = (worn * stations.axial_depth[station])[:, None] * chip_force
+    sine, cosine = np.sin(angle), np.cos(angle)
+    force, feed, back = mean.force.copy(), mean.feed_force.copy(), mean.back_force.copy()
+    force[at] = tangential.sum(axis=1)
+    feed[at] = (tangential * (cosine + RADIAL_SHARE * sine)).sum(axis=1)
+    back[at] = (tangential * (sine - RADIAL_SHARE * cosine)).sum(axis=1)
+    return replace(mean, force=force, feed_force=feed, back_force=back)
+
+
+def _factor(mean: CuttingLoads, edge: Edge, at: Ints) -> Floats:
+    """K · k_c1.1 of each sample, N/mm², back from the mean power."""
+    specific = mean.power[at] * NMM_S_PER_WATT / mean.removal_rate[at]
+    factor: Floats = specific * mean.chip_thickness[at] ** edge.kienzle.m_c
+    return factor

@@ -1,0 +1,179 @@
+"""What drives and cuts add to the steady state: delay, overshoot, first revolution, runout.
+
+A drive answers its load late, as a first-order lag, or late and too far, as a second-order
+one. Both are made of one pole, so that one recursion serves: exact at the samples for a signal
+that is straight between them, and the same however the signal is cut in chunks. The pole of
+the second order is placed so that its mean delay is that of the first, 2ζ/ω = τ. The default
+figures are customary ones, without a source of their own: calibrate them. Units s, mm, rad.
+
+References
+----------
+.. [1] K. Ogata, "Modern Control Engineering", 5th ed., 2010, ch. 5: overshoot of a step,
+   ``M = exp(−π·ζ/√(1 − ζ²))``.
+"""
+# mypy: disable-error-code="untyped-decorator, no-any-return"
+
+from dataclasses import dataclass
+from math import e, log, pi, sqrt
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from simulator.motion.segments import Floats
+from simulator.physics.domain import require_not_negative, require_positive, require_teeth
+
+USUAL_DELAY = 0.05
+"""s, main drive; 0.02 to 0.1 are met"""
+
+USUAL_OVERSHOOT = 0.2
+"""of the step, at entry and exit"""
+
+_SHORT = 1e-4  # |pole · interval| below which differences lose their digits
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Response:
+    """How a drive follows its load.
+
+    Raises
+    ------
+    ValueError
+        When the delay is negative or the overshoot not in 0 ≤ M < 1.
+    """
+
+    delay: float = USUAL_DELAY
+    """τ, s; 0: at once"""
+    overshoot: float = USUAL_OVERSHOOT
+    """M of a step; 0: none, a first-order lag"""
+
+    def __post_init__(self) -> None:
+        require_not_negative(self.delay, "delay of a drive", "s")
+        if not 0.0 <= self.overshoot < 1.0:
+            raise ValueError(f"overshoot {self.overshoot:g} must be at least 0 and below 1")
+
+    @property
+    def damping(self) -> float:
+        """ζ of the overshoot, [1]_; 1 without."""
+        if self.overshoot == 0.0:
+            return 1.0
+        decay = -log(self.overshoot)
+        return decay / sqrt(pi**2 + decay**2)
+
+    @property
+    def pole(self) -> complex:
+        """1/s, of the recursion, upper half plane."""
+        if self.overshoot == 0.0:
+            return complex(-1.0 / self.delay, 0.0)
+        frequency = 2.0 * self.damping / self.delay
+        return frequency * complex(-self.damping, sqrt(1.0 - self.damping**2))
+
+
+class Follower:
+    """A drive that follows its load; running state: where it is.
+
+    Parameters
+    ----------
+    response : Response
+    interval : float, s
+        Between samples.
+
+    Raises
+    ------
+    ValueError
+        When the interval is not positive.
+    """
+
+    def __init__(self, response: Response, interval: float) -> None:
+        require_positive(interval, "interval", "s")
+        self._is_direct = response.delay == 0.0
+        self._last: float | None = None
+        self._held = 0.0 + 0.0j
+        if self._is_direct:
+            return
+        pole = response.pole
+        # y = Re(gain · q), q' = pole · q + u: at rest y = u.
+        self._gain = -pole.real if pole.imag == 0.0 else abs(pole) ** 2 / (1j * pole.imag)
+        self._pole = pole
+        self._weights = _weights(pole * interval, interval)
+
+    def follow(self, load: Floats) -> Floats:
+        """What the drive shows; before the first sample it was at rest there.
+
+        Parameters
+        ----------
+        load : (N,) array
+            Next samples of the load.
+
+        Returns
+        -------
+        (N,) array
+        """
+        if self._is_direct or len(load) == 0:
+            return load.copy()
+        if self._last is None:
+            self._last = float(load[0])
+            # At rest a step leaves the state as it is.
+            self._held = -self._last / self._pole
+        held = _recursion(load, self._weights, self._held, self._last)
+        self._held, self._last = complex(held[-1]), float(load[-1])
+        return np.asarray((self._gain * held).real)
+
+
+@njit(cache=True)
+def _recursion(
+    load: Floats, weights: tuple[complex, complex, complex], held: complex, last: float
+) -> NDArray[np.complex128]:
+    """State at each sample, from the state and the load before."""
+    decay, before, now = weights
+    states = np.empty(len(load), np.complex128)
+    for row in range(len(load)):
+        held = decay * held + before * last + now * load[row]
+        last = load[row]
+        states[row] = held
+    return states
+
+
+def _weights(step: complex, interval: float) -> tuple[complex, complex, complex]:
+    """Decay of the state, and weights of the load before and now, straight between."""
+    decay = e**step
+    if abs(step) < _SHORT:
+        whole, now = interval * (1.0 + 0.5 * step), interval * (0.5 + step / 6.0)
+    else:
+        whole = interval * (decay - 1.0) / step
+        now = interval * (decay - 1.0 - step) / step**2
+    return decay, whole - now, now
+
+
+def entry_share(revolutions: Floats) -> Floats:
+    """Chip of a turning tool over its full one, so many revolutions after first contact.
+
+    In the first revolution nothing was cut before: the chip grows from 0 to the feed. How the
+    depth grows is in the stock's map.
+    """
+    return np.clip(revolutions, 0.0, 1.0)
+
+
+def eccentric_runout(eccentricity: float, teeth: int) -> Floats:
+    """Radius of each tooth over the nominal one when a cutter's axis is off the spindle's.
+
+    ``ρ_j = ρ·cos(2π·j/z)``, tooth 0 the highest.
+
+    Parameters
+    ----------
+    eccentricity : float, mm
+        ρ; 0.005 to 0.01 mm as a rule.
+    teeth : int
+
+    Returns
+    -------
+    (z,) array, mm
+
+    Raises
+    ------
+    ValueError
+        When the eccentricity is negative or there is no tooth.
+    """
+    require_not_negative(eccentricity, "eccentricity", "mm")
+    require_teeth(teeth)
+    return eccentricity * np.cos(2.0 * pi / teeth * np.arange(teeth, dtype=np.float64))

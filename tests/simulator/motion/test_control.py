@@ -1,0 +1,47 @@
+import pytest
+
+from simulator.motion.control import DEVIATION, Control, control_model
+from simulator.motion.exact_stop import ExactStop
+from simulator.motion.fir import FixedTimeFilter, filter_within
+from simulator.motion.junction import JunctionDeviation
+from simulator.motion.motion import AxisLimits
+from simulator.motion.segments import lines
+
+
+def test_names_are_those_of_the_command_line() -> None:
+    assert [str(each) for each in Control] == ["exact-stop", "junction", "fir"]
+
+
+def test_each_name_gives_its_model(limits: AxisLimits) -> None:
+    assert control_model(Control.EXACT_STOP, limits) == ExactStop()
+    assert control_model(Control.JUNCTION, limits) == JunctionDeviation(deviation=DEVIATION)
+    assert control_model(Control.FIR, limits) == filter_within(limits)
+    assert isinstance(control_model(Control.FIR, limits), FixedTimeFilter)
+
+
+def test_deviation_is_handed_on(limits: AxisLimits) -> None:
+    model = control_model(Control.JUNCTION, limits, deviation=0.5)
+    assert model == JunctionDeviation(deviation=0.5)
+    with pytest.raises(ValueError, match="junction deviation"):
+        control_model(Control.JUNCTION, limits, deviation=0.0)
+
+
+@pytest.mark.parametrize("control", Control)
+def test_every_model_refuses_a_path_without_segments(
+    control: Control, limits: AxisLimits
+) -> None:
+    with pytest.raises(ValueError, match="at least one segment"):
+        control_model(control, limits).plan(lines([(0, 0, 0)]), limits)
+
+
+@pytest.mark.parametrize("control", Control)
+def test_every_model_ends_at_rest_where_the_path_ends(
+    control: Control, limits: AxisLimits
+) -> None:
+    path = lines([(0, 0, 0), (5, 0, 0), (5, 7, -2)], speed=25.0)
+    motion = control_model(control, limits).plan(path, limits)
+    end = motion.at(motion.ends[-1:])
+    assert end.position[0] == pytest.approx([5.0, 7.0, -2.0], abs=1e-9)
+    assert end.velocity[0] == pytest.approx([0.0, 0.0, 0.0], abs=1e-6)
+    assert motion.knots[0] == 0.0
+    assert motion.knots[-1] == motion.duration == motion.ends[-1]
