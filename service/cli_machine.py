@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from service.cli_options import CONTROLS, OK, Commands, add_json
+from service.cli_options import CONTROLS, LIMIT_EXCEEDED, OK, Commands, add_json
 
 
 def add_machine_commands(commands: Commands) -> None:
@@ -35,8 +35,33 @@ def _add_simulate(commands: Commands) -> None:
         default="fir",
         help="how the control runs the path: exact-stop, junction or fir (default)",
     )
+    add(
+        "--filter-s",
+        default="",
+        metavar="T1,T2",
+        help="times of the fir control in s (default: by the axes' acceleration and jerk)",
+    )
+    add(
+        "--deviation-mm",
+        type=float,
+        default=0.01,
+        metavar="MM",
+        help="of the junction control (default 0.01)",
+    )
     add("--rate", type=float, default=10.0, metavar="HZ", help="samples a second, 1 to 10000")
+    add("--force", default="mean", help="mean of a revolution (default), or tooth by tooth")
+    add("--runout-um", type=float, default=0.0, metavar="UM", help="of the cutter, for teeth")
+    add("--wear", action="store_true", help="tools wear while they cut (Taylor)")
+    add("--lag", action="store_true", help="the main drive answers late and too far")
+    add("--noise", default="none", help="of the sensors: none (default), normal or uniform")
+    add("--missing", type=float, default=0.0, metavar="P", help="share of missing samples")
     add("--seed", type=int, default=0, help="of noise and missing samples (default 0)")
+    add(
+        "--zero",
+        default="",
+        metavar="X,Y,Z",
+        help="place of the program's zero on the axes in mm (default: by the stock)",
+    )
     add("-o", "--output", type=Path, metavar="FILE", help="write the run, .parquet or .csv")
     add("--report", type=Path, metavar="HTML", help="write a self-contained page with plots")
     add_json(parser)
@@ -46,18 +71,48 @@ def _add_simulate(commands: Commands) -> None:
 def _simulate(options: argparse.Namespace) -> int:
     """``stepnc simulate``."""
     from service.simulation import SimulationRequest, simulate
+    from service.simulation_setup import CodeRequest
     from service.terminal import tell
 
-    simulate(
+    code = None
+    if options.nc is not None:
+        code = CodeRequest(
+            code=options.nc,
+            dialect=options.dialect,
+            tools=options.tools,
+            stock=options.stock,
+        )
+    simulation = simulate(
         SimulationRequest(
             file=options.file,
+            code=code,
             machine=options.machine,
             material=options.material,
             units=options.units,
             rate=options.rate,
             control=options.control,
+            filter_s=options.filter_s,
+            deviation=options.deviation_mm,
+            zero=options.zero,
+            noise=options.noise,
+            missing=options.missing,
+            has_lag=options.lag,
+            has_wear=options.wear,
+            force=options.force,
+            runout_um=options.runout_um,
+            seed=options.seed,
             output=options.output,
+            report=options.report,
         ),
         tell=tell,
     )
-    return OK
+    if options.json:
+        from service.simulation_wire import simulation_json
+        from service.terminal import write_out
+
+        write_out(simulation_json(simulation))
+    else:
+        from service.simulation_table import print_simulation
+
+        print_simulation(simulation)
+    return LIMIT_EXCEEDED if simulation.whole.overload_time > 0.0 else OK

@@ -131,7 +131,8 @@ def _array(column: Column, samples: Samples, workingsteps: tuple[str, ...]) -> p
         )
     if values.dtype.kind == "f":
         kind = np.float64 if column.source in EXACT else np.float32
-        return pa.array((values * column.scale).astype(kind))
+        # NaN: the sample is missing.
+        return pa.array((values * column.scale).astype(kind), from_pandas=True)
     return pa.array(values.astype(np.int32))
 
 

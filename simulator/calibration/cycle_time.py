@@ -73,6 +73,10 @@ class ProgramRun:
         """Of the whole program, s."""
         return float(self._begins[-1] + self._spans[-1]) + self.pauses.per_block
 
+    def blocks_before(self, station: float) -> int:
+        """How many blocks end at a station in mm or before it."""
+        return int(np.searchsorted(np.cumsum(self.segments.length), station, side="right"))
+
     def at(self, times: Floats) -> Kinematics:
         """State of the axes at (M,) times in s."""
         block = np.clip(np.searchsorted(self._begins, times, side="right") - 1, 0, None)

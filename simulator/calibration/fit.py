@@ -46,6 +46,8 @@ BULK, BULK_WIDTH = 0.8, 1.2816
 distribution holds that share; the median would be that of a standing axis"""
 ROUNDS = 3
 """fits, each with the noise that the one before left"""
+START = 0.1
+"""share of its scale from which a parameter starts that was 0 before"""
 TINY = 1e-9
 SHARE_OF_SPREAD = 1e-3
 """noise below this share of a signal's spread is taken as this: models are never that good"""
@@ -235,6 +237,8 @@ def _solved(
     noise = _by_part(stack, stack.watts, np.std)
     floor = np.maximum(SHARE_OF_SPREAD * noise, TINY)
     values = prior.copy()
+    # From nothing no power could rise: it is cut off at 0, and so is its slope.
+    values[free] = np.where(prior > 0.0, prior, START * scale)[free]
     for _ in range(ROUNDS):
         if len(free):
             values = _least_squares(stack, free, start=values, scale=scale, noise=noise)

@@ -30,13 +30,14 @@ LOGGER_BLOCK = 2
 APPROACH = (4, 9)
 """blocks before the spindle turns"""
 _POSITION = tuple(f"{axis}1_CommandPosition" for axis in "XYZ")
-_ACCELERATION = tuple(f"{axis}1_CommandAcceleration" for axis in "XYZ")
+_VELOCITY = tuple(f"{axis}1_CommandVelocity" for axis in "XYZS")
+_ACCELERATION = tuple(f"{axis}1_CommandAcceleration" for axis in "XYZS")
 _KILOWATTS = {
     Component.X: "X1_OutputPower",
     Component.Y: "Y1_OutputPower",
     Component.SPINDLE: "S1_OutputPower",
 }
-_BLOCK, _FEED, _SPINDLE = "M1_sequence_number", "M1_CURRENT_FEEDRATE", "S1_CommandVelocity"
+_BLOCK, _FEED = "M1_sequence_number", "M1_CURRENT_FEEDRATE"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -45,10 +46,14 @@ class SmartRun:
 
     name: str
     samples: PathSamples
+    velocity: Floats
+    """(N, 3) mm/s, commanded"""
     acceleration: Floats
-    """(N, 3) mm/s², commanded"""
+    """(N, 3) mm/s², commanded, mean over some milliseconds"""
     spindle_speed: Floats
     """(N,) rev/s, commanded"""
+    spindle_acceleration: Floats
+    """(N,) rev/s², commanded"""
     power: Mapping[Component, Floats]
     """each (N,) W"""
     is_program: Bools
@@ -63,12 +68,14 @@ def read_smart_run(path: Path) -> SmartRun:
     CalibrationError
         A column is missing, or holds no numbers.
     """
-    wanted = (*_POSITION, *_ACCELERATION, *_KILOWATTS.values(), _BLOCK, _FEED, _SPINDLE)
+    wanted = (*_POSITION, *_VELOCITY, *_ACCELERATION, *_KILOWATTS.values(), _BLOCK, _FEED)
     columns, _ = read_columns(path, wanted=wanted)
     missing = [name for name in wanted if name not in columns]
     if missing:
         raise CalibrationError("missing", path=str(path), column=missing[0])
     position = np.stack([columns[name] for name in _POSITION], axis=1)
+    velocity = np.stack([columns[name] for name in _VELOCITY], axis=1)
+    acceleration = np.stack([columns[name] for name in _ACCELERATION], axis=1)
     block = _program_blocks(columns[_BLOCK])
     is_approach = (block >= APPROACH[0]) & (block <= APPROACH[1])
     return SmartRun(
@@ -79,10 +86,12 @@ def read_smart_run(path: Path) -> SmartRun:
             is_rapid=columns[_FEED] == RAPID,
             half_step=_half_step(position),
         ),
-        acceleration=np.stack([columns[name] for name in _ACCELERATION], axis=1),
-        spindle_speed=columns[_SPINDLE],
+        velocity=velocity[:, :3],
+        acceleration=acceleration[:, :3],
+        spindle_speed=velocity[:, 3],
+        spindle_acceleration=acceleration[:, 3],
         power={part: watts_from_kw(1.0) * columns[name] for part, name in _KILOWATTS.items()},
-        is_program=is_approach | (columns[_SPINDLE] > 0.0),
+        is_program=is_approach | (velocity[:, 3] > 0.0),
     )
 
 

@@ -54,8 +54,9 @@ def main_power(
     machine: Machine, speed: Floats, acceleration: Floats, *, cutting_power: Floats
 ) -> Floats:
     """Power of the spindle drive, W, for speeds in rev/s and the power at the edge in W."""
-    turning = spindle_power(machine.spindle, speed, acceleration)
-    return np.asarray(turning + cutting_power / machine.spindle.efficiency)
+    return np.asarray(
+        spindle_power(machine.spindle, speed, acceleration, cutting_power=cutting_power)
+    )
 
 
 def continuous_power(machine: Machine, speed: Floats) -> Floats:

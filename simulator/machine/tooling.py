@@ -5,11 +5,11 @@ from math import inf, pi
 
 from simulator.edge_material import correction_of, edge_material
 from simulator.errors import LibraryError
-from simulator.library import find_grade
+from simulator.library import find_grade, find_window
 from simulator.machine.cutting import Edge
 from simulator.machine.virtual import LoadedTool
 from simulator.removal.cutter import Cutter, Holder, Insert
-from simulator.spec import CuttingMaterial, Grade, Material, ToolKind
+from simulator.spec import CuttingMaterial, Grade, Material, Taylor, ToolKind
 from simulator.tool_table import ENDS, TableTool
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.enums import HandOfToolType
@@ -86,6 +86,7 @@ def loaded_tool(
         id=tool.id,
         shape=shape,
         edge=replace(edge, factor=factor * edge.factor),
+        taylor=_taylor(kind, cutting_material, material),
     )
 
 
@@ -97,7 +98,15 @@ def table_tool(tool: TableTool, material: Material, *, factor: float = 1.0) -> L
         id=tool.id,
         shape=None if tool.kind in THREADS else tool.shape,
         edge=replace(edge, factor=factor * edge.factor),
+        taylor=_taylor(tool.kind, tool.cutting_material, material),
     )
+
+
+def _taylor(
+    kind: ToolKind, cutting_material: CuttingMaterial, material: Material
+) -> Taylor | None:
+    window = find_window(material, kind, cutting_material)
+    return None if window is None else window.taylor
 
 
 def _edge(

@@ -43,17 +43,15 @@ class ToothForces:
 
 
 def arcs_of(entry_angle: Floats, exit_angle: Floats) -> ArcIntegrals[Floats]:
-    """Integrals over arcs of contact, (M,) angles in rad."""
-    contact = exit_angle - entry_angle
-    middle = 0.5 * (entry_angle + exit_angle)
-    # Products keep their digits on a narrow arc, where differences of sines lose them.
+    """Integrals over arcs of contact, (M,) angles in rad, as ``arc_integrals`` has them."""
+    contact, both = exit_angle - entry_angle, entry_angle + exit_angle
     half = np.sin(0.5 * contact)
     return ArcIntegrals(
         contact=contact,
-        sine=2.0 * np.sin(middle) * half,
-        cosine=2.0 * np.cos(middle) * half,
-        sine_squared=0.5 * (contact - np.cos(2.0 * middle) * np.sin(contact)),
-        sine_cosine=0.5 * np.sin(2.0 * middle) * np.sin(contact),
+        sine=2.0 * np.sin(0.5 * both) * half,
+        cosine=2.0 * np.cos(0.5 * both) * half,
+        sine_squared=0.5 * (contact - np.cos(both) * np.sin(contact)),
+        sine_cosine=0.5 * np.sin(both) * np.sin(contact),
     )
 
 

@@ -6,8 +6,8 @@ same machine, same run. Units mm, s, rev/s.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
-from math import copysign, inf
+from dataclasses import dataclass, replace
+from math import copysign, inf, pi
 from typing import Protocol
 
 import numpy as np
@@ -31,12 +31,12 @@ from simulator.machine.samples import Execution
 from simulator.machine.spindle_course import following, ramped, standing
 from simulator.machine.tooth_loads import Teeth
 from simulator.machine.travel import Zero, require_travel
-from simulator.machine.wear import Wear
+from simulator.machine.wear import Wear, wearing
 from simulator.motion.motion import ControlModel, axis_limits
 from simulator.motion.segments import Floats, Segments
 from simulator.removal.cutter import Cutter, Insert
 from simulator.removal.stations import Stations, air
-from simulator.spec import Machine
+from simulator.spec import Machine, Taylor
 from stepnc_model.errors import Finding, Severity
 
 Shape = Cutter | Insert
@@ -59,7 +59,10 @@ class LoadedTool:
     shape: Shape | None
     """None: threads; what they take is not modelled"""
     edge: Edge
-    wear: Wear = field(default_factory=Wear)
+    flank_wear: float = 0.0
+    """mm, when the program starts"""
+    taylor: Taylor | None = None
+    """how fast it wears; None: it stays as it is"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -94,7 +97,8 @@ class VirtualMachine:
         self.tool: LoadedTool | None = None
         self.findings: list[Finding] = []
         self._stock = setup.stock("")
-        self._wear: dict[int, Wear] = {}
+        self._flank: dict[int, float] = {}
+        """mm of flank wear by the tool's number"""
         self._said: set[str] = set()
 
     def run(self, steps: Iterable[Step]) -> Iterator[Episode]:
@@ -187,15 +191,17 @@ class VirtualMachine:
         motion = self.setup.control.plan(segments, self.limits)
         begin, self.now = self.now, self.now + motion.duration
         self._follow(stretch, begin + motion.ends, begin)
+        stations = self._cut(segments)
         course = Course(
             segments=segments,
             motion=motion,
-            stations=self._cut(segments),
+            stations=stations,
             edge=None if self.tool is None else self.tool.edge,
-            wear=self._worn(),
+            wear=self._wear(stations),
             teeth=self.setup.teeth,
         )
-        self._wear_on(course)
+        if self.tool is not None:
+            self._flank[self.tool.number] = course.wear.after(course.cutting_seconds).flank
         episode = Episode(
             begin=begin,
             end=self.now,
@@ -234,16 +240,16 @@ class VirtualMachine:
             self._say("cuts while the spindle stands: its force is not known", line)
         return stations
 
-    def _worn(self) -> Wear:
+    def _wear(self, stations: Stations) -> Wear:
+        """Wear of the edge that begins a stretch, and how fast it grows there."""
         if self.tool is None:
             return Wear()
-        return self._wear.get(self.tool.number, self.tool.wear)
-
-    def _wear_on(self, course: Course) -> None:
-        """The edge after the stretch."""
-        if self.tool is not None and course.wear.grows:
-            seconds = course.cutting_seconds
-            self._wear[self.tool.number] = course.wear.after(seconds)
+        flank = self._flank.get(self.tool.number, self.tool.flank_wear)
+        around = stations.diameter[stations.section > 0.0]
+        speed = abs(self.spindle.target)
+        if self.tool.taylor is None or not len(around) or speed == 0.0:
+            return Wear(flank=flank)
+        return wearing(flank, self.tool.taylor, pi * float(around.mean()) * speed)
 
     def _say(self, text: str, line: int = 0) -> None:
         """A warning, once."""

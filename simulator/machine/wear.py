@@ -1,7 +1,7 @@
 """Wear of an edge while it cuts, and what it does to the force.
 
-Straight in cutting time, after a run-in, until the tool's life ends: an edge is taken as worn
-out at a flank wear of 0.3 mm. Units s, mm.
+Straight in cutting time, without the quicker wear of the first minute: an edge is taken as worn
+out, after the life that Taylor gives it, at a flank wear of 0.3 mm. Units s, mm.
 
 References
 ----------
@@ -15,6 +15,8 @@ import numpy as np
 
 from simulator.motion.segments import Floats
 from simulator.physics.cutting import wear_factor
+from simulator.physics.tool_life import wear_rate
+from simulator.spec import Taylor
 
 WORN_OUT = 0.3
 """mm of flank wear at the end of a tool's life, [2]_"""
@@ -48,6 +50,7 @@ class Wear:
         return np.asarray(fresh + (worn - fresh) * seconds)
 
 
-def wear_rate(life: float) -> float:
-    """Flank wear in one second of cutting, mm, for a tool life in s, [1]_ and [2]_."""
-    return WORN_OUT / life
+def wearing(flank: float, taylor: Taylor, cutting_speed: float) -> Wear:
+    """An edge that cuts at a speed in mm/s: so much of its life goes by in a second, [1]_."""
+    per_second = WORN_OUT * wear_rate(taylor, cutting_speed)
+    return Wear(flank=flank, per_second=per_second)

@@ -2,14 +2,7 @@
 
 A segment has up to three: it speeds up, runs, slows down. Between the ends of a phase the
 station is a parabola in time, so position, velocity and acceleration are exact at any time.
-Units mm, s.
-
-References
-----------
-.. [1] S.-J. Shin et al., "Developing a virtual machining model to generate MTConnect
-   machine-monitoring data from STEP-NC", Int. J. Prod. Res., 2016, Appendix 1 (1)-(4),
-   doi:10.1080/00207543.2015.1064182; completed by the triangle of moves too short to reach
-   their speed, and by speeds at both ends.
+Units mm, s; references in :mod:`simulator.motion.sweep`.
 """
 
 from dataclasses import dataclass

@@ -1,7 +1,8 @@
 """Forces of a milling cutter along the feed and across it: of one tooth, and their mean.
 
-The angle φ of a tooth counts from the normal to the feed, as in :mod:`~.engagement`. A tooth
-pushes the tool by F_t against its own motion and by F_r towards the axis, which gives
+The angle φ of a tooth counts from the normal to the feed, as in
+:mod:`simulator.physics.engagement`. A tooth pushes the tool by F_t against its own motion and
+by F_r towards the axis, which gives
 
 - the feed force ``F_t·cos φ + F_r·sin φ``, positive against the feed, and
 - the normal force ``F_t·sin φ − F_r·cos φ``, positive towards φ = 0: to the left of the feed
@@ -95,13 +96,15 @@ def arc_integrals(engagement: Engagement) -> ArcIntegrals[float]:
     >>> round(slot.sine, 6), round(slot.sine_squared / pi, 6), abs(round(slot.cosine, 6))
     (2.0, 0.5, 0.0)
     """
-    entry, exit_ = engagement.entry_angle, engagement.exit_angle
+    contact = engagement.contact_angle
+    both = engagement.entry_angle + engagement.exit_angle
+    # Products keep their digits on a narrow arc, where differences of sines lose them.
     return ArcIntegrals(
-        contact=engagement.contact_angle,
+        contact=contact,
         sine=engagement.cosine_difference,
-        cosine=sin(exit_) - sin(entry),
-        sine_squared=0.5 * engagement.contact_angle - 0.25 * (sin(2 * exit_) - sin(2 * entry)),
-        sine_cosine=0.25 * (cos(2.0 * entry) - cos(2.0 * exit_)),
+        cosine=2.0 * cos(0.5 * both) * sin(0.5 * contact),
+        sine_squared=0.5 * (contact - cos(both) * sin(contact)),
+        sine_cosine=0.5 * sin(both) * sin(contact),
     )
 
 

@@ -198,8 +198,8 @@ class TurningStock:
         beside = np.maximum(np.abs(segments.start[:, 0]), np.abs(segments.end[:, 0])) > ON_AXIS
         inward = np.minimum(segments.start[:, 0], segments.end[:, 0]) - 0.5 * cutter.diameter
         deep = np.minimum(segments.start[:, 2], segments.end[:, 2])
-        top = self._grid.start + len(self.outer) * self.cell
-        wrong = np.flatnonzero(beside & (inward < self.outer.max()) & (deep < top))
+        front = self.z[self.outer > self.inner].max(initial=-inf) + 0.5 * self.cell
+        wrong = np.flatnonzero(beside & (inward < self.outer.max()) & (deep < front))
         if len(wrong):
             x, _, z = segments.end[wrong[0]].tolist()
             raise SimulationError(

@@ -66,8 +66,8 @@ def chip_ratios(insert: Insert, depth: Floats, angle: Floats) -> Floats:
     -------
     (M,) array
     """
-    # The corners of a blade count when it cuts with its side only: its end is one flat.
-    nose = insert.nose_radius
+    # The corners of a blade are small beside its width: its chip is as thick as the feed.
+    nose = insert.nose_radius if insert.width is None else 0.0
     bounded = np.maximum(depth, LEAST_DEPTH)
     return np.array(
         [

@@ -110,14 +110,14 @@ def march(
     found: Floats,
 ) -> tuple[int, int]:
     """Cut row after row until the stations' room is full; gives the next row and the count."""
-    count, row = 0, first
+    count, row = np.int64(0), first
     while row < len(rows) and count + ROOM_FOR_ROW <= len(out):
         count = _row(state, tool, how, (rows[row], lengths[row], row), out, count, found[row])
         row += 1
     return row, count
 
 
-@njit(**INNER)
+@njit(inline="always")
 def _row(state, tool, how, segment, out, count, found):
     """Cut one row; gives the number of stations so far."""
     row, length, index = segment
@@ -167,10 +167,10 @@ def _guard(state, tool, how, row, span, found, before):
     raised[8] += lift
     if before:
         shank = Profile(0.0, tool.profile.radius, 0.0, tool.profile.radius, 0.0, 0.0, tool.profile.radius)
-        lost = carve_part(grid, shank, raised, span, MEASURE)
+        lost = carve_part(grid, shank, raised, span, np.int64(MEASURE))
         found[SHANK] = max(found[SHANK], lost[1])
         return
-    lost = carve_part(grid, how.holder, raised, span, MEASURE)
+    lost = carve_part(grid, how.holder, raised, span, np.int64(MEASURE))
     if lost[1] > found[HOLDER]:
         found[HOLDER], found[HOLDER_X], found[HOLDER_Y] = lost[1], lost[2], lost[3]
 
@@ -205,7 +205,7 @@ def _cut(state, tool, how, row, span, found):
     return volume
 
 
-@njit(**INNER)
+@njit(inline="always")
 def _sink(state, tool, how, segment, out, count, found):
     """Cut a plunge by stretches, or what a tool meets on its way up."""
     row, length, index = segment
@@ -265,7 +265,7 @@ def _differs(one: Contact, other: Contact) -> bool:
     return abs(one.contact - other.contact) > CHANGE_OF_ANGLE
 
 
-@njit(**INNER)
+@njit(inline="always")
 def _mill(state, tool, how, segment, span, out, count, found):
     """Look along a part, cut it, and share its volume among the stretches."""
     row, length, index = segment

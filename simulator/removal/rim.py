@@ -143,7 +143,7 @@ def look(grid: Grid, before: Past, tool: Tool, pose: Pose) -> Contact:
         slices = _levels(work, base)
     else:
         slices = _slices(grid, work, tool, pose, base)
-    count_all, is_known = 0, True
+    count_all, is_known = np.int64(0), True
     area, across, edges, top, widest = 0.0, 0.0, 0.0, 0.0, 0.0
     for index in range(slices):
         low, high = work.bounds[index], work.bounds[index + 1]
@@ -286,7 +286,7 @@ def _slice(
     latest = before.next[0]
     samples = len(work.heights)
     step = pi / samples
-    free, known, is_solid, is_at_border = 0, True, False, grid.radius > 0.0
+    free, known, is_solid, is_at_border = np.int64(0), True, False, grid.radius > 0.0
     candidates = 0
     for number in range(max(latest - RECENT, 0), latest):
         work.candidates[candidates] = number

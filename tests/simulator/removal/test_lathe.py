@@ -364,6 +364,9 @@ def test_no_hole_beside_the_axis_and_no_arc_beside_the_plane() -> None:
     bar = TurningStock(BAR)
     with pytest.raises(SimulationError, match=r"block 0: .* beside its axis, at x = 10 mm"):
         bar.cut(path((10.0, 105.0), (10.0, 90.0)), Cutter(diameter=5.0, is_drill=True))
+    bar.cut(path((27.0, 95.0), (-1.0, 95.0)), SHARP)
+    beside_the_face = path((30.0, 96.0), (0.0, 96.0), (0.0, 90.0))
+    assert bar.cut(beside_the_face, Cutter(diameter=5.0, is_drill=True)).section.max() > 19.0
     bent = arc((30.0, 50.0), (20.0, 50.0), 0.1)
     flat = Segments(**{**_columns(bent), "normal": np.array([2])})
     with pytest.raises(SimulationError, match="block 1: an arc of a turning tool"):

@@ -38,6 +38,11 @@ def test_a_blade_cuts_with_its_end_and_with_its_sides() -> None:
         assert edge_angles(blade, direction) == pytest.approx(0.5 * pi)
 
 
+def test_the_chip_of_a_blade_is_as_thick_as_the_feed() -> None:
+    blade = Insert(width=3.0, nose_radius=0.2)
+    assert chip_ratios(blade, np.array([3.0]), np.array([0.5 * pi])) == pytest.approx(1.0)
+
+
 def test_a_boring_insert_is_its_own_mirror() -> None:
     insert = Insert(cutting_edge_angle=radians(95.0), is_inside=True)
     outside = Insert(cutting_edge_angle=radians(95.0))
