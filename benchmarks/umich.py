@@ -22,8 +22,9 @@ from simulator.calibration.cycle_time import (
     ProgramRun,
     fitted_pauses,
 )
+from simulator.calibration.estimates import Calibration, Prior
 from simulator.calibration.features import Parameter, RunFeatures, design, powers
-from simulator.calibration.fit import Calibration, Prior, fitted
+from simulator.calibration.fit import fitted
 from simulator.calibration.measured_run import Component
 from simulator.calibration.rebuild import Rebuilt, rebuilt
 from simulator.calibration.skill import Skill, compared, estimated_lag, mean_power, skill
@@ -140,9 +141,7 @@ def read_feeds(data: Path) -> dict[str, float]:
 
 def calibration_runs(feeds: Mapping[str, float]) -> list[str]:
     """The first run of each feed rate."""
-    return [
-        name for name in feeds if name == next(n for n in feeds if feeds[n] == feeds[name])
-    ]
+    return [name for name in feeds if name == next(n for n in feeds if feeds[n] == feeds[name])]
 
 
 def calibrate(feeds: Mapping[str, float], data: Path) -> Mill:
@@ -182,12 +181,12 @@ def logged(run: SmartRun, program: Rebuilt, feed: float) -> Log:
 
 
 def predict(mill: Mill, name: str, feed: float, data: Path) -> Prediction:
-    """Time and energy of a run of which only its feed and where it ended are looked at."""
+    """Time and energy of a run of which only its feed and what part it did are looked at."""
     log = logged(read_smart_run(data / f"{name}.csv"), mill.program, feed)
     program = _run(mill, feed)
-    seconds = program.time_at(log.station[-1])
+    begin, seconds = program.time_at(log.station[0]), program.time_at(log.station[-1])
     spindle = _spindle(mill, program)
-    time = SAMPLE_TIME * np.arange(len(log.rows))
+    time = begin + SAMPLE_TIME * np.arange(len(log.rows), dtype=np.float64)
     total = sum((log.watts(part) for part in MEASURED), np.zeros(len(time)))
     lag = estimated_lag(
         time,
@@ -196,7 +195,8 @@ def predict(mill: Mill, name: str, feed: float, data: Path) -> Prediction:
         most=MOST_LAG,
     )
     shown = _watts(mill, program, spindle, time - lag)
-    whole = _watts(mill, program, spindle, np.arange(0.0, seconds, FINE_STEP))
+    fine: Floats = np.arange(begin, seconds, FINE_STEP)
+    whole = _watts(mill, program, spindle, fine)
     skills = {
         part: compared(
             total if part is Component.TOTAL else log.watts(part),
@@ -212,7 +212,7 @@ def predict(mill: Mill, name: str, feed: float, data: Path) -> Prediction:
         name=name,
         feed=feed,
         measured_time=log.seconds,
-        predicted_time=seconds,
+        predicted_time=seconds - begin,
         skills=skills,
         lag=lag,
     )
@@ -234,9 +234,11 @@ def _run(mill: Mill, feed: float) -> ProgramRun:
 def _observed(mill: Mill, log: Log) -> Observed:
     """Measured time of a run beside that of its motion."""
     program = _run(mill, log.feed)
-    end = float(log.station[-1])
+    begin, end = float(log.station[0]), float(log.station[-1])
     return Observed(
-        seconds=log.seconds, motion=program.time_at(end), blocks=program.blocks_before(end)
+        seconds=log.seconds,
+        motion=program.time_at(end) - program.time_at(begin),
+        blocks=program.blocks_before(end) - program.blocks_before(begin),
     )
 
 
@@ -255,6 +257,7 @@ def _watts(
 ) -> Mapping[Component, Floats]:
     """Predicted powers at times; the total is that of what was measured."""
     state = program.at(np.maximum(times, 0.0))
+    is_feed = ~program.segments.is_rapid[state.segment]
     run = RunFeatures(
         name="predicted",
         duration=np.full(len(times), 1.0),
@@ -262,7 +265,7 @@ def _watts(
         spindle_acceleration=spindle.acceleration(times),
         velocity=state.velocity,
         acceleration=state.acceleration,
-        cutting_power=WAX_ENERGY * np.linalg.norm(state.velocity, axis=1),
+        cutting_power=WAX_ENERGY * is_feed * np.linalg.norm(state.velocity, axis=1),
         coolant=np.zeros(len(times)),
         measured={},
     )
@@ -300,8 +303,8 @@ def _print_mill(mill: Mill) -> None:
     print(f"calibration runs: {', '.join(mill.runs)}")
     arcs = int((segments.turn != 0.0).sum())
     print(
-        f"rebuilt: {len(segments) - arcs} lines, {arcs} arcs; {segments.length.sum():.1f} mm, of"
-        f" which {segments.length[~segments.is_rapid].sum():.1f} mm in feed"
+        f"rebuilt: {len(segments) - arcs} lines, {arcs} arcs; {segments.length.sum():.1f} mm,"
+        f" of which {segments.length[~segments.is_rapid].sum():.1f} mm in feed"
     )
     print(f"acceleration {mill.acceleration:.0f} mm/s²", end="; ")
     print(
@@ -317,7 +320,9 @@ def _print_mill(mill: Mill) -> None:
 
 def _print_predictions(predictions: Sequence[Prediction]) -> None:
     """Errors on runs that were not fitted, model and baseline side by side."""
-    print(f"\n{'held-out run':16}{'feed':>6}{'measured s':>12}{'predicted s':>12}{'error %':>9}")
+    print(
+        f"\n{'held-out run':16}{'feed':>6}{'measured s':>12}{'predicted s':>12}{'error %':>9}"
+    )
     for run in predictions:
         print(
             f"{run.name:16}{run.feed:6.0f}{run.measured_time:12.1f}{run.predicted_time:12.2f}"

@@ -12,6 +12,9 @@ from simulator.physics.engagement import Engagement
 from simulator.spec import ToolKind
 from stepnc_model.tool import Tool
 
+LEAST_VOLUME = 1e-3
+"""mm³; less is rounding"""
+
 
 class CutKind(StrEnum):
     """Which physics applies."""
@@ -35,6 +38,15 @@ class Texture(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Place:
+    """A place of the path where a milling cutter cuts hard."""
+
+    engagement: Engagement
+    depth_share: float = 1.0
+    """real depth over that of a pass"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Cut:
     """What one workingstep cuts."""
 
@@ -54,10 +66,22 @@ class Cut:
     """of a milling cutter"""
     radial_width: float = 0.0
     """a_e of a milling cutter, width of a grooving insert"""
+    depth_share: float = 1.0
+    """greatest real depth over that of a pass: more where stock is left above"""
+    bending: Place | None = None
+    """where an end mill is bent most; None: where it is engaged most"""
+    load_share: float = 1.0
+    """mean load over the length at cutting feed, air included, over the greatest"""
     previous_diameter: float = 0.0
     """mm, of the hole before a drill, reamer or boring bar"""
     link_length: float = 0.0
     """mm at rapid in one pass"""
+    rest_time: float = 0.0
+    """s in one pass beside the length at cutting feed: ramps, rapids, own feeds, waits"""
+    air_length: float = 0.0
+    """mm of the length that removes nothing"""
+    volume: float | None = None
+    """mm³ that are removed; None: not known"""
     texture: Texture = Texture.NONE
     corner_radius: float = 0.0
     """mm, the radius that marks the surface"""
@@ -69,3 +93,15 @@ class Cut:
     """greatest depth of one pass that the tool allows, mm"""
     floor: "Cut | None" = None
     """the floor that is swept once, at its own depth, by an operation that cuts walls"""
+
+    @property
+    def hardest(self) -> Place | None:
+        """Where a milling cutter is engaged most."""
+        if self.engagement is None:
+            return None
+        return Place(engagement=self.engagement, depth_share=self.depth_share)
+
+    @property
+    def is_air(self) -> bool:
+        """Whether the path meets no material."""
+        return self.volume is not None and self.volume <= LEAST_VOLUME

@@ -18,6 +18,7 @@ from optimiser.limits import (
     speed_range,
     spindle_limits,
 )
+from optimiser.loads import scaled
 from optimiser.modes import Free, Mode
 from optimiser.problem import Cost, Problem, Setting
 from simulator.library import find_window
@@ -107,8 +108,8 @@ def _cost(cut: Cut, at: Conditions, task: Task) -> Cost:
         length=cut.length,
         once_length=cut.floor.length if cut.floor is not None else 0.0,
         teeth=cut.tool.teeth,
-        motor_power=power_load(cut, at),
-        link_time=cut.link_length / machine.rapid if machine.rapid else 0.0,
+        motor_power=scaled(power_load(cut, at), cut.load_share),
+        link_time=cut.rest_time + (cut.link_length / machine.rapid if machine.rapid else 0.0),
         standby_power=machine.base_power + machine.coolant_power + spindle.idle_power,
         standby_power_per_speed=spindle.idle_power_per_speed,
         tool_change=task.tool_change if wear is not None else 0.0,

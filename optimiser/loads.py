@@ -6,7 +6,7 @@ value at one point gives c. The functions take the force factor K (rake, speed, 
 
 from math import pi
 
-from optimiser.cut import Cut, CutKind
+from optimiser.cut import Cut, CutKind, Place
 from optimiser.limit import Monomial
 from simulator.physics import drilling, milling, turning
 from simulator.spec import Kienzle
@@ -18,7 +18,7 @@ REFERENCE_FEED = 0.1
 def cutting_force(cut: Cut, kienzle: Kienzle, factor: float) -> Monomial:
     """Tangential force in N; of a mill all teeth together, averaged over a revolution."""
     if cut.kind is CutKind.MILLING:
-        at = _milling_cut(cut)
+        at = _milling_cut(cut, cut.hardest)
         return _monomial(milling.mean_force(kienzle, at, factor=factor), kienzle, depth=1.0)
     if cut.kind is CutKind.DRILLING:
         moment = drilling.drilling_torque(kienzle, _drilling_cut(cut), factor=factor)
@@ -28,7 +28,7 @@ def cutting_force(cut: Cut, kienzle: Kienzle, factor: float) -> Monomial:
         kienzle,
         turning.TurningCut(
             feed_per_revolution=REFERENCE_FEED,
-            depth=cut.radial_width if is_groove else 1.0,
+            depth=cut.radial_width if is_groove else cut.depth_share,
             cutting_edge_angle=0.5 * pi if is_groove else cut.tool.cutting_edge_angle,
         ),
         factor=factor,
@@ -38,7 +38,8 @@ def cutting_force(cut: Cut, kienzle: Kienzle, factor: float) -> Monomial:
 
 def bending_force(cut: Cut, kienzle: Kienzle, factor: float) -> Monomial:
     """Greatest force across the axis of an end mill within a revolution, N."""
-    force = milling.peak_force(kienzle, _milling_cut(cut), factor=factor)
+    at = _milling_cut(cut, cut.bending or cut.hardest)
+    force = milling.peak_force(kienzle, at, factor=factor)
     return _monomial(force, kienzle, depth=1.0)
 
 
@@ -84,15 +85,15 @@ def _monomial(value: float, kienzle: Kienzle, *, depth: float) -> Monomial:
     )
 
 
-def _milling_cut(cut: Cut) -> milling.MillingCut:
-    """The cut at the reference feed and unit depth."""
-    if cut.engagement is None:
+def _milling_cut(cut: Cut, place: Place | None) -> milling.MillingCut:
+    """The cut at one place, at the reference feed and unit depth of a pass."""
+    if place is None:
         raise ValueError("a milling cut needs its engagement")
     return milling.MillingCut(
         feed_per_tooth=REFERENCE_FEED,
         teeth=cut.tool.teeth,
-        axial_depth=1.0,
-        engagement=cut.engagement,
+        axial_depth=place.depth_share,
+        engagement=place.engagement,
         cutting_edge_angle=cut.tool.cutting_edge_angle,
     )
 

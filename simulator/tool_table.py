@@ -64,22 +64,27 @@ def read_tool_table(path: Path) -> tuple[TableTool, ...]:
 
 def _tool(row: Table) -> TableTool:
     kind = row.choice("kind", ToolKind)
-    number = row.number("number", NUMBER)
-    if number != int(number):
-        raise row.error("number", f"{number:g} is no whole number")
-    name = row.text("id") if "id" in row else f"{kind} T{number:g}"
+    number = _whole(row, "number", NUMBER)
+    name = row.text("id") if "id" in row else f"{kind} T{number}"
     material = CuttingMaterial.CARBIDE
     if "cutting_material" in row:
         material = row.choice("cutting_material", CuttingMaterial)
-    teeth = int(row.optional_number("teeth", TEETH) or 1)
+    teeth = _whole(row, "teeth", TEETH) if "teeth" in row else 1
     return TableTool(
-        number=int(number),
+        number=number,
         id=name,
         kind=kind,
         cutting_material=material,
         teeth=teeth,
         shape=_insert(row, kind) if kind in TURNED else _cutter(row, kind, teeth),
     )
+
+
+def _whole(row: Table, key: str, allowed: Range) -> int:
+    number = row.number(key, allowed)
+    if number != int(number):
+        raise row.error(key, f"{number:g} is no whole number")
+    return int(number)
 
 
 def _insert(row: Table, kind: ToolKind) -> Insert:
@@ -121,8 +126,9 @@ def _cutter(row: Table, kind: ToolKind, teeth: int) -> Cutter:
 
 
 def _holder(row: Table) -> Holder | None:
-    diameter = row.optional_number("holder_diameter_mm", DIAMETER)
-    overhang = row.optional_number("overhang_mm", LENGTH)
-    if diameter is None or overhang is None:
+    if "holder_diameter_mm" not in row and "overhang_mm" not in row:
         return None
-    return Holder(diameter=diameter, overhang=overhang)
+    return Holder(
+        diameter=row.number("holder_diameter_mm", DIAMETER),
+        overhang=row.number("overhang_mm", LENGTH),
+    )

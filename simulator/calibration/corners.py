@@ -10,10 +10,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.optimize import least_squares
 
-from simulator.motion.segments import Bools, Floats, Ints
+from simulator.motion.segments import Floats, Ints
 
-CENTRING = 0.02
-"""pull of a sample inside its box, against 1 outside: picks the middle of what is possible"""
+CENTRING = (1.0, 0.1, 0.02)
+"""pull of a sample inside its box, against that and 1 outside, from fit to fit: the last picks
+the middle of what is possible"""
 SHARP = 0.3  # mm, an arc below this radius is none
 TINY = 1e-12  # mm
 CLOSE, ROUNDS = 1e-4, 100
@@ -70,17 +71,22 @@ def fitted(corners: Corners, samples: CornerSamples, *, longest: Floats) -> Corn
     step = 2.0 * float(samples.half_step.max())
     lower = np.concatenate([corners.offset - step, np.zeros(lines - 1)])
     upper = np.concatenate([corners.offset + step, longest])
-    found = least_squares(
-        lambda values: _miss(values, corners, samples).distance,
-        np.concatenate([corners.offset, 0.5 * longest]),
-        jac=lambda values: _slopes(_miss(values, corners, samples), corners, samples),
-        bounds=(lower, upper),
-        xtol=CLOSE,
-        ftol=CLOSE,
-        max_nfev=ROUNDS,
-    )
-    radius = np.where(found.x[lines:] < SHARP, 0.0, found.x[lines:])
-    return replace(corners, offset=found.x[:lines], radius=radius)
+    values = np.concatenate([corners.offset, 0.5 * longest])
+    # The boxes make the last fit bumpy; what is found without them is near its best valley.
+    for centring in CENTRING:
+        values = least_squares(
+            lambda values, pull=centring: _miss(values, corners, samples, pull).distance,
+            values,
+            jac=lambda values, pull=centring: _slopes(
+                _miss(values, corners, samples, pull), corners, samples
+            ),
+            bounds=(lower, upper),
+            xtol=CLOSE,
+            ftol=CLOSE,
+            max_nfev=ROUNDS,
+        ).x
+    radius = np.where(values[lines:] < SHARP, 0.0, values[lines:])
+    return replace(corners, offset=values[:lines], radius=radius)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -89,47 +95,50 @@ class _Miss:
 
     distance: Floats
     """(N,) mm outside of each sample's box, and a little for what is inside"""
-    pull: Floats
-    """(N,) slope of that over the distance from the sample itself"""
-    normal: Floats
-    """(N, 2) from the path, positive into the corner"""
-    is_on_arc: Bools
-    """(N,)"""
+    push: Floats
+    """(N, 2) its slope over the place of the sample as seen from the vertex into the corner"""
+    growth: Floats
+    """(N,) its slope over the radius"""
 
 
-def _miss(values: Floats, corners: Corners, samples: CornerSamples) -> _Miss:
-    """Distances of the samples from the path that has these offsets and radii."""
+def _miss(
+    values: Floats, corners: Corners, samples: CornerSamples, centring: float
+) -> _Miss:
+    """Distances of the samples from the path that has these offsets and radii.
+
+    ``d = r − |r − u|`` on the arc, u the place as seen from the vertex; the box reaches
+    ``n·h`` along the normal ``n = (r − u)/|r − u|``, h the half rounding steps.
+    """
     lines = len(corners.offset)
     moved = replace(corners, offset=values[:lines], radius=values[lines:])
     radius = moved.radius[samples.corner]
     inside = (samples.point - moved.vertex[samples.corner]) * moved.side[samples.corner]
-    arm = inside - radius[:, None]
-    reach = np.hypot(arm[:, 0], arm[:, 1])
-    is_on_arc = (arm < 0.0).all(axis=1)
-    on_line = np.eye(2)[np.argmin(inside, axis=1)]
-    normal = np.where(is_on_arc[:, None], -arm / np.maximum(reach, TINY)[:, None], on_line)
-    distance = np.where(is_on_arc, radius - reach, inside.min(axis=1))
-    beyond = np.maximum(0.0, np.abs(distance) - (normal * samples.half_step).sum(axis=1))
+    arm = radius[:, None] - inside
+    reach = np.maximum(np.hypot(arm[:, 0], arm[:, 1]), TINY)
+    on_arc = ((arm[:, 0] > 0.0) & (arm[:, 1] > 0.0)).astype(np.float64)
+    is_bent = on_arc[:, None] > 0.0
+    normal = np.where(is_bent, arm / reach[:, None], np.eye(2)[np.argmin(inside, axis=1)])
+    distance = np.where(on_arc > 0.0, radius - reach, inside.min(axis=1))
+    room = (normal * samples.half_step).sum(axis=1)
+    beyond = np.maximum(0.0, np.abs(distance) - room)
+    pull = (beyond > 0.0) + centring
+    # The normal turns as the arc moves, and the box's reach with it.
+    swing = (samples.half_step - normal * room[:, None]) / reach[:, None]
+    swing *= (on_arc * np.sign(distance) * (beyond > 0.0))[:, None]
     return _Miss(
-        distance=np.sign(distance) * beyond + CENTRING * distance,
-        pull=(beyond > 0.0) + CENTRING,
-        normal=normal,
-        is_on_arc=is_on_arc,
+        distance=np.sign(distance) * beyond + centring * distance,
+        push=pull[:, None] * normal + swing,
+        growth=on_arc * pull * (1.0 - normal.sum(axis=1)) - swing.sum(axis=1),
     )
 
 
 def _slopes(miss: _Miss, corners: Corners, samples: CornerSamples) -> Floats:
-    """(N, 2K + 1) slope of each distance over each offset and radius.
-
-    ``d = r − |u − r|`` on the arc, with u the place of the sample as seen from the vertex into
-    the corner: a line that moves inwards takes its share of the normal off the distance.
-    """
+    """(N, 2K + 1) slope of each distance over each offset and radius."""
     lines, rows = len(corners.offset), np.arange(len(samples.corner))
     slope = np.zeros((len(rows), 2 * lines - 1))
-    inwards = -miss.normal * corners.side[samples.corner]
+    inwards = -miss.push * corners.side[samples.corner]
     along_x = corners.is_along_x[samples.corner] == 1
     slope[rows, samples.corner] = np.where(along_x, inwards[:, 1], inwards[:, 0])
     slope[rows, samples.corner + 1] = np.where(along_x, inwards[:, 0], inwards[:, 1])
-    growth = np.where(miss.is_on_arc, 1.0 - miss.normal.sum(axis=1), 0.0)
-    slope[rows, lines + samples.corner] = growth
-    return miss.pull[:, None] * slope
+    slope[rows, lines + samples.corner] = miss.growth
+    return slope

@@ -56,7 +56,8 @@ class ProgramRun:
         blocks = np.arange(len(self.segments))
         moved = np.concatenate([[0.0], self.motion.ends[:-1]])
         waited = np.where(blocks >= self.start_block, self.pauses.at_start, 0.0)
-        return moved + waited + self.pauses.per_block * blocks
+        begins: Floats = moved + waited + self.pauses.per_block * blocks
+        return begins
 
     @cached_property
     def _spans(self) -> Floats:

@@ -1,8 +1,9 @@
 """What drives the power of a machine, sample by sample, and the power that follows from it.
 
-Every component's power is linear in the parameters, but never negative: braking energy is burnt.
-With ``n`` the spindle's speed, ``v`` and ``a`` an axis' speed and acceleration, ``P_c`` the power
-at the edge for a factor of 1 on the specific cutting force and ``η`` the spindle's efficiency::
+Every component's power is linear in the parameters, but never negative: braking energy is
+burnt. With ``n`` the spindle's speed, ``v`` and ``a`` an axis' speed and acceleration, ``P_c``
+the power at the edge for a factor of 1 on the specific cutting force and ``η`` the spindle's
+efficiency::
 
     spindle  P = P_0 + p_1·|n| + (2π)²·J·n·ṅ/η + k·P_c/η
     axis     P = F_0·|v| + B·v² + m·a·v
@@ -66,7 +67,7 @@ AXIS_PARAMETERS = (
     (Parameter.FRICTION_Y, Parameter.VISCOUS_Y, Parameter.MASS_Y),
     (Parameter.FRICTION_Z, Parameter.VISCOUS_Z, Parameter.MASS_Z),
 )
-PARTS = tuple(part for part in Component if part is not Component.TOTAL)
+PARTS: tuple[Component, ...] = tuple(part for part in Component if part is not Component.TOTAL)
 """components that the total is the sum of"""
 
 
@@ -123,7 +124,9 @@ def design(run: RunFeatures, *, efficiency: float) -> Design:
     put(Component.SPINDLE, Parameter.IDLE_PER_SPEED, speed)
     put(Component.SPINDLE, Parameter.INERTIA, change / efficiency)
     put(Component.SPINDLE, Parameter.CUTTING, run.cutting_power / efficiency)
-    for axis, (part, parameters) in enumerate(zip(AXIS_COMPONENTS, AXIS_PARAMETERS, strict=True)):
+    for axis, (part, parameters) in enumerate(
+        zip(AXIS_COMPONENTS, AXIS_PARAMETERS, strict=True)
+    ):
         pace = np.abs(run.velocity[:, axis])
         push = run.velocity[:, axis] * run.acceleration[:, axis]
         put(part, parameters[0], pace / _NMM_S_PER_WATT)

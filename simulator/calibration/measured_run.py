@@ -172,7 +172,10 @@ def checked(run: MeasuredRun, *, lines: Ints, path: str) -> MeasuredRun:
     findings = (
         *run.findings,
         *_gaps(run.time, lines=lines),
-        *(_warning(f"constant at {run.power[part][0]:g} W, left out", part) for part in constant),
+        *(
+            _warning(f"constant at {run.power[part][0]:g} W, left out", part)
+            for part in constant
+        ),
     )
     kept = {part: watts for part, watts in run.power.items() if part not in constant}
     return replace(run, power=kept, findings=findings)
@@ -199,7 +202,7 @@ def _check_units(run: MeasuredRun, *, lines: Ints, path: str) -> None:
         fast = np.flatnonzero(speed[:, axis] > AXIS_SPEED)
         if len(fast):
             message = (
-                f"{speed[fast[0], axis]:g} mm/s between two samples exceeds {AXIS_SPEED:g} mm/s;"
+                f"{speed[fast[0], axis]:g} mm/s between two samples, above {AXIS_SPEED:g} mm/s;"
                 " positions in mm, time in s?"
             )
             line = int(lines[fast[0] + 1])

@@ -13,7 +13,6 @@ import numpy as np
 
 from simulator.motion.segments import Floats
 
-
 LAGS = 41
 """lags that are tried"""
 
@@ -117,7 +116,7 @@ def compared(
 def estimated_lag(
     time: Floats, measured: Floats, model: Callable[[Floats], Floats], *, most: float
 ) -> float:
-    """Constant lag of the measured clock behind the model's, s.
+    """Constant lag of the measured clock behind the model's, s; levels do not matter.
 
     Parameters
     ----------
@@ -129,5 +128,5 @@ def estimated_lag(
         Lags from minus to plus this are tried.
     """
     lags = np.linspace(-most, most, LAGS)
-    errors = [float(np.mean((model(time - lag) - measured) ** 2)) for lag in lags]
+    errors = [float(np.var(model(time - lag) - measured)) for lag in lags]
     return float(lags[int(np.argmin(errors))])

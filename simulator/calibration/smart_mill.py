@@ -96,7 +96,7 @@ def read_smart_run(path: Path) -> SmartRun:
 
 
 def _program_blocks(block: Floats) -> Floats:
-    """Block numbers, the logger's own replaced by the next sample's, which shares its packet."""
+    """Block numbers, the logger's own replaced by that of the next sample of its packet."""
     after = np.append(block[1:], block[-1:])
     return np.where(block == LOGGER_BLOCK, after, block)
 

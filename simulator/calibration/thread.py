@@ -97,7 +97,8 @@ def stations(samples: PathSamples, course: Course) -> Floats:
     """
     tree = cKDTree(_weighted(course.point, course.block))
     _, nearest = tree.query(_weighted(samples.position, samples.block))
-    return course.station[nearest]
+    station: Floats = course.station[nearest]
+    return station
 
 
 def shifted(samples: PathSamples, course: Course) -> PathSamples:

@@ -94,7 +94,8 @@ def cutting_loads(
     wear : (M,) array or float
         Factor on the force of a worn edge.
     """
-    cuts: Bools = (stations.section[rows] > 0.0) & (speed > 0.0) & (spindle_speed > 0.0)
+    is_met = stations.section * stations.chip_ratio * stations.diameter > 0.0
+    cuts: Bools = is_met[rows] & (speed > 0.0) & (spindle_speed > 0.0)
     rate = np.where(cuts, stations.section[rows] * speed, 0.0)
     per_tooth = np.where(cuts, speed, 1.0) / (edge.teeth * np.where(cuts, spindle_speed, 1.0))
     chip = np.where(cuts, per_tooth * stations.chip_ratio[rows], 1.0)

@@ -98,10 +98,12 @@ class Disturbed:
             return samples
         power = self._followers["cutting_power"].follow(samples.cutting_power)
         more = (power - samples.cutting_power) / self.efficiency
+        # A lag gives nothing back to the mains; what braking gave back stays.
+        least = np.minimum(samples.spindle_power, 0.0)
         return replace(
             samples,
             cutting_power=power,
-            spindle_power=np.maximum(samples.spindle_power + more, 0.0),
+            spindle_power=np.maximum(samples.spindle_power + more, least),
             cutting_force=self._followers["cutting_force"].follow(samples.cutting_force),
             feed_force=self._followers["feed_force"].follow(samples.feed_force),
             back_force=self._followers["back_force"].follow(samples.back_force),

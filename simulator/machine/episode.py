@@ -41,6 +41,8 @@ class Course:
 
     segments: Segments
     motion: Motion
+    spindle_programmed: Floats
+    """(N,) rev/s at the end of each segment; NaN: what it is"""
     stations: Stations
     edge: Edge | None
     """None: nothing is known of tool or stock, all is air"""
@@ -67,7 +69,7 @@ class Course:
     @cached_property
     def clock(self) -> tuple[Floats, Floats]:
         """Times from the start, s, and mm of path behind: fine enough to be joined straight."""
-        knots = self.motion.knots
+        knots = np.unique(np.concatenate((self.motion.knots, self.motion.ends)))
         parts = np.array([0.25, 0.5, 0.75, 1.0])
         inside = knots[:-1, None] + np.diff(knots)[:, None] * parts
         times = np.concatenate((knots[:1], inside.ravel()))

@@ -6,7 +6,7 @@ Cycles, threads and taps become moves. Memory is bounded: moves are handed on in
 """
 
 from collections.abc import Callable, Iterable, Iterator
-from math import ceil, copysign, inf, isfinite, isnan, log, nan, pi
+from math import ceil, copysign, exp, inf, isfinite, isnan, log, nan, pi
 
 from simulator.errors import ProgramFault
 from simulator.machine.acts import (
@@ -47,7 +47,8 @@ from stepnc_model.post.blocks import (
     ToolChange,
 )
 from stepnc_model.post.canonical import synchronised
-from stepnc_model.toolpath.path import Point
+from stepnc_model.toolpath.path import Arc, Plane, Point
+from stepnc_model.toolpath.path import radius as radius_of
 
 Numbered = tuple[int, Block]
 """line of the program and what it says"""
@@ -59,6 +60,7 @@ PIECE = 0.02
 """relative change of the radius within one piece at constant surface speed"""
 
 MOST_PIECES = 400
+"""of one move; radii below e⁻⁸ of its greatest are not told apart"""
 
 
 def interpret(blocks: Iterable[Numbered], machine: Machine) -> Iterator[Step]:
@@ -74,7 +76,8 @@ def interpret(blocks: Iterable[Numbered], machine: Machine) -> Iterator[Step]:
     Raises
     ------
     ProgramFault
-        At a feed per revolution while the spindle stands, with the line.
+        With the line: at a feed that is not positive, a feed per revolution while the spindle
+        stands, a constant surface speed at the axis where nothing limits the spindle.
     """
     return _Interpreter(machine).steps(blocks)
 
@@ -118,6 +121,8 @@ class _Interpreter:
         for line, block in blocks:
             self.line = line
             yield from (Step(line=line, act=act) for act in self._read(block))
+            if isinstance(block, ProgramEnd):
+                return
         yield from (Step(line=self.line, act=act) for act in self._flush())
 
     def _read(self, block: Block) -> Iterator[Act]:
@@ -163,16 +168,19 @@ class _Interpreter:
         yield SpindleTo(speed=speed)
 
     def _speed_at(self, radius: float) -> float:
-        """Speed at constant surface speed, rev/s."""
-        surface = self.surface
-        if surface is None:
-            return abs(self.speed)
-        most = min(self.fastest, surface.limit or inf)
+        """Speed of the spindle while the tool is at a radius, rev/s."""
+        if self.surface is None:
+            return min(abs(self.speed), self.fastest)
         around = 2.0 * pi * abs(radius)
-        speed = surface.speed / around if around > 0.0 else inf
-        if not isfinite(min(speed, most)):
+        speed = self.surface.speed / around if around > 0.0 else inf
+        speed = min(speed, self._most(self.surface))
+        if not isfinite(speed):
             raise ProgramFault("surface speed at the axis without a greatest speed", self.line)
-        return min(speed, most)
+        return speed
+
+    def _most(self, surface: SurfaceSpeed) -> float:
+        """Greatest speed of a spindle that follows the radius, rev/s."""
+        return min(self.fastest, surface.limit or inf)
 
     def _cool(self, block: Coolant) -> Iterator[Act]:
         yield from self._flush()
@@ -202,12 +210,12 @@ class _Interpreter:
         return known[0], known[1], known[2]
 
     def _retract(self, block: Retract) -> Iterator[Act]:
-        start = self._start((self.at[0], self.at[1], block.z))
-        if isnan(start[0]) or isnan(start[1]):
+        x, y, _ = self.at
+        if isnan(x) or isnan(y):
             # Along z only, from nobody knows where: the machine stands there already.
             self.at[2] = block.z
             return
-        yield from self._rapid(Rapid(end=(start[0], start[1], block.z)))
+        yield from self._rapid(Rapid(end=(x, y, block.z)))
 
     def _rapid(self, block: Rapid) -> Iterator[Act]:
         start = self._start(block.end)
@@ -220,12 +228,10 @@ class _Interpreter:
 
     def _linear(self, block: Linear) -> Iterator[Act]:
         start = self._start(block.end)
-        yield from self._cut_begins()
-        pieces = self._pieces(start[0], block.end[0])
+        yield from self._cut_begins(start[0])
+        *parts, _ = self._parts(start[0], block.end[0])
         at = start
-        for index in range(1, pieces + 1):
-            part = index / pieces
-            to = block.end if index == pieces else _between(start, block.end, part)
+        for to in (*(_between(start, block.end, part) for part in parts), block.end):
             middle = 0.5 * (at[0] + to[0])
             speed, spindle = self._speeds(block.rate, middle, to[0])
             if at != to:
@@ -235,48 +241,81 @@ class _Interpreter:
 
     def _circular(self, block: Circular) -> Iterator[Act]:
         start = self._start(block.end)
-        yield from self._cut_begins()
-        pieces = self._pieces(start[0], block.end[0])
+        yield from self._cut_begins(start[0])
         self.rows.arc(
             start,
             block,
-            pieces=pieces,
+            pieces=self._arc_pieces(start, block),
             speeds=lambda middle, end: self._speeds(block.rate, middle, end),
             line=self.line,
         )
         self.at = list(block.end)
 
-    def _pieces(self, one: float, other: float) -> int:
-        """Into how many pieces a move is split because the spindle follows the radius."""
+    def _parts(self, one: float, other: float) -> list[float]:
+        """Shares of a line at which its pieces end, the spindle following the radius."""
         if self.surface is None:
-            return 1
+            return [1.0]
+        if one * other < 0.0:
+            axis = one / (one - other)
+            before, after = self._parts(one, 0.0), self._parts(0.0, other)
+            return [axis * part for part in before] + [
+                axis + (1.0 - axis) * part for part in after
+            ]
         low, high = sorted((abs(one), abs(other)))
-        low = max(low, self.surface.speed / (2.0 * pi * self._speed_at(0.0)))
-        if high <= low:
+        least = max(low, self._least_radius(self.surface), high * exp(-MOST_PIECES * PIECE))
+        if least >= high:
+            return [1.0]
+        count = ceil(log(high / least) / PIECE)
+        radii = [high * (least / high) ** (index / count) for index in range(count)]
+        # Below the least radius the speed is the greatest and stays: one piece.
+        radii += [least, low] if low < least else [low]
+        parts = [(high - radius) / (high - low) for radius in radii]
+        if abs(one) < abs(other):
+            parts = [1.0 - part for part in reversed(parts)]
+        return parts[1:]
+
+    def _arc_pieces(self, start: Point, block: Circular) -> int:
+        """Into how many pieces an arc is split because the spindle follows the radius."""
+        if self.surface is None or block.plane is Plane.YZ:
             return 1
-        return min(MOST_PIECES, ceil(log(high / low) / PIECE))
+        size = radius_of(start, Arc(centre=block.centre, turn=block.turn, plane=block.plane))
+        way = size * abs(block.turn)
+        # The circle comes no nearer to the axis than that, and its arc perhaps not so near.
+        nearest = max(abs(block.centre[0]) - size, self._least_radius(self.surface))
+        fits = way < PIECE * nearest * MOST_PIECES
+        return max(1, ceil(way / (PIECE * nearest))) if fits else MOST_PIECES
+
+    def _least_radius(self, surface: SurfaceSpeed) -> float:
+        """Radius below which the spindle keeps its greatest speed, mm."""
+        return surface.speed / (2.0 * pi * self._most(surface))
 
     def _speeds(self, rate: Rate, middle: float, end: float) -> tuple[float, float]:
         """Speed along the path in mm/s, and of the spindle at the end in rev/s."""
-        if self.surface is not None:
-            self.speed = _signed(self._speed_at(end), self.surface.sense)
-        spindle = self._speed_at(middle) if self.surface is not None else abs(self.speed)
-        speed = rate.value
+        speed, last = rate.value, nan
         if rate.mode is RateMode.PER_REVOLUTION:
-            speed *= spindle
-        if speed <= 0.0:
-            raise ProgramFault("a feed per revolution while the spindle stands", self.line)
-        return speed, self.speed if self.surface is not None else nan
+            speed *= self._speed_at(middle)
+        if self.surface is not None:
+            last = self.speed = _signed(self._speed_at(end), self.surface.sense)
+        if not speed > 0.0:
+            reason = "the spindle stands" if rate.value > 0.0 else "it must be positive"
+            unit = "mm/rev" if rate.mode is RateMode.PER_REVOLUTION else "mm/s"
+            raise ProgramFault(f"feed {rate.value:g} {unit}: {reason}", self.line)
+        return speed, last
 
-    def _cut_begins(self) -> Iterator[Act]:
+    def _cut_begins(self, radius: float) -> Iterator[Act]:
         """The feed waits for the spindle."""
+        if self.surface is not None:
+            yield from self._turn(_signed(self._speed_at(radius), self.surface.sense))
         if self.is_awaited:
             yield from self._flush()
             yield SpindleReached()
             self.is_awaited = False
 
     def _threading(self, block: Threading) -> Iterator[Act]:
-        lead = synchronised(self._start(block.end), block.end, block.lead)
+        start = self._start(block.end)
+        if start == block.end:
+            return
+        lead = synchronised(start, block.end, block.lead)
         rate = Rate(value=lead, mode=RateMode.PER_REVOLUTION)
         yield from self._linear(Linear(end=block.end, rate=rate))
 

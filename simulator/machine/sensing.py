@@ -64,7 +64,7 @@ def sensed(episode: Episode, machine: Machine, times: Floats) -> Samples:
         position=kinematics.position,
         velocity=kinematics.velocity,
         feed_programmed=programmed,
-        spindle_programmed=np.full(count, state.spindle_programmed),
+        spindle_programmed=_wanted(episode, kinematics),
         spindle_speed=speed,
         axis_power=axes_power(
             machine,
@@ -144,6 +144,15 @@ def _along(episode: Episode, rows: Ints | None, name: str, count: int) -> Floats
         return np.zeros(count)
     column: Floats = getattr(episode.course.stations, name)
     return column[rows]
+
+
+def _wanted(episode: Episode, kinematics: Kinematics) -> Floats:
+    """Programmed speed of the spindle, by the segment where it follows the radius."""
+    held = np.full(len(kinematics.segment), episode.state.spindle_programmed)
+    if episode.course is None:
+        return held
+    wanted = episode.course.spindle_programmed[kinematics.segment]
+    return np.where(np.isnan(wanted), held, wanted)
 
 
 def _programmed(

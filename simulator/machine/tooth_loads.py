@@ -10,7 +10,7 @@ from math import pi
 import numpy as np
 
 from simulator.machine.cutting import NMM_S_PER_WATT, CuttingLoads, Edge
-from simulator.machine.tooth_forces import chip_thickness, tooth_angles
+from simulator.machine.tooth_forces import arcs_of, chip_thickness, tooth_angles
 from simulator.machine.transients import eccentric_runout
 from simulator.motion.segments import Floats, Ints
 from simulator.physics.milling_forces import RADIAL_SHARE
@@ -48,18 +48,23 @@ def tooth_loads(
     edge : Edge
     teeth : Teeth
     """
-    is_milling = (stations.kind[rows] == CutKind.MILLING) & (mean.force > 0.0)
+    has_arc = (stations.kind == CutKind.MILLING) & (stations.exit_angle > stations.entry_angle)
+    is_milling = has_arc[rows] & (mean.force > 0.0)
     at = np.flatnonzero(is_milling)
     station, runout = rows[at], eccentric_runout(teeth.eccentricity, edge.teeth)
+    entry, exit_ = stations.entry_angle[station], stations.exit_angle[station]
+    arc = arcs_of(entry, exit_)
+    # Of the edge that really cuts: sin κ, and the width that removes what the map says.
+    slope = stations.chip_ratio[station] * arc.contact / arc.sine
+    width = 2.0 * stations.section[station] / (stations.diameter[station] * arc.sine * slope)
     per_tooth = mean.chip_thickness[at] / stations.chip_ratio[station]
     angle = tooth_angles(2.0 * pi * np.abs(turned[at]), edge.teeth)
-    chip = chip_thickness(angle, feed_per_tooth=per_tooth[:, None], runout=runout)
-    entry, exit_ = stations.entry_angle[station], stations.exit_angle[station]
+    whole = chip_thickness(angle, feed_per_tooth=per_tooth[:, None], runout=runout)
+    chip = slope[:, None] * whole
     in_cut = (chip > 0.0) & (angle >= entry[:, None]) & (angle <= exit_[:, None])
     chip_force = np.where(in_cut, chip, 1.0) ** (1.0 - edge.kienzle.m_c) * in_cut
     # Means take k_c at the mean chip; what wear and edge add to them, teeth get too.
-    worn = _factor(mean, edge, at)
-    tangential = (worn * stations.axial_depth[station])[:, None] * chip_force
+    tangential = (width * _factor(mean, edge, at))[:, None] * chip_force
     sine, cosine = np.sin(angle), np.cos(angle)
     force, feed, back = mean.force.copy(), mean.feed_force.copy(), mean.back_force.copy()
     force[at] = tangential.sum(axis=1)

@@ -3,21 +3,24 @@
 Units mm.
 """
 
-from math import isfinite
+from math import isfinite, pi
 
 import numpy as np
 
-from simulator.errors import OutOfTravel
+from simulator.errors import OutOfTravel, ProgramFault
 from simulator.motion.motion import AXES
-from simulator.motion.segments import Segments
+from simulator.motion.segments import FIRST, SECOND, Floats, Ints, Segments
 from simulator.spec import Machine, MachineKind
 from stepnc_model.toolpath.job import Stock
 
 Zero = tuple[float, float, float]
 """place of the program's zero on the axes X, Y, Z, mm"""
 
-ARC_POINTS = 8
-"""places on an arc that are looked at"""
+ROUNDING = 1e-6
+"""mm by which a position may miss the travel"""
+
+QUARTERS = np.arange(4) * 0.5 * pi
+"""rad, where an arc is farthest out"""
 
 
 def zero_of(machine: Machine, stock: Stock) -> Zero:
@@ -47,16 +50,43 @@ def require_travel(machine: Machine, segments: Segments, zero: Zero) -> None:
     OutOfTravel
         With axis, position and line.
     """
-    turned = np.repeat(np.flatnonzero(segments.turn), ARC_POINTS)
-    part = np.resize(np.arange(1, ARC_POINTS + 1) / ARC_POINTS, len(turned))
-    on_arcs = segments.position(turned, part * segments.length[turned])
+    turned, station = _farthest(segments)
+    on_arcs = segments.position(turned, station)
     points = np.concatenate((segments.start[:1], segments.end, on_arcs))
     lines = np.concatenate((segments.block[:1], segments.block, segments.block[turned]))
     for axis in machine.axes:
         row = AXES.index(axis.name)
         low, high = axis.travel[0] - zero[row], axis.travel[1] - zero[row]
-        beyond = np.flatnonzero((points[:, row] < low) | (points[:, row] > high))
+        at = points[:, row]
+        beyond = np.flatnonzero((at < low - ROUNDING) | (at > high + ROUNDING))
         if len(beyond):
-            at = float(points[beyond[0], row])
-            line = int(lines[beyond[0]])
-            raise OutOfTravel(axis.name, at, travel=(low, high), line=line)
+            position, line = float(at[beyond[0]]), int(lines[beyond[0]])
+            raise OutOfTravel(axis.name, position, travel=(low, high), line=line)
+
+
+def require_axes(machine: Machine, segments: Segments) -> None:
+    """Refuse a path along an axis that the machine has not.
+
+    Raises
+    ------
+    ProgramFault
+        With axis and line.
+    """
+    known = {axis.name for axis in machine.axes}
+    for row, name in enumerate(AXES):
+        way = np.abs(segments.end[:, row] - segments.start[:, row])
+        moves = np.flatnonzero((way > ROUNDING) & (name not in known))
+        if len(moves):
+            message = f"moves along {name}, and '{machine.name}' has no such axis"
+            raise ProgramFault(message, int(segments.block[moves[0]]))
+
+
+def _farthest(segments: Segments) -> tuple[Ints, Floats]:
+    """Rows of arcs and the stations where they are farthest out along an axis."""
+    rows = np.flatnonzero(segments.turn)
+    arm, at = segments.start[rows] - segments.centre[rows], np.arange(len(rows))
+    normal, turn = segments.normal[rows], segments.turn[rows]
+    angle = np.arctan2(arm[at, np.array(SECOND)[normal]], arm[at, np.array(FIRST)[normal]])
+    way = np.mod(np.sign(turn)[:, None] * (QUARTERS - angle[:, None]), 2.0 * pi)
+    part = np.minimum(way / np.abs(turn)[:, None], 1.0)
+    return np.repeat(rows, len(QUARTERS)), (part * segments.length[rows][:, None]).ravel()

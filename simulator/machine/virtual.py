@@ -7,12 +7,12 @@ same machine, same run. Units mm, s, rev/s.
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from math import copysign, inf, pi
+from math import copysign, inf
 from typing import Protocol
 
 import numpy as np
 
-from simulator.errors import UnknownTool
+from simulator.errors import ProgramFault, UnknownTool
 from simulator.machine.acts import (
     CoolantTo,
     End,
@@ -30,14 +30,15 @@ from simulator.machine.episode import Course, Episode, State
 from simulator.machine.samples import Execution
 from simulator.machine.spindle_course import following, ramped, standing
 from simulator.machine.tooth_loads import Teeth
-from simulator.machine.travel import Zero, require_travel
-from simulator.machine.wear import Wear, wearing
+from simulator.machine.travel import Zero, require_axes, require_travel
+from simulator.machine.wear import WORN_OUT, Wear, wearing_along
 from simulator.motion.motion import ControlModel, axis_limits
 from simulator.motion.segments import Floats, Segments
 from simulator.removal.cutter import Cutter, Insert
 from simulator.removal.stations import Stations, air
-from simulator.spec import Machine, Taylor
+from simulator.spec import Machine, MachineKind, Taylor
 from stepnc_model.errors import Finding, Severity
+from stepnc_model.units import rpm_from_rev_s
 
 Shape = Cutter | Insert
 
@@ -104,7 +105,13 @@ class VirtualMachine:
     def run(self, steps: Iterable[Step]) -> Iterator[Episode]:
         """Episodes of a program, one after another without a gap.
 
-        The machine stands where the first move begins, wherever that is.
+        The machine stands where the first move begins, wherever that is. The last episode
+        takes no time: the program has ended.
+
+        Raises
+        ------
+        ProgramFault, UnknownTool, OutOfTravel
+            What this machine cannot run, with the line.
         """
         waiting: list[Step] = []
         for step in steps:
@@ -132,9 +139,7 @@ class VirtualMachine:
             case Wait(seconds=seconds):
                 yield from self._wait(seconds)
             case ToolTo(number=number):
-                yield from self._wait(max(self.spindle.reached - self.now, 0.0))
-                yield from self._wait(self.machine.tool_change)
-                self._load(number)
+                yield from self._change(number)
             case CoolantTo(coolant=coolant):
                 self.state = replace(self.state, coolant_on=bool(coolant.kinds))
             case WorkingstepTo(id=name):
@@ -142,7 +147,8 @@ class VirtualMachine:
                 self.state = replace(self.state, workingstep=len(self.workingsteps))
                 self._stock = self.setup.stock(name)
             case Stop():
-                yield from self._wait(self.spindle.reached - self.now)
+                left = max(self.spindle.reached - self.now, 0.0)
+                yield self._still(left, Execution.PROGRAM_STOPPED)
             case End():
                 self._turn(0.0)
                 self.state = replace(self.state, coolant_on=False)
@@ -165,27 +171,29 @@ class VirtualMachine:
     def _turn(self, speed: float) -> None:
         most = self.machine.spindle.max_speed or inf
         if abs(speed) > most:
-            self._say(
-                f"spindle {abs(speed) * 60:g} rpm exceeds {most * 60:g} rpm: "
-                f"{most * 60:g} rpm taken"
-            )
+            wanted, taken = rpm_from_rev_s(abs(speed)), rpm_from_rev_s(most)
+            self._say(f"spindle {wanted:g} rpm exceeds {taken:g} rpm: {taken:g} rpm taken")
             speed = copysign(most, speed)
         acceleration = self.machine.spindle.acceleration
         self.spindle = ramped(self.spindle, self.now, speed, acceleration=acceleration)
         self.state = replace(self.state, spindle_programmed=speed)
 
-    def _load(self, number: int) -> None:
-        if self.tool is not None and self.tool.number == number:
+    def _change(self, number: int) -> Iterator[Episode]:
+        """Another tool; the one that is there takes no time."""
+        if number == self.state.tool:
             return
-        if self.setup.tools is not None:
-            if number not in self.setup.tools:
-                known = ", ".join(f"T{each}" for each in sorted(self.setup.tools))
-                raise UnknownTool(number, known, self.state.line)
-            self.tool = self.setup.tools[number]
+        tools = self.setup.tools
+        if tools is not None and number not in tools:
+            known = ", ".join(f"T{each}" for each in sorted(tools))
+            raise UnknownTool(number, known, self.state.line)
+        yield from self._wait(self.spindle.reached - self.now)
+        yield from self._wait(self.machine.tool_change)
+        self.tool = None if tools is None else tools[number]
         self.state = replace(self.state, tool=number)
 
     def _move(self, stretch: Stretch) -> Episode:
         segments = stretch.segments
+        require_axes(self.machine, segments)
         if self.setup.zero is not None:
             require_travel(self.machine, segments, self.setup.zero)
         motion = self.setup.control.plan(segments, self.limits)
@@ -195,13 +203,13 @@ class VirtualMachine:
         course = Course(
             segments=segments,
             motion=motion,
+            spindle_programmed=stretch.spindle_speed,
             stations=stations,
             edge=None if self.tool is None else self.tool.edge,
-            wear=self._wear(stations),
+            wear=self._wear(stretch, stations),
             teeth=self.setup.teeth,
         )
-        if self.tool is not None:
-            self._flank[self.tool.number] = course.wear.after(course.cutting_seconds).flank
+        self._worn(course)
         episode = Episode(
             begin=begin,
             end=self.now,
@@ -228,10 +236,15 @@ class VirtualMachine:
             self.state = replace(self.state, spindle_programmed=last)
 
     def _cut(self, segments: Segments) -> Stations:
+        first = int(segments.block[0])
         if self.tool is not None and self.tool.shape is None:
-            self._say(f"{self.tool.id}: the force of a thread is not modelled, nothing is cut")
+            text = f"{self.tool.id}: the force of a thread is not modelled, nothing is cut"
+            self._say(text, first)
         if self._stock is None or self.tool is None or self.tool.shape is None:
             return air(np.arange(len(segments)), segments.length)
+        if isinstance(self.tool.shape, Insert) and self.machine.kind is MachineKind.MILL:
+            text = f"T{self.tool.number} {self.tool.id} turns, and the machine is a mill"
+            raise ProgramFault(text, first)
         is_clockwise = self.state.spindle_programmed >= 0.0
         stations = self._stock.cut(segments, self.tool.shape, is_clockwise=is_clockwise)
         cuts = np.flatnonzero(stations.section > 0.0)
@@ -240,16 +253,28 @@ class VirtualMachine:
             self._say("cuts while the spindle stands: its force is not known", line)
         return stations
 
-    def _wear(self, stations: Stations) -> Wear:
+    def _wear(self, stretch: Stretch, stations: Stations) -> Wear:
         """Wear of the edge that begins a stretch, and how fast it grows there."""
         if self.tool is None:
             return Wear()
         flank = self._flank.get(self.tool.number, self.tool.flank_wear)
-        around = stations.diameter[stations.section > 0.0]
-        speed = abs(self.spindle.target)
-        if self.tool.taylor is None or not len(around) or speed == 0.0:
+        if self.tool.taylor is None:
             return Wear(flank=flank)
-        return wearing(flank, self.tool.taylor, pi * float(around.mean()) * speed)
+        wanted = stretch.spindle_speed
+        speed = np.abs(np.where(np.isnan(wanted), self.spindle.target, wanted))
+        return wearing_along(
+            flank, self.tool.taylor, stretch.segments, stations, spindle_speed=speed
+        )
+
+    def _worn(self, course: Course) -> None:
+        """What a stretch leaves of the edge."""
+        if self.tool is None or not course.wear.grows:
+            return
+        flank = course.wear.after(course.cutting_seconds).flank
+        self._flank[self.tool.number] = flank
+        if flank > WORN_OUT:
+            text = f"T{self.tool.number} {self.tool.id} is worn beyond {WORN_OUT:g} mm"
+            self._say(text, int(course.segments.block[-1]))
 
     def _say(self, text: str, line: int = 0) -> None:
         """A warning, once."""

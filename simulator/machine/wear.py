@@ -11,11 +11,14 @@ References
 
 from dataclasses import dataclass
 
+from math import pi
+
 import numpy as np
 
-from simulator.motion.segments import Floats
+from simulator.motion.segments import Floats, Segments
 from simulator.physics.cutting import wear_factor
 from simulator.physics.tool_life import wear_rate
+from simulator.removal.stations import Stations
 from simulator.spec import Taylor
 
 WORN_OUT = 0.3
@@ -54,3 +57,41 @@ def wearing(flank: float, taylor: Taylor, cutting_speed: float) -> Wear:
     """An edge that cuts at a speed in mm/s: so much of its life goes by in a second, [1]_."""
     per_second = WORN_OUT * wear_rate(taylor, cutting_speed)
     return Wear(flank=flank, per_second=per_second)
+
+
+def wearing_along(
+    flank: float,
+    taylor: Taylor,
+    segments: Segments,
+    stations: Stations,
+    *,
+    spindle_speed: Floats,
+) -> Wear:
+    """An edge along a path: its rate is the mean over the time with chips at commanded feed.
+
+    Parameters
+    ----------
+    flank : float, mm
+        When the path begins.
+    taylor : Taylor
+    segments : Segments
+        N of them.
+    stations : Stations
+        What they meet.
+    spindle_speed : (N,) array, rev/s
+        Magnitude; while the spindle stands nothing wears.
+    """
+    row = stations.segment
+    starts = np.cumsum(segments.length) - segments.length
+    length = np.diff(starts[row] + stations.station, prepend=0.0)
+    around = pi * stations.diameter * spindle_speed[row]
+    cuts = (stations.section > 0.0) & (around > 0.0)
+    seconds = np.where(cuts, length / segments.speed[row], 0.0)
+    if not seconds.sum() > 0.0:
+        return Wear(flank=flank)
+    # In proportion to v_c^(1/n): one call of the law for all.
+    fastest = float(around[cuts].max())
+    share = np.where(cuts, around / fastest, 0.0) ** (1.0 / taylor.exponent)
+    mean = float(seconds @ share / seconds.sum())
+    worn = wearing(flank, taylor, fastest)
+    return Wear(flank=flank, per_second=mean * worn.per_second)

@@ -11,15 +11,15 @@ from math import atan2, cos, hypot, pi, sin, sqrt
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from simulator.motion.segments import Floats
 from simulator.removal.carve import LEVEL, Way, arc_distance, way_between
-from simulator.removal.profile import INNER, Profile, is_plain, radius_at
+from simulator.removal.kernels import kernel
+from simulator.removal.profile import Profile, is_plain, radius_at
 from simulator.removal.zmap import Grid
 
-TOUCH = 1e-9
+TOUCH = 1e-10
 """mm within which two outlines are the same: a tool does not free its own front"""
 
 NARROW = 1e-6
@@ -54,12 +54,10 @@ class Intervals(NamedTuple):
     """(MOST_INTERVALS, 2) rad"""
 
 
-@njit(**INNER)
+@kernel
 def intervals() -> Intervals:
     """Room for the work on one circle."""
-    return Intervals(
-        np.empty(16), np.empty((MOST_INTERVALS, 2)), np.empty((MOST_INTERVALS, 2))
-    )
+    return Intervals(np.empty(16), np.empty((MOST_INTERVALS, 2)), np.empty((MOST_INTERVALS, 2)))
 
 
 def remembered(row: Floats, profile: Profile) -> NDArray[np.float64]:
@@ -67,7 +65,7 @@ def remembered(row: Floats, profile: Profile) -> NDArray[np.float64]:
     return np.concatenate([row, np.array(profile)])
 
 
-@njit(**INNER)
+@kernel
 def free_by_move(
     room: Intervals, count: int, circle: Circle, record: Floats, level: float
 ) -> int:
@@ -97,7 +95,9 @@ def free_by_move(
         return -1
     way = way_between(record, begin, end)
     size = circle.radius
-    reach = radius + size + way.radius * abs(way.turn) + hypot(way.end_x - way.x, way.end_y - way.y)
+    reach = (
+        radius + size + way.radius * abs(way.turn) + hypot(way.end_x - way.x, way.end_y - way.y)
+    )
     if hypot(circle.x - way.x, circle.y - way.y) > reach:
         return count
     if way.turn == 0.0:
@@ -107,7 +107,7 @@ def free_by_move(
     return _add_inside(room, count, cuts, circle, way, radius)
 
 
-@njit(**INNER)
+@kernel
 def _cleared(record: Floats, profile: Profile, level: float) -> tuple[float, float, float]:
     """Part of a move that lies below a height, and the radius it clears there."""
     low, high = min(record[2], record[5]), max(record[2], record[5])
@@ -125,14 +125,16 @@ def _cleared(record: Floats, profile: Profile, level: float) -> tuple[float, flo
     return max(part, 0.0), 1.0, profile.radius
 
 
-@njit(**INNER)
+@kernel
 def _front(circle: Circle, x: float, y: float) -> float:
     """φ of a direction; negative behind."""
-    left = circle.side * (y * circle.ahead_x - x * circle.ahead_y)
-    return atan2(x * circle.ahead_x + y * circle.ahead_y, left)
+    onward = x * circle.ahead_x + y * circle.ahead_y
+    if onward <= 0.0:
+        return -1.0
+    return atan2(onward, circle.side * (y * circle.ahead_x - x * circle.ahead_y))
 
 
-@njit(**INNER)
+@kernel
 def _line_cuts(cuts: Floats, circle: Circle, way: Way, radius: float) -> int:
     """Where the outline of a stadium crosses the front half."""
     along_x, along_y = way.end_x - way.x, way.end_y - way.y
@@ -156,7 +158,7 @@ def _line_cuts(cuts: Floats, circle: Circle, way: Way, radius: float) -> int:
     return _disc_cuts(cuts, count, circle, (way.end_x, way.end_y), radius)
 
 
-@njit(**INNER)
+@kernel
 def _arc_cuts(cuts: Floats, circle: Circle, way: Way, radius: float) -> int:
     """Where the outline of the sector of a ring crosses the front half."""
     centre = (way.centre_x, way.centre_y)
@@ -166,7 +168,7 @@ def _arc_cuts(cuts: Floats, circle: Circle, way: Way, radius: float) -> int:
     return _disc_cuts(cuts, count, circle, (way.end_x, way.end_y), radius)
 
 
-@njit(**INNER)
+@kernel
 def _disc_cuts(
     cuts: Floats, count: int, circle: Circle, centre: tuple[float, float], radius: float
 ) -> int:
@@ -186,7 +188,7 @@ def _disc_cuts(
     return count
 
 
-@njit(**INNER)
+@kernel
 def _cut(cuts: Floats, count: int, angle: float) -> int:
     """Keep a crossing of the front half, in order."""
     if not 0.0 < angle < pi or count == len(cuts):
@@ -199,7 +201,7 @@ def _cut(cuts: Floats, count: int, angle: float) -> int:
     return count + 1
 
 
-@njit(**INNER)
+@kernel
 def _add_inside(
     room: Intervals, count: int, cuts: int, circle: Circle, way: Way, radius: float
 ) -> int:
@@ -219,7 +221,7 @@ def _add_inside(
     return count
 
 
-@njit(**INNER)
+@kernel
 def _way_distance(way: Way, x: float, y: float) -> float:
     """Distance of a point from a line or an arc in the plane."""
     if way.turn != 0.0:
@@ -233,7 +235,7 @@ def _way_distance(way: Way, x: float, y: float) -> float:
     return hypot(x - part * along_x, y - part * along_y)
 
 
-@njit(**INNER)
+@kernel
 def add_free(room: Intervals, count: int, low: float, high: float) -> int:
     """Add an interval, or widen the last one; past the room it is left out."""
     if count > 0 and room.free[count - 1, 0] <= low <= room.free[count - 1, 1]:
@@ -245,7 +247,7 @@ def add_free(room: Intervals, count: int, low: float, high: float) -> int:
     return count + 1
 
 
-@njit(**INNER)
+@kernel
 def free_by_outline(room: Intervals, count: int, circle: Circle, grid: Grid) -> int:
     """Add what lies beside the raw stock."""
     width = grid.heights.shape[0] * grid.dx
@@ -279,7 +281,7 @@ def free_by_outline(room: Intervals, count: int, circle: Circle, grid: Grid) -> 
     return count
 
 
-@njit(**INNER)
+@kernel
 def is_beside(grid: Grid, x: float, y: float) -> bool:
     """Whether a place lies beside the raw stock."""
     across = (x - grid.x) / (grid.heights.shape[0] * grid.dx)
@@ -293,7 +295,7 @@ def is_beside(grid: Grid, x: float, y: float) -> bool:
     return hypot(x, y) > grid.radius
 
 
-@njit(**INNER)
+@kernel
 def contact_arcs(room: Intervals, count: int) -> int:
     """What the free intervals leave of the front half; gives the number of contact arcs."""
     free, contact = room.free, room.contact

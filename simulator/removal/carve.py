@@ -3,7 +3,7 @@
 Over a cell at the distance u along a line and v beside it the tool reaches down to the least of
 ``z(s) + f(√((u − s)² + v²))``, f the profile. f is convex and never falls, so this is convex in
 s: level lines take the nearest point, flat and ball tools have a closed form on any slope, and
-bull-nose, cone and taper are bisected to rounding. On level arcs the nearest point decides as
+bull-nose, cone and taper are bisected, to 1e-8 mm in height. On level arcs the nearest point decides as
 well, and a flat tool on a helix has a closed form. What remains (arcs out of the XY plane;
 ball, bull-nose, cone and taper on a helix) runs on chords that leave the arc by at most
 ``CHORD_SHARE`` of a cell. Units mm and rad.
@@ -12,10 +12,9 @@ ball, bull-nose, cone and taper on a helix) runs on chords that leave the arc by
 from math import acos, atan2, ceil, cos, floor, hypot, inf, pi, sin, sqrt
 from typing import NamedTuple
 
-from numba import njit
-
 from simulator.motion.segments import Floats
-from simulator.removal.profile import INNER, Profile, is_plain, rise, steepness
+from simulator.removal.kernels import kernel
+from simulator.removal.profile import Profile, is_plain, rise, steepness
 from simulator.removal.zmap import Grid
 
 LEAST = 1e-9
@@ -34,8 +33,9 @@ _NUDGE = 1e-7
 """mm by which cells are looked at beside their middles, so that of the two walls of a slot that
 run through middles of cells only one takes its cells"""
 
-_BISECTIONS = 44
-"""halvings that bring a length of some mm down to rounding"""
+_PLACE = 1e-4
+"""mm to which the place that touches is found; the height there errs by its square over the
+corner's radius"""
 
 
 class Way(NamedTuple):
@@ -56,7 +56,7 @@ class Way(NamedTuple):
     """0: a line"""
 
 
-@njit(**INNER)
+@kernel
 def place(row: Floats, part: float) -> tuple[float, float, float]:
     """Point of a row of :func:`rows_of` at a share of its length."""
     x = row[0] + part * (row[3] - row[0])
@@ -73,7 +73,7 @@ def place(row: Floats, part: float) -> tuple[float, float, float]:
     return row[6] + second, y, row[8] + first
 
 
-@njit(**INNER)
+@kernel
 def way_between(row: Floats, begin: float, end: float) -> Way:
     """Part of a row between two shares of its length, a chord when it bends out of XY."""
     x, y, z = place(row, begin)
@@ -84,9 +84,14 @@ def way_between(row: Floats, begin: float, end: float) -> Way:
     return Way(x, y, z, end_x, end_y, end_z, row[6], row[7], row[9], angle, turn)
 
 
-@njit(**INNER)
+@kernel
 def carve_part(
-    grid: Grid, profile: Profile, row: Floats, span: tuple[float, float], number: int
+    grid: Grid,
+    profile: Profile,
+    row: Floats,
+    span: tuple[float, float],
+    number: int,
+    goes_on: bool,
 ) -> tuple[float, float, float, float]:
     """Lower the cells under a part of a row, at most a quarter turn of an arc.
 
@@ -100,6 +105,8 @@ def carve_part(
         Shares of the row's length.
     number : int
         Under which the cells remember who cut them.
+    goes_on : bool
+        The tool has just cut where the part begins, so that its first place need no look.
 
     Returns
     -------
@@ -111,7 +118,7 @@ def carve_part(
     """
     way = way_between(row, span[0], span[1])
     if row[11] == 0.0:
-        return _line(grid, profile, way, number)
+        return _line(grid, profile, way, number, goes_on)
     level = abs(way.end_z - way.z) <= LEVEL
     if row[12] == 2.0 and (level or is_plain(profile)):
         return _arc(grid, profile, way, number)
@@ -126,14 +133,14 @@ def carve_part(
         chord = Way(
             start[0], start[1], start[2], stop[0], stop[1], stop[2], 0.0, 0.0, 0.0, 0.0, 0.0
         )
-        lost, depth, at_x, at_y = _line(grid, profile, chord, number)
+        lost, depth, at_x, at_y = _line(grid, profile, chord, number, goes_on or index > 0)
         volume += lost
         if depth > deepest:
             deepest, x, y = depth, at_x, at_y
     return volume, deepest, x, y
 
 
-@njit(**INNER)
+@kernel
 def _range(low: float, high: float, origin: float, size: float, count: int) -> tuple[int, int]:
     """First cell and the one after the last whose middles lie between two coordinates."""
     first = ceil((low - origin - _NUDGE) / size - 0.5)
@@ -141,9 +148,9 @@ def _range(low: float, high: float, origin: float, size: float, count: int) -> t
     return max(first, 0), min(last + 1, count)
 
 
-@njit(**INNER)
+@kernel
 def _line(
-    grid: Grid, profile: Profile, way: Way, number: int
+    grid: Grid, profile: Profile, way: Way, number: int, goes_on: bool
 ) -> tuple[float, float, float, float]:
     """Cut along a line of any direction."""
     length = hypot(way.end_x - way.x, way.end_y - way.y)
@@ -157,6 +164,8 @@ def _line(
         slope, start_z = (climb / length, way.z) if abs(climb) > LEVEL else (0.0, floor_z)
     reach = profile.radius
     plain = is_plain(profile)
+    skips_disc = goes_on and plain and climb >= -LEVEL
+    fresh = _fresh(profile, slope) if goes_on and length > LEAST else -inf
     heights = grid.heights
     volume, deepest, found_x, found_y = 0.0, 0.0, way.x, way.y
     first, last = _range(
@@ -169,17 +178,33 @@ def _line(
     for column in range(first, last):
         x = grid.x + (column + 0.5) * grid.dx + _NUDGE
         low, high = _chord(way, x, reach, along_x, along_y, length)
+        low, high = _ahead(low, high, fresh - (x - way.x) * along_x, way.y, along_y)
         begin, end = _range(low, high, grid.y, grid.dy, heights.shape[1])
+        done, undone = end, end
+        if skips_disc:
+            half = sqrt(max(reach * reach - (x - way.x) ** 2, 0.0))
+            done, undone = _range(way.y - half, way.y + half, grid.y, grid.dy, heights.shape[1])
         for row in range(begin, end):
+            if done <= row < undone:
+                continue
             height = heights[column, row]
             if height <= floor_z:
                 continue
-            new = start_z
+            new = floor_z
             if slope != 0.0 or not plain:
                 y = grid.y + (row + 0.5) * grid.dy + _NUDGE
                 u = (x - way.x) * along_x + (y - way.y) * along_y
-                v = abs((y - way.y) * along_x - (x - way.x) * along_y)
-                new += lowest(profile, u, v, length, slope)
+                v = (y - way.y) * along_x - (x - way.x) * along_y
+                # The nearest place of the path at its lowest height: no tool reaches lower.
+                beyond = u - min(max(u, 0.0), length)
+                square = beyond * beyond + v * v
+                if square > reach * reach:
+                    continue
+                new += rise(profile, sqrt(square))
+                if height - new <= LEAST:
+                    continue
+                if slope != 0.0:
+                    new = start_z + lowest(profile, u, v, length, slope)
             new = max(new, grid.bottom)
             if height - new > LEAST:
                 volume += height - new
@@ -192,7 +217,33 @@ def _line(
     return volume * grid.dx * grid.dy, deepest, found_x, found_y
 
 
-@njit(**INNER)
+@kernel
+def _fresh(profile: Profile, slope: float) -> float:
+    """Where along a line the first cell lies that its start does not settle.
+
+    A level or climbing tool settles all behind its axis; a ball that runs down touches behind
+    its axis no farther than where its surface is as steep as the line.
+    """
+    if slope >= 0.0:
+        return 0.0
+    if profile.flat == 0.0 and profile.corner == profile.radius:
+        return profile.radius * slope / sqrt(1.0 + slope * slope)
+    return -profile.radius
+
+
+@kernel
+def _ahead(
+    low: float, high: float, least: float, origin: float, along_y: float
+) -> tuple[float, float]:
+    """Part of a column where ``(y − origin)·along_y ≥ least``."""
+    if along_y > LEAST:
+        return max(low, origin + least / along_y - LEAST), high
+    if along_y < -LEAST:
+        return low, min(high, origin + least / along_y + LEAST)
+    return (low, high) if least <= LEAST else (inf, -inf)
+
+
+@kernel
 def _chord(
     way: Way, x: float, reach: float, along_x: float, along_y: float, length: float
 ) -> tuple[float, float]:
@@ -212,9 +263,9 @@ def _chord(
     return low, high
 
 
-@njit(**INNER)
+@kernel
 def lowest(profile: Profile, u: float, v: float, length: float, slope: float) -> float:
-    """Least height of the tool over a cell, above the start of a line; infinite beside it.
+    """Least height of the tool over a cell, above the start of a sloping line.
 
     Parameters
     ----------
@@ -224,15 +275,13 @@ def lowest(profile: Profile, u: float, v: float, length: float, slope: float) ->
     length : float, mm
         Of the line in the plane.
     slope : float
-        Rise of the line per mm in the plane.
+        Rise of the line per mm in the plane, not 0.
 
     Returns
     -------
     float, mm
+        Infinite beside the line's sweep.
     """
-    if slope == 0.0:
-        distance = hypot(u - min(max(u, 0.0), length), v)
-        return rise(profile, distance) if distance <= profile.radius else inf
     square = profile.radius**2 - v * v
     if square < 0.0:
         return inf
@@ -248,24 +297,35 @@ def lowest(profile: Profile, u: float, v: float, length: float, slope: float) ->
     return _bisected(profile, u, v, slope, (low, high))
 
 
-@njit(**INNER)
+@kernel
 def _bisected(
     profile: Profile, u: float, v: float, slope: float, span: tuple[float, float]
 ) -> float:
-    """Least value of a convex function by the sign of its derivative."""
+    """Least value of a convex function by the sign of its derivative.
+
+    Under the flat of a tool that climbs or runs down nothing touches, so the search begins
+    where the flat ends.
+    """
     low, high = span
-    for _ in range(_BISECTIONS):
+    flat = profile.flat if profile.slope == 0.0 else 0.0
+    inner = sqrt(max(flat * flat - v * v, 0.0))
+    if slope > 0.0:
+        high = max(min(high, -inner), low)
+    else:
+        low = min(max(low, inner), high)
+    while high - low > _PLACE:
         middle = 0.5 * (low + high)
-        distance = max(hypot(middle, v), LEAST)
+        distance = max(sqrt(middle * middle + v * v), LEAST)
         if slope + steepness(profile, distance) * middle / distance > 0.0:
             high = middle
         else:
             low = middle
     middle = 0.5 * (low + high)
-    return slope * (u + middle) + rise(profile, min(hypot(middle, v), profile.radius))
+    distance = min(sqrt(middle * middle + v * v), profile.radius)
+    return slope * (u + middle) + rise(profile, distance)
 
 
-@njit(**INNER)
+@kernel
 def _arc(
     grid: Grid, profile: Profile, way: Way, number: int
 ) -> tuple[float, float, float, float]:
@@ -291,7 +351,7 @@ def _arc(
             if height <= floor_z:
                 continue
             y = grid.y + (row + 0.5) * grid.dy + _NUDGE - way.centre_y
-            away = hypot(x, y)
+            away = sqrt(x * x + y * y)
             if away > outer or away < inner:
                 continue
             if level:
@@ -313,7 +373,7 @@ def _arc(
     return volume * grid.dx * grid.dy, deepest, found_x, found_y
 
 
-@njit(**INNER)
+@kernel
 def _bounds(way: Way, reach: float) -> tuple[float, float, float, float]:
     """Box around the sweep of an arc."""
     low_x, high_x = min(way.x, way.end_x), max(way.x, way.end_x)
@@ -328,7 +388,7 @@ def _bounds(way: Way, reach: float) -> tuple[float, float, float, float]:
     return low_x - reach, high_x + reach, low_y - reach, high_y + reach
 
 
-@njit(**INNER)
+@kernel
 def arc_distance(way: Way, x: float, y: float) -> float:
     """Distance of a point, seen from the centre, from an arc of at most half a turn."""
     start_x, start_y = way.x - way.centre_x, way.y - way.centre_y
@@ -341,7 +401,7 @@ def arc_distance(way: Way, x: float, y: float) -> float:
     return min(hypot(x - start_x, y - start_y), hypot(x - end_x, y - end_y))
 
 
-@njit(**INNER)
+@kernel
 def _helix(way: Way, x: float, y: float, reach: float) -> float:
     """Least height over a point of a flat tool on a helix of at most half a turn."""
     sign = 1.0 if way.turn > 0.0 else -1.0

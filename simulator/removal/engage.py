@@ -8,7 +8,7 @@ Units mm and rad.
 """
 
 from dataclasses import dataclass
-from math import inf, pi, sin
+from math import inf, sin
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,10 +41,11 @@ from simulator.removal.march import (
     STATION,
     VOLUME,
     March,
+    Task,
     march,
     rows_of,
 )
-from simulator.removal.profile import cylinder, profile_of
+from simulator.removal.profile import Profile, cylinder, profile_of
 from simulator.removal.rim import Tool, past
 from simulator.removal.stations import CutKind, Stations
 from simulator.removal.zmap import ZMap, cell_size, zmap_of
@@ -56,7 +57,7 @@ WINDOW = 10.0
 STEP_SHARE = 0.25
 """of the tool's radius: the longest stretch between two stations"""
 
-LEAST_SHARE = 0.01
+LEAST_SHARE = 0.02
 """of the tool's radius: the shortest one"""
 
 _CHUNK = 16_384  # rows that are marched in one go
@@ -105,9 +106,7 @@ class MillingStock:
         """material above the cutting edge, its height over the edge's end"""
         self._past = past()
 
-    def cut(
-        self, segments: Segments, cutter: Cutter, *, is_clockwise: bool = True
-    ) -> Stations:
+    def cut(self, segments: Segments, cutter: Cutter, *, is_clockwise: bool = True) -> Stations:
         """Cut along segments, in order, and tell what the tool met.
 
         Parameters
@@ -132,7 +131,8 @@ class MillingStock:
         profile = profile_of(cutter, reach=grid.top - grid.bottom)
         flank = sin(cutter.cutting_edge_angle)
         tool = Tool(profile, flank, 1.0 if is_clockwise else -1.0)
-        how = _how(cutter, profile.radius, self.map.cell)
+        how = _how(cutter, profile, self.map.cell)
+        self._past.last[:] = np.nan
         parts: list[Floats] = []
         for first in range(0, len(segments), _CHUNK):
             parts += self._chunk(segments[first : first + _CHUNK], tool, how, first)
@@ -142,14 +142,14 @@ class MillingStock:
 
     def _chunk(self, segments: Segments, tool: Tool, how: March, first: int) -> list[Floats]:
         """March along some rows."""
-        state = (self.map.grid, self._past)
+        task = Task(self.map.grid, self._past, tool, how)
         rows, lengths = rows_of(segments), segments.length
         out = np.empty((_LINES, COLUMNS))
         found = np.zeros((len(segments), FINDINGS))
         parts: list[NDArray[np.float64]] = []
         row = 0
         while row < len(segments):
-            row, count = march(state, tool, how, rows, lengths, row, out, found)
+            row, count = march(task, rows, lengths, row, out, found)
             parts.append(out[:count].copy())
             parts[-1][:, ROW] += first
         self.volume += float(found[:, VOLUME].sum())
@@ -183,12 +183,15 @@ class MillingStock:
                 )
 
 
-def _how(cutter: Cutter, radius: float, cell: float) -> March:
+def _how(cutter: Cutter, profile: Profile, cell: float) -> March:
     """How to march with a cutter over cells of a size."""
     holder = cutter.holder
     return March(
-        step=max(STEP_SHARE * radius, 4.0 * cell),
-        least=max(LEAST_SHARE * radius, 0.1 * cell),
+        step=max(STEP_SHARE * profile.radius, 4.0 * cell),
+        least=max(LEAST_SHARE * profile.radius, cell),
+        coarse=5.0 * cell,
+        shape=np.array(profile),
+        neck=cylinder(profile.radius),
         shank=cutter.edge_length,
         holder=cylinder(0.5 * holder.diameter if holder else 1.0),
         overhang=holder.overhang if holder else inf,

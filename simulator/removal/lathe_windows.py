@@ -139,11 +139,9 @@ def _groups(area: Floats, volume: Floats, length: Floats, least: float) -> NDArr
         elif is_same and not is_air and total >= least:
             is_same = False
         if is_same:
-            total, depth, section = (
-                total + length[row],
-                depth + area[row],
-                section + volume[row],
-            )
+            total += length[row]
+            depth += area[row]
+            section += volume[row]
             group[row] = group[row - 1]
         else:
             total, depth, section = length[row], area[row], volume[row]

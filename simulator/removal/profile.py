@@ -9,12 +9,8 @@ edge the shank is a cylinder as wide as the edge is there. Units mm.
 from math import cos, inf, pi, sin, sqrt, tan
 from typing import NamedTuple
 
-from numba import njit
-
 from simulator.removal.cutter import Cutter
-
-INNER = {"cache": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-"""options of kernels that only kernels call: without wrappers they compile twice as fast"""
+from simulator.removal.kernels import kernel
 
 _STRAIGHT = 1e-9  # rad; a smaller taper is none
 
@@ -81,13 +77,13 @@ def cylinder(radius: float) -> Profile:
     return Profile(0.0, radius, 0.0, radius, 0.0, 0.0, radius)
 
 
-@njit(**INNER)
+@kernel
 def is_plain(profile: Profile) -> bool:
     """Whether the tool is a cylinder with a flat end."""
     return profile.slope == 0.0 and profile.flat == profile.radius
 
 
-@njit(**INNER)
+@kernel
 def rise(profile: Profile, distance: float) -> float:
     """Height over the tip at a distance from the axis, mm."""
     if distance <= profile.flat:
@@ -98,7 +94,7 @@ def rise(profile: Profile, distance: float) -> float:
     return profile.shoulder + profile.flank * (distance - profile.tangent)
 
 
-@njit(**INNER)
+@kernel
 def steepness(profile: Profile, distance: float) -> float:
     """Derivative of :func:`rise`."""
     if distance <= profile.flat:
@@ -109,7 +105,7 @@ def steepness(profile: Profile, distance: float) -> float:
     return profile.flank
 
 
-@njit(**INNER)
+@kernel
 def radius_at(profile: Profile, height: float) -> float:
     """Distance from the axis to the surface at a height over the tip, mm."""
     if profile.slope > 0.0:

@@ -11,16 +11,13 @@ divide the depth. Mean chip over feed per tooth is ``∫∫ sin φ dφ dz / ∫�
 edge, which is ``sin κ·(cos φ_st − cos φ_ex)/(φ_ex − φ_st)`` for one arc. Units mm and rad.
 """
 
-from math import acos, asin, atan2, cos, floor, hypot, pi, sin, sqrt
+from math import acos, asin, cos, floor, pi, sin, sqrt
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
-from numpy.typing import NDArray
 
 from simulator.motion.segments import Floats, Ints
 from simulator.removal.arcs import (
-    MOST_INTERVALS,
     RECORD,
     Circle,
     Intervals,
@@ -29,10 +26,10 @@ from simulator.removal.arcs import (
     free_by_move,
     free_by_outline,
     intervals,
-    is_beside,
 )
 from simulator.removal.carve import LEAST, LEVEL
-from simulator.removal.profile import INNER, Profile, is_plain, radius_at, rise
+from simulator.removal.kernels import kernel
+from simulator.removal.profile import Profile, is_plain, radius_at, rise
 from simulator.removal.zmap import OUTSIDE, Grid
 
 SAMPLES = 128
@@ -44,10 +41,19 @@ ROUND_SAMPLES = 48
 CORNER_SLICES = 6
 FLANK_SLICES = 4
 MOST_LEVELS = 8
-"""heights that a flat cutter tells apart; where there are more, so many slices divide the depth"""
+"""heights that a flat cutter tells apart"""
+
+BLURRED_SLICES = 4
+"""that divide its depth where there are more"""
 
 FORGETTING = 32_768
 """moves whose outline is remembered"""
+
+TRACE = 1e-3
+"""rad of contact below which there is none"""
+
+NEAR = 8
+"""samples from a solid one within which a free one asks for the outline that freed it"""
 
 RECENT = 3
 """last moves, whose outlines count whether the map names them or not"""
@@ -62,6 +68,8 @@ class Past(NamedTuple):
     """(FORGETTING, RECORD)"""
     next: Ints
     """(1,) number of the next move"""
+    last: Floats
+    """(3,) mm, where the tool cut last; NaN: elsewhere"""
 
 
 class Room(NamedTuple):
@@ -73,6 +81,8 @@ class Room(NamedTuple):
     """(S,) mm, of the ring"""
     owner: Ints
     """(S,)"""
+    solid: Ints
+    """(S,) samples from there to the next that is solid"""
     bounds: Floats
     """(MOST_LEVELS + 2,) mm between slices"""
     candidates: Ints
@@ -102,49 +112,48 @@ class Pose(NamedTuple):
     """rise per mm in the plane"""
 
 
-class Contact(NamedTuple):
-    """Engagement at one place."""
+AREA, DEPTH, ENTRY, EXIT, CONTACT, CHIP, DIAMETER, EXACT = range(8)
+"""columns of an engagement: section in mm², greatest depth, angles, mean chip over feed per
+tooth, greatest diameter that cuts; EXACT: every outline was, the tool is flat and moves level"""
 
-    section: float
-    """mm² across the feed"""
-    axial_depth: float
-    entry: float
-    exit: float
-    contact: float
-    """rad, all arcs together"""
-    chip_ratio: float
-    diameter: float
-    exact: bool
-    """all outlines were exact, the tool is flat and moves level"""
+ENGAGEMENT = 8
 
 
 def past() -> Past:
     """No moves yet."""
-    return Past(np.zeros((FORGETTING, RECORD)), np.zeros(1, dtype=np.int64))
+    return Past(np.zeros((FORGETTING, RECORD)), np.zeros(1, dtype=np.int64), np.full(3, np.nan))
 
 
-@njit(**INNER)
-def nothing() -> Contact:
-    """No contact."""
-    return Contact(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, True)
+@kernel
+def look(grid: Grid, before: Past, tool: Tool, pose: Pose, into: Floats) -> None:
+    """Engagement of a tool at a place, before it cuts there.
 
-
-@njit(**INNER)
-def look(grid: Grid, before: Past, tool: Tool, pose: Pose) -> Contact:
-    """Engagement of a tool at a place, before it cuts there."""
+    Parameters
+    ----------
+    grid : Grid
+    before : Past
+    tool : Tool
+    pose : Pose
+    into : (ENGAGEMENT,) array
+        Where the engagement is written.
+    """
+    into[:] = 0.0
+    into[EXACT] = 1.0
     profile = tool.profile
     work = _room(SAMPLES if is_plain(profile) else ROUND_SAMPLES)
-    plain = is_plain(profile)
+    plain, is_known = is_plain(profile), True
     gap = max(grid.dx, grid.dy)
     base = max(pose.z, grid.bottom)
     if plain:
         circle = _circle(pose, profile.radius, tool.side)
         _read(grid, work, circle, gap)
         slices = _levels(work, base)
+        is_known = slices >= 0
+        slices = abs(slices)
     else:
         slices = _slices(grid, work, tool, pose, base)
-    count_all, is_known = np.int64(0), True
-    area, across, edges, top, widest = 0.0, 0.0, 0.0, 0.0, 0.0
+    count_all = np.int64(0)
+    area, across, edges, top, widest, most = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for index in range(slices):
         low, high = work.bounds[index], work.bounds[index + 1]
         middle = 0.5 * (low + high)
@@ -164,19 +173,21 @@ def look(grid: Grid, before: Past, tool: Tool, pose: Pose) -> Contact:
             sines += 2.0 * sin(0.5 * (begin + end)) * sin(0.5 * (end - begin))
             angle += end - begin
             count_all = add_free(work.total, count_all, begin, end)
+        most = max(most, angle)
         area += (high - low) * radius * sines
         across += (high - low) * sines
         edges += _edge(profile, low - pose.z, high - pose.z, tool.sine) * angle
         top = high - base
         widest = 2.0 * radius_at(profile, high - pose.z)
-    if count_all == 0:
-        return nothing()
-    entry, leave, contact = _hull(work.total, contact_arcs(work.total, count_all))
     exact = plain and is_known and abs(pose.climb) <= LEVEL
-    return Contact(area, top, entry, leave, contact, across / edges, widest, exact)
+    into[EXACT] = 1.0 if exact else 0.0
+    if count_all == 0 or most < TRACE:
+        return
+    into[AREA], into[DEPTH], into[CHIP], into[DIAMETER] = area, top, across / edges, widest
+    _hull(work.total, contact_arcs(work.total, count_all), into)
 
 
-@njit(**INNER)
+@kernel
 def _room(samples: int) -> Room:
     """Room for the work of one station."""
     return Room(
@@ -184,18 +195,19 @@ def _room(samples: int) -> Room:
         intervals(),
         np.empty(samples),
         np.empty(samples, dtype=np.int64),
+        np.empty(samples, dtype=np.int64),
         np.empty(MOST_LEVELS + 3),
         np.empty(MOST_CANDIDATES, dtype=np.int64),
     )
 
 
-@njit(**INNER)
+@kernel
 def _circle(pose: Pose, radius: float, side: float) -> Circle:
     """Section of the tool."""
     return Circle(pose.x, pose.y, radius, pose.ahead_x, pose.ahead_y, side)
 
 
-@njit(**INNER)
+@kernel
 def _read(grid: Grid, work: Room, circle: Circle, gap: float) -> None:
     """Heights and owners on the front half of a ring outside a circle."""
     samples = len(work.heights)
@@ -221,9 +233,21 @@ def _read(grid: Grid, work: Room, circle: Circle, gap: float) -> None:
         )
 
 
-@njit(**INNER)
+@kernel
+def _height(grid: Grid, circle: Circle, radius: float, angle: float) -> float:
+    """Height of the map at an angle φ and a distance from the axis."""
+    across, onward = circle.side * radius * cos(angle), radius * sin(angle)
+    x = circle.x + onward * circle.ahead_x - across * circle.ahead_y
+    y = circle.y + onward * circle.ahead_y + across * circle.ahead_x
+    column, row = floor((x - grid.x) / grid.dx), floor((y - grid.y) / grid.dy)
+    if 0 <= column < grid.heights.shape[0] and 0 <= row < grid.heights.shape[1]:
+        return grid.heights[column, row]
+    return grid.bottom
+
+
+@kernel
 def _levels(work: Room, base: float) -> int:
-    """Slices of a flat cutter: between the heights that its ring meets."""
+    """Slices of a flat cutter: between the heights that its ring meets; negative: blurred."""
     bounds = work.bounds
     bounds[0] = base
     count, top = 0, base
@@ -244,24 +268,33 @@ def _levels(work: Room, base: float) -> int:
         bounds[place] = height
         count += 1
     if count > MOST_LEVELS:
-        count = MOST_LEVELS
+        count = BLURRED_SLICES
         for index in range(1, count + 1):
             bounds[index] = base + (top - base) * index / count
+        return -count
     return count
 
 
-@njit(**INNER)
+@kernel
 def _slices(grid: Grid, work: Room, tool: Tool, pose: Pose, base: float) -> int:
     """Slices of a rounded tool: up to the highest place that it touches ahead."""
     profile, gap = tool.profile, max(grid.dx, grid.dy)
-    top = base
-    for quarter in range(1, 5):
-        radius = 0.25 * quarter * profile.radius
-        _read(grid, work, _circle(pose, radius, tool.side), gap)
-        lowest = pose.z + rise(profile, radius) + LEAST
-        for height in work.heights:
-            if height > lowest:
-                top = max(top, height)
+    step, top = pi / ROUND_SAMPLES, base
+    for third in range(1, 4):
+        radius = profile.radius * third / 3.0
+        circle = _circle(pose, radius, tool.side)
+        _read(grid, work, circle, gap)
+        reach = pose.z + rise(profile, radius) - LEAST
+        for index in range(ROUND_SAMPLES):
+            height = work.heights[index]
+            if height <= top:
+                continue
+            # What is lower than the tool there may go on to where the tool comes as low.
+            nearer = radius_at(profile, height - pose.z) + gap
+            if height > reach or (
+                _height(grid, circle, nearer, (index + 0.5) * step) > height - LEAST
+            ):
+                top = height
     if top <= base:
         return 0
     shoulder = min(max(pose.z + profile.shoulder, base), top)
@@ -278,7 +311,7 @@ def _slices(grid: Grid, work: Room, tool: Tool, pose: Pose, base: float) -> int:
     return count
 
 
-@njit(**INNER)
+@kernel
 def _slice(
     grid: Grid, before: Past, work: Room, circle: Circle, level: float
 ) -> tuple[int, bool]:
@@ -286,7 +319,7 @@ def _slice(
     latest = before.next[0]
     samples = len(work.heights)
     step = pi / samples
-    free, known, is_solid, is_at_border = np.int64(0), True, False, grid.radius > 0.0
+    free, known, is_at_border = np.int64(0), True, grid.radius > 0.0
     candidates = 0
     for number in range(max(latest - RECENT, 0), latest):
         work.candidates[candidates] = number
@@ -295,13 +328,17 @@ def _slice(
             work.arcs, free, circle, before.records[number % FORGETTING], level
         )
         free = max(tried, free)
+    if _runs(work, level) == 0:
+        return 0, True
     for index in range(samples):
-        if work.heights[index] > level:
-            is_solid = True
+        if work.solid[index] == 0:
             continue
         owner = work.owner[index]
         if owner == OUTSIDE:
             is_at_border = True
+            continue
+        if work.solid[index] > NEAR:
+            free = add_free(work.arcs, free, index * step, (index + 1) * step)
             continue
         seen = candidates - 1
         while seen >= 0 and work.candidates[seen] != owner:
@@ -319,14 +356,26 @@ def _slice(
                 continue
         known = False
         free = add_free(work.arcs, free, index * step, (index + 1) * step)
-    if not is_solid:
-        return 0, known
     if is_at_border:
         free = free_by_outline(work.arcs, free, circle, grid)
     return contact_arcs(work.arcs, free), known
 
 
-@njit(**INNER)
+@kernel
+def _runs(work: Room, level: float) -> int:
+    """How many samples each free one is away from a solid one; gives the number of solids."""
+    solid, heights = work.solid, work.heights
+    away, count, last = NEAR + 1, 0, len(heights) - 1
+    for index in range(last + 1):
+        away = 0 if heights[index] > level else away + 1
+        count += away == 0
+        solid[index] = away
+    for index in range(last - 1, -1, -1):
+        solid[index] = min(solid[index], solid[index + 1] + 1)
+    return count
+
+
+@kernel
 def _leading(work: Room, count: int, profile: Profile, height: float, climb: float) -> int:
     """Contact arcs without what a climbing tool leaves behind: ``n·v ≤ 0`` on its surface."""
     radius = radius_at(profile, height)
@@ -351,7 +400,7 @@ def _leading(work: Room, count: int, profile: Profile, height: float, climb: flo
     return kept
 
 
-@njit(**INNER)
+@kernel
 def _edge(profile: Profile, low: float, high: float, sine: float) -> float:
     """Length of the edge between two heights over the tip."""
     if profile.slope > 0.0:
@@ -369,21 +418,20 @@ def _edge(profile: Profile, low: float, high: float, sine: float) -> float:
     return corner + straight / sine
 
 
-@njit(**INNER)
-def _hull(total: Intervals, gaps: int) -> tuple[float, float, float]:
+@kernel
+def _hull(total: Intervals, gaps: int, into: Floats) -> None:
     """Entry, exit and sum of arcs, from the gaps between them."""
-    entry, leave, contact = 0.0, pi, pi
+    into[EXIT], into[CONTACT] = pi, pi
     for index in range(gaps):
         begin, end = total.contact[index, 0], total.contact[index, 1]
-        contact -= end - begin
+        into[CONTACT] -= end - begin
         if begin == 0.0:
-            entry = end
+            into[ENTRY] = end
         if end == pi:
-            leave = begin
-    return entry, leave, contact
+            into[EXIT] = begin
 
 
-@njit(**INNER)
+@kernel
 def lip(grid: Grid, profile: Profile, x: float, y: float, z: float) -> tuple[float, float]:
     """Inner and outer radius of what a tool that sinks down to a place cuts there, mm."""
     rings, spokes = 16, 16

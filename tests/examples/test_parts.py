@@ -22,7 +22,7 @@ from stepnc_model.technology import Quantity, programmed
 from stepnc_model.tool import tool_of
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
-NAMES = ["bracket", "paper002", "shaft"]
+NAMES = ["bracket", "paper000", "paper002", "paper003_case1", "paper003_case2", "shaft"]
 ROOTS = {"PROJECT", "SURFACE_TEXTURE_PARAMETER"}
 
 E = TypeVar("E", bound=Entity)
@@ -100,7 +100,7 @@ def test_paper002_has_the_numbers_of_table_2() -> None:
     assert (tool.diameter, tool.teeth, block.x, block.y) == (18.0, 4, 18.0, 300.0)
 
 
-@pytest.mark.parametrize("name", ["bracket", "paper002"])
+@pytest.mark.parametrize("name", ["bracket", "paper002", "paper003_case1", "paper003_case2"])
 def test_milling_programs_one_feed_and_one_speed(name: str) -> None:
     """ISO 14649-11, rules WR1 and WR2."""
     for technology in all_of(load(name), MillingTechnology):

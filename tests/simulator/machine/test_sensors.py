@@ -15,7 +15,7 @@ FEED = np.zeros(COUNT, dtype=np.bool_)
 ALL = Noise(relative=0.03, absolute=2.0, feed_spread=0.1, rapid_spread=0.05, missing=0.1)
 
 
-@settings(max_examples=20)
+@settings(max_examples=20, deadline=None)
 @given(cuts=st.lists(st.integers(0, 3000), max_size=5), seed=st.integers(0, 2**63))
 def test_chunks_do_not_matter(cuts: list[int], seed: int) -> None:
     sensor = Sensor(column="cutting_force", noise=ALL, seed=seed)

@@ -69,7 +69,7 @@ def test_the_mean_delay_is_that_of_the_response(response: Response) -> None:
     assert time[-1] - Follower(response, 0.001).follow(time)[-1] == pytest.approx(0.05)
 
 
-@settings(max_examples=20)
+@settings(max_examples=20, deadline=None)
 @given(
     cuts=st.lists(st.integers(0, 60), max_size=5),
     response=st.sampled_from([LAG, SWINGING, Response(delay=0.0)]),

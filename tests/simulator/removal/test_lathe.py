@@ -243,7 +243,7 @@ inserts = st.sampled_from([
 ])
 
 
-@settings(max_examples=25)
+@settings(max_examples=25, deadline=None)
 @given(points=spots, insert=inserts)
 def test_section_times_length_is_the_volume_that_left_the_map(
     points: list[tuple[float, float]], insert: Insert
@@ -259,7 +259,7 @@ def test_section_times_length_is_the_volume_that_left_the_map(
     )
 
 
-@settings(max_examples=25)
+@settings(max_examples=25, deadline=None)
 @given(points=spots, insert=inserts, parts=st.integers(2, 9))
 def test_the_same_path_cut_finer_removes_the_same(
     points: list[tuple[float, float]], insert: Insert, parts: int
@@ -329,7 +329,7 @@ def _outline(insert: Insert) -> Polygon:
     return MultiPoint(spots).convex_hull
 
 
-@settings(max_examples=15)
+@settings(max_examples=15, deadline=None)
 @given(points=spots)
 def test_volume_as_of_polygons_swept_in_the_half_plane(
     points: list[tuple[float, float]],

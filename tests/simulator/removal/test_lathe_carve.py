@@ -64,7 +64,7 @@ places = st.tuples(st.floats(-5.0, 35.0), st.floats(-1.0, 22.0))
 SAMPLES = np.linspace(0.0, 1.0, 2001)
 
 
-@settings(max_examples=40)
+@settings(max_examples=40, deadline=None)
 @given(shape=bodies, start=places, end=places)
 def test_a_line_reaches_as_low_as_the_lowest_of_its_positions(
     shape: Body, start: tuple[float, float], end: tuple[float, float]
@@ -80,7 +80,7 @@ def test_a_line_reaches_as_low_as_the_lowest_of_its_positions(
     assert volume == pytest.approx(0.1 * pi * (TOP**2 - surface**2).sum(), abs=1e-4)
 
 
-@settings(max_examples=40)
+@settings(max_examples=40, deadline=None)
 @given(
     shape=bodies,
     centre=places,

@@ -1,0 +1,69 @@
+"""Cuts of workingsteps as estimated from their features, whatever the operation.
+
+What no path tells is here too: which tool kind and texture, whether it finishes, and what is
+programmed.
+"""
+
+from optimiser.cut import Cut
+from optimiser.estimate import milling_cut
+from optimiser.estimate_hole import hole_cut, is_hole_making
+from optimiser.estimate_turning import mean_diameter, turning_cut
+from optimiser.problem import Setting
+from stepnc_model.entities.turning import TurningMachiningOperation
+from stepnc_model.errors import Finding, Severity
+from stepnc_model.program import Program, Workingstep
+from stepnc_model.technology import programmed
+from stepnc_model.tool import tool_of
+
+
+class Estimates:
+    """A source of cuts that looks at features only."""
+
+    def __init__(self, program: Program) -> None:
+        self.program = program
+
+    def cut(self, step: Workingstep) -> tuple[Cut, list[Finding]]:
+        """The cut of a workingstep as programmed, and what was assumed."""
+        return estimated_cut(self.program, step)
+
+    def at(self, _step: Workingstep, cut: Cut, _setting: Setting) -> Cut:
+        """The same cut: an estimate knows one length of pass."""
+        return cut
+
+    def leave_out(self, step: Workingstep) -> None:
+        """Nothing: no workingstep knows of another."""
+
+
+def estimated_cut(program: Program, step: Workingstep) -> tuple[Cut, list[Finding]]:
+    """The cut of a workingstep as estimated from its feature, and what was assumed.
+
+    Raises
+    ------
+    SchemaError
+        When the workingstep lacks what a cut needs.
+    """
+    tool = tool_of(program, step.tool_ref)
+    conditions = programmed(program, step.technology_ref)
+    findings: list[Finding] = []
+    operation = step.operation
+    is_turning = isinstance(operation, TurningMachiningOperation)
+    diameter = mean_diameter(program, step) if is_turning else tool.diameter
+    if diameter <= 0.0:
+        raise program.error("cuts at the axis: no cutting speed there", step.operation_ref)
+    speed = conditions.spindle_speed(diameter)
+    feed = conditions.feed_per_tooth(speed, tool.teeth)
+    if not is_turning and not tool.has_teeth:
+        text = "number_of_teeth is not given: one tooth assumed"
+        findings.append(program.finding(Severity.NOTE, text, step.tool_ref))
+    if conditions.has_both_speeds:
+        text = "cutspeed and spindle are both given (ISO 14649-11 WR1): the spindle counts"
+        findings.append(
+            program.finding(Severity.WARNING, text, step.technology_ref, "cutspeed")
+        )
+    make = milling_cut
+    if is_turning:
+        make = turning_cut
+    elif is_hole_making(operation, tool):
+        make = hole_cut
+    cut, found = make(program, step, tool, speed=speed, feed=feed)
+    return cut, findings + list(found)

@@ -1,0 +1,182 @@
+"""From what the tool meets along its path to the places where it cuts hardest.
+
+The section of the cut is the measure: it is right also where the arc of contact holds slivers
+of a floor or of another wall. With the depth it gives the width, and the arc of contact is that
+of the width, at the angles found where these agree with it, one-sided elsewhere. Every arc is
+tried: loads are exact functions of depth and arc, and a place that is worst for the mean force
+need not be worst for the shank. Units mm, rad.
+"""
+
+from dataclasses import dataclass, replace
+from math import cos, pi, sin, sqrt
+
+from optimiser.cut import Cut, CutKind, Place
+from optimiser.loads import REFERENCE_FEED
+from simulator.motion.segments import Bools, Floats
+from simulator.physics import drilling, milling
+from simulator.physics.engagement import (
+    Engagement,
+    full_immersion,
+    mean_chip_ratio,
+    unidirectional,
+)
+from simulator.removal.stations import CutKind as StationKind
+from simulator.removal.stations import Stations
+from simulator.spec import Kienzle, ToolKind
+
+NEARLY = 1e-3
+"""relative difference of widths that are equal: what an arc of 1/1000 rad makes"""
+
+AGREES = 0.02
+"""of the diameter: width by the angles against width by the section"""
+
+DIGITS = 3
+"""to which engagements are told apart: µm, mrad"""
+
+KINDS = {
+    CutKind.MILLING: StationKind.MILLING,
+    CutKind.TURNING: StationKind.TURNING,
+    CutKind.GROOVING: StationKind.TURNING,
+    CutKind.DRILLING: StationKind.DRILLING,
+}
+"""which stations an operation is judged by; plunges of a mill are not modelled"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Met:
+    """What the tool met along a path."""
+
+    stations: Stations
+    length: Floats
+    """(M,) mm, stretch for which each station holds"""
+    cell: float
+    """mm: sections of shorter stretches are noise"""
+
+    @property
+    def volume(self) -> float:
+        """Removed, mm³."""
+        return float((self.stations.section * self.length).sum())
+
+
+def lengths(stations: Stations) -> Floats:
+    """(M,) mm, the stretch for which each station holds."""
+    before = stations.station.copy()
+    before[1:] = stations.station[:-1]
+    before[:1] = 0.0
+    before[1:][stations.segment[1:] != stations.segment[:-1]] = 0.0
+    stretch: Floats = stations.station - before
+    return stretch
+
+
+def with_hardest(cut: Cut, met: Met, kienzle: Kienzle) -> Cut:
+    """A cut with its engagement as met, where anything was met."""
+    is_judged = met.stations.kind == KINDS[cut.kind]
+    is_long = is_judged & (met.length >= met.cell)
+    rows = is_long if is_long.any() else is_judged
+    if not rows.any():
+        return cut
+    section, depth = met.stations.section[rows], met.stations.axial_depth[rows]
+    if cut.kind is CutKind.MILLING:
+        return _milled(cut, _places(met.stations, rows, cut.diameter), kienzle)
+    if cut.kind is CutKind.DRILLING:
+        bored = sqrt(max(0.0, cut.diameter**2 - 4.0 * float(section.max()) / pi))
+        is_known = abs(bored - cut.previous_diameter) <= 2.0 * met.cell
+        return cut if is_known else replace(cut, previous_diameter=bored)
+    if cut.kind is CutKind.GROOVING:
+        return replace(cut, radial_width=min(cut.radial_width, float(depth.max())))
+    return replace(cut, depth_share=_share(cut, float(depth.max())))
+
+
+def weighted_volume(met: Met, exponent: float) -> float:
+    """``Σ V·χ^(−m)``: what the energy of the cut is in proportion to; χ is the chip ratio."""
+    rows = met.stations.section > 0.0
+    volume = met.stations.section[rows] * met.length[rows]
+    return float((volume * met.stations.chip_ratio[rows] ** -exponent).sum())
+
+
+def greatest_section(cut: Cut) -> tuple[float, float]:
+    """Section of the hardest place in mm² at the nominal depth, and its chip ratio."""
+    depth = nominal_depth(cut) * cut.depth_share
+    tool = cut.tool
+    if cut.kind is CutKind.MILLING:
+        if cut.engagement is None:
+            raise ValueError("a milling cut needs its engagement")
+        width = 0.5 * cut.diameter * cut.engagement.cosine_difference
+        ratio = mean_chip_ratio(cut.engagement, cutting_edge_angle=tool.cutting_edge_angle)
+        return depth * width, ratio
+    if cut.kind is CutKind.DRILLING:
+        point = 0.5 * tool.point_angle if tool.point_angle else drilling.CUSTOMARY_EDGE_ANGLE
+        return 0.25 * pi * (cut.diameter**2 - cut.previous_diameter**2), sin(point)
+    if cut.kind is CutKind.GROOVING:
+        return pi * cut.diameter * cut.radial_width, 1.0
+    return pi * cut.diameter * depth, sin(tool.cutting_edge_angle)
+
+
+def nominal_depth(cut: Cut) -> float:
+    """Depth of each pass as the path makes it: levels are equal, mm."""
+    if cut.kind is CutKind.MILLING and cut.is_depth_free:
+        return cut.total_depth / cut.programmed.passes
+    return cut.programmed.depth
+
+
+def _share(cut: Cut, depth: float) -> float:
+    """Real depth over the nominal one; at least 1 where another depth may be chosen.
+
+    A pass may have found less material than its depth because there was no more: another
+    depth would not.
+    """
+    share = depth / nominal_depth(cut)
+    return max(1.0, share) if cut.is_depth_free else share
+
+
+def _milled(cut: Cut, places: set[Place], kienzle: Kienzle) -> Cut:
+    """A milling cut with the place of the greatest mean force, and that of the greatest peak."""
+    mean = max(places, key=lambda place: milling.mean_force(kienzle, _at(cut, place)))
+    bending = None
+    if cut.tool_kind is ToolKind.ENDMILL:
+        bending = max(places, key=lambda place: milling.peak_force(kienzle, _at(cut, place)))
+        bending = replace(bending, depth_share=_share(cut, bending.depth_share))
+    return replace(
+        cut,
+        engagement=mean.engagement,
+        depth_share=_share(cut, mean.depth_share),
+        bending=bending,
+        radial_width=0.5 * cut.diameter * mean.engagement.cosine_difference,
+    )
+
+
+def _at(cut: Cut, place: Place) -> milling.MillingCut:
+    """The cut at a place whose depth is in mm."""
+    return milling.MillingCut(
+        feed_per_tooth=REFERENCE_FEED,
+        teeth=cut.tool.teeth,
+        axial_depth=place.depth_share,
+        engagement=place.engagement,
+        cutting_edge_angle=cut.tool.cutting_edge_angle,
+    )
+
+
+def _places(stations: Stations, rows: Bools, diameter: float) -> set[Place]:
+    """All engagements that occur, once each, with their depths in mm."""
+    columns = (stations.section, stations.axial_depth, stations.entry_angle, stations.exit_angle)
+    met = {
+        tuple(round(value, DIGITS) for value in row)
+        for row in zip(*(column[rows].tolist() for column in columns), strict=True)
+    }
+    return {_place(*row, diameter=diameter) for row in met if row[0] > 0.0}
+
+
+def _place(
+    section: float, depth: float, entry: float, exit: float, *, diameter: float
+) -> Place:
+    """One engagement; a section wider than the tool is deeper than it was seen to be."""
+    depth = max(depth, section / diameter)
+    width = section / depth
+    by_angles = 0.5 * diameter * (cos(entry) - cos(exit))
+    if width >= diameter * (1.0 - NEARLY):
+        engagement = full_immersion()
+    elif abs(by_angles - width) <= AGREES * diameter and 0.0 <= entry < exit <= pi:
+        engagement = Engagement(entry_angle=entry, exit_angle=exit)
+    else:
+        engagement = unidirectional(width, diameter)
+    return Place(engagement=engagement, depth_share=depth)

@@ -1,0 +1,43 @@
+"""Where the optimiser takes its cuts from: the real tool paths, or the features."""
+
+from collections.abc import Callable
+from typing import Protocol
+
+from optimiser.cut import Cut
+from optimiser.estimated import Estimates
+from optimiser.problem import Setting
+from simulator.spec import Machine, Material
+from stepnc_model.errors import Finding
+from stepnc_model.program import Program, Workingstep
+
+
+class CutSource(Protocol):
+    """Cuts of a program's workingsteps, asked for in their order. May keep a state."""
+
+    def cut(self, step: Workingstep) -> tuple[Cut, list[Finding]]:
+        """The cut of a workingstep as programmed, and what was assumed."""
+        ...
+
+    def at(self, step: Workingstep, cut: Cut, setting: Setting) -> Cut:
+        """The same cut with length and time as they are at another setting."""
+        ...
+
+    def leave_out(self, step: Workingstep) -> None:
+        """Go past a workingstep that is not advised but is run."""
+        ...
+
+
+Source = Callable[[Program, Machine, Material], CutSource]
+"""what makes the source of a program's cuts"""
+
+
+def along_paths(program: Program, machine: Machine, material: Material) -> CutSource:
+    """Cuts as the real tool path makes them in the stock that is left, timed by the machine."""
+    from optimiser.measured import MeasuredCuts  # noqa: PLC0415 (numba takes a second)
+
+    return MeasuredCuts(program, machine, material.kienzle)
+
+
+def from_features(program: Program, _machine: Machine, _material: Material) -> CutSource:
+    """Cuts estimated from features: quick, and blind to what the path really does."""
+    return Estimates(program)

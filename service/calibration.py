@@ -1,0 +1,128 @@
+"""The verb ``calibrate``: a machine's parameters from measured runs of a program."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from service.files import require_place, write_atomically
+from service.reading import Tell, silent
+from service.simulation import SimulationRequest, virtual_machine
+from service.simulation_setup import CodeRequest
+from simulator.calibration.calibrated import calibrated, notes, priors
+from simulator.calibration.fit import Calibration, fitted
+from simulator.calibration.held_out import HeldOut, held_out
+from simulator.calibration.measured_run import MeasuredRun, read_run
+from simulator.calibration.simulated import features
+from simulator.machine.samples import Samples, joined
+from simulator.machine.sensing import Sampler
+from simulator.machine_toml import machine_toml
+from simulator.spec import Machine
+from stepnc_model.errors import Finding, StepNcError
+
+RATE = 100.0
+"""samples a second of the simulation that the runs are compared with"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CalibrationRequest:
+    """What the user asks of ``calibrate``."""
+
+    runs: tuple[Path, ...]
+    program: Path | None = None
+    code: CodeRequest | None = None
+    machine: str = ""
+    material: str = ""
+    units: str = "iso"
+    control: str = "fir"
+    output: Path | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CycleTime:
+    """Time of one run, measured and simulated."""
+
+    name: str
+    measured: float
+    """s"""
+    simulated: float
+    """s"""
+
+    @property
+    def error(self) -> float:
+        """Share of the measured time, signed."""
+        return self.simulated / self.measured - 1.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CalibrationResult:
+    """What ``calibrate`` found."""
+
+    machine: Machine
+    """as calibrated"""
+    calibration: Calibration
+    held_out: tuple[HeldOut, ...]
+    times: tuple[CycleTime, ...]
+    findings: tuple[Finding, ...]
+
+
+def calibrate(request: CalibrationRequest, *, tell: Tell = silent) -> CalibrationResult:
+    """Fit a machine to measured runs, and write it as a machine file where one is named.
+
+    Raises
+    ------
+    StepNcError
+        For everything that is wrong with program, runs, names or output.
+    """
+    if not request.runs:
+        raise StepNcError("name at least one measured run")
+    if request.output is not None:
+        for other in (*request.runs, request.program):
+            if other is not None:
+                require_place(request.output, apart_from=other)
+    runs = [read_run(path) for path in request.runs]
+    samples, machine = _simulated(request, tell)
+    known = [features(samples, run) for run in runs]
+    efficiency = machine.spindle.efficiency
+    before = priors(machine)
+    calibration = fitted(known, before, efficiency=efficiency)
+    errors = held_out(known, before, efficiency=efficiency)
+    found = calibrated(machine, calibration)
+    if request.output is not None:
+        text = machine_toml(found, notes=(_origin(runs), *notes(calibration)))
+        write_atomically(request.output, text.encode())
+        tell(f"machine file: {request.output}")
+    return CalibrationResult(
+        machine=found,
+        calibration=calibration,
+        held_out=errors,
+        times=tuple(_time(run, samples) for run in runs),
+        findings=tuple(finding for run in runs for finding in run.findings),
+    )
+
+
+def _simulated(request: CalibrationRequest, tell: Tell) -> tuple[Samples, Machine]:
+    """The program on the machine as it is."""
+    simulation = SimulationRequest(
+        file=request.program,
+        code=request.code,
+        machine=request.machine,
+        material=request.material,
+        units=request.units,
+        control=request.control,
+    )
+    virtual, episodes = virtual_machine(simulation, tell)
+    sampler = Sampler(virtual.machine, rate=RATE)
+    parts = [part for episode in episodes for part in sampler.samples(episode)]
+    return joined(parts), virtual.machine
+
+
+def _time(run: MeasuredRun, samples: Samples) -> CycleTime:
+    return CycleTime(
+        name=run.name,
+        measured=float(run.time[-1] - run.time[0]),
+        simulated=float(samples.time[-1]),
+    )
+
+
+def _origin(runs: list[MeasuredRun]) -> str:
+    names = ", ".join(run.name for run in runs)
+    return f"calibrated on measured runs: {names}"

@@ -1,0 +1,51 @@
+"""What ``calibrate`` found, as tables on a terminal."""
+
+from service.calibration import CalibrationResult
+from service.tables import print_findings, print_line, print_table
+from simulator.calibration.fit import Estimate
+from simulator.calibration.skill import Skill
+
+
+def print_calibration(result: CalibrationResult) -> None:
+    """Parameters, cycle times, and errors on what was not fitted beside the baseline's."""
+    print_line(f"machine {result.machine.name} ({result.machine.title})")
+    rows = [_estimate_row(each) for each in result.calibration.estimates]
+    print_table(("parameter", "value", "95 % interval", "identified"), rows)
+    print_line("")
+    rows = [
+        (time.name, f"{time.measured:.1f}", f"{time.simulated:.1f}", f"{time.error:+.2%}")
+        for time in result.times
+    ]
+    print_table(("run", "measured s", "simulated s", "error"), rows)
+    print_line("")
+    print_line("held out: each run fitted by the others, a single one's end by its start;")
+    print_line("baseline: mean power of what was fitted times the time")
+    rows = [
+        (held.name, part.value, *_skill_row(skill))
+        for held in result.held_out
+        for part, skill in held.skills.items()
+    ]
+    header = (
+        "run", "power", "RMSE W", "baseline", "energy", "baseline", "skill", "cutting energy",
+    )  # fmt: skip
+    print_table(header, rows)
+    print_findings(result.findings)
+
+
+def _estimate_row(each: Estimate) -> tuple[str, str, str, str]:
+    value = f"{each.value:.4g} {each.unit}".strip()
+    if not each.is_identified:
+        return each.parameter.value, f"{value} kept", "", f"no: {each.reason}"
+    return each.parameter.value, value, f"{each.low:.4g} to {each.high:.4g}", "yes"
+
+
+def _skill_row(skill: Skill) -> tuple[str, ...]:
+    net = f"{skill.net_error:+.1%}" if abs(skill.net_error) < 10.0 else "none to tell"
+    return (
+        f"{skill.model_rmse:.1f}",
+        f"{skill.baseline_rmse:.1f}",
+        f"{skill.energy_error:+.2%}",
+        f"{skill.baseline_energy_error:+.2%}",
+        f"{skill.energy_skill:.2f}",
+        net,
+    )

@@ -1,0 +1,45 @@
+"""Carbon dioxide that goes with electric energy, by a stated factor. Units J, g.
+
+References
+----------
+.. [1] Ember, "Global Electricity Review 2024": 480 g/kWh, world average of 2023; with what
+   other gases and the making of plant and fuel count for.
+"""
+
+from dataclasses import dataclass
+
+JOULES_PER_KILOWATT_HOUR = 3.6e6
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CarbonFactor:
+    """Carbon dioxide of a kilowatt-hour from the mains.
+
+    Raises
+    ------
+    ValueError
+        When the factor is negative or no number.
+    """
+
+    grams_per_kwh: float
+    source: str
+
+    def __post_init__(self) -> None:
+        if not 0.0 <= self.grams_per_kwh < float("inf"):
+            raise ValueError(f"carbon factor {self.grams_per_kwh:g} g/kWh must be at least 0")
+
+    def grams(self, energy: float) -> float:
+        """Carbon dioxide in g of an energy in J."""
+        return kilowatt_hours(energy) * self.grams_per_kwh
+
+
+def kilowatt_hours(energy: float) -> float:
+    """Energy in kWh from J."""
+    return energy / JOULES_PER_KILOWATT_HOUR
+
+
+WORLD = CarbonFactor(
+    grams_per_kwh=480.0,
+    source="Ember, Global Electricity Review 2024, world average of 2023",
+)
+"""[1]_"""

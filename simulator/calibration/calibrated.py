@@ -1,0 +1,134 @@
+"""A machine before and after: what it says of its own powers, and the machine as fitted.
+
+An axis' fitted friction, viscous friction and mass are those seen from the mains; the drive
+that is written is equivalent to them, its friction all in the bearing's preload. The factor on
+the specific cutting force is no property of a machine and stays in the calibration.
+Units mm, s, N, W, kg·m².
+"""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from math import pi
+
+from simulator.calibration.estimates import Calibration, Estimate, Prior
+from simulator.calibration.features import AXIS_PARAMETERS, Parameter
+from simulator.motion.motion import AXES
+from simulator.physics.axis import motor_speed, reflected_inertia, steady_torque
+from simulator.spec import Axis, AxisDrive, Machine
+
+LEAD = 10.0  # mm per revolution, of a drive that was unknown
+BEARING_FRICTION = 0.01  # little, so that the feed force adds next to none
+LEAST_MASS = 0.1  # kg, a table without any is none
+FORCE, MASS = 500.0, 200.0
+"""N and kg that a prior may well be off, where it does not say more itself"""
+SLOW = 200.0  # mm/s at which viscous friction may well be as much as the other
+POWER, POWER_PER_SPEED = 200.0, 5.0  # W and W/(rev/s), likewise
+INERTIA = 0.01  # kg·m², likewise
+CUTTING = 0.5
+"""catalogues differ by 20 to 70 % for the same steel"""
+_NMM_S_PER_WATT = 1000.0
+_MM2_PER_M2 = 1e6
+
+
+def priors(machine: Machine) -> dict[Parameter, Prior]:
+    """What a machine's file says of each parameter, and how far that may well be off."""
+    spindle = machine.spindle
+    known = {
+        Parameter.BASE: _prior(machine.base_power, POWER),
+        Parameter.COOLANT: _prior(machine.coolant_power, POWER),
+        Parameter.IDLE: _prior(spindle.idle_power, POWER),
+        Parameter.IDLE_PER_SPEED: _prior(spindle.idle_power_per_speed, POWER_PER_SPEED),
+        Parameter.INERTIA: _prior(spindle.inertia or 0.0, INERTIA),
+        Parameter.CUTTING: Prior(value=1.0, scale=CUTTING),
+    }
+    drives = {axis.name: axis.drive for axis in machine.axes}
+    for name, parameters in zip(AXES, AXIS_PARAMETERS, strict=True):
+        values = _from_mains(drives.get(name))
+        for parameter, value, scale in zip(
+            parameters, values, (FORCE, FORCE / SLOW, MASS), strict=True
+        ):
+            known[parameter] = _prior(value, scale)
+    return known
+
+
+def calibrated(machine: Machine, calibration: Calibration) -> Machine:
+    """The machine with the parameters that were identified; the others stay.
+
+    Parameters
+    ----------
+    machine : Machine
+        Whose :func:`priors` the calibration began with.
+    calibration : Calibration
+    """
+    found = {each.parameter: each for each in calibration.estimates if each.is_identified}
+
+    def value(parameter: Parameter, before: float) -> float:
+        return found[parameter].value if parameter in found else before
+
+    spindle = machine.spindle
+    inertia = value(Parameter.INERTIA, spindle.inertia or 0.0)
+    return replace(
+        machine,
+        base_power=value(Parameter.BASE, machine.base_power),
+        coolant_power=value(Parameter.COOLANT, machine.coolant_power),
+        spindle=replace(
+            spindle,
+            idle_power=value(Parameter.IDLE, spindle.idle_power),
+            idle_power_per_speed=value(Parameter.IDLE_PER_SPEED, spindle.idle_power_per_speed),
+            inertia=inertia or None,
+        ),
+        axes=tuple(_axis(axis, found) for axis in machine.axes),
+    )
+
+
+def notes(calibration: Calibration) -> tuple[str, ...]:
+    """Lines that say what was found and what was not, for the head of a machine's file."""
+    return tuple(_note(each) for each in calibration.estimates)
+
+
+def _prior(value: float, scale: float) -> Prior:
+    """A value that may be off by itself or by the scale."""
+    return Prior(value=value, scale=max(value, scale))
+
+
+def _from_mains(drive: AxisDrive | None) -> tuple[float, float, float]:
+    """Friction N, viscous friction N·s/mm and mass kg of a drive, as seen from the mains."""
+    if drive is None:
+        return 0.0, 0.0, 0.0
+    per_mm = motor_speed(drive, 1.0)
+    friction = steady_torque(drive, feed_force=0.0) * per_mm / drive.efficiency
+    viscous = drive.viscous * per_mm**2 / drive.efficiency
+    mass = reflected_inertia(drive) * per_mm**2 * _MM2_PER_M2 / drive.efficiency
+    return friction, viscous, mass
+
+
+def _axis(axis: Axis, found: Mapping[Parameter, Estimate]) -> Axis:
+    """The axis with a drive that draws what was found; as it was if nothing was."""
+    parameters = AXIS_PARAMETERS[AXES.index(axis.name)] if axis.name in AXES else ()
+    if not any(parameter in found for parameter in parameters):
+        return axis
+    friction, viscous, mass = (
+        found[parameter].value if parameter in found else before
+        for parameter, before in zip(parameters, _from_mains(axis.drive), strict=True)
+    )
+    before = axis.drive or AxisDrive(lead=LEAD, table_mass=LEAST_MASS)
+    share = before.efficiency
+    drive = AxisDrive(
+        lead=before.lead,
+        table_mass=max(LEAST_MASS, mass * share),
+        screw_diameter=before.lead / pi,
+        bearing_friction=BEARING_FRICTION,
+        preload=friction * share / BEARING_FRICTION,
+        viscous=viscous * share * (before.lead / (2.0 * pi)) ** 2,
+        efficiency=share,
+        regeneration=before.regeneration,
+    )
+    return replace(axis, drive=drive)
+
+
+def _note(each: Estimate) -> str:
+    """One line on a parameter."""
+    span = f"{each.low:.4g} to {each.high:.4g} {each.unit}".strip()
+    if each.is_identified:
+        return f"{each.parameter}: {each.value:.4g} {each.unit}, 95 % interval {span}"
+    return f"{each.parameter}: kept at {each.value:.4g} {each.unit}; {each.reason}"

@@ -1,0 +1,349 @@
+"""A workingstep's tool path as the axes run it: legs from rest to rest, and how long they take.
+
+What a control would read is taken: moves that differ only in whether they touch material are
+one. A leg ends where the path waits: at a dwell, and where the spindle is told another speed,
+which the feed waits for. Where the spindle follows a constant surface speed, a move is split so
+that the speed changes by at most a few per cent from piece to piece. Tool changes and the way
+to the path are not part of it. Units mm, s, rev/s.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from math import inf, pi
+
+import numpy as np
+
+from simulator.motion.control import Control, control_model
+from simulator.motion.exact_stop import ExactStop
+from simulator.motion.motion import AxisLimits, ControlModel, axis_limits
+from simulator.motion.segments import Floats, Ints, Segments, chained
+from simulator.spec import Machine, Spindle
+from stepnc_model.entities.entity import Entity
+from stepnc_model.errors import PostError
+from stepnc_model.part21.values import Ref
+from stepnc_model.post.blocks import RateMode, Sense, SpindleOff, SpindleOn, SurfaceSpeed
+from stepnc_model.post.canonical import synchronised
+from stepnc_model.post.conditions import Conditions
+from stepnc_model.post.unsplit import unsplit
+from stepnc_model.toolpath.path import (
+    Dwell,
+    Feed,
+    Move,
+    Point,
+    SpindleCommand,
+    SpindleSpeed,
+    ToolPath,
+)
+
+PIECE = 0.02
+"""relative change of the radius within one piece at constant surface speed"""
+
+MOST_PIECES = 400
+
+Spin = SpindleOn | SurfaceSpeed | SpindleOff
+
+LookUp = Callable[[Feed], Conditions]
+"""what holds while a move runs"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Leg:
+    """Rows of a run from rest to rest, and the wait after them."""
+
+    first: int
+    last: int
+    """the row after the last one"""
+    wait: float
+    """s"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Run:
+    """A tool path as the axes run it."""
+
+    moves: tuple[Move, ...]
+    segments: Segments
+    """(N) lines and arcs; block: the row among the moves"""
+    spindle: Floats
+    """(N,) rev/s in the middle of each segment, without sign"""
+    is_clockwise: bool
+    """how the spindle turns at the first cut"""
+    legs: tuple[Leg, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Pace:
+    """How much faster than programmed a technology is run, as ratios."""
+
+    technology: Ref[Entity]
+    feed: float = 1.0
+    """of the feed per tooth, or per revolution"""
+    speed: float = 1.0
+    """of the spindle speed"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Row:
+    """One move with what holds."""
+
+    start: Point
+    move: Move
+    found: Conditions | None
+    """None: rapid"""
+
+
+def run_of(path: ToolPath, look_up: LookUp, spindle: Spindle) -> Run:
+    """What the axes run.
+
+    Parameters
+    ----------
+    path : ToolPath
+    look_up : callable
+        Conditions of a feed, as :func:`stepnc_model.post.conditions.conditions` finds them.
+    spindle : Spindle
+        For its ramps and its greatest speed.
+
+    Raises
+    ------
+    PostError
+        When a cut has no feed, or has one per revolution while the spindle stands.
+    SchemaError
+        When a technology or tool cannot be used.
+    """
+    return _Collector(path, look_up, spindle).run()
+
+
+def paced(look_up: LookUp, pace: Pace) -> LookUp:
+    """The same conditions with one technology run faster; feeds of a path's own stay."""
+
+    def faster(feed: Feed) -> Conditions:
+        found = look_up(feed)
+        if feed.technology != pace.technology:
+            return found
+        spindle, rate = found.spindle, found.rate
+        if isinstance(spindle, (SpindleOn, SurfaceSpeed)):
+            spindle = replace(spindle, speed=spindle.speed * pace.speed)
+        if rate is not None and feed.velocity is None:
+            is_own = feed.per_revolution is not None
+            factor = 1.0 if is_own else pace.feed
+            # A mill's feed per revolution was turned into one by time at the old speed.
+            if rate.mode is RateMode.PER_MINUTE:
+                factor *= pace.speed
+            rate = replace(rate, value=rate.value * factor)
+        return replace(found, spindle=spindle, rate=rate)
+
+    return faster
+
+
+def usual_motion(machine: Machine) -> tuple[ControlModel, AxisLimits]:
+    """Control model and axis limits by which times are told: FIR.
+
+    A machine of whose axes nothing is known runs at commanded speed without ramps, its rapids
+    as fast as the machine says, or in no time.
+    """
+    limits = axis_limits(machine)
+    if np.isfinite(limits.acceleration).any():
+        return control_model(Control.FIR, limits), limits
+    rapid = np.full(3, machine.rapid or _NO_TIME)
+    return ExactStop(), replace(limits, rapid=rapid)
+
+
+_NO_TIME = 1e9  # mm/s
+
+
+def duration(run: Run, control: ControlModel, limits: AxisLimits) -> float:
+    """Time from the start of a path to its end, waits included, s."""
+    moving = sum(
+        control.plan(run.segments[leg.first : leg.last], limits).duration
+        for leg in run.legs
+        if leg.last > leg.first
+    )
+    return moving + sum(leg.wait for leg in run.legs)
+
+
+class _Collector:
+    """Running state: where the tool is and what the spindle does."""
+
+    def __init__(self, path: ToolPath, look_up: LookUp, spindle: Spindle) -> None:
+        self.path = path
+        self.look_up = look_up
+        self.ramp = spindle.acceleration or inf
+        self.fastest = spindle.max_speed or inf
+        self.at = path.start
+        self.speed: float | None = None
+        """rev/s that the spindle was told, signed; None: not yet, or it follows the radius"""
+        self.asked: Spin | None = None
+        """what the technology asks for"""
+        self.rows: list[_Row] = []
+        self.moves: list[Move] = []
+        self.parts: list[tuple[Segments, Floats]] = []
+        self.legs: list[Leg] = []
+        self.is_clockwise: bool | None = None
+
+    def run(self) -> Run:
+        """The whole path."""
+        for step in unsplit(self.path.start, self.path.steps):
+            match step:
+                case Move():
+                    self._move(step)
+                case Dwell():
+                    self._close(self._seconds(step))
+                case SpindleSpeed(technology=technology):
+                    self._take(self.look_up(Feed(technology=technology)))
+                case SpindleCommand():
+                    self._turn(self.asked, step)
+        self._close(0.0)
+        segments = [part for part, _ in self.parts]
+        return Run(
+            moves=tuple(self.moves),
+            segments=replace(
+                chained(segments), block=np.concatenate([part.block for part in segments])
+            ),
+            spindle=np.concatenate([spindle for _, spindle in self.parts]),
+            is_clockwise=self.is_clockwise is not False,
+            legs=tuple(self.legs),
+        )
+
+    def _move(self, move: Move) -> None:
+        found = None
+        if move.feed is not None:
+            found = self.look_up(move.feed)
+            self._take(found)
+        self.rows.append(_Row(start=self.at, move=move, found=found))
+        self.at = move.end
+
+    def _take(self, found: Conditions) -> None:
+        """The spindle follows what a technology asks for."""
+        if found.spindle is not None and found.spindle != self.asked:
+            self._turn(found.spindle, SpindleCommand.START)
+
+    def _turn(self, asked: Spin | None, command: SpindleCommand) -> None:
+        """Another speed: the feed waits for it, unless it only follows the radius."""
+        wanted = None if isinstance(asked, SurfaceSpeed) else self._signed(asked, command)
+        wait = 0.0
+        if wanted is not None and self.speed is not None:
+            wait = abs(wanted - self.speed) / self.ramp
+        if wait > 0.0 or any(row.found is not None for row in self.rows):
+            self._close(wait)
+        self.asked, self.speed = asked, wanted
+
+    def _signed(self, asked: Spin | None, command: SpindleCommand) -> float:
+        """rev/s after a command, positive clockwise."""
+        if not isinstance(asked, SpindleOn):
+            return 0.0
+        sign = {SpindleCommand.START: 1.0, SpindleCommand.REVERSE: -1.0}.get(command, 0.0)
+        if asked.sense is not Sense.CLOCKWISE:
+            sign = -sign
+        return sign * min(asked.speed, self.fastest)
+
+    def _seconds(self, dwell: Dwell) -> float:
+        if dwell.seconds is not None:
+            return dwell.seconds
+        speed = float(self._speeds(np.array([self.at[0]]))[0])
+        if dwell.revolutions is None or speed <= 0.0:
+            raise PostError(
+                f"'{self.path.id}': a dwell in revolutions while the spindle stands"
+            )
+        return dwell.revolutions / speed
+
+    def _speeds(self, x: Floats) -> Floats:
+        """(N,) rev/s of the spindle where the radius is |x|."""
+        if not isinstance(self.asked, SurfaceSpeed):
+            return np.full(len(x), abs(self.speed or 0.0))
+        most = min(self.fastest, self.asked.limit or inf)
+        around = 2.0 * pi * np.abs(x)
+        at_most = np.full(len(x), most)
+        speeds: Floats = np.minimum(
+            np.divide(self.asked.speed, around, out=at_most, where=around > 0.0), most
+        )
+        return speeds
+
+    def _close(self, wait: float) -> None:
+        """One leg more, of what has come together."""
+        segments, spindle = self._timed()
+        if self.is_clockwise is None and any(row.found is not None for row in self.rows):
+            self.is_clockwise = self._turns_clockwise()
+        first = self.legs[-1].last if self.legs else 0
+        self.legs.append(Leg(first=first, last=first + len(segments), wait=wait))
+        self.parts.append((segments, spindle))
+        self.moves += [row.move for row in self.rows]
+        self.rows = []
+
+    def _turns_clockwise(self) -> bool:
+        if isinstance(self.asked, SurfaceSpeed):
+            return self.asked.sense is Sense.CLOCKWISE
+        return (self.speed or 0.0) >= 0.0
+
+    def _timed(self) -> tuple[Segments, Floats]:
+        """Segments of the waiting rows with their speeds, and speeds of the spindle."""
+        segments = _segments(self.rows, first=len(self.moves))
+        if isinstance(self.asked, SurfaceSpeed):
+            least = self.asked.speed / (2.0 * pi * min(self.fastest, self.asked.limit or inf))
+            segments = _split(segments, _pieces(segments, max(least, PIECE)))
+        rows = np.arange(len(segments))
+        spindle = self._speeds(segments.position(rows, 0.5 * segments.length)[:, 0])
+        speed = segments.speed.copy()
+        for row, of in enumerate(segments.block - len(self.moves)):
+            found = self.rows[of].found
+            if found is not None:
+                speed[row] = self._feed(self.rows[of], found, float(spindle[row]))
+        return replace(segments, speed=speed), spindle
+
+    def _feed(self, row: _Row, found: Conditions, spindle: float) -> float:
+        """Speed along the path, mm/s."""
+        if found.lead is not None:
+            speed = synchronised(row.start, row.move.end, found.lead) * spindle
+        elif found.rate is None:
+            speed = 0.0
+        elif found.rate.mode is RateMode.PER_REVOLUTION:
+            speed = found.rate.value * spindle
+        else:
+            speed = found.rate.value
+        if not 0.0 < speed < inf:
+            why = found.note or f"{speed:g} mm/s"
+            raise PostError(f"'{self.path.id}': a cut without feed: {why}")
+        return speed
+
+
+def _segments(rows: Sequence[_Row], *, first: int) -> Segments:
+    """Lines and arcs of moves, all of them as fast as the axes go."""
+    arcs = [row.move.arc for row in rows]
+    centre = [arc.centre if arc else row.start for row, arc in zip(rows, arcs, strict=True)]
+    normal = [arc.plane.axes[2] if arc else 2 for arc in arcs]
+    turn = [arc.turn if arc else 0.0 for arc in arcs]
+    return Segments(
+        start=np.array([row.start for row in rows], dtype=np.float64).reshape(-1, 3),
+        end=np.array([row.move.end for row in rows], dtype=np.float64).reshape(-1, 3),
+        speed=np.full(len(rows), inf),
+        is_rapid=np.array([row.found is None for row in rows], dtype=np.bool_),
+        centre=np.array(centre, dtype=np.float64).reshape(-1, 3),
+        turn=np.array(turn, dtype=np.float64),
+        normal=np.array(normal, dtype=np.int64),
+        block=first + np.arange(len(rows)),
+    )
+
+
+def _pieces(segments: Segments, least: float) -> Ints:
+    """(N,) into how many pieces each is split because the spindle follows the radius.
+
+    Within ``least``, mm, the spindle has its greatest speed.
+    """
+    one, other = np.abs(segments.start[:, 0]), np.abs(segments.end[:, 0])
+    low = np.maximum(np.minimum(one, other), least)
+    high = np.maximum(np.maximum(one, other), low)
+    count = np.clip(np.ceil(np.log(high / low) / PIECE), 1, MOST_PIECES)
+    pieces: Ints = np.where(segments.is_rapid, 1, count).astype(np.int64)
+    return pieces
+
+
+def _split(segments: Segments, pieces: Ints) -> Segments:
+    """Each segment in so many pieces of equal length."""
+    rows = np.repeat(np.arange(len(segments)), pieces)
+    number = np.arange(len(rows)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+    step = (segments.length / pieces)[rows]
+    is_last = number + 1 == pieces[rows]
+    end = segments.position(rows, (number + 1) * step)
+    end[is_last] = segments.end
+    start = np.concatenate((segments.start[:1], end[:-1]))
+    start[number == 0] = segments.start
+    return replace(segments[rows], start=start, end=end, turn=(segments.turn / pieces)[rows])
