@@ -11,7 +11,6 @@ its rate, so that flat arcs and lines lose no digits.
 """
 
 # numba carries no types.
-# mypy: disable-error-code="untyped-decorator"
 
 from math import cos, sin
 

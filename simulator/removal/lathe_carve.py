@@ -11,7 +11,6 @@ of the insert does not reach, and none is missed.
 
 A bore is the same in a mirror: heights are negative radii. Units mm and rad.
 """
-# mypy: disable-error-code="untyped-decorator, no-any-return"
 
 from math import acos, atan2, ceil, cos, floor, inf, pi, sin, sqrt
 from typing import NamedTuple

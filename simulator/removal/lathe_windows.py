@@ -5,7 +5,6 @@ along the axis comes in jumps. So a stretch spans at least :data:`WINDOW` cells,
 whole number of them, and what short segments remove is spread over their neighbours. Volumes
 are never lost by this: section times length adds up to what left the map. Units mm.
 """
-# mypy: disable-error-code="untyped-decorator, no-any-return"
 
 from dataclasses import dataclass
 
