@@ -21,6 +21,7 @@ from optimiser.limits import (
 from optimiser.loads import scaled
 from optimiser.modes import Free, Mode
 from optimiser.problem import Cost, Problem, Setting
+from optimiser.source import Source, along_paths
 from simulator.library import find_window
 from simulator.physics.spindle import curve_segments
 from simulator.physics.tool_life import tool_life
@@ -46,6 +47,8 @@ class Task:
     """accepted correction of k_c"""
     front: bool = False
     """whether the front between time, roughness and energy is wanted"""
+    source: Source = along_paths
+    """what makes the source of the cuts"""
 
 
 def problem_of(cut: Cut, at: Conditions, task: Task) -> Problem:

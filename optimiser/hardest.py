@@ -1,8 +1,9 @@
 """From what the tool meets along its path to the places where it cuts hardest.
 
 The section of the cut is the measure: it is right also where the arc of contact holds slivers
-of a floor or of another wall. With the depth it gives the width, and the arc of contact is that
-of the width, at the angles found where these agree with it, one-sided elsewhere. Every arc is
+of a floor, or the depth is that of a sliver on a wall. With the depth it gives the width, and
+the arc of contact is that of the width: at the angles found where these agree with it, else
+one-sided. Depth beyond that of the pass counts as far as the section fills it. Every arc is
 tried: loads are exact functions of depth and arc, and a place that is worst for the mean force
 need not be worst for the shank. Units mm, rad.
 """
@@ -77,11 +78,9 @@ def with_hardest(cut: Cut, met: Met, kienzle: Kienzle) -> Cut:
         return cut
     section, depth = met.stations.section[rows], met.stations.axial_depth[rows]
     if cut.kind is CutKind.MILLING:
-        return _milled(cut, _places(met.stations, rows, cut.diameter), kienzle)
+        return _milled(cut, _places(cut, met.stations, rows), kienzle)
     if cut.kind is CutKind.DRILLING:
-        bored = sqrt(max(0.0, cut.diameter**2 - 4.0 * float(section.max()) / pi))
-        is_known = abs(bored - cut.previous_diameter) <= 2.0 * met.cell
-        return cut if is_known else replace(cut, previous_diameter=bored)
+        return _drilled(cut, float(section.max()), met.cell)
     if cut.kind is CutKind.GROOVING:
         return replace(cut, radial_width=min(cut.radial_width, float(depth.max())))
     return replace(cut, depth_share=_share(cut, float(depth.max())))
@@ -129,8 +128,17 @@ def _share(cut: Cut, depth: float) -> float:
     return max(1.0, share) if cut.is_depth_free else share
 
 
+def _drilled(cut: Cut, section: float, cell: float) -> Cut:
+    """A hole with what was there before, unless the map cannot tell it from what is said."""
+    said, _ = greatest_section(cut)
+    if abs(section - said) <= 0.5 * pi * cut.diameter * cell:
+        return cut
+    bored = sqrt(max(0.0, cut.diameter**2 - 4.0 * section / pi))
+    return replace(cut, previous_diameter=bored)
+
+
 def _milled(cut: Cut, places: set[Place], kienzle: Kienzle) -> Cut:
-    """A milling cut with the place of the greatest mean force, and that of the greatest peak."""
+    """A milling cut with the places of its greatest mean force and of its greatest peak."""
     mean = max(places, key=lambda place: milling.mean_force(kienzle, _at(cut, place)))
     bending = None
     if cut.tool_kind is ToolKind.ENDMILL:
@@ -156,23 +164,26 @@ def _at(cut: Cut, place: Place) -> milling.MillingCut:
     )
 
 
-def _places(stations: Stations, rows: Bools, diameter: float) -> set[Place]:
+def _places(cut: Cut, stations: Stations, rows: Bools) -> set[Place]:
     """All engagements that occur, once each, with their depths in mm."""
-    columns = (stations.section, stations.axial_depth, stations.entry_angle, stations.exit_angle)
+    columns = (
+        stations.section, stations.axial_depth, stations.entry_angle, stations.exit_angle,
+    )  # fmt: skip
     met = {
         tuple(round(value, DIGITS) for value in row)
         for row in zip(*(column[rows].tolist() for column in columns), strict=True)
     }
-    return {_place(*row, diameter=diameter) for row in met if row[0] > 0.0}
+    return {_place(cut, *row) for row in met if row[0] > 0.0}
 
 
-def _place(
-    section: float, depth: float, entry: float, exit: float, *, diameter: float
-) -> Place:
+def _place(cut: Cut, section: float, depth: float, entry: float, exit: float) -> Place:
     """One engagement; a section wider than the tool is deeper than it was seen to be."""
+    diameter, nominal = cut.diameter, nominal_depth(cut)
+    by_angles = 0.5 * diameter * (cos(entry) - cos(exit))
+    if depth > nominal and by_angles > 0.0:
+        depth = min(depth, max(nominal, section / by_angles))
     depth = max(depth, section / diameter)
     width = section / depth
-    by_angles = 0.5 * diameter * (cos(entry) - cos(exit))
     if width >= diameter * (1.0 - NEARLY):
         engagement = full_immersion()
     elif abs(by_angles - width) <= AGREES * diameter and 0.0 <= entry < exit <= pi:

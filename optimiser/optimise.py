@@ -1,19 +1,21 @@
 """The one public verb: advice for every workingstep of a program.
 
+Lengths, engagement and times are those of the real tool paths in the stock that is left, run by
+the machine's axes, unless another source of cuts is asked for. The optimum is exact for the
+model with these numbers; it is solved again with those of the path at the advice itself, until
+the advice stays, so that its time is that of the path that the file will give.
+
 Same inputs, same result: corrections of the cutting force come as an argument.
 """
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import isfinite
 
 from optimiser import workingstep as exact
 from optimiser.advice import Advice, Load, Plan, State, Status
 from optimiser.cut import Cut, CutKind
 from optimiser.errors import Infeasible, OptimisationError
-from optimiser.estimate import milling_cut
-from optimiser.estimate_hole import hole_cut, is_hole_making
-from optimiser.estimate_turning import mean_diameter, turning_cut
 from optimiser.formulate import Task, problem_of, state_of
 from optimiser.front import front_of
 from optimiser.limit import Limit, LimitName
@@ -21,18 +23,21 @@ from optimiser.limits import Conditions, roughness_load
 from optimiser.modes import Mode
 from optimiser.problem import Problem
 from optimiser.requirement import required_roughness
+from optimiser.source import CutSource
 from simulator.edge_material import edge_material
 from simulator.errors import LibraryError
 from simulator.library import find_grade
 from simulator.spec import CuttingMaterial, Grade, Machine, MachineKind, MaterialMatch
-from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import Finding, Severity
 from stepnc_model.program import Program, Workingstep
-from stepnc_model.technology import Programmed, programmed
-from stepnc_model.tool import Tool, tool_of
+from stepnc_model.technology import programmed
+from stepnc_model.tool import tool_of
 
 DEFAULT_QUALITY = 3.2e-3
 """mm, Ra that QC keeps where neither user nor file asks for one: ISO 1302 general machining"""
+
+ROUNDS = 4
+"""greatest number of paths tried for the depth of one workingstep"""
 
 
 def optimise(
@@ -68,10 +73,16 @@ def optimise(
     """
     findings: list[Finding] = []
     advices = []
-    for step in program.workingsteps:
+    cuts = task.source(program, machine, material.material)
+    last = max((step.index for step in program.workingsteps if selected(step)), default=-1)
+    for step in program.workingsteps[: last + 1]:
         if not selected(step):
+            cuts.leave_out(step)
             continue
-        advice, found = advise(program, step, machine=machine, material=material, task=task)
+        with program.using(step.operation_ref):
+            advice, found = advise(
+                program, step, cuts, machine=machine, material=material, task=task
+            )
         advices.append(advice)
         progress()
         findings += found
@@ -88,25 +99,13 @@ def optimise(
 def advise(
     program: Program,
     step: Workingstep,
+    cuts: CutSource,
     *,
     machine: Machine,
     material: MaterialMatch,
     task: Task,
 ) -> tuple[Advice, list[Finding]]:
     """Advice for one workingstep, with what was assumed on the way."""
-    with program.using(step.operation_ref):
-        return _advise(program, step, machine=machine, material=material, task=task)
-
-
-def _advise(
-    program: Program,
-    step: Workingstep,
-    *,
-    machine: Machine,
-    material: MaterialMatch,
-    task: Task,
-) -> tuple[Advice, list[Finding]]:
-    """Advise one workingstep; whoever calls it names the place of what goes wrong."""
     tool = tool_of(program, step.tool_ref)
     conditions = programmed(program, step.technology_ref)
     untouched = Advice(
@@ -120,9 +119,10 @@ def _advise(
         after=None,
     )
     if conditions.is_synchronised or not _is_cut_with_feed(step):
+        cuts.leave_out(step)
         reason = "the feed is bound to the pitch of the thread"
         return replace(untouched, reason=reason), []
-    cut, findings = _cut(program, step, tool, conditions)
+    cut, findings = cuts.cut(step)
     at, found = _conditions(program, step, cut, machine=machine, material=material, task=task)
     findings += found
     problem = problem_of(cut, at, task)
@@ -130,13 +130,18 @@ def _advise(
     if not isfinite(before.time) or not isfinite(before.energy):
         raise ValueError(f"a time of {before.time:g} s: its numbers are beyond all machines")
     untouched = replace(untouched, cut=cut, before=before, after=before)
+    idle = _why_idle(cut)
+    if idle:
+        findings.append(program.finding(Severity.WARNING, idle, step.operation_ref))
+        state = _in_air(before) if cut.is_air else before
+        return replace(untouched, reason=idle, before=state, after=state), findings
     advice = untouched
     if conditions.inhibition:
         reason = f"{conditions.inhibition}: nobody may touch this feed"
         advice = replace(untouched, reason=reason)
     else:
         try:
-            advice = _solved(untouched, cut, problem, at, task)
+            advice = _solved(untouched, problem, at, task, cuts)
         except Infeasible as conflict:
             reason = str(conflict)
             advice = replace(untouched, status=Status.INFEASIBLE, reason=reason, after=None)
@@ -145,25 +150,45 @@ def _advise(
     return advice, findings + _passed_limits(program, advice)
 
 
-def _solved(
-    untouched: Advice, cut: Cut, problem: Problem, at: Conditions, task: Task
-) -> Advice:
-    """Advice from the exact solution, or the geometric program when tools wear out."""
-    prices: tuple[tuple[LimitName, float], ...] = ()
-    if task.tool_change > 0.0:
-        from optimiser import program as general  # noqa: PLC0415 (cvxpy takes a second)
+def _why_idle(cut: Cut) -> str:
+    """Why no feed is to be chosen; empty where one is."""
+    if cut.is_air:
+        return "the tool meets no material: the feed stays as programmed"
+    if cut.length <= 0.0:
+        return "no move runs at the programmed feed: it stays"
+    return ""
 
-        optimum = general.solve(problem, task.mode)
-        prices = tuple((name, price) for name, price in optimum.prices.items())
-        solution = exact.settled(problem, general.snapped(problem, optimum))
-    else:
-        solution = exact.solve(problem, task.mode)
-    after = state_of(cut, problem, at, solution.setting)
+
+def _in_air(state: State) -> State:
+    """A state that loads nothing."""
+    return replace(state, motor_power=0.0, cutting_force=0.0, roughness=None, loads=())
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Best:
+    """The best setting of a cut whose numbers are those of the path at that setting."""
+
+    cut: Cut
+    problem: Problem
+    solution: exact.Solution
+    prices: tuple[tuple[LimitName, float], ...]
+
+
+def _solved(
+    untouched: Advice, problem: Problem, at: Conditions, task: Task, cuts: CutSource
+) -> Advice:
+    """Advice from the best setting."""
+    if untouched.cut is None:
+        raise ValueError("no advice without a cut")
+    best = _settled(untouched.workingstep, untouched.cut, problem, at, task, cuts)
+    solution = best.solution
+    after = state_of(best.cut, best.problem, at, solution.setting)
     saving = 0.0
     if task.tool_change == 0.0:
-        saving = exact.saving_of_one_more(problem, task.mode, solution)
+        saving = exact.saving_of_one_more(best.problem, task.mode, solution)
     return replace(
         untouched,
+        cut=best.cut,
         status=Status.ADVISED,
         reason=reason_of(after, solution.holding),
         after=after,
@@ -171,9 +196,57 @@ def _solved(
         active_words=solution.holding.words,
         saving_of_one_more=saving,
         deepest_first_time=solution.deepest_first_time,
-        prices=prices,
-        front=front_of(problem, cut, at) if task.front else (),
+        prices=best.prices,
+        front=front_of(best.problem, best.cut, at) if task.front else (),
     )
+
+
+def _settled(
+    step: Workingstep,
+    cut: Cut,
+    problem: Problem,
+    at: Conditions,
+    task: Task,
+    cuts: CutSource,
+) -> _Best:
+    """Solve, take the numbers of the path at the solution, and again until it stays.
+
+    Feeds hang on the limits alone; what may change is the number of passes, when the path of
+    another depth is longer than passes that are alike. Of several answers that lead to each
+    other the best is taken.
+    """
+    cost = exact.cost_function
+    solution, prices = _optimum(problem, task)
+    tried: list[_Best] = []
+    while len(tried) < ROUNDS:
+        setting = solution.setting
+        cut = cuts.at(step, cut, setting)
+        problem = problem_of(cut, at, task)
+        tried.append(
+            _Best(
+                cut=cut,
+                problem=problem,
+                solution=exact.settled(problem, setting),
+                prices=prices,
+            )
+        )
+        solution, prices = _optimum(problem, task)
+        if solution.setting == setting:
+            return replace(tried[-1], solution=solution, prices=prices)
+    return min(tried, key=lambda best: cost(best.problem, task.mode)(best.solution.setting))
+
+
+def _optimum(
+    problem: Problem, task: Task
+) -> tuple[exact.Solution, tuple[tuple[LimitName, float], ...]]:
+    """The exact solution, or that of the geometric program with its prices: tools wear out."""
+    if task.tool_change == 0.0:
+        return exact.solve(problem, task.mode), ()
+    from optimiser import program as general  # noqa: PLC0415 (cvxpy takes a second)
+
+    optimum = general.solve(problem, task.mode)
+    prices = tuple((name, price) for name, price in optimum.prices.items())
+    return exact.settled(problem, general.snapped(problem, optimum)), prices
 
 
 def reason_of(state: State, limit: Limit) -> str:
@@ -188,35 +261,6 @@ def reason_of(state: State, limit: Limit) -> str:
 def _is_cut_with_feed(step: Workingstep) -> bool:
     """Whether the feed may be chosen at all: a thread's feed is its pitch."""
     return not any(word in step.operation_type for word in ("tapping", "thread"))
-
-
-def _cut(
-    program: Program, step: Workingstep, tool: Tool, conditions: Programmed
-) -> tuple[Cut, list[Finding]]:
-    """The cut of a workingstep, by the kind of its operation."""
-    findings: list[Finding] = []
-    operation = step.operation
-    is_turning = isinstance(operation, TurningMachiningOperation)
-    diameter = mean_diameter(program, step) if is_turning else tool.diameter
-    if diameter <= 0.0:
-        raise program.error("cuts at the axis: no cutting speed there", step.operation_ref)
-    speed = conditions.spindle_speed(diameter)
-    feed = conditions.feed_per_tooth(speed, tool.teeth)
-    if not is_turning and not tool.has_teeth:
-        text = "number_of_teeth is not given: one tooth assumed"
-        findings.append(program.finding(Severity.NOTE, text, step.tool_ref))
-    if conditions.has_both_speeds:
-        text = "cutspeed and spindle are both given (ISO 14649-11 WR1): the spindle counts"
-        findings.append(
-            program.finding(Severity.WARNING, text, step.technology_ref, "cutspeed")
-        )
-    make = milling_cut
-    if is_turning:
-        make = turning_cut
-    elif is_hole_making(operation, tool):
-        make = hole_cut
-    cut, found = make(program, step, tool, speed=speed, feed=feed)
-    return cut, findings + list(found)
 
 
 def _conditions(

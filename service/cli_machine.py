@@ -73,8 +73,11 @@ def _simulate(options: argparse.Namespace) -> int:
     from service.simulation import SimulationRequest, simulate
     from service.simulation_setup import CodeRequest
     from service.terminal import tell
+    from stepnc_model.errors import StepNcError
 
     code = None
+    if options.nc is None and (options.dialect or options.tools or options.stock):
+        raise StepNcError("--dialect, --tools and --stock are for NC code: name it with --nc")
     if options.nc is not None:
         code = CodeRequest(
             code=options.nc,
@@ -106,6 +109,13 @@ def _simulate(options: argparse.Namespace) -> int:
         ),
         tell=tell,
     )
+    if options.report is not None and simulation.trace is not None:
+        from service.files import write_atomically
+        from service.simulation_report import simulation_page
+
+        page = simulation_page(simulation, simulation.trace, material=simulation.material)
+        write_atomically(options.report, page.encode())
+        tell(f"report: {options.report}")
     if options.json:
         from service.simulation_wire import simulation_json
         from service.terminal import write_out

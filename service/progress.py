@@ -7,6 +7,16 @@ INTERVAL = 2.0
 """s between two messages, and before the first"""
 
 
+WIDTH = 20
+"""characters of a bar"""
+
+
+def bar(share: float) -> str:
+    """A bar for a share of 0 to 1, and the share in per cent."""
+    full = int(share * WIDTH)
+    return f"[{'#' * full}{'-' * (WIDTH - full)}] {share:4.0%}"
+
+
 class Ticker:
     """Says now and then how far something is; running state."""
 

@@ -33,6 +33,10 @@ li.error { color: #b00020; } li.warning { color: #8a5a00; } li.note { color: #44
 """
 
 
+PLOT = {"displaylogo": False, "showSendToCloud": False}
+"""no button that sends a plot to another host"""
+
+
 def report_page(plan: Plan) -> str:
     """The page as HTML.
 
@@ -49,8 +53,10 @@ def report_page(plan: Plan) -> str:
         front_figure(plan),
     ]  # fmt: skip
     plots = "\n".join(
-        figure.to_html(full_html=False, include_plotlyjs=False, config={"displaylogo": False})
-        for figure in figures
+        figure.to_html(
+            full_html=False, include_plotlyjs=False, config=PLOT, div_id=f"plot{row}"
+        )
+        for row, figure in enumerate(figures)
         if figure is not None
     )
     title = f"{plan.program}: {plan.mode.value} on {plan.machine.name}"

@@ -1,16 +1,24 @@
 """The verb ``simulate``: a program on the virtual machine."""
 
+from collections.abc import Callable
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
 
 from service.files import require_place
-from service.progress import Ticker
+from service.progress import Ticker, bar
 from service.reading import Tell, one_of, silent
-from service.simulation_setup import CodeRequest, Prepared, from_code, from_program
-from service.timeline_file import TimelineFile
-from simulator.errors import SimulationError
+from service.simulation_setup import (
+    CodeRequest,
+    Prepared,
+    from_code,
+    from_program,
+    numbers_in,
+)
+from service.simulation_trace import Trace, TraceKeeper
+from service.timeline_file import TimelineFile, require_suffix
+from simulator.errors import ProgramFault, SimulationError
 from simulator.machine.disturbance import Disturbance, Disturbed, NoiseKind
 from simulator.machine.episode import Episode
 from simulator.machine.interpreter import interpret
@@ -23,14 +31,17 @@ from simulator.machine.virtual import LoadedTool, Setup, VirtualMachine
 from simulator.motion.control import DEVIATION, Control, control_model
 from simulator.motion.fir import FixedTimeFilter
 from simulator.motion.motion import ControlModel, axis_limits
-from simulator.spec import Machine, MachineKind
-from stepnc_model.errors import Finding, StepNcError
+from simulator.spec import Machine, MachineKind, MaterialMatch
+from stepnc_model.errors import Finding, StepNcError, WriteError
 from stepnc_model.units import mm_from_um
 
 MOST_RATE = 10_000.0
 """1/s"""
 
 MOST_RUNOUT_UM = 500.0
+
+MOST_SECONDS = 1e7
+"""of machining, a hundred days: a slip of the feed or of a dwell rather than a program"""
 
 
 class ForceView(StrEnum):
@@ -78,11 +89,15 @@ class Simulation:
     program: str
     machine: Machine
     control: Control
+    material: MaterialMatch | None = None
+    """None: not known"""
     totals: tuple[tuple[str, Total], ...]
     """by workingstep in the order of their beginning; the first is what comes before them"""
     findings: tuple[Finding, ...]
     samples: int = 0
     """that were written"""
+    trace: Trace | None = None
+    """for a report, when one was asked for"""
 
     @property
     def whole(self) -> Total:
@@ -102,7 +117,7 @@ def simulate(request: SimulationRequest, *, tell: Tell = silent) -> Simulation:
         For everything that is wrong with file, names, numbers or output.
     """
     _require(request)
-    control = _control_kind(request)
+    kind, disturbance, teeth = _control_kind(request), _disturbance(request), _teeth(request)
     prepared = _prepared(request, tell)
     machine = prepared.machine
     _require_axes(machine)
@@ -112,58 +127,94 @@ def simulate(request: SimulationRequest, *, tell: Tell = silent) -> Simulation:
             control=_control(request, machine),
             tools=_tools(request, prepared),
             stock=prepared.stock,
-            teeth=_teeth(request),
+            teeth=teeth,
             zero=_zero(request.zero, prepared),
         )
     )
-    episodes = virtual.run(interpret(prepared.blocks, machine))
-    run = _Run(machine, _disturbance(request), rate=request.rate)
-    ticker = Ticker(tell)
-    with _timeline(request, virtual) as file:
-        for episode in episodes:
-            run.add(episode, file)
-            ticker(lambda: f"{prepared.done():4.0%}  {virtual.now:.0f} s of machining")
+    run = _Run(virtual, disturbance, rate=request.rate)
+    if request.report is not None:
+        run.trace = TraceKeeper()
     if request.output is not None:
-        tell(f"written: {request.output} ({run.samples} samples)")
+        run.file = TimelineFile(request.output, virtual.workingsteps)
+    ticker = Ticker(tell)
+    try:
+        with run.file or nullcontext():
+            for episode in virtual.run(interpret(prepared.blocks, machine)):
+                run.add(episode, ticked=lambda: ticker(lambda: _progress(prepared, virtual)))
+            _require_time(virtual)
+    except SimulationError as error:
+        raise SimulationError(f"{_place(prepared, virtual)}: {error}") from error
+    finally:
+        if run.file is not None and run.file.place is not None:
+            tell(f"written: {run.file.place} ({run.file.rows} samples)")
     return Simulation(
         program=prepared.name,
         machine=machine,
-        control=control,
+        control=kind,
+        material=prepared.material,
         totals=tuple(zip(("", *virtual.workingsteps), run.totals, strict=True)),
         findings=(*prepared.findings, *virtual.findings),
-        samples=run.samples,
+        samples=0 if run.file is None else run.file.rows,
+        trace=None if run.trace is None else run.trace.trace(),
     )
 
 
 class _Run:
     """What is gathered on the way. Running state."""
 
-    def __init__(self, machine: Machine, disturbance: Disturbance, *, rate: float) -> None:
+    def __init__(
+        self, virtual: VirtualMachine, disturbance: Disturbance, *, rate: float
+    ) -> None:
         self.totals = [Total()]
-        self.samples = 0
-        self._machine = machine
-        self._sampler = Sampler(machine, rate=rate)
+        self.file: TimelineFile | None = None
+        self.trace: TraceKeeper | None = None
+        self._machine = virtual.machine
+        self._sampler = Sampler(virtual.machine, rate=rate)
         self._disturbed = Disturbed(
-            disturbance=disturbance, rate=rate, efficiency=machine.spindle.efficiency
+            disturbance=disturbance, rate=rate, efficiency=virtual.machine.spindle.efficiency
         )
 
-    def add(self, episode: Episode, file: TimelineFile | None) -> None:
+    def add(self, episode: Episode, *, ticked: Callable[[], None]) -> None:
         """One more episode."""
+        if episode.end > MOST_SECONDS:
+            text = f"{episode.end:.3g} s of machining: {MOST_SECONDS:g} s at most"
+            raise ProgramFault(text, _line(episode))
         at = episode.state.workingstep
         self.totals += [Total() for _ in range(len(self.totals), at + 1)]
         self.totals[at] = added(self.totals[at], episode, self._machine)
-        if file is not None:
-            for samples in self._sampler.samples(episode):
-                file.add(self._disturbed.shown(samples))
-                self.samples += len(samples)
+        ticked()
+        takers = [taker for taker in (self.file, self.trace) if taker is not None]
+        if not takers:
+            return
+        for samples in self._sampler.samples(episode):
+            shown = self._disturbed.shown(samples)
+            for taker in takers:
+                taker.add(shown)
+            ticked()
 
 
-def _timeline(
-    request: SimulationRequest, virtual: VirtualMachine
-) -> TimelineFile | nullcontext[None]:
-    if request.output is None:
-        return nullcontext()
-    return TimelineFile(request.output, virtual.workingsteps)
+def _line(episode: Episode) -> int:
+    """The line that runs when an episode ends."""
+    if episode.course is None:
+        return episode.state.line
+    return int(episode.course.segments.block[-1])
+
+
+def _require_time(virtual: VirtualMachine) -> None:
+    """A file that is no program at all says nothing and takes no time."""
+    if virtual.now == 0.0:
+        raise SimulationError("there is nothing in it that takes time")
+
+
+def _progress(prepared: Prepared, virtual: VirtualMachine) -> str:
+    at = virtual.workingsteps[-1:]
+    return ", ".join((f"{bar(prepared.done())}  {virtual.now:.0f} s of machining", *at))
+
+
+def _place(prepared: Prepared, virtual: VirtualMachine) -> str:
+    """Where a fault lies: the lines of NC code are known to the user, those of blocks not."""
+    at = virtual.workingsteps[-1:]
+    return ": ".join((prepared.name, *(f"workingstep '{name}'" for name in at)))
 
 
 def _prepared(request: SimulationRequest, tell: Tell) -> Prepared:
@@ -199,12 +250,21 @@ def _require(request: SimulationRequest) -> None:
     """Refuse what cannot be, before anything is read."""
     if not 1.0 <= request.rate <= MOST_RATE:
         raise StepNcError(f"rate {request.rate:g} Hz: it must be 1 to {MOST_RATE:g} Hz")
-    inputs = [request.file, request.code.code if request.code else None]
+    code = request.code
+    if code is not None and request.file is not None and (code.tools or code.stock):
+        raise StepNcError("tools and stock are those of the program: name no others")
+    if request.output is not None:
+        require_suffix(request.output)
+    inputs = [request.file, *((code.code, code.tools) if code else ())]
     outputs = [request.output, request.report]
     for row, place in enumerate(outputs):
+        if place is None:
+            continue
         for other in (*inputs, *outputs[:row]):
-            if place is not None and other is not None:
+            if other is not None:
                 require_place(place, apart_from=other)
+        if place.exists() and not place.is_file():
+            raise WriteError("is no regular file", path=str(place))
 
 
 def _control_kind(request: SimulationRequest) -> Control:
@@ -214,9 +274,11 @@ def _control_kind(request: SimulationRequest) -> Control:
 def _control(request: SimulationRequest, machine: Machine) -> ControlModel:
     """How the control runs the path."""
     kind = _control_kind(request)
+    if request.filter_s and kind is not Control.FIR:
+        raise StepNcError(f"control {kind.value}: filter times are for the control fir")
     try:
-        if kind is Control.FIR and request.filter_s:
-            first, second = (float(word) for word in request.filter_s.split(","))
+        if request.filter_s:
+            first, second = numbers_in(request.filter_s, "filter times", counts=(2,))
             return FixedTimeFilter(first=first, second=second)
         return control_model(kind, axis_limits(machine), deviation=request.deviation)
     except ValueError as error:
@@ -236,6 +298,8 @@ def _teeth(request: SimulationRequest) -> Teeth | None:
         bound = f"0 to {MOST_RUNOUT_UM:g} µm"
         raise StepNcError(f"runout {request.runout_um:g} µm: it must be {bound}")
     if view is ForceView.MEAN:
+        if request.runout_um:
+            raise StepNcError("runout shows in forces tooth by tooth: --force tooth")
         return None
     return Teeth(eccentricity=mm_from_um(request.runout_um))
 
@@ -257,8 +321,5 @@ def _zero(text: str, prepared: Prepared) -> Zero | None:
     """Place of the program's zero: as the user says, or by the stock."""
     if not text:
         return None if prepared.raw is None else zero_of(prepared.machine, prepared.raw)
-    try:
-        x, y, z = (float(word) for word in text.split(","))
-    except ValueError:
-        raise StepNcError(f"--zero {text}: three numbers in mm with commas") from None
+    x, y, z = numbers_in(text, "zero", counts=(3,))
     return x, y, z

@@ -46,11 +46,6 @@ def components(energy: Energy) -> tuple[tuple[str, float], ...]:
     )
 
 
-def air_time(total: Total) -> float:
-    """Feed without chips, and waiting, s."""
-    return max(total.duration - total.cutting_time - total.rapid_time, 0.0)
-
-
 def ratio(part: float, whole: float) -> float:
     """Part over whole; 0 of nothing."""
     return part / whole if whole else 0.0

@@ -18,10 +18,19 @@ from simulator.motion.segments import Floats
 GREY, SKY, ORANGE, GREEN, PINK, BLUE, RED = (
     "#8c8c8c", "#56B4E9", "#E69F00", "#009E73", "#CC79A7", "#0072B2", "#D55E00",
 )  # fmt: skip
+DIM = "#757575"
+"""of a line: as far from white as from black"""
+CLEAR = "rgba(0,0,0,0)"
 FAINT = "rgba(128,128,128,0.25)"
 BAND = "rgba(128,128,128,0.10)"
 STRIPES = ("rgba(86,180,233,0.45)", "rgba(230,159,0,0.45)")
 """of workingsteps, in turns"""
+
+AXES = (
+    ("X", ORANGE, Signal.X_POWER),
+    ("Y", GREEN, Signal.Y_POWER),
+    ("Z", PINK, Signal.Z_POWER),
+)
 
 MOST_BANDS = 200
 """workingsteps whose bands are drawn behind all panels"""
@@ -74,50 +83,49 @@ class _Panels:
         values = np.column_stack((curve.low, curve.high)).ravel()
         is_point = np.repeat(trace.begin == trace.end, 2)
         is_point[::2] = False
-        self.add(
-            _line(
-                name,
-                colour,
-                times[~is_point] * self.second,
-                values[~is_point] * scale,
-            )
-        )
+        at, shown = times[~is_point] * self.second, values[~is_point] * scale
+        self.add(_line(name, colour, at, shown))
 
     def done(self, found: Sequence[Row]) -> go.Figure:
         """Everything in its place."""
-        figure, count = self.figure, len(self._heights)
-        inside = sum(self._heights) + GAP * (count - 1)
-        top = 0.0
-        for number, (height, title) in enumerate(zip(self._heights, self._titles, strict=True)):
-            above, below = 1.0 - top / inside, 1.0 - (top + height) / inside
-            axis = figure.layout[_name("yaxis", number + 1)]
-            axis.update(domain=[max(below, 0.0), above], anchor=_name("x", number + 1))
-            figure.add_annotation(
-                text=title, x=0.0, y=above, xref="paper", yref="paper", xanchor="left",
-                yanchor="bottom", showarrow=False, align="left", xshift=-MARGIN,
-            )  # fmt: skip
-            top += height + GAP
-        last = _name("x", count)
+        figure, last = self.figure, _name("x", len(self._heights))
+        inside = self._stack()
         figure.update_xaxes(
             matches=last, showticklabels=False, showspikes=True, spikemode="across",
             spikethickness=1, spikecolor=GREY, spikedash="dot", gridcolor=FAINT,
             zeroline=False, unifiedhovertitle_text=f"%{{x:.5~r}} {self.unit}",
         )  # fmt: skip
+        bottom = figure.layout[_name("xaxis", len(self._heights))]
+        bottom.update(showticklabels=True, matches=None, range=[0.0, self.end])
+        bottom.title = f"time, {self.unit}"
         figure.update_yaxes(gridcolor=FAINT, zerolinecolor=GREY, nticks=5)
-        bottom = figure.layout[_name("xaxis", count)]
-        bottom.update(
-            showticklabels=True, title=f"time, {self.unit}", matches=None, range=[0.0, self.end]
-        )  # fmt: skip
-        figure.update_layout(
+        return figure.update_layout(
             height=inside + TOP + BOTTOM,
             margin={"l": MARGIN, "r": 12, "t": TOP, "b": BOTTOM},
-            modebar={"bgcolor": "rgba(0,0,0,0)", "color": GREY, "activecolor": BLUE},
+            modebar={"bgcolor": CLEAR, "color": GREY, "activecolor": BLUE},
             showlegend=False, hovermode="x unified", hoverlabel_bgcolor="#ffffff",
-            paper_bgcolor="rgba(0,0,0,0)", plot_bgcolor="rgba(0,0,0,0)",
-            uniformtext={"mode": "hide", "minsize": 9}, shapes=self._bands(found, last),
+            paper_bgcolor=CLEAR, plot_bgcolor=CLEAR, shapes=self._bands(found, last),
+            uniformtext={"mode": "hide", "minsize": 9},
             font={"family": "system-ui, sans-serif", "size": 12},
         )  # fmt: skip
-        return figure
+
+    def _stack(self) -> int:
+        """Put the panels below each other; the height of all in pixels."""
+        inside = sum(self._heights) + GAP * (len(self._heights) - 1)
+        top = 0
+        for number, (height, title) in enumerate(
+            zip(self._heights, self._titles, strict=True), 1
+        ):
+            above, below = 1.0 - top / inside, max(1.0 - (top + height) / inside, 0.0)
+            self.figure.layout[_name("yaxis", number)].update(
+                domain=[below, above], anchor=_name("x", number)
+            )
+            self.figure.add_annotation(
+                text=title, x=0.0, y=above, xref="paper", yref="paper", xanchor="left",
+                yanchor="bottom", showarrow=False, align="left", xshift=-MARGIN,
+            )  # fmt: skip
+            top += height + GAP
+        return inside
 
     def _bands(self, found: Sequence[Row], axis: str) -> list[dict[str, object]]:
         """Every second workingstep, behind all panels."""
@@ -187,37 +195,30 @@ def _power(panels: _Panels, trace: Trace) -> None:
     parts = [
         ("base", GREY, Signal.BASE_POWER),
         ("coolant", SKY, Signal.COOLANT_POWER),
-        *_AXES,
+        *AXES,
         ("spindle", BLUE, Signal.SPINDLE_POWER),
     ]
     shown = [part for part in parts if _is_used(trace, part[2])]
     total = trace.curve(Signal.TOTAL_POWER)
     loaded = trace.curve(Signal.OVERLOAD).high > 0.0
     keys = [_key(name, colour) for name, colour, _ in shown]
-    keys.append(_key("peak", PINK))
+    keys.append(_key("peak", DIM, "━"))
     if loaded.any():
-        keys.append(_key("limit", RED))
+        keys.append(_key("limit", RED, "●"))
     panels.begin(f"<b>Power</b>, kW<br>{' '.join(keys)}", height=230)
     middle = 0.5 * (trace.begin + trace.end) * panels.second
     for name, colour, signal in shown:
         line = _line(name, colour, middle, trace.curve(signal).mean * 1e-3)
         panels.add(line.update(stackgroup="power", line_width=0, fillcolor=colour))
-    panels.add(_line("peak of the total", PINK, middle, total.high * 1e-3))
+    panels.add(_line("peak of the total", DIM, middle, total.high * 1e-3))
     if loaded.any():
         marks = _line("above a limit", RED, middle[loaded], total.high[loaded] * 1e-3)
         panels.add(marks.update(mode="markers", marker={"color": RED, "size": 5}))
 
 
-_AXES = [
-    ("X", ORANGE, Signal.X_POWER),
-    ("Y", GREEN, Signal.Y_POWER),
-    ("Z", RED, Signal.Z_POWER),
-]
-
-
 def _axes(panels: _Panels, trace: Trace) -> None:
     """The axes by themselves: they vanish beside the spindle."""
-    shown = [part for part in _AXES if _is_used(trace, part[2])]
+    shown = [part for part in AXES if _is_used(trace, part[2])]
     keys = " ".join(_key(name, colour) for name, colour, _ in shown)
     panels.begin(f"<b>Axis power</b>, W<br>{keys}", height=130)
     for name, colour, signal in shown:
@@ -240,9 +241,9 @@ def _is_used(trace: Trace, signal: Signal) -> bool:
     return bool((curve.high > 0.0).any() or (curve.low < 0.0).any())
 
 
-def _key(name: str, colour: str) -> str:
+def _key(name: str, colour: str, mark: str = "■") -> str:
     """A name with its colour, for a title."""
-    return f'<span style="color:{colour}">■</span> {name}'
+    return f'<span style="color:{colour}">{mark}</span> {name}'
 
 
 def _line(name: str, colour: str, times: Floats, values: Floats) -> go.Scatter:

@@ -7,7 +7,7 @@ from plotly.offline import get_plotlyjs
 
 from service.carbon import WORLD, CarbonFactor, kilowatt_hours
 from service.simulation import Simulation
-from service.simulation_facts import Row, air_time, components, exceeded, ratio, rows
+from service.simulation_facts import Row, components, exceeded, ratio, rows
 from service.simulation_figures import run_figure
 from service.simulation_trace import Trace
 from simulator.machine.totals import Peak, Total
@@ -146,7 +146,7 @@ def _resolution(trace: Trace) -> str:
 
 
 def _times(found: Sequence[Row], whole: Total) -> str:
-    heads = ("workingstep", "begins", "whole", "cutting", "rapid", "air at feed, waiting")
+    heads = ("workingstep", "begins", "whole", "cutting", "air at feed", "rapid", "waiting")
     body = [(row.name, f"{row.begin:.1f}", *_split(row.total)) for row in found]
     shares = [_share(part, whole.duration) for part in _seconds(whole)]
     return _table(heads, body, (("total", "", *_split(whole)), ("share", "", *shares)))
@@ -157,7 +157,10 @@ def _split(total: Total) -> tuple[str, ...]:
 
 
 def _seconds(total: Total) -> tuple[float, ...]:
-    return total.duration, total.cutting_time, total.rapid_time, air_time(total)
+    return (
+        total.duration, total.cutting_time, total.air_time, total.rapid_time,
+        total.waiting_time,
+    )  # fmt: skip
 
 
 def _energies(found: Sequence[Row], whole: Total, carbon: CarbonFactor) -> str:

@@ -1,8 +1,10 @@
 """What ``simulate`` needs to run: blocks, tools and stock, from a program or from NC code."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from math import isfinite
 from pathlib import Path
+from typing import Generic, TypeVar
 
 from service.files import open_lines
 from service.reading import Tell, one_of, read_program
@@ -24,6 +26,12 @@ from stepnc_model.post.controls import SUFFIXES, Control, read_blocks
 from stepnc_model.post.neutral import blocks_of, tool_numbers
 from stepnc_model.program import Program
 from stepnc_model.toolpath.job import Stock, stock_of
+from stepnc_model.toolpath.path import FARTHEST
+
+T = TypeVar("T")
+
+LEAST_SIZE = 0.01
+"""mm, of a stock along an axis"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,24 +62,24 @@ class CodeRequest:
     stock: str = ""
 
 
-class Lines:
-    """Lines of a file, and how many of them were read. Running state."""
+class Counted(Generic[T]):
+    """What is handed on one by one, and how many that were. Running state."""
 
-    def __init__(self, path: Path) -> None:
-        self.read = 0
-        self._bytes = 0
-        self._size = max(1, path.stat().st_size) if path.exists() else 1
-        self._lines = open_lines(path)
+    def __init__(self, items: Iterable[T], size: Callable[[T], int] = lambda _: 1) -> None:
+        self.count = 0
+        self.size = 0
+        self._items = items
+        self._size = size
 
-    def __iter__(self) -> Iterator[str]:
-        for line in self._lines:
-            self.read += 1
-            self._bytes += len(line)
-            yield line
+    def __iter__(self) -> Iterator[T]:
+        for item in self._items:
+            self.count += 1
+            self.size += self._size(item)
+            yield item
 
-    def done(self) -> float:
-        """Share of the file that has been read."""
-        return min(1.0, self._bytes / self._size)
+    def share(self, whole: int) -> float:
+        """Share of a whole that has been handed on."""
+        return min(1.0, self.size / max(1, whole))
 
 
 def from_program(
@@ -90,25 +98,18 @@ def from_program(
     paths = with_feeds(paths_of(program, tell=tell), keep_going=False)
     chosen = machine_for(machine, program)
     numbers = tool_numbers(paths.paths)
-    order = {path.id: row for row, path in enumerate(paths.paths)}
-    at = 0
-
-    def numbered() -> Iterator[Numbered]:
-        nonlocal at
-        for line, block in enumerate(blocks_of(program, paths.items, name=file.stem), 1):
-            if isinstance(block, post.Comment) and block.workingstep:
-                at = order[block.workingstep]
-            yield line, block
-
+    steps = sum(len(path.steps) for path in paths.paths)
+    blocks = Counted(blocks_of(program, paths.items, name=file.stem))
     return Prepared(
         name=program.name,
         machine=chosen,
         material=match,
-        blocks=numbered(),
+        blocks=((blocks.count, block) for block in blocks),
         tools=_tools(program, numbers, match),
         stock=_Clamped(program, chosen).stock,
         raw=paths.stock,
-        done=lambda: at / len(order),
+        # Most steps become one block, and few blocks are more than a step.
+        done=lambda: blocks.share(steps),
         findings=paths.findings,
     )
 
@@ -136,7 +137,8 @@ def from_code(
         read = read_tool_table(request.tools)
         tools = {tool.number: table_tool(tool, match.material) for tool in read}
     raw = _stock(request.stock) if request.stock else None
-    lines = Lines(request.code)
+    lines = Counted(open_lines(request.code), len)
+    size = request.code.stat().st_size
     stock = None if raw is None or tools is None else stock_map(chosen, raw)
     findings: tuple[Finding, ...] = ()
     if stock is None:
@@ -150,7 +152,7 @@ def from_code(
         tools=tools,
         stock=lambda _: stock,
         raw=raw,
-        done=lines.done,
+        done=lambda: lines.share(size),
         findings=findings,
     )
 
@@ -165,7 +167,8 @@ def _code_of_program(
     used = dict.fromkeys(step.tool_ref for step in program.workingsteps)
     numbers = {ref: number for number, ref in enumerate(used, 1)}
     ids = {_plain(step.id): step.id for step in program.workingsteps}
-    lines = Lines(request.code)
+    lines = Counted(open_lines(request.code), len)
+    size = request.code.stat().st_size
     setup = next((step.setup for step in program.workingsteps), None)
     return Prepared(
         name=request.code.name,
@@ -175,7 +178,7 @@ def _code_of_program(
         tools=_tools(program, numbers, match),
         stock=_Clamped(program, machine).stock,
         raw=stock_of(program, setup),
-        done=lines.done,
+        done=lambda: lines.share(size),
     )
 
 
@@ -214,7 +217,7 @@ def _tools(
 
 
 def _read(
-    request: CodeRequest, lines: Lines, machine: Machine, ids: dict[str, str]
+    request: CodeRequest, lines: Counted[str], machine: Machine, ids: dict[str, str]
 ) -> Iterator[Numbered]:
     """Blocks of NC code; remarks that name a workingstep begin it."""
     kind = post.Machine.LATHE if machine.kind is MachineKind.LATHE else post.Machine.MILL
@@ -223,9 +226,9 @@ def _read(
         for block in read_blocks(lines, dialect, machine=kind):
             if isinstance(block, post.Comment) and _plain(block.text) in ids:
                 name = ids[_plain(block.text)]
-                yield lines.read, post.Comment(text=block.text, workingstep=name)
+                yield lines.count, post.Comment(text=block.text, workingstep=name)
             else:
-                yield lines.read, block
+                yield lines.count, block
     except PostError as error:
         raise StepNcError(f"{request.code.name}: {error}") from error
 
@@ -247,18 +250,32 @@ def _plain(text: str) -> str:
 
 def _stock(text: str) -> Stock:
     """Six corners of a block, or diameter and two ends of a bar, in mm."""
-    try:
-        numbers = [float(word) for word in text.split(",")]
-    except ValueError:
-        raise StepNcError(f"--stock {text}: numbers in mm with commas between them") from None
-    if len(numbers) == 6:
-        low, high = numbers[:3], numbers[3:]
-        radius = None
-    elif len(numbers) == 3:
+    numbers = numbers_in(text, "stock", counts=(3, 6))
+    radius = None
+    if len(numbers) == 3:
         radius = 0.5 * numbers[0]
-        low, high = [-radius, -radius, numbers[1]], [radius, radius, numbers[2]]
-    else:
-        raise StepNcError(f"--stock {text}: 6 corners of a block, or diameter,z0,z1 of a bar")
-    if not all(a < b and abs(a) < 1e5 and abs(b) < 1e5 for a, b in zip(low, high, strict=True)):
-        raise StepNcError(f"--stock {text}: each low corner must lie below the high one, in mm")
+        numbers = (-radius, -radius, numbers[1], radius, radius, numbers[2])
+    low, high = numbers[:3], numbers[3:]
+    for axis, a, b in zip("xyz", low, high, strict=True):
+        if not b - a >= LEAST_SIZE or max(abs(a), abs(b)) > FARTHEST:
+            bound = f"{LEAST_SIZE:g} mm between them, within {FARTHEST:g} mm"
+            raise StepNcError(f"stock {text}: {axis} from {a:g} to {b:g} mm: at least {bound}")
     return Stock(low=(low[0], low[1], low[2]), high=(high[0], high[1], high[2]), radius=radius)
+
+
+def numbers_in(text: str, what: str, *, counts: tuple[int, ...]) -> tuple[float, ...]:
+    """Finite numbers with commas between them.
+
+    Raises
+    ------
+    StepNcError
+        When they are no numbers, or not as many as they may be.
+    """
+    try:
+        numbers = tuple(float(word) for word in text.split(","))
+    except ValueError:
+        numbers = ()
+    if len(numbers) not in counts or not all(map(isfinite, numbers)):
+        wanted = " or ".join(map(str, counts))
+        raise StepNcError(f"{what} '{text}': {wanted} numbers with commas between them")
+    return numbers

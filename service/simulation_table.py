@@ -2,7 +2,7 @@
 
 from service.carbon import WORLD, CarbonFactor, kilowatt_hours
 from service.simulation import Simulation
-from service.simulation_facts import air_time, components, exceeded, ratio, rows
+from service.simulation_facts import components, exceeded, ratio, rows
 from service.tables import print_findings, print_line, print_table
 from simulator.machine.totals import Total
 from stepnc_model.units import kw_from_watts
@@ -19,8 +19,8 @@ def print_simulation(simulation: Simulation, *, carbon: CarbonFactor = WORLD) ->
         f"control {simulation.control.value}"
     )
     header = (
-        "workingstep", "time s", "cutting", "air, waiting", "rapid", "energy kJ", "spindle kW",
-        "force N", "removed cm³",
+        "workingstep", "time s", "cutting", "air", "rapid", "waiting", "energy kJ",
+        "spindle kW", "force N", "removed cm³",
     )  # fmt: skip
     found = rows(simulation)
     body = [(row.name, *_numbers(row.total)) for row in found]
@@ -36,8 +36,9 @@ def _numbers(total: Total) -> tuple[str, ...]:
     return (
         f"{total.duration:.1f}",
         f"{total.cutting_time:.1f}",
-        f"{air_time(total):.1f}",
+        f"{total.air_time:.1f}",
         f"{total.rapid_time:.1f}",
+        f"{total.waiting_time:.1f}",
         f"{total.energy.total * 1e-3:.1f}",
         f"{kw_from_watts(total.power.value):.2f}",
         f"{total.force.value:.0f}",

@@ -39,7 +39,9 @@ def _total(total: Total) -> dict[str, Any]:
     return {
         "time_s": total.duration,
         "cutting_time_s": total.cutting_time,
+        "air_time_s": total.air_time,
         "rapid_time_s": total.rapid_time,
+        "waiting_time_s": total.waiting_time,
         "overload_time_s": total.overload_time,
         "energy_j": {**asdict(total.energy), "total": total.energy.total},
         "cutting_energy_j": total.cutting_energy,

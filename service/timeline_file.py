@@ -7,6 +7,7 @@ The file gets its name when it is whole. A run that is broken off leaves what it
 import os
 import tempfile
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 
@@ -21,8 +22,14 @@ from stepnc_model.errors import WriteError
 ROWS = 32_768
 """in one group of the file"""
 
+MOST_PARTS = 512
+"""that wait in memory, each with an overhead of its own"""
+
 EXACT = frozenset({"time", "position"})
 """columns that keep 64 bits; sensors do not have the digits of the others"""
+
+WHOLE = frozenset({"line", "tool"})
+"""columns of numbers that count"""
 
 SUFFIXES = (".parquet", ".csv")
 
@@ -44,20 +51,20 @@ class TimelineFile:
     """
 
     def __init__(self, path: Path, workingsteps: Sequence[str]) -> None:
-        if path.suffix.lower() not in SUFFIXES:
-            raise WriteError(f"a run is written as {' or '.join(SUFFIXES)}", path=str(path))
         self.path = path
         self.rows = 0
+        self.place: Path | None = None
+        """where the file lies once it is closed"""
         self._workingsteps = workingsteps
         self._waiting: list[Samples] = []
+        self._count = 0
+        self._is_text = require_suffix(path) == ".csv"
         try:
-            descriptor, self._name = tempfile.mkstemp(
-                prefix=f".{path.name}.", suffix=path.suffix.lower(), dir=path.parent
-            )
-            os.close(descriptor)
+            descriptor, self._name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+            self._file = os.fdopen(descriptor, "wb")
             self._writer = self._opened()
         except OSError as error:
-            raise WriteError(error.strerror or str(error), path=str(path)) from error
+            raise self._refused(error) from error
 
     @property
     def partial(self) -> Path:
@@ -76,47 +83,103 @@ class TimelineFile:
         try:
             self._flush()
             self._writer.close()
-            place = self.path if kind is None else self.partial
+            self._file.flush()
+            os.fsync(self._file.fileno())
             if kind is None or self.rows:
-                os.chmod(self._name, 0o666 & ~_umask())
+                place = self.path if kind is None else self.partial
+                os.chmod(self._name, _mode(place))
                 os.replace(self._name, place)
+                self.place = place
         except OSError as failure:
-            reason = failure.strerror or str(failure)
-            raise WriteError(reason, path=str(self.path)) from failure
+            raise self._refused(failure) from failure
         finally:
+            # What the disk has refused once it refuses again.
+            with suppress(OSError):
+                self._file.close()
             Path(self._name).unlink(missing_ok=True)
 
     def add(self, samples: Samples) -> None:
         """More samples, later than those before."""
         self._waiting.append(samples)
-        if sum(map(len, self._waiting)) >= ROWS:
+        self._count += len(samples)
+        if self._count >= ROWS:
             self._flush()
+        elif len(self._waiting) >= MOST_PARTS:
+            self._waiting = [joined(self._waiting)]
 
     def _opened(self) -> parquet.ParquetWriter | csv.CSVWriter:
-        if self.path.suffix.lower() == ".csv":
-            return csv.CSVWriter(self._name, _schema(np.str_))
-        return parquet.ParquetWriter(self._name, _schema(np.int32), compression="zstd")
+        schema = timeline_schema(events=pa.string() if self._is_text else EVENT)
+        if self._is_text:
+            return csv.CSVWriter(self._file, schema)
+        floats = [field.name for field in schema if pa.types.is_floating(field.type)]
+        return parquet.ParquetWriter(
+            self._file,
+            schema,
+            compression="zstd",
+            # Measured values hardly repeat; their bytes compress when each has its stream.
+            use_dictionary=[name for name in schema.names if name not in floats],
+            use_byte_stream_split=floats,
+        )
 
     def _flush(self) -> None:
-        if not self._waiting:
+        if not self._count:
             return
-        samples, self._waiting = joined(self._waiting), []
+        samples, self._waiting, self._count = joined(self._waiting), [], 0
         words = ("", *self._workingsteps)
-        is_text = isinstance(self._writer, csv.CSVWriter)
         arrays = [_array(column, samples, words) for column in COLUMNS]
-        if is_text:
+        if self._is_text:
             arrays = [
-                array.cast(pa.string()) if pa.types.is_dictionary(array.type) else array
+                array.dictionary_decode() if isinstance(array, pa.DictionaryArray) else array
                 for array in arrays
             ]
+        names = [column.name for column in COLUMNS]
         try:
-            self._writer.write(
-                pa.record_batch(arrays, names=[column.name for column in COLUMNS])
-            )
+            self._writer.write(pa.record_batch(arrays, names=names))
         except OSError as error:
-            reason = error.strerror or str(error)
-            raise WriteError(reason, path=str(self.path)) from error
+            raise self._refused(error) from error
         self.rows += len(samples)
+
+    def _refused(self, error: OSError) -> WriteError:
+        return WriteError(error.strerror or str(error), path=str(self.path))
+
+
+def require_suffix(path: Path) -> str:
+    """The ending of a file for a run, in small letters.
+
+    Raises
+    ------
+    WriteError
+        When it is neither of the two.
+    """
+    suffix = path.suffix.lower()
+    if suffix not in SUFFIXES:
+        raise WriteError(f"a run is written as {' or '.join(SUFFIXES)}", path=str(path))
+    return suffix
+
+
+EVENT = pa.dictionary(pa.int32(), pa.string())
+"""words that come again and again"""
+
+
+def timeline_schema(*, events: pa.DataType = EVENT) -> pa.Schema:
+    """Names and types of the columns, each with its unit as metadata."""
+
+    def kind(column: Column) -> pa.DataType:
+        if _words(column, ()) is not None:
+            return events
+        if column.source in WHOLE:
+            return pa.int32()
+        return pa.float64() if column.source in EXACT else pa.float32()
+
+    return pa.schema([
+        pa.field(column.name, kind(column), metadata={"unit": column.unit})
+        for column in COLUMNS
+    ])
+
+
+def _words(column: Column, workingsteps: tuple[str, ...]) -> tuple[str, ...] | None:
+    """What the numbers of a column stand for; None: themselves."""
+    return workingsteps if column.source == "workingstep" else column.words
 
 
 def _array(column: Column, samples: Samples, workingsteps: tuple[str, ...]) -> pa.Array:
@@ -124,33 +187,22 @@ def _array(column: Column, samples: Samples, workingsteps: tuple[str, ...]) -> p
     values = getattr(samples, column.source)
     if column.axis is not None:
         values = values[:, column.axis]
-    words = workingsteps if column.source == "workingstep" else column.words
+    words = _words(column, workingsteps)
     if words is not None:
         return pa.DictionaryArray.from_arrays(
             pa.array(values.astype(np.int32)), pa.array(words)
         )
-    if values.dtype.kind == "f":
-        kind = np.float64 if column.source in EXACT else np.float32
-        # NaN: the sample is missing.
-        return pa.array((values * column.scale).astype(kind), from_pandas=True)
-    return pa.array(values.astype(np.int32))
+    if column.source in WHOLE:
+        return pa.array(values.astype(np.int32))
+    kind = np.float64 if column.source in EXACT else np.float32
+    # NaN: the sample is missing.
+    return pa.array((values * column.scale).astype(kind), from_pandas=True)
 
 
-def _schema(events: type) -> pa.Schema:
-    """Types of the columns, with their units."""
-    text = pa.string() if events is np.str_ else pa.dictionary(pa.int32(), pa.string())
-    fields = []
-    for column in COLUMNS:
-        kind = pa.float64() if column.source in EXACT else pa.float32()
-        if column.words is not None or column.source == "workingstep":
-            kind = text
-        elif column.source in {"line", "tool"}:
-            kind = pa.int32()
-        fields.append(pa.field(column.name, kind, metadata={"unit": column.unit}))
-    return pa.schema(fields)
-
-
-def _umask() -> int:
+def _mode(place: Path) -> int:
+    """Permissions of the file that is replaced, or what a new file gets."""
+    if place.exists():
+        return place.stat().st_mode & 0o777
     umask = os.umask(0)
     os.umask(umask)
-    return umask
+    return 0o666 & ~umask

@@ -10,7 +10,8 @@
     ├── PostError(line)                    NC code that a control or a reader cannot take
     ├── SimulationError                    simulator.errors
     │   ├── UnknownMachine, UnknownMaterial
-    │   └── LibraryError(path, key)
+    │   ├── LibraryError(path, key)
+    │   └── CalibrationError(path, line, column)
     └── OptimisationError                  optimiser.errors
         ├── Infeasible(workingstep, limits)
         └── SolverFailed(status)

@@ -101,9 +101,7 @@ class _Miss:
     """(N,) its slope over the radius"""
 
 
-def _miss(
-    values: Floats, corners: Corners, samples: CornerSamples, centring: float
-) -> _Miss:
+def _miss(values: Floats, corners: Corners, samples: CornerSamples, centring: float) -> _Miss:
     """Distances of the samples from the path that has these offsets and radii.
 
     ``d = r − |r − u|`` on the arc, u the place as seen from the vertex; the box reaches

@@ -135,7 +135,7 @@ def _half_widths(
         pull = np.zeros((count, len(free)))
         np.add.at(pull, cluster, pulls)
         sandwich = inverse @ (pull.T @ pull) @ inverse * count / (count - 1)
-        halves.append(_quantile(count) * np.sqrt(np.diag(sandwich)))
+        halves.append(_quantile(count) * np.sqrt(np.maximum(np.diag(sandwich), 0.0)))
     return np.max(halves, axis=0), directions[-1]
 
 

@@ -13,8 +13,7 @@ import numpy as np
 
 from simulator.motion.segments import Floats
 
-LAGS = 41
-"""lags that are tried"""
+LAG_STEP = 0.05  # s between the lags that are tried
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,19 +38,17 @@ class Skill:
     @property
     def energy_error(self) -> float:
         """Share of the measured energy, signed."""
-        return self.model_energy / self.measured_energy - 1.0
+        return relative_error(self.model_energy, self.measured_energy)
 
     @property
     def baseline_energy_error(self) -> float:
         """Share of the measured energy, signed."""
-        return self.baseline_energy / self.measured_energy - 1.0
+        return relative_error(self.baseline_energy, self.measured_energy)
 
     @property
     def net_error(self) -> float:
         """Share of the net cutting energy, signed; infinite where nothing was cut."""
-        if self.measured_net == 0.0:
-            return np.inf
-        return self.model_net / self.measured_net - 1.0
+        return relative_error(self.model_net, self.measured_net)
 
     @property
     def energy_skill(self) -> float:
@@ -62,6 +59,11 @@ class Skill:
     def power_skill(self) -> float:
         """Over the baseline, by RMSE."""
         return skill(self.model_rmse, self.baseline_rmse)
+
+
+def relative_error(found: float, measured: float) -> float:
+    """Signed share of what was measured; infinite where that is nothing."""
+    return found / measured - 1.0 if measured else np.inf
 
 
 def skill(error: float, baseline: float) -> float:
@@ -127,6 +129,7 @@ def estimated_lag(
     most : float, s
         Lags from minus to plus this are tried.
     """
-    lags = np.linspace(-most, most, LAGS)
+    steps = round(most / LAG_STEP)
+    lags = LAG_STEP * np.arange(-steps, steps + 1)
     errors = [float(np.var(model(time - lag) - measured)) for lag in lags]
     return float(lags[int(np.argmin(errors))])

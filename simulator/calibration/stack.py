@@ -36,6 +36,8 @@ START = 0.1
 SHARE_OF_SPREAD = 1e-3
 """noise below this share of a signal's spread is taken as this: models are never that good"""
 LEAST_NOISE = 1e-9  # W
+CLOSE = 1e-6
+"""the fit ends when nothing changes by this share"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -147,6 +149,9 @@ def _least_squares(
         bounds=(0.0, np.inf),
         loss="soft_l1",
         f_scale=OUTLIER,
+        tr_solver="lsmr",
+        ftol=CLOSE,
+        xtol=CLOSE,
     )
     return whole(found.x)
 

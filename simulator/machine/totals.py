@@ -88,6 +88,8 @@ class Total:
     """s with chips"""
     rapid_time: float = 0.0
     """s"""
+    waiting_time: float = 0.0
+    """s at rest: pauses, tool changes, a spindle that has not its speed"""
     energy: Energy = field(default_factory=Energy)
     cutting_energy: float = 0.0
     """J at the edge"""
@@ -102,12 +104,19 @@ class Total:
     overload_time: float = 0.0
     """s above the continuous power or the permitted force"""
 
+    @property
+    def air_time(self) -> float:
+        """Feed without chips, s."""
+        known = self.cutting_time + self.rapid_time + self.waiting_time
+        return max(self.duration - known, 0.0)
+
     def plus(self, other: "Total") -> "Total":
         """Both together; the greater peaks."""
         return Total(
             duration=self.duration + other.duration,
             cutting_time=self.cutting_time + other.cutting_time,
             rapid_time=self.rapid_time + other.rapid_time,
+            waiting_time=self.waiting_time + other.waiting_time,
             energy=self.energy + other.energy,
             cutting_energy=self.cutting_energy + other.cutting_energy,
             volume=self.volume + other.volume,
@@ -146,6 +155,7 @@ def added(total: Total, episode: Episode, machine: Machine) -> Total:
         total,
         cutting_time=total.cutting_time + float(weights @ (samples.removal_rate > 0.0)),
         rapid_time=total.rapid_time + float(weights @ (samples.path_mode == PathMode.RAPID)),
+        waiting_time=total.waiting_time + float(weights @ (samples.path_mode == PathMode.NONE)),
         energy=total.energy + energy,
         cutting_energy=total.cutting_energy + float(weights @ samples.cutting_power),
         volume=total.volume + float(weights @ samples.removal_rate),

@@ -16,7 +16,7 @@ import numpy as np
 from simulator.motion.control import Control, control_model
 from simulator.motion.exact_stop import ExactStop
 from simulator.motion.motion import AxisLimits, ControlModel, axis_limits
-from simulator.motion.segments import Floats, Ints, Segments, chained
+from simulator.motion.segments import Bools, Floats, Ints, Segments, chained
 from simulator.spec import Machine, Spindle
 from stepnc_model.entities.entity import Entity
 from stepnc_model.errors import PostError
@@ -149,6 +149,21 @@ def usual_motion(machine: Machine) -> tuple[ControlModel, AxisLimits]:
 
 
 _NO_TIME = 1e9  # mm/s
+
+
+def follows(run: Run, technology: Ref[Entity]) -> Bools:
+    """(N,) which segments run as fast as the feed of a technology says."""
+    feeds = [move.feed for move in run.moves]
+    is_bound = [
+        feed is not None
+        and feed.technology == technology
+        and feed.velocity is None
+        and feed.per_revolution is None
+        and not feed.is_synchronised
+        for feed in feeds
+    ]
+    bound: Bools = np.array(is_bound, dtype=np.bool_)[run.segments.block]
+    return bound
 
 
 def duration(run: Run, control: ControlModel, limits: AxisLimits) -> float:

@@ -2,9 +2,9 @@
 
 Over a cell at the distance u along a line and v beside it the tool reaches down to the least of
 ``z(s) + f(√((u − s)² + v²))``, f the profile. f is convex and never falls, so this is convex in
-s: level lines take the nearest point, flat and ball tools have a closed form on any slope, and
-bull-nose, cone and taper are bisected, to 1e-8 mm in height. On level arcs the nearest point decides as
-well, and a flat tool on a helix has a closed form. What remains (arcs out of the XY plane;
+s: level lines take the nearest point, flat and ball tools have a closed form on any slope;
+bull-nose, cone and taper are bisected, to 1e-8 mm in height. On level arcs the nearest point
+decides as well, and a flat tool on a helix has a closed form. What remains (arcs out of XY;
 ball, bull-nose, cone and taper on a helix) runs on chords that leave the arc by at most
 ``CHORD_SHARE`` of a cell. Units mm and rad.
 """
@@ -148,73 +148,92 @@ def _range(low: float, high: float, origin: float, size: float, count: int) -> t
     return max(first, 0), min(last + 1, count)
 
 
+class _Line(NamedTuple):
+    """A line as the cells see it."""
+
+    way: Way
+    along_x: float
+    along_y: float
+    """unit vector in the plane"""
+    length: float
+    """mm in the plane"""
+    slope: float
+    low: float
+    """mm, height of the lower end"""
+    fresh: float
+    """mm along the line behind which its start settles all"""
+    skips_start: bool
+    """nothing under the tool at the start is left to cut"""
+
+
 @kernel
 def _line(
     grid: Grid, profile: Profile, way: Way, number: int, goes_on: bool
 ) -> tuple[float, float, float, float]:
     """Cut along a line of any direction."""
-    length = hypot(way.end_x - way.x, way.end_y - way.y)
-    climb = way.end_z - way.z
-    floor_z = min(way.z, way.end_z)
-    if floor_z >= grid.top:
-        return 0.0, 0.0, way.x, way.y
-    along_x, along_y, slope, start_z = 1.0, 0.0, 0.0, floor_z
-    if length > LEAST:
-        along_x, along_y = (way.end_x - way.x) / length, (way.end_y - way.y) / length
-        slope, start_z = (climb / length, way.z) if abs(climb) > LEVEL else (0.0, floor_z)
-    reach = profile.radius
-    plain = is_plain(profile)
-    skips_disc = goes_on and plain and climb >= -LEVEL
-    fresh = _fresh(profile, slope) if goes_on and length > LEAST else -inf
+    line = _lined(profile, way, goes_on)
     heights = grid.heights
     volume, deepest, found_x, found_y = 0.0, 0.0, way.x, way.y
-    first, last = _range(
-        min(way.x, way.end_x) - reach,
-        max(way.x, way.end_x) + reach,
-        grid.x,
-        grid.dx,
-        heights.shape[0],
-    )
+    low, high = min(way.x, way.end_x) - profile.radius, max(way.x, way.end_x) + profile.radius
+    first, last = _range(low, high, grid.x, grid.dx, heights.shape[0])
+    if line.low >= grid.top:
+        return volume, deepest, found_x, found_y
     for column in range(first, last):
         x = grid.x + (column + 0.5) * grid.dx + _NUDGE
-        low, high = _chord(way, x, reach, along_x, along_y, length)
-        low, high = _ahead(low, high, fresh - (x - way.x) * along_x, way.y, along_y)
+        low, high = _outline(line, profile.radius, x)
         begin, end = _range(low, high, grid.y, grid.dy, heights.shape[1])
         done, undone = end, end
-        if skips_disc:
-            half = sqrt(max(reach * reach - (x - way.x) ** 2, 0.0))
+        if line.skips_start:
+            half = sqrt(max(profile.radius**2 - (x - way.x) ** 2, 0.0))
             done, undone = _range(way.y - half, way.y + half, grid.y, grid.dy, heights.shape[1])
         for row in range(begin, end):
-            if done <= row < undone:
-                continue
             height = heights[column, row]
-            if height <= floor_z:
+            if height <= line.low or done <= row < undone:
                 continue
-            new = floor_z
-            if slope != 0.0 or not plain:
-                y = grid.y + (row + 0.5) * grid.dy + _NUDGE
-                u = (x - way.x) * along_x + (y - way.y) * along_y
-                v = (y - way.y) * along_x - (x - way.x) * along_y
-                # The nearest place of the path at its lowest height: no tool reaches lower.
-                beyond = u - min(max(u, 0.0), length)
-                square = beyond * beyond + v * v
-                if square > reach * reach:
-                    continue
-                new += rise(profile, sqrt(square))
-                if height - new <= LEAST:
-                    continue
-                if slope != 0.0:
-                    new = start_z + lowest(profile, u, v, length, slope)
-            new = max(new, grid.bottom)
-            if height - new > LEAST:
-                volume += height - new
-                if height - new > deepest:
-                    deepest, found_x = height - new, x
-                    found_y = grid.y + (row + 0.5) * grid.dy
+            y = grid.y + (row + 0.5) * grid.dy + _NUDGE
+            lost = height - max(_over(line, profile, x, y, height), grid.bottom)
+            if lost > LEAST:
+                volume += lost
+                if lost > deepest:
+                    deepest, found_x, found_y = lost, x, y
                 if number >= 0:
-                    heights[column, row] = new
+                    heights[column, row] = height - lost
                     grid.owner[column, row] = number
     return volume * grid.dx * grid.dy, deepest, found_x, found_y
+
+
+@kernel
+def _lined(profile: Profile, way: Way, goes_on: bool) -> _Line:
+    """A way as a line."""
+    length = hypot(way.end_x - way.x, way.end_y - way.y)
+    climb = way.end_z - way.z
+    low = min(way.z, way.end_z)
+    skips = goes_on and is_plain(profile) and climb >= -LEVEL
+    if length <= LEAST:
+        return _Line(way, 1.0, 0.0, 0.0, 0.0, low, -inf, skips)
+    along_x, along_y = (way.end_x - way.x) / length, (way.end_y - way.y) / length
+    slope = climb / length if abs(climb) > LEVEL else 0.0
+    fresh = _fresh(profile, slope) if goes_on else -inf
+    return _Line(way, along_x, along_y, length, slope, low, fresh, skips)
+
+
+@kernel
+def _over(line: _Line, profile: Profile, x: float, y: float, height: float) -> float:
+    """Least height of the tool over a cell; infinite where it does not reach so low."""
+    if line.slope == 0.0 and is_plain(profile):
+        return line.low
+    x, y = x - line.way.x, y - line.way.y
+    u = x * line.along_x + y * line.along_y
+    v = y * line.along_x - x * line.along_y
+    # The nearest place of the path at its lowest height: no tool reaches lower.
+    beyond = u - min(max(u, 0.0), line.length)
+    square = beyond * beyond + v * v
+    if square > profile.radius**2:
+        return inf
+    least = line.low + rise(profile, sqrt(square))
+    if line.slope == 0.0 or height - least <= LEAST:
+        return least
+    return line.way.z + lowest(profile, u, v, line.length, line.slope)
 
 
 @kernel
@@ -232,35 +251,26 @@ def _fresh(profile: Profile, slope: float) -> float:
 
 
 @kernel
-def _ahead(
-    low: float, high: float, least: float, origin: float, along_y: float
-) -> tuple[float, float]:
-    """Part of a column where ``(y − origin)·along_y ≥ least``."""
-    if along_y > LEAST:
-        return max(low, origin + least / along_y - LEAST), high
-    if along_y < -LEAST:
-        return low, min(high, origin + least / along_y + LEAST)
-    return (low, high) if least <= LEAST else (inf, -inf)
-
-
-@kernel
-def _chord(
-    way: Way, x: float, reach: float, along_x: float, along_y: float, length: float
-) -> tuple[float, float]:
-    """From where to where a column of cells runs through the swept outline of a line."""
-    low, high = inf, -inf
+def _outline(line: _Line, reach: float, x: float) -> tuple[float, float]:
+    """From where to where a column of cells runs through the sweep of a line."""
+    way, low, high = line.way, inf, -inf
     for end_x, end_y in ((way.x, way.y), (way.end_x, way.end_y)):
         square = reach * reach - (x - end_x) ** 2
         if square > 0.0:
             half = sqrt(square)
             low, high = min(low, end_y - half), max(high, end_y + half)
-    if along_x != 0.0:
+    if line.along_x != 0.0:
         for side in (-reach, reach):
-            part = (x - way.x + side * along_y) / along_x
-            if 0.0 <= part <= length:
-                y = way.y + side * along_x + part * along_y
+            part = (x - way.x + side * line.along_y) / line.along_x
+            if 0.0 <= part <= line.length:
+                y = way.y + side * line.along_x + part * line.along_y
                 low, high = min(low, y), max(high, y)
-    return low, high
+    least = line.fresh - (x - way.x) * line.along_x
+    if line.along_y > LEAST:
+        return max(low, way.y + least / line.along_y - LEAST), high
+    if line.along_y < -LEAST:
+        return low, min(high, way.y + least / line.along_y + LEAST)
+    return (low, high) if least <= LEAST else (inf, -inf)
 
 
 @kernel

@@ -10,14 +10,15 @@ Function = TypeVar("Function", bound=Callable[..., object])
 
 def entry(function: Function) -> Function:
     """Compile a kernel that Python calls."""
-    compiled: Function = njit(cache=True)(function)
+    compiled: Function = njit(cache=True, error_model="numpy")(function)
     return compiled
 
 
 def kernel(function: Function) -> Function:
     """Compile a kernel that only kernels call: without wrappers that takes half the time."""
-    options = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-    compiled: Function = njit(cache=True, **options)(function)
+    compiled: Function = njit(
+        cache=True, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True
+    )(function)
     return compiled
 
 

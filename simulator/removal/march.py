@@ -142,7 +142,7 @@ def march(
     count : int
         Number of stations written.
     """
-    count, row = np.int64(0), first
+    count, row = int(np.int64(0)), first
     while row < len(rows) and count + ROOM_FOR_ROW <= len(out):
         count = _row(task, (rows[row], lengths[row], row), out, count, found[row])
         row += 1
@@ -300,7 +300,7 @@ def _differs(task: Task, left: Floats, right: Floats, long: float) -> bool:
         return False
     if abs(left[AREA] - right[AREA]) > CHANGE_OF_SECTION * max(left[AREA], right[AREA]):
         return True
-    return abs(left[CONTACT_SEEN] - right[CONTACT_SEEN]) > CHANGE_OF_ANGLE
+    return bool(abs(left[CONTACT_SEEN] - right[CONTACT_SEEN]) > CHANGE_OF_ANGLE)
 
 
 @kernel
@@ -316,7 +316,7 @@ def _cut(task: Task, row: Floats, span: Span, found: Floats) -> float:
             task.how.neck,
             _raised(row, task.how.shank),
             span,
-            np.int64(MEASURE),
+            int(np.int64(MEASURE)),
             start[0] > inf,
         )
         found[SHANK] = max(found[SHANK], lost[1])
@@ -345,7 +345,7 @@ def _cut(task: Task, row: Floats, span: Span, found: Floats) -> float:
             task.how.holder,
             _raised(row, task.how.overhang),
             span,
-            np.int64(MEASURE),
+            int(np.int64(MEASURE)),
             start[0] > inf,
         )
         if lost[1] > found[HOLDER]:

@@ -114,7 +114,7 @@ class Pose(NamedTuple):
 
 AREA, DEPTH, ENTRY, EXIT, CONTACT, CHIP, DIAMETER, EXACT = range(8)
 """columns of an engagement: section in mm², greatest depth, angles, mean chip over feed per
-tooth, greatest diameter that cuts; EXACT: every outline was, the tool is flat and moves level"""
+tooth, greatest diameter that cuts; EXACT: all outlines were, on a level move of a flat tool"""
 
 ENGAGEMENT = 8
 
@@ -152,7 +152,7 @@ def look(grid: Grid, before: Past, tool: Tool, pose: Pose, into: Floats) -> None
         slices = abs(slices)
     else:
         slices = _slices(grid, work, tool, pose, base)
-    count_all = np.int64(0)
+    count_all = int(np.int64(0))
     area, across, edges, top, widest, most = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for index in range(slices):
         low, high = work.bounds[index], work.bounds[index + 1]
@@ -241,7 +241,7 @@ def _height(grid: Grid, circle: Circle, radius: float, angle: float) -> float:
     y = circle.y + onward * circle.ahead_y + across * circle.ahead_x
     column, row = floor((x - grid.x) / grid.dx), floor((y - grid.y) / grid.dy)
     if 0 <= column < grid.heights.shape[0] and 0 <= row < grid.heights.shape[1]:
-        return grid.heights[column, row]
+        return float(grid.heights[column, row])
     return grid.bottom
 
 
@@ -319,7 +319,7 @@ def _slice(
     latest = before.next[0]
     samples = len(work.heights)
     step = pi / samples
-    free, known, is_at_border = np.int64(0), True, grid.radius > 0.0
+    free, known, is_at_border = int(np.int64(0)), True, grid.radius > 0.0
     candidates = 0
     for number in range(max(latest - RECENT, 0), latest):
         work.candidates[candidates] = number

@@ -14,7 +14,7 @@ from stepnc_model.entities.geometry import Axis2Placement3d, Block, CartesianPoi
 from stepnc_model.entities.milling import MillingMachiningOperation
 from stepnc_model.entities.surfaces import SurfaceTextureParameter
 from stepnc_model.entities.technology import MillingTechnology
-from stepnc_model.entities.turning_strategies import ThreadStrategy
+from stepnc_model.entities.turning_strategies import ThreadStrategy, UnidirectionalTurning
 from stepnc_model.entities.turning_tools import TurningThreadingTool
 from stepnc_model.part21.values import Ref, Value
 from stepnc_model.program import Program
@@ -98,6 +98,32 @@ def test_paper002_has_the_numbers_of_table_2() -> None:
     assert technology.spindle_speed(tool.diameter) * 60.0 == pytest.approx(618.9, abs=0.05)
     assert getattr(step.operation, "axial_cutting_depth", None) == 3.0
     assert (tool.diameter, tool.teeth, block.x, block.y) == (18.0, 4, 18.0, 300.0)
+
+
+def test_paper000_has_the_numbers_of_section_4_1() -> None:
+    program = load("paper000")
+    (step,) = program.workingsteps
+    (strategy,) = all_of(program, UnidirectionalTurning)
+    technology = programmed(program, step.technology_ref)
+    assert technology.feed.quantity is Quantity.FEED_PER_REVOLUTION
+    assert technology.feed.value == 0.25
+    assert 2.0 * pi * technology.spindle_speed(50.0) == pytest.approx(166.5)
+    assert (strategy.cutting_depth, strategy.overcut_length) == ((2.5,), 2.0)
+
+
+@pytest.mark.parametrize(("case", "feed", "depth"), [(1, 124.46, 1.5), (2, 88.9, 2.0)])
+def test_paper003_has_the_numbers_of_section_4_3(case: int, feed: float, depth: float) -> None:
+    program = load(f"paper003_case{case}")
+    (step,) = program.workingsteps
+    (block,) = all_of(program, Block)
+    tool = tool_of(program, step.tool_ref)
+    technology = programmed(program, step.technology_ref)
+    assert technology.feed.quantity is Quantity.FEED
+    assert technology.feed.value * 60.0 == pytest.approx(feed)
+    assert technology.spindle_speed(tool.diameter) * 60.0 == pytest.approx(1750.0)
+    assert getattr(step.operation, "axial_cutting_depth", None) == depth
+    assert (tool.diameter, tool.teeth) == (8.0, 4)
+    assert (block.x, block.y, block.z) == (101.6, 101.6, 12.7)
 
 
 @pytest.mark.parametrize("name", ["bracket", "paper002", "paper003_case1", "paper003_case2"])

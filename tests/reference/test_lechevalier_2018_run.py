@@ -129,6 +129,8 @@ def test_slot_with_the_values_of_group_2(case: Case, tmp_path: Path) -> None:
     layers = passes(columns)
     assert len(layers) * case.depth == 6.0
     assert simulation.whole.volume == pytest.approx(LENGTH * 8.0 * 6.0, rel=1e-3)
+    assert simulation.whole.power.value == pytest.approx(6060.3, rel=1e-3)
+    assert simulation.whole.power.time == pytest.approx(2.9167, rel=1e-3)
     for rows in layers:
         assert len(rows) / RATE == pytest.approx(case.seconds, rel=1e-3)
         steady = full(columns, rows)

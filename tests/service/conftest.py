@@ -61,11 +61,12 @@ def samples_at() -> SampleMaker:
 @pytest.fixture(scope="session")
 def simulation() -> Simulation:
     """Two workingsteps after a second of waiting; the first has an evil name."""
-    idle = Total(duration=1.0, energy=Energy(base=1200.0))
+    idle = Total(duration=1.0, waiting_time=1.0, energy=Energy(base=1200.0))
     rough = Total(
         duration=60.0,
         cutting_time=40.0,
         rapid_time=5.0,
+        waiting_time=4.0,
         energy=Energy(
             x_axis=1100.0, y_axis=900.0, z_axis=300.0, spindle=120_000.0, coolant=30_000.0,
             base=72_000.0,

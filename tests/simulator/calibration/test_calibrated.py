@@ -59,12 +59,12 @@ def test_found_values_are_in_the_machine_and_others_stay() -> None:
     )
 
 
-@pytest.mark.parametrize("drive", [None, AxisDrive(lead=16.0, table_mass=300.0, efficiency=0.8)])
+@pytest.mark.parametrize(
+    "drive", [None, AxisDrive(lead=16.0, table_mass=300.0, efficiency=0.8)]
+)
 def test_axis_draws_the_power_that_was_found(drive: AxisDrive | None) -> None:
     before = machine()
-    before = replace(
-        before, axes=(replace(before.axes[0], drive=drive), *before.axes[1:])
-    )
+    before = replace(before, axes=(replace(before.axes[0], drive=drive), *before.axes[1:]))
     after = calibrated(before, calibration(before)).axes[0].drive
     assert after is not None
     for velocity, push in ((100.0, 0.0), (-100.0, 0.0), (200.0, 1000.0)):
@@ -97,7 +97,7 @@ def test_machine_file_reads_back(tmp_path: Path) -> None:
     after = calibrated(before, found)
     path = tmp_path / "mine.toml"
     path.write_text(machine_toml(after, notes=notes(found)), encoding="utf-8")
-    again = load_machine(path)
+    again = load_machine(str(path))
     drives = [each.axes[0].drive for each in (after, again)]
     powers = [axis_power(drive, 120.0, 700.0) for drive in drives if drive is not None]
     np.testing.assert_allclose(powers[0], powers[1])

@@ -67,9 +67,7 @@ def test_spindle_is_that_of_the_machine(speed: float, ramp: float) -> None:
 @given(velocity=st.floats(-300.0, 300.0), push=st.floats(-3000.0, 3000.0))
 def test_axis_is_that_of_the_machine(velocity: float, push: float) -> None:
     table = design(run(0.0, 0.0, velocity, push), efficiency=EFFICIENCY)
-    mains = values(
-        FRICTION_X=0.1 * 80.0 * 9.81 / 0.9, VISCOUS_X=2.0 / 0.9, MASS_X=80.0 / 0.9
-    )
+    mains = values(FRICTION_X=0.1 * 80.0 * 9.81 / 0.9, VISCOUS_X=2.0 / 0.9, MASS_X=80.0 / 0.9)
     expected = axis_power(DRIVE, velocity, push)
     assert powers(table, mains)[Component.X][0] == pytest.approx(expected, abs=1e-9)
 
@@ -86,9 +84,10 @@ def test_slopes_are_those_of_the_powers() -> None:
     for column in range(len(PARAMETERS)):
         step = np.zeros(len(PARAMETERS))
         step[column] = 1e-4
-        rise = powers(table, here + step)[Component.TOTAL] - powers(table, here - step)[
-            Component.TOTAL
-        ]
+        rise = (
+            powers(table, here + step)[Component.TOTAL]
+            - powers(table, here - step)[Component.TOTAL]
+        )
         assert slopes(table, here)[Component.TOTAL][0, column] == pytest.approx(
             rise[0] / 2e-4, abs=1e-6
         )

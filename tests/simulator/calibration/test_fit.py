@@ -33,11 +33,11 @@ NOISE = 8.0  # W
 
 
 def run(seed: int, parts: tuple[Component, ...], *, speeds: tuple[float, ...]) -> RunFeatures:
-    """A hundred seconds at 10 Hz: ramps, feeds back and forth along X, cuts now and then."""
+    """A minute at 10 Hz: ramps, feeds back and forth along X, cuts now and then."""
     random = np.random.default_rng(seed)
-    count = 1000
+    count = 600
     time = 0.1 * np.arange(count)
-    speed = np.interp(time, np.linspace(2.0, 98.0, len(speeds)), speeds)
+    speed = np.interp(time, np.linspace(1.0, 59.0, len(speeds)), speeds)
     velocity = np.zeros((count, 3))
     velocity[:, 0] = 150.0 * np.sin(0.7 * time) + 40.0 * np.sin(2.3 * time)
     bare = RunFeatures(
@@ -46,7 +46,7 @@ def run(seed: int, parts: tuple[Component, ...], *, speeds: tuple[float, ...]) -
         spindle_speed=speed,
         spindle_acceleration=np.gradient(speed, time),
         velocity=velocity,
-        acceleration=np.gradient(velocity, time, axis=0),
+        acceleration=np.asarray(np.gradient(velocity, time, axis=0)),
         cutting_power=np.where(np.sin(0.3 * time) > 0.0, 400.0, 0.0),
         coolant=np.zeros(count),
         measured={},
@@ -74,34 +74,33 @@ VARIED = (0.0, 0.0, 60.0, 20.0, 90.0, 90.0, 10.0, 70.0, 0.0)
 
 
 @pytest.fixture(scope="module")
-def by_component() -> Mapping[Parameter, Estimate]:
-    runs = [run(seed, ALL, speeds=VARIED) for seed in (1, 2)]
-    return by_name(fitted(runs, PRIORS, efficiency=EFFICIENCY))
-
-
-@pytest.fixture(scope="module")
 def by_total() -> Mapping[Parameter, Estimate]:
     runs = [run(seed, (Component.TOTAL,), speeds=VARIED) for seed in (3, 4)]
     return by_name(fitted(runs, PRIORS, efficiency=EFFICIENCY))
 
 
-@pytest.mark.parametrize("parameter", list(TRUTH))
-def test_known_parameters_lie_in_their_intervals(
-    by_component: Mapping[Parameter, Estimate], parameter: Parameter
-) -> None:
-    found = by_component[parameter]
-    assert found.is_identified
-    assert found.low <= TRUTH[parameter] <= found.high
-    assert found.value == pytest.approx(TRUTH[parameter], rel=0.1)
+@pytest.mark.parametrize("parts", [ALL, (Component.TOTAL,)])
+def test_intervals_hold_the_truth_as_often_as_they_say(parts: tuple[Component, ...]) -> None:
+    held = []
+    for seed in range(20, 30):
+        found = by_name(
+            fitted([run(seed, parts, speeds=VARIED)], PRIORS, efficiency=EFFICIENCY)
+        )
+        assert all(found[name].is_identified for name in TRUTH)
+        held += [found[name].low <= TRUTH[name] <= found[name].high for name in TRUTH]
+    # 80 intervals of 95 %: fewer than 70 would come once in a thousand times.
+    assert sum(held) >= 70
 
 
 @pytest.mark.parametrize("parameter", list(TRUTH))
-def test_total_power_alone_tells_them_apart_too(
+def test_known_parameters_are_found(
     by_total: Mapping[Parameter, Estimate], parameter: Parameter
 ) -> None:
     found = by_total[parameter]
+    half = 0.5 * (found.high - found.low)
     assert found.is_identified
-    assert found.low <= TRUTH[parameter] <= found.high
+    assert abs(found.value - TRUTH[parameter]) < 2.0 * half
+    assert half < 0.5 * TRUTH[parameter]
 
 
 @pytest.mark.parametrize(

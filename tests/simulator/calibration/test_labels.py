@@ -14,9 +14,11 @@ def test_line_is_cut_where_rapid_becomes_feed() -> None:
     station = np.arange(0.25, 30.0, 0.5)
     down = station <= 10.0
     samples = PathSamples(
-        position=np.column_stack(
-            [np.where(down, 0.0, station - 10.0), 0.0 * station, np.maximum(0.0, 10.0 - station)]
-        ),
+        position=np.column_stack([
+            np.where(down, 0.0, station - 10.0),
+            0.0 * station,
+            np.maximum(0.0, 10.0 - station),
+        ]),
         block=np.where(down, 7.0, 9.0),
         is_rapid=station < 6.0,
         half_step=np.full((len(station), 3), 0.01),

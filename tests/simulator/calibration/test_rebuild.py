@@ -40,7 +40,7 @@ def seen(spacing: float, first: float, *, order: Floats | None = None) -> PathSa
     exact = whole.position(row, station - (ends - whole.length)[row])
     return PathSamples(
         position=np.round(exact / STEP) * STEP,
-        block=10.0 * row,
+        block=(10 * row).astype(np.float64),
         is_rapid=exact[:, 2] > 20.01,
         half_step=np.tile(0.5 * STEP, (len(station), 1)),
     )

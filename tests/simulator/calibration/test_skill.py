@@ -50,7 +50,9 @@ def test_skill_against_a_perfect_baseline() -> None:
 
 
 def test_mean_power_weighs_by_time() -> None:
-    assert mean_power([np.array([100.0]), np.array([400.0])], [np.ones(1), np.full(1, 2.0)]) == 300
+    assert (
+        mean_power([np.array([100.0]), np.array([400.0])], [np.ones(1), np.full(1, 2.0)]) == 300
+    )
 
 
 def test_gap_counts_nothing() -> None:

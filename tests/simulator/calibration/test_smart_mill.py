@@ -26,7 +26,7 @@ def written(folder: Path, blocks: Sequence[int], missing: str = "") -> Path:
     for row, block in enumerate(blocks):
         values = dict.fromkeys(NAMES, "0")
         values |= {"X1_CommandPosition": "1.58E+02", "Y1_CommandPosition": f"{73.5 + row}"}
-        values |= {"S1_CommandVelocity": "5.33E+01" if block > 9 else "0"}
+        values |= {"S1_CommandVelocity": "5.33E+01" if 7 <= row < 13 else "0"}
         values |= {"S1_OutputPower": f"{0.17 + 0.001 * row}", "M1_sequence_number": f"{block}"}
         values |= {"M1_CURRENT_FEEDRATE": "50" if block == 7 else "6", "Machining_Process": "?"}
         rows.append([values[name] for name in NAMES if name != missing])
@@ -46,8 +46,7 @@ def test_logger_block_takes_the_number_of_its_packet(tmp_path: Path) -> None:
 
 def test_program_is_the_approach_and_the_turning_spindle(tmp_path: Path) -> None:
     run = read_smart_run(written(tmp_path, BLOCKS))
-    # The logger's rows before the spindle turns say nothing of it.
-    assert np.flatnonzero(run.is_program).tolist() == [3, 4, 5, 6, 7, 8, 9, 10, 11, 12][:10]
+    assert np.flatnonzero(run.is_program).tolist() == list(range(3, 13))
 
 
 def test_powers_are_watts_and_rounding_is_known(tmp_path: Path) -> None:
@@ -99,7 +98,9 @@ def test_held_out_cycle_times_are_within_one_per_cent(mill: umich.Mill) -> None:
 
 @needs_data
 def test_what_the_mill_does_not_tell_is_named(mill: umich.Mill) -> None:
-    lost = {str(each.parameter) for each in mill.calibration.estimates if not each.is_identified}
+    lost = {
+        str(each.parameter) for each in mill.calibration.estimates if not each.is_identified
+    }
     assert {"base power", "coolant power", "factor on specific cutting force"} <= lost
 
 

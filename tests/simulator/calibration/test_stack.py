@@ -19,7 +19,10 @@ def run(seconds: float, watts: float) -> RunFeatures:
         acceleration=np.zeros((count, 3)),
         cutting_power=np.zeros(count),
         coolant=np.zeros(count),
-        measured={Component.BASE: np.full(count, watts), Component.TOTAL: np.full(count, 500.0)},
+        measured={
+            Component.BASE: np.full(count, watts),
+            Component.TOTAL: np.full(count, 500.0),
+        },
     )
 
 

@@ -14,7 +14,9 @@ from simulator.calibration.thread import (
 from simulator.motion.segments import lines
 
 # Out along X, back 0.05 mm beside it: only the block number tells the two ways apart.
-PATH = lines([(0.0, 0.0, 0.0), (20.0, 0.0, 0.0), (20.0, 0.05, 0.0), (0.0, 0.05, 0.0)], speed=1.0)
+PATH = lines(
+    [(0.0, 0.0, 0.0), (20.0, 0.0, 0.0), (20.0, 0.05, 0.0), (0.0, 0.05, 0.0)], speed=1.0
+)
 BLOCKS = np.array([10.0, 30.0, 50.0])
 
 

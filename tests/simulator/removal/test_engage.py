@@ -23,7 +23,7 @@ def stock(cell: float = 0.1) -> MillingStock:
 
 
 def feed(*points: tuple[float, float, float]) -> Segments:
-    return lines(points, speed=10.0)
+    return lines(list(points), speed=10.0)
 
 
 def stretches(stations: Stations) -> Floats:
@@ -130,8 +130,8 @@ def test_finer_path_meets_the_same(cutter: Cutter) -> None:
         corners[1] + share[1:] * (corners[2] - corners[1]),
     ])
     coarse_stock, fine_stock = stock(), stock()
-    coarse = coarse_stock.cut(lines(corners, speed=10.0), cutter)
-    split = fine_stock.cut(lines(fine, speed=10.0), cutter)
+    coarse = coarse_stock.cut(lines(list(corners), speed=10.0), cutter)
+    split = fine_stock.cut(lines(list(fine), speed=10.0), cutter)
     assert fine_stock.volume == pytest.approx(coarse_stock.volume, rel=1e-6)
     assert volume(split) == pytest.approx(volume(coarse), rel=2e-3)
     for name in ("contact_angle", "chip_ratio", "axial_depth"):
@@ -237,7 +237,7 @@ def test_arc_out_of_plane_agrees_with_its_chords() -> None:
     points = arc.position(np.zeros(200, dtype=np.int64), share * arc.length[0])
     bent, chords = stock(), stock()
     bent.cut(arc, BALL)
-    chords.cut(lines(points, speed=10.0), BALL)
+    chords.cut(lines(list(points), speed=10.0), BALL)
     assert bent.volume == pytest.approx(chords.volume, rel=3e-4)
     assert points[:, 2].min() < -4.0
 
@@ -297,7 +297,7 @@ def test_memory_does_not_grow() -> None:
             20.0 + 0.4 * angle * np.sin(angle),
             np.full(3000, -2.0),
         ])
-        work.cut(lines(points, speed=1.0), FLAT)
+        work.cut(lines(list(points), speed=1.0), FLAT)
     assert sizes[0] == sizes[1]
 
 

@@ -1,0 +1,16 @@
+"""The factor is stated, and may be another."""
+
+import pytest
+
+from service.carbon import WORLD, CarbonFactor, kilowatt_hours
+
+
+def test_a_kilowatt_hour_is_3_6_megajoules() -> None:
+    assert kilowatt_hours(3.6e6) == 1.0
+    assert WORLD.grams(3.6e6) == 480.0
+
+
+@pytest.mark.parametrize("grams", [-1.0, float("inf"), float("nan")])
+def test_a_factor_that_cannot_be_is_refused(grams: float) -> None:
+    with pytest.raises(ValueError, match=r"carbon factor .* g/kWh must be at least 0"):
+        CarbonFactor(grams_per_kwh=grams, source="nobody")

@@ -1,0 +1,189 @@
+"""Force and power where the tool is, against the scalar physics of each process."""
+
+from math import cos, pi, sin
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.integrate import quad
+
+from simulator.machine.cutting import CuttingLoads, Edge, cutting_loads, no_loads, shares
+from simulator.physics.drilling import DrillingCut, drilling_thrust, drilling_torque
+from simulator.physics.engagement import Engagement, mean_chip_ratio
+from simulator.physics.milling_forces import RADIAL_SHARE
+from simulator.physics.turning import TurningCut, cutting_force
+from simulator.removal.stations import CutKind, Stations, air
+from simulator.spec import Kienzle
+
+STEEL = Kienzle(k_c11=1500.0, m_c=0.22)
+ANGLES = st.tuples(st.floats(0.0, pi), st.floats(0.0, pi)).map(sorted).filter(
+    lambda pair: pair[1] - pair[0] > 0.05
+)
+
+
+def station(kind: CutKind, **columns: float) -> Stations:
+    names = (
+        "section axial_depth radial_width entry_angle exit_angle contact_angle chip_ratio diameter"
+    ).split()
+    values = {name: np.array([columns.get(name, 0.0)]) for name in names}
+    return Stations(
+        segment=np.array([0]), station=np.array([1.0]), kind=np.array([int(kind)]), **values
+    )
+
+
+def milled(entry: float, exit_: float, *, diameter: float = 10.0, depth: float = 2.0) -> Stations:
+    width = 0.5 * diameter * (cos(entry) - cos(exit_))
+    arc = Engagement(entry_angle=entry, exit_angle=exit_)
+    return station(
+        CutKind.MILLING,
+        section=depth * width,
+        axial_depth=depth,
+        radial_width=width,
+        entry_angle=entry,
+        exit_angle=exit_,
+        contact_angle=exit_ - entry,
+        chip_ratio=mean_chip_ratio(arc),
+        diameter=diameter,
+    )
+
+
+def loads(
+    stations: Stations, edge: Edge, *, speed: float, spindle: float, wear: float = 1.0
+) -> CuttingLoads:
+    return cutting_loads(
+        stations,
+        np.array([0]),
+        speed=np.array([speed]),
+        spindle_speed=np.array([spindle]),
+        edge=edge,
+        wear=wear,
+    )
+
+
+@settings(max_examples=40)
+@given(
+    angles=ANGLES,
+    speed=st.floats(0.1, 100.0),
+    spindle=st.floats(1.0, 200.0),
+    teeth=st.integers(1, 8),
+    factor=st.floats(0.5, 2.0),
+)
+def test_power_of_milling_is_specific_force_times_removal_rate(
+    angles: list[float], speed: float, spindle: float, teeth: int, factor: float
+) -> None:
+    entry, exit_ = angles
+    edge = Edge(teeth=teeth, kienzle=STEEL, factor=factor)
+    found = loads(milled(entry, exit_), edge, speed=speed, spindle=spindle, wear=1.2)
+    rate = 2.0 * 5.0 * (cos(entry) - cos(exit_)) * speed
+    per_tooth = speed / (teeth * spindle)
+    chip = per_tooth * quad(sin, entry, exit_)[0] / (exit_ - entry)
+    assert found.removal_rate[0] == pytest.approx(rate)
+    assert found.chip_thickness[0] == pytest.approx(chip)
+    power = 1.2 * factor * 1500.0 * chip**-0.22 * rate / 1000.0
+    assert found.power[0] == pytest.approx(power)
+    assert found.force[0] * pi * 10.0 * spindle / 1000.0 == pytest.approx(power)
+
+
+@settings(max_examples=40)
+@given(angles=ANGLES, spindle=st.floats(1.0, 200.0))
+def test_milling_shares_are_means_of_a_tooth_over_its_arc(
+    angles: list[float], spindle: float
+) -> None:
+    """One tooth pushes by ``F_t = sin φ`` and ``F_r = 0.3·sin φ``."""
+    entry, exit_ = angles
+    feed, back = shares(milled(entry, exit_))
+    whole = quad(sin, entry, exit_)[0]
+    along = quad(lambda a: sin(a) * (cos(a) + RADIAL_SHARE * sin(a)), entry, exit_)[0]
+    across = quad(lambda a: sin(a) * (sin(a) - RADIAL_SHARE * cos(a)), entry, exit_)[0]
+    assert feed[0] == pytest.approx(along / whole, abs=1e-9)
+    assert back[0] == pytest.approx(across / whole, abs=1e-9)
+
+
+def test_full_slot_of_aisi_1018_needs_the_power_of_the_reference() -> None:
+    """Ø8, z 4, f_z 0.01778 mm, n 1750 rpm: k_c 4020 N/mm² and 100.1 W at 1.5 mm depth."""
+    edge = Edge(teeth=4, kienzle=STEEL)
+    slot = milled(0.0, pi, diameter=8.0, depth=1.5)
+    found = loads(slot, edge, speed=0.017780 * 4 * 1750 / 60, spindle=1750 / 60)
+    assert found.chip_thickness[0] == pytest.approx(0.011319, rel=1e-4)
+    assert found.power[0] / found.removal_rate[0] * 1000.0 == pytest.approx(4020, rel=1e-3)
+    assert found.power[0] == pytest.approx(100.1, rel=1e-3)
+
+
+@settings(max_examples=30)
+@given(
+    feed=st.floats(0.05, 0.5),
+    diameter=st.floats(2.0, 30.0),
+    share=st.sampled_from([0.0, 0.3, 0.8]),
+    half=st.floats(0.5, 0.5 * pi),
+    spindle=st.floats(1.0, 100.0),
+)
+def test_drilling_has_the_torque_and_thrust_of_its_lips(
+    feed: float, diameter: float, share: float, half: float, spindle: float
+) -> None:
+    hole = share * diameter
+    cut = DrillingCut(
+        feed_per_revolution=feed,
+        tool_diameter=diameter,
+        previous_diameter=hole,
+        cutting_edge_angle=half,
+    )
+    stations = station(
+        CutKind.DRILLING,
+        section=0.25 * pi * (diameter**2 - hole**2),
+        axial_depth=0.5 * (diameter - hole),
+        chip_ratio=sin(half),
+        diameter=0.5 * (diameter + hole),
+    )
+    edge = Edge(teeth=2, kienzle=STEEL)
+    found = loads(stations, edge, speed=feed * spindle, spindle=spindle)
+    torque = found.power[0] * 1000.0 / (2.0 * pi * spindle)
+    assert torque == pytest.approx(drilling_torque(STEEL, cut))
+    assert found.feed_force[0] == pytest.approx(drilling_thrust(STEEL, cut))
+    assert found.back_force[0] == 0.0
+
+
+@settings(max_examples=30)
+@given(
+    feed=st.floats(0.05, 0.5),
+    depth=st.floats(0.2, 5.0),
+    kappa=st.floats(0.8, 1.6),
+    radius=st.floats(8.0, 50.0),
+)
+def test_turning_has_the_force_of_kienzle(
+    feed: float, depth: float, kappa: float, radius: float
+) -> None:
+    around = 2.0 * radius - depth
+    stations = station(
+        CutKind.TURNING,
+        section=pi * around * depth,
+        axial_depth=depth,
+        chip_ratio=sin(kappa),
+        diameter=around,
+    )
+    found = loads(stations, Edge(teeth=1, kienzle=STEEL), speed=feed * 15.0, spindle=15.0)
+    cut = TurningCut(feed_per_revolution=feed, depth=depth, cutting_edge_angle=kappa)
+    assert found.force[0] == pytest.approx(cutting_force(STEEL, cut))
+
+
+@pytest.mark.parametrize(("speed", "spindle"), [(0.0, 10.0), (5.0, 0.0), (0.0, 0.0)])
+def test_standing_axes_or_spindle_need_no_force(speed: float, spindle: float) -> None:
+    found = loads(
+        milled(0.0, pi), Edge(teeth=4, kienzle=STEEL), speed=speed, spindle=spindle
+    )
+    for name in ("removal_rate", "chip_thickness", "power", "force", "feed_force", "back_force"):
+        assert getattr(found, name).tolist() == [0.0]
+
+
+@pytest.mark.parametrize("missing", ["section", "chip_ratio", "diameter"])
+def test_contact_without_a_chip_needs_no_force(missing: str) -> None:
+    columns = {"section": 20.0, "chip_ratio": 0.6, "diameter": 10.0, "exit_angle": pi}
+    touched = station(CutKind.MILLING, **(columns | {missing: 0.0}))
+    found = loads(touched, Edge(teeth=4, kienzle=STEEL), speed=5.0, spindle=10.0)
+    assert found.power.tolist() == found.force.tolist() == [0.0]
+
+
+def test_air_needs_no_force() -> None:
+    nothing = air(np.array([0]), np.array([10.0]))
+    found = loads(nothing, Edge(teeth=4, kienzle=STEEL), speed=5.0, spindle=10.0)
+    assert found.force.tolist() == no_loads(1).force.tolist() == [0.0]

@@ -1,0 +1,87 @@
+"""Volumes that moves remove, against solids and closed forms."""
+
+from math import pi, sqrt
+
+import manifold3d
+import numpy as np
+import pytest
+
+from simulator.motion.segments import Floats, lines
+from simulator.removal.cutter import Cutter
+from simulator.removal.engage import MillingStock
+from stepnc_model.toolpath.job import Stock
+
+BOX = Stock(low=(0.0, 0.0, -12.0), high=(40.0, 30.0, 0.0))
+
+
+def tool(cutter: Cutter, sides: int) -> manifold3d.Manifold:
+    """Solid of a cutter with its tip at zero, 20 mm high."""
+    radius = 0.5 * cutter.diameter
+    if cutter.corner_radius == 0.0:
+        return manifold3d.Manifold.cylinder(20.0, radius, radius, sides)
+    angle = np.linspace(-0.5 * pi, 0.0, sides // 4 + 1)
+    corner, flat = cutter.corner_radius, radius - cutter.corner_radius
+    arc = np.column_stack([flat + corner * np.cos(angle), corner + corner * np.sin(angle)])
+    outline = np.vstack([[0.0, 0.0], arc, [radius, 20.0], [0.0, 20.0]])
+    return manifold3d.CrossSection([outline]).revolve(sides)
+
+
+def removed(cutter: Cutter, points: Floats, *, sides: int) -> float:
+    """Volume by hulls of the tool at both ends of each move, taken from the box."""
+    size = np.subtract(BOX.high, BOX.low)
+    box = manifold3d.Manifold.cube(size.tolist()).translate(BOX.low)
+    before = box.volume()
+    body = tool(cutter, sides)
+    for start, end in zip(points[:-1], points[1:], strict=True):
+        swept = [body.translate(start.tolist()), body.translate(end.tolist())]
+        box -= manifold3d.Manifold.batch_hull(swept)
+    return float(before - box.volume())
+
+
+@pytest.mark.parametrize(
+    ("cutter", "sides"),
+    [
+        (Cutter(diameter=8.0), 256),
+        (Cutter(diameter=8.0, corner_radius=4.0), 128),
+        (Cutter(diameter=8.0, corner_radius=1.5), 128),
+    ],
+)
+def test_random_moves_remove_what_solids_do(cutter: Cutter, sides: int) -> None:
+    random = np.random.default_rng(14649)
+    points = random.uniform((-5.0, -5.0, -6.0), (45.0, 35.0, -1.0), (13, 3))
+    points[6] = points[5] + [0.0, 0.0, -3.0]
+    work = MillingStock(BOX, cell=0.1)
+    work.cut(lines(list(points), speed=1.0), cutter)
+    assert work.volume == pytest.approx(removed(cutter, points, sides=sides), rel=2e-3)
+
+
+@pytest.mark.parametrize("y", [15.0, 15.03, 15.05])
+def test_slot_is_as_wide_as_the_tool(y: float) -> None:
+    work = MillingStock(BOX, cell=0.1)
+    work.cut(lines([(-6.0, y, -2.0), (46.0, y, -2.0)], speed=1.0), Cutter(diameter=8.0))
+    assert work.volume == pytest.approx(8.0 * 40.0 * 2.0, rel=1e-4)
+
+
+def test_cutting_through_ends_at_the_bottom() -> None:
+    work = MillingStock(BOX, cell=0.1)
+    work.cut(lines([(20.0, 15.0, 5.0), (20.0, 15.0, -30.0)], speed=1.0), Cutter(diameter=8.0))
+    assert work.volume == pytest.approx(16.0 * pi * 12.0, rel=3e-3)
+    assert work.map.grid.heights.min() == -12.0
+    assert work.map.volume + work.volume == pytest.approx(40.0 * 30.0 * 12.0)
+
+
+def test_ball_on_a_slope_cuts_its_circle_across_the_slope() -> None:
+    # Seen along the path the tool is a circle: a half circle deep, and upright walls.
+    work = MillingStock(BOX, cell=0.1)
+    cutter = Cutter(diameter=6.0, corner_radius=3.0)
+    start, end = (-10.0, 15.0, -1.0), (50.0, 15.0, -10.0)
+    work.cut(lines([start, end], speed=1.0), cutter)
+    slope = 9.0 / 60.0
+    x = np.linspace(0.0, 40.0, 4001)
+    v = np.linspace(-3.0, 3.0, 601)
+    half = np.sqrt(9.0 - v**2)
+    bottom = -1.0 - slope * (x[:, None] + 10.0) + 3.0 - half * sqrt(1.0 + slope**2)
+    # Where the lowest place lies beyond the end of the line nothing more is cut; it is not here.
+    depth = np.maximum(-bottom, 0.0)
+    expected = np.trapezoid(np.trapezoid(depth, v, axis=1), x)
+    assert work.volume == pytest.approx(float(expected), rel=2e-3)

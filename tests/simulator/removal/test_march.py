@@ -1,0 +1,46 @@
+"""The march along a path: where its stations lie."""
+
+import numpy as np
+import pytest
+
+from simulator.motion.segments import lines
+from simulator.removal.cutter import Cutter
+from simulator.removal.engage import MillingStock
+from simulator.removal.march import rows_of
+from simulator.removal.stations import CutKind
+from stepnc_model.toolpath.job import Stock
+
+BOX = Stock(low=(0.0, 0.0, -12.0), high=(60.0, 40.0, 0.0))
+
+
+def test_rows_hold_the_path() -> None:
+    path = lines([(0.0, 0.0, 0.0), (3.0, 4.0, 5.0)], speed=1.0)
+    assert rows_of(path)[0] == pytest.approx([0, 0, 0, 3, 4, 5, 0, 0, 0, 0, 0, 0, 2])
+
+
+def test_stations_ascend_and_end_with_their_segment() -> None:
+    path = lines(
+        [(-8.0, 20.0, 5.0), (-8.0, 20.0, -2.0), (68.0, 20.0, -2.0), (68.0, 20.0, -2.0)],
+        speed=1.0,
+    )
+    found = MillingStock(BOX, cell=0.2).cut(path, Cutter(diameter=10.0))
+    last = np.flatnonzero(np.diff(found.segment, append=99))
+    assert found.station[last] == pytest.approx(path.length)
+    same = np.diff(found.segment) == 0
+    assert (np.diff(found.station)[same] > 0.0).all()
+    assert found.kind[[0, -1]].tolist() == [CutKind.AIR, CutKind.AIR]
+    # Between the ends of the slot the stations lie a quarter of the radius apart at most, and
+    # closer where the tool enters.
+    steps = np.diff(found.station[found.segment == 1])
+    assert steps[1:-1].max() <= 1.25 + 1e-9
+    assert steps[:8].min() < 0.5
+
+
+def test_long_programs_are_taken_in_pieces() -> None:
+    angle = np.linspace(0.0, 60.0, 20_001)
+    points = np.column_stack(
+        [30.0 + 0.3 * angle * np.cos(angle), 20.0 + 0.3 * angle * np.sin(angle), 0 * angle - 1]
+    )
+    work = MillingStock(BOX, cell=0.5)
+    found = work.cut(lines(list(points), speed=1.0), Cutter(diameter=10.0))
+    assert np.unique(found.segment).tolist() == list(range(20_000))
