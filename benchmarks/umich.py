@@ -47,6 +47,7 @@ PRIORS = {
     Parameter.COOLANT: Prior(value=0.0, scale=500.0),
     Parameter.IDLE: Prior(value=0.0, scale=100.0),
     Parameter.IDLE_PER_SPEED: Prior(value=0.0, scale=10.0),
+    Parameter.IDLE_PER_SPEED_SQUARED: Prior(value=0.0, scale=0.05),
     Parameter.INERTIA: Prior(value=0.0, scale=0.01),
     Parameter.CUTTING: Prior(value=1.0, scale=0.5),
     **{name: Prior(value=0.0, scale=500.0) for name in Parameter if name.endswith(" friction")},

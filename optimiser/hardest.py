@@ -69,21 +69,22 @@ def lengths(stations: Stations) -> Floats:
     return stretch
 
 
-def with_hardest(cut: Cut, met: Met, kienzle: Kienzle) -> Cut:
-    """A cut with its engagement as met, where anything was met."""
+def with_hardest(cut: Cut, met: Met, kienzle: Kienzle, *, depth: float) -> Cut:
+    """A cut with its engagement as met in passes of a nominal depth, where anything was met."""
     is_judged = met.stations.kind == KINDS[cut.kind]
     is_long = is_judged & (met.length >= met.cell)
     rows = is_long if is_long.any() else is_judged
     if not rows.any():
         return cut
-    section, depth = met.stations.section[rows], met.stations.axial_depth[rows]
     if cut.kind is CutKind.MILLING:
-        return _milled(cut, _places(cut, met.stations, rows), kienzle)
+        places = _places(met.stations, rows, diameter=cut.diameter, nominal=depth)
+        return _milled(cut, places, kienzle, nominal=depth)
     if cut.kind is CutKind.DRILLING:
-        return _drilled(cut, float(section.max()), met.cell)
+        return _drilled(cut, float(met.stations.section[rows].max()), met.cell)
+    deepest = float(met.stations.axial_depth[rows].max())
     if cut.kind is CutKind.GROOVING:
-        return replace(cut, radial_width=min(cut.radial_width, float(depth.max())))
-    return replace(cut, depth_share=_share(cut, float(depth.max())))
+        return replace(cut, radial_width=min(cut.radial_width, deepest))
+    return replace(cut, depth_share=_share(cut, deepest / depth))
 
 
 def weighted_volume(met: Met, exponent: float) -> float:
@@ -93,61 +94,43 @@ def weighted_volume(met: Met, exponent: float) -> float:
     return float((volume * met.stations.chip_ratio[rows] ** -exponent).sum())
 
 
-def greatest_section(cut: Cut) -> tuple[float, float]:
-    """Section of the hardest place in mm² at the nominal depth, and its chip ratio."""
-    depth = nominal_depth(cut) * cut.depth_share
+def greatest_section(cut: Cut, *, depth: float) -> tuple[float, float]:
+    """Section of the hardest place in mm² in passes of a nominal depth, and its chip ratio."""
     tool = cut.tool
     if cut.kind is CutKind.MILLING:
         if cut.engagement is None:
             raise ValueError("a milling cut needs its engagement")
         width = 0.5 * cut.diameter * cut.engagement.cosine_difference
         ratio = mean_chip_ratio(cut.engagement, cutting_edge_angle=tool.cutting_edge_angle)
-        return depth * width, ratio
+        return depth * cut.depth_share * width, ratio
     if cut.kind is CutKind.DRILLING:
         point = 0.5 * tool.point_angle if tool.point_angle else drilling.CUSTOMARY_EDGE_ANGLE
         return 0.25 * pi * (cut.diameter**2 - cut.previous_diameter**2), sin(point)
     if cut.kind is CutKind.GROOVING:
         return pi * cut.diameter * cut.radial_width, 1.0
-    return pi * cut.diameter * depth, sin(tool.cutting_edge_angle)
+    return pi * cut.diameter * depth * cut.depth_share, sin(tool.cutting_edge_angle)
 
 
-def nominal_depth(cut: Cut) -> float:
-    """Depth of each pass as the path makes it: levels are equal, mm."""
-    if cut.kind is CutKind.MILLING and cut.is_depth_free:
-        return cut.total_depth / cut.programmed.passes
-    return cut.programmed.depth
-
-
-def _share(cut: Cut, depth: float) -> float:
+def _share(cut: Cut, share: float) -> float:
     """Real depth over the nominal one; at least 1 where another depth may be chosen.
 
     A pass may have found less material than its depth because there was no more: another
     depth would not.
     """
-    share = depth / nominal_depth(cut)
     return max(1.0, share) if cut.is_depth_free else share
 
 
-def _drilled(cut: Cut, section: float, cell: float) -> Cut:
-    """A hole with what was there before, unless the map cannot tell it from what is said."""
-    said, _ = greatest_section(cut)
-    if abs(section - said) <= 0.5 * pi * cut.diameter * cell:
-        return cut
-    bored = sqrt(max(0.0, cut.diameter**2 - 4.0 * section / pi))
-    return replace(cut, previous_diameter=bored)
-
-
-def _milled(cut: Cut, places: set[Place], kienzle: Kienzle) -> Cut:
+def _milled(cut: Cut, places: set[Place], kienzle: Kienzle, *, nominal: float) -> Cut:
     """A milling cut with the places of its greatest mean force and of its greatest peak."""
     mean = max(places, key=lambda place: milling.mean_force(kienzle, _at(cut, place)))
     bending = None
     if cut.tool_kind is ToolKind.ENDMILL:
         bending = max(places, key=lambda place: milling.peak_force(kienzle, _at(cut, place)))
-        bending = replace(bending, depth_share=_share(cut, bending.depth_share))
+        bending = replace(bending, depth_share=_share(cut, bending.depth_share / nominal))
     return replace(
         cut,
         engagement=mean.engagement,
-        depth_share=_share(cut, mean.depth_share),
+        depth_share=_share(cut, mean.depth_share / nominal),
         bending=bending,
         radial_width=0.5 * cut.diameter * mean.engagement.cosine_difference,
     )
@@ -164,7 +147,9 @@ def _at(cut: Cut, place: Place) -> milling.MillingCut:
     )
 
 
-def _places(cut: Cut, stations: Stations, rows: Bools) -> set[Place]:
+def _places(
+    stations: Stations, rows: Bools, *, diameter: float, nominal: float
+) -> set[Place]:
     """All engagements that occur, once each, with their depths in mm."""
     columns = (
         stations.section, stations.axial_depth, stations.entry_angle, stations.exit_angle,
@@ -173,12 +158,12 @@ def _places(cut: Cut, stations: Stations, rows: Bools) -> set[Place]:
         tuple(round(value, DIGITS) for value in row)
         for row in zip(*(column[rows].tolist() for column in columns), strict=True)
     }
-    return {_place(cut, *row) for row in met if row[0] > 0.0}
+    return {_place(row, diameter=diameter, nominal=nominal) for row in met if row[0] > 0.0}
 
 
-def _place(cut: Cut, section: float, depth: float, entry: float, exit: float) -> Place:
+def _place(row: tuple[float, ...], *, diameter: float, nominal: float) -> Place:
     """One engagement; a section wider than the tool is deeper than it was seen to be."""
-    diameter, nominal = cut.diameter, nominal_depth(cut)
+    section, depth, entry, exit = row
     by_angles = 0.5 * diameter * (cos(entry) - cos(exit))
     if depth > nominal and by_angles > 0.0:
         depth = min(depth, max(nominal, section / by_angles))

@@ -7,7 +7,8 @@ length, in mm at the programmed feed, with ratios of it and a spindle that follo
 The rest counts as time: ramps, rapids, moves with a feed of their own, waits.
 """
 
-from dataclasses import replace
+from copy import copy, deepcopy
+from dataclasses import dataclass, replace
 from math import sqrt
 from typing import Any
 
@@ -32,9 +33,11 @@ from simulator.removal.lathe import TurningStock
 from simulator.removal.stations import CutKind as StationKind
 from simulator.removal.zmap import MOST_CELLS
 from simulator.spec import Kienzle, Machine, MachineKind
+from stepnc_model.binding import Model
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.setup import Setup
-from stepnc_model.errors import Finding, PostError, SchemaError, Severity
+from stepnc_model.entities.turning import TurningMachiningOperation
+from stepnc_model.errors import Finding, PathError, PostError, SchemaError, Severity
 from stepnc_model.part21.values import Ref
 from stepnc_model.post.blocks import Machine as PostMachine
 from stepnc_model.post.conditions import Conditions, conditions
@@ -53,21 +56,45 @@ CELLS_PER_TOOL = 16.0
 
 StockMap = MillingStock | TurningStock
 
+Clamped = tuple[Ref[Setup] | None, bool]
+"""a setup, and whether the workpiece turns"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Seen:
+    """A path that was tried, and what it met."""
+
+    path: ToolPath
+    depth: float
+    """mm, of each pass as the path makes them"""
+    passes: int
+    met: Met | None
+    why: str
+    """why nothing is known of what it meets"""
+    stock: StockMap | None
+    """afterwards"""
+
 
 class MeasuredCuts:
-    """A source of cuts along real paths. Running state: what is left of each stock."""
+    """A source of cuts along real paths. Running state: what is left of each stock.
+
+    The stock goes on to the next workingstep as the path that was asked for last leaves it.
+    """
 
     def __init__(self, program: Program, machine: Machine, kienzle: Kienzle) -> None:
         self.program = program
         self.machine = machine
         self.kienzle = kienzle
         self.control, self.limits = usual_motion(machine)
-        self.stocks: dict[tuple[Ref[Setup] | None, bool], StockMap | None] = {}
-        """by setup, and whether it turns"""
+        self.stocks: dict[Clamped, StockMap | None] = {}
+        """as they are before the workingstep that was asked for last"""
         self._left_out: dict[int, str] = {}
         """workingstep without a path, by the instance number of its feature"""
-        self._paths: dict[tuple[int, float], ToolPath] = {}
-        """by workingstep and depth of a pass"""
+        self._estimate: Cut | None = None
+        self._seen: dict[int, _Seen] = {}
+        """paths of the workingstep, by the number of passes"""
+        self._last: tuple[Clamped, StockMap | None] | None = None
+        """the stock that goes on"""
 
     def cut(self, step: Workingstep) -> tuple[Cut, list[Finding]]:
         """The cut of a workingstep as programmed, and what was assumed.
@@ -80,77 +107,104 @@ class MeasuredCuts:
         SchemaError
             When the workingstep lacks what a cut needs.
         """
+        self._go_on()
         cut, findings = estimated_cut(self.program, step)
+        self._estimate = cut
         try:
-            path, run = self._started(step)
+            seen = self._see(step, cut, passes=cut.programmed.passes)
         except (SchemaError, PostError) as error:
             self._leave(step)
             text = f"no tool path: length, time and engagement are estimated ({error})"
             return cut, [*findings, self._warning(step, text)]
-        self._paths[int(step.ref), cut.programmed.depth] = path
-        findings += [each for each in path.findings if each.severity is not Severity.NOTE]
-        met, why = self._removed(step, run)
-        if met is None:
-            text = f"the engagement is estimated from the feature: {why}"
+        findings += [each for each in seen.path.findings if each.severity is not Severity.NOTE]
+        if seen.met is None:
+            text = f"the engagement is estimated from the feature: {seen.why}"
             findings.append(self._warning(step, text))
-        else:
-            cut = self._engaged(step, cut, met)
-        cut = self._timed(step, cut, run, cut.programmed, passes=cut.programmed.passes)
-        return cut if met is None else self._loaded(step, cut, run, met), findings
+        return self._measured(step, cut, seen, feed=1.0, speed=1.0), findings
 
     def at(self, step: Workingstep, cut: Cut, setting: Setting) -> Cut:
-        """The same cut with length and time as they are at another setting.
+        """The same cut as the path of another setting makes it.
 
-        Milling gets the path of the other depth; where the file gives the path, and in turning,
-        passes are taken to be alike.
+        Where a path in other passes cannot be made, all passes are taken to be alike.
         """
-        given = cut.programmed
-        path = self._paths.get((int(step.ref), given.depth))
-        if path is None:
+        given, estimate = cut.programmed, self._estimate
+        if not self._seen or estimate is None:
             return cut
-        passes = given.passes
-        if setting.passes != given.passes and (deeper := self._deeper(step, setting.depth)):
-            path, passes = deeper, setting.passes
-        pace = Pace(
-            technology=step.technology_ref,
-            feed=setting.feed / given.feed,
-            speed=setting.speed / given.speed,
-        )
-        return self._timed(step, cut, self._run(path, pace), setting, passes=passes)
+        if setting.passes not in self._seen:
+            try:
+                self._see(step, estimate, passes=setting.passes, depth=setting.depth)
+            except (SchemaError, PostError):
+                self._seen[setting.passes] = self._seen[given.passes]
+        seen = self._seen[setting.passes]
+        self._last = self._clamped(step), seen.stock
+        feed, speed = setting.feed / given.feed, setting.speed / given.speed
+        return self._measured(step, estimate, seen, feed=feed, speed=speed)
 
     def leave_out(self, step: Workingstep) -> None:
         """Cut the stock as a workingstep does that is not advised but is run."""
+        self._go_on()
         try:
-            _, run = self._started(step)
+            path = self._path(step)
+            run = self._run(path, Pace(technology=step.technology_ref))
         except (SchemaError, PostError):
             self._leave(step)
             return
-        self._removed(step, run)
+        stock = self._stock(step)
+        self._removed(step, run, stock)
+        self._last = self._clamped(step), stock
 
-    def _started(self, step: Workingstep) -> tuple[ToolPath, Run]:
-        """Path of a workingstep as programmed."""
-        require_ready(self.program, step, self._left_out)
-        path = workingstep_path(self.program, step)
-        return path, self._run(path, Pace(technology=step.technology_ref))
+    def _go_on(self) -> None:
+        """The next workingstep finds what the last one left."""
+        if self._last is not None:
+            clamped, stock = self._last
+            self.stocks[clamped] = stock
+        self._last, self._estimate = None, None
+        self._seen = {}
 
     def _leave(self, step: Workingstep) -> None:
         """Without its path, what comes after it on its features would meet too much."""
         self._left_out |= {int(feature): step.id for feature in step.features}
 
-    def _deeper(self, step: Workingstep, depth: float) -> ToolPath | None:
-        """Path of a milling operation in passes of another depth, or None."""
-        operation: Any = step.operation
-        if operation.its_toolpath or not hasattr(operation, "axial_cutting_depth"):
-            return None
-        key = int(step.ref), depth
-        if key not in self._paths:
-            other = replace(operation, axial_cutting_depth=depth)
-            try:
-                path = workingstep_path(self.program, replace(step, operation=other))
-            except SchemaError:
-                return None
-            self._paths[key] = path
-        return self._paths[key]
+    def _path(self, step: Workingstep) -> ToolPath:
+        """Path of a workingstep as programmed."""
+        require_ready(self.program, step, self._left_out)
+        return workingstep_path(self.program, step)
+
+    def _see(
+        self, step: Workingstep, cut: Cut, *, passes: int, depth: float | None = None
+    ) -> _Seen:
+        """Try a path, as programmed unless a depth of its passes is given."""
+        if depth is None:
+            path = self._path(step)
+        else:
+            path = workingstep_path(*with_depth(self.program, step, depth))
+        depth = depth or cut.programmed.depth
+        if cut.kind is CutKind.MILLING and cut.is_depth_free:
+            # Levels are equal, however deep they were asked to be.
+            depth = cut.total_depth / passes
+        run = self._run(path, Pace(technology=step.technology_ref))
+        stock = deepcopy(self._stock(step))
+        met, why = self._removed(step, run, stock)
+        seen = _Seen(path=path, depth=depth, passes=passes, met=met, why=why, stock=stock)
+        self._seen[passes] = seen
+        self._last = self._clamped(step), stock
+        return seen
+
+    def _measured(
+        self, step: Workingstep, cut: Cut, seen: _Seen, *, feed: float, speed: float
+    ) -> Cut:
+        """A cut along a path that was tried, so much faster than programmed."""
+        met = seen.met
+        if met is not None:
+            cut = self._engaged(step, cut, met, depth=seen.depth)
+        run = self._run(
+            seen.path, Pace(technology=step.technology_ref, feed=feed, speed=speed)
+        )
+        pace = cut.programmed.feed * feed * cut.tool.teeth * cut.programmed.speed * speed
+        cut = self._timed(step, cut, run, pace=pace, passes=seen.passes)
+        if met is None:
+            return cut
+        return self._loaded(step, cut, run, seen=seen, pace=pace)
 
     def _run(self, path: ToolPath, pace: Pace) -> Run:
         """What the axes run; feeds are looked up once a path."""
@@ -167,16 +221,38 @@ class MeasuredCuts:
         with self.program.using(path.operation_ref):
             return run_of(path, paced(look_up, pace), self.machine.spindle)
 
-    def _removed(self, step: Workingstep, run: Run) -> tuple[Met | None, str]:
+    def _clamped(self, step: Workingstep) -> Clamped:
+        """Where a workingstep finds its stock."""
+        is_lathe = self.machine.kind is MachineKind.LATHE
+        is_turning = isinstance(step.operation, TurningMachiningOperation)
+        return step.setup, is_turning or is_lathe
+
+    def _stock(self, step: Workingstep) -> StockMap | None:
+        """What is left of its stock; None where it is not known."""
+        clamped = self._clamped(step)
+        if clamped not in self.stocks:
+            self.stocks[clamped] = self._raw(step, is_turning=clamped[1])
+        return self.stocks[clamped]
+
+    def _raw(self, step: Workingstep, *, is_turning: bool) -> StockMap | None:
+        try:
+            raw = stock_of(self.program, step.setup)
+            if raw is None:
+                return None
+            return TurningStock(raw) if is_turning else MillingStock(raw, cell=self._cell(raw))
+        except (SchemaError, ValueError):
+            return None
+
+    def _removed(
+        self, step: Workingstep, run: Run, stock: StockMap | None
+    ) -> tuple[Met | None, str]:
         """What the tool meets; else why that is not known."""
+        if stock is None:
+            return None, "no stock is known"
         try:
             shape = shape_of(self.program, step.tool_ref)
             if shape is None:
                 return None, "threads are not cut from the stock"
-            is_turning = isinstance(shape, Insert) or self.machine.kind is MachineKind.LATHE
-            stock = self._stock(step.setup, is_turning=is_turning)
-            if stock is None:
-                return None, "the file gives no stock"
             if isinstance(stock, TurningStock):
                 stations, cell = stock.cut(run.segments, shape), stock.cell
             elif isinstance(shape, Insert):
@@ -187,19 +263,6 @@ class MeasuredCuts:
         except (SimulationError, SchemaError, ValueError) as error:
             return None, str(error)
         return Met(stations=stations, length=lengths(stations), cell=cell), ""
-
-    def _stock(self, setup: Ref[Setup] | None, *, is_turning: bool) -> StockMap | None:
-        """What is left of the stock of a setup."""
-        key = setup, is_turning
-        if key not in self.stocks:
-            raw = stock_of(self.program, setup)
-            if raw is None:
-                self.stocks[key] = None
-            elif is_turning:
-                self.stocks[key] = TurningStock(raw)
-            else:
-                self.stocks[key] = MillingStock(raw, cell=self._cell(raw))
-        return self.stocks[key]
 
     def _cell(self, raw: Stock) -> float:
         """Cell of a map that tells engagements, mm."""
@@ -219,12 +282,12 @@ class MeasuredCuts:
                 continue
         return [diameter for diameter in found if diameter > 0.0]
 
-    def _engaged(self, step: Workingstep, cut: Cut, met: Met) -> Cut:
+    def _engaged(self, step: Workingstep, cut: Cut, met: Met, *, depth: float) -> Cut:
         """The cut as it was met; turning is told where the workpiece is widest."""
         cut = replace(cut, volume=met.volume)
         if cut.kind in {CutKind.TURNING, CutKind.GROOVING} and not cut.is_air:
             cut = self._at_widest(step, cut, float(met.stations.diameter.max()))
-        return with_hardest(cut, met, self.kienzle)
+        return with_hardest(cut, met, self.kienzle, depth=depth)
 
     def _at_widest(self, step: Workingstep, cut: Cut, diameter: float) -> Cut:
         """Speeds and loads of turning are those at its greatest diameter: nothing is harder."""
@@ -235,39 +298,73 @@ class MeasuredCuts:
         return replace(cut, diameter=diameter, programmed=given)
 
     def _timed(
-        self, step: Workingstep, cut: Cut, run: Run, setting: Setting, *, passes: int
+        self, step: Workingstep, cut: Cut, run: Run, *, pace: float, passes: int
     ) -> Cut:
-        """The cut with its length and the rest of its time, of a path with so many passes."""
+        """The cut with its length and the rest of its time; pace is the feed in mm/s."""
         segments, is_bound = run.segments, follows(run, step.technology_ref)
-        feed = setting.feed * cut.tool.teeth * setting.speed
         fed = float((segments.length[is_bound] / segments.speed[is_bound]).sum())
         rest = max(0.0, duration(run, self.control, self.limits) - fed)
-        floor = None if cut.floor is None else replace(cut.floor, length=0.0)
         return replace(
             cut,
-            length=feed * fed / passes,
+            length=pace * fed / passes,
             rest_time=rest / passes,
             link_length=0.0,
-            floor=floor,
+            floor=None if cut.floor is None else replace(cut.floor, length=0.0),
         )
 
-    def _loaded(self, step: Workingstep, cut: Cut, run: Run, met: Met) -> Cut:
+    def _loaded(
+        self, step: Workingstep, cut: Cut, run: Run, *, seen: _Seen, pace: float
+    ) -> Cut:
         """The cut with its mean load, and how much of its length goes through air."""
-        given = cut.programmed
-        feed = given.feed * cut.tool.teeth * given.speed
-        seconds = met.length / run.segments.speed[met.stations.segment]
+        met = seen.met
+        if met is None or cut.length <= 0.0:
+            return cut
+        row = met.stations.segment
+        seconds = met.length / run.segments.speed[row]
         is_air = met.stations.kind == StationKind.AIR
-        is_air &= follows(run, step.technology_ref)[met.stations.segment]
-        share = 0.0
-        if cut.length > 0.0:
-            section, ratio = greatest_section(cut)
-            hardest = section * ratio**-self.kienzle.m_c * cut.length * given.passes
-            share = weighted_volume(met, self.kienzle.m_c) / hardest
+        is_air &= follows(run, step.technology_ref)[row]
+        section, ratio = greatest_section(cut, depth=seen.depth)
+        hardest = section * ratio**-self.kienzle.m_c * cut.length * seen.passes
         return replace(
             cut,
-            load_share=share,
-            air_length=feed * float(seconds[is_air].sum()) / given.passes,
+            load_share=weighted_volume(met, self.kienzle.m_c) / hardest,
+            air_length=pace * float(seconds[is_air].sum()) / seen.passes,
         )
 
     def _warning(self, step: Workingstep, text: str) -> Finding:
         return self.program.finding(Severity.WARNING, text, step.operation_ref)
+
+
+def with_depth(
+    program: Program, step: Workingstep, depth: float
+) -> tuple[Program, Workingstep]:
+    """A program and its workingstep as if it were programmed in passes of another depth.
+
+    Raises
+    ------
+    PathError
+        When the file leaves no depth to choose.
+    """
+    operation: Any = step.operation
+    if hasattr(operation, "axial_cutting_depth") and not operation.its_toolpath:
+        other = replace(operation, axial_cutting_depth=depth)
+        return program, replace(step, operation=other)
+    strategy = getattr(operation, "its_machining_strategy", None)
+    entity: Any = None if strategy is None else program.get(strategy)
+    if not hasattr(entity, "cutting_depth") or operation.its_toolpath:
+        raise PathError("the depth of its passes is not programmed", entity=str(step.ref))
+    changed = copy(program)
+    changed.model = _Changed(program.model, strategy, replace(entity, cutting_depth=(depth,)))
+    return changed, step
+
+
+class _Changed(Model):
+    """The entities of a program, one of them another one."""
+
+    def __init__(self, model: Model, ref: Ref[Entity], entity: Entity) -> None:
+        super().__init__(model.file)
+        self._model, self._number, self._entity = model, int(ref), entity
+
+    def entity(self, id: int, /) -> Entity | None:
+        """The entity of an instance."""
+        return self._entity if id == self._number else self._model.entity(id)

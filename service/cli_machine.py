@@ -1,6 +1,7 @@
 """Commands of the virtual machine: ``simulate``."""
 
 import argparse
+import re
 from pathlib import Path
 
 from service.cli_options import CONTROLS, LIMIT_EXCEEDED, OK, Commands, add_json
@@ -16,6 +17,8 @@ def _add_simulate(commands: Commands) -> None:
         "simulate",
         help="run a program on a virtual machine: time, force, power and energy",
     )
+    # Coordinates may be negative: "-3,-3,-40,153,93,2" is no option.
+    parser._negative_number_matcher = re.compile(r"-[.\d]")
     add = parser.add_argument
     add("file", type=Path, nargs="?", metavar="FILE", help="a STEP-NC program (Part 21)")
     add("--units", default="iso", help="units of feeds and speeds in the file (default: iso)")

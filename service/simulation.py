@@ -40,6 +40,12 @@ MOST_RATE = 10_000.0
 
 MOST_RUNOUT_UM = 500.0
 
+MOST_DEVIATION = 10.0
+"""mm, of the junctions"""
+
+LEAST_FILTER, MOST_FILTER = 1e-6, 100.0
+"""s"""
+
 MOST_SECONDS = 1e7
 """of machining, a hundred days: a slip of the feed or of a dwell rather than a program"""
 
@@ -274,15 +280,26 @@ def _control_kind(request: SimulationRequest) -> Control:
 def _control(request: SimulationRequest, machine: Machine) -> ControlModel:
     """How the control runs the path."""
     kind = _control_kind(request)
-    if request.filter_s and kind is not Control.FIR:
+    if not 0.0 < request.deviation <= MOST_DEVIATION:
+        bound = f"it must be above 0, at most {MOST_DEVIATION:g} mm"
+        raise StepNcError(f"deviation {request.deviation:g} mm: {bound}")
+    if not request.filter_s:
+        return _by_axes(kind, machine, deviation=request.deviation)
+    if kind is not Control.FIR:
         raise StepNcError(f"control {kind.value}: filter times are for the control fir")
+    first, second = numbers_in(request.filter_s, "filter times", counts=(2,))
+    if not LEAST_FILTER <= second <= first <= MOST_FILTER:
+        bound = f"{LEAST_FILTER:g} to {MOST_FILTER:g} s, the longer first"
+        raise StepNcError(f"filter times {first:g} and {second:g} s: {bound}")
+    return FixedTimeFilter(first=first, second=second)
+
+
+def _by_axes(kind: Control, machine: Machine, *, deviation: float) -> ControlModel:
+    """The control that suits the axes."""
     try:
-        if request.filter_s:
-            first, second = numbers_in(request.filter_s, "filter times", counts=(2,))
-            return FixedTimeFilter(first=first, second=second)
-        return control_model(kind, axis_limits(machine), deviation=request.deviation)
+        return control_model(kind, axis_limits(machine), deviation=deviation)
     except ValueError as error:
-        raise StepNcError(f"control {kind.value}: {error}") from error
+        raise StepNcError(f"machine '{machine.name}', control {kind.value}: {error}") from error
 
 
 def _tools(request: SimulationRequest, prepared: Prepared) -> dict[int, LoadedTool] | None:

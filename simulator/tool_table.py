@@ -4,6 +4,7 @@ One ``[[tool]]`` table a tool, units in the keys; what is absent is customary.
 """
 
 from dataclasses import dataclass
+from enum import StrEnum
 from math import inf, pi
 from pathlib import Path
 
@@ -27,6 +28,14 @@ ENDS = {ToolKind.DRILL, ToolKind.CENTER_DRILL, ToolKind.REAMER, ToolKind.COUNTER
 """kinds that cut with their end only"""
 
 CUSTOMARY_POINT_DEG = {ToolKind.DRILL: 118.0, ToolKind.COUNTERSINK: 90.0}
+
+
+class Hand(StrEnum):
+    """Hands of turning tools as the file spells them."""
+
+    RIGHT = "right"
+    LEFT = "left"
+    NEUTRAL = "neutral"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -92,13 +101,13 @@ def _insert(row: Table, kind: ToolKind) -> Insert:
     width = row.optional_number("width_mm", DIAMETER)
     if kind is ToolKind.GROOVING and width is None:
         raise row.error("width_mm", "missing; a grooving blade has a width")
-    hand = row.choice("hand", HandOfToolType) if "hand" in row else HandOfToolType.RIGHT
+    hand = row.choice("hand", Hand) if "hand" in row else Hand.RIGHT
     try:
         return Insert(
             nose_radius=row.optional_number("nose_radius_mm", LENGTH) or 0.0,
             cutting_edge_angle=pi / 2.0 if angle is None else rad_from_deg(angle),
             width=width,
-            hand=hand,
+            hand=HandOfToolType[hand.name],
         )
     except ValueError as error:
         raise row.error("", str(error)) from error

@@ -23,6 +23,7 @@ FORCE, MASS = 500.0, 200.0
 """N and kg that a prior may well be off, where it does not say more itself"""
 SLOW = 200.0  # mm/s at which viscous friction may well be as much as the other
 POWER, POWER_PER_SPEED = 200.0, 5.0  # W and W/(rev/s), likewise
+POWER_PER_SPEED_SQUARED = 0.05  # W/(rev/s)², likewise
 INERTIA = 0.01  # kg·m², likewise
 CUTTING = 0.5
 """catalogues differ by 20 to 70 % for the same steel"""
@@ -38,6 +39,9 @@ def priors(machine: Machine) -> dict[Parameter, Prior]:
         Parameter.COOLANT: _prior(machine.coolant_power, POWER),
         Parameter.IDLE: _prior(spindle.idle_power, POWER),
         Parameter.IDLE_PER_SPEED: _prior(spindle.idle_power_per_speed, POWER_PER_SPEED),
+        Parameter.IDLE_PER_SPEED_SQUARED: _prior(
+            spindle.idle_power_per_speed_squared, POWER_PER_SPEED_SQUARED
+        ),
         Parameter.INERTIA: _prior(spindle.inertia or 0.0, INERTIA),
         Parameter.CUTTING: Prior(value=1.0, scale=CUTTING),
     }
@@ -75,6 +79,9 @@ def calibrated(machine: Machine, calibration: Calibration) -> Machine:
             spindle,
             idle_power=value(Parameter.IDLE, spindle.idle_power),
             idle_power_per_speed=value(Parameter.IDLE_PER_SPEED, spindle.idle_power_per_speed),
+            idle_power_per_speed_squared=value(
+                Parameter.IDLE_PER_SPEED_SQUARED, spindle.idle_power_per_speed_squared
+            ),
             inertia=inertia or None,
         ),
         axes=tuple(_axis(axis, found) for axis in machine.axes),

@@ -35,9 +35,12 @@ class Pauses:
     at_start_half: float
 
 
+NO_PAUSES = Pauses(per_block=0.0, per_block_half=0.0, at_start=0.0, at_start_half=0.0)
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ProgramRun:
-    """A program by time, from its first block to a station.
+    """A program by time.
 
     Times count from the start; while the control pauses the axes stand at the end of a block.
     """
@@ -108,9 +111,6 @@ class Observed:
     """that it finished"""
 
 
-NO_PAUSES = Pauses(per_block=0.0, per_block_half=0.0, at_start=0.0, at_start_half=0.0)
-
-
 def fitted_pauses(observed: Sequence[Observed]) -> Pauses:
     """Pauses that explain the time which the motion alone does not take.
 
@@ -122,8 +122,8 @@ def fitted_pauses(observed: Sequence[Observed]) -> Pauses:
     blocks = np.array([float(run.blocks) for run in observed])
     if len(observed) < FEWEST_RUNS or np.ptp(blocks) == 0.0:
         raise CalibrationError(
-            f"{len(observed)} runs over {sorted(set(blocks))} blocks: pauses per block and at"
-            f" the start need at least {FEWEST_RUNS} runs of different lengths"
+            f"{len(observed)} runs over {blocks.min():g} to {blocks.max():g} blocks: pauses per"
+            f" block and at the start need at least {FEWEST_RUNS} runs of different lengths"
         )
     missing = np.array([run.seconds - run.motion for run in observed])
     table = np.stack([blocks, np.ones(len(observed))], axis=1)

@@ -5,7 +5,7 @@ burnt. With ``n`` the spindle's speed, ``v`` and ``a`` an axis' speed and accele
 the power at the edge for a factor of 1 on the specific cutting force and ``η`` the spindle's
 efficiency::
 
-    spindle  P = P_0 + p_1·|n| + (2π)²·J·n·ṅ/η + k·P_c/η
+    spindle  P = P_0 + p_1·|n| + p_2·n² + (2π)²·J·n·ṅ/η + k·P_c/η
     axis     P = F_0·|v| + B·v² + m·a·v
     base     P = P_b                      coolant  P = P_k while it flows
     total    the sum
@@ -36,6 +36,7 @@ class Parameter(StrEnum):
     COOLANT = "coolant power"
     IDLE = "spindle idle power"
     IDLE_PER_SPEED = "spindle idle power per speed"
+    IDLE_PER_SPEED_SQUARED = "spindle idle power per speed squared"
     INERTIA = "spindle inertia"
     CUTTING = "factor on specific cutting force"
     FRICTION_X = "X friction"
@@ -55,6 +56,7 @@ UNITS = {
     Parameter.COOLANT: "W",
     Parameter.IDLE: "W",
     Parameter.IDLE_PER_SPEED: "W/(rev/s)",
+    Parameter.IDLE_PER_SPEED_SQUARED: "W/(rev/s)²",
     Parameter.INERTIA: "kg·m²",
     Parameter.CUTTING: "",
     **dict.fromkeys((Parameter.FRICTION_X, Parameter.FRICTION_Y, Parameter.FRICTION_Z), "N"),
@@ -122,6 +124,7 @@ def design(run: RunFeatures, *, efficiency: float) -> Design:
     put(Component.COOLANT, Parameter.COOLANT, run.coolant)
     put(Component.SPINDLE, Parameter.IDLE, (speed > 0.0).astype(np.float64))
     put(Component.SPINDLE, Parameter.IDLE_PER_SPEED, speed)
+    put(Component.SPINDLE, Parameter.IDLE_PER_SPEED_SQUARED, speed**2)
     put(Component.SPINDLE, Parameter.INERTIA, change / efficiency)
     put(Component.SPINDLE, Parameter.CUTTING, run.cutting_power / efficiency)
     for axis, (part, parameters) in enumerate(

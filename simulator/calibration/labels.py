@@ -10,8 +10,6 @@ import numpy as np
 from simulator.calibration.thread import SPACING, PathSamples, course_of, stations
 from simulator.motion.segments import Bools, Floats, Ints, Segments
 
-HALF = 0.5
-
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Labelled:
@@ -48,7 +46,7 @@ def labelled(segments: Segments, samples: PathSamples, *, station: Floats) -> La
     for index in range(len(segments)):
         here = row == index
         if here.any():
-            is_rapid[index] = samples.is_rapid[here].mean() > HALF
+            is_rapid[index] = samples.is_rapid[here].mean() > 0.5
             numbers, counts = np.unique(samples.block[here], return_counts=True)
             seen[index] = numbers[np.argmax(counts)]
         elif index:

@@ -50,10 +50,6 @@ class MeasuredRun:
     """(N, 3) mm; NaN for an axis without a column"""
     power: Mapping[Component, Floats]
     """each (N,) W"""
-    commanded: Floats | None = None
-    """(N, 3) mm"""
-    block: Ints | None = None
-    """(N,) number of the block that runs"""
     findings: tuple[Finding, ...] = ()
 
     def __len__(self) -> int:

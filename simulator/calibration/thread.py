@@ -4,7 +4,8 @@ A sample goes to the nearest point of the path; where the path comes close to it
 of the block that ran decides. Units mm.
 """
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -53,7 +54,7 @@ class Course:
     """(M,) mm from the start of the path, ascending"""
 
 
-def joined(parts: list[PathSamples]) -> PathSamples:
+def joined(parts: Sequence[PathSamples]) -> PathSamples:
     """Samples of several runs."""
     return PathSamples(
         position=np.concatenate([part.position for part in parts]),
@@ -95,10 +96,7 @@ def stations(samples: PathSamples, course: Course) -> Floats:
     -------
     (N,) array, mm
     """
-    tree = cKDTree(_weighted(course.point, course.block))
-    _, nearest = tree.query(_weighted(samples.position, samples.block))
-    station: Floats = course.station[nearest]
-    return station
+    return course.station[_nearest(samples, course)]
 
 
 def shifted(samples: PathSamples, course: Course) -> PathSamples:
@@ -106,17 +104,18 @@ def shifted(samples: PathSamples, course: Course) -> PathSamples:
 
     The offset is the median deviation, axis by axis; one below the rounding is none.
     """
-    tree = cKDTree(_weighted(course.point, course.block))
-    _, nearest = tree.query(_weighted(samples.position, samples.block))
-    deviation = np.median(samples.position - course.point[nearest], axis=0)
+    point = course.point[_nearest(samples, course)]
+    deviation = np.median(samples.position - point, axis=0)
     coarse = np.median(samples.half_step, axis=0)
     offset = np.where(np.abs(deviation) > coarse, deviation, 0.0)
-    return PathSamples(
-        position=samples.position - offset,
-        block=samples.block,
-        is_rapid=samples.is_rapid,
-        half_step=samples.half_step,
-    )
+    return replace(samples, position=samples.position - offset)
+
+
+def _nearest(samples: PathSamples, course: Course) -> Ints:
+    """(N,) which point of a course each sample belongs to."""
+    tree = cKDTree(_weighted(course.point, course.block))
+    nearest: Ints = tree.query(_weighted(samples.position, samples.block))[1]
+    return nearest
 
 
 def _weighted(point: Floats, block: Floats) -> Floats:

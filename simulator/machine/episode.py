@@ -98,20 +98,20 @@ class Course:
         """Factor on the force at times from the start of the stretch."""
         if not self.wear.grows:
             return np.full(len(times), self.wear.factor(0.0))
-        return self.wear.factors(np.interp(times, self.clock[0], self._cut_clock))
+        return self.wear.factors(np.interp(times, *self._cut_clock))
 
     @property
     def cutting_seconds(self) -> float:
         """Time with chips, s."""
-        return float(self._cut_clock[-1])
+        return float(self._cut_clock[1][-1])
 
     @cached_property
-    def _cut_clock(self) -> Floats:
-        """(K,) s with chips until each time of the clock."""
+    def _cut_clock(self) -> tuple[Floats, Floats]:
+        """(M + 1,) times at which stations end, and s with chips until then."""
         times, along = self.clock
-        rows = np.searchsorted(self.station_ends, along[1:], side="left")
-        cuts = self.stations.section[np.minimum(rows, len(self.stations) - 1)] > 0.0
-        return np.concatenate(([0.0], np.cumsum(np.diff(times) * cuts)))
+        ends = np.concatenate(([0.0], np.interp(self.station_ends, along, times)))
+        seconds = np.cumsum(np.diff(ends) * (self.stations.section > 0.0))
+        return ends, np.concatenate(([0.0], seconds))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -11,7 +11,6 @@ from math import atan2, cos, hypot, pi, sin, sqrt
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from simulator.motion.segments import Floats
 from simulator.removal.carve import LEVEL, Way, arc_distance, way_between
@@ -58,11 +57,6 @@ class Intervals(NamedTuple):
 def intervals() -> Intervals:
     """Room for the work on one circle."""
     return Intervals(np.empty(16), np.empty((MOST_INTERVALS, 2)), np.empty((MOST_INTERVALS, 2)))
-
-
-def remembered(row: Floats, profile: Profile) -> NDArray[np.float64]:
-    """Record of a move for :func:`free_by_move`: its row and its tool."""
-    return np.concatenate([row, np.array(profile)])
 
 
 @kernel

@@ -8,7 +8,7 @@ Units mm and rad.
 """
 
 from dataclasses import dataclass
-from math import inf, sin
+from math import inf, pi, sin
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +31,7 @@ from simulator.removal.march import (
     HOLDER_Y,
     KIND,
     LENGTH,
+    MOST_TURNS,
     ROOM_FOR_ROW,
     ROW,
     SECTION,
@@ -125,8 +126,11 @@ class MillingStock:
         Raises
         ------
         ValueError
-            If the cutter's shape is impossible.
+            If the cutter's shape is impossible, or an arc has more than 100 turns.
         """
+        turns = np.abs(segments.turn).max(initial=0.0) / (2.0 * pi)
+        if turns > MOST_TURNS:
+            raise ValueError(f"an arc of {turns:g} turns must have at most {MOST_TURNS:g}")
         grid = self.map.grid
         profile = profile_of(cutter, reach=grid.top - grid.bottom)
         flank = sin(cutter.cutting_edge_angle)

@@ -28,7 +28,10 @@ CHANGE_OF_SECTION = 0.15
 """share of the greater by which the sections of two stations may differ"""
 
 MOST_STRETCHES = 4000
-"""of a part; longer parts have longer stretches"""
+"""of a row; longer rows have longer stretches"""
+
+MOST_TURNS = 100.0
+"""of one arc"""
 
 DEEPEST = 12
 """halvings of a stretch"""
@@ -241,8 +244,10 @@ def _stations(task: Task, segment: Segment, span: Span, out: Floats, count: int)
     """
     row, length, index = segment
     whole = (span[1] - span[0]) * length
-    stretches = min(max(1, ceil(whole / task.how.step - 1e-9)), MOST_STRETCHES)
-    limit = count + MOST_STRETCHES + 200
+    # All parts of a row share its room.
+    most = max(4, int(MOST_STRETCHES * (span[1] - span[0])))
+    stretches = min(max(1, ceil(whole / task.how.step - 1e-9)), most)
+    limit = count + most
     inset = min(INSET / whole, 0.25) * (span[1] - span[0])
     parts, seen = np.empty(DEEPEST), np.empty((DEEPEST, ENGAGEMENT))
     last, left = span[0], np.empty(ENGAGEMENT)
@@ -273,7 +278,7 @@ def _stations(task: Task, segment: Segment, span: Span, out: Floats, count: int)
     return count
 
 
-@inlined
+@kernel
 def _look(task: Task, row: Floats, part: float, into: Floats) -> None:
     """Engagement at a share of a row."""
     x, y, z = place(row, part)

@@ -29,6 +29,7 @@ SPINDLE = Spindle(
     inertia=0.02,
     idle_power=150.0,
     idle_power_per_speed=4.0,
+    idle_power_per_speed_squared=0.02,
 )
 # Lead 2π mm: a radian of the screw is a millimetre.
 DRIVE = AxisDrive(
@@ -58,7 +59,16 @@ def values(**known: float) -> np.typing.NDArray[np.float64]:
 @given(speed=st.floats(-80.0, 80.0), ramp=st.floats(-100.0, 100.0))
 def test_spindle_is_that_of_the_machine(speed: float, ramp: float) -> None:
     table = design(run(speed, ramp, 0.0, 0.0), efficiency=EFFICIENCY)
-    found = powers(table, values(IDLE=150.0, IDLE_PER_SPEED=4.0, INERTIA=0.02, CUTTING=1.3))
+    found = powers(
+        table,
+        values(
+            IDLE=150.0,
+            IDLE_PER_SPEED=4.0,
+            IDLE_PER_SPEED_SQUARED=0.02,
+            INERTIA=0.02,
+            CUTTING=1.3,
+        ),
+    )
     expected = spindle_power(SPINDLE, speed, ramp, cutting_power=1.3 * 60.0)
     assert found[Component.SPINDLE][0] == pytest.approx(expected)
 

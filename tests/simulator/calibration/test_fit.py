@@ -26,6 +26,7 @@ PRIORS = {name: Prior(value=0.0, scale=200.0) for name in Parameter} | {
     Parameter.CUTTING: Prior(value=1.0, scale=0.5),
     Parameter.INERTIA: Prior(value=0.0, scale=0.02),
     Parameter.IDLE_PER_SPEED: Prior(value=0.0, scale=5.0),
+    Parameter.IDLE_PER_SPEED_SQUARED: Prior(value=0.0, scale=0.0005),
     Parameter.VISCOUS_X: Prior(value=0.0, scale=3.0),
 }
 ALL = tuple(part for part in Component if part is not Component.TOTAL)

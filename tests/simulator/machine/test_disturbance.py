@@ -44,7 +44,7 @@ def test_none_is_the_identity(samples_of: Made) -> None:
     assert disturbed.shown(samples) is samples
 
 
-@settings(max_examples=15)
+@settings(max_examples=15, deadline=None)
 @given(
     cuts=st.lists(st.integers(0, 3000), max_size=4),
     noise=st.sampled_from(list(NoiseKind)),

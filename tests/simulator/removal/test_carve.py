@@ -1,5 +1,6 @@
 """Volumes that moves remove, against solids and closed forms."""
 
+import itertools
 from math import pi, sqrt
 
 import manifold3d
@@ -32,7 +33,7 @@ def removed(cutter: Cutter, points: Floats, *, sides: int) -> float:
     box = manifold3d.Manifold.cube(size.tolist()).translate(BOX.low)
     before = box.volume()
     body = tool(cutter, sides)
-    for start, end in zip(points[:-1], points[1:], strict=True):
+    for start, end in itertools.pairwise(points):
         swept = [body.translate(start.tolist()), body.translate(end.tolist())]
         box -= manifold3d.Manifold.batch_hull(swept)
     return float(before - box.volume())
@@ -42,14 +43,14 @@ def removed(cutter: Cutter, points: Floats, *, sides: int) -> float:
     ("cutter", "sides"),
     [
         (Cutter(diameter=8.0), 256),
-        (Cutter(diameter=8.0, corner_radius=4.0), 128),
-        (Cutter(diameter=8.0, corner_radius=1.5), 128),
+        (Cutter(diameter=8.0, corner_radius=4.0), 96),
+        (Cutter(diameter=8.0, corner_radius=1.5), 96),
     ],
 )
 def test_random_moves_remove_what_solids_do(cutter: Cutter, sides: int) -> None:
     random = np.random.default_rng(14649)
-    points = random.uniform((-5.0, -5.0, -6.0), (45.0, 35.0, -1.0), (13, 3))
-    points[6] = points[5] + [0.0, 0.0, -3.0]
+    points = random.uniform((-5.0, -5.0, -6.0), (45.0, 35.0, -1.0), (8, 3))
+    points[4] = points[3] + [0.0, 0.0, -3.0]
     work = MillingStock(BOX, cell=0.1)
     work.cut(lines(list(points), speed=1.0), cutter)
     assert work.volume == pytest.approx(removed(cutter, points, sides=sides), rel=2e-3)
@@ -81,7 +82,7 @@ def test_ball_on_a_slope_cuts_its_circle_across_the_slope() -> None:
     v = np.linspace(-3.0, 3.0, 601)
     half = np.sqrt(9.0 - v**2)
     bottom = -1.0 - slope * (x[:, None] + 10.0) + 3.0 - half * sqrt(1.0 + slope**2)
-    # Where the lowest place lies beyond the end of the line nothing more is cut; it is not here.
+    # No lowest place lies beyond the end of the line here.
     depth = np.maximum(-bottom, 0.0)
     expected = np.trapezoid(np.trapezoid(depth, v, axis=1), x)
     assert work.volume == pytest.approx(float(expected), rel=2e-3)

@@ -310,3 +310,12 @@ def test_impossible_stock_is_refused() -> None:
 
 def test_no_moves_give_no_stations() -> None:
     assert len(stock(1.0).cut(lines([(0.0, 0.0, 0.0)]), FLAT)) == 0
+
+
+def test_long_helix_fits_and_an_endless_one_is_refused() -> None:
+    work = stock(0.5)
+    path = turned((24.0, 20.0, 0.0), (20.0, 20.0), 180.0 * pi, (24.0, 20.0, -9.0))
+    assert len(work.cut(path, FLAT)) < 20_000
+    assert work.volume > 81.0 * pi * 8.5
+    with pytest.raises(ValueError, match="turns"):
+        work.cut(turned((24.0, 20.0, 0.0), (20.0, 20.0), 999.0, (24.0, 20.0, 0.0)), FLAT)

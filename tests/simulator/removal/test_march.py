@@ -38,9 +38,11 @@ def test_stations_ascend_and_end_with_their_segment() -> None:
 
 def test_long_programs_are_taken_in_pieces() -> None:
     angle = np.linspace(0.0, 60.0, 20_001)
-    points = np.column_stack(
-        [30.0 + 0.3 * angle * np.cos(angle), 20.0 + 0.3 * angle * np.sin(angle), 0 * angle - 1]
-    )
+    points = np.column_stack([
+        30.0 + 0.3 * angle * np.cos(angle),
+        20.0 + 0.3 * angle * np.sin(angle),
+        0 * angle - 1,
+    ])
     work = MillingStock(BOX, cell=0.5)
     found = work.cut(lines(list(points), speed=1.0), Cutter(diameter=10.0))
     assert np.unique(found.segment).tolist() == list(range(20_000))

@@ -1,6 +1,6 @@
 """Look-up at the rim where no outline is exact: rounded tools, slopes, forgotten moves."""
 
-from math import acos, pi
+from math import acos, pi, sqrt
 
 import numpy as np
 import pytest
@@ -20,9 +20,12 @@ def test_ball_beside_a_slot_of_its_own() -> None:
     for y in (20.0, 21.0):
         found = work.cut(lines([(-8.0, y, -2.0), (68.0, y, -2.0)], speed=1.0), BALL)
     inside = (found.station > 20.0) & (found.station < 50.0)
-    # The circles of both passes, 4 mm in radius at the surface, cross half a step aside.
-    assert found.entry_angle[inside] == pytest.approx(0.0, abs=0.02)
-    assert found.exit_angle[inside] == pytest.approx(acos(-0.5 / 4.0), abs=0.15)
+    # A slice of radius r lies within that of the first pass where r·cos φ < r − 1; the lowest
+    # of six slices has its middle at a twelfth of the depth.
+    height = 2.0 / 12.0
+    radius = sqrt(height * (10.0 - height))
+    assert found.entry_angle[inside] == pytest.approx(0.0, abs=1e-3)
+    assert found.exit_angle[inside] == pytest.approx(acos(1.0 - 1.0 / radius), abs=1e-3)
     assert found.section[inside] == pytest.approx(2.0, rel=0.01)
 
 
