@@ -120,6 +120,15 @@ def _share(cut: Cut, share: float) -> float:
     return max(1.0, share) if cut.is_depth_free else share
 
 
+def _drilled(cut: Cut, section: float, cell: float) -> Cut:
+    """A hole with what was there before, unless the map cannot tell it from what is said."""
+    said, _ = greatest_section(cut, depth=cut.programmed.depth)
+    if abs(section - said) <= 0.5 * pi * cut.diameter * cell:
+        return cut
+    bored = sqrt(max(0.0, cut.diameter**2 - 4.0 * section / pi))
+    return replace(cut, previous_diameter=bored)
+
+
 def _milled(cut: Cut, places: set[Place], kienzle: Kienzle, *, nominal: float) -> Cut:
     """A milling cut with the places of its greatest mean force and of its greatest peak."""
     mean = max(places, key=lambda place: milling.mean_force(kienzle, _at(cut, place)))
@@ -147,9 +156,7 @@ def _at(cut: Cut, place: Place) -> milling.MillingCut:
     )
 
 
-def _places(
-    stations: Stations, rows: Bools, *, diameter: float, nominal: float
-) -> set[Place]:
+def _places(stations: Stations, rows: Bools, *, diameter: float, nominal: float) -> set[Place]:
     """All engagements that occur, once each, with their depths in mm."""
     columns = (
         stations.section, stations.axial_depth, stations.entry_angle, stations.exit_angle,

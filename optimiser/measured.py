@@ -7,14 +7,14 @@ length, in mm at the programmed feed, with ratios of it and a spindle that follo
 The rest counts as time: ramps, rapids, moves with a feed of their own, waits.
 """
 
-from copy import copy, deepcopy
+from copy import deepcopy
 from dataclasses import dataclass, replace
 from math import sqrt
-from typing import Any
 
 from optimiser.cut import Cut, CutKind
 from optimiser.estimated import estimated_cut
 from optimiser.hardest import Met, greatest_section, lengths, weighted_volume, with_hardest
+from optimiser.other_depth import with_depth
 from optimiser.problem import Setting
 from optimiser.shape import shape_of
 from simulator.errors import SimulationError
@@ -33,11 +33,10 @@ from simulator.removal.lathe import TurningStock
 from simulator.removal.stations import CutKind as StationKind
 from simulator.removal.zmap import MOST_CELLS
 from simulator.spec import Kienzle, Machine, MachineKind
-from stepnc_model.binding import Model
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.setup import Setup
 from stepnc_model.entities.turning import TurningMachiningOperation
-from stepnc_model.errors import Finding, PathError, PostError, SchemaError, Severity
+from stepnc_model.errors import Finding, PostError, SchemaError, Severity
 from stepnc_model.part21.values import Ref
 from stepnc_model.post.blocks import Machine as PostMachine
 from stepnc_model.post.conditions import Conditions, conditions
@@ -197,9 +196,7 @@ class MeasuredCuts:
         met = seen.met
         if met is not None:
             cut = self._engaged(step, cut, met, depth=seen.depth)
-        run = self._run(
-            seen.path, Pace(technology=step.technology_ref, feed=feed, speed=speed)
-        )
+        run = self._run(seen.path, Pace(technology=step.technology_ref, feed=feed, speed=speed))
         pace = cut.programmed.feed * feed * cut.tool.teeth * cut.programmed.speed * speed
         cut = self._timed(step, cut, run, pace=pace, passes=seen.passes)
         if met is None:
@@ -297,9 +294,7 @@ class MeasuredCuts:
         given = replace(cut.programmed, speed=speed, feed=feed)
         return replace(cut, diameter=diameter, programmed=given)
 
-    def _timed(
-        self, step: Workingstep, cut: Cut, run: Run, *, pace: float, passes: int
-    ) -> Cut:
+    def _timed(self, step: Workingstep, cut: Cut, run: Run, *, pace: float, passes: int) -> Cut:
         """The cut with its length and the rest of its time; pace is the feed in mm/s."""
         segments, is_bound = run.segments, follows(run, step.technology_ref)
         fed = float((segments.length[is_bound] / segments.speed[is_bound]).sum())
@@ -333,38 +328,3 @@ class MeasuredCuts:
 
     def _warning(self, step: Workingstep, text: str) -> Finding:
         return self.program.finding(Severity.WARNING, text, step.operation_ref)
-
-
-def with_depth(
-    program: Program, step: Workingstep, depth: float
-) -> tuple[Program, Workingstep]:
-    """A program and its workingstep as if it were programmed in passes of another depth.
-
-    Raises
-    ------
-    PathError
-        When the file leaves no depth to choose.
-    """
-    operation: Any = step.operation
-    if hasattr(operation, "axial_cutting_depth") and not operation.its_toolpath:
-        other = replace(operation, axial_cutting_depth=depth)
-        return program, replace(step, operation=other)
-    strategy = getattr(operation, "its_machining_strategy", None)
-    entity: Any = None if strategy is None else program.get(strategy)
-    if not hasattr(entity, "cutting_depth") or operation.its_toolpath:
-        raise PathError("the depth of its passes is not programmed", entity=str(step.ref))
-    changed = copy(program)
-    changed.model = _Changed(program.model, strategy, replace(entity, cutting_depth=(depth,)))
-    return changed, step
-
-
-class _Changed(Model):
-    """The entities of a program, one of them another one."""
-
-    def __init__(self, model: Model, ref: Ref[Entity], entity: Entity) -> None:
-        super().__init__(model.file)
-        self._model, self._number, self._entity = model, int(ref), entity
-
-    def entity(self, id: int, /) -> Entity | None:
-        """The entity of an instance."""
-        return self._entity if id == self._number else self._model.entity(id)

@@ -9,7 +9,7 @@ Same inputs, same result: corrections of the cutting force come as an argument.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import isfinite
 
 from optimiser import workingstep as exact
@@ -18,9 +18,10 @@ from optimiser.cut import Cut, CutKind
 from optimiser.errors import Infeasible, OptimisationError
 from optimiser.formulate import Task, problem_of, state_of
 from optimiser.front import front_of
-from optimiser.limit import Limit, LimitName
+from optimiser.limit import Limit
 from optimiser.limits import Conditions, roughness_load
 from optimiser.modes import Mode
+from optimiser.passes import Asked, best_of
 from optimiser.problem import Problem
 from optimiser.requirement import required_roughness
 from optimiser.source import CutSource
@@ -35,9 +36,6 @@ from stepnc_model.tool import tool_of
 
 DEFAULT_QUALITY = 3.2e-3
 """mm, Ra that QC keeps where neither user nor file asks for one: ISO 1302 general machining"""
-
-ROUNDS = 4
-"""greatest number of paths tried for the depth of one workingstep"""
 
 
 def optimise(
@@ -141,7 +139,8 @@ def advise(
         advice = replace(untouched, reason=reason)
     else:
         try:
-            advice = _solved(untouched, problem, at, task, cuts)
+            asked = Asked(step=step, at=at, task=task, cuts=cuts)
+            advice = _solved(untouched, cut, problem, asked)
         except Infeasible as conflict:
             reason = str(conflict)
             advice = replace(untouched, status=Status.INFEASIBLE, reason=reason, after=None)
@@ -164,31 +163,18 @@ def _in_air(state: State) -> State:
     return replace(state, motor_power=0.0, cutting_force=0.0, roughness=None, loads=())
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Best:
-    """The best setting of a cut whose numbers are those of the path at that setting."""
-
-    cut: Cut
-    problem: Problem
-    solution: exact.Solution
-    prices: tuple[tuple[LimitName, float], ...]
-
-
-def _solved(
-    untouched: Advice, problem: Problem, at: Conditions, task: Task, cuts: CutSource
-) -> Advice:
+def _solved(untouched: Advice, cut: Cut, problem: Problem, asked: Asked) -> Advice:
     """Advice from the best setting."""
-    if untouched.cut is None:
-        raise ValueError("no advice without a cut")
-    best = _settled(untouched.workingstep, untouched.cut, problem, at, task, cuts)
-    solution = best.solution
-    after = state_of(best.cut, best.problem, at, solution.setting)
+    at, task = asked.at, asked.task
+    told = best_of(cut, problem, asked)
+    solution = told.optimum.solution
+    after = state_of(told.cut, told.problem, at, solution.setting)
     saving = 0.0
     if task.tool_change == 0.0:
-        saving = exact.saving_of_one_more(best.problem, task.mode, solution)
+        saving = exact.saving_of_one_more(told.problem, task.mode, solution)
     return replace(
         untouched,
-        cut=best.cut,
+        cut=told.cut,
         status=Status.ADVISED,
         reason=reason_of(after, solution.holding),
         after=after,
@@ -196,45 +182,9 @@ def _solved(
         active_words=solution.holding.words,
         saving_of_one_more=saving,
         deepest_first_time=solution.deepest_first_time,
-        prices=best.prices,
-        front=front_of(best.problem, best.cut, at) if task.front else (),
+        prices=told.optimum.prices,
+        front=front_of(told.problem, told.cut, at) if task.front else (),
     )
-
-
-def _settled(
-    step: Workingstep,
-    cut: Cut,
-    problem: Problem,
-    at: Conditions,
-    task: Task,
-    cuts: CutSource,
-) -> _Best:
-    """The best number of passes, each told by its own path.
-
-    The optimum of what was measured last says which number to try next, until it says one
-    that was tried; the programmed one counts as tried. The best of them is taken.
-    """
-    tried: dict[int, _Best | Infeasible] = {}
-    passes = problem.programmed.passes
-    while len(tried) < ROUNDS and passes not in tried:
-        try:
-            ...
-        except Infeasible as conflict:
-            tried[passes] = conflict
-    raise NotImplementedError
-
-
-def _optimum(
-    problem: Problem, task: Task
-) -> tuple[exact.Solution, tuple[tuple[LimitName, float], ...]]:
-    """The exact solution, or that of the geometric program with its prices: tools wear out."""
-    if task.tool_change == 0.0:
-        return exact.solve(problem, task.mode), ()
-    from optimiser import program as general  # noqa: PLC0415 (cvxpy takes a second)
-
-    optimum = general.solve(problem, task.mode)
-    prices = tuple((name, price) for name, price in optimum.prices.items())
-    return exact.settled(problem, general.snapped(problem, optimum)), prices
 
 
 def reason_of(state: State, limit: Limit) -> str:

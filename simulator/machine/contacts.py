@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 
-from simulator.removal.engage import Collision
+from simulator.removal.collision import Collision
 from stepnc_model.errors import Finding, Severity
 
 MOST = 20

@@ -13,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 
 from simulator.motion.segments import Floats
-from simulator.removal.carve import LEVEL, Way, arc_distance, way_between
 from simulator.removal.kernels import kernel
 from simulator.removal.profile import Profile, is_plain, radius_at
+from simulator.removal.way import LEVEL, Way, arc_distance, way_between
 from simulator.removal.zmap import Grid
 
 TOUCH = 1e-10

@@ -7,13 +7,13 @@ because less is noise, and is shared among the stations in proportion to what th
 Units mm and rad.
 """
 
-from dataclasses import dataclass
 from math import inf, pi, sin
 
 import numpy as np
 from numpy.typing import NDArray
 
 from simulator.motion.segments import Floats, Segments
+from simulator.removal.collision import MOST, Collision
 from simulator.removal.cutter import Cutter
 from simulator.removal.march import (
     AXIAL,
@@ -47,7 +47,8 @@ from simulator.removal.march import (
     rows_of,
 )
 from simulator.removal.profile import Profile, cylinder, profile_of
-from simulator.removal.rim import Tool, past
+from simulator.removal.rim import past
+from simulator.removal.ring import Tool
 from simulator.removal.stations import CutKind, Stations
 from simulator.removal.zmap import ZMap, cell_size, zmap_of
 from stepnc_model.toolpath.job import Stock
@@ -63,21 +64,6 @@ LEAST_SHARE = 0.02
 
 _CHUNK = 16_384  # rows that are marched in one go
 _LINES = 4 * ROOM_FOR_ROW
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Collision:
-    """What met the stock and should not have."""
-
-    segment: int
-    """row"""
-    block: int
-    depth: float
-    """mm, deepest"""
-    position: tuple[float, float, float]
-    """mm, where"""
-    volume: float = 0.0
-    """mm³ removed, of rapid moves"""
 
 
 class MillingStock:
@@ -162,7 +148,8 @@ class MillingStock:
 
     def _note(self, segments: Segments, found: Floats, first: int) -> None:
         """Keep the collisions of some rows."""
-        for row in np.flatnonzero((found[:, VOLUME] > 0.0) & segments.is_rapid):
+        rapids = np.flatnonzero((found[:, VOLUME] > 0.0) & segments.is_rapid)
+        for row in rapids[: MOST - len(self.collisions)]:
             spot = tuple(found[row, [SPOT_X, SPOT_Y, SPOT_Z]].tolist())
             self.collisions.append(
                 Collision(
@@ -174,7 +161,7 @@ class MillingStock:
                 )
             )
         for column, kept in ((HOLDER, self.holder_collisions), (SHANK, self.shank_collisions)):
-            for row in np.flatnonzero(found[:, column] > 0.0):
+            for row in np.flatnonzero(found[:, column] > 0.0)[: MOST - len(kept)]:
                 where = [HOLDER_X, HOLDER_Y] if column == HOLDER else [SPOT_X, SPOT_Y]
                 x, y = found[row, where].tolist()
                 kept.append(

@@ -15,7 +15,6 @@ Units mm and rad. x is the radius, z the spindle axis, away from the chuck.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from math import ceil, hypot, inf, pi, sin, tan
 
 import numpy as np
@@ -23,6 +22,7 @@ import numpy as np
 from simulator.errors import SimulationError
 from simulator.motion.segments import Floats, Segments
 from simulator.physics.domain import require_positive
+from simulator.removal.collision import MOST, Collision
 from simulator.removal.cutter import Cutter, Insert
 from simulator.removal.lathe_carve import Grid, bore, carve
 from simulator.removal.lathe_edge import chip_ratios, edge_angles
@@ -38,18 +38,6 @@ MOST_CELLS = 1_000_000
 
 ON_AXIS = 1e-3
 """mm of radius at which a drill still stands on the axis"""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Collision:
-    """A rapid that met material, or a tool that stood in it before it moved."""
-
-    block: int
-    """number of the block"""
-    volume: float
-    """mm³"""
-    position: tuple[float, float, float]
-    """where it ends"""
 
 
 class TurningStock:
@@ -87,7 +75,10 @@ class TurningStock:
         self.inner: Floats = np.zeros(count)
         """(C,) mm, radius of the bore; where it is that of the outside nothing is left"""
         self.collisions: list[Collision] = []
-        """in order"""
+        """rapids that met material, and tools that stood in it, in order"""
+        self.holder_collisions: list[Collision] = []
+        self.shank_collisions: list[Collision] = []
+        """empty: neither is modelled on a lathe"""
 
     @property
     def cell(self) -> float:
@@ -179,7 +170,8 @@ class TurningStock:
         area, volume = taken
         is_wrong = segments.is_rapid[windows.segment]
         is_wrong[:1] = True
-        for row in np.flatnonzero(is_wrong & (volume > 0.0)):
+        wrong = np.flatnonzero(is_wrong & (volume > 0.0))
+        for row in wrong[: MOST - len(self.collisions)]:
             x, y, z = segments.position(windows.segment, windows.end)[row].tolist()
             self.collisions.append(
                 Collision(

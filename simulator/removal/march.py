@@ -10,12 +10,14 @@ from typing import NamedTuple
 import numpy as np
 
 from simulator.motion.segments import Floats, Segments
-from simulator.removal.carve import MEASURE, carve_part, place
+from simulator.removal.carve import MEASURE, carve_part
 from simulator.removal.kernels import entry, inlined, kernel
 from simulator.removal.profile import Profile
-from simulator.removal.rim import AREA, ENGAGEMENT, FORGETTING, Past, Pose, Tool, lip, look
+from simulator.removal.rim import AREA, ENGAGEMENT, FORGETTING, Past, lip, look
 from simulator.removal.rim import CONTACT as CONTACT_SEEN
+from simulator.removal.ring import Pose, Tool
 from simulator.removal.stations import CutKind
+from simulator.removal.way import place
 from simulator.removal.zmap import Grid
 
 STEEP = 0.1

@@ -25,26 +25,28 @@ from simulator.removal.arcs import (
     contact_arcs,
     free_by_move,
     free_by_outline,
-    intervals,
 )
-from simulator.removal.carve import LEAST, LEVEL
 from simulator.removal.kernels import kernel
 from simulator.removal.profile import Profile, is_plain, radius_at, rise
+from simulator.removal.ring import (
+    MOST_CANDIDATES,
+    NEAR,
+    ROUND_SAMPLES,
+    SAMPLES,
+    Pose,
+    Room,
+    Tool,
+    circle_of,
+    height_at,
+    levels,
+    read_ring,
+    room_for,
+)
+from simulator.removal.way import LEAST, LEVEL
 from simulator.removal.zmap import OUTSIDE, Grid
-
-SAMPLES = 128
-"""of the front half of a ring"""
-
-ROUND_SAMPLES = 48
-"""of each ring of a rounded tool"""
 
 CORNER_SLICES = 6
 FLANK_SLICES = 4
-MOST_LEVELS = 8
-"""heights that a flat cutter tells apart"""
-
-BLURRED_SLICES = 4
-"""that divide its depth where there are more"""
 
 FORGETTING = 32_768
 """moves whose outline is remembered"""
@@ -52,13 +54,8 @@ FORGETTING = 32_768
 TRACE = 1e-3
 """rad of contact below which there is none"""
 
-NEAR = 8
-"""samples from a solid one within which a free one asks for the outline that freed it"""
-
 RECENT = 3
 """last moves, whose outlines count whether the map names them or not"""
-
-MOST_CANDIDATES = 96
 
 
 class Past(NamedTuple):
@@ -70,46 +67,6 @@ class Past(NamedTuple):
     """(1,) number of the next move"""
     last: Floats
     """(3,) mm, where the tool cut last; NaN: elsewhere"""
-
-
-class Room(NamedTuple):
-    """Room for the work of one station."""
-
-    arcs: Intervals
-    total: Intervals
-    heights: Floats
-    """(S,) mm, of the ring"""
-    owner: Ints
-    """(S,)"""
-    solid: Ints
-    """(S,) samples from there to the next that is solid"""
-    bounds: Floats
-    """(MOST_LEVELS + 2,) mm between slices"""
-    candidates: Ints
-    """(MOST_CANDIDATES,)"""
-
-
-class Tool(NamedTuple):
-    """A cutter as the rim sees it."""
-
-    profile: Profile
-    sine: float
-    """sin κ of the flank"""
-    side: float
-    """1: turns clockwise"""
-
-
-class Pose(NamedTuple):
-    """Where the tip is and where it goes."""
-
-    x: float
-    y: float
-    z: float
-    ahead_x: float
-    ahead_y: float
-    """unit vector of the feed in the plane"""
-    climb: float
-    """rise per mm in the plane"""
 
 
 AREA, DEPTH, ENTRY, EXIT, CONTACT, CHIP, DIAMETER, EXACT = range(8)
@@ -140,14 +97,14 @@ def look(grid: Grid, before: Past, tool: Tool, pose: Pose, into: Floats) -> None
     into[:] = 0.0
     into[EXACT] = 1.0
     profile = tool.profile
-    work = _room(SAMPLES if is_plain(profile) else ROUND_SAMPLES)
+    work = room_for(SAMPLES if is_plain(profile) else ROUND_SAMPLES)
     plain, is_known = is_plain(profile), True
     gap = max(grid.dx, grid.dy)
     base = max(pose.z, grid.bottom)
     if plain:
-        circle = _circle(pose, profile.radius, tool.side)
-        _read(grid, work, circle, gap)
-        slices = _levels(work, base)
+        circle = circle_of(pose, profile.radius, tool.side)
+        read_ring(grid, work, circle, gap)
+        slices = levels(work, base)
         is_known = slices >= 0
         slices = abs(slices)
     else:
@@ -158,9 +115,9 @@ def look(grid: Grid, before: Past, tool: Tool, pose: Pose, into: Floats) -> None
         low, high = work.bounds[index], work.bounds[index + 1]
         middle = 0.5 * (low + high)
         radius = radius_at(profile, middle - pose.z)
-        circle = _circle(pose, radius, tool.side)
+        circle = circle_of(pose, radius, tool.side)
         if not plain:
-            _read(grid, work, circle, gap)
+            read_ring(grid, work, circle, gap)
         found, known = _slice(grid, before, work, circle, middle)
         if not plain and pose.climb > 0.0:
             found = _leading(work, found, profile, middle - pose.z, pose.climb)
@@ -188,102 +145,14 @@ def look(grid: Grid, before: Past, tool: Tool, pose: Pose, into: Floats) -> None
 
 
 @kernel
-def _room(samples: int) -> Room:
-    """Room for the work of one station."""
-    return Room(
-        intervals(),
-        intervals(),
-        np.empty(samples),
-        np.empty(samples, dtype=np.int64),
-        np.empty(samples, dtype=np.int64),
-        np.empty(MOST_LEVELS + 3),
-        np.empty(MOST_CANDIDATES, dtype=np.int64),
-    )
-
-
-@kernel
-def _circle(pose: Pose, radius: float, side: float) -> Circle:
-    """Section of the tool."""
-    return Circle(pose.x, pose.y, radius, pose.ahead_x, pose.ahead_y, side)
-
-
-@kernel
-def _read(grid: Grid, work: Room, circle: Circle, gap: float) -> None:
-    """Heights and owners on the front half of a ring outside a circle."""
-    samples = len(work.heights)
-    radius = circle.radius + gap
-    step = pi / samples
-    turn_cos, turn_sin = cos(step), sin(step)
-    across, onward = radius * cos(0.5 * step) * circle.side, radius * sin(0.5 * step)
-    turn_sin *= circle.side
-    columns, rows = grid.heights.shape
-    for index in range(samples):
-        x = circle.x + onward * circle.ahead_x - across * circle.ahead_y
-        y = circle.y + onward * circle.ahead_y + across * circle.ahead_x
-        column, row = floor((x - grid.x) / grid.dx), floor((y - grid.y) / grid.dy)
-        if 0 <= column < columns and 0 <= row < rows:
-            work.heights[index] = grid.heights[column, row]
-            work.owner[index] = grid.owner[column, row]
-        else:
-            work.heights[index] = grid.bottom
-            work.owner[index] = OUTSIDE
-        across, onward = (
-            across * turn_cos - onward * turn_sin,
-            onward * turn_cos + across * turn_sin,
-        )
-
-
-@kernel
-def _height(grid: Grid, circle: Circle, radius: float, angle: float) -> float:
-    """Height of the map at an angle φ and a distance from the axis."""
-    across, onward = circle.side * radius * cos(angle), radius * sin(angle)
-    x = circle.x + onward * circle.ahead_x - across * circle.ahead_y
-    y = circle.y + onward * circle.ahead_y + across * circle.ahead_x
-    column, row = floor((x - grid.x) / grid.dx), floor((y - grid.y) / grid.dy)
-    if 0 <= column < grid.heights.shape[0] and 0 <= row < grid.heights.shape[1]:
-        return float(grid.heights[column, row])
-    return grid.bottom
-
-
-@kernel
-def _levels(work: Room, base: float) -> int:
-    """Slices of a flat cutter: between the heights that its ring meets; negative: blurred."""
-    bounds = work.bounds
-    bounds[0] = base
-    count, top = 0, base
-    for height in work.heights:
-        top = max(top, height)
-        if height <= base + LEAST or count > MOST_LEVELS:
-            continue
-        place = count + 1
-        while bounds[place - 1] > height + LEAST:
-            place -= 1
-        if abs(bounds[place - 1] - height) <= LEAST:
-            continue
-        if count == MOST_LEVELS:
-            count += 1
-            continue
-        for index in range(count, place - 1, -1):
-            bounds[index + 1] = bounds[index]
-        bounds[place] = height
-        count += 1
-    if count > MOST_LEVELS:
-        count = BLURRED_SLICES
-        for index in range(1, count + 1):
-            bounds[index] = base + (top - base) * index / count
-        return -count
-    return count
-
-
-@kernel
 def _slices(grid: Grid, work: Room, tool: Tool, pose: Pose, base: float) -> int:
     """Slices of a rounded tool: up to the highest place that it touches ahead."""
     profile, gap = tool.profile, max(grid.dx, grid.dy)
     step, top = pi / ROUND_SAMPLES, base
     for third in range(1, 4):
         radius = profile.radius * third / 3.0
-        circle = _circle(pose, radius, tool.side)
-        _read(grid, work, circle, gap)
+        circle = circle_of(pose, radius, tool.side)
+        read_ring(grid, work, circle, gap)
         reach = pose.z + rise(profile, radius) - LEAST
         for index in range(ROUND_SAMPLES):
             height = work.heights[index]
@@ -292,7 +161,7 @@ def _slices(grid: Grid, work: Room, tool: Tool, pose: Pose, base: float) -> int:
             # What is lower than the tool there may go on to where the tool comes as low.
             nearer = radius_at(profile, height - pose.z) + gap
             if height > reach or (
-                _height(grid, circle, nearer, (index + 0.5) * step) > height - LEAST
+                height_at(grid, circle, nearer, (index + 0.5) * step) > height - LEAST
             ):
                 top = height
     if top <= base:

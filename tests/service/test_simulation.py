@@ -53,6 +53,15 @@ def turned() -> Simulation:
     return simulate(SimulationRequest(file=SHAFT, machine="lathe22"))
 
 
+@pytest.fixture(scope="module")
+def face(part: Path) -> Path:
+    """The shaft faced."""
+    path = part.with_name("face.stpnc")
+    text = SHAFT.read_text(encoding="ascii").replace("WORKPLAN',(#3,#4)", "WORKPLAN',(#10)")
+    path.write_text(text, encoding="ascii")
+    return path
+
+
 def posted(file: Path, control: Control, folder: Path) -> CodeRequest:
     """NC code of a program."""
     code = folder / f"code{control.suffix}"
@@ -135,14 +144,11 @@ def times_and_power(path: Path) -> tuple[np.ndarray, np.ndarray]:
 
 @pytest.mark.parametrize("rate", [1.0, 10.0, 10_000.0])
 def test_samples_come_at_their_rate_and_change_no_total(
-    turned: Simulation, tmp_path: Path, rate: float
+    face: Path, tmp_path: Path, rate: float
 ) -> None:
     path = tmp_path / "run.parquet"
-    short = tmp_path / "face.stpnc"
-    text = SHAFT.read_text(encoding="ascii").replace("WORKPLAN',(#3,#4)", "WORKPLAN',(#10)")
-    short.write_text(text, encoding="ascii")
-    run = simulate(SimulationRequest(file=short, machine="lathe22", rate=rate, output=path))
-    idle = simulate(SimulationRequest(file=short, machine="lathe22"))
+    run = simulate(SimulationRequest(file=face, machine="lathe22", rate=rate, output=path))
+    idle = simulate(SimulationRequest(file=face, machine="lathe22"))
     times, power = times_and_power(path)
     assert run.whole == idle.whole
     assert run.samples == len(times)
@@ -155,12 +161,12 @@ def test_samples_come_at_their_rate_and_change_no_total(
 
 
 @pytest.mark.parametrize("noise", ["normal", "uniform"])
-def test_a_seed_is_a_run_to_the_byte(tmp_path: Path, noise: str) -> None:
+def test_a_seed_is_a_run_to_the_byte(face: Path, tmp_path: Path, noise: str) -> None:
     def written(seed: int, name: str) -> bytes:
         path = tmp_path / name
         simulate(
             SimulationRequest(
-                file=SHAFT, machine="lathe22", noise=noise, missing=0.1, has_lag=True,
+                file=face, machine="lathe22", noise=noise, missing=0.1, has_lag=True,
                 rate=2.0, seed=seed, output=path,
             )
         )  # fmt: skip
@@ -170,10 +176,10 @@ def test_a_seed_is_a_run_to_the_byte(tmp_path: Path, noise: str) -> None:
         assert written(1, f"a{suffix}") == written(1, f"b{suffix}") != written(2, f"c{suffix}")
 
 
-def test_missing_samples_are_empty(tmp_path: Path) -> None:
+def test_missing_samples_are_empty(face: Path, tmp_path: Path) -> None:
     path = tmp_path / "run.parquet"
     simulate(
-        SimulationRequest(file=SHAFT, machine="lathe22", missing=0.25, rate=5.0, output=path)
+        SimulationRequest(file=face, machine="lathe22", missing=0.25, rate=5.0, output=path)
     )
     table = parquet.read_table(path)
     share = table["cutting_force"].null_count / table.num_rows

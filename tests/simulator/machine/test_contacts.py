@@ -3,7 +3,7 @@
 import pytest
 
 from simulator.machine.contacts import LEAST_VOLUME, MOST, contacts
-from simulator.removal.engage import Collision
+from simulator.removal.collision import Collision
 from stepnc_model.errors import Severity
 
 

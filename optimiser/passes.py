@@ -1,0 +1,121 @@
+"""The best number of passes, each told by the numbers of its own path.
+
+The closed form takes all passes to be alike; a path in other passes has other ways in and out
+and meets the stock otherwise. So what the closed form proposes is measured, and solved again.
+"""
+
+from dataclasses import dataclass, replace
+
+from optimiser import workingstep as exact
+from optimiser.cut import Cut
+from optimiser.errors import Infeasible
+from optimiser.formulate import Task, problem_of
+from optimiser.limit import LimitName
+from optimiser.limits import Conditions
+from optimiser.problem import Problem
+from optimiser.source import CutSource
+from stepnc_model.program import Workingstep
+
+ROUNDS = 4
+"""greatest number of paths tried for the depth of one workingstep"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Asked:
+    """One workingstep and everything that its advice hangs on besides its cut."""
+
+    step: Workingstep
+    at: Conditions
+    task: Task
+    cuts: CutSource
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Optimum:
+    """A best setting, and what the limits are worth."""
+
+    solution: exact.Solution
+    prices: tuple[tuple[LimitName, float], ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Told:
+    """The best of a number of passes; the cut's numbers are those of the path that results."""
+
+    cut: Cut
+    problem: Problem
+    optimum: Optimum
+
+
+def best_of(cut: Cut, problem: Problem, asked: Asked) -> Told:
+    """The best number of passes, each told by its own path.
+
+    The optimum of what was told last says which number to try next, until it says one that was
+    tried. The programmed number is tried first, so that advice that was taken is given again.
+    """
+    told: dict[int, Told] = {}
+    tried: set[int] = set()
+    passes = problem.programmed.passes
+    while passes not in tried and len(tried) < ROUNDS:
+        tried.add(passes)
+        try:
+            told[passes] = _told(cut, problem, passes, asked)
+            problem = told[passes].problem
+        except Infeasible:
+            if problem.passes[0] == problem.passes[1]:
+                raise
+        try:
+            passes = _optimum(problem, asked.task).solution.setting.passes
+        except Infeasible:
+            if not told:
+                raise
+    cost = exact.cost_function
+    best = min(
+        told.values(),
+        key=lambda each: cost(each.problem, asked.task.mode)(each.optimum.solution.setting),
+        default=None,
+    )
+    if best is None:
+        raise exact.conflict(problem)
+    # What comes next finds the stock as this path leaves it.
+    asked.cuts.at(asked.step, best.cut, best.optimum.solution.setting)
+    return best
+
+
+def _told(cut: Cut, problem: Problem, passes: int, asked: Asked) -> Told:
+    """The best setting in a number of passes: limits first, then the time at that feed."""
+    given, step, task = cut.programmed, asked.step, asked.task
+    depth = given.depth if passes == given.passes else problem.depth_at(passes)
+    cut = asked.cuts.at(step, cut, replace(given, passes=passes, depth=depth))
+    optimum = _with_passes(problem_of(cut, asked.at, task), passes, task)
+    setting = optimum.solution.setting
+    cut = asked.cuts.at(step, cut, setting)
+    problem = problem_of(cut, asked.at, task)
+    again = optimum if task.tool_change else _with_passes(problem, passes, task)
+    if task.tool_change or again.solution.setting != setting:
+        again = replace(optimum, solution=exact.settled(problem, setting))
+    return Told(cut=cut, problem=problem, optimum=again)
+
+
+def _with_passes(problem: Problem, passes: int, task: Task) -> Optimum:
+    """The optimum in a number of passes."""
+    free = _optimum(problem, task)
+    given = problem.programmed
+    if free.solution.setting.passes == passes:
+        return free
+    if passes != given.passes:
+        given = replace(given, passes=passes, depth=problem.depth_at(passes))
+    return _optimum(replace(problem, passes=(passes, passes), programmed=given), task)
+
+
+def _optimum(problem: Problem, task: Task) -> Optimum:
+    """The exact optimum, or that of the geometric program when tools wear out."""
+    if task.tool_change == 0.0:
+        return Optimum(solution=exact.solve(problem, task.mode))
+    from optimiser import program as general  # noqa: PLC0415 (cvxpy takes a second)
+
+    found = general.solve(problem, task.mode)
+    return Optimum(
+        solution=exact.settled(problem, general.snapped(problem, found)),
+        prices=tuple((name, price) for name, price in found.prices.items()),
+    )

@@ -1,0 +1,165 @@
+"""A ring of samples of the height map around the front of a cutter, and the room to work on it.
+
+Units mm and rad.
+"""
+
+from math import cos, floor, pi, sin
+from typing import NamedTuple
+
+import numpy as np
+
+from simulator.motion.segments import Floats, Ints
+from simulator.removal.arcs import (
+    Circle,
+    Intervals,
+    intervals,
+)
+from simulator.removal.kernels import kernel
+from simulator.removal.profile import Profile
+from simulator.removal.way import LEAST
+from simulator.removal.zmap import OUTSIDE, Grid
+
+SAMPLES = 128
+"""of the front half of a ring"""
+
+ROUND_SAMPLES = 48
+"""of each ring of a rounded tool"""
+
+MOST_LEVELS = 8
+"""heights that a flat cutter tells apart"""
+
+BLURRED_SLICES = 4
+"""that divide its depth where there are more"""
+
+NEAR = 8
+"""samples from a solid one within which a free one asks for the outline that freed it"""
+
+MOST_CANDIDATES = 96
+
+
+class Room(NamedTuple):
+    """Room for the work of one station."""
+
+    arcs: Intervals
+    total: Intervals
+    heights: Floats
+    """(S,) mm, of the ring"""
+    owner: Ints
+    """(S,)"""
+    solid: Ints
+    """(S,) samples from there to the next that is solid"""
+    bounds: Floats
+    """(MOST_LEVELS + 2,) mm between slices"""
+    candidates: Ints
+    """(MOST_CANDIDATES,)"""
+
+
+class Tool(NamedTuple):
+    """A cutter as the rim sees it."""
+
+    profile: Profile
+    sine: float
+    """sin κ of the flank"""
+    side: float
+    """1: turns clockwise"""
+
+
+class Pose(NamedTuple):
+    """Where the tip is and where it goes."""
+
+    x: float
+    y: float
+    z: float
+    ahead_x: float
+    ahead_y: float
+    """unit vector of the feed in the plane"""
+    climb: float
+    """rise per mm in the plane"""
+
+
+@kernel
+def room_for(samples: int) -> Room:
+    """Room for the work of one station."""
+    return Room(
+        intervals(),
+        intervals(),
+        np.empty(samples),
+        np.empty(samples, dtype=np.int64),
+        np.empty(samples, dtype=np.int64),
+        np.empty(MOST_LEVELS + 3),
+        np.empty(MOST_CANDIDATES, dtype=np.int64),
+    )
+
+
+@kernel
+def circle_of(pose: Pose, radius: float, side: float) -> Circle:
+    """Section of the tool."""
+    return Circle(pose.x, pose.y, radius, pose.ahead_x, pose.ahead_y, side)
+
+
+@kernel
+def read_ring(grid: Grid, work: Room, circle: Circle, gap: float) -> None:
+    """Heights and owners on the front half of a ring outside a circle."""
+    samples = len(work.heights)
+    radius = circle.radius + gap
+    step = pi / samples
+    turn_cos, turn_sin = cos(step), sin(step)
+    across, onward = radius * cos(0.5 * step) * circle.side, radius * sin(0.5 * step)
+    turn_sin *= circle.side
+    columns, rows = grid.heights.shape
+    for index in range(samples):
+        x = circle.x + onward * circle.ahead_x - across * circle.ahead_y
+        y = circle.y + onward * circle.ahead_y + across * circle.ahead_x
+        column, row = floor((x - grid.x) / grid.dx), floor((y - grid.y) / grid.dy)
+        if 0 <= column < columns and 0 <= row < rows:
+            work.heights[index] = grid.heights[column, row]
+            work.owner[index] = grid.owner[column, row]
+        else:
+            work.heights[index] = grid.bottom
+            work.owner[index] = OUTSIDE
+        across, onward = (
+            across * turn_cos - onward * turn_sin,
+            onward * turn_cos + across * turn_sin,
+        )
+
+
+@kernel
+def height_at(grid: Grid, circle: Circle, radius: float, angle: float) -> float:
+    """Height of the map at an angle φ and a distance from the axis."""
+    across, onward = circle.side * radius * cos(angle), radius * sin(angle)
+    x = circle.x + onward * circle.ahead_x - across * circle.ahead_y
+    y = circle.y + onward * circle.ahead_y + across * circle.ahead_x
+    column, row = floor((x - grid.x) / grid.dx), floor((y - grid.y) / grid.dy)
+    if 0 <= column < grid.heights.shape[0] and 0 <= row < grid.heights.shape[1]:
+        return float(grid.heights[column, row])
+    return grid.bottom
+
+
+@kernel
+def levels(work: Room, base: float) -> int:
+    """Slices of a flat cutter: between the heights that its ring meets; negative: blurred."""
+    bounds = work.bounds
+    bounds[0] = base
+    count, top = 0, base
+    for height in work.heights:
+        top = max(top, height)
+        if height <= base + LEAST or count > MOST_LEVELS:
+            continue
+        place = count + 1
+        while bounds[place - 1] > height + LEAST:
+            place -= 1
+        if abs(bounds[place - 1] - height) <= LEAST:
+            continue
+        if count == MOST_LEVELS:
+            count += 1
+            continue
+        for index in range(count, place - 1, -1):
+            bounds[index + 1] = bounds[index]
+        bounds[place] = height
+        count += 1
+    if count > MOST_LEVELS:
+        count = BLURRED_SLICES
+        for index in range(1, count + 1):
+            bounds[index] = base + (top - base) * index / count
+        return -count
+    return count

@@ -1,0 +1,433 @@
+"""Rude programs, files, numbers and disks for ``simulate``.
+
+Whatever is wrong: exit code 3 and one line that says what and where. What was simulated before
+a fault in the middle of a program stays readable beside the output, under another name.
+"""
+
+import os
+import re
+import resource
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from pyarrow import csv, parquet
+
+from service.cli import main
+from service.simulation import SimulationRequest, simulate
+from service.simulation_setup import CodeRequest
+from stepnc_model.errors import StepNcError, WriteError
+
+PARTS = Path(__file__).parents[2] / "examples" / "parts"
+
+BAD_INPUT, LIMIT_EXCEEDED, INTERRUPTED = 3, 5, 130
+
+START = "G17 G21 G40 G49 G54 G80 G90 G94\nT1 M6\nS3000 M3\nG0 X-20 Y10 Z5\nZ-2\n"
+CUT = "G1 X120 F300\n"
+END = "G0 Z5\nM30\n"
+
+TABLE = '[[tool]]\nnumber = 1\nkind = "endmill"\ndiameter_mm = 10\nteeth = 4\n'
+STOCK = "0,0,-20,100,50,0"
+
+# A shell that starts the tests in the background lets them ignore interrupts.
+STEPNC = [
+    sys.executable,
+    "-c",
+    "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+    "from service.cli import main; main()",
+]
+
+Refused = Callable[..., str]
+
+
+@pytest.fixture
+def code(tmp_path: Path) -> Path:
+    """A slot across a block, in a folder of its own with its tool table."""
+    path = tmp_path / "slot.ngc"
+    path.write_text(START + CUT + END, encoding="ascii")
+    path.with_name("tools.toml").write_text(TABLE, encoding="ascii")
+    return path
+
+
+def alone(code: Path, **changed: str) -> list[str]:
+    """Options that simulate code without a program; None takes one away."""
+    options = {
+        "nc": str(code),
+        "machine": "vmc15",
+        "material": "c45",
+        "tools": str(code.with_name("tools.toml")),
+        "stock": STOCK,
+        **changed,
+    }
+    return ["simulate", *(f"--{name}={value}" for name, value in options.items() if value)]
+
+
+@pytest.fixture
+def refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Refused:
+    """Run a command that must refuse in one line and leave no file; that line."""
+
+    def run(*words: object) -> str:
+        before = sorted(tmp_path.iterdir())
+        with pytest.raises(SystemExit) as stopped:
+            main(list(map(str, words)))
+        out, told = capsys.readouterr()
+        assert stopped.value.code == BAD_INPUT, told
+        assert sorted(tmp_path.iterdir()) == before
+        assert not out
+        *_, last = told.splitlines()
+        assert last.startswith("error: ")
+        assert "Traceback" not in told
+        assert not re.search(r"\b(None|[A-Z]\w+Error)\b", last)
+        return last
+
+    return run
+
+
+# ------------------------------------------------------------------ NC code
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "slot.ngc: there is nothing in it that takes time"),
+        ("(a remark)\n", "nothing in it that takes time"),
+        ("M30\n", "nothing in it that takes time"),
+        ("hello world\n", "slot.ngc: line 1: 'hello world': no word of NC code"),
+        (START + "G1 X1 Q5 F100\n", "line 6: word Q5: nothing in this block uses it"),
+        (START + "G199 X1\n", "line 6: word G199: not known on this mill"),
+        (START + "#1=5\n", "line 6: '#1=5': no word of NC code"),
+        (START + "G1 X120\n", "line 6: a motion at feed without F"),
+        (START + "G1 X120 F0\n", "line 6: a motion at feed without F"),
+        (START + "G1 X120 F-5\n", "line 6: word F-5: must not be negative"),
+        (START + f"G1 X120 F{'9' * 400}\n", "line 6: word F99"),
+        (START + "G1 X120 F0.000000001\n", "line 6: 8.4e+12 s of machining: 1e+07 s at most"),
+        (START + f"G1 X{'9' * 40} F100\n", "line 6: word X99"),
+        (START + "G2 X0 Y10 I3 J0 F100\n", "line 6: no arc: its radii are 3.0000 and 17.0000"),
+        (START + "G2 X0 Y10 I0 J0 F100\n", "line 6: no arc"),
+        (START + "G2 X0 Y10 R2 F100\n", "line 6: no arc"),
+        (START + "G4 P-1\n", "line 6: word P-1: must not be negative"),
+        (START + "G4 P999999999\n", "line 6: 1e+09 s of machining: 1e+07 s at most"),
+        (START.replace("S3000", "S-1"), "line 3: word S-1: must not be negative"),
+        (START.replace("T1 M6", "T9 M6"), "line 2: no tool T9 in the table; known: T1"),
+        (START.replace("T1 M6", "T0 M6"), "line 2: word T0: must be a whole number above 0"),
+        (START.replace("S3000 M3", "G95") + "G1 X9 F.1\n", "line 6: feed 0.1 mm/rev: the sp"),
+        ("G20\n", "line 1: word G20: not known on this mill"),
+        ("\0\1\2", "line 1: "),
+    ],
+)
+def test_code_that_cannot_be_run_is_refused_with_its_line(
+    code: Path, refused: Refused, text: str, words: str
+) -> None:
+    code.write_text(text, encoding="ascii")
+    assert words in refused(*alone(code))
+
+
+def test_a_move_off_the_travel_leaves_what_came_before_it(
+    code: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    code.write_text(START + CUT + "G4 P5\nG0 X2000\n", encoding="ascii")
+    with pytest.raises(SystemExit) as stopped:
+        main([*alone(code), "-o", str(code.with_name("run.csv"))])
+    assert stopped.value.code == BAD_INPUT
+    *_, written, last = capsys.readouterr().err.splitlines()
+    assert last == (
+        f"error: slot.ngc: line 8: X = 2000 mm is off the travel of the axis, -350 to 450 mm "
+        "in the program's coordinates"
+    )
+    partial = code.with_name("run.partial.csv")
+    rows = csv.read_csv(partial).num_rows
+    assert rows > 300
+    assert written == f"written: {partial} ({rows} samples)"
+    assert not code.with_name("run.csv").exists()
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        START + CUT,
+        START + CUT + "M30\nG1 X9 Q1 F\n",
+        START.replace("T1 M6\n", "") + CUT + END,
+        START.replace("S3000 M3\n", "") + CUT + END,
+        START.replace("S3000", "S99999999") + CUT + END,
+        START + "G1 X-20 F300\n" + "G1 X-19.9999\nX-20\n" * 20 + END,
+        START + "G3 X-20 Y10 I0 J0.0001 F100\n" + END,
+        START + "G0 X50\n" + END,
+    ],
+    ids=["no end", "after the end", "no tool", "no spindle", "fast", "tiny", "arc", "rapid"],
+)
+def test_code_that_is_only_strange_is_run(code: Path, text: str) -> None:
+    code.write_text(text, encoding="ascii")
+    with pytest.raises(SystemExit) as stopped:
+        main([*alone(code), "--json"])
+    assert stopped.value.code in {0, LIMIT_EXCEEDED}
+
+
+def test_cutting_with_a_standing_spindle_is_said(code: Path) -> None:
+    code.write_text(START.replace("S3000 M3\n", "") + CUT + END, encoding="ascii")
+    request = CodeRequest(code=code, tools=code.with_name("tools.toml"), stock=STOCK)
+    run = simulate(SimulationRequest(code=request, machine="vmc15", material="c45"))
+    assert "warning: line 5: cuts while the spindle stands" in "\n".join(map(str, run.findings))
+    assert run.whole.force.value == 0.0
+    assert run.whole.volume > 0.0
+
+
+# ------------------------------------------------------------------ numbers and names
+
+
+@pytest.mark.parametrize(
+    ("changed", "words"),
+    [
+        ({"rate": "0"}, "rate 0 Hz: it must be 1 to 10000 Hz"),
+        ({"rate": "-10"}, "rate -10 Hz"),
+        ({"rate": "nan"}, "rate nan Hz"),
+        ({"rate": "inf"}, "rate inf Hz"),
+        ({"seed": "-1"}, "seed -1: it must be at least 0"),
+        ({"missing": "1"}, "missing 1: it must be at least 0 and below 1"),
+        ({"missing": "nan"}, "missing nan"),
+        ({"deviation-mm": "inf"}, "deviation inf mm: it must be above 0, at most 10 mm"),
+        ({"filter-s": "1e-300,1e-300"}, "filter times 1e-300 and 1e-300 s: 1e-06 to 100 s"),
+        ({"filter-s": "1"}, "filter times '1': 2 numbers with commas between them"),
+        ({"zero": "nan,0,0"}, "zero 'nan,0,0': 3 numbers with commas between them"),
+        ({"zero": "100,100,600"}, "line 4: Z = 5 mm is off the travel of the axis, -600 to"),
+        ({"runout-um": "5"}, "--force tooth"),
+        ({"runout-um": "-5", "force": "tooth"}, "runout -5 µm: it must be 0 to 500 µm"),
+        ({"force": "x"}, "unknown force 'x'; known: mean, tooth"),
+        ({"noise": "x"}, "unknown noise 'x'; known: none, normal, uniform"),
+        ({"control": "x"}, "unknown control 'x'; known: exact-stop, junction, fir"),
+        ({"dialect": "x"}, "unknown dialect 'x'; known: canonical, linuxcnc"),
+        ({"dialect": "canonical"}, "canonical commands are no NC code"),
+        ({"machine": "x"}, "unknown machine 'x'; known: lathe22"),
+        ({"machine": ""}, "name a machine with --machine"),
+        ({"machine": "paper002"}, "'paper002' says nothing of its axes X, Y, Z: it cannot be"),
+        ({"machine": "lathe22"}, "line 4: word Y10: nothing in this block uses it"),
+        ({"material": "x"}, "unknown material 'x'; near names:"),
+        ({"material": ""}, "a tool table without a material: name one with --material"),
+        ({"stock": "text"}, "stock 'text': 3 or 6 numbers with commas between them"),
+        ({"stock": "1,2,3,4"}, "stock '1,2,3,4': 3 or 6 numbers"),
+        ({"stock": "nan,0,0,1,1,1"}, "stock 'nan,0,0,1,1,1': 3 or 6 numbers"),
+        ({"stock": "0,0,0,0,0,0"}, "x from 0 to 0 mm: at least 0.01 mm between them"),
+        ({"stock": "0,0,0,1,-1,1"}, "y from 0 to -1 mm: at least 0.01 mm between them"),
+        ({"stock": "0,0,0,1,1,1e6"}, "z from 0 to 1e+06 mm: at least 0.01 mm between them"),
+        ({"stock": "-10,0,20"}, "x from 5 to -5 mm"),
+    ],
+)
+def test_a_number_or_name_that_cannot_be_is_refused(
+    code: Path, refused: Refused, changed: dict[str, str], words: str
+) -> None:
+    assert words in refused(*alone(code, **changed))
+
+
+def test_a_huge_stock_takes_no_more_memory(code: Path) -> None:
+    with pytest.raises(SystemExit) as stopped:
+        main([*alone(code, stock="-1e5,-1e5,-1e5,1e5,1e5,0"), "--json"])
+    assert stopped.value.code in {0, LIMIT_EXCEEDED}
+
+
+@pytest.mark.parametrize(
+    ("table", "words"),
+    [
+        ("", "has no [[tool]]"),
+        ("tool = [1", "is no TOML"),
+        (TABLE + TABLE, "tool[1].number: T1 is there twice"),
+        (TABLE.replace("diameter_mm", "diametermm"), "tool[1].diameter_mm: missing"),
+        (TABLE + "colour = 1\n", "tool[1].colour"),
+        (TABLE.replace("= 10", "= -10"), "tool[1].diameter_mm: -10 mm is below 0.01 mm"),
+        (TABLE.replace("= 10", "= nan"), "tool[1].diameter_mm: nan is no finite number"),
+        (TABLE.replace("= 10", '= "ten"'), "tool[1].diameter_mm"),
+        (TABLE.replace("endmill", "axe"), "tool[1].kind"),
+        (
+            '[[tool]]\nnumber = 1\nkind = "turning"\n',
+            "line 5: T1 turning T1 turns, and the mac",
+        ),
+    ],
+)
+def test_a_tool_table_that_cannot_be_used_is_refused(
+    code: Path, refused: Refused, table: str, words: str
+) -> None:
+    code.with_name("tools.toml").write_text(table, encoding="ascii")
+    assert words in refused(*alone(code))
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ([], "name a STEP-NC program, or NC code with --nc"),
+        ([PARTS / "shaft.stpnc", "--tools", "x"], "are for NC code: name it with --nc"),
+        (["nowhere"], "nowhere: No such file or directory"),
+        ([PARTS], "Is a directory"),
+        ([PARTS / "paper002.stpnc", "--machine", "paper002"], "nothing of its axes"),
+        (
+            [PARTS / "shaft.stpnc", "--machine", "vmc15"],
+            "shaft.stpnc: workingstep 'ROUGH FACE': line 13: T1 ROUGHING TOOL, CARBIDE P25 "
+            "turns, and the machine is a mill",
+        ),
+        ([PARTS / "bracket.stpnc", "--machine", "lathe22"], "X = -39.5 mm is off the travel"),
+        (
+            [PARTS / "bracket.stpnc", "--nc", "x.ngc", "--stock", STOCK],
+            "tools and stock are those of the program",
+        ),
+    ],
+)
+def test_programs_and_options_that_do_not_go_together_are_refused(
+    refused: Refused, words: list[object], message: str
+) -> None:
+    assert message in refused("simulate", *words)
+
+
+# ------------------------------------------------------------------ files and disks
+
+
+def test_code_that_cannot_be_read_is_refused(code: Path, refused: Refused) -> None:
+    junk = code.with_name("junk.ngc")
+    junk.write_bytes(bytes(range(256)) * 20)
+    assert "junk.ngc: line 1: " in refused(*alone(code, nc=str(junk)))
+    assert "nowhere.ngc: No such file" in refused(*alone(code, nc="nowhere.ngc"))
+    assert "Is a directory" in refused(*alone(code, nc=str(code.parent)), "--dialect=fanuc")
+    assert "name its dialect with --dialect" in refused(*alone(code, nc=str(PARTS)))
+    assert "is no file name" in refused(*alone(code, nc="a\0.ngc"))
+
+
+@pytest.mark.parametrize(
+    ("output", "words"),
+    [
+        ("run.txt", "a run is written as .parquet or .csv"),
+        ("run", "a run is written as .parquet or .csv"),
+        ("/dev/full", "a run is written as .parquet or .csv"),
+        ("link.csv", "name another file"),
+        ("nowhere/run.csv", "the folder does not exist"),
+        ("/dev/full/run.csv", "the folder does not exist"),
+        ("folder.csv", "is no regular file"),
+        ("full.csv", "is no regular file"),
+        ("n" * 300 + ".csv", "File name too long"),
+        ("a\0.csv", "is no file name"),
+        ("/proc/run.csv", "No such file or directory"),
+    ],
+)
+def test_an_output_that_cannot_be_is_refused(
+    code: Path, refused: Refused, output: str, words: str
+) -> None:
+    code.with_name("link.csv").symlink_to(code)
+    code.with_name("full.csv").symlink_to("/dev/full")
+    code.with_name("folder.csv").mkdir()
+    assert words in refused(*alone(code), "-o", code.parent / output)
+
+
+@pytest.mark.parametrize("report", ["slot.ngc", "tools.toml", "run.csv"])
+def test_a_report_onto_another_file_of_the_run_is_refused(
+    code: Path, refused: Refused, report: str
+) -> None:
+    output = code.with_name("run.csv")
+    told = refused(*alone(code), "-o", output, "--report", code.with_name(report))
+    assert "name another file" in told
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".parquet"])
+def test_a_disk_that_fills_leaves_the_old_run(code: Path, suffix: str) -> None:
+    path = code.with_name(f"run{suffix}")
+    path.write_text("old", encoding="ascii")
+    before = sorted(code.parent.iterdir())
+    tools = code.with_name("tools.toml")
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (5_000, hard))
+    try:
+        with pytest.raises(WriteError, match=f"run{suffix}: .*too large"):
+            simulate(
+                SimulationRequest(
+                    code=CodeRequest(code=code, tools=tools, stock=STOCK),
+                    machine="vmc15",
+                    material="c45",
+                    rate=1_000.0,
+                    output=path,
+                )
+            )
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    assert path.read_text(encoding="ascii") == "old"
+    assert sorted(code.parent.iterdir()) == before
+
+
+def long_program(path: Path, moves: int) -> None:
+    """Code of many short moves, and a long wait after each thousand."""
+    lines = (
+        f"X{10.0 + number % 100 * 0.8:.1f} Y{10.0 + number // 100 % 50 * 0.5:.1f}\n"
+        + ("G4 P900\nG1\n" if number % 1_000 == 999 else "")
+        for number in range(moves)
+    )
+    text = START + "G1 F3000\n"
+    path.write_text(text + "".join(lines) + END, encoding="ascii")
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".parquet"])
+def test_an_interrupt_leaves_what_there_is(code: Path, suffix: str) -> None:
+    long_program(code, 200_000)
+    path = code.with_name(f"run{suffix}")
+    path.write_text("old", encoding="ascii")
+    words = [*STEPNC, *alone(code, tools="", stock=""), "--rate=1000", "-o", str(path)]
+    with subprocess.Popen(words, stderr=subprocess.PIPE, text=True) as running:
+        assert running.stderr is not None
+        assert re.match(r"\[[#-]+\] +\d+%  \d+ s of machining", running.stderr.readline())
+        running.send_signal(signal.SIGINT)
+        told = running.stderr.read().splitlines()
+        assert running.wait(60) == INTERRUPTED
+    partial = code.with_name(f"run.partial{suffix}")
+    assert told[-1] == "interrupted"
+    assert f"written: {partial} " in told[-2]
+    table = parquet.read_table(partial) if suffix == ".parquet" else csv.read_csv(partial)
+    assert f"({table.num_rows} samples)" in told[-2]
+    assert path.read_text(encoding="ascii") == "old"
+    assert {each.name for each in code.parent.iterdir()} == {
+        "slot.ngc", "tools.toml", path.name, partial.name,
+    }  # fmt: skip
+
+
+PEAK = """
+import sys
+from service.cli import main
+try:
+    main()
+except SystemExit as stopped:
+    assert not stopped.code, stopped.code
+from pathlib import Path
+print(next(line for line in Path("/proc/self/status").read_text().splitlines()
+           if line.startswith("VmHWM")).split()[1], file=sys.stderr)
+"""
+
+
+@pytest.mark.skipif(not os.path.exists("/proc/self/status"), reason="no /proc")
+def test_memory_does_not_grow_with_the_program(code: Path) -> None:
+    def peak(moves: int) -> float:
+        long_program(code, moves)
+        words = [*alone(code, tools="", stock=""), "--control=junction", "--json"]
+        output = str(code.with_name("run.parquet"))
+        done = subprocess.run(
+            [sys.executable, "-c", PEAK, *words, "-o", output],
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        return float(done.stderr.splitlines()[-1]) / 1024.0
+
+    assert peak(100_000) < peak(20_000) + 60.0
+
+
+@pytest.mark.parametrize("moves", [100_000])
+def test_many_moves_without_a_pause_are_run(code: Path, moves: int) -> None:
+    code.write_text(START + "G1 F3000\n" + "X0\nX0.1\n" * (moves // 2) + END, encoding="ascii")
+    request = SimulationRequest(code=CodeRequest(code=code), machine="vmc15")
+    run = simulate(request)
+    assert run.whole.duration > moves * 0.1 / 50.0
+
+
+def test_errors_are_of_the_project(code: Path) -> None:
+    code.write_text(START.replace("T1", "T9"), encoding="ascii")
+    tools = code.with_name("tools.toml")
+    with pytest.raises(StepNcError) as caught:
+        simulate(
+            SimulationRequest(
+                code=CodeRequest(code=code, tools=tools), machine="vmc15", material="c45"
+            )
+        )
+    assert caught.value.__cause__.__class__.__name__ == "UnknownTool"
