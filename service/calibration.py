@@ -8,7 +8,9 @@ from service.reading import Tell, silent
 from service.simulation import SimulationRequest, virtual_machine
 from service.simulation_setup import CodeRequest
 from simulator.calibration.calibrated import calibrated, notes, priors
-from simulator.calibration.fit import Calibration, fitted
+from simulator.calibration.delay import Delay, fitted_delay
+from simulator.calibration.estimates import Calibration
+from simulator.calibration.fit import fitted
 from simulator.calibration.held_out import HeldOut, held_out
 from simulator.calibration.measured_run import MeasuredRun, read_run
 from simulator.calibration.simulated import features
@@ -59,6 +61,8 @@ class CalibrationResult:
     machine: Machine
     """as calibrated"""
     calibration: Calibration
+    delay: Delay
+    """of the main drive"""
     held_out: tuple[HeldOut, ...]
     times: tuple[CycleTime, ...]
     findings: tuple[Finding, ...]
@@ -85,14 +89,16 @@ def calibrate(request: CalibrationRequest, *, tell: Tell = silent) -> Calibratio
     before = priors(machine)
     calibration = fitted(known, before, efficiency=efficiency)
     errors = held_out(known, before, efficiency=efficiency)
-    found = calibrated(machine, calibration)
+    delay = fitted_delay(known, calibration, efficiency=efficiency)
+    found = calibrated(machine, calibration, delay)
     if request.output is not None:
-        text = machine_toml(found, notes=(_origin(runs), *notes(calibration)))
+        text = machine_toml(found, notes=(_origin(runs), *notes(calibration, delay)))
         write_atomically(request.output, text.encode())
         tell(f"machine file: {request.output}")
     return CalibrationResult(
         machine=found,
         calibration=calibration,
+        delay=delay,
         held_out=errors,
         times=tuple(_time(run, samples) for run in runs),
         findings=tuple(finding for run in runs for finding in run.findings),

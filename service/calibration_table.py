@@ -2,7 +2,8 @@
 
 from service.calibration import CalibrationResult
 from service.tables import print_findings, print_line, print_table
-from simulator.calibration.fit import Estimate
+from simulator.calibration.delay import Delay
+from simulator.calibration.estimates import Estimate
 from simulator.calibration.skill import Skill
 
 
@@ -10,6 +11,7 @@ def print_calibration(result: CalibrationResult) -> None:
     """Parameters, cycle times, and errors on what was not fitted beside the baseline's."""
     print_line(f"machine {result.machine.name} ({result.machine.title})")
     rows = [_estimate_row(each) for each in result.calibration.estimates]
+    rows.append(_delay_row(result.delay))
     print_table(("parameter", "value", "95 % interval", "identified"), rows)
     print_line("")
     rows = [
@@ -37,6 +39,13 @@ def _estimate_row(each: Estimate) -> tuple[str, str, str, str]:
     if not each.is_identified:
         return each.parameter.value, f"{value} kept", "", f"no: {each.reason}"
     return each.parameter.value, value, f"{each.low:.4g} to {each.high:.4g}", "yes"
+
+
+def _delay_row(delay: Delay) -> tuple[str, str, str, str]:
+    span = f"{delay.low:.4g} to {delay.high:.4g}"
+    if delay.reason:
+        return "delay of the main drive", "", span, f"no: {delay.reason}"
+    return "delay of the main drive", f"{delay.value:.4g} s", span, "yes"
 
 
 def _skill_row(skill: Skill) -> tuple[str, ...]:

@@ -137,8 +137,8 @@ def from_code(
         read = read_tool_table(request.tools)
         tools = {tool.number: table_tool(tool, match.material) for tool in read}
     raw = _stock(request.stock) if request.stock else None
-    lines = Counted(open_lines(request.code), len)
-    size = request.code.stat().st_size
+    size = _size(request.code)
+    lines = Counted(_lines(request.code), len)
     stock = None if raw is None or tools is None else stock_map(chosen, raw)
     findings: tuple[Finding, ...] = ()
     if stock is None:
@@ -167,8 +167,8 @@ def _code_of_program(
     used = dict.fromkeys(step.tool_ref for step in program.workingsteps)
     numbers = {ref: number for number, ref in enumerate(used, 1)}
     ids = {_plain(step.id): step.id for step in program.workingsteps}
-    lines = Counted(open_lines(request.code), len)
-    size = request.code.stat().st_size
+    size = _size(request.code)
+    lines = Counted(_lines(request.code), len)
     setup = next((step.setup for step in program.workingsteps), None)
     return Prepared(
         name=request.code.name,
@@ -214,6 +214,21 @@ def _tools(
         number: loaded_tool(program, ref, number, match.material)
         for ref, number in numbers.items()
     }
+
+
+def _size(path: Path) -> int:
+    """Bytes of a file; an error of the project's own when there is none."""
+    try:
+        return path.stat().st_size
+    except OSError as error:
+        raise StepNcError(f"{path}: {error.strerror}") from error
+    except ValueError as error:
+        raise StepNcError(f"{str(path)!r} is no file name: {error}") from error
+
+
+def _lines(path: Path) -> Iterator[str]:
+    """Lines of a file that is not opened before the first is asked for."""
+    yield from open_lines(path)
 
 
 def _read(

@@ -31,6 +31,7 @@ JERK = Range(low=100, high=10_000_000, unit="mm/s³")
 FORCE = Range(low=1, high=10_000_000, unit="N")
 DEPTH = Range(low=0.01, high=1_000, unit="mm")
 BLOCK_TIME = Range(low=1e-5, high=1, unit="s")
+DELAY = Range(low=0, high=10, unit="s")
 TOOL_CHANGE = Range(low=0, high=600, unit="s")
 LEAD = Range(low=0.1, high=500, unit="mm")
 MOVED_MASS = Range(low=0.1, high=200_000, unit="kg")
@@ -89,6 +90,7 @@ def _spindle(table: Table) -> Spindle:
             table, "idle_power_w_per_rev2_s2", IDLE_POWER_PER_SPEED_SQUARED
         ),
         regeneration=_amount(table, "regeneration", REGENERATION),
+        delay=table.optional_number("delay_s", DELAY),
     )
     try:
         curve_segments(spindle)

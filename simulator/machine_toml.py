@@ -90,6 +90,7 @@ def _spindle(spindle: Spindle, source: str) -> list[str]:
         *_number("idle_power_w_per_rev_s", spindle.idle_power_per_speed),
         *_number("idle_power_w_per_rev2_s2", spindle.idle_power_per_speed_squared),
         *_number("regeneration", spindle.regeneration),
+        *_number("delay_s", spindle.delay),
         f"source = {_text(source)}",
     ]
     for point in spindle.curve:

@@ -57,6 +57,8 @@ class Spindle:
     """W per (rev/s)²: viscous friction"""
     regeneration: float = 0.0
     """share of the braking power that returns to the mains; 0: a braking resistor"""
+    delay: float | None = None
+    """s, time constant with which the power follows the cut; ``None``: not known"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from math import pi
 
+from simulator.calibration.delay import Delay
 from simulator.calibration.estimates import Calibration, Estimate, Prior
 from simulator.calibration.features import AXIS_PARAMETERS, Parameter
 from simulator.motion.motion import AXES
@@ -55,7 +56,7 @@ def priors(machine: Machine) -> dict[Parameter, Prior]:
     return known
 
 
-def calibrated(machine: Machine, calibration: Calibration) -> Machine:
+def calibrated(machine: Machine, calibration: Calibration, delay: Delay) -> Machine:
     """The machine with the parameters that were identified; the others stay.
 
     Parameters
@@ -63,6 +64,7 @@ def calibrated(machine: Machine, calibration: Calibration) -> Machine:
     machine : Machine
         Whose :func:`priors` the calibration began with.
     calibration : Calibration
+    delay : Delay
     """
     found = {each.parameter: each for each in calibration.estimates if each.is_identified}
 
@@ -83,14 +85,18 @@ def calibrated(machine: Machine, calibration: Calibration) -> Machine:
                 Parameter.IDLE_PER_SPEED_SQUARED, spindle.idle_power_per_speed_squared
             ),
             inertia=inertia or None,
+            delay=spindle.delay if delay.reason else delay.value,
         ),
         axes=tuple(_axis(axis, found) for axis in machine.axes),
     )
 
 
-def notes(calibration: Calibration) -> tuple[str, ...]:
+def notes(calibration: Calibration, delay: Delay) -> tuple[str, ...]:
     """Lines that say what was found and what was not, for the head of a machine's file."""
-    return tuple(_note(each) for each in calibration.estimates)
+    late = f"delay of the main drive: {delay.value:.4g} s"
+    span = f", 95 % interval {delay.low:.4g} to {delay.high:.4g} s"
+    late = f"delay of the main drive not found: {delay.reason}" if delay.reason else late + span
+    return (*(_note(each) for each in calibration.estimates), late)
 
 
 def _prior(value: float, scale: float) -> Prior:

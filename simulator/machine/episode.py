@@ -80,10 +80,20 @@ class Course:
     @cached_property
     def nodes(self) -> Floats:
         """(K,) times between which all powers are smooth, as far as that is known."""
+        places = np.sort(np.concatenate((self.station_ends, self._arc_places())))
+        return np.unique(np.concatenate((self.motion.knots, self._passed(places))))
+
+    def _passed(self, places: Floats) -> Floats:
+        """Times at which places, ascending along the path in mm, are passed."""
         times, along = self.clock
-        places = [self.station_ends, self._arc_places()]
-        met = np.interp(np.concatenate(places), along, times)
-        return np.unique(np.concatenate((self.motion.knots, met)))
+        guess = np.interp(places, along, times)
+        at = self.motion.at(guess)
+        speed = np.linalg.norm(at.velocity, axis=1)
+        left = places - self.offsets[at.segment] - at.station
+        # One step of Newton: the way is a parabola between the times of the clock.
+        step = np.divide(left, speed, out=np.zeros(len(left)), where=speed > 0.0)
+        row = np.clip(np.searchsorted(along, places), 1, len(along) - 1)
+        return np.maximum.accumulate(np.clip(guess + step, times[row - 1], times[row]))
 
     def _arc_places(self) -> Floats:
         """Mm of path at which the directions of arcs have changed noticeably."""
@@ -108,8 +118,7 @@ class Course:
     @cached_property
     def _cut_clock(self) -> tuple[Floats, Floats]:
         """(M + 1,) times at which stations end, and s with chips until then."""
-        times, along = self.clock
-        ends = np.concatenate(([0.0], np.interp(self.station_ends, along, times)))
+        ends = np.concatenate(([0.0], self._passed(self.station_ends)))
         seconds = np.cumsum(np.diff(ends) * (self.stations.section > 0.0))
         return ends, np.concatenate(([0.0], seconds))
 

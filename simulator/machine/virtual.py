@@ -8,7 +8,7 @@ same machine, same run. Units mm, s, rev/s.
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import copysign, inf
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -46,8 +46,8 @@ Shape = Cutter | Insert
 class StockMap(Protocol):
     """What is left of the stock."""
 
-    def cut(self, segments: Segments, shape: Shape, *, is_clockwise: bool) -> Stations:
-        """Take away what the tool sweeps; what it met."""
+    def cut(self, segments: Segments, shape: Any, /, *, is_clockwise: bool) -> Stations:
+        """Take away what the tool sweeps; what it met. A mill's map knows cutters only."""
         ...
 
 

@@ -10,7 +10,6 @@ References
 """
 
 from dataclasses import dataclass
-
 from math import pi
 
 import numpy as np

@@ -42,9 +42,7 @@ RATES = st.sampled_from([
 BLOCKS = st.one_of(
     st.builds(nc.Rapid, end=POINTS),
     st.builds(nc.Linear, end=POINTS, rate=RATES),
-    st.builds(
-        nc.SpindleOn, speed=st.floats(5.0, 300.0), sense=st.sampled_from(list(nc.Sense))
-    ),
+    st.builds(nc.SpindleOn, speed=st.floats(5.0, 300.0), sense=st.sampled_from(list(nc.Sense))),
     st.builds(nc.Pause, seconds=st.floats(0.0, 2.0)),
     st.builds(nc.ToolChange, number=st.sampled_from([1, 2])),
     st.builds(nc.Retract, z=st.just(20.0)),
@@ -87,7 +85,7 @@ def test_a_run_is_whole(blocks: list[nc.Block], control: Control) -> None:
     for each in fields(Samples):
         assert np.isfinite(getattr(samples, each.name)).all(), each.name
     # Nothing moves faster than it can.
-    assert np.abs(samples.spindle_speed).max() <= MACHINE.spindle.max_speed * (1.0 + 1e-9)
+    assert np.abs(samples.spindle_speed).max() <= 200.0 * (1.0 + 1e-9)
     assert (np.abs(samples.velocity) <= LIMITS.rapid * (1.0 + 1e-9)).all()
     assert (np.diff(samples.workingstep) >= 0).all()
     assert samples.workingstep[-1] == len(virtual.workingsteps)
@@ -95,7 +93,9 @@ def test_a_run_is_whole(blocks: list[nc.Block], control: Control) -> None:
     air = samples.removal_rate == 0.0
     assert not samples.cutting_power[air].any()
     assert (samples.cutting_power[~air] > 0.0).all()
-    assert (samples.spindle_power >= samples.cutting_power).all()
+    # A spindle that brakes lends its own.
+    steady = samples.spindle_speed == samples.spindle_programmed
+    assert (samples.spindle_power >= samples.cutting_power)[steady].all()
 
 
 @settings(max_examples=25, deadline=None)
@@ -153,9 +153,7 @@ def test_exact_stop_removes_what_the_map_loses(blocks: list[nc.Block]) -> None:
 
 @settings(max_examples=10, deadline=None)
 @given(blocks=PROGRAMS, control=CONTROLS, rate=st.sampled_from([1.0, 40.0]))
-def test_same_program_same_bytes(
-    blocks: list[nc.Block], control: Control, rate: float
-) -> None:
+def test_same_program_same_bytes(blocks: list[nc.Block], control: Control, rate: float) -> None:
     one, other = (sampled(run(blocks, control)[1], rate) for _ in range(2))
     for each in fields(Samples):
         assert getattr(one, each.name).tobytes() == getattr(other, each.name).tobytes()

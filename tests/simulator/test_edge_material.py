@@ -23,9 +23,7 @@ from stepnc_model.units import rad_from_deg
         ([], None),
     ],
 )
-def test_edge_material_by_its_words(
-    texts: list[str], material: CuttingMaterial | None
-) -> None:
+def test_edge_material_by_its_words(texts: list[str], material: CuttingMaterial | None) -> None:
     assert edge_material(texts) is material
 
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from simulator.calibration.calibrated import calibrated, notes, priors
+from simulator.calibration.delay import Delay
 from simulator.calibration.estimates import Calibration, Estimate
 from simulator.calibration.features import PARAMETERS, Parameter
 from simulator.library import load_machine
@@ -24,6 +25,9 @@ FOUND = {
     Parameter.VISCOUS_X: 2.0,
     Parameter.MASS_X: 150.0,
 }
+
+NO_DELAY = Delay(value=0.0, low=0.0, high=0.0, reason="shorter than these samples can show")
+DELAY = Delay(value=0.08, low=0.07, high=0.09)
 
 
 def machine() -> Machine:
@@ -48,7 +52,7 @@ def calibration(before: Machine) -> Calibration:
 
 def test_found_values_are_in_the_machine_and_others_stay() -> None:
     before = machine()
-    after = calibrated(before, calibration(before))
+    after = calibrated(before, calibration(before), NO_DELAY)
     assert after.base_power == 900.0
     assert after.coolant_power == before.coolant_power
     assert after.spindle.inertia == 0.03
@@ -65,7 +69,7 @@ def test_found_values_are_in_the_machine_and_others_stay() -> None:
 def test_axis_draws_the_power_that_was_found(drive: AxisDrive | None) -> None:
     before = machine()
     before = replace(before, axes=(replace(before.axes[0], drive=drive), *before.axes[1:]))
-    after = calibrated(before, calibration(before)).axes[0].drive
+    after = calibrated(before, calibration(before), NO_DELAY).axes[0].drive
     assert after is not None
     for velocity, push in ((100.0, 0.0), (-100.0, 0.0), (200.0, 1000.0)):
         expected = (400.0 * abs(velocity) + 2.0 * velocity**2) / 1e3
@@ -94,9 +98,9 @@ def test_priors_are_those_of_the_file() -> None:
 def test_machine_file_reads_back(tmp_path: Path) -> None:
     before = machine()
     found = calibration(before)
-    after = calibrated(before, found)
+    after = calibrated(before, found, DELAY)
     path = tmp_path / "mine.toml"
-    path.write_text(machine_toml(after, notes=notes(found)), encoding="utf-8")
+    path.write_text(machine_toml(after, notes=notes(found, DELAY)), encoding="utf-8")
     again = load_machine(str(path))
     drives = [each.axes[0].drive for each in (after, again)]
     powers = [axis_power(drive, 120.0, 700.0) for drive in drives if drive is not None]

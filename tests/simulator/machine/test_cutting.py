@@ -17,22 +17,34 @@ from simulator.removal.stations import CutKind, Stations, air
 from simulator.spec import Kienzle
 
 STEEL = Kienzle(k_c11=1500.0, m_c=0.22)
-ANGLES = st.tuples(st.floats(0.0, pi), st.floats(0.0, pi)).map(sorted).filter(
-    lambda pair: pair[1] - pair[0] > 0.05
+ANGLES = (
+    st
+    .tuples(st.floats(0.0, pi), st.floats(0.0, pi))
+    .map(sorted)
+    .filter(lambda pair: pair[1] - pair[0] > 0.05)
 )
 
 
 def station(kind: CutKind, **columns: float) -> Stations:
-    names = (
-        "section axial_depth radial_width entry_angle exit_angle contact_angle chip_ratio diameter"
-    ).split()
+    names = [
+        "section",
+        "axial_depth",
+        "radial_width",
+        "entry_angle",
+        "exit_angle",
+        "contact_angle",
+        "chip_ratio",
+        "diameter",
+    ]
     values = {name: np.array([columns.get(name, 0.0)]) for name in names}
     return Stations(
         segment=np.array([0]), station=np.array([1.0]), kind=np.array([int(kind)]), **values
     )
 
 
-def milled(entry: float, exit_: float, *, diameter: float = 10.0, depth: float = 2.0) -> Stations:
+def milled(
+    entry: float, exit_: float, *, diameter: float = 10.0, depth: float = 2.0
+) -> Stations:
     width = 0.5 * diameter * (cos(entry) - cos(exit_))
     arc = Engagement(entry_angle=entry, exit_angle=exit_)
     return station(
@@ -168,10 +180,15 @@ def test_turning_has_the_force_of_kienzle(
 
 @pytest.mark.parametrize(("speed", "spindle"), [(0.0, 10.0), (5.0, 0.0), (0.0, 0.0)])
 def test_standing_axes_or_spindle_need_no_force(speed: float, spindle: float) -> None:
-    found = loads(
-        milled(0.0, pi), Edge(teeth=4, kienzle=STEEL), speed=speed, spindle=spindle
-    )
-    for name in ("removal_rate", "chip_thickness", "power", "force", "feed_force", "back_force"):
+    found = loads(milled(0.0, pi), Edge(teeth=4, kienzle=STEEL), speed=speed, spindle=spindle)
+    for name in (
+        "removal_rate",
+        "chip_thickness",
+        "power",
+        "force",
+        "feed_force",
+        "back_force",
+    ):
         assert getattr(found, name).tolist() == [0.0]
 
 

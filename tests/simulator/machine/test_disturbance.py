@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import fields
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -33,7 +34,7 @@ def part(samples: Samples, rows: slice) -> Samples:
 def shown(disturbance: Disturbance, samples: Samples, cuts: tuple[int, ...] = ()) -> Samples:
     disturbed = Disturbed(disturbance=disturbance, rate=100.0, efficiency=0.8)
     edges = (0, *sorted(cuts), len(samples))
-    parts = [part(samples, slice(a, b)) for a, b in zip(edges, edges[1:], strict=False)]
+    parts = [part(samples, slice(a, b)) for a, b in pairwise(edges)]
     return joined([disturbed.shown(each) for each in parts])
 
 

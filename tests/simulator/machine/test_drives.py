@@ -23,9 +23,11 @@ def test_an_axis_bears_its_share_of_the_feed_force(mill: Machine) -> None:
     power = axes_power(mill, VELOCITY, ACCELERATION, feed_force=force)
     assert power[0, 0] == pytest.approx(axis_power(drive, 3.0, 30.0, feed_force=60.0))
     assert power[0, 1] == pytest.approx(axis_power(drive, 4.0, 40.0, feed_force=80.0))
-    assert power[1].tolist() == pytest.approx(
-        [0.0, 0.0, axis_power(drive, -10.0, 0.0, feed_force=200.0)]
-    )
+    assert power[1].tolist() == pytest.approx([
+        0.0,
+        0.0,
+        axis_power(drive, -10.0, 0.0, feed_force=200.0),
+    ])
     assert power[2].tolist() == [0.0, 0.0, 0.0]
 
 

@@ -120,7 +120,14 @@ def test_path_of_one_segment(
 ) -> None:
     path = lines(points, speed=20.0)
     nothing = np.zeros(1)
-    names = "section axial_depth radial_width entry_angle exit_angle contact_angle".split()
+    names = [
+        "section",
+        "axial_depth",
+        "radial_width",
+        "entry_angle",
+        "exit_angle",
+        "contact_angle",
+    ]
     met = Stations(
         segment=np.array([0]),
         station=path.length,

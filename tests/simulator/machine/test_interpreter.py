@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import replace
-from math import dist, pi
+from math import cos, dist, pi, sin
 from pathlib import Path
 
 import numpy as np
@@ -37,6 +37,7 @@ FEED = nc.Rate(value=20.0)
 PER_REVOLUTION = nc.Rate(value=0.2, mode=nc.RateMode.PER_REVOLUTION)
 SURFACE = nc.SurfaceSpeed(speed=3000.0)
 HOME = nc.Rapid(end=(0.0, 0.0, 50.0))
+Blocks = list[nc.Block]
 
 
 def steps(machine: Machine, *blocks: nc.Block) -> list[Step]:
@@ -83,9 +84,7 @@ def seconds(parts: Iterable[Stretch]) -> float:
         (nc.ProgramEnd(), [End()]),
     ],
 )
-def test_first_block_of_a_program(
-    mill: Machine, block: nc.Block, acts: list[object]
-) -> None:
+def test_first_block_of_a_program(mill: Machine, block: nc.Block, acts: list[object]) -> None:
     assert [step.act for step in steps(mill, block)] == acts
 
 
@@ -111,8 +110,8 @@ def test_moves_that_follow_each_other_are_one_stretch(mill: Machine) -> None:
 
 
 def test_only_a_feed_waits_for_the_spindle_and_only_once(mill: Machine) -> None:
-    turn = [nc.SpindleOn(speed=10.0), nc.SpindleOn(speed=10.0), HOME]
-    feeds = [nc.Linear(end=(x, 0.0, 50.0), rate=FEED) for x in (1.0, 2.0)]
+    turn: Blocks = [nc.SpindleOn(speed=10.0), nc.SpindleOn(speed=10.0), HOME]
+    feeds: Blocks = [nc.Linear(end=(x, 0.0, 50.0), rate=FEED) for x in (1.0, 2.0)]
     found = steps(mill, *turn, nc.Rapid(end=(0.0, 0.0, 60.0)), HOME, *feeds)
     assert kinds(found) == [SpindleTo, Stretch, SpindleReached, Stretch]
     stopped = steps(mill, *turn, nc.SpindleOff(), *feeds)
@@ -234,7 +233,7 @@ def facing_time(start: float, end: float, fastest: float) -> float:
 
     bend = 3000.0 / (2.0 * pi * fastest)
     breaks = sorted(x for x in (-bend, bend) if min(start, end) < x < max(start, end))
-    return abs(quad(inverse, start, end, points=breaks or None)[0])
+    return abs(float(quad(inverse, start, end, points=breaks or None)[0]))
 
 
 @pytest.mark.parametrize(
@@ -307,9 +306,9 @@ def test_arc_at_constant_surface_speed_takes_the_integral(lathe: Machine, turn: 
 
     def x(angle: float) -> float:
         # The first axis of ZX is z: the angle counts from it, and x is its sine.
-        return centre + radius * np.sin(angle)
+        return centre + radius * sin(angle)
 
-    end = (x(turn), 0.0, radius * np.cos(turn))
+    end = (x(turn), 0.0, radius * cos(turn))
     found = steps(
         lathe,
         nc.Rapid(end=(centre, 0.0, radius)),
@@ -319,10 +318,9 @@ def test_arc_at_constant_surface_speed_takes_the_integral(lathe: Machine, turn: 
         ),
     )
     (part,) = stretches(found)
-    fastest = 60.0
 
     def time(angle: float) -> float:
-        return radius / (0.2 * min(3000.0 / (2.0 * pi * x(angle)), fastest))
+        return radius / (0.2 * min(3000.0 / (2.0 * pi * x(angle)), 60.0))
 
     assert seconds([part]) == pytest.approx(abs(quad(time, 0.0, turn)[0]), rel=1e-3)
     assert np.abs(np.diff(np.log(np.abs(part.spindle_speed)))).max() <= 1.5 * PIECE
@@ -379,7 +377,7 @@ def test_impossible_feed_names_the_line(
 
 def test_surface_speed_at_the_axis_needs_a_limit(lathe: Machine) -> None:
     endless = replace(lathe, spindle=replace(lathe.spindle, max_speed=None))
-    blocks = [nc.Rapid(end=(10.0, 0.0, 0.0)), SURFACE]
+    blocks: Blocks = [nc.Rapid(end=(10.0, 0.0, 0.0)), SURFACE]
     cut = nc.Linear(end=(5.0, 0.0, 0.0), rate=PER_REVOLUTION)
     assert stretches(steps(endless, *blocks, cut))
     with pytest.raises(ProgramFault, match="line 3: surface speed at the axis"):

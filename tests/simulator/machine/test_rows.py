@@ -48,7 +48,9 @@ def test_pieces_of_an_arc_lie_on_it_and_add_up(
     there: Point = (float(end[0]), float(end[1]), float(end[2]))
     rows = Rows()
     block = Circular(end=there, centre=centre, turn=turn, rate=Rate(value=1.0), plane=plane)
-    rows.arc(begin, block, pieces=pieces, speeds=lambda middle, end: (middle + 20.0, end), line=4)
+    rows.arc(
+        begin, block, pieces=pieces, speeds=lambda middle, end: (middle + 20.0, end), line=4
+    )
     stretch = rows.taken()
     segments = stretch.segments
     assert len(segments) == pieces

@@ -33,9 +33,7 @@ def test_joined_parts_are_the_whole(samples_of: Made, cut: int) -> None:
     random = np.random.default_rng(3)
     whole = samples_of(10, position=random.normal(size=(10, 3)), line=np.arange(10))
     parts = [
-        Samples(**{
-            each.name: getattr(whole, each.name)[rows] for each in fields(Samples)
-        })
+        Samples(**{each.name: getattr(whole, each.name)[rows] for each in fields(Samples)})
         for rows in (slice(cut), slice(cut, None))
     ]
     again = joined(parts)

@@ -1,7 +1,7 @@
 """What the sensors show, at which times."""
 
 from collections.abc import Callable
-from dataclasses import fields
+from dataclasses import fields, replace
 from itertools import accumulate, pairwise
 from math import ceil, pi
 
@@ -107,7 +107,9 @@ def test_least_and_greatest_rate(mill: Machine, rate: float) -> None:
 
 
 def test_a_sample_at_the_edge_belongs_to_the_later_episode(mill: Machine) -> None:
-    samples = taken([still(0.0, 0.1 + 0.2), still(0.1 + 0.2, 1.0, Execution.ACTIVE)], mill, 10.0)
+    samples = taken(
+        [still(0.0, 0.1 + 0.2), still(0.1 + 0.2, 1.0, Execution.ACTIVE)], mill, 10.0
+    )
     assert samples.execution.tolist() == [Execution.WAIT] * 3 + [Execution.ACTIVE] * 7
 
 
@@ -152,9 +154,7 @@ def test_common_times_show_the_same_at_any_rate(
         np.testing.assert_allclose(other, one, rtol=1e-12, atol=1e-12)
 
 
-def test_mode_feed_and_line_are_those_of_the_segment(
-    mill: Machine, even_stock: Stocks
-) -> None:
+def test_mode_feed_and_line_are_those_of_the_segment(mill: Machine, even_stock: Stocks) -> None:
     episode = moving(mill, even_stock())
     assert episode.course is not None
     ends = episode.course.motion.ends
@@ -181,14 +181,7 @@ def test_forces_of_teeth_have_the_power_of_the_mean(mill: Machine, even_stock: S
 def test_spindle_ramp_shows_during_a_move(mill: Machine, even_stock: Stocks) -> None:
     episode = moving(mill, even_stock())
     ramp = ramped(standing(0.0), 0.0, 50.0, acceleration=50.0)
-    shown = sensed(
-        Episode(**{
-            each.name: ramp if each.name == "spindle" else getattr(episode, each.name)
-            for each in fields(Episode)
-        }),
-        mill,
-        np.array([0.25, 0.5]),
-    )
+    shown = sensed(replace(episode, spindle=ramp), mill, np.array([0.25, 0.5]))
     assert shown.spindle_speed.tolist() == [12.5, 25.0]
     # J·(2π)²·α·n = 0.01·4π²·50·n, over η = 0.8, and the idle power.
     wanted = 0.01 * 4.0 * pi**2 * 50.0 * 12.5 / 0.8 + 100.0 + 25.0 + 0.01 * 12.5**2

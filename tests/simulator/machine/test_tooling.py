@@ -94,7 +94,9 @@ def test_tool_of_a_table_keeps_what_the_table_says() -> None:
 def test_high_speed_steel_cuts_harder_than_carbide() -> None:
     """K_v: 1.2 to 1.0."""
     kinds = (CuttingMaterial.HSS, CuttingMaterial.CARBIDE)
-    hss, carbide = (table_tool(table(ToolKind.DRILL, kind), STEEL).edge.factor for kind in kinds)
+    hss, carbide = (
+        table_tool(table(ToolKind.DRILL, kind), STEEL).edge.factor for kind in kinds
+    )
     assert hss > carbide
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import fields, replace
+from itertools import pairwise
 from math import pi
 from pathlib import Path
 
@@ -150,9 +151,7 @@ def drawn(machine: Machine, course: SpindleCourse, begin: float, end: float) -> 
         speed, rise = float(course.speed(at)[0]), float(course.acceleration(at)[0])
         return float(spindle_power(machine.spindle, speed, rise))
 
-    return float(
-        sum(quad(power, a, b, limit=400)[0] for a, b in zip(edges, edges[1:], strict=False))
-    )
+    return float(sum(quad(power, a, b, limit=400)[0] for a, b in pairwise(edges)))
 
 
 @settings(max_examples=25, deadline=None)
@@ -169,7 +168,7 @@ def test_ramps_over_several_episodes_have_the_energy_of_the_course(
     course = ramped(standing(0.0, first), at, second, acceleration=50.0)
     edges = [0.0, *sorted(cuts), 12.0]
     total = Total()
-    for begin, end in zip(edges, edges[1:], strict=False):
+    for begin, end in pairwise(edges):
         total = added(total, still(begin, end, spindle=course), mill)
     wanted = drawn(mill, course, 0.0, 12.0)
     assert total.energy.spindle == pytest.approx(wanted, rel=2e-4, abs=0.5)

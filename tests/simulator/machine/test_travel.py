@@ -34,10 +34,8 @@ def test_endless_travel_has_no_middle(mill: Machine) -> None:
 
 
 def test_move_off_the_travel_names_axis_position_and_line(mill: Machine) -> None:
-    path = replace(
-        lines([(0, 0, 0), (0, 400, 0), (0, 450.5, 0)]), block=np.array([11, 12])
-    )
-    with pytest.raises(OutOfTravel, match="line 12: Y = 450.5 mm") as caught:
+    path = replace(lines([(0, 0, 0), (0, 400, 0), (0, 450.5, 0)]), block=np.array([11, 12]))
+    with pytest.raises(OutOfTravel, match=r"line 12: Y = 450\.5 mm") as caught:
         require_travel(mill, path, (0.0, 100.0, 0.0))
     assert (caught.value.axis, caught.value.position, caught.value.line) == ("Y", 450.5, 12)
     assert "-600 to 400 mm" in str(caught.value)

@@ -29,11 +29,13 @@ CUT = nc.Linear(end=(100.0, 0.0, 0.0), rate=FEED)
 ON, OFF = nc.SpindleOn(speed=50.0), nc.SpindleOff()
 FLOOD = nc.Coolant(kinds=frozenset({nc.CoolantKind.FLOOD}))
 
+MILL = Cutter(diameter=10.0)
+
 Stocks = Callable[[], StockMap]
 
 
 def tool(
-    number: int, shape: Shape | None = Cutter(diameter=10.0), *, taylor: Taylor | None = None
+    number: int, shape: Shape | None = MILL, *, taylor: Taylor | None = None
 ) -> LoadedTool:
     edge = Edge(teeth=2, kienzle=Kienzle(k_c11=2000.0, m_c=0.0))
     return LoadedTool(number=number, id=f"TOOL {number}", shape=shape, edge=edge, taylor=taylor)
@@ -54,7 +56,9 @@ class Ran:
 
     def at(self, machine: Machine, *times: float) -> Samples:
         parts = [
-            sensed(next(e for e in self.episodes if e.begin <= t < e.end), machine, np.array([t]))
+            sensed(
+                next(e for e in self.episodes if e.begin <= t < e.end), machine, np.array([t])
+            )
             for t in times
         ]
         return joined(parts)
@@ -160,12 +164,14 @@ def test_tool_change_waits_for_the_spindle_and_the_same_tool_takes_no_time(
     mill: Machine,
 ) -> None:
     change = nc.ToolChange(number=1)
-    found = run(mill, change, change, ON, HOME, nc.Pause(seconds=1.0), OFF, nc.ToolChange(number=2))
+    found = run(
+        mill, change, change, ON, HOME, nc.Pause(seconds=1.0), OFF, nc.ToolChange(number=2)
+    )
     assert found.time == pytest.approx(3.0 + 1.0 + 1.0 + 3.0)
 
 
 def test_unknown_tool_names_the_line_and_what_is_known(mill: Machine) -> None:
-    with pytest.raises(UnknownTool, match="line 2: no tool T9 .*known: T1, T3") as caught:
+    with pytest.raises(UnknownTool, match=r"line 2: no tool T9 .*known: T1, T3") as caught:
         run(mill, HOME, nc.ToolChange(number=9), tools={3: tool(3), 1: tool(1)})
     assert (caught.value.number, caught.value.line) == (9, 2)
 
@@ -238,9 +244,7 @@ def test_cutting_with_a_standing_spindle_is_said(mill: Machine, even_stock: Stoc
 
 def test_threads_cut_nothing_and_say_so(mill: Machine, even_stock: Stocks) -> None:
     found = cutting(mill, even_stock, ON, HOME, DOWN, CUT, loaded=tool(1, None))
-    assert found.messages == [
-        "TOOL 1: the force of a thread is not modelled, nothing is cut"
-    ]
+    assert found.messages == ["TOOL 1: the force of a thread is not modelled, nothing is cut"]
     assert found.at(mill, found.time - 2.0).cutting_power.tolist() == [0.0]
 
 

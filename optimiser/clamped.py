@@ -1,0 +1,112 @@
+"""What is left of the stock of each setup, and what a path meets in it."""
+
+from dataclasses import dataclass
+from math import sqrt
+
+from optimiser.hardest import Met, lengths
+from optimiser.shape import shape_of
+from simulator.errors import SimulationError
+from simulator.motion.tool_path import Run
+from simulator.removal.cutter import Insert
+from simulator.removal.engage import MillingStock
+from simulator.removal.lathe import TurningStock
+from simulator.removal.zmap import MOST_CELLS
+from simulator.spec import Machine, MachineKind
+from stepnc_model.entities.setup import Setup
+from stepnc_model.entities.turning import TurningMachiningOperation
+from stepnc_model.errors import SchemaError
+from stepnc_model.part21.values import Ref
+from stepnc_model.program import Program, Workingstep
+from stepnc_model.tool import tool_of
+from stepnc_model.toolpath.job import Stock, stock_of
+
+USUAL_CELLS = 200_000
+"""of a map: fewer than the virtual machine's, for most sections do not come from it"""
+
+CELLS_PER_TOOL = 16.0
+"""least number of cells over the diameter of the smallest tool"""
+
+StockMap = MillingStock | TurningStock
+
+
+@dataclass(frozen=True, slots=True)
+class _Place:
+    """Where a workingstep finds its stock."""
+
+    setup: Ref[Setup] | None
+    is_turning: bool
+
+
+class ClampedStocks:
+    """Stocks of a program by setup. Running state."""
+
+    def __init__(self, program: Program, machine: Machine) -> None:
+        self.program = program
+        self.machine = machine
+        self.stocks: dict[_Place, StockMap | None] = {}
+
+    def before(self, step: Workingstep) -> StockMap | None:
+        """What a workingstep finds; None where no stock is known."""
+        place = self._place(step)
+        if place not in self.stocks:
+            self.stocks[place] = self._raw(place)
+        return self.stocks[place]
+
+    def leave(self, step: Workingstep, stock: StockMap | None) -> None:
+        """What the next workingstep finds."""
+        self.stocks[self._place(step)] = stock
+
+    def _place(self, step: Workingstep) -> _Place:
+        is_turned = isinstance(step.operation, TurningMachiningOperation)
+        return _Place(step.setup, is_turned or self.machine.kind is MachineKind.LATHE)
+
+    def _raw(self, place: _Place) -> StockMap | None:
+        """The stock as it was bought."""
+        try:
+            raw = stock_of(self.program, place.setup)
+            if raw is None:
+                return None
+            if place.is_turning:
+                return TurningStock(raw)
+            return MillingStock(raw, cell=_cell(raw, self._diameters()))
+        except (SchemaError, ValueError):
+            return None
+
+    def _diameters(self) -> list[float]:
+        """Of the tools that rotate and can be used, mm."""
+        found = []
+        for tool in {step.tool_ref for step in self.program.workingsteps}:
+            try:
+                found.append(tool_of(self.program, tool).diameter)
+            except SchemaError:
+                continue
+        return [diameter for diameter in found if diameter > 0.0]
+
+
+def met_by(
+    program: Program, step: Workingstep, run: Run, stock: StockMap | None
+) -> tuple[Met | None, str]:
+    """What a tool meets in a stock, which it cuts away; else why that is not known."""
+    if stock is None:
+        return None, "no stock is known"
+    try:
+        shape = shape_of(program, step.tool_ref)
+        if shape is None:
+            return None, "threads are not cut from the stock"
+        if isinstance(stock, TurningStock):
+            stations, cell = stock.cut(run.segments, shape), stock.cell
+        elif isinstance(shape, Insert):
+            return None, "an insert does not mill"
+        else:
+            stations = stock.cut(run.segments, shape, is_clockwise=run.is_clockwise)
+            cell = stock.map.cell
+    except (SimulationError, SchemaError, ValueError) as error:
+        return None, str(error)
+    return Met(stations=stations, length=lengths(stations), cell=cell), ""
+
+
+def _cell(raw: Stock, diameters: list[float]) -> float:
+    """Cell of a map that tells engagements, mm."""
+    x, y = raw.high[0] - raw.low[0], raw.high[1] - raw.low[1]
+    wanted = min(sqrt(x * y / USUAL_CELLS), min(diameters, default=x) / CELLS_PER_TOOL)
+    return max(wanted, sqrt(x * y / MOST_CELLS))
