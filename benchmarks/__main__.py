@@ -1,6 +1,6 @@
 """All benchmarks in one run: ``python -m benchmarks``."""
 
-from benchmarks import part21, pockets, post, process, workingsteps
+from benchmarks import part21, pockets, post, process, removal, simulation, umich, workingsteps
 
 for title, bench in (
     ("Part 21", part21),
@@ -8,6 +8,9 @@ for title, bench in (
     ("Whole process", process),
     ("Pockets", pockets),
     ("NC code", post),
+    ("Removal", removal),
+    ("Virtual machine", simulation),
+    ("A real mill", umich),
 ):
     print(f"\n== {title}: {(bench.__doc__ or '').splitlines()[0]}")
     bench.main([])

@@ -1,7 +1,7 @@
 """The virtual machine: simulated seconds a second, samples, bytes, and memory by hours.
 
-The peer is the file of samples itself, read back by pyarrow: how long a run takes beside reading
-what it wrote. ``python -m benchmarks.simulation --hours 1 10``
+The peer is the file of samples itself, read back by pyarrow: how long a run takes beside
+reading what it wrote. ``python -m benchmarks.simulation --hours 1 10``
 """
 
 import argparse
@@ -43,13 +43,15 @@ def main(arguments: list[str] | None = None) -> None:
         return
     part = Path(__file__).parent.parent / "examples" / "parts" / "bracket.stpnc"
     simulate(SimulationRequest(file=part))  # what is compiled and read once does not count
-    print(f"{'bracket, samples at':>22}  {'simulated s/s':>13}  {'samples/s':>10}  bytes/sample")
+    header = f"{'simulated s/s':>13}  {'samples/s':>10}  bytes/sample"
+    print(f"{'bracket, samples at':>22}  {header}")
     for rate in (10.0, 1000.0):
         _speed(part, rate)
     print(f"{'hours of 2 mm moves':>22}  {'blocks':>13}  {'seconds':>10}  peak memory MB")
     for hours in options.hours:
         command = [sys.executable, "-m", "benchmarks.simulation", "--child", str(hours)]
-        print(subprocess.run(command, check=True, capture_output=True, text=True).stdout.rstrip())
+        run = subprocess.run(command, check=True, capture_output=True, text=True)
+        print(run.stdout.rstrip())
 
 
 def _speed(part: Path, rate: float) -> None:

@@ -2,6 +2,9 @@
 
 import argparse
 import re
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from service.cli_options import CONTROLS, LIMIT_EXCEEDED, OK, Commands, add_json
@@ -88,30 +91,29 @@ def _simulate(options: argparse.Namespace) -> int:
             tools=options.tools,
             stock=options.stock,
         )
-    simulation = simulate(
-        SimulationRequest(
-            file=options.file,
-            code=code,
-            machine=options.machine,
-            material=options.material,
-            units=options.units,
-            rate=options.rate,
-            control=options.control,
-            filter_s=options.filter_s,
-            deviation=options.deviation_mm,
-            zero=options.zero,
-            noise=options.noise,
-            missing=options.missing,
-            has_lag=options.lag,
-            has_wear=options.wear,
-            force=options.force,
-            runout_um=options.runout_um,
-            seed=options.seed,
-            output=options.output,
-            report=options.report,
-        ),
-        tell=tell,
+    request = SimulationRequest(
+        file=options.file,
+        code=code,
+        machine=options.machine,
+        material=options.material,
+        units=options.units,
+        rate=options.rate,
+        control=options.control,
+        filter_s=options.filter_s,
+        deviation=options.deviation_mm,
+        zero=options.zero,
+        noise=options.noise,
+        missing=options.missing,
+        has_lag=options.lag,
+        has_wear=options.wear,
+        force=options.force,
+        runout_um=options.runout_um,
+        seed=options.seed,
+        output=options.output,
+        report=options.report,
     )
+    with interruptible():
+        simulation = simulate(request, tell=tell)
     if options.report is not None and simulation.trace is not None:
         from service.files import write_atomically
         from service.simulation_report import simulation_page
@@ -129,3 +131,30 @@ def _simulate(options: argparse.Namespace) -> int:
 
         print_simulation(simulation)
     return LIMIT_EXCEEDED if simulation.whole.overload_time > 0.0 else OK
+
+
+@contextmanager
+def interruptible() -> Iterator[None]:
+    """A long run ends at SIGINT and SIGTERM alike as one that was interrupted.
+
+    The compiler of the kernels may lose the exception and fail with one of its own.
+    """
+    asked: list[int] = []
+
+    def ask(number: int, _frame: object) -> None:
+        asked.append(number)
+        raise KeyboardInterrupt
+
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        for number, handler in before.items():
+            if handler is not signal.SIG_IGN:
+                signal.signal(number, ask)
+        yield
+    except RuntimeError as error:
+        if asked:
+            raise KeyboardInterrupt from error
+        raise
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)

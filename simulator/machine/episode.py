@@ -90,8 +90,11 @@ class Course:
         at = self.motion.at(guess)
         speed = np.linalg.norm(at.velocity, axis=1)
         left = places - self.offsets[at.segment] - at.station
-        # One step of Newton: the way is a parabola between the times of the clock.
-        step = np.divide(left, speed, out=np.zeros(len(left)), where=speed > 0.0)
+        # Within a phase the way is a parabola, s = v·t + a·t²/2; this form keeps its digits.
+        moves = np.where(speed > 0.0, speed, 1.0)
+        along_path = np.sum(at.acceleration * at.velocity, axis=1) / moves
+        root = moves + np.sqrt(np.maximum(moves**2 + 2.0 * along_path * left, 0.0))
+        step = np.where(speed > 0.0, 2.0 * left / root, 0.0)
         row = np.clip(np.searchsorted(along, places), 1, len(along) - 1)
         return np.maximum.accumulate(np.clip(guess + step, times[row - 1], times[row]))
 

@@ -21,7 +21,7 @@ from simulator.spec import Machine
 KILOWATT_HOUR = 3.6e6
 """J"""
 
-PLACES = np.array([1e-9, 0.5 - 0.5 / sqrt(3.0), 0.5 + 0.5 / sqrt(3.0), 1.0 - 1e-9])
+PLACES = np.array([1e-6, 0.5 - 0.5 / sqrt(3.0), 0.5 + 0.5 / sqrt(3.0), 1.0 - 1e-6])
 """on 0 to 1: just inside the ends, and the abscissae of the two-point rule"""
 
 WEIGHTS = np.array([0.0, 0.5, 0.5, 0.0])

@@ -179,16 +179,16 @@ class VirtualMachine:
         self.state = replace(self.state, spindle_programmed=speed)
 
     def _change(self, number: int) -> Iterator[Episode]:
-        """Another tool; the one that is there takes no time."""
+        """Another tool, or none (T0); the one that is there takes no time."""
         if number == self.state.tool:
             return
         tools = self.setup.tools
-        if tools is not None and number not in tools:
+        if tools is not None and number not in {0, *tools}:
             known = ", ".join(f"T{each}" for each in sorted(tools))
             raise UnknownTool(number, known, self.state.line)
         yield from self._wait(self.spindle.reached - self.now)
         yield from self._wait(self.machine.tool_change)
-        self.tool = None if tools is None else tools[number]
+        self.tool = None if tools is None else tools.get(number)
         self.state = replace(self.state, tool=number)
 
     def _move(self, stretch: Stretch) -> Episode:
@@ -237,6 +237,9 @@ class VirtualMachine:
 
     def _cut(self, segments: Segments) -> Stations:
         first = int(segments.block[0])
+        has_feed = not segments.is_rapid.all()
+        if self.tool is None and self.setup.tools is not None and has_feed:
+            self._say("a feed without a tool: nothing is cut", first)
         if self.tool is not None and self.tool.shape is None:
             text = f"{self.tool.id}: the force of a thread is not modelled, nothing is cut"
             self._say(text, first)

@@ -17,13 +17,16 @@ from optimiser.limit import LimitName
 from optimiser.modes import Free, Mode
 from optimiser.optimise import DEFAULT_QUALITY, optimise
 from optimiser.source import from_features
+from service.records import changes_of
 from simulator.library import load_machine
 from simulator.matching import match_material
+from stepnc_model import writeback
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
 from stepnc_model.toolpath.generate import workingstep_path
 from stepnc_model.toolpath.path import length
 from stepnc_model.units import mm_min_from_speed
+from stepnc_model.writeback import Profile
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 USUAL = {
@@ -471,10 +474,15 @@ def test_without_a_stock_the_engagement_is_estimated_and_said() -> None:
 
 
 def test_without_a_path_everything_is_estimated_and_said() -> None:
-    """A cutter of 30 mm does not go through a slot of 12 mm."""
-    plan = measured("bracket", Task(), ("#301=", "#301="), *NO_PATH)
+    """No path lies between a feature and a retract plane below it."""
+    below = ("'ROUGH THE FACE',10.,$,#50", "'ROUGH THE FACE',-10.,$,#50")
+    plan = measured("paper002", Task(), below)
+    (advice,) = plan.advices
+    assert mm_min_from_speed(after(advice).feed) == pytest.approx(290.0)
+    assert after(advice).time == pytest.approx(318.0 / 290.0 * 60.0)
     texts = [str(finding) for finding in plan.findings]
-    assert any("no tool path: length, time and engagement are estimated" in t for t in texts)
+    said = "no tool path: length, time and engagement are estimated"
+    assert any(said in text and "retract plane lies above" in text for text in texts)
 
 
 def test_time_counts_the_way_through_air(bracket: Plan) -> None:

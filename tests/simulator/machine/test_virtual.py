@@ -176,6 +176,19 @@ def test_unknown_tool_names_the_line_and_what_is_known(mill: Machine) -> None:
     assert (caught.value.number, caught.value.line) == (9, 2)
 
 
+def test_tool_zero_empties_the_spindle_and_a_feed_without_a_tool_is_said(
+    mill: Machine, even_stock: Stocks
+) -> None:
+    empty = nc.ToolChange(number=0)
+    blocks = (empty, nc.ToolChange(number=1), empty, HOME, DOWN, ON, CUT)
+    found = run(mill, *blocks, tools={1: tool(1)}, stock=even_stock())
+    assert found.messages == ["a feed without a tool: nothing is cut"]
+    assert [finding.line for finding in found.virtual.findings] == [7]
+    samples = found.at(mill, 1.0, 4.0, found.time - 2.0)
+    assert samples.tool.tolist() == [0, 1, 0]
+    assert samples.cutting_power.tolist() == [0.0] * 3
+
+
 def test_off_travel_names_axis_position_and_line(mill: Machine) -> None:
     with pytest.raises(OutOfTravel) as caught:
         run(mill, HOME, DOWN, CUT, zero=(450.0, 0.0, 0.0))

@@ -1,0 +1,103 @@
+"""Stocks of the sample parts, one for each setup."""
+
+from pathlib import Path
+
+import pytest
+
+from optimiser.clamped import MOST_CELLS, ClampedStocks, met_by
+from simulator.library import load_machine
+from simulator.motion.segments import lines
+from simulator.motion.tool_path import Leg, Run
+from simulator.removal.engage import MillingStock
+from simulator.removal.lathe import TurningStock
+from stepnc_model.part21.reader import Part21File
+from stepnc_model.program import Program
+
+PARTS = Path(__file__).parents[2] / "examples" / "parts"
+
+
+def program(part: str, *change: str) -> Program:
+    text = (PARTS / f"{part}.stpnc").read_text()
+    if change:
+        assert change[0] in text
+        text = text.replace(*change)
+    return Program(Part21File.from_bytes(text.encode(), name=part), name=part)
+
+
+def straight(*points: tuple[float, float, float], speed: float = 5.0) -> Run:
+    """A path that ends nowhere near a control."""
+    segments = lines(points, speed=speed)
+    count = len(segments)
+    return Run(
+        moves=(),
+        segments=segments,
+        spindle=segments.speed,
+        is_clockwise=True,
+        legs=(Leg(first=0, last=count, wait=0.0),),
+    )
+
+
+ALONG = ((9.0, -12.0, 0.0), (9.0, 312.0, 0.0))
+
+
+def test_what_is_cut_is_gone_for_the_next() -> None:
+    """18 mm × 300 mm × 3 mm, once."""
+    part = program("paper002")
+    step = part.workingsteps[0]
+    stocks = ClampedStocks(part, load_machine("paper002"))
+    for expected in (18.0 * 300.0 * 3.0, 0.0):
+        met, why = met_by(part, step, straight(*ALONG), stocks.before(step))
+        assert why == ""
+        assert met is not None
+        assert met.volume == pytest.approx(expected)
+
+
+def test_another_stock_may_be_left() -> None:
+    part = program("paper002")
+    step = part.workingsteps[0]
+    stocks = ClampedStocks(part, load_machine("paper002"))
+    stocks.leave(step, None)
+    assert stocks.before(step) is None
+
+
+def test_cells_suit_the_smallest_tool_within_reason() -> None:
+    """Tools of 6 mm in 156 mm × 96 mm."""
+    part = program("bracket")
+    stock = ClampedStocks(part, load_machine("vmc15")).before(part.workingsteps[0])
+    assert isinstance(stock, MillingStock)
+    assert stock.map.cell <= 6.0 / 16.0
+    assert stock.map.grid.heights.size < MOST_CELLS
+
+
+def test_a_lathe_holds_a_bar() -> None:
+    part = program("shaft")
+    stock = ClampedStocks(part, load_machine("lathe22")).before(part.workingsteps[0])
+    assert isinstance(stock, TurningStock)
+
+
+def test_a_file_without_a_stock_has_none() -> None:
+    part = program("paper002", "0.1,$,$,#13,());", "0.1,$,$,$,());")
+    step = part.workingsteps[0]
+    stock = ClampedStocks(part, load_machine("paper002")).before(step)
+    assert met_by(part, step, straight(*ALONG), stock) == (None, "no stock is known")
+
+
+def test_a_stock_without_volume_is_none() -> None:
+    part = program("paper002", "18.,300.,43.);", "18.,300.,0.);")
+    assert ClampedStocks(part, load_machine("paper002")).before(part.workingsteps[0]) is None
+
+
+def test_what_is_not_modelled_is_said() -> None:
+    part = program("shaft")
+    lathe, mill = load_machine("lathe22"), program("paper002")
+    thread = next(step for step in part.workingsteps if step.id == "THREAD M30 X 2")
+    bar = ClampedStocks(part, lathe).before(thread)
+    box = ClampedStocks(mill, load_machine("vmc15")).before(mill.workingsteps[0])
+    assert (
+        met_by(part, thread, straight(*ALONG), bar)[1] == "threads are not cut from the stock"
+    )
+    roughing = part.workingsteps[0]
+    assert met_by(part, roughing, straight(*ALONG), box)[1] == "an insert does not mill"
+    # A rotating tool beside the axis of a bar.
+    _, why = met_by(mill, mill.workingsteps[0], straight((9, 0, 0), (9, 0, -50)), bar)
+    assert "beside its axis" in why
