@@ -4,8 +4,9 @@ from dataclasses import FrozenInstanceError, replace
 
 import pytest
 
-from optimiser.cut import Cut, CutKind, Texture
+from optimiser.cut import Cut, CutKind, Place, Texture
 from optimiser.problem import Setting
+from simulator.physics.engagement import full_immersion
 from simulator.spec import ToolKind
 from stepnc_model.tool import Tool
 
@@ -38,3 +39,15 @@ def test_cut_does_not_change() -> None:
 def test_equal_cuts_are_equal() -> None:
     assert replace(CUT, length=120.0) == CUT
     assert replace(CUT, length=121.0) != CUT
+
+
+def test_the_hardest_place_is_that_of_the_engagement() -> None:
+    assert CUT.hardest is None
+    place = replace(CUT, engagement=full_immersion(), depth_share=1.5).hardest
+    assert place == Place(engagement=full_immersion(), depth_share=1.5)
+
+
+def test_a_cut_is_air_where_it_is_known_to_remove_nothing() -> None:
+    assert not CUT.is_air
+    assert not replace(CUT, volume=0.1).is_air
+    assert replace(CUT, volume=0.0).is_air

@@ -6,7 +6,7 @@ from math import cos, pi, radians, sin
 import pytest
 
 from optimiser import loads
-from optimiser.cut import Cut, CutKind
+from optimiser.cut import Cut, CutKind, Place
 from optimiser.problem import Setting
 from simulator.physics import drilling, milling, turning
 from simulator.physics.engagement import Engagement, full_immersion, unidirectional
@@ -156,3 +156,27 @@ def test_force_grows_with_the_arc_but_not_with_its_place() -> None:
 def test_milling_cut_needs_its_engagement() -> None:
     with pytest.raises(ValueError, match="engagement"):
         loads.cutting_force(cut_of(CutKind.MILLING, MILL), STEEL, 1.0)
+
+
+def test_a_deeper_place_loads_in_proportion() -> None:
+    cut = milled(full_immersion())
+    deeper = replace(cut, depth_share=1.5)
+    one, other = (loads.cutting_force(each, STEEL, 1.0) for each in (cut, deeper))
+    assert other.value(0.1, 2.0, 20.0) == pytest.approx(1.5 * one.value(0.1, 2.0, 20.0))
+
+
+def test_turning_a_deeper_place_loads_in_proportion() -> None:
+    cut = cut_of(CutKind.TURNING, INSERT)
+    deeper = replace(cut, depth_share=1.5)
+    one, other = (loads.cutting_force(each, STEEL, 1.0) for each in (cut, deeper))
+    assert other.value(0.1, 2.0, 20.0) == pytest.approx(1.5 * one.value(0.1, 2.0, 20.0))
+
+
+def test_the_shank_bends_where_it_is_bent_most() -> None:
+    narrow = Place(engagement=unidirectional(2.0, 20.0), depth_share=3.0)
+    cut = replace(milled(full_immersion()), bending=narrow)
+    asked = milling.MillingCut(
+        feed_per_tooth=0.1, teeth=4, axial_depth=6.0, engagement=narrow.engagement
+    )
+    expected = milling.peak_force(STEEL, asked)
+    assert loads.bending_force(cut, STEEL, 1.0).value(0.1, 2.0, 1.0) == pytest.approx(expected)

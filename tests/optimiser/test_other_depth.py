@@ -18,7 +18,7 @@ def program(part: str, *change: str) -> Program:
     text = (PARTS / f"{part}.stpnc").read_text()
     if change:
         assert change[0] in text
-        text = text.replace(*change)
+        text = text.replace(change[0], change[1])
     return Program(Part21File.from_bytes(text.encode(), name=part), name=part)
 
 

@@ -17,7 +17,7 @@ def shape(part: str, workingstep: str, *change: str) -> Cutter | Insert | None:
     text = (PARTS / f"{part}.stpnc").read_text()
     if change:
         assert change[0] in text
-        text = text.replace(*change)
+        text = text.replace(change[0], change[1])
     program = Program(Part21File.from_bytes(text.encode(), name=part), name=part)
     (step,) = (each for each in program.workingsteps if each.id == workingstep)
     return shape_of(program, step.tool_ref)

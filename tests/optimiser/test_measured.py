@@ -1,0 +1,196 @@
+"""Cuts of the sample parts along their paths, held against the paths and the stock."""
+
+from dataclasses import replace
+from math import pi
+from pathlib import Path
+
+import pytest
+
+from optimiser.cut import Cut
+from optimiser.measured import MeasuredCuts
+from simulator.library import load_machine
+from simulator.removal.engage import MillingStock
+from simulator.removal.lathe import TurningStock
+from simulator.spec import Kienzle
+from stepnc_model.part21.reader import Part21File
+from stepnc_model.program import Program, Workingstep
+from stepnc_model.toolpath.generate import workingstep_path
+from stepnc_model.toolpath.path import length
+
+PARTS = Path(__file__).parents[2] / "examples" / "parts"
+STEEL = Kienzle(k_c11=1500.0, m_c=0.25)
+
+
+def program(part: str, *change: str) -> Program:
+    text = (PARTS / f"{part}.stpnc").read_text()
+    if change:
+        assert change[0] in text
+        text = text.replace(change[0], change[1])
+    return Program(Part21File.from_bytes(text.encode(), name=part), name=part)
+
+
+def cuts_of(part: str, machine: str, *change: str) -> tuple[MeasuredCuts, dict[str, Cut]]:
+    """All workingsteps as programmed, but threads."""
+    read = program(part, *change)
+    source = MeasuredCuts(read, load_machine(machine), STEEL)
+    found = {}
+    for step in read.workingsteps:
+        if "thread" in step.operation_type:
+            source.leave_out(step)
+        else:
+            found[step.id], _ = source.cut(step)
+    return source, found
+
+
+def step_of(read: Program, name: str) -> Workingstep:
+    (found,) = (step for step in read.workingsteps if step.id == name)
+    return found
+
+
+@pytest.fixture(scope="module")
+def bracket() -> tuple[MeasuredCuts, dict[str, Cut]]:
+    return cuts_of("bracket", "vmc15")
+
+
+@pytest.fixture(scope="module")
+def shaft() -> tuple[MeasuredCuts, dict[str, Cut]]:
+    return cuts_of("shaft", "lathe22")
+
+
+def test_what_the_workingsteps_remove_is_what_the_stock_lost(
+    bracket: tuple[MeasuredCuts, dict[str, Cut]],
+) -> None:
+    source, cuts = bracket
+    (stock,) = source.stocks.stocks.values()
+    assert isinstance(stock, MillingStock)
+    lost = 156.0 * 96.0 * 42.0 - stock.map.volume
+    assert sum(cut.volume or 0.0 for cut in cuts.values()) == pytest.approx(lost, rel=2e-3)
+
+
+def test_what_turning_removes_is_what_the_bar_lost(
+    shaft: tuple[MeasuredCuts, dict[str, Cut]],
+) -> None:
+    source, cuts = shaft
+    (bar,) = source.stocks.stocks.values()
+    assert isinstance(bar, TurningStock)
+    lost = pi * 30.0**2 * 152.0 - bar.volume
+    assert sum(cut.volume or 0.0 for cut in cuts.values()) == pytest.approx(lost, rel=2e-3)
+
+
+def test_length_is_that_of_the_moves_at_the_programmed_feed(
+    bracket: tuple[MeasuredCuts, dict[str, Cut]],
+) -> None:
+    source, cuts = bracket
+    for name in ("ROUGH FACE", "FINISH CONTOUR", "MILL SLOT"):
+        step = step_of(source.program, name)
+        path = workingstep_path(source.program, step)
+        fed = sum(length(at, move) for at, move in path.segments() if move.feed is not None)
+        cut = cuts[name]
+        assert cut.length * cut.programmed.passes == pytest.approx(fed)
+        assert cut.link_length == 0.0
+        assert cut.rest_time > 0.0
+
+
+def test_mean_load_makes_the_energy_of_the_volume(
+    bracket: tuple[MeasuredCuts, dict[str, Cut]],
+) -> None:
+    """With a constant specific force the mean load times length is the volume removed."""
+    source = MeasuredCuts(
+        bracket[0].program, load_machine("vmc15"), Kienzle(k_c11=1000.0, m_c=0.0)
+    )
+    for step in source.program.workingsteps[:6]:
+        cut, _ = source.cut(step)
+        assert cut.engagement is not None
+        depth = cut.total_depth / cut.programmed.passes
+        width = 0.5 * cut.diameter * cut.engagement.cosine_difference
+        greatest = depth * cut.depth_share * width
+        swept = cut.load_share * greatest * cut.length * cut.programmed.passes
+        assert swept == pytest.approx(cut.volume)
+
+
+def test_a_slot_is_full_and_a_wall_is_thin(
+    bracket: tuple[MeasuredCuts, dict[str, Cut]],
+) -> None:
+    cuts = bracket[1]
+    assert cuts["MILL SLOT"].radial_width == pytest.approx(12.0, rel=0.01)
+    assert cuts["ROUGH POCKET"].radial_width == pytest.approx(12.0, rel=0.01)
+    assert cuts["FINISH CONTOUR"].radial_width < 1.0
+
+
+def test_a_reamer_finds_the_hole_of_the_drill(
+    bracket: tuple[MeasuredCuts, dict[str, Cut]],
+) -> None:
+    cuts = bracket[1]
+    assert cuts["DRILL HOLE 1"].previous_diameter == 0.0
+    assert cuts["REAM HOLE 1"].previous_diameter == 9.8
+
+
+def test_turning_is_told_where_the_workpiece_is_widest(
+    shaft: tuple[MeasuredCuts, dict[str, Cut]],
+) -> None:
+    """The first pass takes 2 mm off a bar of 60 mm; 150 m/min are 2500 mm/s."""
+    cut = shaft[1]["ROUGH CONTOUR"]
+    assert cut.diameter == pytest.approx(58.0, abs=0.3)
+    assert pi * cut.diameter * cut.programmed.speed == pytest.approx(2500.0)
+    assert 1.0 <= cut.depth_share < 1.2
+
+
+def test_a_faster_feed_shortens_the_time_but_not_the_rest(
+    bracket: tuple[MeasuredCuts, dict[str, Cut]],
+) -> None:
+    read = bracket[0].program
+    source = MeasuredCuts(read, load_machine("vmc15"), STEEL)
+    step = read.workingsteps[0]
+    cut, _ = source.cut(step)
+    double = source.at(step, cut, replace(cut.programmed, feed=2.0 * cut.programmed.feed))
+    assert double.length == pytest.approx(cut.length)
+    assert double.rest_time == pytest.approx(cut.rest_time, rel=0.2)
+    assert double.programmed == cut.programmed
+
+
+def test_fewer_passes_have_a_path_of_their_own(
+    bracket: tuple[MeasuredCuts, dict[str, Cut]],
+) -> None:
+    """A slot of 6 mm in one pass: one way instead of two, and the whole depth in one."""
+    read = bracket[0].program
+    source = MeasuredCuts(read, load_machine("vmc15"), STEEL)
+    step = step_of(read, "MILL SLOT")
+    for earlier in read.workingsteps[: step.index]:
+        source.leave_out(earlier)
+    cut, _ = source.cut(step)
+    one = source.at(step, cut, replace(cut.programmed, passes=1, depth=6.0))
+    assert one.length == pytest.approx(cut.length, rel=0.25)
+    assert one.volume == pytest.approx(cut.volume, rel=1e-3)
+    assert one.radial_width == pytest.approx(12.0, rel=0.01)
+    assert one.programmed == cut.programmed
+
+
+def test_a_path_of_the_file_has_no_other_depth() -> None:
+    """Drilling knows no passes: all are alike."""
+    read = program("bracket")
+    source = MeasuredCuts(read, load_machine("vmc15"), STEEL)
+    step = step_of(read, "DRILL HOLE 1")
+    cut, _ = source.cut(step)
+    other = source.at(step, cut, replace(cut.programmed, passes=2, depth=20.0))
+    assert other.length == pytest.approx(cut.length)
+
+
+def test_what_stands_on_a_workingstep_without_a_path_is_estimated() -> None:
+    """The pocket cannot be roughed: its finishing cutter would meet all of it."""
+    below = ("'ROUGH POCKET',10.,$,#420", "'ROUGH POCKET',-10.,$,#420")
+    read = program("bracket", *below)
+    source = MeasuredCuts(read, load_machine("vmc15"), STEEL)
+    said = {}
+    for step in read.workingsteps:
+        cut, findings = source.cut(step)
+        said[step.id] = [finding.message for finding in findings]
+        assert (cut.volume is None) == (step.id in {"ROUGH POCKET", "FINISH POCKET"})
+    assert any("its feature is not ready" in text for text in said["FINISH POCKET"])
+
+
+def test_a_workingstep_that_is_left_out_without_a_path_is_remembered() -> None:
+    read = program("bracket", "'ROUGH POCKET',10.,$,#420", "'ROUGH POCKET',-10.,$,#420")
+    source = MeasuredCuts(read, load_machine("vmc15"), STEEL)
+    source.leave_out(step_of(read, "ROUGH POCKET"))
+    _, findings = source.cut(step_of(read, "FINISH POCKET"))
+    assert any("its feature is not ready" in finding.message for finding in findings)
