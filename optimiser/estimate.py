@@ -1,4 +1,4 @@
-"""Cuts estimated from features, until tool paths with the stock take this module's place.
+"""Cuts estimated from features: what is known of a cut before its path is made.
 
 Radial width from the strategy's overlap, axial depth and passes from the feature's depth, path
 length from area over step-over plus approach and overrun. Milling; holes are in
@@ -40,6 +40,8 @@ LEAST_FACEMILL = 25.0
 
 LEAST_DEPTH = 1e-3
 """mm; a pass less deep than a micrometre is a slip of the pen"""
+
+FULL_LOAD = "the load along the given tool path is not known: full depth and width assumed"
 
 FINISHING = (PlaneFinishMilling, SideFinishMilling, BottomAndSideFinishMilling)
 
@@ -95,8 +97,7 @@ def milling_cut(
     if step.operation.its_toolpath is not None:
         length = path_length(program, step.operation.its_toolpath) or length
         sweep = replace(sweep, total_depth=sweep.axial_depth)
-        text = "the load along the given tool path is not known: full depth and width assumed"
-        findings.append(program.finding(Severity.WARNING, text, step.operation_ref))
+        findings.append(program.finding(Severity.WARNING, FULL_LOAD, step.operation_ref))
     cut = Cut(
         kind=CutKind.MILLING,
         tool=tool,

@@ -33,6 +33,8 @@ from stepnc_model.tool import Tool, tool_of
 CLEARANCE = 2.0
 """mm between the start of the feed and the surface, customary"""
 
+INTO_SOLID = "no earlier hole is known: the tool is taken to cut into the solid"
+
 TOOL_KINDS: tuple[tuple[type[Entity], ToolKind], ...] = (
     (CenterDrilling, ToolKind.CENTER_DRILL),
     (CounterSinking, ToolKind.COUNTERSINK),
@@ -143,6 +145,5 @@ def _previous_diameter(
     if smaller:
         return max(smaller), ()
     if isinstance(operation, (Reaming, Boring, BackBoring)):
-        text = "no earlier hole is known: the tool is taken to cut into the solid"
-        return 0.0, (program.finding(Severity.WARNING, text, step.operation_ref),)
+        return 0.0, (program.finding(Severity.WARNING, INTO_SOLID, step.operation_ref),)
     return 0.0, ()

@@ -5,8 +5,8 @@ programmed.
 """
 
 from optimiser.cut import Cut
-from optimiser.estimate import milling_cut
-from optimiser.estimate_hole import hole_cut, is_hole_making
+from optimiser.estimate import FULL_LOAD, milling_cut
+from optimiser.estimate_hole import INTO_SOLID, hole_cut, is_hole_making
 from optimiser.estimate_turning import mean_diameter, turning_cut
 from optimiser.problem import Setting
 from stepnc_model.entities.turning import TurningMachiningOperation
@@ -14,6 +14,9 @@ from stepnc_model.errors import Finding, Severity
 from stepnc_model.program import Program, Workingstep
 from stepnc_model.technology import programmed
 from stepnc_model.tool import tool_of
+
+GUESSES = frozenset({FULL_LOAD, INTO_SOLID})
+"""messages that hold no longer where it is known what the path meets"""
 
 
 class Estimates:

@@ -31,6 +31,9 @@ NEARLY = 1e-3
 AGREES = 0.02
 """of the diameter: width by the angles against width by the section"""
 
+LEAST_RATIO = 0.01
+"""mean chip over the feed; the power of what is thinner is not to be told"""
+
 DIGITS = 3
 """to which engagements are told apart: µm, mrad"""
 
@@ -91,7 +94,8 @@ def weighted_volume(met: Met, exponent: float) -> float:
     """``Σ V·χ^(−m)``: what the energy of the cut is in proportion to; χ is the chip ratio."""
     rows = met.stations.section > 0.0
     volume = met.stations.section[rows] * met.length[rows]
-    return float((volume * met.stations.chip_ratio[rows] ** -exponent).sum())
+    ratio = met.stations.chip_ratio[rows].clip(LEAST_RATIO)
+    return float((volume * ratio**-exponent).sum())
 
 
 def greatest_section(cut: Cut, *, depth: float) -> tuple[float, float]:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 from optimiser.clamped import ClampedStocks, StockMap, met_by
 from optimiser.cut import Cut, CutKind
-from optimiser.estimated import estimated_cut
+from optimiser.estimated import GUESSES, estimated_cut
 from optimiser.hardest import Met, greatest_section, weighted_volume, with_hardest
 from optimiser.other_depth import with_depth
 from optimiser.problem import Setting
@@ -96,7 +96,9 @@ class MeasuredCuts:
             text = f"no tool path: length, time and engagement are estimated ({error})"
             return cut, [*findings, self._warning(step, text)]
         findings += [each for each in seen.path.findings if each.severity is not Severity.NOTE]
-        if seen.why:
+        if not seen.why:
+            findings = [each for each in findings if each.message not in GUESSES]
+        else:
             text = f"the engagement is estimated from the feature: {seen.why}"
             findings.append(self._warning(step, text))
         return self._timed(step, seen, feed=1.0, speed=1.0), findings

@@ -118,6 +118,14 @@ class Course:
         """Time with chips, s."""
         return float(self._cut_clock[1][-1])
 
+    def entry_times(self, times: Floats) -> Floats:
+        """When the cut that runs at some times began; all from the start of the stretch, s."""
+        ends, _ = self._cut_clock
+        cuts = self.stations.section > 0.0
+        begins = np.flatnonzero(cuts & ~np.concatenate(([False], cuts[:-1])))
+        known = np.concatenate(([0.0], ends[begins]))
+        return known[np.searchsorted(known, times, side="right") - 1]
+
     @cached_property
     def _cut_clock(self) -> tuple[Floats, Floats]:
         """(M + 1,) times at which stations end, and s with chips until then."""

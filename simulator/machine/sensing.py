@@ -12,7 +12,7 @@ from simulator.machine.cutting import CuttingLoads, cutting_loads, no_loads
 from simulator.machine.drives import axes_power, main_power, overload
 from simulator.machine.episode import Episode
 from simulator.machine.samples import Execution, PathMode, Samples
-from simulator.machine.tooth_loads import tooth_loads
+from simulator.machine.tooth_loads import entered_loads, tooth_loads
 from simulator.motion.motion import Kinematics
 from simulator.motion.segments import Floats, Ints
 from simulator.spec import Machine
@@ -128,13 +128,12 @@ def _loads(
     )
     if course.teeth is None:
         return loads
+    turned = episode.spindle.revolutions(times)
+    entry = episode.begin + course.entry_times(times - episode.begin)
+    since = np.abs(turned - episode.spindle.revolutions(entry))
+    loads = entered_loads(loads, course.stations, rows, since_entry=since, edge=course.edge)
     return tooth_loads(
-        loads,
-        course.stations,
-        rows,
-        turned=episode.spindle.revolutions(times),
-        edge=course.edge,
-        teeth=course.teeth,
+        loads, course.stations, rows, turned=turned, edge=course.edge, teeth=course.teeth
     )
 
 

@@ -1,7 +1,8 @@
-"""Forces of a milling cutter tooth by tooth, as a dynamometer would show them.
+"""Forces as a dynamometer would show them: of the teeth of a milling cutter, of a first chip.
 
 At each time the teeth stand where the spindle has turned them; straight edges, with runout.
-What is not milling keeps its mean. Units mm, N, rad.
+In turning the chip grows in the first revolution. What is neither keeps its mean. Units mm, N,
+rad.
 """
 
 from dataclasses import dataclass, replace
@@ -11,7 +12,7 @@ import numpy as np
 
 from simulator.machine.cutting import NMM_S_PER_WATT, CuttingLoads, Edge
 from simulator.machine.tooth_forces import arcs_of, chip_thickness, tooth_angles
-from simulator.machine.transients import eccentric_runout
+from simulator.machine.transients import eccentric_runout, entry_share
 from simulator.motion.segments import Floats, Ints
 from simulator.physics.milling_forces import RADIAL_SHARE
 from simulator.removal.stations import CutKind, Stations
@@ -71,6 +72,32 @@ def tooth_loads(
     feed[at] = (tangential * (cosine + RADIAL_SHARE * sine)).sum(axis=1)
     back[at] = (tangential * (sine - RADIAL_SHARE * cosine)).sum(axis=1)
     return replace(mean, force=force, feed_force=feed, back_force=back)
+
+
+def entered_loads(
+    mean: CuttingLoads, stations: Stations, rows: Ints, *, since_entry: Floats, edge: Edge
+) -> CuttingLoads:
+    """Loads of turning with the chip that grows in the first revolution of a cut.
+
+    Parameters
+    ----------
+    mean : CuttingLoads
+        At M times.
+    stations : Stations
+    rows : (M,) array of int
+        Which station holds.
+    since_entry : (M,) array
+        Revolutions since the insert met the work.
+    edge : Edge
+    """
+    is_turning = stations.kind[rows] == CutKind.TURNING
+    share = np.where(is_turning, entry_share(since_entry) ** (1.0 - edge.kienzle.m_c), 1.0)
+    return replace(
+        mean,
+        force=share * mean.force,
+        feed_force=share * mean.feed_force,
+        back_force=share * mean.back_force,
+    )
 
 
 def _factor(mean: CuttingLoads, edge: Edge, at: Ints) -> Floats:

@@ -194,3 +194,13 @@ def test_a_workingstep_that_is_left_out_without_a_path_is_remembered() -> None:
     source.leave_out(step_of(read, "ROUGH POCKET"))
     _, findings = source.cut(step_of(read, "FINISH POCKET"))
     assert any("its feature is not ready" in finding.message for finding in findings)
+
+
+def test_what_an_estimate_guesses_is_not_said_where_it_is_known() -> None:
+    """Without the drilling no operation made the hole, and the map knows that there is none."""
+    read = program("bracket")
+    source = MeasuredCuts(read, load_machine("vmc15"), STEEL)
+    step = replace(step_of(read, "REAM HOLE 1"), index=0)
+    cut, findings = source.cut(step)
+    assert cut.previous_diameter == pytest.approx(0.0, abs=2.0)
+    assert not any("is taken to cut into the solid" in each.message for each in findings)

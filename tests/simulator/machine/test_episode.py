@@ -105,6 +105,19 @@ def test_cutting_seconds_are_the_time_with_chips(planned: Planned) -> None:
     assert planned().cutting_seconds == pytest.approx(6.0 / 20.0 + arc_time, abs=2e-3)
 
 
+def test_each_cut_knows_when_it_began(planned: Planned) -> None:
+    """Where seconds with chips begin to count."""
+    course = planned()
+    times = np.linspace(0.0, course.motion.duration, 2001)
+    seconds = np.interp(times, *course._cut_clock)
+    began = course.entry_times(times)
+    grows = np.diff(seconds) > 0.0
+    first = times[1:][grows & ~np.concatenate(([False], grows[:-1]))]
+    known = np.unique(began[began > 0.0])
+    assert known == pytest.approx(first, abs=2.0 * times[1])
+    assert (began <= times).all()
+
+
 def test_wear_counts_time_with_chips(planned: Planned) -> None:
     course = replace(planned(), wear=Wear(flank=0.1, per_second=0.01))
     times = np.array([0.0, 0.1, course.motion.duration])

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from simulator.machine.cutting import CuttingLoads, Edge, cutting_loads
 from simulator.machine.tooth_forces import tooth_forces
-from simulator.machine.tooth_loads import Teeth, tooth_loads
+from simulator.machine.tooth_loads import Teeth, entered_loads, tooth_loads
 from simulator.machine.transients import eccentric_runout
 from simulator.motion.segments import Floats
 from simulator.physics.engagement import Engagement, mean_chip_ratio
@@ -133,3 +133,26 @@ def test_a_spindle_that_turns_backwards_has_the_same_peak() -> None:
     _, onward = both(stations_of(cut_of(teeth=3)), edge)
     _, backward = both(stations_of(cut_of(teeth=3)), edge, turned=-TURNED)
     np.testing.assert_allclose(backward.force, onward.force)
+
+
+def test_the_chip_of_turning_grows_in_the_first_revolution() -> None:
+    """F ∝ h^(1−m): half the chip after half a revolution."""
+    edge = Edge(teeth=1, kienzle=Kienzle(k_c11=1500.0, m_c=0.25))
+    stations = stations_of(cut_of(teeth=1), kind=CutKind.TURNING)
+    rows = np.zeros(3, dtype=np.int64)
+    mean = cutting_loads(
+        stations, rows, speed=np.full(3, SPEED), spindle_speed=np.full(3, SPINDLE), edge=edge
+    )
+    since = np.array([0.0, 0.5, 7.0])
+    found = entered_loads(mean, stations, rows, since_entry=since, edge=edge)
+    assert found.force / mean.force == pytest.approx([0.0, 0.5**0.75, 1.0])
+    assert found.power is mean.power
+
+
+def test_milling_has_no_first_revolution() -> None:
+    edge = Edge(teeth=4, kienzle=Kienzle(k_c11=1500.0, m_c=0.25))
+    stations, rows = stations_of(cut_of()), np.zeros(1, dtype=np.int64)
+    at = np.full(1, SPINDLE)
+    mean = cutting_loads(stations, rows, speed=np.full(1, SPEED), spindle_speed=at, edge=edge)
+    found = entered_loads(mean, stations, rows, since_entry=np.zeros(1), edge=edge)
+    assert found.force == pytest.approx(mean.force)
