@@ -10,6 +10,7 @@ from pathlib import Path
 
 from simulator.errors import LibraryError
 from simulator.removal.cutter import Cutter, Holder, Insert
+from simulator.removal.tool_shape import ENDS
 from simulator.spec import CuttingMaterial, ToolKind
 from simulator.toml_file import Range, Table, read_toml
 from stepnc_model.entities.enums import HandOfToolType
@@ -24,9 +25,6 @@ TAPER = Range(low=0, high=80, unit="°")
 POINT = Range(low=30, high=180, unit="°")
 
 TURNED = {ToolKind.TURNING, ToolKind.GROOVING, ToolKind.THREADING}
-ENDS = {ToolKind.DRILL, ToolKind.CENTER_DRILL, ToolKind.REAMER, ToolKind.COUNTERSINK}
-"""kinds that cut with their end only"""
-
 CUSTOMARY_POINT_DEG = {ToolKind.DRILL: 118.0, ToolKind.COUNTERSINK: 90.0}
 
 

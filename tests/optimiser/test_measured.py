@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from optimiser.cut import Cut
+from optimiser.estimated import estimated_cut
 from optimiser.measured import MeasuredCuts
 from simulator.library import load_machine
 from simulator.removal.engage import MillingStock
@@ -196,11 +197,24 @@ def test_a_workingstep_that_is_left_out_without_a_path_is_remembered() -> None:
     assert any("its feature is not ready" in finding.message for finding in findings)
 
 
+NOT_DRILLED = ("(#20,#21,#22,#23,#24,#25),$,$,$);", "(#24),$,$,$);")
+
+
+def test_a_hole_that_nobody_drilled_is_not_there() -> None:
+    """The reaming says 9.8 mm; the map knows better."""
+    read = program("bracket", *NOT_DRILLED)
+    step = step_of(read, "REAM HOLE 1")
+    assert estimated_cut(read, step)[0].previous_diameter == 9.8
+    cut, _ = MeasuredCuts(read, load_machine("vmc15"), STEEL).cut(step)
+    assert cut.previous_diameter < 1.0
+
+
 def test_what_an_estimate_guesses_is_not_said_where_it_is_known() -> None:
-    """Without the drilling no operation made the hole, and the map knows that there is none."""
-    read = program("bracket")
-    source = MeasuredCuts(read, load_machine("vmc15"), STEEL)
-    step = replace(step_of(read, "REAM HOLE 1"), index=0)
-    cut, findings = source.cut(step)
-    assert cut.previous_diameter == pytest.approx(0.0, abs=2.0)
-    assert not any("is taken to cut into the solid" in each.message for each in findings)
+    text = (PARTS / "bracket.stpnc").read_text().replace(*NOT_DRILLED)
+    text = text.replace("#330,3.,$,9.8,$,1.", "#330,3.,$,$,$,1.")
+    read = Program(Part21File.from_bytes(text.encode(), name="bracket"), name="bracket")
+    step = step_of(read, "REAM HOLE 1")
+    guess = "is taken to cut into the solid"
+    assert any(guess in each.message for each in estimated_cut(read, step)[1])
+    _, findings = MeasuredCuts(read, load_machine("vmc15"), STEEL).cut(step)
+    assert not any(guess in each.message for each in findings)

@@ -1,0 +1,133 @@
+"""Shape of a program's tool, as the removal of material needs it. Units mm, rad."""
+
+from math import inf, pi
+
+from simulator.removal.cutter import Cutter, Holder, Insert
+from simulator.spec import ToolKind
+from stepnc_model.entities.entity import Entity
+from stepnc_model.entities.enums import HandOfToolType
+from stepnc_model.entities.tools import CuttingTool, MillingCuttingTool, TaperedEndmill
+from stepnc_model.entities.turning_tools import (
+    GroovingTool,
+    KnurlingTool,
+    TurningMachineCuttingTool,
+)
+from stepnc_model.part21.values import Ref
+from stepnc_model.program import Program
+from stepnc_model.tool import Tool, tool_of
+from stepnc_model.units import rad_from_deg
+
+HOLDER_SHARE = 2.0
+"""diameter of a holder over that of its tool, where nothing is said: a collet chuck"""
+
+CUSTOMARY_POINT = rad_from_deg(118.0)
+
+STEEPEST_DEG = 80.0
+"""degrees between the flank of a tapered tool and its axis"""
+
+KINDS = {
+    "FACEMILL": ToolKind.FACEMILL,
+    "TWIST_DRILL": ToolKind.DRILL,
+    "SPADE_DRILL": ToolKind.DRILL,
+    "STEP_DRILL": ToolKind.DRILL,
+    "DRILL": ToolKind.DRILL,
+    "CENTER_DRILL": ToolKind.CENTER_DRILL,
+    "COUNTERSINK": ToolKind.COUNTERSINK,
+    "COUNTERBORE": ToolKind.COUNTERSINK,
+    "REAMER": ToolKind.REAMER,
+    "TAPERED_REAMER": ToolKind.REAMER,
+    "BORING_TOOL": ToolKind.BORING_BAR,
+    "TAP": ToolKind.TAP,
+    "TAPERED_TAP": ToolKind.TAP,
+    "COMBINED_DRILL_AND_TAP": ToolKind.TAP,
+    "GROOVING_TOOL": ToolKind.GROOVING,
+    "TURNING_THREADING_TOOL": ToolKind.THREADING,
+    "GENERAL_TURNING_TOOL": ToolKind.TURNING,
+    "USER_DEFINED_TURNING_TOOL": ToolKind.TURNING,
+    "KNURLING_TOOL": ToolKind.TURNING,
+}
+
+ENDS = {ToolKind.DRILL, ToolKind.CENTER_DRILL, ToolKind.REAMER, ToolKind.COUNTERSINK}
+"""kinds that cut with their end only"""
+
+THREADS = {ToolKind.TAP, ToolKind.THREADING}
+"""what they cut is no part of a stock's map"""
+
+
+def tool_kind(tool: Tool) -> ToolKind:
+    """Family of a tool by its EXPRESS name; all that are not named are end mills."""
+    return KINDS.get(tool.keyword, ToolKind.ENDMILL)
+
+
+def shape_of(program: Program, ref: Ref[Entity]) -> Cutter | Insert | None:
+    """Shape of a tool; None where it cuts no chips that a stock's map shows: threads, knurls.
+
+    Raises
+    ------
+    SchemaError
+        When the tool cannot be used.
+    """
+    tool, entity = tool_of(program, ref), program.get(ref)
+    if tool_kind(tool) in THREADS or isinstance(entity, KnurlingTool):
+        return None
+    if isinstance(entity, TurningMachineCuttingTool):
+        return _insert(program, tool, entity)
+    return _cutter(program, tool, entity)
+
+
+def _insert(program: Program, tool: Tool, entity: TurningMachineCuttingTool) -> Insert:
+    width, radius = tool.width, tool.corner_radius or 0.0
+    if isinstance(entity, GroovingTool) and entity.corner_radius is not None:
+        radius = entity.corner_radius
+    shape = Insert(
+        nose_radius=radius if width is None else min(radius, 0.5 * width),
+        cutting_edge_angle=tool.cutting_edge_angle,
+        width=width,
+        hand=entity.hand_of_tool or HandOfToolType.RIGHT,
+    )
+    included = program.get(entity.cutting_edge).tool_included_angle
+    if not included or width is not None:
+        return shape
+    trailing = pi - tool.cutting_edge_angle - rad_from_deg(included)
+    return Insert(
+        nose_radius=shape.nose_radius,
+        cutting_edge_angle=shape.cutting_edge_angle,
+        trailing_angle=min(max(trailing, 0.0), 0.49 * pi),
+        hand=shape.hand,
+    )
+
+
+def _cutter(program: Program, tool: Tool, entity: Entity) -> Cutter:
+    kind = tool_kind(tool)
+    is_end = kind in ENDS
+    point = tool.point_angle or (CUSTOMARY_POINT if kind is ToolKind.DRILL else pi)
+    return Cutter(
+        diameter=tool.diameter,
+        corner_radius=0.0 if is_end else min(tool.corner_radius or 0.0, 0.5 * tool.diameter),
+        taper_angle=_taper(program, entity),
+        point_angle=point if is_end else pi,
+        teeth=tool.teeth,
+        edge_length=tool.cutting_edge_length or inf,
+        cutting_edge_angle=tool.cutting_edge_angle,
+        is_drill=is_end,
+        holder=_holder(tool, entity),
+    )
+
+
+def _taper(program: Program, entity: Entity) -> float:
+    if not isinstance(entity, MillingCuttingTool) or entity.its_tool_body is None:
+        return 0.0
+    body = program.get(entity.its_tool_body)
+    angle = body.taper_angle if isinstance(body, TaperedEndmill) else None
+    if angle is not None and not 0.0 <= angle <= STEEPEST_DEG:
+        message = f"a taper of {angle:g}°: 0 to {STEEPEST_DEG:g}°"
+        raise program.error(message, entity.its_tool_body, "taper_angle")
+    return rad_from_deg(angle) if angle else 0.0
+
+
+def _holder(tool: Tool, entity: Entity) -> Holder | None:
+    """A collet chuck at the tool's assembly length; None where no length is given."""
+    length = entity.overall_assembly_length if isinstance(entity, CuttingTool) else None
+    if not length:
+        return None
+    return Holder(diameter=HOLDER_SHARE * tool.diameter, overhang=length)
