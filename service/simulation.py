@@ -22,6 +22,7 @@ from simulator.errors import ProgramFault, SimulationError
 from simulator.machine.disturbance import Disturbance, Disturbed, NoiseKind
 from simulator.machine.episode import Episode
 from simulator.machine.interpreter import interpret
+from simulator.machine.samples import Execution
 from simulator.machine.sensing import Sampler
 from simulator.machine.tooth_loads import Teeth
 from simulator.machine.totals import Total, added
@@ -125,18 +126,7 @@ def simulate(request: SimulationRequest, *, tell: Tell = silent) -> Simulation:
     _require(request)
     kind, disturbance, teeth = _control_kind(request), _disturbance(request), _teeth(request)
     prepared = _prepared(request, tell)
-    machine = prepared.machine
-    _require_axes(machine)
-    virtual = VirtualMachine(
-        Setup(
-            machine=machine,
-            control=_control(request, machine),
-            tools=_tools(request, prepared),
-            stock=prepared.stock,
-            teeth=teeth,
-            zero=_zero(request.zero, prepared),
-        )
-    )
+    virtual = _machine(request, prepared, teeth=teeth)
     run = _Run(virtual, disturbance, rate=request.rate)
     if request.report is not None:
         run.trace = TraceKeeper()
@@ -145,9 +135,8 @@ def simulate(request: SimulationRequest, *, tell: Tell = silent) -> Simulation:
     ticker = Ticker(tell)
     try:
         with run.file or nullcontext():
-            for episode in virtual.run(interpret(prepared.blocks, machine)):
+            for episode in virtual.run(interpret(prepared.blocks, virtual.machine)):
                 run.add(episode, ticked=lambda: ticker(lambda: _progress(prepared, virtual)))
-            _require_time(virtual)
     except SimulationError as error:
         raise SimulationError(f"{_place(prepared, virtual)}: {error}") from error
     finally:
@@ -155,7 +144,7 @@ def simulate(request: SimulationRequest, *, tell: Tell = silent) -> Simulation:
             tell(f"written: {run.file.place} ({run.file.rows} samples)")
     return Simulation(
         program=prepared.name,
-        machine=machine,
+        machine=virtual.machine,
         control=kind,
         material=prepared.material,
         totals=tuple(zip(("", *virtual.workingsteps), run.totals, strict=True)),
@@ -182,9 +171,7 @@ class _Run:
 
     def add(self, episode: Episode, *, ticked: Callable[[], None]) -> None:
         """One more episode."""
-        if episode.end > MOST_SECONDS:
-            text = f"{episode.end:.3g} s of machining: {MOST_SECONDS:g} s at most"
-            raise ProgramFault(text, _line(episode))
+        _require_sense(episode)
         at = episode.state.workingstep
         self.totals += [Total() for _ in range(len(self.totals), at + 1)]
         self.totals[at] = added(self.totals[at], episode, self._machine)
@@ -199,17 +186,15 @@ class _Run:
             ticked()
 
 
-def _line(episode: Episode) -> int:
-    """The line that runs when an episode ends."""
-    if episode.course is None:
-        return episode.state.line
-    return int(episode.course.segments.block[-1])
-
-
-def _require_time(virtual: VirtualMachine) -> None:
-    """A file that is no program at all says nothing and takes no time."""
-    if virtual.now == 0.0:
+def _require_sense(episode: Episode) -> None:
+    """Refuse a program without anything in it, and one without an end."""
+    if episode.state.execution is Execution.PROGRAM_COMPLETED and episode.end == 0.0:
         raise SimulationError("there is nothing in it that takes time")
+    if episode.end > MOST_SECONDS:
+        course = episode.course
+        line = episode.state.line if course is None else int(course.segments.block[-1])
+        text = f"{episode.end:.3g} s of machining: {MOST_SECONDS:g} s at most"
+        raise ProgramFault(text, line)
 
 
 def _progress(prepared: Prepared, virtual: VirtualMachine) -> str:
@@ -240,6 +225,23 @@ def _prepared(request: SimulationRequest, tell: Tell) -> Prepared:
         machine=request.machine,
         material=request.material,
         tell=tell,
+    )
+
+
+def _machine(
+    request: SimulationRequest, prepared: Prepared, *, teeth: Teeth | None
+) -> VirtualMachine:
+    """The machine as it waits for the program."""
+    _require_axes(prepared.machine)
+    return VirtualMachine(
+        Setup(
+            machine=prepared.machine,
+            control=_control(request, prepared.machine),
+            tools=_tools(request, prepared),
+            stock=prepared.stock,
+            teeth=teeth,
+            zero=_zero(request.zero, prepared),
+        )
     )
 
 

@@ -139,9 +139,9 @@ def from_code(
     raw = _stock(request.stock) if request.stock else None
     size = _size(request.code)
     lines = Counted(_lines(request.code), len)
-    stock = None if raw is None or tools is None else stock_map(chosen, raw)
+    clamped = None if raw is None else stock_map(chosen, raw)
     findings: tuple[Finding, ...] = ()
-    if stock is None:
+    if clamped is None or tools is None:
         text = "nothing is cut without a stock, a tool table and a material: idle power only"
         findings = (Finding(severity=Severity.WARNING, message=text),)
     return Prepared(
@@ -150,7 +150,7 @@ def from_code(
         material=match,
         blocks=_read(request, lines, chosen, {}),
         tools=tools,
-        stock=lambda _: stock,
+        stock=lambda _: clamped,
         raw=raw,
         done=lambda: lines.share(size),
         findings=findings,
@@ -183,7 +183,17 @@ def _code_of_program(
 
 
 def stock_map(machine: Machine, raw: Stock) -> StockMap:
-    """The stock as a map that suits the machine."""
+    """The stock as a map that suits the machine.
+
+    Raises
+    ------
+    StepNcError
+        When there is nothing of it, or more than any machine holds.
+    """
+    for axis, low, high in zip("xyz", raw.low, raw.high, strict=True):
+        if not high - low >= LEAST_SIZE or max(abs(low), abs(high)) > FARTHEST:
+            bound = f"at least {LEAST_SIZE:g} mm, within {FARTHEST:g} mm of zero"
+            raise StepNcError(f"stock: {axis} from {low:g} to {high:g} mm: {bound}")
     return TurningStock(raw) if machine.kind is MachineKind.LATHE else MillingStock(raw)
 
 
@@ -271,10 +281,6 @@ def _stock(text: str) -> Stock:
         radius = 0.5 * numbers[0]
         numbers = (-radius, -radius, numbers[1], radius, radius, numbers[2])
     low, high = numbers[:3], numbers[3:]
-    for axis, a, b in zip("xyz", low, high, strict=True):
-        if not b - a >= LEAST_SIZE or max(abs(a), abs(b)) > FARTHEST:
-            bound = f"{LEAST_SIZE:g} mm between them, within {FARTHEST:g} mm"
-            raise StepNcError(f"stock {text}: {axis} from {a:g} to {b:g} mm: at least {bound}")
     return Stock(low=(low[0], low[1], low[2]), high=(high[0], high[1], high[2]), radius=radius)
 
 

@@ -40,6 +40,9 @@ PIECE = 0.02
 
 MOST_PIECES = 400
 
+NEAREST = 0.02
+"""mm from the axis, within which no piece is told from the next"""
+
 Spin = SpindleOn | SurfaceSpeed | SpindleOff
 
 LookUp = Callable[[Feed], Conditions]
@@ -196,7 +199,9 @@ class _Collector:
         self.is_clockwise: bool | None = None
 
     def run(self) -> Run:
-        """The whole path."""
+        """The whole path; the spindle turns when it begins."""
+        if self.path.technology_ref is not None:
+            self._take(self.look_up(Feed(technology=self.path.technology_ref)))
         for step in unsplit(self.path.start, self.path.steps):
             match step:
                 case Move():
@@ -294,7 +299,7 @@ class _Collector:
         segments = _segments(self.rows, first=len(self.moves))
         if isinstance(self.asked, SurfaceSpeed):
             least = self.asked.speed / (2.0 * pi * min(self.fastest, self.asked.limit or inf))
-            segments = _split(segments, _pieces(segments, max(least, PIECE)))
+            segments = _split(segments, _pieces(segments, max(least, NEAREST)))
         rows = np.arange(len(segments))
         spindle = self._speeds(segments.position(rows, 0.5 * segments.length)[:, 0])
         speed = segments.speed.copy()

@@ -208,9 +208,12 @@ def test_cutting_with_a_standing_spindle_is_said(code: Path) -> None:
         ({"stock": "text"}, "stock 'text': 3 or 6 numbers with commas between them"),
         ({"stock": "1,2,3,4"}, "stock '1,2,3,4': 3 or 6 numbers"),
         ({"stock": "nan,0,0,1,1,1"}, "stock 'nan,0,0,1,1,1': 3 or 6 numbers"),
-        ({"stock": "0,0,0,0,0,0"}, "x from 0 to 0 mm: at least 0.01 mm between them"),
-        ({"stock": "0,0,0,1,-1,1"}, "y from 0 to -1 mm: at least 0.01 mm between them"),
-        ({"stock": "0,0,0,1,1,1e6"}, "z from 0 to 1e+06 mm: at least 0.01 mm between them"),
+        (
+            {"stock": "0,0,0,0,0,0"},
+            "stock: x from 0 to 0 mm: at least 0.01 mm, within 100000 mm",
+        ),
+        ({"stock": "0,0,0,1,-1,1"}, "y from 0 to -1 mm: at least 0.01 mm"),
+        ({"stock": "0,0,0,1,1,1e6"}, "z from 0 to 1e+06 mm: at least 0.01 mm"),
         ({"stock": "-10,0,20"}, "x from 5 to -5 mm"),
     ],
 )
@@ -275,6 +278,15 @@ def test_programs_and_options_that_do_not_go_together_are_refused(
     refused: Refused, words: list[object], message: str
 ) -> None:
     assert message in refused("simulate", *words)
+
+
+def test_a_program_whose_stock_has_no_volume_is_refused(code: Path, refused: Refused) -> None:
+    part = code.with_name("part.stpnc")
+    text = (PARTS / "bracket.stpnc").read_text(encoding="ascii")
+    few = text.replace("'MAIN WORKPLAN',(#3,#7,#4,#5,#6)", "'MAIN WORKPLAN',(#15)")
+    part.write_text(few.replace("#34,156.,", "#34,0.,"), encoding="ascii")
+    told = refused("simulate", part, "--machine=vmc15")
+    assert "stock: x from -3 to -3 mm: at least 0.01 mm" in told
 
 
 # ------------------------------------------------------------------ files and disks

@@ -1,6 +1,5 @@
 """What ``simulate`` shows is the same whatever way the program comes and is sampled."""
 
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -105,7 +104,7 @@ def test_code_for_a_lathe_runs_as_its_program_does(
     assert_same(run, turned)
 
 
-def test_code_alone_runs_with_a_tool_table_and_a_stock(part: Path, tmp_path: Path) -> None:
+def test_code_alone_runs_with_a_tool_table_and_a_stock(tmp_path: Path) -> None:
     # The table numbers tools as the whole bracket does.
     code = posted(BRACKET, Control.LINUXCNC, tmp_path).code
     text = code.read_text(encoding="ascii")
@@ -234,9 +233,6 @@ def test_a_trace_is_kept_for_the_report_alone(part: Path, milled: Simulation) ->
     assert run.trace.end[-1] == pytest.approx(run.whole.duration, abs=0.1)
 
 
-Told = Callable[[str], None]
-
-
 def test_progress_names_share_time_and_workingstep(
     part: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -283,7 +279,12 @@ def test_a_program_that_takes_no_time_is_none(tmp_path: Path) -> None:
     code = tmp_path / "empty.ngc"
     code.write_text("(nothing)\nM30\n", encoding="ascii")
     with pytest.raises(SimulationError, match=r"empty.ngc: there is nothing in it"):
-        simulate(SimulationRequest(code=CodeRequest(code=code), machine="vmc15"))
+        simulate(
+            SimulationRequest(
+                code=CodeRequest(code=code), machine="vmc15", output=tmp_path / "run.csv"
+            )
+        )
+    assert list(tmp_path.iterdir()) == [code]
 
 
 @pytest.mark.parametrize(

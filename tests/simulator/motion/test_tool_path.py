@@ -209,7 +209,11 @@ def test_a_cut_without_feed_is_refused(found: Conditions) -> None:
 
 def test_revolutions_of_a_standing_spindle_are_refused() -> None:
     with pytest.raises(PostError, match="while the spindle stands"):
-        run(Dwell(revolutions=2.0))
+        run(SpindleCommand.STOP, Dwell(revolutions=2.0))
+
+
+def test_the_spindle_turns_when_the_path_begins() -> None:
+    assert time(run(Dwell(revolutions=2.0), cut(10, 0, 0))) == pytest.approx(0.1 + 1.0)
 
 
 def test_usual_motion_is_a_filter_where_axes_are_known() -> None:
