@@ -4,12 +4,12 @@ from dataclasses import dataclass
 from math import sqrt
 
 from optimiser.hardest import Met, lengths
-from optimiser.shape import shape_of
 from simulator.errors import SimulationError
 from simulator.motion.tool_path import Run
 from simulator.removal.cutter import Insert
 from simulator.removal.engage import MillingStock
 from simulator.removal.lathe import TurningStock
+from simulator.removal.tool_shape import shape_of
 from simulator.removal.zmap import MOST_CELLS
 from simulator.spec import Machine, MachineKind
 from stepnc_model.entities.setup import Setup
@@ -92,7 +92,7 @@ def met_by(
     try:
         shape = shape_of(program, step.tool_ref)
         if shape is None:
-            return None, "threads are not cut from the stock"
+            return None, "threads and knurls are not cut from the stock"
         if isinstance(stock, TurningStock):
             stations, cell = stock.cut(run.segments, shape), stock.cell
         elif isinstance(shape, Insert):

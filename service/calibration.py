@@ -5,7 +5,7 @@ from pathlib import Path
 
 from service.files import require_place, write_atomically
 from service.reading import Tell, silent
-from service.simulation import SimulationRequest, virtual_machine
+from service.simulation import SimulationRequest, waiting_machine
 from service.simulation_setup import CodeRequest
 from simulator.calibration.calibrated import calibrated, notes, priors
 from simulator.calibration.delay import Delay, fitted_delay
@@ -14,6 +14,7 @@ from simulator.calibration.fit import fitted
 from simulator.calibration.held_out import HeldOut, held_out
 from simulator.calibration.measured_run import MeasuredRun, read_run
 from simulator.calibration.simulated import features
+from simulator.machine.interpreter import interpret
 from simulator.machine.samples import Samples, joined
 from simulator.machine.sensing import Sampler
 from simulator.machine_toml import machine_toml
@@ -115,8 +116,9 @@ def _simulated(request: CalibrationRequest, tell: Tell) -> tuple[Samples, Machin
         units=request.units,
         control=request.control,
     )
-    virtual, episodes = virtual_machine(simulation, tell)
+    prepared, virtual = waiting_machine(simulation, tell=tell)
     sampler = Sampler(virtual.machine, rate=RATE)
+    episodes = virtual.run(interpret(prepared.blocks, virtual.machine))
     parts = [part for episode in episodes for part in sampler.samples(episode)]
     return joined(parts), virtual.machine
 

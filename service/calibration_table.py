@@ -10,19 +10,19 @@ from simulator.calibration.skill import Skill
 def print_calibration(result: CalibrationResult) -> None:
     """Parameters, cycle times, and errors on what was not fitted beside the baseline's."""
     print_line(f"machine {result.machine.name} ({result.machine.title})")
-    rows = [_estimate_row(each) for each in result.calibration.estimates]
-    rows.append(_delay_row(result.delay))
-    print_table(("parameter", "value", "95 % interval", "identified"), rows)
+    found = [_estimate_row(each) for each in result.calibration.estimates]
+    found.append(_delay_row(result.delay))
+    print_table(("parameter", "value", "95 % interval", "identified"), found)
     print_line("")
-    rows = [
+    times = [
         (time.name, f"{time.measured:.1f}", f"{time.simulated:.1f}", f"{time.error:+.2%}")
         for time in result.times
     ]
-    print_table(("run", "measured s", "simulated s", "error"), rows)
+    print_table(("run", "measured s", "simulated s", "error"), times)
     print_line("")
     print_line("held out: each run fitted by the others, a single one's end by its start;")
     print_line("baseline: mean power of what was fitted times the time")
-    rows = [
+    errors = [
         (held.name, part.value, *_skill_row(skill))
         for held in result.held_out
         for part, skill in held.skills.items()
@@ -30,7 +30,7 @@ def print_calibration(result: CalibrationResult) -> None:
     header = (
         "run", "power", "RMSE W", "baseline", "energy", "baseline", "skill", "cutting energy",
     )  # fmt: skip
-    print_table(header, rows)
+    print_table(header, errors)
     print_findings(result.findings)
 
 

@@ -18,6 +18,10 @@ def read_bytes(path: Path) -> bytes:
         raise StepNcError(f"{str(path)!r} is no file name: {error}") from error
 
 
+LONGEST_LINE = 100_000
+"""letters; longer lines are no text for people or controls"""
+
+
 def open_lines(path: Path) -> Iterator[str]:
     """Lines of a text file, read as they are asked for; its first fault at once."""
     try:
@@ -30,7 +34,10 @@ def open_lines(path: Path) -> Iterator[str]:
     def lines() -> Iterator[str]:
         with file:
             try:
-                yield from file
+                while line := file.readline(LONGEST_LINE):
+                    if len(line) == LONGEST_LINE:
+                        raise StepNcError(f"{path}: a line of more than {LONGEST_LINE} letters")
+                    yield line
             except OSError as error:
                 raise StepNcError(f"{path}: {_reason(error)}") from error
 

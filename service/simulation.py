@@ -7,7 +7,7 @@ from enum import StrEnum
 from pathlib import Path
 
 from service.files import require_place
-from service.progress import Ticker, bar
+from service.progress import Patience, Ticker, bar
 from service.reading import Tell, one_of, silent
 from service.simulation_setup import (
     CodeRequest,
@@ -35,6 +35,8 @@ from simulator.motion.motion import ControlModel, axis_limits
 from simulator.spec import Machine, MachineKind, MaterialMatch
 from stepnc_model.errors import Finding, StepNcError, WriteError
 from stepnc_model.units import mm_from_um
+
+COMPILES = "removal is compiled for this machine, once: about half a minute"
 
 MOST_RATE = 10_000.0
 """1/s"""
@@ -123,10 +125,8 @@ def simulate(request: SimulationRequest, *, tell: Tell = silent) -> Simulation:
     StepNcError
         For everything that is wrong with file, names, numbers or output.
     """
-    _require(request)
-    kind, disturbance, teeth = _control_kind(request), _disturbance(request), _teeth(request)
-    prepared = _prepared(request, tell)
-    virtual = _machine(request, prepared, teeth=teeth)
+    kind, disturbance = _control_kind(request), _disturbance(request)
+    prepared, virtual = waiting_machine(request, tell=tell)
     run = _Run(virtual, disturbance, rate=request.rate)
     if request.report is not None:
         run.trace = TraceKeeper()
@@ -134,8 +134,9 @@ def simulate(request: SimulationRequest, *, tell: Tell = silent) -> Simulation:
         run.file = TimelineFile(request.output, virtual.workingsteps)
     ticker = Ticker(tell)
     try:
-        with run.file or nullcontext():
+        with run.file or nullcontext(), Patience(tell, COMPILES) as patience:
             for episode in virtual.run(interpret(prepared.blocks, virtual.machine)):
+                patience.end()
                 run.add(episode, ticked=lambda: ticker(lambda: _progress(prepared, virtual)))
     except SimulationError as error:
         raise SimulationError(f"{_place(prepared, virtual)}: {error}") from error
@@ -152,6 +153,22 @@ def simulate(request: SimulationRequest, *, tell: Tell = silent) -> Simulation:
         samples=0 if run.file is None else run.file.rows,
         trace=None if run.trace is None else run.trace.trace(),
     )
+
+
+def waiting_machine(
+    request: SimulationRequest, *, tell: Tell = silent
+) -> tuple[Prepared, VirtualMachine]:
+    """A program and the machine that waits for it.
+
+    Raises
+    ------
+    StepNcError
+        As :func:`simulate`.
+    """
+    _require(request)
+    teeth = _teeth(request)
+    prepared = _prepared(request, tell)
+    return prepared, _machine(request, prepared, teeth=teeth)
 
 
 class _Run:

@@ -1,6 +1,6 @@
 """What met the stock and should not have, told to the user."""
 
-from collections.abc import Iterable, Sequence
+from typing import Protocol
 
 from simulator.removal.collision import Collision
 from stepnc_model.errors import Finding, Severity
@@ -12,11 +12,18 @@ LEAST_VOLUME = 1e-3
 """mm³ by which a rapid may graze what is just cut: rounding of the map"""
 
 
-def contacts(
-    rapids: Iterable[Collision], holders: Sequence[Collision], shanks: Sequence[Collision]
-) -> list[Finding]:
+class Met(Protocol):
+    """A stock that knows what met it."""
+
+    collisions: list[Collision]
+    """rapids through material"""
+    holder_collisions: list[Collision]
+    shank_collisions: list[Collision]
+
+
+def contacts(stock: Met) -> list[Finding]:
     """Findings for rapids through material, holders and shanks that met it."""
-    met = [hit for hit in rapids if hit.volume > LEAST_VOLUME]
+    met = [hit for hit in stock.collisions if hit.volume > LEAST_VOLUME]
     told = [
         (hit, f"a rapid cuts {hit.volume:.3g} mm³ of material, up to {_place(hit)}")
         for hit in met
@@ -24,7 +31,7 @@ def contacts(
     findings = _first(told, "rapids through material")
     told = [
         (hit, f"the holder is {hit.depth:.3g} mm deep in the material at {_place(hit)}")
-        for hit in holders
+        for hit in stock.holder_collisions
     ]
     findings += _first(told, "moves with the holder in the material")
     told = [
@@ -33,7 +40,7 @@ def contacts(
             f"{hit.depth:.3g} mm of material above the cutting edge meet the shank at "
             f"{_place(hit)}",
         )
-        for hit in shanks
+        for hit in stock.shank_collisions
     ]
     return findings + _first(told, "moves with material at the shank")
 

@@ -59,6 +59,9 @@ LONGEST = 20_000
 PIECE = 0.02
 """relative change of the radius within one piece at constant surface speed"""
 
+MOST_TURNS = 100
+"""of one arc; more is a slip, and more than the stock's map takes"""
+
 MOST_PIECES = 400
 """of one move; radii below e⁻⁸ of its greatest are not told apart"""
 
@@ -240,6 +243,10 @@ class _Interpreter:
         self.at = list(block.end)
 
     def _circular(self, block: Circular) -> Iterator[Act]:
+        turns = abs(block.turn) / (2.0 * pi)
+        if turns > MOST_TURNS:
+            text = f"an arc of {turns:g} turns: {MOST_TURNS} at most"
+            raise ProgramFault(text, self.line)
         start = self._start(block.end)
         yield from self._cut_begins(start[0])
         self.rows.arc(

@@ -25,6 +25,7 @@ from simulator.machine.acts import (
     Wait,
     WorkingstepTo,
 )
+from simulator.machine.contacts import Met, contacts
 from simulator.machine.cutting import Edge
 from simulator.machine.episode import Course, Episode, State
 from simulator.machine.samples import Execution
@@ -43,7 +44,7 @@ from stepnc_model.units import rpm_from_rev_s
 Shape = Cutter | Insert
 
 
-class StockMap(Protocol):
+class StockMap(Met, Protocol):
     """What is left of the stock."""
 
     def cut(self, segments: Segments, shape: Any, /, *, is_clockwise: bool) -> Stations:
@@ -97,7 +98,9 @@ class VirtualMachine:
         """ids in the order of their beginning; numbered from 1 in the episodes"""
         self.tool: LoadedTool | None = None
         self.findings: list[Finding] = []
-        self._stock = setup.stock("")
+        self._stock: StockMap | None = None
+        self._stocks: list[StockMap] = []
+        self._clamp("")
         self._flank: dict[int, float] = {}
         """mm of flank wear by the tool's number"""
         self._said: set[str] = set()
@@ -125,6 +128,8 @@ class VirtualMachine:
             waiting.clear()
         for held in waiting:
             yield from self._act(held)
+        for stock in self._stocks:
+            self.findings += contacts(stock)
         yield self._still(0.0, Execution.PROGRAM_COMPLETED)
 
     def _act(self, step: Step) -> Iterator[Episode]:
@@ -145,7 +150,7 @@ class VirtualMachine:
             case WorkingstepTo(id=name):
                 self.workingsteps.append(name)
                 self.state = replace(self.state, workingstep=len(self.workingsteps))
-                self._stock = self.setup.stock(name)
+                self._clamp(name)
             case Stop():
                 left = max(self.spindle.reached - self.now, 0.0)
                 yield self._still(left, Execution.PROGRAM_STOPPED)
@@ -153,6 +158,12 @@ class VirtualMachine:
                 self._turn(0.0)
                 self.state = replace(self.state, coolant_on=False)
                 yield from self._wait(self.spindle.reached - self.now)
+
+    def _clamp(self, workingstep: str) -> None:
+        """The stock of a workingstep."""
+        self._stock = self.setup.stock(workingstep)
+        if self._stock is not None and all(self._stock is not known for known in self._stocks):
+            self._stocks.append(self._stock)
 
     def _wait(self, seconds: float) -> Iterator[Episode]:
         if seconds > 0.0:

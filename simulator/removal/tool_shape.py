@@ -3,6 +3,7 @@
 from math import inf, pi
 
 from simulator.removal.cutter import Cutter, Holder, Insert
+from simulator.removal.profile import profile_of
 from simulator.spec import ToolKind
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.enums import HandOfToolType
@@ -70,9 +71,14 @@ def shape_of(program: Program, ref: Ref[Entity]) -> Cutter | Insert | None:
     tool, entity = tool_of(program, ref), program.get(ref)
     if tool_kind(tool) in THREADS or isinstance(entity, KnurlingTool):
         return None
-    if isinstance(entity, TurningMachineCuttingTool):
-        return _insert(program, tool, entity)
-    return _cutter(program, tool, entity)
+    try:
+        if isinstance(entity, TurningMachineCuttingTool):
+            return _insert(program, tool, entity)
+        shape = _cutter(program, tool, entity)
+        profile_of(shape, reach=shape.diameter)
+    except ValueError as error:
+        raise program.error(str(error), ref) from error
+    return shape
 
 
 def _insert(program: Program, tool: Tool, entity: TurningMachineCuttingTool) -> Insert:

@@ -95,7 +95,8 @@ def test_what_is_not_modelled_is_said() -> None:
     bar = ClampedStocks(part, lathe).before(thread)
     box = ClampedStocks(mill, load_machine("vmc15")).before(mill.workingsteps[0])
     assert (
-        met_by(part, thread, straight(*ALONG), bar)[1] == "threads are not cut from the stock"
+        met_by(part, thread, straight(*ALONG), bar)[1]
+        == "threads and knurls are not cut from the stock"
     )
     roughing = part.workingsteps[0]
     assert met_by(part, roughing, straight(*ALONG), box)[1] == "an insert does not mill"

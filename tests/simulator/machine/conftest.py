@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from simulator.machine.samples import Samples
 from simulator.motion.segments import Segments
+from simulator.removal.collision import Collision
 from simulator.removal.cutter import Cutter, Insert
 from simulator.removal.stations import CutKind, Stations
 from simulator.spec import Axis, AxisDrive, Machine, MachineKind, Spindle, SpindlePoint
@@ -85,6 +86,9 @@ class EvenStock:
 
     def __init__(self) -> None:
         self.senses: list[bool] = []
+        self.collisions: list[Collision] = []
+        self.holder_collisions: list[Collision] = []
+        self.shank_collisions: list[Collision] = []
 
     def cut(
         self, segments: Segments, shape: Cutter | Insert, *, is_clockwise: bool

@@ -1,5 +1,7 @@
 """What met the stock and should not have."""
 
+from dataclasses import dataclass, field
+
 import pytest
 
 from simulator.machine.contacts import LEAST_VOLUME, MOST, contacts
@@ -13,12 +15,19 @@ def hit(block: int, *, depth: float = 0.5, volume: float = 0.0) -> Collision:
     )
 
 
+@dataclass
+class Stock:
+    collisions: list[Collision] = field(default_factory=list)
+    holder_collisions: list[Collision] = field(default_factory=list)
+    shank_collisions: list[Collision] = field(default_factory=list)
+
+
 def test_nothing_met_is_nothing_said() -> None:
-    assert contacts([], [], []) == []
+    assert contacts(Stock()) == []
 
 
 def test_each_kind_says_what_where_and_how_much() -> None:
-    found = contacts([hit(4, volume=12.5)], [hit(5, depth=0.25)], [hit(6, depth=1.5)])
+    found = contacts(Stock([hit(4, volume=12.5)], [hit(5, depth=0.25)], [hit(6, depth=1.5)]))
     assert [finding.line for finding in found] == [4, 5, 6]
     assert {finding.severity for finding in found} == {Severity.WARNING}
     rapid, holder, shank = (finding.message for finding in found)
@@ -30,13 +39,13 @@ def test_each_kind_says_what_where_and_how_much() -> None:
 
 
 def test_rounding_of_the_map_is_no_collision() -> None:
-    assert contacts([hit(4, volume=LEAST_VOLUME)], [], []) == []
+    assert contacts(Stock([hit(4, volume=LEAST_VOLUME)])) == []
 
 
 @pytest.mark.parametrize("row", [0, 1, 2])
 def test_many_are_counted(row: int) -> None:
     kinds: list[list[Collision]] = [[], [], []]
     kinds[row] = [hit(line, volume=1.0) for line in range(1, MOST + 8)]
-    found = contacts(kinds[0], kinds[1], kinds[2])
+    found = contacts(Stock(*kinds))
     assert len(found) == MOST + 1
     assert found[-1].message.startswith("7 more ")

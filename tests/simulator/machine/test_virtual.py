@@ -18,9 +18,11 @@ from simulator.machine.virtual import LoadedTool, Setup, Shape, StockMap, Virtua
 from simulator.machine.wear import WORN_OUT
 from simulator.motion.exact_stop import ExactStop
 from simulator.physics.motion import move_time
-from simulator.removal.cutter import Cutter, Insert
+from simulator.removal.cutter import Cutter, Holder, Insert
+from simulator.removal.engage import MillingStock
 from simulator.spec import Kienzle, Machine, Taylor
 from stepnc_model.post import blocks as nc
+from stepnc_model.toolpath.job import Stock
 
 FEED = nc.Rate(value=20.0)
 HOME = nc.Rapid(end=(0.0, 0.0, 50.0))
@@ -341,3 +343,21 @@ def test_same_program_twice_gives_the_same_bytes(
         return [getattr(samples, each.name).tobytes() for each in fields(Samples)]
 
     assert bytes_of() == bytes_of()
+
+
+def test_what_met_the_stock_is_told_at_the_end(mill: Machine) -> None:
+    """A rapid through a box, and a holder that runs into it."""
+    box = MillingStock(Stock(low=(0.0, 0.0, -20.0), high=(40.0, 40.0, 0.0)), cell=0.5)
+    shape = Cutter(diameter=10.0, holder=Holder(diameter=30.0, overhang=8.0))
+    found = run(
+        mill,
+        nc.ToolChange(number=1),
+        ON,
+        nc.Rapid(end=(-20.0, 20.0, -12.0)),
+        nc.Rapid(end=(10.0, 20.0, -12.0)),
+        nc.Linear(end=(30.0, 20.0, -12.0), rate=nc.Rate(value=20.0)),
+        tools={1: tool(1, shape)},
+        stock=box,
+    )
+    assert any("a rapid cuts" in text for text in found.messages)
+    assert any("the holder is 4 mm deep" in text for text in found.messages)

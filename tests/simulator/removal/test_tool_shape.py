@@ -5,12 +5,12 @@ from pathlib import Path
 
 import pytest
 
-from optimiser.shape import shape_of
 from simulator.removal.cutter import Cutter, Insert
+from simulator.removal.tool_shape import shape_of
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
 
-PARTS = Path(__file__).parents[2] / "examples" / "parts"
+PARTS = Path(__file__).parents[3] / "examples" / "parts"
 
 
 def shape(part: str, workingstep: str, *change: str) -> Cutter | Insert | None:
