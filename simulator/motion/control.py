@@ -3,7 +3,7 @@
 from enum import StrEnum
 
 from simulator.motion.exact_stop import ExactStop
-from simulator.motion.fir import filter_within
+from simulator.motion.fir import FilterWithinLimits, shortest_filter
 from simulator.motion.junction import JunctionDeviation
 from simulator.motion.motion import AxisLimits, ControlModel
 
@@ -49,4 +49,5 @@ def control_model(
         case Control.JUNCTION:
             return JunctionDeviation(deviation=deviation)
         case Control.FIR:
-            return filter_within(limits)
+            shortest_filter(limits, limits.rapid)
+            return FilterWithinLimits()

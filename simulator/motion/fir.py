@@ -12,14 +12,19 @@ A state costs time in proportion to the pieces of path within one window.
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
+from simulator.motion.chain import Chain
 from simulator.motion.motion import AxisLimits, Kinematics, Motion
 from simulator.motion.moving_average import averaged, states_at_ends
 from simulator.motion.path_limits import is_stop, path_limits
 from simulator.motion.segments import Floats, Ints, Segments
 from simulator.motion.sweep import ends_of_all, swept
+
+LEAST_CHANGE = 1e-3
+"""mm/s; a slower path is filtered as this one"""
 
 SECOND_SHARE = 0.25
 """T2 over T1 where no axis has a jerk; our choice"""
@@ -154,28 +159,62 @@ class FilteredMotion:
         )
 
 
-def filter_within(limits: AxisLimits) -> FixedTimeFilter:
-    """The shortest filter that keeps every axis within its acceleration, whatever the path.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FilterWithinLimits:
+    """A control that takes for each run the shortest filter that the axes' limits allow.
 
-    T1 is the longest time of an axis from rest to rapid, or from greatest feed to as much the
-    other way: rapids begin and end at rest, feeds do not. T2 is the longest time of an axis
-    to its acceleration, at most T1; a quarter of T1 where no jerk is known.
+    A run is what lies between two stops of the filter: feeds, or rapids. In a run of feeds the
+    speed may turn round at its greatest feed; rapids begin and end at rest.
+    """
+
+    def plan(self, segments: Segments, limits: AxisLimits) -> Motion:
+        """Motion along segments, from rest to rest.
+
+        Raises
+        ------
+        ValueError
+            When there is no segment, a segment's speed has no bound at all, or no axis limits
+            acceleration.
+        """
+        speed = path_limits(segments, limits).speed
+        moves = np.flatnonzero(np.diff(segments.is_rapid)) + 1
+        bounds = [0, *moves.tolist(), len(segments)]
+        motions = []
+        for begin, end in pairwise(bounds):
+            run = segments[begin:end]
+            most = float(speed[begin:end].max())
+            is_rapid = bool(run.is_rapid[0])
+            change = limits.rapid if is_rapid else np.full(3, 2.0 * most)
+            motions.append(shortest_filter(limits, change).plan(run, limits))
+        return motions[0] if len(motions) == 1 else Chain(motions=motions)
+
+
+def shortest_filter(limits: AxisLimits, change: Floats) -> FixedTimeFilter:
+    """The shortest filter within which no change of speed passes an axis' limits.
+
+    An axis that changes its speed by Δv needs ``T1 ≥ Δv/a`` and ``T1·T2 ≥ Δv/j``; both times
+    equal where the jerk decides, a quarter of T1 for T2 where no jerk is known.
+
+    Parameters
+    ----------
+    limits : AxisLimits
+    change : (3,) array, mm/s
+        Δv of each axis.
 
     Raises
     ------
     ValueError
-        When no axis limits both speed and acceleration.
+        When no axis limits its acceleration, or a change is not finite there.
     """
     known = np.isfinite(limits.acceleration)
-    acceleration = limits.acceleration[known]
-    change = np.maximum(limits.rapid, 2.0 * limits.feed)[known]
-    first = float(np.max(change / acceleration, initial=0.0))
-    if not 0.0 < first < np.inf:
+    wanted = np.maximum(change[known], LEAST_CHANGE)
+    if not known.any() or not np.isfinite(wanted).all():
         raise ValueError("a filter needs axes with finite rapid, feed and acceleration")
-    second = float(np.max(acceleration / limits.jerk[known], initial=0.0))
-    return FixedTimeFilter(
-        first=first, second=min(first, second) if second > 0.0 else SECOND_SHARE * first
-    )
+    ramps = wanted / limits.acceleration[known]
+    areas = wanted / limits.jerk[known]
+    first = float(np.maximum(ramps, np.sqrt(areas)).max())
+    second = min(first, float(areas.max()) / first) or SECOND_SHARE * first
+    return FixedTimeFilter(first=first, second=second)
 
 
 def _pieces(segments: Segments, speed: Floats, *, rests: Ints, window: float) -> Pieces:

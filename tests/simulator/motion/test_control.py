@@ -2,7 +2,7 @@ import pytest
 
 from simulator.motion.control import DEVIATION, Control, control_model
 from simulator.motion.exact_stop import ExactStop
-from simulator.motion.fir import FixedTimeFilter, filter_within
+from simulator.motion.fir import FilterWithinLimits
 from simulator.motion.junction import JunctionDeviation
 from simulator.motion.motion import AxisLimits
 from simulator.motion.segments import lines
@@ -15,8 +15,7 @@ def test_names_are_those_of_the_command_line() -> None:
 def test_each_name_gives_its_model(limits: AxisLimits) -> None:
     assert control_model(Control.EXACT_STOP, limits) == ExactStop()
     assert control_model(Control.JUNCTION, limits) == JunctionDeviation(deviation=DEVIATION)
-    assert control_model(Control.FIR, limits) == filter_within(limits)
-    assert isinstance(control_model(Control.FIR, limits), FixedTimeFilter)
+    assert control_model(Control.FIR, limits) == FilterWithinLimits()
 
 
 def test_deviation_is_handed_on(limits: AxisLimits) -> None:

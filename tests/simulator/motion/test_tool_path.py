@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from simulator.library import load_machine
 from simulator.motion.exact_stop import ExactStop
-from simulator.motion.fir import FixedTimeFilter
+from simulator.motion.fir import FilterWithinLimits
 from simulator.motion.motion import AxisLimits, axis_limits
 from simulator.motion.tool_path import (
     LookUp,
@@ -219,7 +219,7 @@ def test_the_spindle_turns_when_the_path_begins() -> None:
 def test_usual_motion_is_a_filter_where_axes_are_known() -> None:
     machine = load_machine("vmc15")
     control, limits = usual_motion(machine)
-    assert isinstance(control, FixedTimeFilter)
+    assert isinstance(control, FilterWithinLimits)
     assert limits.rapid.tolist() == axis_limits(machine).rapid.tolist()
 
 
