@@ -6,7 +6,6 @@ from pathlib import Path
 from service.files import require_place, write_atomically
 from service.reading import Tell, silent
 from service.simulation import SimulationRequest, waiting_machine
-from service.simulation_setup import CodeRequest
 from simulator.calibration.calibrated import calibrated, notes, priors
 from simulator.calibration.delay import Delay, fitted_delay
 from simulator.calibration.estimates import Calibration
@@ -30,12 +29,8 @@ class CalibrationRequest:
     """What the user asks of ``calibrate``."""
 
     runs: tuple[Path, ...]
-    program: Path | None = None
-    code: CodeRequest | None = None
-    machine: str = ""
-    material: str = ""
-    units: str = "iso"
-    control: str = "fir"
+    simulation: SimulationRequest
+    """what was run, and on which machine as far as it is known"""
     output: Path | None = None
 
 
@@ -80,7 +75,7 @@ def calibrate(request: CalibrationRequest, *, tell: Tell = silent) -> Calibratio
     if not request.runs:
         raise StepNcError("name at least one measured run")
     if request.output is not None:
-        for other in (*request.runs, request.program):
+        for other in (*request.runs, request.simulation.file):
             if other is not None:
                 require_place(request.output, apart_from=other)
     runs = [read_run(path) for path in request.runs]
@@ -108,15 +103,7 @@ def calibrate(request: CalibrationRequest, *, tell: Tell = silent) -> Calibratio
 
 def _simulated(request: CalibrationRequest, tell: Tell) -> tuple[Samples, Machine]:
     """The program on the machine as it is."""
-    simulation = SimulationRequest(
-        file=request.program,
-        code=request.code,
-        machine=request.machine,
-        material=request.material,
-        units=request.units,
-        control=request.control,
-    )
-    prepared, virtual = waiting_machine(simulation, tell=tell)
+    prepared, virtual = waiting_machine(request.simulation, tell=tell)
     sampler = Sampler(virtual.machine, rate=RATE)
     episodes = virtual.run(interpret(prepared.blocks, virtual.machine))
     parts = [part for episode in episodes for part in sampler.samples(episode)]

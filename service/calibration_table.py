@@ -4,7 +4,14 @@ from service.calibration import CalibrationResult
 from service.tables import print_findings, print_line, print_table
 from simulator.calibration.delay import Delay
 from simulator.calibration.estimates import Estimate
+from simulator.calibration.measured_run import Component
 from simulator.calibration.skill import Skill
+
+CUTS = {Component.SPINDLE, Component.TOTAL}
+"""powers that hold that of the cut"""
+
+MOST_NET = 10.0
+"""share of error from which a net cutting energy is lost in the noise"""
 
 
 def print_calibration(result: CalibrationResult) -> None:
@@ -23,7 +30,7 @@ def print_calibration(result: CalibrationResult) -> None:
     print_line("held out: each run fitted by the others, a single one's end by its start;")
     print_line("baseline: mean power of what was fitted times the time")
     errors = [
-        (held.name, part.value, *_skill_row(skill))
+        (held.name, part.value, *_skill_row(part, skill))
         for held in result.held_out
         for part, skill in held.skills.items()
     ]
@@ -48,8 +55,10 @@ def _delay_row(delay: Delay) -> tuple[str, str, str, str]:
     return "delay of the main drive", f"{delay.value:.4g} s", span, "yes"
 
 
-def _skill_row(skill: Skill) -> tuple[str, ...]:
-    net = f"{skill.net_error:+.1%}" if abs(skill.net_error) < 10.0 else "none to tell"
+def _skill_row(part: Component, skill: Skill) -> tuple[str, ...]:
+    net = ""
+    if part in CUTS:
+        net = f"{skill.net_error:+.1%}" if abs(skill.net_error) < MOST_NET else "none to tell"
     return (
         f"{skill.model_rmse:.1f}",
         f"{skill.baseline_rmse:.1f}",

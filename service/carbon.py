@@ -8,6 +8,8 @@ References
 
 from dataclasses import dataclass
 
+from stepnc_model.errors import StepNcError
+
 JOULES_PER_KILOWATT_HOUR = 3.6e6
 
 
@@ -31,6 +33,20 @@ class CarbonFactor:
     def grams(self, energy: float) -> float:
         """Carbon dioxide in g of an energy in J."""
         return kilowatt_hours(energy) * self.grams_per_kwh
+
+
+def stated(grams_per_kwh: float) -> CarbonFactor:
+    """A factor that the user states.
+
+    Raises
+    ------
+    StepNcError
+        When it is negative or no number.
+    """
+    try:
+        return CarbonFactor(grams_per_kwh=grams_per_kwh, source="as asked for")
+    except ValueError as error:
+        raise StepNcError(str(error)) from error
 
 
 def kilowatt_hours(energy: float) -> float:

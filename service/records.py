@@ -100,10 +100,12 @@ def _removal_rate(cut: Cut, after: State) -> float:
     """Material removed in mm³/s while the tool cuts."""
     best = after.setting
     if cut.kind is CutKind.MILLING:
-        return cut.radial_width * best.depth * after.feed
+        return cut.radial_width * cut.depth_share * best.depth * after.feed
     if cut.kind is CutKind.DRILLING:
         return pi / 4.0 * (cut.diameter**2 - cut.previous_diameter**2) * after.feed
-    width = cut.radial_width if cut.kind is CutKind.GROOVING else best.depth
+    width = cut.depth_share * best.depth
+    if cut.kind is CutKind.GROOVING:
+        width = cut.radial_width
     return width * best.feed * pi * cut.diameter * best.speed
 
 

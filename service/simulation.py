@@ -38,6 +38,9 @@ from stepnc_model.units import mm_from_um
 
 COMPILES = "removal is compiled for this machine, once: about half a minute"
 
+MOST_FACTOR = 100.0
+"""on k_c; more is a slip"""
+
 MOST_RATE = 10_000.0
 """1/s"""
 
@@ -86,6 +89,8 @@ class SimulationRequest:
     """tools wear while they cut"""
     force: str = ForceView.MEAN.value
     runout_um: float = 0.0
+    kc_factor: float = 1.0
+    """on the specific cutting force"""
     seed: int = 0
     output: Path | None = None
     report: Path | None = None
@@ -322,10 +327,20 @@ def _by_axes(kind: Control, machine: Machine, *, deviation: float) -> ControlMod
 
 
 def _tools(request: SimulationRequest, prepared: Prepared) -> dict[int, LoadedTool] | None:
-    """The tools; they wear only when asked for."""
-    if prepared.tools is None or request.has_wear:
-        return prepared.tools
-    return {number: replace(tool, taylor=None) for number, tool in prepared.tools.items()}
+    """The tools as asked for: they wear or not, the material is harder or not."""
+    if not 0.0 < request.kc_factor <= MOST_FACTOR:
+        bound = f"it must be positive, {MOST_FACTOR:g} at most"
+        raise StepNcError(f"factor on k_c {request.kc_factor:g}: {bound}")
+    if prepared.tools is None:
+        return None
+    return {
+        number: replace(
+            tool,
+            taylor=tool.taylor if request.has_wear else None,
+            edge=replace(tool.edge, factor=request.kc_factor * tool.edge.factor),
+        )
+        for number, tool in prepared.tools.items()
+    }
 
 
 def _teeth(request: SimulationRequest) -> Teeth | None:
