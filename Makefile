@@ -18,7 +18,7 @@ PYTHON ?= $(shell for p in python3.11 python3.12 python3.13 python3; do \
 .PHONY: help setup demo test check bench lock clean
 
 help:
-	@echo "make demo   optimise a sample part and show what changed"
+	@echo "make demo   optimise a sample part, simulate it, and show what changed"
 	@echo "make test   run the tests"
 	@echo "make check  formatting, lint, types, layers"
 	@echo "make bench  speed, side by side with peers"
@@ -49,6 +49,8 @@ demo: $(READY)
 	$(BIN)/optimise examples/parts/bracket.stpnc --mode TC --machine vmc15 \
 		-o $(DEMO)/bracket.optimised.stpnc --report $(DEMO)/bracket.html --nc linuxcnc
 	$(BIN)/stepnc toolpath $(DEMO)/bracket.optimised.stpnc --plot $(DEMO)/bracket.png
+	$(BIN)/stepnc simulate $(DEMO)/bracket.optimised.stpnc --machine vmc15 \
+		-o $(DEMO)/bracket.parquet --report $(DEMO)/bracket.run.html
 	$(BIN)/optimise examples/parts/paper002.stpnc --mode TC --machine paper002 --json \
 		-o $(DEMO)/paper002.optimised.stpnc
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from service.cli import optimise_main
+from service.cli import main, optimise_main
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -17,7 +17,7 @@ def test_the_command_prints_what_the_readme_shows(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(ROOT)
-    shown = re.search(r"    \$ optimise (.*) -o part\.stpnc\n((?:    .*\n)+)", README)
+    shown = re.search(r"    \$ optimise (.*) -o part\.stpnc\n((?:    [^$].*\n)+)", README)
     assert shown is not None
     with pytest.raises(SystemExit) as stopped:
         optimise_main([*shown[1].split(), "-o", str(tmp_path / "part.stpnc")])
@@ -25,6 +25,35 @@ def test_the_command_prints_what_the_readme_shows(
     printed = capsys.readouterr().out
     for line in shown[2].splitlines():
         assert line.removeprefix("    ") in printed
+
+
+def test_the_simulation_prints_what_the_readme_shows(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(ROOT)
+    part = tmp_path / "part.stpnc"
+    first = re.search(r"    \$ optimise (.*) -o part\.stpnc\n", README)
+    shown = re.search(
+        r"    \$ stepnc simulate part\.stpnc (.*) -o run\.parquet --report run\.html\n"
+        r"((?:    [^$].*\n)+)",
+        README,
+    )
+    assert first is not None
+    assert shown is not None
+    with pytest.raises(SystemExit):
+        optimise_main([*first[1].split(), "-o", str(part)])
+    capsys.readouterr()
+    run, page = tmp_path / "run.parquet", tmp_path / "run.html"
+    with pytest.raises(SystemExit) as stopped:
+        main([
+            "simulate", str(part), *shown[1].split(), "-o", str(run), "--report", str(page)
+        ])  # fmt: skip
+    assert stopped.value.code == 0
+    printed = capsys.readouterr().out
+    for line in shown[2].splitlines():
+        assert line.removeprefix("    ") in printed
+    assert run.exists()
+    assert page.exists()
 
 
 def test_the_python_of_the_readme_prints_its_comment(monkeypatch: pytest.MonkeyPatch) -> None:
