@@ -42,7 +42,7 @@ Edit = st.one_of(
 
 bounded = settings(
     max_examples=120,
-    deadline=3_000,
+    deadline=None,
     derandomize=True,
     database=None,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large],
