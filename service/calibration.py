@@ -11,17 +11,20 @@ from simulator.calibration.delay import Delay, fitted_delay
 from simulator.calibration.estimates import Calibration
 from simulator.calibration.fit import fitted
 from simulator.calibration.held_out import HeldOut, held_out
-from simulator.calibration.measured_run import MeasuredRun, read_run
+from simulator.calibration.measured_run import TIME, MeasuredRun, read_run
 from simulator.calibration.simulated import features
 from simulator.machine.interpreter import interpret
 from simulator.machine.samples import Samples, joined
 from simulator.machine.sensing import Sampler
 from simulator.machine_toml import machine_toml
 from simulator.spec import Machine
-from stepnc_model.errors import Finding, StepNcError
+from stepnc_model.errors import Finding, Severity, StepNcError, WriteError
 
 RATE = 100.0
 """samples a second of the simulation that the runs are compared with"""
+
+MOST_TIME_ERROR = 0.05
+"""share of the measured time; what is further off may be another program"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,9 +78,7 @@ def calibrate(request: CalibrationRequest, *, tell: Tell = silent) -> Calibratio
     if not request.runs:
         raise StepNcError("name at least one measured run")
     if request.output is not None:
-        for other in (*request.runs, request.simulation.file):
-            if other is not None:
-                require_place(request.output, apart_from=other)
+        _require_output(request, request.output)
     runs = [read_run(path) for path in request.runs]
     samples, machine = _simulated(request, tell)
     known = [features(samples, run) for run in runs]
@@ -91,14 +92,35 @@ def calibrate(request: CalibrationRequest, *, tell: Tell = silent) -> Calibratio
         text = machine_toml(found, notes=(_origin(runs), *notes(calibration, delay)))
         write_atomically(request.output, text.encode())
         tell(f"machine file: {request.output}")
+    times = tuple(_time(run, samples) for run in runs)
     return CalibrationResult(
         machine=found,
         calibration=calibration,
         delay=delay,
         held_out=errors,
-        times=tuple(_time(run, samples) for run in runs),
-        findings=tuple(finding for run in runs for finding in run.findings),
+        times=times,
+        findings=(
+            *(finding for run in runs for finding in run.findings),
+            *(_off(time) for time in times if abs(time.error) > MOST_TIME_ERROR),
+        ),
     )
+
+
+def _require_output(request: CalibrationRequest, output: Path) -> None:
+    """Refuse an output that could not be written, or is an input, before the long work."""
+    if output.suffix.lower() != ".toml":
+        raise WriteError("a machine is written as .toml", path=str(output))
+    asked = request.simulation
+    inputs: list[Path | None] = [*request.runs, asked.file]
+    # A name is one of the library's; what ends in a suffix is a file.
+    inputs += [Path(name) for name in (asked.machine, asked.material) if Path(name).suffix]
+    if asked.code is not None:
+        inputs += [asked.code.code, asked.code.tools]
+    for other in inputs:
+        if other is not None:
+            require_place(output, apart_from=other)
+    if output.exists() and not output.is_file():
+        raise WriteError("is no regular file", path=str(output))
 
 
 def _simulated(request: CalibrationRequest, tell: Tell) -> tuple[Samples, Machine]:
@@ -115,6 +137,19 @@ def _time(run: MeasuredRun, samples: Samples) -> CycleTime:
         name=run.name,
         measured=float(run.time[-1] - run.time[0]),
         simulated=float(samples.time[-1]),
+    )
+
+
+def _off(time: CycleTime) -> Finding:
+    """A run that took another time than the program."""
+    return Finding(
+        severity=Severity.WARNING,
+        message=(
+            f"measured {time.measured:.1f} s, simulated {time.simulated:.1f} s: more than"
+            f" {MOST_TIME_ERROR:.0%} apart; another program or unit of time, or not all of it?"
+        ),
+        entity=time.name,
+        attribute=TIME,
     )
 
 

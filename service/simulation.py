@@ -136,7 +136,7 @@ def simulate(request: SimulationRequest, *, tell: Tell = silent) -> Simulation:
     if request.report is not None:
         run.trace = TraceKeeper()
     if request.output is not None:
-        run.file = TimelineFile(request.output, virtual.workingsteps)
+        run.file = TimelineFile(request.output, virtual.workingsteps, program=prepared.name)
     ticker = Ticker(tell)
     try:
         with run.file or nullcontext(), Patience(tell, COMPILES) as patience:

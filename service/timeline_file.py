@@ -6,7 +6,7 @@ The file gets its name when it is whole. A run that is broken off leaves what it
 
 import os
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
@@ -43,6 +43,8 @@ class TimelineFile:
         Ends with ``.parquet`` or ``.csv``.
     workingsteps : sequence of str
         Ids by their number, from 1; may grow while samples come.
+    program : str
+        Its name.
 
     Raises
     ------
@@ -50,12 +52,13 @@ class TimelineFile:
         When the ending is another, or the disk refuses.
     """
 
-    def __init__(self, path: Path, workingsteps: Sequence[str]) -> None:
+    def __init__(self, path: Path, workingsteps: Sequence[str], *, program: str = "") -> None:
         self.path = path
         self.rows = 0
         self.place: Path | None = None
         """where the file lies once it is closed"""
         self._workingsteps = workingsteps
+        self._program = program
         self._waiting: list[Samples] = []
         self._count = 0
         self._is_text = require_suffix(path) == ".csv"
@@ -125,16 +128,16 @@ class TimelineFile:
         if not self._count:
             return
         samples, self._waiting, self._count = joined(self._waiting), [], 0
-        words = ("", *self._workingsteps)
-        arrays = [_array(column, samples, words) for column in COLUMNS]
+        names = {"program": (self._program,), "workingstep": ("", *self._workingsteps)}
+        arrays = [_array(column, samples, names) for column in COLUMNS]
         if self._is_text:
             arrays = [
                 array.dictionary_decode() if isinstance(array, pa.DictionaryArray) else array
                 for array in arrays
             ]
-        names = [column.name for column in COLUMNS]
+        headings = [column.name for column in COLUMNS]
         try:
-            self._writer.write(pa.record_batch(arrays, names=names))
+            self._writer.write(pa.record_batch(arrays, names=headings))
         except OSError as error:
             raise self._refused(error) from error
         self.rows += len(samples)
@@ -157,6 +160,11 @@ def require_suffix(path: Path) -> str:
     return suffix
 
 
+Names = Mapping[str, tuple[str, ...]]
+"""words that only the run knows, by the attribute of the samples"""
+
+OF_RUN: Names = {"program": (), "workingstep": ()}
+
 EVENT = pa.dictionary(pa.int32(), pa.string())
 """words that come again and again"""
 
@@ -165,7 +173,7 @@ def timeline_schema(*, events: pa.DataType = EVENT) -> pa.Schema:
     """Names and types of the columns, each with its unit as metadata."""
 
     def kind(column: Column) -> pa.DataType:
-        if _words(column, ()) is not None:
+        if _words(column, OF_RUN) is not None:
             return events
         if column.source in WHOLE:
             return pa.int32()
@@ -177,17 +185,17 @@ def timeline_schema(*, events: pa.DataType = EVENT) -> pa.Schema:
     ])
 
 
-def _words(column: Column, workingsteps: tuple[str, ...]) -> tuple[str, ...] | None:
+def _words(column: Column, of_run: Names) -> tuple[str, ...] | None:
     """What the numbers of a column stand for; None: themselves."""
-    return workingsteps if column.source == "workingstep" else column.words
+    return of_run.get(column.source, column.words)
 
 
-def _array(column: Column, samples: Samples, workingsteps: tuple[str, ...]) -> pa.Array:
+def _array(column: Column, samples: Samples, of_run: Names) -> pa.Array:
     """One column of the file."""
     values = getattr(samples, column.source)
     if column.axis is not None:
         values = values[:, column.axis]
-    words = _words(column, workingsteps)
+    words = _words(column, of_run)
     if words is not None:
         return pa.DictionaryArray.from_arrays(
             pa.array(values.astype(np.int32)), pa.array(words)

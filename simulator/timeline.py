@@ -28,9 +28,11 @@ class Column:
     """what the numbers of an event mean, from 0"""
 
 
-def _axes(suffix: str, source: str, unit: str) -> tuple[Column, ...]:
+def _axes(
+    suffix: str, source: str, unit: str = "", words: tuple[str, ...] | None = None
+) -> tuple[Column, ...]:
     return tuple(
-        Column(name=f"{name}_axis_{suffix}", source=source, unit=unit, axis=row)
+        Column(name=f"{name}_axis_{suffix}", source=source, unit=unit, axis=row, words=words)
         for row, name in enumerate("xyz")
     )
 
@@ -64,10 +66,17 @@ COLUMNS = (
         words=("READY", "ACTIVE", "WAIT", "PROGRAM_STOPPED", "PROGRAM_COMPLETED"),
     ),
     Column(name="path_mode", source="path_mode", words=("NONE", "RAPID", "FEED")),
+    *_axes("direction", "direction", words=("NEGATIVE", "NONE", "POSITIVE")),
+    Column(
+        name="rotary_direction",
+        source="rotation",
+        words=("COUNTER_CLOCKWISE", "NONE", "CLOCKWISE"),
+    ),
     Column(name="coolant", source="coolant", words=("OFF", "ON")),
     Column(name="overload", source="overload", words=("NORMAL", "WARNING", "FAULT")),
+    Column(name="program", source="program"),
     Column(name="line", source="line"),
     Column(name="tool_number", source="tool"),
     Column(name="workingstep", source="workingstep"),
 )
-"""in the order of the file; the words of the last one are the ids of the program"""
+"""in the order of the file; the words of program and workingstep are those of the run"""

@@ -141,7 +141,8 @@ def _axis(axis: Axis, found: Mapping[Parameter, Estimate]) -> Axis:
 
 def _note(each: Estimate) -> str:
     """One line on a parameter."""
+    value = f"{each.value:.4g} {each.unit}".strip()
     span = f"{each.low:.4g} to {each.high:.4g} {each.unit}".strip()
     if each.is_identified:
-        return f"{each.parameter}: {each.value:.4g} {each.unit}, 95 % interval {span}"
-    return f"{each.parameter}: kept at {each.value:.4g} {each.unit}; {each.reason}"
+        return f"{each.parameter}: {value}, 95 % interval {span}"
+    return f"{each.parameter}: kept at {value}; {each.reason}"

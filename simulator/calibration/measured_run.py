@@ -6,7 +6,8 @@ live with, but somebody should know, is a :class:`~stepnc_model.errors.Finding`.
 """
 
 import csv
-from collections.abc import Mapping, Sequence
+from array import array
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
@@ -103,24 +104,36 @@ def read_columns(path: Path, *, wanted: Sequence[str]) -> tuple[dict[str, Floats
     CalibrationError
         No such text, too few rows, a row of another length, or a cell that is no number.
     """
+    rows = _rows(path)
+    headings = next(rows, [])
+    columns = {name: headings.index(name) for name in wanted if name in headings}
+    # A list of a million rows would take gigabytes.
+    values, lines = array("d"), array("q")
+    for line, row in enumerate(rows, start=2):
+        numbers = _numbers(row, columns, width=len(headings), path=str(path), line=line)
+        if None not in numbers:
+            values.extend(number for number in numbers if number is not None)
+            lines.append(line)
+    if len(lines) < FEWEST_SAMPLES:
+        message = f"{len(lines)} whole samples, at least {FEWEST_SAMPLES} are needed"
+        raise CalibrationError(message, path=str(path))
+    table = np.array(values).reshape(len(lines), len(columns)).T
+    return dict(zip(columns, table, strict=True)), np.array(lines)
+
+
+def _rows(path: Path) -> Iterator[list[str]]:
+    """Rows of a CSV file, as they are read."""
     try:
         with path.open(encoding="utf-8-sig", newline="") as stream:
-            table = list(csv.reader(stream))
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
+            yield from csv.reader(stream)
+    except OSError as error:
+        raise CalibrationError(error.strerror or str(error), path=str(path)) from error
+    except UnicodeDecodeError as error:
+        raise CalibrationError("no text in UTF-8", path=str(path)) from error
+    except ValueError as error:
+        raise CalibrationError(f"no file name: {error}", path=repr(str(path))) from error
+    except csv.Error as error:
         raise CalibrationError(str(error), path=str(path)) from error
-    headings = table[0] if table else []
-    columns = {name: headings.index(name) for name in wanted if name in headings}
-    numbers = [
-        (line, _numbers(row, columns, width=len(headings), path=str(path), line=line))
-        for line, row in enumerate(table[1:], start=2)
-    ]
-    whole = [(line, row) for line, row in numbers if None not in row]
-    if len(whole) < FEWEST_SAMPLES:
-        message = f"{len(whole)} whole samples, at least {FEWEST_SAMPLES} are needed"
-        raise CalibrationError(message, path=str(path))
-    values = np.array([row for _, row in whole], dtype=np.float64)
-    lines = np.array([line for line, _ in whole])
-    return dict(zip(columns, values.T, strict=True)), lines
 
 
 def _numbers(

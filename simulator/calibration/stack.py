@@ -149,7 +149,8 @@ def _least_squares(
         bounds=(0.0, np.inf),
         loss="soft_l1",
         f_scale=OUTLIER,
-        tr_solver="lsmr",
+        # Inexact steps hardly move where parameters are nearly alike.
+        tr_solver="exact",
         ftol=CLOSE,
         xtol=CLOSE,
     )

@@ -13,6 +13,22 @@ import numpy as np
 from simulator.motion.segments import Floats, Ints
 
 
+class Direction(IntEnum):
+    """Which way an axis moves."""
+
+    NEGATIVE = 0
+    NONE = 1
+    POSITIVE = 2
+
+
+class Rotation(IntEnum):
+    """Which way the spindle turns, as MTConnect names it; M3 is clockwise."""
+
+    COUNTER_CLOCKWISE = 0
+    NONE = 1
+    CLOCKWISE = 2
+
+
 class Execution(IntEnum):
     """What the control does, as MTConnect names it."""
 
@@ -99,6 +115,21 @@ class Samples:
 
     def __len__(self) -> int:
         return len(self.time)
+
+    @property
+    def direction(self) -> Ints:
+        """(M, 3) :class:`Direction` of the axes."""
+        return 1 + np.sign(self.velocity).astype(np.int64)
+
+    @property
+    def rotation(self) -> Ints:
+        """(M,) :class:`Rotation` of the spindle."""
+        return 1 + np.sign(self.spindle_speed).astype(np.int64)
+
+    @property
+    def program(self) -> Ints:
+        """(M,) which program runs: there is one."""
+        return np.zeros(len(self), dtype=np.int64)
 
     @property
     def path_speed(self) -> Floats:

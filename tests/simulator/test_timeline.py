@@ -5,7 +5,14 @@ from enum import IntEnum
 
 import pytest
 
-from simulator.machine.samples import Condition, Execution, PathMode, Samples
+from simulator.machine.samples import (
+    Condition,
+    Direction,
+    Execution,
+    PathMode,
+    Rotation,
+    Samples,
+)
 from simulator.timeline import COLUMNS, Column
 
 NAMED = {column.name: column for column in COLUMNS}
@@ -21,7 +28,7 @@ def test_names_are_unique() -> None:
 @pytest.mark.parametrize("column", COLUMNS, ids=lambda column: column.name)
 def test_source_is_a_column_of_the_samples(column: Column) -> None:
     assert hasattr(Samples, column.source)
-    has_three = column.source in {"position", "velocity", "axis_power"}
+    has_three = column.source in {"position", "velocity", "direction", "axis_power"}
     assert has_three == (column.axis is not None)
     assert column.unit in UNITS
 
@@ -37,7 +44,14 @@ def test_axes_are_in_order() -> None:
 
 @pytest.mark.parametrize(
     ("name", "kind"),
-    [("execution", Execution), ("path_mode", PathMode), ("overload", Condition)],
+    [
+        ("execution", Execution),
+        ("path_mode", PathMode),
+        ("overload", Condition),
+        ("x_axis_direction", Direction),
+        ("z_axis_direction", Direction),
+        ("rotary_direction", Rotation),
+    ],
 )
 def test_words_are_the_names_of_the_events(name: str, kind: type[IntEnum]) -> None:
     words = NAMED[name].words

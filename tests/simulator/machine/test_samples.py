@@ -6,7 +6,7 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from simulator.machine.samples import Samples, joined
+from simulator.machine.samples import Direction, Rotation, Samples, joined
 
 Made = Callable[..., Samples]
 
@@ -40,3 +40,13 @@ def test_joined_parts_are_the_whole(samples_of: Made, cut: int) -> None:
     assert len(again) == 10
     for each in fields(Samples):
         np.testing.assert_array_equal(getattr(again, each.name), getattr(whole, each.name))
+
+
+def test_directions_are_signs_of_speeds(samples_of: Made) -> None:
+    samples = samples_of(
+        1, velocity=np.array([[-2.0, 0.0, 0.5]]), spindle_speed=np.array([-10.0])
+    )
+    assert samples.direction.tolist() == [
+        [Direction.NEGATIVE, Direction.NONE, Direction.POSITIVE]
+    ]
+    assert samples.rotation.tolist() == [Rotation.COUNTER_CLOCKWISE]
