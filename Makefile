@@ -26,6 +26,14 @@ help:
 
 setup: $(READY)
 
+# numba keeps compiled kernels by the file that holds them, and does not see changes of what they
+# call in other files.
+KERNELS := build/.kernels
+
+$(KERNELS): $(wildcard simulator/removal/*.py simulator/motion/*.py)
+	@rm -f simulator/*/__pycache__/*.nb[ci]
+	@mkdir -p $(@D) && touch $@
+
 $(READY): requirements.lock pyproject.toml
 	@test -n "$(PYTHON)" || { echo "error: Python 3.11 or newer is needed: apt-get install python3 python3-venv" >&2; exit 1; }
 	@"$(PYTHON)" -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || \
@@ -43,7 +51,7 @@ $(READY): requirements.lock pyproject.toml
 	fi
 	@touch $@
 
-demo: $(READY)
+demo: $(READY) $(KERNELS)
 	@mkdir -p $(DEMO)
 	$(BIN)/stepnc check examples/parts/bracket.stpnc
 	$(BIN)/optimise examples/parts/bracket.stpnc --mode TC --machine vmc15 \
@@ -54,7 +62,7 @@ demo: $(READY)
 	$(BIN)/optimise examples/parts/paper002.stpnc --mode TC --machine paper002 --json \
 		-o $(DEMO)/paper002.optimised.stpnc
 
-test: $(READY)
+test: $(READY) $(KERNELS)
 	$(BIN)/python -m pytest -n auto
 
 check: $(READY)
@@ -63,7 +71,7 @@ check: $(READY)
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-bench: $(READY)
+bench: $(READY) $(KERNELS)
 	$(BIN)/python -m benchmarks
 
 # Needs uv. Universal (every platform, Python 3.11 and later), hashes, no index addresses.

@@ -1,5 +1,7 @@
 """What ``calibrate`` found, as tables on a terminal."""
 
+from math import isfinite
+
 from service.calibration import CalibrationResult
 from service.tables import print_findings, print_line, print_table
 from simulator.calibration.delay import Delay
@@ -62,8 +64,13 @@ def _skill_row(part: Component, skill: Skill) -> tuple[str, ...]:
     return (
         f"{skill.model_rmse:.1f}",
         f"{skill.baseline_rmse:.1f}",
-        f"{skill.energy_error:+.2%}",
-        f"{skill.baseline_energy_error:+.2%}",
-        f"{skill.energy_skill:.2f}",
+        _finite(skill.energy_error, "+.2%"),
+        _finite(skill.baseline_energy_error, "+.2%"),
+        _finite(skill.energy_skill, ".2f"),
         net,
     )
+
+
+def _finite(number: float, form: str) -> str:
+    """The number, or nothing: it is a share of no energy."""
+    return format(number, form) if isfinite(number) else ""

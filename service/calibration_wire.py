@@ -1,5 +1,6 @@
 """A calibration as JSON. Keys carry their units and are fixed: others parse them."""
 
+from math import isfinite
 from typing import Any
 
 from service.calibration import CalibrationResult
@@ -33,8 +34,8 @@ def _estimate(each: Estimate) -> dict[str, Any]:
         "parameter": each.parameter.value,
         "unit": each.unit,
         "value": each.value,
-        "low": each.low,
-        "high": each.high,
+        "low": _finite(each.low),
+        "high": _finite(each.high),
         "is_identified": each.is_identified,
         "reason": each.reason,
     }
@@ -43,8 +44,8 @@ def _estimate(each: Estimate) -> dict[str, Any]:
 def _delay(delay: Delay) -> dict[str, Any]:
     return {
         "value_s": delay.value,
-        "low_s": delay.low,
-        "high_s": delay.high,
+        "low_s": _finite(delay.low),
+        "high_s": _finite(delay.high),
         "is_identified": not delay.reason,
         "reason": delay.reason,
     }
@@ -55,9 +56,14 @@ def _skill(skill: Skill) -> dict[str, Any]:
         "rmse_w": skill.model_rmse,
         "baseline_rmse_w": skill.baseline_rmse,
         "measured_energy_j": skill.measured_energy,
-        "energy_error": skill.energy_error,
-        "baseline_energy_error": skill.baseline_energy_error,
-        "energy_skill": skill.energy_skill,
+        "energy_error": _finite(skill.energy_error),
+        "baseline_energy_error": _finite(skill.baseline_energy_error),
+        "energy_skill": _finite(skill.energy_skill),
         "measured_net_cutting_energy_j": skill.measured_net,
         "net_cutting_energy_j": skill.model_net,
     }
+
+
+def _finite(number: float) -> float | None:
+    """The number, or nothing: an open end, or a share of nothing."""
+    return number if isfinite(number) else None

@@ -1,12 +1,12 @@
 """The delay of the main drive, from how late its measured power follows the model's.
 
-A first-order lag of the predicted power; the time constant is the one that leaves the least,
+A first-order lag of the predicted power of the cut; the time constant is the one that leaves the least,
 its interval where what it leaves is no more than chance explains. Samples within a block count
 as one observation, as in :mod:`simulator.calibration.stack`. Units s, W.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import minimize_scalar
@@ -102,12 +102,17 @@ def lagged(power: Floats, step: float, delay: float) -> Floats:
 def _pair(
     run: RunFeatures, calibration: Calibration, efficiency: float
 ) -> tuple[Floats, Floats, float] | None:
-    """Measured power of the spindle, the model's, and the time between samples."""
-    model = powers(design(run, efficiency=efficiency), calibration.values)
-    step = float(np.median(run.duration))
-    if Component.SPINDLE in run.measured:
-        return run.measured[Component.SPINDLE], model[Component.SPINDLE], step
-    if Component.TOTAL in run.measured:
-        rest = model[Component.TOTAL] - model[Component.SPINDLE]
-        return run.measured[Component.TOTAL] - rest, model[Component.SPINDLE], step
-    return None
+    """Measured power of the cut, the model's, and the time between samples.
+
+    As in :mod:`simulator.machine.disturbance`, only the cut shows late: the control knows of
+    the spindle's own speed in advance.
+    """
+    part = Component.SPINDLE if Component.SPINDLE in run.measured else Component.TOTAL
+    if part not in run.measured:
+        return None
+    idle_run = replace(run, cutting_power=np.zeros(len(run)))
+    model, idle = (
+        powers(design(each, efficiency=efficiency), calibration.values)[part]
+        for each in (run, idle_run)
+    )
+    return run.measured[part] - idle, model - idle, float(np.median(run.duration))
