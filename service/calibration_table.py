@@ -51,7 +51,7 @@ def _estimate_row(each: Estimate) -> tuple[str, str, str, str]:
 
 
 def _delay_row(delay: Delay) -> tuple[str, str, str, str]:
-    span = f"{delay.low:.4g} to {delay.high:.4g}"
+    span = f"{delay.low:.4g} to {delay.high:.4g}" if isfinite(delay.high) else ""
     if delay.reason:
         return "delay of the main drive", "", span, f"no: {delay.reason}"
     return "delay of the main drive", f"{delay.value:.4g} s", span, "yes"

@@ -1,8 +1,8 @@
 """The delay of the main drive, from how late its measured power follows the model's.
 
-A first-order lag of the predicted power of the cut; the time constant is the one that leaves the least,
-its interval where what it leaves is no more than chance explains. Samples within a block count
-as one observation, as in :mod:`simulator.calibration.stack`. Units s, W.
+A first-order lag of the predicted power of the cut; the time constant is the one that leaves
+the least, its interval where what it leaves is no more than chance explains. Samples within a
+block count as one observation, as in :mod:`simulator.calibration.stack`. Units s, W.
 """
 
 from collections.abc import Sequence

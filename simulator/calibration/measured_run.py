@@ -24,7 +24,7 @@ FEWEST_SAMPLES = 10
 GAP = 3.0
 """a sampling interval this many times the median is a gap"""
 AXIS_SPEED = 5_000.0  # mm/s: several times the rapid of the fastest machine tools
-PEAK_POWER = (10.0, 1e6)  # W: of a spindle or a whole machine that does anything
+PEAK_POWER = (30.0, 1e6)  # W: of a spindle or a whole machine; 30 kW are rarely exceeded
 INTERVAL = (1e-5, 60.0)  # s between samples: 100 kHz to one a minute
 
 

@@ -89,12 +89,18 @@ def measured(folder: Path) -> Path:
             kc_factor=FACTOR, noise="normal", has_lag=True, rate=20.0, seed=3, output=whole,
         )
     )  # fmt: skip
-    table = list(csv.reader(whole.open(encoding="utf-8")))
+    table = table_of(whole)
     names = ("time_s", "c_axis_wattage", "electric_wattage")
     columns = [table[0].index(name) for name in names]
     path = folder / "run.csv"
     write(path, [[row[column] for column in columns] for row in table])
     return path
+
+
+def table_of(path: Path) -> Rows:
+    """Headings and cells."""
+    with path.open(encoding="utf-8", newline="") as stream:
+        return list(csv.reader(stream))
 
 
 def write(path: Path, rows: Rows, *, separator: str = ",") -> Path:
@@ -144,7 +150,7 @@ def test_the_file_that_is_written_spends_the_measured_energy(
     assert loaded.base_power == pytest.approx(found.machine.base_power)
     assert "# calibrated on measured runs: run" in mine.read_text(encoding="utf-8")
     again = simulate(replace(asked(folder, str(mine)), kc_factor=FACTOR)).whole
-    table = list(csv.reader(measured.open(encoding="utf-8")))[1:]
+    table = table_of(measured)[1:]
     times, watts = [float(row[0]) for row in table], [float(row[2]) for row in table]
     energy = sum(
         0.5 * (watts[row] + watts[row + 1]) * (times[row + 1] - times[row])
@@ -226,7 +232,7 @@ REFUSED: dict[str, tuple[Callable[[Rows], Rows], str]] = {
     ),
     "kW": (
         lambda rows: changed(rows, scaled(1e-3), column=2),
-        "W, expected 10 to 1e+06 W: another unit, kW?",
+        "W, expected 30 to 1e+06 W: another unit, kW?",
     ),
     "another unit of time": (
         lambda rows: changed(rows, scaled(1e6), column=0),
@@ -255,7 +261,7 @@ def test_a_run_that_cannot_be_is_refused_in_one_line(
     command: Command, measured: Path, tmp_path: Path, how: str
 ) -> None:
     spoil, words = REFUSED[how]
-    rows = list(csv.reader(measured.open(encoding="utf-8")))
+    rows = table_of(measured)
     path = write(tmp_path / "rude.csv", spoil(rows))
     output = tmp_path / "mine.toml"
     code, out, told = command(path, "-o", output)
@@ -329,7 +335,7 @@ def test_a_run_of_something_else_gaps_and_constants_are_said(
     command: Command, measured: Path, tmp_path: Path
 ) -> None:
     """The first third of the run, with a gap and a total that nobody measured."""
-    rows = list(csv.reader(measured.open(encoding="utf-8")))[:200]
+    rows = table_of(measured)[:200]
     rude = changed(rows[:80] + rows[100:], lambda _: "2000", column=2)
     code, out, _ = command(write(tmp_path / "rude.csv", rude), "--json")
     assert code == OK

@@ -1,4 +1,4 @@
-"""The command ``stepnc simulate``: options, exit codes and what it prints where."""
+"""The commands ``stepnc simulate`` and ``calibrate``: options, exit codes, what goes where."""
 
 import json
 import re
@@ -11,6 +11,9 @@ import pytest
 from service.cli import main
 from service.cli_machine import interruptible
 from service.cli_options import BAD_INPUT, LIMIT_EXCEEDED, OK
+from simulator.library import load_machine
+
+USAGE = 2
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 SLOT = PARTS / "paper003_case1.stpnc"
@@ -99,6 +102,45 @@ def test_help_names_every_option(capsys: pytest.CaptureFixture[str]) -> None:
     shown = capsys.readouterr().out
     for option in ("--nc", "--rate", "--control", "--seed", "--report", "--noise", "--wear"):
         assert option in shown
+
+
+def calibrate(*words: object) -> object:
+    """Exit code of ``stepnc calibrate``."""
+    with pytest.raises(SystemExit) as stopped:
+        main(["calibrate", *map(str, words)])
+    return stopped.value.code
+
+
+def test_a_run_calibrates_the_machine_that_made_it(
+    code: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    words = ["--nc", code, "--machine", "vmc15", "--tools", code.with_name("tools.toml")]
+    words += ["--material", "c45", "--stock", "-10,-10,-5,50,10,0"]
+    output, mine = tmp_path / "run.csv", tmp_path / "mine.toml"
+    assert run(*words, "--noise", "normal", "--rate", "5", "-o", output) == OK
+    capsys.readouterr()
+    assert calibrate(output, *words, "-o", mine) == OK
+    out, told = capsys.readouterr()
+    assert out.startswith("machine vmc15")
+    assert re.search(r"^run +\d+\.\d +\d+\.\d +[+-]0\.\d\d%$", out, re.MULTILINE)
+    assert f"machine file: {mine}" in told
+    assert load_machine(str(mine)).title == load_machine("vmc15").title
+
+
+def test_calibrate_says_what_it_wants(
+    code: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    assert calibrate() == USAGE
+    assert calibrate("--help") == OK
+    shown = capsys.readouterr().out
+    for option in ("RUN.csv", "--program", "--machine", "--nc", "--output"):
+        assert option in shown
+    path = tmp_path / "run.csv"
+    rows = "".join(f"{row},{500 + row}\n" for row in range(20))
+    path.write_text(f"time_s,electric_wattage\n{rows}", encoding="ascii")
+    assert calibrate(path, "--machine", "vmc15") == BAD_INPUT
+    told = capsys.readouterr().err
+    assert told == "error: name a STEP-NC program, or NC code with --nc\n"
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
