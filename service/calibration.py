@@ -11,7 +11,7 @@ from simulator.calibration.delay import Delay, fitted_delay
 from simulator.calibration.estimates import Calibration
 from simulator.calibration.fit import fitted
 from simulator.calibration.held_out import HeldOut, held_out
-from simulator.calibration.measured_run import TIME, MeasuredRun, read_run
+from simulator.calibration.measured_run import TIME, MeasuredRun, read_run, thinned
 from simulator.calibration.simulated import features
 from simulator.machine.interpreter import interpret
 from simulator.machine.samples import Samples, joined
@@ -19,6 +19,9 @@ from simulator.machine.sensing import Sampler
 from simulator.machine_toml import machine_toml
 from simulator.spec import Machine
 from stepnc_model.errors import Finding, Severity, StepNcError, WriteError
+
+MOST_SAMPLES = 10_000
+"""of a run that are fitted: more say little more about so few parameters"""
 
 RATE = 100.0
 """samples a second of the simulation that the runs are compared with"""
@@ -79,11 +82,13 @@ def calibrate(request: CalibrationRequest, *, tell: Tell = silent) -> Calibratio
         raise StepNcError("name at least one measured run")
     if request.output is not None:
         _require_output(request, request.output)
-    runs = [read_run(path) for path in request.runs]
+    runs = [thinned(read_run(path), most=MOST_SAMPLES) for path in request.runs]
     samples, machine = _simulated(request, tell)
     known = [features(samples, run) for run in runs]
     efficiency = machine.spindle.efficiency
     before = priors(machine)
+    count = sum(len(run) * len(run.power) for run in runs)
+    tell(f"fitting {count} measured powers")
     calibration = fitted(known, before, efficiency=efficiency)
     errors = held_out(known, before, efficiency=efficiency)
     delay = fitted_delay(known, calibration, efficiency=efficiency)

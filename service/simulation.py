@@ -132,7 +132,7 @@ def simulate(request: SimulationRequest, *, tell: Tell = silent) -> Simulation:
     """
     kind, disturbance = _control_kind(request), _disturbance(request)
     prepared, virtual = waiting_machine(request, tell=tell)
-    run = _Run(virtual, disturbance, rate=request.rate)
+    run = _Run(virtual, _of_machine(disturbance, virtual.machine), rate=request.rate)
     if request.report is not None:
         run.trace = TraceKeeper()
     if request.output is not None:
@@ -366,6 +366,14 @@ def _disturbance(request: SimulationRequest) -> Disturbance:
         response=Response() if request.has_lag else None,
         seed=request.seed,
     )
+
+
+def _of_machine(disturbance: Disturbance, machine: Machine) -> Disturbance:
+    """The disturbance with the delay of a machine's own drive, where it is known."""
+    delay = machine.spindle.delay
+    if disturbance.response is None or delay is None:
+        return disturbance
+    return replace(disturbance, response=Response(delay=delay))
 
 
 def _zero(text: str, prepared: Prepared) -> Zero | None:

@@ -92,6 +92,21 @@ def read_run(path: Path) -> MeasuredRun:
     return checked(run, lines=lines, path=str(path))
 
 
+def thinned(run: MeasuredRun, *, most: int) -> MeasuredRun:
+    """The run, or every second, third … sample of it when there are more than ``most``."""
+    step = -(-len(run) // most)
+    if step == 1:
+        return run
+    text = f"{len(run)} samples: each {step}th is taken"
+    return replace(
+        run,
+        time=run.time[::step],
+        position=run.position[::step],
+        power={part: watts[::step] for part, watts in run.power.items()},
+        findings=(*run.findings, Finding(severity=Severity.NOTE, message=text)),
+    )
+
+
 def read_columns(path: Path, *, wanted: Sequence[str]) -> tuple[dict[str, Floats], Ints]:
     """Those columns of a CSV file that it has, and the line of each row.
 

@@ -33,7 +33,7 @@ ROUNDS = 3
 """fits, each with the noise that the one before left"""
 START = 0.1
 """share of its scale from which a parameter starts that was 0 before"""
-SHARE_OF_SPREAD = 1e-3
+SHARE_OF_SPREAD = 5e-3
 """noise below this share of a signal's spread is taken as this: models are never that good"""
 LEAST_NOISE = 1e-9  # W
 CLOSE = 1e-6

@@ -1,5 +1,6 @@
 """What ``simulate`` shows is the same whatever way the program comes and is sampled."""
 
+from importlib import resources
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ from service.simulation import Simulation, SimulationRequest, simulate
 from service.simulation_setup import CodeRequest
 from simulator.errors import SimulationError
 from simulator.machine.totals import Total
+from simulator.motion.segments import Floats
 from stepnc_model.errors import StepNcError
 from stepnc_model.post.controls import Control
 
@@ -305,3 +307,24 @@ def test_numbers_out_of_their_range_are_refused(words: dict[str, object], messag
     request = SimulationRequest(file=SHAFT, machine="lathe22", **words)  # type: ignore[arg-type]
     with pytest.raises(StepNcError, match=message):
         simulate(request)
+
+
+def test_lag_is_that_of_the_machine_where_it_is_known(tmp_path: Path) -> None:
+    """A slow drive shows the end of the cut late."""
+    mill = resources.files("simulator") / "data" / "machines" / "vmc15.toml"
+    slow = tmp_path / "slow.toml"
+    text = mill.read_text(encoding="utf-8")
+    slow.write_text(
+        text.replace("efficiency = 0.85\n", "efficiency = 0.85\ndelay_s = 1.5\n", 1)
+    )
+    runs: list[Floats] = []
+    for machine in ("vmc15", str(slow)):
+        output = tmp_path / f"{len(runs)}.parquet"
+        request = SimulationRequest(
+            file=EXAMPLES / "parts" / "paper002.stpnc", material="c45", machine=machine,
+            has_lag=True, output=output,
+        )  # fmt: skip
+        simulate(request)
+        runs.append(parquet.read_table(output)["cutting_wattage"].to_numpy())
+    usual, late = runs
+    assert np.abs(np.diff(late)).max() < 0.5 * np.abs(np.diff(usual)).max()

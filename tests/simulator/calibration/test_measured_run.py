@@ -6,7 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from simulator.calibration.measured_run import POSITIONS, Component, read_run
+from simulator.calibration.measured_run import (
+    POSITIONS,
+    Component,
+    MeasuredRun,
+    read_run,
+    thinned,
+)
 from simulator.errors import CalibrationError
 
 HEADINGS = ("time_s", *POSITIONS, "c_axis_wattage", "electric_wattage", "workingstep")
@@ -156,3 +162,20 @@ def test_what_is_no_table_is_refused(tmp_path: Path, content: bytes) -> None:
 def test_missing_file_is_an_error_of_the_tree(tmp_path: Path) -> None:
     with pytest.raises(CalibrationError, match=r"none\.csv"):
         read_run(tmp_path / "none.csv")
+
+
+def test_a_long_run_is_thinned_and_says_so() -> None:
+    count = 1000
+    run = MeasuredRun(
+        name="long",
+        time=np.linspace(0.0, 9.99, count),
+        position=np.zeros((count, 3)),
+        power={Component.TOTAL: np.arange(count, dtype=np.float64)},
+    )
+    found = thinned(run, most=300)
+    assert len(found) == 250
+    assert found.time[1] == pytest.approx(0.04)
+    assert found.power[Component.TOTAL][:3].tolist() == [0.0, 4.0, 8.0]
+    assert found.durations.sum() == pytest.approx(10.0)
+    assert "each 4th" in found.findings[-1].message
+    assert thinned(run, most=1000) is run
