@@ -170,7 +170,7 @@ class MeasuredCuts:
             # Levels of a mill are equal, however deep they were asked to be.
             is_equal = cut.kind is CutKind.MILLING and cut.is_depth_free
             depth = cut.total_depth / passes if is_equal else cut.programmed.depth
-            cut = self._engaged(step, cut, met, depth=depth)
+            cut = self._engaged(step, cut, met, run, depth=depth)
             section, ratio = greatest_section(cut, depth=depth)
             weighted = weighted_volume(met, self.kienzle.m_c)
             weighted /= section * ratio**-self.kienzle.m_c
@@ -181,19 +181,31 @@ class MeasuredCuts:
         self.stocks.leave(step, stock)
         return seen
 
-    def _engaged(self, step: Workingstep, cut: Cut, met: Met, *, depth: float) -> Cut:
+    def _engaged(self, step: Workingstep, cut: Cut, met: Met, run: Run, *, depth: float) -> Cut:
         """The cut as it was met; turning is told where the programmed path is widest."""
         cut = replace(cut, volume=met.volume)
         if cut.kind in {CutKind.TURNING, CutKind.GROOVING} and not cut.is_air:
             first = next(iter(self._seen.values()), None)
-            widest = float(met.stations.diameter.max()) if first is None else first.cut.diameter
-            cut = self._at_widest(step, cut, widest)
+            if first is None:
+                cut = self._at_widest(step, cut, met, run)
+            else:
+                known = first.cut.programmed
+                given = replace(cut.programmed, speed=known.speed, feed=known.feed)
+                cut = replace(cut, diameter=first.cut.diameter, programmed=given)
         return with_hardest(cut, met, self.kienzle, depth=depth)
 
-    def _at_widest(self, step: Workingstep, cut: Cut, diameter: float) -> Cut:
-        """Speeds and loads of turning are those at its greatest diameter: nothing is harder."""
+    def _at_widest(self, step: Workingstep, cut: Cut, met: Met, run: Run) -> Cut:
+        """Speeds and loads of turning are those at its greatest diameter: nothing is harder.
+
+        The load is taken in the middle of the cut; the spindle follows the edge, which is
+        nearer to the axis.
+        """
+        stations = met.stations
+        row = int(stations.diameter.argmax())
+        at = run.segments.position(stations.segment, stations.station)[row]
+        diameter = float(stations.diameter[row])
         found = programmed(self.program, step.technology_ref)
-        speed = found.spindle_speed(diameter)
+        speed = found.spindle_speed(2.0 * abs(float(at[0])) or diameter)
         feed = found.feed_per_tooth(speed, cut.tool.teeth)
         given = replace(cut.programmed, speed=speed, feed=feed)
         return replace(cut, diameter=diameter, programmed=given)

@@ -9,6 +9,7 @@ from service.simulation import SimulationRequest, waiting_machine
 from simulator.calibration.calibrated import calibrated, notes, priors
 from simulator.calibration.delay import Delay, fitted_delay
 from simulator.calibration.estimates import Calibration
+from simulator.calibration.features import Parameter
 from simulator.calibration.fit import fitted
 from simulator.calibration.held_out import HeldOut, held_out
 from simulator.calibration.measured_run import TIME, MeasuredRun, read_run, thinned
@@ -68,6 +69,14 @@ class CalibrationResult:
     held_out: tuple[HeldOut, ...]
     times: tuple[CycleTime, ...]
     findings: tuple[Finding, ...]
+
+    @property
+    def kc_factor(self) -> float | None:
+        """On the specific cutting force, where the runs tell it."""
+        (found,) = (
+            each for each in self.calibration.estimates if each.parameter is Parameter.CUTTING
+        )
+        return found.value if found.is_identified else None
 
 
 def calibrate(request: CalibrationRequest, *, tell: Tell = silent) -> CalibrationResult:

@@ -29,8 +29,12 @@ def print_calibration(result: CalibrationResult) -> None:
     ]
     print_table(("run", "measured s", "simulated s", "error"), times)
     print_line("")
-    print_line("held out: each run fitted by the others, a single one's end by its start;")
-    print_line("baseline: mean power of what was fitted times the time")
+    print_line(
+        "error on what was not fitted: of each run when the others are fitted, of a single"
+    )
+    print_line(
+        "run's end when its start is; baseline: mean power of what was fitted times the time"
+    )
     errors = [
         (held.name, part.value, *_skill_row(part, skill))
         for held in result.held_out
@@ -40,6 +44,11 @@ def print_calibration(result: CalibrationResult) -> None:
         "run", "power", "RMSE W", "baseline", "energy", "baseline", "skill", "cutting energy",
     )  # fmt: skip
     print_table(header, errors)
+    factor = result.kc_factor
+    if factor is not None:
+        print_line(
+            f"the factor on k_c is no part of a machine: simulate with --kc-factor {factor:.3g}"
+        )
     print_findings(result.findings)
 
 

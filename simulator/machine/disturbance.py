@@ -61,6 +61,7 @@ class Disturbed:
     rate: float
     efficiency: float
     _first: int = 0
+    _gone: Floats = field(default_factory=lambda: np.zeros(0))
     _followers: dict[str, Follower] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -75,6 +76,7 @@ class Disturbed:
             return samples
         samples = self._followed(samples)
         rapid = samples.path_mode == PathMode.RAPID
+        self._gone = self._missing(rapid)
         axes = [
             self._column(f"axis_power {row}", samples.axis_power[:, row], rapid)
             for row in range(3)
@@ -109,22 +111,26 @@ class Disturbed:
             back_force=self._followers["back_force"].follow(samples.back_force),
         )
 
+    def _missing(self, is_rapid: Bools) -> Floats:
+        """NaN for each sample that is lost, else 0: a meter loses all its powers together."""
+        noise = Noise(missing=self.disturbance.missing)
+        sensor = Sensor(column="sample", noise=noise, seed=self.disturbance.seed)
+        return shown(sensor, np.zeros(len(is_rapid)), first=self._first, is_rapid=is_rapid)
+
     def _column(self, name: str, truth: Floats, is_rapid: Bools) -> Floats:
         noise = self._noise(name)
         if noise == Noise():
-            return truth
+            return truth + self._gone
         sensor = Sensor(column=name, noise=noise, seed=self.disturbance.seed)
-        return shown(sensor, truth, first=self._first, is_rapid=is_rapid)
+        return self._gone + shown(sensor, truth, first=self._first, is_rapid=is_rapid)
 
     def _noise(self, name: str) -> Noise:
         """Noise of one column; what draws constant power is not measured by itself."""
-        disturbance = self.disturbance
-        noise = Noise()
-        if disturbance.noise is NoiseKind.UNIFORM:
-            noise = EQUAL
-        elif disturbance.noise is NoiseKind.NORMAL:
-            if name in FORCES:
-                noise = FORCE
-            elif name == "spindle_power":
-                noise = POWER
-        return replace(noise, missing=disturbance.missing)
+        kind = self.disturbance.noise
+        if kind is NoiseKind.UNIFORM:
+            return EQUAL
+        if kind is NoiseKind.NORMAL and name in FORCES:
+            return FORCE
+        if kind is NoiseKind.NORMAL and name == "spindle_power":
+            return POWER
+        return Noise()

@@ -69,8 +69,13 @@ def continuous_power(machine: Machine, speed: Floats) -> Floats:
     return power
 
 
-def overload(machine: Machine, power: Floats, speed: Floats, *, force: Floats) -> Ints:
-    """Condition of the spindle drive and the force on the machine."""
+def overload(machine: Machine, cutting_power: Floats, speed: Floats, *, force: Floats) -> Ints:
+    """Condition of the spindle drive and the force on the machine.
+
+    As the optimiser counts it: the power at the edge over the efficiency, which holds the
+    losses, against the continuous power. Ramps take a drive no longer than it bears.
+    """
+    power = cutting_power / machine.spindle.efficiency
     share = power / continuous_power(machine, speed)
     if machine.max_cutting_force is not None:
         share = np.maximum(share, force / machine.max_cutting_force)

@@ -82,11 +82,15 @@ def sensed(episode: Episode, machine: Machine, times: Floats) -> Samples:
         removal_rate=loads.removal_rate,
         chip_thickness=loads.chip_thickness,
         axial_depth=_along(episode, rows, "axial_depth", count),
-        radial_width=_along(episode, rows, "radial_width", count),
+        # A section smeared over a window may ask for more width than the cutter has.
+        radial_width=np.minimum(
+            _along(episode, rows, "radial_width", count),
+            _along(episode, rows, "diameter", count),
+        ),
         execution=np.full(count, int(state.execution)),
         path_mode=mode,
         coolant=np.full(count, int(state.coolant_on)),
-        overload=overload(machine, power, speed, force=loads.force),
+        overload=overload(machine, loads.power, speed, force=loads.force),
         line=line,
         tool=np.full(count, state.tool),
         workingstep=np.full(count, state.workingstep),

@@ -128,7 +128,7 @@ class MillingStock:
             parts += self._chunk(segments[first : first + _CHUNK], tool, how, first)
         lines = np.concatenate(parts) if parts else np.empty((0, COLUMNS))
         _windowed(lines, WINDOW * self.map.cell)
-        return _stations(lines)
+        return _stations(lines, cutter)
 
     def _chunk(self, segments: Segments, tool: Tool, how: March, first: int) -> list[Floats]:
         """March along some rows."""
@@ -209,21 +209,28 @@ def _windowed(lines: Floats, window: float) -> None:
     lines[rows, SECTION] = np.repeat(volume / whole, counts)
 
 
-def _stations(lines: Floats) -> Stations:
+def _stations(lines: Floats, cutter: Cutter) -> Stations:
     """Stations of the march's lines."""
-    axial, section = lines[:, AXIAL], lines[:, SECTION]
-    width = np.divide(section, axial, out=np.zeros(len(lines)), where=axial > 0.0)
+    axial, section = lines[:, AXIAL].copy(), lines[:, SECTION]
+    diameter = lines[:, DIAMETER].copy()
     kind = lines[:, KIND].astype(np.int64)
+    if cutter.is_drill and cutter.point_angle == pi:
+        # A reamer cuts a ring that cells cannot show: its section tells the hole before it.
+        rows = np.flatnonzero((kind == CutKind.DRILLING) & (section > 0.0))
+        bored = np.sqrt(np.maximum(cutter.diameter**2 - 4.0 * section[rows] / pi, 0.0))
+        axial[rows] = 0.5 * (cutter.diameter - bored)
+        diameter[rows] = 0.5 * (cutter.diameter + bored)
+    width = np.divide(section, axial, out=np.zeros(len(lines)), where=axial > 0.0)
     return Stations(
         segment=lines[:, ROW].astype(np.int64),
         station=lines[:, STATION].copy(),
         kind=kind,
         section=section.copy(),
-        axial_depth=axial.copy(),
+        axial_depth=axial,
         radial_width=np.where(kind == CutKind.DRILLING, axial, width),
         entry_angle=lines[:, ENTRY].copy(),
         exit_angle=lines[:, EXIT].copy(),
         contact_angle=lines[:, CONTACT].copy(),
         chip_ratio=lines[:, CHIP].copy(),
-        diameter=lines[:, DIAMETER].copy(),
+        diameter=diameter,
     )

@@ -8,7 +8,7 @@ import pyarrow as pa
 import pytest
 from pyarrow import parquet
 
-from service import progress, toolpaths
+from service import progress, toolpaths, usecases
 from service.simulation import Simulation, SimulationRequest, simulate
 from service.simulation_setup import CodeRequest
 from simulator.errors import SimulationError
@@ -328,3 +328,16 @@ def test_lag_is_that_of_the_machine_where_it_is_known(tmp_path: Path) -> None:
         runs.append(parquet.read_table(output)["cutting_wattage"].to_numpy())
     usual, late = runs
     assert np.abs(np.diff(late)).max() < 0.5 * np.abs(np.diff(usual)).max()
+
+
+@pytest.mark.parametrize(
+    ("part", "machine"), [("shaft", "lathe22"), ("paper003_case1", "vmc15")]
+)
+def test_what_is_advised_passes_no_limit_of_the_machine(
+    tmp_path: Path, part: str, machine: str
+) -> None:
+    output = tmp_path / "part.stpnc"
+    file = EXAMPLES / "parts" / f"{part}.stpnc"
+    usecases.optimise(usecases.Request(file=file, machine=machine, output=output))
+    found = simulate(SimulationRequest(file=output, machine=machine))
+    assert found.whole.overload_time == 0.0

@@ -80,7 +80,7 @@ def test_continuous_power_is_that_of_the_curve(mill: Machine) -> None:
 
 def test_condition_by_share_of_the_continuous_power(mill: Machine) -> None:
     power = np.array([0.0, 5000.0, 5001.0, 7500.0, 7501.0])
-    found = overload(mill, power, np.full(5, 50.0), force=np.zeros(5))
+    found = overload(mill, power * mill.spindle.efficiency, np.full(5, 50.0), force=np.zeros(5))
     assert found.tolist() == [
         Condition.NORMAL,
         Condition.NORMAL,
