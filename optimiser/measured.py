@@ -26,6 +26,7 @@ from simulator.motion.tool_path import (
     run_of,
     usual_motion,
 )
+from simulator.removal.lathe import TurningStock
 from simulator.removal.stations import CutKind as StationKind
 from simulator.spec import Kienzle, Machine, MachineKind
 from stepnc_model.errors import Finding, PostError, SchemaError, Severity
@@ -186,26 +187,26 @@ class MeasuredCuts:
         cut = replace(cut, volume=met.volume)
         if cut.kind in {CutKind.TURNING, CutKind.GROOVING} and not cut.is_air:
             first = next(iter(self._seen.values()), None)
-            if first is None:
-                cut = self._at_widest(step, cut, met, run)
-            else:
-                known = first.cut.programmed
-                given = replace(cut.programmed, speed=known.speed, feed=known.feed)
-                cut = replace(cut, diameter=first.cut.diameter, programmed=given)
+            widest = self._widest(met, run) if first is None else first.cut.diameter
+            cut = self._at_widest(step, cut, widest)
         return with_hardest(cut, met, self.kienzle, depth=depth)
 
-    def _at_widest(self, step: Workingstep, cut: Cut, met: Met, run: Run) -> Cut:
-        """Speeds and loads of turning are those at its greatest diameter: nothing is harder.
+    def _widest(self, met: Met, run: Run) -> float:
+        """Diameter of the bar where it is cut, mm: the same in however many passes."""
+        stations, stock = met.stations, self._found
+        if not isinstance(stock, TurningStock):
+            return float(stations.diameter.max())
+        z = run.segments.position(stations.segment, stations.station)[:, 2]
+        cut = z[stations.section > 0.0]
+        inside = (stock.z >= cut.min() - stock.cell) & (stock.z <= cut.max() + stock.cell)
+        if not inside.any():
+            return float(stations.diameter.max())
+        return 2.0 * float(stock.outer[inside].max())
 
-        The load is taken in the middle of the cut; the spindle follows the edge, which is
-        nearer to the axis.
-        """
-        stations = met.stations
-        row = int(stations.diameter.argmax())
-        at = run.segments.position(stations.segment, stations.station)[row]
-        diameter = float(stations.diameter[row])
+    def _at_widest(self, step: Workingstep, cut: Cut, diameter: float) -> Cut:
+        """Speeds and loads of turning are those at its greatest diameter: nothing is harder."""
         found = programmed(self.program, step.technology_ref)
-        speed = found.spindle_speed(2.0 * abs(float(at[0])) or diameter)
+        speed = found.spindle_speed(diameter)
         feed = found.feed_per_tooth(speed, cut.tool.teeth)
         given = replace(cut.programmed, speed=speed, feed=feed)
         return replace(cut, diameter=diameter, programmed=given)

@@ -33,8 +33,8 @@ def program_of(data: bytes) -> Program:
         (b"'optimisation:machine_functions','#42'", b"'optimisation:machine_functions','#50'"),
         (b"'optimisation:mode','TC'", b"'optimisation:mode','XX'"),
         (b"'optimisation:number_of_passes',1.", b"'optimisation:number_of_passes',1.E400"),
-        (b"NUMERIC_PARAMETER('optimisation:energy',19080.,'J')",
-         b"DESCRIPTIVE_PARAMETER('optimisation:energy','much')"),
+        (b"NUMERIC_PARAMETER('optimisation:machine_power',0.29,'kW')",
+         b"DESCRIPTIVE_PARAMETER('optimisation:machine_power','much')"),
     ],
 )  # fmt: skip
 def test_damaged_parameters_are_no_record_and_stay(

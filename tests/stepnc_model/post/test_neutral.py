@@ -127,7 +127,7 @@ def test_a_whole_program(part: Program) -> None:
     assert found == [
         ProgramStart(name="PART"),
         Comment(text="T1 MILL 10MM D10"),
-        Comment(text="WS"),
+        Comment(text="WS", workingstep="WS"),
         SpindleOff(),
         ToolChange(number=1, id="MILL 10MM"),
         SpindleOn(speed=20.0),
@@ -149,7 +149,7 @@ def test_between_tools_everything_stops_and_the_tool_rises_first(part: Program) 
     found = blocks(part, one, higher)
     at = found.index(ToolChange(number=2, id="DRILL 8MM"))
     assert found[at - 4 : at + 5] == [
-        Comment(text="WS"),
+        Comment(text="WS", workingstep="WS"),
         SpindleOff(),
         Coolant(),
         Retract(z=80.0),
@@ -173,7 +173,7 @@ def test_the_same_tool_goes_up_across_and_down(part: Program) -> None:
     one = path(line(9.0, 5.0, -2.0))
     low = replace(one, start=(50.0, 60.0, 10.0))
     found = blocks(part, one, low)
-    at = len(found) - 1 - found[::-1].index(Comment(text="WS"))
+    at = len(found) - 1 - found[::-1].index(Comment(text="WS", workingstep="WS"))
     assert found[at + 1 : at + 4] == [
         Retract(z=30.0),
         Rapid(end=(50.0, 60.0, 30.0)),
@@ -284,7 +284,7 @@ def test_functions_stand_between_workingsteps(part: Program) -> None:
         SpindleOff(),
         Coolant(),
         OptionalStop(),
-        Comment(text="WS"),
+        Comment(text="WS", workingstep="WS"),
         SpindleOn(speed=20.0),
         FLOOD,
     ]
