@@ -48,6 +48,8 @@ class Prepared:
     """the first workingstep's stock as it was bought"""
     done: Callable[[], float]
     """share of the program that has been read, 0 to 1"""
+    program: Program | None = None
+    """None: NC code alone"""
     findings: tuple[Finding, ...] = ()
 
 
@@ -110,6 +112,7 @@ def from_program(
         raw=paths.stock,
         # Most steps become one block, and few blocks are more than a step.
         done=lambda: blocks.share(steps),
+        program=program,
         findings=paths.findings,
     )
 
@@ -179,6 +182,7 @@ def _code_of_program(
         stock=_Clamped(program, machine).stock,
         raw=stock_of(program, setup),
         done=lambda: lines.share(size),
+        program=program,
     )
 
 

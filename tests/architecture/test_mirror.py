@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-PACKAGES = ("stepnc_model", "simulator", "optimiser", "service")
+PACKAGES = ("stepnc_model", "simulator", "optimiser", "controller", "kbe", "service")
 
 NOUNS = {
     "stepnc_model/entities": "nouns: test_order.py holds them against the attribute order",
@@ -17,6 +17,12 @@ TOGETHER = {
     "simulator/errors.py": "raised and read in tests/simulator",
     "optimiser/advice.py": "made and read in tests/optimiser/test_optimise.py",
     "service/figures.py": "drawn in tests/service/test_report.py",
+    "controller/aims.py": "dataclasses only; obeyed in tests/controller/test_loop.py",
+    "controller/cycle.py": "made and read in tests/controller/test_loop.py",
+    "controller/errors.py": "raised and read in tests/controller",
+    "controller/law.py": "the interface of tests/controller/laws",
+    "controller/ports.py": "Protocols; plugged in tests/controller/test_loop.py",
+    "simulator/reading.py": "made and read in tests/simulator/plant",
     "stepnc_model/part21/values.py": "written and read in tests/stepnc_model/part21",
     "stepnc_model/express/datatypes.py": "parsed in tests/stepnc_model/express/test_reader.py",
 }

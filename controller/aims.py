@@ -1,0 +1,44 @@
+"""What the loop is to do, in all and in each workingstep. Units mm, s, N."""
+
+from dataclasses import dataclass, field
+
+from controller.guard import Band
+from controller.orders import Criterion
+from controller.preview import LOOK_AHEAD
+from controller.reference import Reference
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Aims:
+    """What the loop is to do."""
+
+    criterion: Criterion = Criterion.TC
+    is_on: bool = True
+    power_factor: float = 1.0
+    """of the motor's power"""
+    set_point: float | None = None
+    """N, instead of the plan's bound"""
+    band: Band = field(default_factory=Band)
+    look_ahead: int = LOOK_AHEAD
+    """revolutions; 0: the law is told nothing of what the program knows"""
+    servo_lag: float = 0.06
+    """s, as the loop takes it: the machine's own may differ"""
+    chips: float = 10.0
+    """N, mean of a revolution above which there are chips: some times its noise"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Step:
+    """One workingstep as the loop needs it."""
+
+    reference: Reference
+    exponent: float = 0.8
+    """p of force over feed"""
+    tool: str = ""
+    """its id"""
+    diameter: float = 0.0
+    """mm at which the cutting speed drives the force; 0: not known"""
+
+
+AROUND = Step(reference=Reference(workingstep="", inhibition="it belongs to no workingstep"))
+"""what stands before the first workingstep"""

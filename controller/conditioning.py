@@ -1,0 +1,201 @@
+"""Conditioning: what the sensors show becomes a force, what the operator wants a set point.
+
+The first two stages of [1]_, Fig. 5. A dynamometer drifts, so its zero is taken again and again
+while nothing is cut; where there is none, the power of the spindle tells the force; a set point
+that jumps is fed to the loop at a limited rate. Units mm, s, N, W, rev/s.
+
+References
+----------
+.. [1] F. Ridwan, X. Xu, G. Liu, "A framework for machining optimisation based on STEP-NC",
+   J. Intell. Manuf., 2010, "Process monitoring and control" and Fig. 5; eq. (5) for the power.
+"""
+
+from dataclasses import dataclass, field, replace
+from math import exp, isnan, pi
+
+import numpy as np
+
+from controller.ports import Reading
+from simulator.physics.domain import require_at_most, require_positive
+
+MEMORY = 10.0
+"""s after which what was learnt of a zero counts 1/e: noise averages out, drift does not"""
+
+SAME_SPEED = 0.01
+"""of the spindle speed: within it, the idle power is taken for the same"""
+
+RISE = 0.1
+"""greatest rise of ln(set point) in a revolution: the double takes seven, which is about what
+the loop needs to settle, so that the error never grows large"""
+
+_NMM_S_PER_WATT = 1000.0  # 1 W = 1000 N·mm/s
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Tare:
+    """What an instrument shows while nothing is cut."""
+
+    offset: float = 0.0
+    """N or W"""
+    seconds: float = 0.0
+    """that it rests on, older ones counting less; 0: nothing was learnt yet"""
+    time: float = 0.0
+    """s, when it was learnt last"""
+
+    @property
+    def is_known(self) -> bool:
+        """Whether anything was learnt."""
+        return self.seconds > 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class IdlePower:
+    """Power of the main drive while nothing is cut, at one spindle speed."""
+
+    spindle_speed: float = 0.0
+    """rev/s"""
+    tare: Tare = field(default_factory=Tare)
+    """W"""
+
+
+def tared(tare: Tare, reading: Reading, *, has_chips: bool | None = None) -> Tare:
+    """The zero of a dynamometer after one more reading.
+
+    Mean of the samples without chips, each counting ``exp(−age/MEMORY)``; lost samples count
+    nothing. Drift during a long cut goes unseen until the next stretch without chips, which
+    then weighs more than all before the cut.
+
+    Parameters
+    ----------
+    tare : Tare
+    reading : Reading
+        As the sensor shows it, nothing subtracted.
+    has_chips : bool, optional
+        What the caller knows. Unknown: there are none while the override does not act. Where
+        the program itself inhibits the override in a cut (threads, taps), the caller must say
+        ``True``.
+    """
+    if _cuts(reading, has_chips) or not len(reading.force):
+        return tare
+    seen = reading.force[~np.isnan(reading.force)]
+    if not len(seen):
+        return tare
+    seconds = reading.period * len(seen) / len(reading.force)
+    return _learnt(tare, float(seen.mean()), seconds=seconds, time=reading.time)
+
+
+def without_offset(reading: Reading, tare: Tare) -> Reading:
+    """The reading less the zero of the dynamometer."""
+    return replace(reading, force=reading.force - tare.offset)
+
+
+def idled(idle: IdlePower, reading: Reading, *, has_chips: bool | None = None) -> IdlePower:
+    """The idle power after one more reading; learnt anew when the spindle speed changes.
+
+    Power while the spindle runs up is not idle power. Readings that tell the speed as it is
+    take care of that; those that tell the commanded one spoil the first part of a stretch.
+
+    Parameters
+    ----------
+    idle : IdlePower
+    reading : Reading
+    has_chips : bool, optional
+        As in :func:`tared`.
+    """
+    if _cuts(reading, has_chips) or isnan(reading.power):
+        return idle
+    is_same = _is_same_speed(idle.spindle_speed, reading.spindle_speed)
+    before = idle.tare if is_same else Tare()
+    speed = idle.spindle_speed if is_same else reading.spindle_speed
+    tare = _learnt(before, reading.power, seconds=reading.period, time=reading.time)
+    return IdlePower(spindle_speed=speed, tare=tare)
+
+
+def force_from_power(
+    reading: Reading, idle: IdlePower, *, tool_diameter: float, efficiency: float
+) -> Reading:
+    """The reading with one force sample, told by the power of the main drive.
+
+    ``F = 1000 · (P − P_idle) · η / (π · D · n)``, [1]_ eq. (5) solved for the force; the 1000
+    turns W into N·mm/s. It is the mean tangential force over the period and knows nothing of
+    single teeth, since a main drive is slower than they are. Noise is left unbiased, so that
+    without chips it is as often negative as positive.
+
+    Parameters
+    ----------
+    reading : Reading
+    idle : IdlePower
+    tool_diameter : float, mm
+        In turning that of the work.
+    efficiency : float
+        η of the spindle, above 0, at most 1.
+
+    Returns
+    -------
+    Reading
+        With force of shape (1,), N; NaN where the power was lost, the spindle stands, or the
+        idle power at its speed is not known.
+
+    Raises
+    ------
+    ValueError
+        If the diameter is not positive or the efficiency out of range.
+    """
+    require_positive(tool_diameter, "tool diameter", "mm")
+    require_at_most(efficiency, 1.0, thing="efficiency", unit="")
+    is_same = _is_same_speed(idle.spindle_speed, reading.spindle_speed)
+    if not (is_same and idle.tare.is_known and reading.spindle_speed > 0.0):
+        return replace(reading, force=np.array([np.nan]))
+    cutting = (reading.power - idle.tare.offset) * efficiency
+    around = pi * tool_diameter * reading.spindle_speed
+    return replace(reading, force=np.array([_NMM_S_PER_WATT * cutting / around]))
+
+
+def conditioned(set_point: float, wanted: float, *, rise: float = RISE) -> float:
+    """Set point of the next revolution on the way to what is wanted.
+
+    ``min(wanted, set_point · e^rise)``: up at a limited rate in logarithms, where the plant of
+    the loop is linear; down at once, since less is wanted for a reason that cannot wait.
+
+    Parameters
+    ----------
+    set_point : float, N
+        Of this revolution; 0: there was none, and the wanted one holds at once.
+    wanted : float, N
+        Above 0.
+    rise : float
+        Of ln(set point) in a revolution, above 0.
+
+    Returns
+    -------
+    float, N
+
+    Examples
+    --------
+    >>> round(conditioned(400.0, 800.0), 1)
+    442.1
+    >>> conditioned(800.0, 400.0)
+    400.0
+    """
+    require_positive(wanted, "set point", "N")
+    if not set_point > 0.0:
+        return wanted
+    return min(wanted, set_point * exp(rise))
+
+
+def _cuts(reading: Reading, has_chips: bool | None) -> bool:
+    """Whether there may be chips."""
+    return reading.can_override if has_chips is None else has_chips
+
+
+def _learnt(tare: Tare, value: float, *, seconds: float, time: float) -> Tare:
+    """A zero after some more seconds; a clock that was set back forgets nothing."""
+    if not seconds > 0.0:
+        return tare
+    kept = tare.seconds * exp(-max(0.0, time - tare.time) / MEMORY)
+    offset = tare.offset + (value - tare.offset) * seconds / (kept + seconds)
+    return Tare(offset=offset, seconds=kept + seconds, time=time)
+
+
+def _is_same_speed(one: float, other: float) -> bool:
+    return abs(one - other) <= SAME_SPEED * max(one, other)

@@ -1,0 +1,64 @@
+"""The control laws by name."""
+
+from enum import StrEnum
+from typing import Any
+
+from controller.law import Law, Plant
+from controller.laws.fuzzy import Fuzzy
+from controller.laws.log_pi import LogPI
+from controller.laws.model_reference import ModelReference
+from controller.laws.open_loop import OpenLoop
+from controller.laws.pi import PI
+from controller.laws.previewed import Previewed
+from controller.laws.self_tuning import SelfTuning
+
+
+class LawName(StrEnum):
+    """Control laws that a user can ask for."""
+
+    PI = "pi"
+    LOG_PI = "log-pi"
+    FUZZY = "fuzzy"
+    SELF_TUNING = "self-tuning"
+    MRAC = "mrac"
+    MPC = "mpc"
+    NONE = "none"
+
+
+def law_named(name: LawName, plant: Plant, *, has_preview: bool) -> Law[Any]:
+    """A law, tuned for a plant; its state is of the law's own kind.
+
+    Parameters
+    ----------
+    name : LawName
+        MPC has its own preview, which it uses whenever something is known ahead.
+    plant : Plant
+        What it is tuned for.
+    has_preview : bool
+        Whether situations tell what is ahead.
+    """
+    match name:
+        case LawName.MPC:
+            # Late, because OSQP takes its time to import.
+            from controller.laws.mpc import ModelPredictive  # noqa: PLC0415
+
+            return ModelPredictive(plant=plant)
+        case LawName.NONE:
+            return OpenLoop()
+    law = _feedback(name, plant)
+    return Previewed(law=law, plant=plant) if has_preview else law
+
+
+def _feedback(name: LawName, plant: Plant) -> Law[Any]:
+    """A law that only feeds back."""
+    match name:
+        case LawName.PI:
+            return PI(plant=plant)
+        case LawName.FUZZY:
+            return Fuzzy(plant=plant)
+        case LawName.SELF_TUNING:
+            return SelfTuning(plant=plant)
+        case LawName.MRAC:
+            return ModelReference(plant=plant)
+        case _:
+            return LogPI(plant=plant)

@@ -1,0 +1,53 @@
+"""Proportional and integral control of the cutting force in logarithms: the default law.
+
+In ln the plant has one gain, the exponent p, whatever is cut, so no gains are scheduled. The
+override at which the force would meet its set point is ``ln u* = ln v + e/p``, where v is what
+the axes run and ``e = ln(F_ref/F)``: proportional to the error, and the axes themselves are the
+integrator (integral action by feedback from the actuator [1]_). They are sent there with lead,
+``u = v + κ·(u* − v)``, so that v approaches u* with time constant T_c instead of their lag T,
+:func:`~controller.laws.axes.quickening`. For small errors that is the velocity form
+``Δ ln u = K_p·(e_k − e_{k−1}) + K_i·e_k`` with ``K_p + K_i = κ/p`` and its zero,
+``K_p/(K_p + K_i) = exp(−1/T)``, on the pole of the drives; there is no integral to wind up.
+
+References
+----------
+.. [1] K. J. Åström, T. Hägglund, "Advanced PID Control", ISA, 2006, chapter 3.
+.. [2] Y. Altintas, "Manufacturing Automation", Cambridge, 2012: control of the peak force once
+   a revolution.
+"""
+
+from dataclasses import dataclass, field
+from math import exp
+
+from controller.law import Plant, Situation
+from controller.laws.axes import (
+    Axes,
+    moved,
+    quickening,
+    resting,
+    sent,
+    shortfall,
+    standing,
+    within,
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LogPI:
+    """PI control in logarithms; the state is the axes."""
+
+    plant: Plant = field(default_factory=Plant)
+    closing: float = 1.5
+    """T_c, revolutions"""
+
+    def begin(self, override: float) -> Axes:
+        """Axes at this override."""
+        return resting(override)
+
+    def decide(self, state: Axes, at: Situation) -> tuple[Axes, float]:
+        """See :class:`~controller.law.Law`."""
+        axes = moved(state, standing(at), lag=self.plant.lag)
+        error = shortfall(axes, at, exponent=self.plant.exponent)
+        goal = axes.mean * exp(error / self.plant.exponent)
+        lead = quickening(self.plant, self.closing)
+        return axes, within(sent(axes, goal, quickening=lead), at)

@@ -1,0 +1,70 @@
+"""Proportional and integral control of the cutting force, linear, in velocity form.
+
+With the error relative to the set point, ``e = 1 − F/F_ref``, and ``ΔF/F = p·Δu/u`` the plant's
+gain is p over the override, so the step is taken relative to the override:
+``u_{k+1} = u_k·(1 + K_p·(e_k − e_{k−1}) + K_i·e_k)``, [1]_. The zero of the law is laid on the
+pole of the feed drives, ``K_p/(K_p + K_i) = exp(−1/T)``, and what is left of the loop is an
+integrator that closes with time constant T_c when ``K_p + K_i = κ/p``, κ by
+:func:`~controller.laws.axes.quickening`. The velocity form starts from the override that the
+guard let through, and so cannot wind up.
+
+The error is not symmetric: half the force is −0.5, double is +1. The law slows down faster
+than it speeds up.
+
+References
+----------
+.. [1] K. J. Åström, B. Wittenmark, "Computer-Controlled Systems", 3rd ed., 1997, chapter 8:
+   discrete PID, velocity form.
+"""
+
+from dataclasses import dataclass, field
+from math import exp
+
+from controller.law import Plant, Situation
+from controller.laws.axes import (
+    Axes,
+    moved,
+    quickening,
+    resting,
+    shortfall,
+    standing,
+    within,
+)
+
+GREATEST = 1.0
+"""excess of force over set point, relative, that is believed: more would stop the feed"""
+SLOWEST = 0.3
+"""of the override that one step leaves"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PIState:
+    """What a PI law remembers."""
+
+    axes: Axes
+    error: float
+    """of the revolution before, relative to the set point"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PI:
+    """Linear PI control."""
+
+    plant: Plant = field(default_factory=Plant)
+    closing: float = 2.0
+    """T_c, revolutions"""
+
+    def begin(self, override: float) -> PIState:
+        """As though the force had been at its set point."""
+        return PIState(axes=resting(override), error=0.0)
+
+    def decide(self, state: PIState, at: Situation) -> tuple[PIState, float]:
+        """See :class:`~controller.law.Law`."""
+        plant = self.plant
+        axes = moved(state.axes, standing(at), lag=plant.lag)
+        error = max(1.0 - exp(-shortfall(axes, at, exponent=plant.exponent)), -GREATEST)
+        both = quickening(plant, self.closing) / plant.exponent
+        proportional = both * exp(-1.0 / plant.lag)
+        step = proportional * (error - state.error) + (both - proportional) * error
+        override = standing(at) * max(1.0 + step, SLOWEST)
+        return PIState(axes=axes, error=error), within(override, at)

@@ -1,0 +1,168 @@
+"""Preview for any law: what the program says of the cut is taken out of its plant.
+
+Force is ``F = K·g·u^p``. Of the expected force g the program knows the course, so the override
+that would hold the set point were K = 1, ``ff = (F_ref/g)^(1/p)``, is fed forward, with g the
+greatest of all revolutions in sight: the axes are slow enough before the load comes. The law
+inside commands only the factor w on it, ``u = w·ff``, and is shown the plant
+``F/F_ref = K·w^p``: constant whatever the engagement does, with the one unknown K. Its axes are
+those of the nominal lag (:mod:`controller.laws.axes`), and K is measured at the axes as they
+really ran, ``K = F/(g·v^p)``, so neither the band nor another lag reaches the law inside.
+
+Around a change of g a program and a machine never agree to the revolution. There K is only
+known between the values that the neighbouring g give, and of these the one nearest to what was
+believed before counts; and K falls by no more than a seventh in a revolution, because a cut
+that is lighter than announced is mostly one that begins later. Where nothing is known the law
+works alone, from the override at which it takes over.
+
+The axes are slowed with lead, which needs half the look-ahead; six to eight revolutions do.
+
+References
+----------
+.. [1] A. D. Spence, Y. Altintas, "CAD assisted adaptive control for milling", J. Dyn. Syst.
+   Meas. Control 113 (1991), 444-450: what the program knows of the cut keeps feedback from
+   meeting it unprepared.
+.. [2] M. Tomizuka, "Optimal continuous finite preview problem", IEEE Trans. Automatic Control
+   20 (1975), 362-365.
+"""
+
+from dataclasses import dataclass, field, replace
+from math import exp, log
+from typing import Generic, TypeVar
+
+from controller.law import Law, Plant, Situation
+from controller.laws.axes import Axes, moved, quickening, ran, resting, sent, standing, within
+
+S = TypeVar("S")
+
+FARTHEST = log(1e3)
+"""of a feed-forward or a factor K from 1 that is believed, either way, in ln"""
+LEAST_FREEDOM = (0.5, 2.0)
+"""factor w that the law inside may always command, whatever is left of the band"""
+
+GREATEST_FALL = 0.15
+"""of ln K in a revolution"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Factored(Generic[S]):
+    """The law inside and its share of the override."""
+
+    inner: S
+    share: float
+    """w that the law inside commanded"""
+    axes: Axes
+    """what axes of the nominal lag would run of w"""
+    forward: Axes
+    """what they would run of the feed-forward"""
+    factor: float
+    """ln K, as believed"""
+    expected: float
+    """N, g of the revolution before"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Alone(Generic[S]):
+    """The law inside without preview."""
+
+    inner: S
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Previewed(Generic[S]):
+    """A law with preview, itself a law."""
+
+    law: Law[S]
+    plant: Plant = field(default_factory=Plant)
+    closing: float = 1.0
+    """revolutions, time constant with which the axes are slowed before a load"""
+
+    def begin(self, override: float) -> Factored[S] | Alone[S]:
+        """The law inside alone, until something is known."""
+        return Alone(inner=self.law.begin(override))
+
+    def decide(
+        self, state: Factored[S] | Alone[S], at: Situation
+    ) -> tuple[Factored[S] | Alone[S], float]:
+        """See :class:`~controller.law.Law`."""
+        if not at.ahead or at.expected <= 0.0 or max(at.ahead) <= 0.0:
+            return self._alone(state, at)
+        forward = self._forward(at)
+        if isinstance(state, Alone):
+            state = self._factored(at, forward)
+        axes = moved(state.axes, state.share, lag=self.plant.lag)
+        through = moved(state.forward, standing(at) / state.share, lag=self.plant.lag)
+        factor = self._factor(state, at)
+        inner, share = self.law.decide(
+            state.inner, self._inside(state, at, axes=axes, factor=factor, forward=forward)
+        )
+        found = Factored(
+            inner=inner,
+            share=share,
+            axes=axes,
+            forward=through,
+            factor=factor,
+            expected=at.expected,
+        )
+        return found, within(share * self._slowed(found, at, forward), at)
+
+    def _alone(self, state: Factored[S] | Alone[S], at: Situation) -> tuple[Alone[S], float]:
+        """The law inside with the plant as it is."""
+        inner = state.inner if isinstance(state, Alone) else self.law.begin(standing(at))
+        inner, override = self.law.decide(inner, replace(at, expected=0.0, ahead=()))
+        return Alone(inner=inner), override
+
+    def _factored(self, at: Situation, forward: float) -> Factored[S]:
+        """The law inside as it takes over, at the override that runs."""
+        share = standing(at) / forward
+        return Factored(
+            inner=self.law.begin(share),
+            share=share,
+            axes=resting(share),
+            forward=resting(forward),
+            factor=_held(self._measured(at) - log(at.expected)),
+            expected=at.expected,
+        )
+
+    def _forward(self, at: Situation) -> float:
+        """Override that holds the set point at the greatest load in sight, were K = 1."""
+        known = log(at.set_point) - log(max(at.ahead))
+        return exp(_held(known / self.plant.exponent))
+
+    def _measured(self, at: Situation) -> float:
+        """Logarithm of the force at override 1, N."""
+        return log(at.force) - self.plant.exponent * log(ran(at))
+
+    def _factor(self, state: Factored[S], at: Situation) -> float:
+        """Logarithm of K: of those that the neighbours allow, the nearest to before."""
+        near = [each for each in (state.expected, at.expected, at.ahead[0]) if each > 0.0]
+        measured = self._measured(at)
+        low, high = measured - log(max(near)), measured - log(min(near))
+        return _held(max(min(max(state.factor, low), high), state.factor - GREATEST_FALL))
+
+    def _inside(
+        self, state: Factored[S], at: Situation, *, axes: Axes, factor: float, forward: float
+    ) -> Situation:
+        """What the law inside is shown: the constant plant."""
+        low, high = LEAST_FREEDOM
+        return Situation(
+            force=exp(factor) * axes.mean**self.plant.exponent,
+            set_point=1.0,
+            override=state.share,
+            actual=axes.mean,
+            floor=min(at.floor / forward, low),
+            ceiling=max(at.ceiling / forward, high),
+        )
+
+    def _slowed(self, state: Factored[S], at: Situation, forward: float) -> float:
+        """The feed-forward; with lead where it slows the axes, for too slow does no harm."""
+        late = max(1.0, ran(at) / (state.axes.mean * state.forward.mean))
+        axes = replace(state.forward, last=state.forward.last * late)
+        if axes.last <= forward:
+            return forward
+        lead = quickening(self.plant, self.closing)
+        return sent(axes, forward, quickening=lead)
+
+
+def _held(value: float) -> float:
+    """A logarithm that stays within what is believed."""
+    return min(max(value, -FARTHEST), FARTHEST)

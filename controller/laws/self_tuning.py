@@ -1,0 +1,85 @@
+"""Self-tuning control of the cutting force: what is cut is estimated, then steered to.
+
+The plant in logarithms is ``ln F = c + p·ln v``; v is what the axes ran, measured, so the lag
+of the drives does not enter the estimate (:mod:`controller.laws.load`). By it the force meets
+its set point at ``ln u* = (ln F_ref − c)/p``, and the axes are sent there with lead to arrive
+with time constant T_c, ``u = v + κ·(u* − v)``, :func:`~controller.laws.axes.quickening`:
+indirect self-tuning with pole placement [1]_. The exponent is bounded to what materials have.
+
+References
+----------
+.. [1] K. J. Åström, B. Wittenmark, "Adaptive Control", 2nd ed., 1995, chapter 3.
+"""
+
+from dataclasses import dataclass, field, replace
+from math import exp, log
+
+from controller.law import Plant, Situation
+from controller.laws.axes import (
+    FARTHEST,
+    Axes,
+    moved,
+    quickening,
+    ran,
+    resting,
+    sent,
+    standing,
+    within,
+)
+from controller.laws.load import Load, first_load, learned, learned_load
+
+EXPONENT_BAND = (0.7, 1.2)
+"""of p over that of the plant"""
+EXCITATION = 0.03
+"""way of the axes in one revolution, ln, from which they tell of p"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Tuned:
+    """What the self-tuning law remembers."""
+
+    axes: Axes
+    way: float
+    """ln of the override that the axes ran in the revolution before"""
+    load: Load | None
+    """None: no force was seen yet"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SelfTuning:
+    """Self-tuning control."""
+
+    plant: Plant = field(default_factory=Plant)
+    closing: float = 1.5
+    """T_c, revolutions"""
+    noise: float = 0.03
+    """of a force, relative standard deviation"""
+
+    def begin(self, override: float) -> Tuned:
+        """Nothing is known but the plant."""
+        axes = resting(override)
+        return Tuned(axes=axes, way=log(axes.last), load=None)
+
+    def decide(self, state: Tuned, at: Situation) -> tuple[Tuned, float]:
+        """See :class:`~controller.law.Law`."""
+        axes = moved(state.axes, standing(at), lag=self.plant.lag)
+        way = log(ran(at))
+        load = self._learned(state, log(at.force), way)
+        # Seen from where the axes are, so that no far-off estimate leads out of all numbers.
+        farther = (log(at.set_point) - load.log - load.exponent * way) / load.exponent
+        goal = way + min(max(farther, -FARTHEST), FARTHEST)
+        override = sent(axes, exp(goal), quickening=quickening(self.plant, self.closing))
+        return Tuned(axes=axes, way=way, load=load), within(override, at)
+
+    def _learned(self, state: Tuned, force: float, way: float) -> Load:
+        """The estimate after one more revolution; the exponent stays within its band."""
+        known = {"force": force, "way": way, "noise": self.noise}
+        if state.load is None:
+            return first_load(**known, exponent=self.plant.exponent)
+        is_excited = abs(way - state.way) > EXCITATION
+        load = (learned if is_excited else learned_load)(state.load, **known)
+        low, high = (bound * self.plant.exponent for bound in EXPONENT_BAND)
+        exponent = min(max(load.exponent, low), high)
+        # The force that is expected now stays.
+        kept = load.log + (load.exponent - exponent) * way
+        return replace(load, log=kept, exponent=exponent)

@@ -1,0 +1,75 @@
+"""What the operator may switch while the program runs, and what the loop tells.
+
+The switches of the simulator in [1]_, Fig. 9: ON/OFF, TC/QC, and the motor power.
+
+References
+----------
+.. [1] F. Ridwan, X. Xu, G. Liu, "A framework for machining optimisation based on STEP-NC",
+   J. Intell. Manuf., 2010, "Computer model".
+"""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+class Criterion(StrEnum):
+    """What the override is chosen for."""
+
+    TC = "TC"
+    """time-critical: as fast as the force bound and the chip load allow"""
+    QC = "QC"
+    """quality-critical: the programmed chip load, less only where the force demands it"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SwitchTo:
+    """ON or OFF: whether the loop acts; OFF, the program runs at its own feed."""
+
+    is_on: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CriterionTo:
+    """TC or QC."""
+
+    criterion: Criterion
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MotorPowerTo:
+    """A share of the motor's power, above 0; 1: all that the machine has."""
+
+    factor: float
+
+
+Order = SwitchTo | CriterionTo | MotorPowerTo
+
+
+class EventKind(StrEnum):
+    """What the loop tells."""
+
+    WORKINGSTEP = "workingstep"
+    ORDER = "order"
+    WARNING = "warning"
+    OVER = "over"
+    SAFE = "safe"
+    HOLD = "hold"
+    RESUME = "resume"
+    STOP = "stop"
+    BREAKAGE = "breakage"
+    WEAR = "wear"
+    HARDNESS = "hardness"
+    SILENCE = "silence"
+    LOST = "lost"
+    INHIBITED = "inhibited"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Event:
+    """One thing that happened."""
+
+    time: float
+    """s"""
+    kind: EventKind
+    text: str
+    """a sentence with numbers and units"""

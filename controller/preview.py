@@ -1,0 +1,78 @@
+"""What the program says of the cut ahead: the expected force at an override of 1.
+
+No law that only feeds back can avoid the doubled force where the depth doubles, but the program
+knows it before. What it knows is not exact in time, so that each look ahead takes the greatest
+force within one revolution before and after. Units s, N.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Values = NDArray[np.float32] | NDArray[np.float64]
+
+LOOK_AHEAD = 12
+"""revolutions"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Preview:
+    """Expected force by the time of the program at an override of 1.
+
+    Raises
+    ------
+    ValueError
+        When shapes differ, times do not ascend or a force is negative or not finite.
+    """
+
+    until: NDArray[np.float64]
+    """(N,) s at which each stretch of equal force ends"""
+    force: Values
+    """(N,) N at override 1 with the catalogue's k_c; 0 in air"""
+
+    def __post_init__(self) -> None:
+        if self.until.shape != self.force.shape or self.until.ndim != 1 or not len(self.until):
+            raise ValueError("a preview needs as many forces as times, at least one")
+        if not (np.diff(self.until) > 0.0).all():
+            raise ValueError("the times of a preview must ascend")
+        if not (np.isfinite(self.force).all() and (self.force >= 0.0).all()):
+            raise ValueError("the forces of a preview must be finite and not negative")
+
+    def mean(self, begin: float, end: float) -> float:
+        """Expected force between two times of the program, N: mean over what they touch."""
+        first, beyond = self._rows(begin, end)
+        return float(self.force[first:beyond].mean())
+
+    def ahead(self, progress: float, *, revolution: float, count: int) -> tuple[float, ...]:
+        """Greatest expected force around each of the next revolutions, N.
+
+        Parameters
+        ----------
+        progress : float, s
+            Time of the program now.
+        revolution : float, s
+            Of the program that one revolution of the spindle takes at the present override.
+        count : int
+            Revolutions to look ahead.
+
+        Returns
+        -------
+        tuple of float
+            Entry j: from j − 1 to j + 2 revolutions after now, which is the j-th revolution
+            with one before it and one behind.
+        """
+        edges = progress + revolution * np.arange(-1.0, count + 2.0)
+        rows = np.minimum(self.until.searchsorted(edges, side="right"), len(self.until) - 1)
+        single = np.maximum.reduceat(self.force, rows)[:-1]
+        # What lies between two edges in one row is that row; the next edge's row is met too.
+        single = np.maximum(single, self.force[rows[1:]])
+        guarded = np.maximum(np.maximum(single[:-2], single[1:-1]), single[2:])
+        values: list[float] = guarded.tolist()
+        return tuple(values)
+
+    def _rows(self, begin: float, end: float) -> tuple[int, int]:
+        first = int(self.until.searchsorted(begin, side="right"))
+        last = int(self.until.searchsorted(end, side="left"))
+        first = min(first, len(self.until) - 1)
+        return first, max(min(last, len(self.until) - 1), first) + 1

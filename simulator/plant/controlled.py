@@ -1,0 +1,316 @@
+"""The virtual machine as the loop meets it: sensors to read, an override to set.
+
+It walks the cells of a :class:`NominalCourse`, one tooth period a reading, with the feed that
+follows the override late, and with forces that follow from that feed and from what is hidden.
+It fits the sockets of :mod:`controller.ports` without knowing them. Units mm, s, N, W, rev/s.
+"""
+
+from bisect import bisect_right
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import exp, inf, pi
+
+import numpy as np
+
+from simulator.motion.segments import Floats, Ints
+from simulator.physics.cutting import wear_factor
+from simulator.plant.course import NominalCourse
+from simulator.plant.dynamometer import DYNAMOMETER, POWER_METER, Acquisition, Instrument
+from simulator.plant.hidden import Change, Changed, Hidden
+from simulator.plant.pattern import SAMPLES, Teeth, pattern
+from simulator.reading import Reading
+
+LONGEST = 0.25
+"""s of one reading in which no tooth passes: the loop must stay awake"""
+
+SLOWEST = 0.1
+"""rev/s, below which a spindle counts as standing"""
+
+NMM_S_PER_WATT = 1000.0
+
+_STEPS = (np.arange(SAMPLES) + 1.0) / SAMPLES
+_FINE = 100.0  # runout over feed and angles are rounded to so many parts for the patterns
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Truth:
+    """What really was in the last period."""
+
+    force: float = 0.0
+    """N, tangential, mean"""
+    peak: float = 0.0
+    """N, greatest"""
+    power: float = 0.0
+    """W of the main drive"""
+    removal_rate: float = 0.0
+    """mm³/s"""
+    axial_depth: float = 0.0
+    """mm"""
+    flank_wear: float = 0.0
+    """mm"""
+    cell: int = 0
+    """of the course"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Bench:
+    """Instruments and luck."""
+
+    dynamometer: Instrument = DYNAMOMETER
+    power_meter: Instrument = POWER_METER
+    efficiency: float = 1.0
+    """of the main drive"""
+    seed: int = 0
+
+
+@dataclass(kw_only=True)
+class _Now:
+    """Where the machine is. Running state."""
+
+    time: float = 0.0
+    progress: float = 0.0
+    cell: int = 0
+    turned: int = 0
+    """tooth periods since the cutter was put in"""
+    override: float = 1.0
+    """that the axes run"""
+    commanded: float = 1.0
+    flank_wear: float = 0.0
+    silent_until: float = -inf
+    broken: int | None = None
+    factors: dict[Changed, float] = field(
+        default_factory=lambda: {Changed.DEPTH: 1.0, Changed.HARDNESS: 1.0}
+    )
+
+
+class ControlledMachine:
+    """A machine whose feed somebody overrides. Running state.
+
+    Parameters
+    ----------
+    course : NominalCourse
+    hidden : Hidden
+    bench : Bench
+    """
+
+    def __init__(self, course: NominalCourse, hidden: Hidden, bench: Bench) -> None:
+        self.course = course
+        self.hidden = hidden
+        self.truth = Truth()
+        self._bench = bench
+        forces, powers = np.random.default_rng(bench.seed).spawn(2)
+        self._forces = Acquisition(bench.dynamometer, forces)
+        self._powers = Acquisition(bench.power_meter, powers)
+        self._now = _Now(flank_wear=hidden.flank_wear)
+        self._changes = sorted(hidden.changes, key=lambda change: change.time)
+        self._ends: list[float] = course.until.tolist()
+
+    @property
+    def time(self) -> float:
+        """S of the run."""
+        return self._now.time
+
+    @property
+    def share(self) -> float:
+        """Of the program that is behind, 0 to 1."""
+        return self._now.progress / self.course.duration
+
+    @property
+    def factors(self) -> Mapping[Changed, float]:
+        """On depth and hardness, now."""
+        return self._now.factors
+
+    def set(self, override: float, /) -> None:
+        """Feed over programmed feed from now on; 0 holds the feed."""
+        if not 0.0 <= override < inf:
+            raise ValueError(f"override {override:g} must be at least 0 and finite")
+        self._now.commanded = override
+
+    def change(self, change: Change) -> None:
+        """Let something happen at the next reading, or later by its time."""
+        self._changes = sorted((*self._changes, change), key=lambda each: each.time)
+
+    def read(self) -> Reading | None:
+        """Run one tooth period, or through what cannot be overridden; None at the end."""
+        now, course = self._now, self.course
+        if now.cell >= len(course):
+            return None
+        while self._changes and self._changes[0].time <= now.time:
+            self._apply(self._changes.pop(0))
+        if course.can_override[now.cell]:
+            return self._feed()
+        return self._wait()
+
+    def _apply(self, change: Change) -> None:
+        match change.what:
+            case Changed.TOOTH:
+                self._now.broken = int(change.value)
+            case Changed.SILENCE:
+                self._now.silent_until = change.time + change.value
+            case _:
+                self._now.factors[change.what] = change.value
+
+    def _wait(self) -> Reading:
+        """Rapid, dwell, tool change: at their own pace, to the next change or feed."""
+        now, course = self._now, self.course
+        cell, step = now.cell, int(course.workingstep[now.cell])
+        beyond = cell
+        while (
+            beyond < len(course)
+            and not course.can_override[beyond]
+            and course.workingstep[beyond] == step
+            and (beyond == cell or self._ends[beyond] - now.progress <= LONGEST)
+        ):
+            beyond += 1
+        end = min(self._ends[beyond - 1], now.progress + LONGEST)
+        period = end - now.progress
+        now.override = now.commanded
+        self._go_on(end, period)
+        idle = float(course.idle_power[cell])
+        self.truth = Truth(power=idle, flank_wear=now.flank_wear, cell=cell)
+        feed = float(course.feed[cell:beyond].max())
+        still = np.zeros(SAMPLES)
+        return self._reading(cell, period, still, feed=feed, tooth=0, override=now.override)
+
+    def _feed(self) -> Reading:
+        """One tooth period at the override, or less when the feed ends."""
+        now, course, cell = self._now, self.course, self._now.cell
+        teeth, speed = int(course.teeth[cell]), float(course.spindle_speed[cell])
+        period = 1.0 / (teeth * speed) if speed > SLOWEST else LONGEST
+        ways = self._ways(period)
+        end = now.progress + float(ways[-1])
+        until = self._feed_end(cell, end)
+        if until < end:
+            period *= _part(ways, until - now.progress)
+            ways, end = self._ways(period), until
+        now.override = now.commanded + (now.override - now.commanded) * self._left(period)
+        overrides = np.diff(ways, prepend=0.0) * (SAMPLES / period)
+        rows = course.until.searchsorted(now.progress + ways, side="left")
+        rows = np.minimum(rows, len(course) - 1)
+        cut = int(rows[-1]) if course.force[rows[-1]] > 0.0 else cell
+        tooth = now.turned % teeth
+        mean = self._mean_force(rows, overrides)
+        force = mean * self._pattern(cut)[tooth] if course.force[cut] > 0.0 else mean
+        override = float(overrides.mean())
+        self.truth = self._truth(cut, mean=float(mean.mean()), force=force, override=override)
+        if self.truth.force > 0.0:
+            now.flank_wear += self.hidden.wear_rate * period
+        now.turned += 1
+        self._go_on(end, period)
+        feed = override * float(course.feed[cell])
+        return self._reading(cell, period, force, feed=feed, tooth=tooth, override=override)
+
+    def _truth(self, cut: int, *, mean: float, force: Floats, override: float) -> Truth:
+        course, depth = self.course, self._now.factors[Changed.DEPTH]
+        around = pi * float(course.diameter[cut]) * float(course.spindle_speed[cut])
+        cutting = mean * around / NMM_S_PER_WATT
+        return Truth(
+            force=mean,
+            peak=float(force.max()),
+            power=float(course.idle_power[cut]) + cutting / self._bench.efficiency,
+            removal_rate=depth * override * float(course.removal_rate[cut]),
+            axial_depth=depth * float(course.axial_depth[cut]),
+            flank_wear=self._now.flank_wear,
+            cell=cut,
+        )
+
+    def _left(self, seconds: float) -> float:
+        """Share of the way to a commanded override that is left after some seconds."""
+        return exp(-seconds / self.hidden.servo_lag)
+
+    def _ways(self, period: float) -> Floats:
+        """S of the program after each sample of a period; the override follows its command."""
+        now, lag = self._now, self.hidden.servo_lag
+        gone = 1.0 - np.exp(-period * _STEPS / lag)
+        ways: Floats = (
+            now.commanded * period * _STEPS + (now.override - now.commanded) * lag * gone
+        )
+        return ways
+
+    def _feed_end(self, cell: int, end: float) -> float:
+        """Where the feed that runs ends, but no farther than asked."""
+        course, step = self.course, self.course.workingstep[cell]
+        while cell < len(course) and course.can_override[cell]:
+            if course.workingstep[cell] != step:
+                break
+            if self._ends[cell] >= end:
+                return end
+            cell += 1
+        return self._ends[cell - 1]
+
+    def _mean_force(self, rows: Ints, overrides: Floats) -> Floats:
+        """Mean of a revolution at each sample, N."""
+        now, hidden = self._now, self.hidden
+        factor = (
+            hidden.force_factor
+            * now.factors[Changed.DEPTH]
+            * now.factors[Changed.HARDNESS]
+            * wear_factor(now.flank_wear)
+            / wear_factor(0.0)
+        )
+        exponent = float(self.course.exponent[self._now.cell])
+        force: Floats = factor * self.course.force[rows] * overrides**exponent
+        return force
+
+    def _pattern(self, cell: int) -> Floats:
+        course = self.course
+        teeth, speed = int(course.teeth[cell]), float(course.spindle_speed[cell])
+        per_tooth = self._now.override * float(course.feed[cell]) / (teeth * speed)
+        runout = self.hidden.eccentricity / per_tooth if per_tooth > 0.0 else 0.0
+        return pattern(
+            Teeth(
+                count=teeth,
+                entry_angle=_rounded(float(course.entry_angle[cell])),
+                exit_angle=_rounded(float(course.exit_angle[cell])),
+                exponent=round(float(course.exponent[cell]), 4),
+                runout=_rounded(runout),
+                broken=self._now.broken,
+            )
+        )
+
+    def _go_on(self, end: float, period: float) -> None:
+        """Advance to a place in the program."""
+        now = self._now
+        now.time += period
+        now.progress = end
+        now.cell = bisect_right(self._ends, end, lo=now.cell)
+
+    def _reading(
+        self,
+        cell: int,
+        period: float,
+        force: Floats,
+        *,
+        feed: float,
+        tooth: int,
+        override: float,
+    ) -> Reading:
+        now, course = self._now, self.course
+        is_lost = now.time <= now.silent_until
+        interval = period / SAMPLES
+        power = np.array([self.truth.power])
+        power = self._powers.shown(power, time=now.time, interval=period, is_lost=is_lost)
+        return Reading(
+            time=now.time,
+            period=period,
+            force=self._forces.shown(force, time=now.time, interval=interval, is_lost=is_lost),
+            power=float(power[0]),
+            feed=feed,
+            override=override,
+            spindle_speed=float(course.spindle_speed[cell]),
+            teeth=int(course.teeth[cell]),
+            tooth=tooth,
+            progress=now.progress,
+            workingstep=int(course.workingstep[cell]),
+            can_override=bool(course.can_override[cell]),
+        )
+
+
+def _part(ways: Floats, way: float) -> float:
+    """Share of a period in which a way is made that is shorter than the period's."""
+    known = np.concatenate(([0.0], ways))
+    return float(np.interp(way, known, np.arange(len(known)))) / len(ways)
+
+
+def _rounded(value: float) -> float:
+    return round(value * _FINE) / _FINE

@@ -1,0 +1,165 @@
+"""What a program does at an override of 1, cell by cell: the ground on which the loop walks.
+
+A control scales the time of a whole path by the override, and so does this: the axes follow
+the planned motion faster or slower, and a cell is passed in its time over the override.
+Accelerations then grow with its square, as they do in real controls; between 0 and 1.2 no
+limit is passed by much. Within a cell all is constant; cells end with stretches, so that the
+whole time is exact. Units mm, s, N, W, rad, rev/s.
+"""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, fields
+from math import ceil
+
+import numpy as np
+from numpy.typing import NDArray
+
+from simulator.machine.cutting import Edge
+from simulator.machine.episode import Episode
+from simulator.machine.samples import PathMode
+from simulator.machine.sensing import sensed
+from simulator.motion.segments import Bools, Floats, Ints
+from simulator.physics.spindle_motion import idle_power
+from simulator.removal.stations import CutKind
+from simulator.spec import Machine
+
+INTERVAL = 0.01
+"""s, a cell at most: a revolution at 6000 rpm"""
+
+MOST = 65_536
+"""cells made at once"""
+
+Singles = NDArray[np.float32]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class NominalCourse:
+    """N cells, ascending in time; bulk columns in single precision for the sake of memory."""
+
+    until: Floats
+    """(N,) s from the start of the program at which each cell ends"""
+    can_override: Bools
+    """(N,) whether the feed override acts: not in rapid nor at rest"""
+    position: Singles
+    """(N, 3) mm, of the tool in the middle"""
+    feed: Singles
+    """(N,) mm/s along the path"""
+    programmed: Singles
+    """(N,) mm/s; 0 where nothing is programmed"""
+    force: Singles
+    """(N,) N, tangential, mean of a revolution"""
+    exponent: Singles
+    """(N,) p of force over feed, 1 − m_c"""
+    removal_rate: Singles
+    """(N,) mm³/s"""
+    axial_depth: Singles
+    """(N,) mm"""
+    idle_power: Singles
+    """(N,) W of the main drive without the cut"""
+    spindle_speed: Singles
+    """(N,) rev/s, magnitude"""
+    diameter: Singles
+    """(N,) mm at which the cutting speed drives the force; 0 in air"""
+    entry_angle: Singles
+    """(N,) rad; both 0 where no arc is known"""
+    exit_angle: Singles
+    """(N,) rad"""
+    teeth: Ints
+    """(N,)"""
+    workingstep: Ints
+    """(N,) counted from 1; 0: none"""
+
+    def __post_init__(self) -> None:
+        count = len(self.until)
+        if count == 0 or not (np.diff(self.until, prepend=0.0) > 0.0).all():
+            raise ValueError("cells must be at least one and ascend in time")
+        for field in fields(self):
+            if len(getattr(self, field.name)) != count:
+                raise ValueError(f"{field.name} must have {count} rows")
+
+    def __len__(self) -> int:
+        return len(self.until)
+
+    @property
+    def duration(self) -> float:
+        """Of the program at an override of 1, s."""
+        return float(self.until[-1])
+
+
+def course_of(episodes: Iterable[Episode], machine: Machine) -> NominalCourse:
+    """Cells of a run.
+
+    Parameters
+    ----------
+    episodes : iterable of Episode
+        As the virtual machine makes them, forces as means of a revolution.
+    machine : Machine
+
+    Raises
+    ------
+    ValueError
+        When nothing in it takes time.
+    """
+    parts = [part for episode in episodes for part in _cells(episode, machine)]
+    if not parts:
+        raise ValueError("there is nothing that takes time")
+    names = [field.name for field in fields(NominalCourse)]
+    return NominalCourse(**{
+        name: np.concatenate([getattr(part, name) for part in parts]) for name in names
+    })
+
+
+def _cells(episode: Episode, machine: Machine) -> Iterator[NominalCourse]:
+    """Cells of one episode; one of no length has none."""
+    whole = episode.end - episode.begin
+    if not whole > 0.0:
+        return
+    count = 1 if episode.course is None else ceil(whole / INTERVAL)
+    for first in range(0, count, MOST):
+        rows = np.arange(first, min(first + MOST, count))
+        until = episode.begin + whole * (rows + 1.0) / count
+        middle = episode.begin + whole * (rows + 0.5) / count
+        yield _part(episode, machine, until=until, middle=middle)
+
+
+def _part(
+    episode: Episode, machine: Machine, *, until: Floats, middle: Floats
+) -> NominalCourse:
+    samples = sensed(episode, machine, middle)
+    course, count = episode.course, len(until)
+    diameter = entry = exit_ = np.zeros(count)
+    if course is not None:
+        at = course.motion.at(np.clip(middle - episode.begin, 0.0, course.motion.duration))
+        stations, rows = course.stations, course.stations_at(at)
+        diameter = np.where(samples.cutting_force > 0.0, stations.diameter[rows], 0.0)
+        has_arc = stations.kind[rows] == CutKind.MILLING
+        entry = np.where(has_arc, stations.entry_angle[rows], 0.0)
+        exit_ = np.where(has_arc, stations.exit_angle[rows], 0.0)
+    edge = None if course is None else course.edge
+    speed = np.abs(samples.spindle_speed)
+    return NominalCourse(
+        until=until,
+        can_override=samples.path_mode == int(PathMode.FEED),
+        position=_single(samples.position),
+        feed=_single(samples.path_speed),
+        programmed=_single(samples.feed_programmed),
+        force=_single(samples.cutting_force),
+        exponent=_single(np.full(count, _exponent(edge))),
+        removal_rate=_single(samples.removal_rate),
+        axial_depth=_single(samples.axial_depth),
+        idle_power=_single(idle_power(machine.spindle, speed)),
+        spindle_speed=_single(speed),
+        diameter=_single(diameter),
+        entry_angle=_single(entry),
+        exit_angle=_single(exit_),
+        teeth=np.full(count, 1 if edge is None else edge.teeth),
+        workingstep=samples.workingstep,
+    )
+
+
+def _exponent(edge: Edge | None) -> float:
+    return 1.0 if edge is None else 1.0 - edge.kienzle.m_c
+
+
+def _single(values: Floats) -> Singles:
+    return values.astype(np.float32)

@@ -1,0 +1,106 @@
+"""A dynamometer and a power meter as they are: late, noisy, drifting, in steps, with gaps.
+
+Running state. The order of what is done to the truth is that of the instrument: its own lag,
+drift, noise, then the steps of the converter; samples get lost on the way at the end. Units
+s, N, W.
+"""
+
+from dataclasses import dataclass
+from math import exp, nan
+
+import numpy as np
+
+from simulator.motion.segments import Floats
+from simulator.physics.domain import require_not_negative
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Instrument:
+    """How an instrument errs; customary figures, not those of one product.
+
+    Raises
+    ------
+    ValueError
+        When a number is beyond its bounds.
+    """
+
+    noise: float = 0.0
+    """standard deviation as a share of the reading"""
+    floor: float = 0.0
+    """N or W, standard deviation at zero"""
+    drift: float = 0.0
+    """N/s or W/s of the zero"""
+    step: float = 0.0
+    """N or W, of the converter; 0: none"""
+    lag: float = 0.0
+    """s, time constant"""
+    missing: float = 0.0
+    """probability that a sample is lost"""
+
+    def __post_init__(self) -> None:
+        for name in ("noise", "floor", "step", "lag"):
+            require_not_negative(getattr(self, name), name, "")
+        if not 0.0 <= self.missing < 1.0:
+            raise ValueError(f"missing {self.missing:g} must be at least 0 and below 1")
+
+
+DYNAMOMETER = Instrument(noise=0.03, floor=1.0, drift=0.02, step=0.25, lag=0.0005)
+"""3 % of noise and a drift of 1 N in 50 s"""
+
+POWER_METER = Instrument(noise=0.0, floor=20.0, drift=0.0, step=1.0, lag=0.05)
+"""20 W of noise, as slow as a main drive"""
+
+
+class Acquisition:
+    """One instrument at work. Running state.
+
+    Parameters
+    ----------
+    instrument : Instrument
+    random : Generator
+        Its own: what one instrument draws does not change another's.
+    """
+
+    def __init__(self, instrument: Instrument, random: np.random.Generator) -> None:
+        self.instrument = instrument
+        self._random = random
+        self._held = 0.0
+
+    def shown(self, truth: Floats, *, time: float, interval: float, is_lost: bool) -> Floats:
+        """Samples as they arrive.
+
+        Parameters
+        ----------
+        truth : (K,) array, N or W
+        time : float, s
+            Of the last sample.
+        interval : float, s
+            Between samples.
+        is_lost : bool
+            Whether none of them arrives.
+
+        Returns
+        -------
+        (K,) array, NaN where a sample was lost
+        """
+        by, count = self.instrument, len(truth)
+        values = self._late(truth, interval) if by.lag > 0.0 else truth
+        # Drawn even when lost: later samples do not depend on what arrived.
+        normal = self._random.standard_normal((2, count))
+        gone = self._random.random(count) < by.missing
+        values = values * (1.0 + by.noise * normal[0]) + by.floor * normal[1] + by.drift * time
+        if by.step > 0.0:
+            values = by.step * np.round(values / by.step)
+        if is_lost:
+            return np.full(count, nan)
+        return np.where(gone, nan, values) if by.missing > 0.0 else values
+
+    def _late(self, truth: Floats, interval: float) -> Floats:
+        """First-order lag; the truth holds between samples."""
+        decay, held = exp(-interval / self.instrument.lag), self._held
+        late = np.empty(len(truth))
+        for row, value in enumerate(truth.tolist()):
+            held = value + (held - value) * decay
+            late[row] = held
+        self._held = held
+        return late

@@ -1,0 +1,64 @@
+"""What the machine of the closed loop does that its controller may not know.
+
+Units mm, s.
+"""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from simulator.physics.domain import require_not_negative, require_positive
+
+
+class Changed(StrEnum):
+    """What may change while the program runs."""
+
+    DEPTH = "depth"
+    """factor on the axial depth"""
+    HARDNESS = "hardness"
+    """factor on k_c"""
+    TOOTH = "tooth"
+    """number of the tooth that breaks"""
+    SILENCE = "silence"
+    """s during which no sample arrives"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Change:
+    """One change while the program runs."""
+
+    time: float
+    """s of the run at which it happens"""
+    what: Changed
+    value: float
+    """as :class:`Changed` says; a factor replaces the one before it"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Hidden:
+    """The truth behind the plan.
+
+    Raises
+    ------
+    ValueError
+        When a number is beyond its bounds.
+    """
+
+    force_factor: float = 1.0
+    """on k_c, from the start"""
+    wear_rate: float = 0.0
+    """mm of flank wear in a second of cutting"""
+    flank_wear: float = 0.0
+    """mm, when the program starts"""
+    eccentricity: float = 0.0
+    """mm, of the cutter's axis off the spindle's"""
+    servo_lag: float = 0.06
+    """s, time constant with which the feed follows the override: three revolutions at 3000
+    rpm; customary, calibrate it"""
+    changes: tuple[Change, ...] = ()
+
+    def __post_init__(self) -> None:
+        require_positive(self.force_factor, "factor on k_c", "")
+        require_not_negative(self.wear_rate, "wear rate", "mm/s")
+        require_not_negative(self.flank_wear, "flank wear", "mm")
+        require_not_negative(self.eccentricity, "eccentricity", "mm")
+        require_positive(self.servo_lag, "servo lag", "s")

@@ -1,0 +1,110 @@
+from math import inf, nan
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from controller.guard import (
+    MARGIN,
+    RESUMED,
+    Band,
+    Holding,
+    Keeping,
+    after_hold,
+    allowed,
+    in_air,
+    keeping,
+)
+from controller.reference import Reference
+
+BAND = Band(floor=0.2, ceiling=1.5, rise=0.25)
+KEEP = Keeping(set_point=1000.0, breakage=4000.0, floor=0.2, ceiling=1.5, exponent=0.8)
+
+
+def test_a_wish_within_all_bounds_is_granted() -> None:
+    got = allowed(1.1, BAND, KEEP, last=1.0, actual=1.0, force=900.0)
+    assert (got.override, got.holding) == (1.1, Holding.NOTHING)
+
+
+def test_the_override_rises_slowly_and_falls_at_once() -> None:
+    up = allowed(1.5, BAND, KEEP, last=1.0, actual=1.0, force=500.0)
+    assert (up.override, up.holding) == (1.25, Holding.RATE)
+    down = allowed(0.3, BAND, KEEP, last=1.5, actual=1.5, force=500.0)
+    assert (down.override, down.holding) == (0.3, Holding.NOTHING)
+
+
+@pytest.mark.parametrize(("wish", "got"), [(9.0, 1.5), (0.0, 0.2), (-3.0, 0.2)])
+def test_the_band_holds(wish: float, got: float) -> None:
+    answer = allowed(wish, BAND, KEEP, last=1.4, actual=1.4, force=100.0)
+    assert (answer.override, answer.holding) == (got, Holding.BAND)
+
+
+@pytest.mark.parametrize("wish", [nan, inf, -inf])
+def test_what_is_no_number_counts_as_the_floor(wish: float) -> None:
+    answer = allowed(wish, BAND, KEEP, last=1.0, actual=1.0, force=500.0)
+    assert (answer.override, answer.holding) == (0.2, Holding.BAND)
+
+
+@given(
+    st.floats(allow_nan=True),
+    st.floats(0.2, 1.5),
+    st.floats(0.01, 1.6),
+    st.floats(15.0, 1e5),
+)
+def test_the_force_measured_now_would_stay_below_the_threshold(
+    wish: float, last: float, actual: float, force: float
+) -> None:
+    answer = allowed(wish, BAND, KEEP, last=last, actual=actual, force=force)
+    assert 0.0 <= answer.override <= 1.5
+    then = force * (answer.override / actual) ** KEEP.exponent
+    assert then <= MARGIN * KEEP.threshold(BAND) * (1.0 + 1e-9)
+
+
+def test_the_threshold_is_that_of_overload_or_of_half_the_strength() -> None:
+    assert KEEP.threshold(BAND) == 1500.0
+    weak = Keeping(set_point=1000.0, breakage=2000.0, floor=0.2, ceiling=1.5, exponent=0.8)
+    assert weak.threshold(BAND) == 1000.0
+
+
+def test_without_chips_the_feed_is_at_most_the_programmed_one() -> None:
+    assert in_air(KEEP, last=1.4).override == 1.0
+    assert in_air(KEEP, last=0.7).override == 0.7
+    assert in_air(KEEP, last=0.0).override == 0.2
+
+
+def test_a_hold_ends_with_an_override_that_would_have_kept_the_set_point() -> None:
+    override = after_hold(KEEP, override=1.0, force=2000.0)
+    assert 2000.0 * override**0.8 == pytest.approx(RESUMED * 1000.0)
+
+
+def test_the_band_is_narrowed_by_what_the_workingstep_allows() -> None:
+    reference = Reference(workingstep="x", floor=0.4, ceiling=1.1, breakage=3000.0)
+    keep = keeping(BAND, reference, set_point=800.0, exponent=0.75)
+    assert (keep.floor, keep.ceiling, keep.breakage) == (0.4, 1.1, 3000.0)
+    quality = keeping(BAND, reference, set_point=800.0, exponent=0.75, most=1.0)
+    assert quality.ceiling == 1.0
+
+
+def test_a_ceiling_below_the_floor_counts() -> None:
+    reference = Reference(workingstep="x", ceiling=0.1)
+    keep = keeping(BAND, reference, set_point=inf, exponent=0.8)
+    assert (keep.floor, keep.ceiling) == (0.1, 0.1)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"floor": 0.0},
+        {"floor": 1.2},
+        {"ceiling": 0.1},
+        {"ceiling": inf},
+        {"rise": 0.0},
+        {"safe": 1.5},
+        {"silence": 0.0},
+        {"overload_ratio": 1.0},
+        {"holds": 0},
+    ],
+)
+def test_impossible_bands_are_refused(change: dict[str, float]) -> None:
+    with pytest.raises(ValueError, match="must"):
+        Band(**change)  # type: ignore[arg-type]

@@ -1,0 +1,12 @@
+from controller.orders import Criterion, CriterionTo, Event, EventKind, MotorPowerTo, SwitchTo
+
+
+def test_orders_of_the_same_wish_are_equal() -> None:
+    assert SwitchTo(is_on=True) == SwitchTo(is_on=True)
+    assert CriterionTo(criterion=Criterion.TC) != CriterionTo(criterion=Criterion.QC)
+    assert MotorPowerTo(factor=0.5).factor == 0.5
+
+
+def test_an_event_says_when_what_and_why() -> None:
+    event = Event(time=1.5, kind=EventKind.HOLD, text="force 900 N exceeds 600 N: feed held")
+    assert (event.time, event.kind.value) == (1.5, "hold")

@@ -1,0 +1,24 @@
+import pytest
+
+from simulator.plant.hidden import Hidden
+
+
+def test_a_machine_hides_nothing_when_nothing_is_said() -> None:
+    hidden = Hidden()
+    assert hidden.force_factor == 1.0
+    assert hidden.changes == ()
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("force_factor", 0.0),
+        ("wear_rate", -1e-9),
+        ("flank_wear", -0.1),
+        ("eccentricity", -0.1),
+        ("servo_lag", 0.0),
+    ],
+)
+def test_impossible_numbers_are_refused(name: str, value: float) -> None:
+    with pytest.raises(ValueError, match="must"):
+        Hidden(**{name: value})  # type: ignore[arg-type]
