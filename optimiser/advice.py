@@ -83,6 +83,8 @@ class Advice:
     cut: Cut | None
     before: State | None
     after: State | None
+    force_factor: float = 1.0
+    """accepted correction of k_c that the loads were told with"""
     active: LimitName | None = None
     active_words: str = ""
     """the same as the user reads it"""

@@ -93,6 +93,8 @@ class Cut:
     """greatest depth of one pass that the tool allows, mm"""
     floor: "Cut | None" = None
     """the floor that is swept once, at its own depth, by an operation that cuts walls"""
+    plunge: "Cut | None" = None
+    """what a mill drills where it goes straight down into the solid at the feed of the cut"""
 
     @property
     def hardest(self) -> Place | None:

@@ -1,8 +1,9 @@
 """From a cut and its conditions to a problem, and from a setting to what it does."""
 
-from collections.abc import Callable
-from dataclasses import dataclass
-from math import inf, pi
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from math import inf, isfinite, pi
+from types import MappingProxyType
 
 from optimiser import workingstep as exact
 from optimiser.advice import Load, State
@@ -43,12 +44,23 @@ class Task:
     """Ra in mm for all finished surfaces, instead of what the file says"""
     tool_change: float = 0.0
     """s to change a worn tool; 0: tool life does not count"""
-    force_factor: float = 1.0
-    """accepted correction of k_c"""
+    force_factors: Mapping[str, float] = field(default_factory=dict, hash=False)
+    """accepted corrections of k_c by the id of the tool; a tool that is not named has none"""
     front: bool = False
     """whether the front between time, roughness and energy is wanted"""
     source: Source = along_paths
     """what makes the source of the cuts"""
+
+    def __post_init__(self) -> None:
+        for tool, factor in self.force_factors.items():
+            if not (isfinite(factor) and factor > 0.0):
+                raise ValueError(f"tool '{tool}': a factor on k_c of {factor:g}")
+        # A copy: what the caller does with his own later must not change the task.
+        object.__setattr__(self, "force_factors", MappingProxyType(dict(self.force_factors)))
+
+    def force_factor(self, tool: str) -> float:
+        """Accepted correction of k_c for a tool, by its id."""
+        return self.force_factors.get(tool, 1.0)
 
 
 def problem_of(cut: Cut, at: Conditions, task: Task) -> Problem:
@@ -161,9 +173,15 @@ def state_of(cut: Cut, problem: Problem, at: Conditions, setting: Setting) -> St
 def _greater(
     load: Callable[[Cut, Conditions], Monomial], cut: Cut, at: Conditions, setting: Setting
 ) -> float:
-    """A load of the walls or of the floor that is swept with them, whichever is greater."""
-    value = load(cut, at).value(setting.feed, setting.depth, setting.speed)
-    if cut.floor is None:
-        return value
-    depth = cut.floor.total_depth
-    return max(value, load(cut.floor, at).value(setting.feed, depth, setting.speed))
+    """A load of the walls, of the floor that is swept with them, or of a plunge: the greatest.
+
+    No load of a plunge depends on the depth.
+    """
+    depths = [(cut, setting.depth)]
+    if cut.floor is not None:
+        depths.append((cut.floor, cut.floor.total_depth))
+    if cut.plunge is not None:
+        depths.append((cut.plunge, setting.depth))
+    return max(
+        load(each, at).value(setting.feed, depth, setting.speed) for each, depth in depths
+    )

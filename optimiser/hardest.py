@@ -43,7 +43,7 @@ KINDS = {
     CutKind.GROOVING: StationKind.TURNING,
     CutKind.DRILLING: StationKind.DRILLING,
 }
-"""which stations an operation is judged by; plunges of a mill are not modelled"""
+"""which stations an operation is judged by; plunges of a mill are in :mod:`optimiser.plunge`"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -8,13 +8,14 @@ The rest counts as time: ramps, rapids, moves with a feed of their own, waits.
 """
 
 from copy import deepcopy
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from optimiser.clamped import ClampedStocks, StockMap, met_by
 from optimiser.cut import Cut, CutKind
 from optimiser.estimated import GUESSES, estimated_cut
 from optimiser.hardest import Met, greatest_section, weighted_volume, with_hardest
 from optimiser.other_depth import with_depth
+from optimiser.plunge import plunge_of
 from optimiser.problem import Setting
 from simulator.motion.segments import Bools
 from simulator.motion.tool_path import (
@@ -54,6 +55,8 @@ class _Seen:
     """afterwards"""
     why: str
     """why nothing is known of what it meets"""
+    times: dict[tuple[float, float], Cut] = field(default_factory=dict)
+    """the cut as timed already, by the ratios of feed and speed; filled when asked for"""
 
 
 class MeasuredCuts:
@@ -189,7 +192,8 @@ class MeasuredCuts:
             first = next(iter(self._seen.values()), None)
             widest = self._widest(met, run) if first is None else first.cut.diameter
             cut = self._at_widest(step, cut, widest)
-        return with_hardest(cut, met, self.kienzle, depth=depth)
+        plunge = plunge_of(cut, met, follows(run, step.technology_ref))
+        return with_hardest(replace(cut, plunge=plunge), met, self.kienzle, depth=depth)
 
     def _widest(self, met: Met, run: Run) -> float:
         """Diameter of the bar where it is cut, mm: the same in however many passes."""
@@ -213,6 +217,12 @@ class MeasuredCuts:
 
     def _timed(self, step: Workingstep, seen: _Seen, *, feed: float, speed: float) -> Cut:
         """The cut of a path, run so much faster than programmed."""
+        if (feed, speed) not in seen.times:
+            seen.times[feed, speed] = self._run_through(step, seen, feed=feed, speed=speed)
+        return seen.times[feed, speed]
+
+    def _run_through(self, step: Workingstep, seen: _Seen, *, feed: float, speed: float) -> Cut:
+        """The same, with the motion of the axes."""
         cut, given = seen.cut, seen.cut.programmed
         pace = Pace(technology=step.technology_ref, feed=feed, speed=speed)
         run = self._run(seen.path, pace)

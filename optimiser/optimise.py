@@ -5,7 +5,7 @@ the machine's axes, unless another source of cuts is asked for. The optimum is e
 model with these numbers; it is solved again with those of the path at the advice itself, until
 the advice stays, so that its time is that of the path that the file will give.
 
-Same inputs, same result: corrections of the cutting force come as an argument.
+Same inputs, same result: corrections of the cutting force come as an argument, by tool.
 """
 
 from collections.abc import Callable
@@ -83,7 +83,8 @@ def optimise(
             )
         advices.append(advice)
         progress()
-        findings += found
+        # Workingsteps that share a tool are told the same of it.
+        findings += [finding for finding in found if finding not in findings]
     return Plan(
         program=program.name,
         mode=task.mode,
@@ -127,7 +128,9 @@ def advise(
     before = state_of(cut, problem, at, problem.programmed)
     if not isfinite(before.time) or not isfinite(before.energy):
         raise ValueError(f"a time of {before.time:g} s: its numbers are beyond all machines")
-    untouched = replace(untouched, cut=cut, before=before, after=before)
+    untouched = replace(
+        untouched, force_factor=at.force_factor, cut=cut, before=before, after=before
+    )
     idle = _why_idle(cut)
     if idle:
         findings.append(program.finding(Severity.WARNING, idle, step.operation_ref))
@@ -229,6 +232,10 @@ def _conditions(
         text = f"{step.operation_type} on machine '{machine.name}', a {machine.kind.value}"
         findings.append(program.finding(Severity.WARNING, text, step.operation_ref))
     asked = _roughness(program, step, cut, task, findings)
+    factor = task.force_factor(cut.tool.id)
+    if factor != 1.0:
+        text = f"k_c × {factor:.4g} for tool '{cut.tool.id}'"
+        findings.append(program.finding(Severity.NOTE, text, step.tool_ref))
     return (
         Conditions(
             machine=machine,
@@ -236,7 +243,7 @@ def _conditions(
             cutting_material=cutting_material,
             grade=grade,
             roughness=asked,
-            force_factor=task.force_factor,
+            force_factor=factor,
         ),
         findings,
     )

@@ -5,6 +5,7 @@ and meets the stock otherwise. So what the closed form proposes is measured, and
 """
 
 from dataclasses import dataclass, replace
+from math import inf
 
 from optimiser import workingstep as exact
 from optimiser.cut import Cut
@@ -18,6 +19,10 @@ from stepnc_model.program import Workingstep
 
 ROUNDS = 4
 """greatest number of paths tried for the depth of one workingstep"""
+
+MANY = 100
+"""passes; where more are programmed, so many more: the first number beyond that keeps the
+limits stands, for a path of hundreds of levels takes seconds and nobody asked for one"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,11 +56,13 @@ def best_of(cut: Cut, problem: Problem, asked: Asked) -> Told:
     """The best number of passes, each told by its own path.
 
     The optimum of what was told last says which number to try next, until it says one that was
-    tried. The programmed number is tried first, so that advice that was taken is given again.
+    tried, or one that by its own word is no better than the best so far: that path is not made.
+    The programmed number is tried first, so that advice that was taken is given again.
     """
     told: dict[int, Told] = {}
     tried: set[int] = set()
-    passes = problem.programmed.passes
+    given = problem.programmed.passes
+    passes = given
     while passes not in tried and len(tried) < ROUNDS:
         tried.add(passes)
         try:
@@ -64,22 +71,29 @@ def best_of(cut: Cut, problem: Problem, asked: Asked) -> Told:
         except Infeasible:
             if problem.passes[0] == problem.passes[1]:
                 raise
+        if told and passes > max(MANY, given):
+            break
         try:
-            passes = _optimum(problem, asked.task).solution.setting.passes
+            proposal = _optimum(problem, asked.task).solution.setting
         except Infeasible:
             if not told:
                 raise
-    cost = exact.cost_function
-    best = min(
-        told.values(),
-        key=lambda each: cost(each.problem, asked.task.mode)(each.optimum.solution.setting),
-        default=None,
-    )
+            break
+        least = min((_cost(each, asked.task) for each in told.values()), default=inf)
+        if exact.cost_function(problem, asked.task.mode)(proposal) >= least:
+            break
+        passes = proposal.passes
+    best = min(told.values(), key=lambda each: _cost(each, asked.task), default=None)
     if best is None:
         raise exact.conflict(problem)
     # What comes next finds the stock as this path leaves it.
     asked.cuts.at(asked.step, best.cut, best.optimum.solution.setting)
     return best
+
+
+def _cost(told: Told, task: Task) -> float:
+    """Seconds or joules of a number of passes, by its own path."""
+    return exact.cost_function(told.problem, task.mode)(told.optimum.solution.setting)
 
 
 def _told(cut: Cut, problem: Problem, passes: int, asked: Asked) -> Told:

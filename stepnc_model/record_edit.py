@@ -50,6 +50,11 @@ def find_record(program: Program, step: Workingstep) -> Record | None:
     return _parameter_record(program, step)
 
 
+def has_parameters(program: Program) -> bool:
+    """Whether a workingstep has its record in profile ``standard``."""
+    return any(_parameter_record(program, step) is not None for step in program.workingsteps)
+
+
 def take_out(draft: Draft, step: Workingstep) -> None:
     """Remove what an operation carries of an optimum, whatever its form."""
     program = draft.program

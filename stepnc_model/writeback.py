@@ -9,7 +9,8 @@
 In both the operation's own technology carries the feed. A technology that several operations
 share is copied before it is edited. Records that are already there are taken out first, so
 that writing the same advice twice gives the same bytes. Only parameters that change, and lines
-that are added or removed, differ from the file that was read.
+that are added or removed, differ from the file that was read. Outcomes and corrections
+(:mod:`stepnc_model.outcome_record`) stay; a file that holds some has no profile ``standard``.
 """
 
 from collections.abc import Sequence
@@ -18,7 +19,7 @@ from enum import StrEnum
 
 from stepnc_model.draft import Draft
 from stepnc_model.entities.turning import TurningMachiningOperation
-from stepnc_model.part21.values import Real
+from stepnc_model.part21.values import Real, Ref
 from stepnc_model.program import Program, Workingstep
 from stepnc_model.record import Record
 from stepnc_model.record_edit import (
@@ -31,6 +32,9 @@ from stepnc_model.record_edit import (
 from stepnc_model.technology import Number, Programmed
 
 SCHEMA = "OPTIMISATION_SCHEMA"
+
+ANSWERS = ("OUTCOME", "CORRECTION")
+"""entities of the same schema that are no part of a record"""
 
 DIGITS = 12
 """significant digits of a number written into the file"""
@@ -73,7 +77,13 @@ def write(program: Program, changes: Sequence[Change], profile: Profile) -> byte
     Returns
     -------
     bytes
+
+    Raises
+    ------
+    SchemaError
+        When the profile has no form for what the program holds.
     """
+    _require_form(program, profile)
     chosen: dict[int, Change] = {}
     for change in changes:
         operation = int(change.workingstep.operation_ref)
@@ -95,7 +105,13 @@ def convert(program: Program, profile: Profile) -> bytes:
     """The same program with all its records in one profile.
 
     Optima that are not complete records, as paper 002 prints them, stay as they are.
+
+    Raises
+    ------
+    SchemaError
+        When the profile has no form for what the program holds.
     """
+    _require_form(program, profile)
     draft = Draft(program)
     found = {
         int(step.operation_ref): (step, record)
@@ -122,6 +138,15 @@ def rounded(value: float) -> float:
     return float(f"{value:.{DIGITS}g}")
 
 
+def _require_form(program: Program, profile: Profile) -> None:
+    """Refuse profile ``standard`` where something would stay that a strict reader refuses."""
+    if profile is not Profile.STANDARD:
+        return
+    for keyword in ANSWERS:
+        for number in program.file.ids_of(keyword):
+            raise program.error("has no form in profile 'standard'", Ref(number))
+
+
 def _put_in(draft: Draft, step: Workingstep, record: Record, profile: Profile) -> None:
     """Add a record in one of the profiles."""
     if profile is Profile.OPTIMISATION:
@@ -134,13 +159,15 @@ def _put_in(draft: Draft, step: Workingstep, record: Record, profile: Profile) -
 def _finished(draft: Draft) -> bytes:
     """The bytes, without the schema's name when the last of its entities was taken out."""
     file = draft.program.file
+    has_answers = any(file.ids_of(keyword) for keyword in ANSWERS)
     optima = [
         number
         for name in RECORD_KEYWORDS
         if name.endswith("OPTIMISATION")
         for number in file.ids_of(name)
     ]
-    if optima and not draft.has_surplus and draft.removed.issuperset(optima):
+    is_without = draft.removed.issuperset(optima) and not draft.has_surplus
+    if optima and is_without and not has_answers:
         draft.edits.remove_schema(SCHEMA)
     return draft.edits.apply()
 

@@ -1,17 +1,24 @@
 """A cut with its conditions becomes the problem that was meant."""
 
 from dataclasses import replace
+from math import pi
 from pathlib import Path
 
 import pytest
 
-from optimiser.formulate import Task
+from optimiser.cut import Cut, CutKind
+from optimiser.formulate import Task, problem_of, state_of
 from optimiser.limit import LimitName
+from optimiser.limits import Conditions
 from optimiser.modes import Free
 from optimiser.optimise import optimise
-from simulator.library import load_machine
+from optimiser.problem import Setting
+from simulator.library import load_machine, load_material
 from simulator.matching import match_material
+from simulator.physics.engagement import full_immersion
+from simulator.spec import CuttingMaterial, ToolKind
 from stepnc_model.program import Program
+from stepnc_model.tool import Tool
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 TASK = Task()
@@ -63,7 +70,8 @@ def test_worn_tools_make_the_freed_spindle_slower() -> None:
 
 def test_a_corrected_force_moves_the_power_limit() -> None:
     one = plan(TASK, "paper002", "paper002").advices[0]
-    harder = plan(replace(TASK, force_factor=1.25), "paper002", "paper002").advices[0]
+    corrected = replace(TASK, force_factors={one.tool.id: 1.25})
+    harder = plan(corrected, "paper002", "paper002").advices[0]
     assert harder.after.setting.feed == pytest.approx(one.after.setting.feed / 1.25)
 
 
@@ -72,3 +80,65 @@ def test_an_idle_machine_draws_its_standby_power() -> None:
     machine = load_machine("vmc15")
     standby = machine.base_power + machine.coolant_power + machine.spindle.idle_power
     assert state.energy > standby * state.time
+
+
+def test_a_correction_is_looked_up_by_tool() -> None:
+    task = Task(force_factors={"MILL 18MM": 1.31})
+    assert task.force_factor("MILL 18MM") == 1.31
+    assert task.force_factor("mill 18mm") == 1.0
+
+
+def test_a_task_keeps_the_factors_it_was_given() -> None:
+    factors = {"MILL 18MM": 1.31}
+    task = Task(force_factors=factors)
+    factors["MILL 18MM"] = 2.0
+    assert task.force_factor("MILL 18MM") == 1.31
+    with pytest.raises(TypeError):
+        task.force_factors["MILL 18MM"] = 2.0  # type: ignore[index]
+
+
+def test_tasks_are_equal_and_hashed_by_value() -> None:
+    one, other = Task(force_factors={"a": 1.2}), Task(force_factors={"a": 1.2})
+    assert one == other
+    assert hash(one) == hash(other)
+    assert one != Task()
+    assert replace(one, front=True).force_factor("a") == 1.2
+
+
+@pytest.mark.parametrize("factor", [0.0, -1.0, float("inf"), float("nan")])
+def test_a_factor_that_no_force_can_have_is_refused(factor: float) -> None:
+    with pytest.raises(ValueError, match="tool 'a': a factor on k_c of"):
+        Task(force_factors={"a": factor})
+
+
+def test_a_state_tells_the_force_of_the_plunge_where_it_is_greater() -> None:
+    """Light passes of 0.1 mm, but a plunge into the solid between them."""
+    mill = Tool(id="mill", keyword="TAPERED_ENDMILL", diameter=10.0, teeth=4)
+    cut = Cut(
+        kind=CutKind.MILLING,
+        tool=mill,
+        tool_kind=ToolKind.ENDMILL,
+        diameter=10.0,
+        programmed=Setting(feed=0.05, depth=0.1, passes=10, speed=50.0),
+        length=100.0,
+        total_depth=1.0,
+        is_depth_free=True,
+        engagement=full_immersion(),
+    )
+    down = replace(
+        cut, kind=CutKind.DRILLING, tool=replace(mill, point_angle=pi), engagement=None
+    )
+    at = Conditions(
+        machine=load_machine("vmc15"),
+        material=load_material("c45"),
+        cutting_material=CuttingMaterial.CARBIDE,
+        grade=None,
+        roughness=None,
+    )
+    plain, plunged, alone = (
+        state_of(each, problem_of(each, at, TASK), at, cut.programmed)
+        for each in (cut, replace(cut, plunge=down), down)
+    )
+    assert plunged.cutting_force == alone.cutting_force > plain.cutting_force
+    assert plunged.motor_power == alone.motor_power > plain.motor_power
+    assert plunged.time == plain.time

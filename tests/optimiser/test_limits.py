@@ -360,3 +360,71 @@ def test_positive_rake_cuts_easier() -> None:
     flat = replace(at, grade=replace(CARBIDE.grade, rake_angle=0.0))
     steep = replace(at, grade=replace(CARBIDE.grade, rake_angle=10.0 * pi / 180.0))
     assert force_factor(steep) == pytest.approx(0.9 * force_factor(flat))
+
+
+DOWN = replace(
+    DRILLED, tool=replace(MILL, point_angle=pi), tool_kind=ToolKind.ENDMILL, diameter=12.0
+)
+PLUNGED = replace(CUT, plunge=DOWN)
+
+
+def straight_down(limits: Sequence[Limit]) -> dict[LimitName, Limit]:
+    return {each.name: each for each in limits if each.words.endswith("straight down")}
+
+
+def test_a_plunge_bears_half_the_feed_per_tooth_of_the_pass() -> None:
+    along = named(limits_of(CUT, CARBIDE), LimitName.FEED_PER_TOOTH)
+    down = straight_down(limits_of(PLUNGED, CARBIDE))[LimitName.FEED_PER_TOOTH]
+    assert down.bound == pytest.approx(0.5 * along.bound)
+    assert down.load.depth_exponent == 0.0
+
+
+@pytest.mark.parametrize(("width", "share"), [(6.0, 0.5), (0.02, None), (0.001, 1.0)])
+def test_half_the_feed_is_not_asked_where_the_edges_would_rub(
+    width: float, share: float | None
+) -> None:
+    """Thin cuts along the pass need feed to make a chip; more than the pass bears none may."""
+    cut = replace(PLUNGED, engagement=unidirectional(width, 12.0))
+    limits = limits_of(cut, CARBIDE)
+    down = straight_down(limits)[LimitName.FEED_PER_TOOTH].bound
+    highest = named(limits_of(CUT, CARBIDE), LimitName.FEED_PER_TOOTH).bound
+    if share is not None:
+        assert down == pytest.approx(share * highest)
+    else:
+        chip = named(limits, LimitName.CHIP_THICKNESS, Sense.AT_LEAST)
+        assert down == pytest.approx(chip.feed_at_bound(3.0, 60.0))
+        assert 0.5 * highest < down < highest
+
+
+def test_a_plunge_is_held_to_the_programmed_feed_where_nothing_says_what_is_borne() -> None:
+    bare = replace(PAPER, material=replace(PAPER.material, max_feed_per_tooth=None))
+    found = straight_down(limits_of(PLUNGED, bare))
+    assert found[LimitName.PROGRAMMED_FEED].bound == CUT.programmed.feed
+
+
+def test_a_plunge_presses_along_the_axis_as_a_drill_does() -> None:
+    """Half of k_c·f·D/2 for lips square to the axis; k_c at h = f/z."""
+    thrust = straight_down(limits_of(PLUNGED, CARBIDE))[LimitName.CUTTING_FORCE]
+    kienzle = CARBIDE.material.kienzle
+    k_c = force_factor(CARBIDE) * kienzle.k_c11 * 0.05**-kienzle.m_c
+    expected = 0.5 * k_c * 4 * 0.05 * 6.0
+    assert thrust.load.value(0.05, 3.0, 60.0) == pytest.approx(expected)
+
+
+def test_a_plunge_takes_torque_and_power_whatever_the_depth() -> None:
+    """k_c·f·D²/8 for four lips in the solid."""
+    segment = segment_at(CARBIDE, 60.0)
+    found = straight_down(spindle_limits(PLUNGED, CARBIDE, segment))
+    assert set(found) == {LimitName.MOTOR_POWER, LimitName.SPINDLE_TORQUE}
+    kienzle = CARBIDE.material.kienzle
+    k_c = force_factor(CARBIDE) * kienzle.k_c11 * 0.05**-kienzle.m_c
+    expected = k_c * 4 * 0.05 * 12.0**2 / 8.0
+    torque = found[LimitName.SPINDLE_TORQUE].load
+    assert torque.value(0.05, 3.0, 60.0) == pytest.approx(expected)
+    assert torque.value(0.05, 1.0, 60.0) == pytest.approx(expected)
+
+
+def test_a_cut_without_a_plunge_has_no_limit_of_one() -> None:
+    segment = segment_at(CARBIDE, 60.0)
+    assert not straight_down(limits_of(CUT, CARBIDE))
+    assert not straight_down(spindle_limits(CUT, CARBIDE, segment))

@@ -136,6 +136,28 @@ def test_turning_is_told_where_the_workpiece_is_widest(
     assert 1.0 <= cut.depth_share < 1.2
 
 
+def test_open_pockets_are_entered_straight_down_and_nothing_else_is(
+    bracket: tuple[MeasuredCuts, dict[str, Cut]],
+) -> None:
+    """PLUNGE_TOOLAXIS inside the stock; faces, steps and slots begin beside it."""
+    plunges = {name: cut.plunge for name, cut in bracket[1].items() if cut.plunge is not None}
+    assert set(plunges) == {"ROUGH OPEN POCKET", "FINISH OPEN POCKET"}
+    assert all(plunge.previous_diameter == 0.0 for plunge in plunges.values())
+
+
+def test_the_same_setting_is_told_alike_each_time(
+    bracket: tuple[MeasuredCuts, dict[str, Cut]],
+) -> None:
+    read = bracket[0].program
+    source = MeasuredCuts(read, load_machine("vmc15"), STEEL)
+    step = read.workingsteps[0]
+    cut, _ = source.cut(step)
+    double = replace(cut.programmed, feed=2.0 * cut.programmed.feed)
+    once = source.at(step, cut, double)
+    assert source.at(step, cut, cut.programmed) == cut
+    assert source.at(step, cut, double) == once
+
+
 def test_a_faster_feed_shortens_the_time_but_not_the_rest(
     bracket: tuple[MeasuredCuts, dict[str, Cut]],
 ) -> None:

@@ -353,8 +353,31 @@ def test_machine_of_twice_the_power_runs_twice_the_feed(tmp_path: Path) -> None:
 
 
 def test_accepted_correction_lowers_the_feed_at_the_power_limit() -> None:
-    (advice,) = plan_of("paper002", Task(force_factor=1.42)).advices
+    (first,) = plan_of("paper002", Task()).advices
+    assert first.force_factor == 1.0
+    plan = plan_of("paper002", Task(force_factors={first.tool.id: 1.42}))
+    (advice,) = plan.advices
+    assert advice.force_factor == 1.42
     assert mm_min_from_speed(after(advice).feed) == pytest.approx(290.0 / 1.42)
+    note = f"k_c × 1.42 for tool '{first.tool.id}'"
+    assert [finding.message for finding in plan.findings].count(note) == 1
+
+
+def test_accepted_correction_of_one_tool_leaves_the_others() -> None:
+    plain, corrected = (
+        plan_of("bracket", Task(source=from_features, force_factors=factors))
+        for factors in ({}, {"END MILL 12MM": 1.31})
+    )
+    notes = [each.message for each in corrected.findings if "k_c ×" in each.message]
+    assert notes == ["k_c × 1.31 for tool 'END MILL 12MM'"]
+    for old, new in zip(plain.advices, corrected.advices, strict=True):
+        is_meant = new.tool.id == "END MILL 12MM"
+        assert new.force_factor == (1.31 if is_meant else 1.0)
+        if not is_meant:
+            assert new == old
+        elif old.before is not None and new.before is not None:
+            force = 1.31 * old.before.cutting_force
+            assert new.before.cutting_force == pytest.approx(force)
 
 
 def test_tool_without_a_material_is_taken_as_carbide_and_said() -> None:

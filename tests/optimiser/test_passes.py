@@ -14,7 +14,7 @@ from optimiser.problem import Setting
 from optimiser.source import CutSource
 from simulator.library import load_machine, load_material
 from simulator.physics.engagement import full_immersion
-from simulator.spec import CuttingMaterial, ToolKind
+from simulator.spec import CuttingMaterial, Kienzle, ToolKind
 from stepnc_model.errors import Finding
 from stepnc_model.program import Workingstep
 from stepnc_model.tool import Tool
@@ -112,3 +112,38 @@ def test_no_number_of_passes_is_infeasible() -> None:
 def test_prices_come_with_tools_that_wear_out() -> None:
     told = best(Ways({}), Task(tool_change=10.0, free=frozenset(Free)))
     assert told.optimum.solution.setting.feed > 0.0
+
+
+def asked_of(source: Ways, programmed: int, *, k_c11: float, rest: float) -> set[int]:
+    """Numbers of passes whose paths were made; with Kienzle's exponent thin chips are dear."""
+    steel = replace(AT.material, kienzle=Kienzle(k_c11=k_c11, m_c=0.3), max_feed_per_tooth=2.0)
+    at = replace(AT, material=steel)
+    given = replace(CUT.programmed, passes=programmed, depth=12.0 / programmed)
+    cut = replace(CUT, rest_time=rest, programmed=given)
+    step: Workingstep = None  # type: ignore[assignment]
+    asked = Asked(step=step, at=at, task=Task(), cuts=source)
+    told = best_of(cut, problem_of(cut, at, asked.task), asked)
+    assert told.optimum.solution.setting.passes in source.asked
+    return set(source.asked)
+
+
+def test_a_path_that_cannot_be_the_best_by_its_own_promise_is_not_made() -> None:
+    """Thirteen turn out five times as long; from there forty promise more time than four."""
+    source = Ways({13: 5.0})
+    assert asked_of(source, 4, k_c11=2000.0, rest=40.0) == {4, 13}
+    assert source.asked[-1] == 4
+
+
+def test_a_proposal_that_turns_out_a_little_longer_is_followed() -> None:
+    """From thirteen that are longer by a fifth, fifteen promise less."""
+    asked = asked_of(Ways({13: 1.2}), 1, k_c11=2000.0, rest=40.0)
+    assert len(asked) > 2
+
+
+def test_of_hundreds_of_passes_the_first_number_stands() -> None:
+    """213 turn out longer by a fifth, from where 240 promise less; nobody asked for so many."""
+    assert asked_of(Ways({213: 1.2}), 4, k_c11=20000.0, rest=20.0) == {4, 213}
+
+
+def test_of_hundreds_of_programmed_passes_fewer_are_tried() -> None:
+    assert asked_of(Ways({}), 220, k_c11=20000.0, rest=20.0) == {220, 213}

@@ -8,6 +8,7 @@ from service.usecases import Request, optimise
 from stepnc_model import writeback
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
+from stepnc_model.record_edit import has_parameters
 from stepnc_model.writeback import Profile
 
 PAPER002 = Path(__file__).parents[2] / "examples" / "parts" / "paper002.stpnc"
@@ -69,3 +70,10 @@ def test_incomplete_entities_are_no_record_and_stay(
 def test_what_paper_002_prints_is_not_converted_away() -> None:
     data = FIG11.read_bytes()
     assert writeback.convert(program_of(data), Profile.STANDARD) == data
+
+
+@pytest.mark.parametrize("profile", Profile)
+def test_only_profile_standard_has_parameters(profile: Profile, tmp_path: Path) -> None:
+    program = program_of(optimised(profile, tmp_path))
+    assert has_parameters(program) is (profile is Profile.STANDARD)
+    assert not has_parameters(program_of(PAPER002.read_bytes()))

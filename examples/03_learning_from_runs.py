@@ -1,0 +1,52 @@
+"""How three runs teach the plan what the catalogue does not know of the material.
+
+The catalogue's k_c is wrong by a factor that nobody told; plan, run, record, review, accept,
+plan again. ``python examples/03_learning_from_runs.py [FACTOR]``: 1.35 when none is given; at 0.7
+force is wasted instead.
+"""
+
+import sys
+from math import exp
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from service.control import ControlRequest
+from service.control_record import control_recorded
+from service.knowledge import accept
+from service.knowledge_review import ReviewRequest, review
+from service.simulation import SimulationRequest
+from service.usecases import Request, optimise
+
+PART = Path(__file__).parent / "parts" / "paper002.stpnc"
+TRUTH = float(sys.argv[1]) if len(sys.argv) > 1 else 1.35
+SHOP = {"machine": "vmc15", "material": "c45"}
+
+print(f"the machine's k_c is {TRUTH:g} times the catalogue's")
+print("run  k_c planned  feed mm/min  time s  force N  bound N  force/bound  learned factor")
+with TemporaryDirectory() as folder:
+    place = str(Path(folder) / "knowledge.db")
+    for number in range(1, 4):
+        planned = Path(folder) / f"plan{number}.stpnc"
+        known = place if number > 1 else ""
+        # Three runs in four need no more force than a plan at the 75 % quantile expects.
+        plan = optimise(
+            Request(file=PART, output=planned, knowledge=known, safety=0.75, **SHOP)
+        ).plan
+        run = control_recorded(
+            ControlRequest(
+                simulation=SimulationRequest(file=planned, **SHOP),
+                law="none",
+                disturbances=(f"kc:{TRUTH}",),
+                seed=number,
+                knowledge=place,
+            )
+        )
+        (found,) = review(place, ReviewRequest(by="the planner"))
+        accept(place, [found.entry.id], by="the planner")
+        (advice,) = plan.advices
+        record = next(record for advised, record in run.steps if advised)
+        print(
+            f"{number:3}  {advice.force_factor:11.3f}  {60.0 * advice.after.feed:11.1f}  "
+            f"{record.time:6.1f}  {record.peak:7.0f}  {record.set_point:7.0f}  "
+            f"{record.peak / record.set_point:11.3f}  {exp(found.learned.mean.centre):14.3f}"
+        )

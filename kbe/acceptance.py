@@ -1,0 +1,91 @@
+"""Whether a proposed correction may be accepted without a person, and if not, why."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from math import exp, log
+
+from stepnc_model.outcome import Correction
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Bounds:
+    """What a proposal must keep to be accepted by itself."""
+
+    least_confidence: float = 0.8
+    fewest_outcomes: int = 3
+    greatest_change: float = 0.25
+    """of the factor, up or down, from the one that was accepted last"""
+    least_factor: float = 0.5
+    greatest_factor: float = 2.0
+
+
+class Ground(StrEnum):
+    """What an objection is about."""
+
+    CONFIDENCE = "confidence"
+    OUTCOMES = "outcomes"
+    CHANGE = "change"
+    RANGE = "range"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Objection:
+    """A bound that a proposal does not keep."""
+
+    ground: Ground
+    message: str
+    """with value and bound"""
+
+    def __str__(self) -> str:
+        return self.message
+
+
+def objections(
+    proposed: Correction, accepted: Correction | None, *, bounds: Bounds | None = None
+) -> tuple[Objection, ...]:
+    """Why a proposal must not be accepted by itself; empty: it may.
+
+    Parameters
+    ----------
+    proposed : Correction
+    accepted : Correction or None
+        The one in force; None: none was accepted yet, and only the range bounds the change
+        from the catalogue.
+    bounds : Bounds, optional
+
+    Raises
+    ------
+    ValueError
+        The two are of different contexts.
+    """
+    if accepted is not None and accepted.context != proposed.context:
+        raise ValueError(f"{accepted.context} is not {proposed.context}")
+    keep = bounds or Bounds()
+    factor = exp(proposed.log_centre)
+    grounds = {
+        Ground.CONFIDENCE: ""
+        if proposed.confidence >= keep.least_confidence
+        else f"confidence {proposed.confidence:.2f} below {keep.least_confidence:g}",
+        Ground.OUTCOMES: ""
+        if proposed.outcomes >= keep.fewest_outcomes
+        else f"learned from {proposed.outcomes} outcomes, fewer than {keep.fewest_outcomes}",
+        Ground.CHANGE: ""
+        if accepted is None
+        else _leap(factor, exp(accepted.log_centre), keep.greatest_change),
+        Ground.RANGE: ""
+        if keep.least_factor <= factor <= keep.greatest_factor
+        else f"factor {factor:.2f} outside {keep.least_factor:g} to {keep.greatest_factor:g}",
+    }
+    return tuple(
+        Objection(ground=ground, message=message)
+        for ground, message in grounds.items()
+        if message
+    )
+
+
+def _leap(factor: float, accepted: float, greatest: float) -> str:
+    """Whether the factor changes too much; the same up as down, so in logarithms."""
+    if abs(log(factor / accepted)) <= log(1.0 + greatest):
+        return ""
+    share = f"{100.0 * greatest:g} %"
+    return f"factor {factor:.2f} differs by more than {share} from the accepted {accepted:.2f}"

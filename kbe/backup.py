@@ -1,0 +1,257 @@
+"""Backups: one file of SQLite, whichever database it is made from and goes to.
+
+A backup appears whole under its name or not at all, and never in place of another file. A
+restore fills an empty store in one transaction; before it is kept, every row is compared with
+the backup's.
+"""
+
+import hashlib
+import os
+import sqlite3
+import tempfile
+from collections.abc import Iterator
+from contextlib import closing, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+from urllib.parse import quote
+
+from sqlalchemy import Connection, CursorResult, Table, func, insert, select, text
+from sqlalchemy.engine import URL
+
+from kbe.connection import reading, snapshot, writing
+from kbe.errors import (
+    BackupDiffers,
+    BackupExists,
+    StoreDamaged,
+    StoreNotEmpty,
+    StoreUnavailable,
+)
+from kbe.faults import translated
+from kbe.place import Place, parsed_place, require_openable
+from kbe.schema import TABLES
+from kbe.store import AT_ONCE, Store, open_place, open_store
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Content:
+    """What a store holds, as numbers of rows, and as one fingerprint of all of them."""
+
+    outcomes: int
+    corrections: int
+    decisions: int
+    fingerprint: str
+
+    @property
+    def rows(self) -> int:
+        """All of them."""
+        return self.outcomes + self.corrections + self.decisions
+
+
+def backup(store: Store, path: str) -> Content:
+    """Copy a store to a new file, while others go on writing to the store.
+
+    Raises
+    ------
+    BackupExists
+        When there is a file of this name already.
+    KnowledgeError
+        When the store cannot be read, or the file cannot be written.
+    """
+    place = _file(path)
+    require_openable(place, is_new_allowed=True)
+    with _new_file(place) as fresh:
+        try:
+            return _copied(store, fresh)
+        except StoreDamaged as error:
+            raise StoreDamaged(store.place.shown, reason=error.reason) from error
+
+
+def restore(path: str, url_or_path: str) -> Content:
+    """Fill an empty store from a backup; nothing is done when it has been already.
+
+    Raises
+    ------
+    StoreNotEmpty
+        When the store holds anything else.
+    StoreDamaged
+        When the backup is not whole.
+    KnowledgeError
+        When either cannot be opened, or the store cannot be written.
+    """
+    with _readable(path) as source, open_store(url_or_path) as target:
+        with (
+            reading(source.engine, source.place) as rows,
+            writing(target.engine, target.place) as connection,
+        ):
+            _keep_others_out(connection)
+            wanted, found = _content(rows), _content(connection)
+            if found.rows and found != wanted:
+                raise StoreNotEmpty(target.place.shown, rows=found.rows)
+            if found != wanted:
+                _copy_rows(rows, connection)
+                _require_same(connection, wanted, target.place)
+        return wanted
+
+
+def content(store: Store) -> Content:
+    """What a store holds at one moment."""
+    with snapshot(store.engine, store.place) as connection:
+        return _content(connection)
+
+
+def _file(path: str) -> Place:
+    """The file of a backup."""
+    place = parsed_place(path)
+    if not place.file:
+        raise StoreUnavailable(place.shown, reason="a backup is a file; name one")
+    return place
+
+
+def _moved(place: Place, file: str) -> Place:
+    """Another file that stands in for a place, and is called like it."""
+    url = URL.create("sqlite+pysqlite", database=file)
+    return Place(url=url, shown=place.shown, file=file)
+
+
+@contextmanager
+def _new_file(place: Place) -> Iterator[Place]:
+    """A place beside, that takes the name when all went well and nobody else took it."""
+    folder, name = os.path.split(os.path.abspath(place.file))
+    if os.path.lexists(place.file):
+        raise BackupExists(place.shown)
+    with (
+        translated(place),
+        tempfile.TemporaryDirectory(prefix=".backup-", dir=folder) as beside,
+    ):
+        fresh = os.path.join(beside, name)
+        yield _moved(place, fresh)
+        _sync(fresh)
+        _take_name(fresh, place)
+        _sync(folder)
+
+
+def _take_name(fresh: str, place: Place) -> None:
+    """Give a file its name, unless another has it."""
+    try:
+        os.link(fresh, place.file)
+    except FileExistsError as error:
+        raise BackupExists(place.shown) from error
+    except OSError:
+        # File systems of memory sticks know no second names.
+        if os.path.lexists(place.file):
+            raise BackupExists(place.shown) from None
+        os.rename(fresh, place.file)
+
+
+def _sync(path: str) -> None:
+    """Wait until a file or folder is on the disk."""
+    handle = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+def _copied(store: Store, fresh: Place) -> Content:
+    """Copy a store to a file and read the copy to its last page."""
+    if store.place.file:
+        _copy_pages(store.place.file, fresh)
+        _require_one_file(fresh)
+    else:
+        with (
+            snapshot(store.engine, store.place) as rows,
+            open_place(fresh, is_new_allowed=True) as copy,
+            writing(copy.engine, fresh) as connection,
+        ):
+            _copy_rows(rows, connection)
+            _require_same(connection, _content(rows), fresh)
+        _require_one_file(fresh)
+    with open_place(fresh, is_new_allowed=False) as copy:
+        copy.check()
+        return content(copy)
+
+
+def _copy_pages(file: str, fresh: Place) -> None:
+    """Copy a file of SQLite as it is at one moment; those who write to it need not wait."""
+    address = f"file:{quote(os.path.abspath(file))}?mode=ro"
+    with (
+        closing(sqlite3.connect(address, uri=True)) as source,
+        closing(sqlite3.connect(fresh.file)) as target,
+    ):
+        source.backup(target)
+
+
+def _require_one_file(fresh: Place) -> None:
+    """Put what is in the log beside it into the file itself, and keep no log any more."""
+    with closing(sqlite3.connect(fresh.file)) as connection:
+        connection.execute("PRAGMA journal_mode = DELETE")
+
+
+@contextmanager
+def _readable(path: str) -> Iterator[Store]:
+    """A backup as a store: a copy, because an older one has to be upgraded to be read."""
+    place = _file(path)
+    require_openable(place, is_new_allowed=False)
+    with translated(place), tempfile.TemporaryDirectory(prefix="stepnc-restore-") as folder:
+        copy = _moved(place, str(Path(folder) / "copy.db"))
+        _copy_pages(place.file, copy)
+        with open_place(copy, is_new_allowed=False) as store:
+            store.check()
+            yield store
+
+
+def _keep_others_out(connection: Connection) -> None:
+    """Let nobody write between the look whether a store is empty and the last row."""
+    if connection.dialect.name == "postgresql":
+        names = ", ".join(table.name for table in TABLES)
+        connection.execute(text(f"LOCK TABLE {names} IN SHARE ROW EXCLUSIVE MODE"))
+
+
+def _copy_rows(source: Connection, target: Connection) -> None:
+    """Copy all rows under the same ids."""
+    for table in TABLES:
+        rows = [each.name for each in table.columns]
+        for part in _rows(source, table).partitions():
+            target.execute(insert(table), [dict(zip(rows, row, strict=True)) for row in part])
+        if target.dialect.name == "postgresql":
+            _count_on(target, table)
+
+
+def _count_on(connection: Connection, table: Table) -> None:
+    """Let PostgreSQL number the next row behind those that came with their ids."""
+    last = connection.execute(select(func.max(table.c.id))).scalar_one()
+    if last is not None:
+        sequence = func.pg_get_serial_sequence(table.name, "id")
+        connection.execute(select(func.setval(sequence, last)))
+
+
+def _require_same(connection: Connection, wanted: Content, place: Place) -> None:
+    """Refuse a copy that is not what it was made from."""
+    if _content(connection) != wanted:
+        raise BackupDiffers(place.shown)
+
+
+def _rows(connection: Connection, table: Table) -> "CursorResult[Any]":
+    """All rows in order, a part at a time."""
+    query = select(table).order_by(table.c.id).execution_options(yield_per=AT_ONCE)
+    return connection.execute(query)
+
+
+def _content(connection: Connection) -> Content:
+    """Count all rows and put all of them into one hash, in order."""
+    hasher = hashlib.sha256()
+    counts = []
+    for table in TABLES:
+        count = 0
+        for row in _rows(connection, table):
+            hasher.update(repr(tuple(row)).encode())
+            count += 1
+        hasher.update(f"{table.name} {count}".encode())
+        counts.append(count)
+    return Content(
+        outcomes=counts[0],
+        corrections=counts[1],
+        decisions=counts[2],
+        fingerprint=hasher.hexdigest(),
+    )

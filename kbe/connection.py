@@ -1,0 +1,103 @@
+"""Connections and transactions, the same for SQLite and PostgreSQL.
+
+SQLite writes ahead (WAL), so that readers never wait, and syncs at each commit: what was
+accepted survives a power cut. A transaction that will write says so at its beginning, so that
+two writers wait for each other instead of failing in the middle.
+"""
+
+import sqlite3
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from sqlalchemy import Connection, create_engine, event
+from sqlalchemy.engine import Engine
+
+from kbe.errors import DriverMissing, StoreDamaged
+from kbe.faults import translated
+from kbe.place import Place
+
+PATIENCE = 30.0
+"""s that a writer waits for others"""
+
+CONNECT_TIMEOUT = 10
+"""s until a server must have answered"""
+
+PRAGMAS = (
+    "PRAGMA synchronous = FULL",
+    "PRAGMA foreign_keys = ON",
+    # Finds damaged pages when they are read, rather than when they have done harm.
+    "PRAGMA cell_size_check = ON",
+    # KiB; the indexes of a million outcomes do not fit into the 2 MiB that are usual.
+    "PRAGMA cache_size = -65536",
+)
+
+
+def connected(place: Place, *, patience: float = PATIENCE) -> Engine:
+    """The engine of a place; nothing is opened yet.
+
+    Raises
+    ------
+    DriverMissing
+        When psycopg is not installed.
+    """
+    if place.file:
+        engine = create_engine(place.url, connect_args={"timeout": patience})
+        event.listen(engine, "connect", _prepare)
+        event.listen(engine, "begin", _begin)
+        return engine
+    try:
+        return create_engine(
+            place.url, pool_pre_ping=True, connect_args={"connect_timeout": CONNECT_TIMEOUT}
+        )
+    except ImportError as error:
+        raise DriverMissing(place.shown) from error
+
+
+def _prepare(connection: sqlite3.Connection, _record: object) -> None:
+    """What holds for one connection of SQLite only."""
+    # Python's module would begin transactions by itself, too late and not before DDL.
+    connection.isolation_level = None
+    for pragma in PRAGMAS:
+        connection.execute(pragma)
+
+
+def _begin(connection: Connection) -> None:
+    """Begin a transaction; one that will write takes its lock at once."""
+    will_write = connection.get_execution_options().get("will_write", False)
+    connection.exec_driver_sql("BEGIN IMMEDIATE" if will_write else "BEGIN")
+
+
+@contextmanager
+def reading(engine: Engine, place: Place) -> Iterator[Connection]:
+    """A transaction that reads.
+
+    Raises
+    ------
+    StoreDamaged
+        When a row holds what no noun can have; others as the database reports.
+    """
+    try:
+        with translated(place), engine.connect() as connection:
+            yield connection
+    except ValueError as error:
+        raise StoreDamaged(place.shown, reason=f"a row cannot be read: {error}") from error
+
+
+@contextmanager
+def snapshot(engine: Engine, place: Place) -> Iterator[Connection]:
+    """A transaction that sees one moment throughout, whatever others write."""
+    with reading(engine, place) as connection:
+        if not place.file:
+            connection.execution_options(isolation_level="REPEATABLE READ")
+        yield connection
+
+
+@contextmanager
+def writing(engine: Engine, place: Place) -> Iterator[Connection]:
+    """A transaction that writes: all of it, or nothing when an error leaves it."""
+    with (
+        translated(place),
+        engine.execution_options(will_write=True).connect() as connection,
+        connection.begin(),
+    ):
+        yield connection

@@ -1,0 +1,295 @@
+"""The evaluation table of [1]_ (Table 1): what machining of each feature showed.
+
+A row is a feature of a machine and a material, with its roughing and its finishing side. Sides
+are kept by tool; a roughing and a finishing tool that met at the same feature in the same run
+share a row, so a side that met two of the other kind stands in two rows, and one that met none
+stands alone.
+
+Outcomes are read once. What is kept is bounded for each side (moments, and samples for the
+quantiles), not by the number of outcomes.
+
+References
+----------
+.. [1] F. Ridwan, X. Xu, G. Liu, "A framework for machining optimisation based on STEP-NC",
+   J. Intell. Manuf., 2010, Table 1.
+"""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import datetime
+from enum import StrEnum
+
+from kbe.grade import Grade
+from kbe.side import Knowledge, Side, SideTally
+from kbe.statistics import Evaluated
+from stepnc_model.outcome import FeatureFacts, ProcessOutcome
+
+
+class Grouping(StrEnum):
+    """What a row is for."""
+
+    FEATURE = "feature"
+    """each feature of each program"""
+    KIND = "kind"
+    """all features of a kind, of all programs"""
+
+
+class RowFilter(StrEnum):
+    """Which rows to keep: those with at least one such side."""
+
+    ALL = "all"
+    VIOLATED = "violated"
+    WASTED = "wasted"
+    WITH_REMARKS = "with remarks"
+    WITH_TREND = "with trend"
+    FACTOR_PENDING = "factor pending"
+
+
+class SortKey(StrEnum):
+    """What comes first; ties in the order of machine, feature, material and tools."""
+
+    NAME = "name"
+    GRADE = "grade"
+    """worst first"""
+    RUNS = "runs"
+    """most first"""
+    LATEST = "latest"
+    """newest first"""
+    FORCE = "force"
+    """greatest mean deviation first, up or down; so for the others"""
+    TIME = "time"
+    FEED = "feed"
+    ROUGHNESS = "roughness"
+    TIME_TO_WIN = "time to win"
+    """most first"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GroupKey:
+    """What the outcomes of a row have in common; order by machine, feature, material."""
+
+    machine: str
+    program: str
+    """empty when features are grouped by kind"""
+    feature: str
+    """id, or kind"""
+    material: str
+
+    @property
+    def names(self) -> tuple[str, str, str, str]:
+        """By what rows are ordered."""
+        return self.machine, self.program, self.feature, self.material
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EvaluationRow:
+    """One row of the table; at least one side."""
+
+    key: GroupKey
+    kind: str
+    """EXPRESS name of the feature"""
+    length: float | None
+    """L, mm; None: not known, or not the same in all outcomes"""
+    width: float | None
+    """X, mm"""
+    total_depth: float | None
+    """a_t, mm"""
+    roughing: Side | None
+    finishing: Side | None
+
+    @property
+    def sides(self) -> tuple[Side, ...]:
+        """Those that it has."""
+        return tuple(side for side in (self.roughing, self.finishing) if side is not None)
+
+    @property
+    def grade(self) -> Grade:
+        """The worse of its sides'."""
+        return min((side.grade for side in self.sides), key=list(Grade).index)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _SideKey:
+    """Which side of a group."""
+
+    is_finishing: bool
+    tool: str
+
+
+_Pair = tuple[_SideKey | None, _SideKey | None]
+"""roughing and finishing side of one row"""
+
+
+class _Group:
+    """Running state: the sides of one group, and which met."""
+
+    def __init__(self, feature: FeatureFacts) -> None:
+        self._feature = feature
+        self._sides: dict[_SideKey, SideTally] = {}
+        self._pairs: set[_Pair] = set()
+        self._run: str | None = None
+        self._met: dict[str, set[_SideKey]] = {}
+        """sides seen at each feature in this run"""
+
+    def add(self, outcome: ProcessOutcome) -> None:
+        """One more outcome."""
+        self._feature = _common(self._feature, outcome.feature)
+        key = _SideKey(is_finishing=outcome.is_finishing, tool=outcome.context.tool)
+        self._sides.setdefault(key, SideTally(outcome.context)).add(outcome)
+        if outcome.run != self._run:
+            self._run, self._met = outcome.run, {}
+        met = self._met.setdefault(outcome.feature.id, set())
+        met.add(key)
+        self._pairs |= {
+            (rough, fine)
+            for rough in met
+            for fine in met
+            if fine.is_finishing and not rough.is_finishing
+        }
+
+    def rows(self, key: GroupKey, knowledge: Knowledge) -> Iterator[EvaluationRow]:
+        """Pairs, then the sides that met none, by tool."""
+        sides = {which: tally.side(knowledge) for which, tally in self._sides.items()}
+        for rough, fine in sorted(self._pairs | self._alone(), key=_tools):
+            yield EvaluationRow(
+                key=key,
+                kind=self._feature.kind,
+                length=self._feature.length,
+                width=self._feature.width,
+                total_depth=self._feature.total_depth,
+                roughing=sides[rough] if rough else None,
+                finishing=sides[fine] if fine else None,
+            )
+
+    def _alone(self) -> set[_Pair]:
+        """Sides that met none of the other kind."""
+        paired = {key for pair in self._pairs for key in pair}
+        return {
+            (None, key) if key.is_finishing else (key, None)
+            for key in self._sides
+            if key not in paired
+        }
+
+
+def _tools(pair: _Pair) -> tuple[str, str]:
+    """By what the rows of a group are ordered."""
+    rough, fine = pair
+    return rough.tool if rough else "", fine.tool if fine else ""
+
+
+def evaluation(
+    outcomes: Iterable[ProcessOutcome],
+    *,
+    grouping: Grouping = Grouping.FEATURE,
+    knowledge: Knowledge | None = None,
+) -> tuple[EvaluationRow, ...]:
+    """The table, in the order of names.
+
+    Parameters
+    ----------
+    outcomes : iterable of ProcessOutcome
+        In the order of time for each machine; read once.
+    grouping : Grouping
+    knowledge : Knowledge, optional
+        Corrections to show and to compare; none without.
+
+    Raises
+    ------
+    ValueError
+        An outcome is older than the one before it on its side of its row.
+    """
+    groups: dict[GroupKey, _Group] = {}
+    for outcome in outcomes:
+        key = _key(outcome, grouping)
+        groups.setdefault(key, _Group(outcome.feature)).add(outcome)
+    known = knowledge or Knowledge()
+    return tuple(
+        row
+        for key in sorted(groups, key=lambda each: each.names)
+        for row in groups[key].rows(key, known)
+    )
+
+
+def selected(rows: Iterable[EvaluationRow], keep: RowFilter) -> tuple[EvaluationRow, ...]:
+    """Rows with at least one side that the filter names, in their order."""
+    return tuple(row for row in rows if any(map(_FILTERS[keep], row.sides)))
+
+
+def ordered(rows: Sequence[EvaluationRow], by: SortKey) -> tuple[EvaluationRow, ...]:
+    """The same rows in another order."""
+    return tuple(sorted(sorted(rows, key=_names), key=_KEYS[by]))
+
+
+def _key(outcome: ProcessOutcome, grouping: Grouping) -> GroupKey:
+    """The group of an outcome."""
+    by_kind = grouping is Grouping.KIND
+    return GroupKey(
+        machine=outcome.context.machine,
+        program="" if by_kind else outcome.program,
+        feature=outcome.feature.kind if by_kind else outcome.feature.id,
+        material=outcome.context.material,
+    )
+
+
+def _common(first: FeatureFacts, second: FeatureFacts) -> FeatureFacts:
+    """What two features have in common."""
+    if first == second:
+        return first
+    return FeatureFacts(
+        id=first.id if first.id == second.id else "",
+        kind=first.kind if first.kind == second.kind else "",
+        length=first.length if first.length == second.length else None,
+        width=first.width if first.width == second.width else None,
+        total_depth=first.total_depth if first.total_depth == second.total_depth else None,
+    )
+
+
+def _names(row: EvaluationRow) -> tuple[str, ...]:
+    """Machine, program, feature, material, tools."""
+    tools = (side.context.tool if side else "" for side in (row.roughing, row.finishing))
+    return *row.key.names, *tools
+
+
+def _has_trend(side: Side) -> bool:
+    """Whether one of its quantities changes from run to run."""
+    trends = (each.trend for each in side.deviations.values())
+    return any(trend is not None and trend.is_significant for trend in trends)
+
+
+_FILTERS: Mapping[RowFilter, Callable[[Side], bool]] = {
+    RowFilter.ALL: lambda _: True,
+    RowFilter.VIOLATED: lambda side: side.grade is Grade.VIOLATED,
+    RowFilter.WASTED: lambda side: side.grade is Grade.WASTED,
+    RowFilter.WITH_REMARKS: lambda side: bool(side.remarks),
+    RowFilter.WITH_TREND: _has_trend,
+    RowFilter.FACTOR_PENDING: lambda side: side.is_pending,
+}
+
+
+def _largest(which: Evaluated) -> Callable[[EvaluationRow], float]:
+    """Key of the greatest mean deviation first, rows without one last."""
+
+    def key(row: EvaluationRow) -> float:
+        means = (side.deviations[which].mean for side in row.sides)
+        return -max((abs(mean) for mean in means if mean is not None), default=-1.0)
+
+    return key
+
+
+def _age(row: EvaluationRow) -> float:
+    """Newest first."""
+    latest: datetime = max(side.latest for side in row.sides)
+    return -latest.timestamp()
+
+
+_KEYS: Mapping[SortKey, Callable[[EvaluationRow], float]] = {
+    SortKey.NAME: lambda _: 0.0,
+    SortKey.GRADE: lambda row: list(Grade).index(row.grade),
+    SortKey.RUNS: lambda row: -max(side.runs for side in row.sides),
+    SortKey.LATEST: _age,
+    SortKey.FORCE: _largest(Evaluated.FORCE),
+    SortKey.TIME: _largest(Evaluated.TIME),
+    SortKey.FEED: _largest(Evaluated.FEED),
+    SortKey.ROUGHNESS: _largest(Evaluated.ROUGHNESS),
+    SortKey.TIME_TO_WIN: lambda row: -sum(side.bound.time_to_win for side in row.sides),
+}

@@ -1,0 +1,122 @@
+"""What a database reports, as an error of the project that says what to do.
+
+References
+----------
+.. [1] SQLite, "Result and Error Codes", https://sqlite.org/rescode.html: the low byte is the
+   primary code.
+.. [2] PostgreSQL, "Appendix A. PostgreSQL Error Codes": the first two letters are the class.
+"""
+
+import errno
+import sqlite3
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from sqlalchemy.exc import DBAPIError
+from sqlalchemy.exc import TimeoutError as NoFreeConnection
+
+from kbe.errors import (
+    KnowledgeError,
+    StoreBusy,
+    StoreDamaged,
+    StoreFull,
+    StoreReadOnly,
+    StoreUnavailable,
+)
+from kbe.place import Place
+
+SHARED_MEMORY = sqlite3.SQLITE_IOERR_SHMSIZE, sqlite3.SQLITE_IOERR_SHMOPEN
+"""no room for the index of the log"""
+
+
+@contextmanager
+def translated(place: Place) -> Iterator[None]:
+    """Turn what the database raises into the error tree.
+
+    Raises
+    ------
+    KnowledgeError
+        Of the kind that fits.
+    """
+    try:
+        yield
+    except DBAPIError as error:
+        raise fault(error.orig or error, place) from error
+    except sqlite3.Error as error:
+        raise fault(error, place) from error
+    except NoFreeConnection as error:
+        raise StoreBusy(place.shown) from error
+    except OSError as error:
+        if error.errno in {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}:
+            raise StoreFull(place.shown) from error
+        reason = f"{error.strerror or error}; check the disk and the rights"
+        raise StoreUnavailable(place.shown, reason=reason) from error
+
+
+def fault(error: BaseException, place: Place) -> KnowledgeError:
+    """The error of the project for one of a database."""
+    if isinstance(error, sqlite3.Error):
+        return _sqlite_fault(error, place)
+    return _postgresql_fault(error, place)
+
+
+def _sqlite_fault(error: sqlite3.Error, place: Place) -> KnowledgeError:
+    """By result code, [1]_."""
+    code = getattr(error, "sqlite_errorcode", sqlite3.SQLITE_ERROR)
+    shown = place.shown
+    match code & 0xFF:
+        case sqlite3.SQLITE_CORRUPT | sqlite3.SQLITE_NOTADB:
+            return StoreDamaged(shown, reason=str(error))
+        case sqlite3.SQLITE_FULL:
+            return StoreFull(shown)
+        case sqlite3.SQLITE_BUSY | sqlite3.SQLITE_LOCKED | sqlite3.SQLITE_PROTOCOL:
+            return StoreBusy(shown)
+        case sqlite3.SQLITE_READONLY | sqlite3.SQLITE_PERM:
+            return StoreReadOnly(shown)
+        case sqlite3.SQLITE_CANTOPEN:
+            return StoreUnavailable(
+                shown,
+                reason="cannot be opened; allow this user to write the file and its folder",
+            )
+        case sqlite3.SQLITE_IOERR:
+            return _disk_fault(code, place)
+    return KnowledgeError(f"{error} (SQLite {code}); please report this", place=shown)
+
+
+def _disk_fault(code: int, place: Place) -> KnowledgeError:
+    """A failed write is nearly always a limit (quota, size of a file); the rest is the disk."""
+    if code in {sqlite3.SQLITE_IOERR_WRITE, *SHARED_MEMORY}:
+        return StoreFull(place.shown)
+    reason = f"the disk reports a fault (SQLite {code}); check it, and keep a backup elsewhere"
+    return StoreUnavailable(place.shown, reason=reason)
+
+
+def _postgresql_fault(error: BaseException, place: Place) -> KnowledgeError:
+    """By class of the code, [2]_; no code: there was no answer at all."""
+    state = getattr(error, "sqlstate", None) or ""
+    shown, said = place.shown, _first_line(error, place)
+    if state == "53100":
+        return StoreFull(shown)
+    if state in {"25006", "42501"}:
+        return StoreReadOnly(shown)
+    match state[:2]:
+        case "XX":
+            return StoreDamaged(shown, reason=said)
+        case "40" | "55":
+            return StoreBusy(shown)
+        case "" | "08" | "28" | "3D" | "3F" | "53" | "57" | "58":
+            return StoreUnavailable(
+                shown,
+                reason=f"the server does not let us in ({said}); "
+                "check that it runs, the address, the user, its rights and the password",
+            )
+    return KnowledgeError(f"{said} (PostgreSQL {state}); please report this", place=shown)
+
+
+def _first_line(error: BaseException, place: Place) -> str:
+    """What the server said, without the password, should it be in it."""
+    line = next(iter(str(error).splitlines()), type(error).__name__)
+    secrets = [place.url.password, *place.url.normalized_query.get("password", ())]
+    for secret in filter(None, map(str, secrets)):
+        line = line.replace(secret, "***")
+    return line

@@ -1,0 +1,60 @@
+"""How well a group of outcomes met its plan, in a word, and what to do, in a sentence each.
+
+The letter is of the prediction: root mean square of the deviations, bias and scatter together,
+of the quantity that deviates most. Roughness counts only above the plan. Two words go before
+letters: *violated*, the force passed the bound that it was to keep, and *wasted*, it stayed
+far below although the plan meant to use it.
+"""
+
+from collections.abc import Mapping
+from enum import StrEnum
+from math import hypot
+
+from kbe.bound import BoundUse
+from kbe.statistics import DeviationStatistics, Evaluated
+
+LETTERS = ((0.05, "A"), (0.10, "B"), (0.20, "C"))
+"""greatest root mean square deviation of each letter"""
+
+
+class Grade(StrEnum):
+    """From worst to best, and nothing to judge by."""
+
+    VIOLATED = "violated"
+    WASTED = "wasted"
+    D = "D"
+    C = "C"
+    B = "B"
+    A = "A"
+    UNKNOWN = "unknown"
+
+
+def grade(deviations: Mapping[Evaluated, DeviationStatistics], bound: BoundUse) -> Grade:
+    """The grade of a group.
+
+    Parameters
+    ----------
+    deviations : mapping of DeviationStatistics
+    bound : BoundUse
+        One violation is enough; wasted is a group when at least half of its outcomes are.
+    """
+    if bound.violated:
+        return Grade.VIOLATED
+    if bound.wasted and 2 * bound.wasted >= bound.known:
+        return Grade.WASTED
+    sizes = [_size(which, each) for which, each in deviations.items()]
+    known = [size for size in sizes if size is not None]
+    if not known:
+        return Grade.UNKNOWN
+    worst = max(known)
+    return next((Grade(letter) for most, letter in LETTERS if worst <= most), Grade.D)
+
+
+def _size(which: Evaluated, statistics: DeviationStatistics) -> float | None:
+    """Root mean square deviation; None: nothing is known."""
+    if statistics.mean is None:
+        return None
+    # Smoother than planned is no fault of the part.
+    if which is Evaluated.ROUGHNESS and statistics.mean <= 0.0:
+        return 0.0
+    return hypot(statistics.mean, statistics.deviation or 0.0)

@@ -1,0 +1,108 @@
+"""Bring a store to the schema of this program, in one transaction.
+
+Two programs that open a new store at once both succeed: the second waits, and finds it made.
+"""
+
+import time
+from pathlib import Path
+
+from sqlalchemy import Connection, MetaData, Table, Text, inspect, select, text
+from sqlalchemy.engine import Engine
+from sqlalchemy.schema import Column
+
+from kbe.connection import PATIENCE, reading, writing
+from kbe.errors import StoreBusy, StoreTooNew, StoreUnavailable
+from kbe.faults import translated
+from kbe.place import Place
+from kbe.schema import VERSION, VERSION_TABLE
+
+MIGRATIONS = Path(__file__).parent / "migrations"
+
+LOCK = 0x53544E43
+"""number of the lock that programs take which change the schema; the letters STNC"""
+
+_version = Table(VERSION_TABLE, MetaData(), Column("version_num", Text()))
+
+
+def migrate(engine: Engine, place: Place, *, is_new_allowed: bool) -> None:
+    """Make or upgrade the tables of a store.
+
+    Raises
+    ------
+    StoreTooNew
+        When a newer program made it.
+    StoreUnavailable
+        When it is something else's, or new and may not be.
+    """
+    with reading(engine, place) as connection:
+        found = _found(connection, place, is_new_allowed=is_new_allowed)
+    if found == VERSION:
+        return
+    if place.file and not found:
+        _write_ahead(engine, place)
+    with writing(engine, place) as connection:
+        if not place.file:
+            connection.execute(text("SELECT pg_advisory_xact_lock(:lock)"), {"lock": LOCK})
+            _require_unicode(connection, place)
+        # Another program may have made it meanwhile.
+        if _found(connection, place, is_new_allowed=is_new_allowed) != VERSION:
+            _upgrade(connection)
+
+
+def _found(connection: Connection, place: Place, *, is_new_allowed: bool) -> str:
+    """Version of the schema; empty when there is none yet."""
+    tables = inspect(connection).get_table_names()
+    if VERSION_TABLE in tables:
+        found = connection.execute(select(_version.c.version_num)).scalar_one_or_none() or ""
+        if found > VERSION:
+            raise StoreTooNew(place.shown, found=found, known=VERSION)
+        return found
+    if tables:
+        reason = f"holds something else (table {tables[0]}); name another file or database"
+        raise StoreUnavailable(place.shown, reason=reason)
+    if not is_new_allowed:
+        raise StoreUnavailable(place.shown, reason="is empty; check the name")
+    return ""
+
+
+def _write_ahead(engine: Engine, place: Place) -> None:
+    """Set the mode that the file keeps; SQLite does not wait for others when it does."""
+    deadline = time.monotonic() + PATIENCE
+    while True:
+        try:
+            with translated(place):
+                _set_write_ahead(engine)
+                break
+        except StoreBusy:
+            if time.monotonic() > deadline:
+                raise
+            time.sleep(0.01)
+
+
+def _set_write_ahead(engine: Engine) -> None:
+    """Outside a transaction, as SQLite wants it."""
+    raw = engine.raw_connection()
+    try:
+        raw.cursor().execute("PRAGMA journal_mode = WAL")
+    finally:
+        raw.close()
+
+
+def _require_unicode(connection: Connection, place: Place) -> None:
+    """Refuse a database that cannot hold every name of a tool."""
+    encoding = connection.execute(text("SHOW server_encoding")).scalar_one()
+    if encoding != "UTF8":
+        reason = f"has the encoding {encoding}; make one with ENCODING 'UTF8'"
+        raise StoreUnavailable(place.shown, reason=reason)
+
+
+def _upgrade(connection: Connection) -> None:
+    """Run what is new of ``migrations/versions``."""
+    # Slow to import, and needed once in the life of a store.
+    from alembic import command  # noqa: PLC0415
+    from alembic.config import Config  # noqa: PLC0415
+
+    config = Config(attributes={"connection": connection})
+    # A percent sign is special in Alembic's settings.
+    config.set_main_option("script_location", str(MIGRATIONS).replace("%", "%%"))
+    command.upgrade(config, "head")

@@ -1,0 +1,241 @@
+"""What a group of outcomes gives reason to do, in words with numbers.
+
+References
+----------
+.. [1] F. Ridwan, X. Xu, G. Liu, "A framework for machining optimisation based on STEP-NC",
+   J. Intell. Manuf., 2010, eq. (10): theoretical roughness goes with the square of the feed.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from math import sqrt
+
+from kbe.acceptance import Bounds
+from kbe.bound import PASSED, UNUSED, BoundUse
+from kbe.factor import factor_at, interval
+from kbe.statistics import DeviationStatistics, Evaluated
+from stepnc_model.outcome import Correction
+
+NOTABLE = 0.05
+"""deviation, or change of the factor, from which something is said"""
+STEEP = 0.005
+"""of the plan a run, from which a significant trend is told"""
+ENOUGH = Bounds().fewest_outcomes
+"""outcomes from which a factor is recommended"""
+
+
+class Action(StrEnum):
+    """What a remark asks for."""
+
+    ACCEPT_FACTOR = "accept factor"
+    WAIT = "wait for more runs"
+    RECORD_RATIO = "record force ratios"
+    PLAN_AGAIN = "plan again"
+    PLAN_SAFER = "plan safer"
+    PLAN_BOLDER = "plan bolder"
+    CHECK_FEED = "check the feed"
+    LOWER_FEED = "lower the feed"
+    CHANGE_TOOL = "change the tool"
+    CALIBRATE = "calibrate the machine"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Evidence:
+    """What is known of a group."""
+
+    deviations: Mapping[Evaluated, DeviationStatistics]
+    bound: BoundUse
+    proposed: Correction | None
+    """that the outcomes of the context teach"""
+    accepted: Correction | None
+    """that plans take now; None: the catalogue's k_c"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Remark:
+    """What was seen, and what to do."""
+
+    about: Evaluated
+    action: Action
+    observed: str
+    advice: str
+
+    def __str__(self) -> str:
+        return f"{self.observed}: {self.advice}"
+
+
+def remarks(evidence: Evidence) -> tuple[Remark, ...]:
+    """All that is worth saying, the gravest first."""
+    proposed = evidence.proposed if is_pending(evidence) else None
+    found = [
+        _violated(evidence.bound),
+        _force(evidence) if proposed is None else _factor(evidence, proposed),
+        _wasted(evidence),
+        _roughness(evidence),
+        _feed(evidence) if proposed is None else None,
+        _time(evidence),
+        *(_trend(evidence, which) for which in Evaluated),
+    ]
+    return tuple(each for each in found if each is not None)
+
+
+def is_pending(evidence: Evidence) -> bool:
+    """Whether the factor that was learned differs notably from the one that plans take."""
+    return abs(_learned(evidence) / _in_force(evidence) - 1.0) > NOTABLE
+
+
+def _learned(evidence: Evidence) -> float:
+    """Centre of the factor that was learned; none: what plans take."""
+    if evidence.proposed is None:
+        return _in_force(evidence)
+    return factor_at(evidence.proposed, quantile=0.5)
+
+
+def _in_force(evidence: Evidence) -> float:
+    """Centre of the factor that plans take."""
+    return 1.0 if evidence.accepted is None else factor_at(evidence.accepted, quantile=0.5)
+
+
+def _violated(bound: BoundUse) -> Remark | None:
+    """The force passed its bound."""
+    if not bound.violated or bound.highest is None:
+        return None
+    return Remark(
+        about=Evaluated.FORCE,
+        action=Action.PLAN_SAFER,
+        observed=f"force passed its bound by more than {_percent(PASSED - 1.0)} in "
+        f"{bound.violated} of {bound.known} cuts, by {_percent(bound.highest - 1.0)} at worst",
+        advice="plan with a higher quantile of the k_c factor, or a lower bound",
+    )
+
+
+def _factor(evidence: Evidence, proposed: Correction) -> Remark:
+    """The factor that was learned is not the one that plans take."""
+    seen = interval(proposed)
+    factor = f"the k_c factor {seen.centre:.2f} ({seen.low:.2f} to {seen.high:.2f})"
+    phrases = [_deviates(evidence, which) for which in (Evaluated.FORCE, Evaluated.FEED)]
+    observed = " and ".join(filter(None, phrases)) or (
+        f"force {seen.centre:.2f} of the catalogue's where plans take {_in_force(evidence):.2f}"
+    )
+    missing = ENOUGH - proposed.outcomes
+    return Remark(
+        about=Evaluated.FORCE,
+        action=Action.WAIT if missing > 0 else Action.ACCEPT_FACTOR,
+        observed=observed,
+        advice=f"let {missing} more confirm {factor}" if missing > 0 else f"accept {factor}",
+    )
+
+
+def _force(evidence: Evidence) -> Remark | None:
+    """The force is off its plan, and no new factor explains it."""
+    observed = _deviates(evidence, Evaluated.FORCE)
+    if not observed:
+        return None
+    action, advice = Action.CHECK_FEED, "compare the feed that was run with the planned one"
+    if evidence.proposed is None:
+        action, advice = Action.RECORD_RATIO, "let the controller record force ratios"
+    elif evidence.accepted is not None:
+        factor = f"{_in_force(evidence):.2f}"
+        action, advice = Action.PLAN_AGAIN, f"plan again with the accepted k_c factor {factor}"
+    return Remark(about=Evaluated.FORCE, action=action, observed=observed, advice=advice)
+
+
+def _wasted(evidence: Evidence) -> Remark | None:
+    """The force stayed far below a bound that the plan meant to use."""
+    bound = evidence.bound
+    if not bound.wasted:
+        return None
+    each = bound.time_to_win / bound.wasted
+    won = f", about {each:.1f} s each could be won" if each > 0.0 else ""
+    overestimated = is_pending(evidence) and _learned(evidence) < _in_force(evidence)
+    return Remark(
+        about=Evaluated.FORCE,
+        action=Action.PLAN_AGAIN if overestimated else Action.PLAN_BOLDER,
+        observed=f"force below {_percent(UNUSED)} of its bound in {bound.wasted} of "
+        f"{bound.known} cuts{won}",
+        advice="accept the k_c factor and plan again"
+        if overestimated
+        else "let the controller raise the feed, or plan with a lower quantile of the factor",
+    )
+
+
+def _roughness(evidence: Evidence) -> Remark | None:
+    """The surface is rougher than planned."""
+    mean = evidence.deviations[Evaluated.ROUGHNESS].mean
+    if mean is None or mean <= NOTABLE:
+        return None
+    lower = 1.0 - 1.0 / sqrt(1.0 + mean)  # [1]_ eq. (10)
+    return Remark(
+        about=Evaluated.ROUGHNESS,
+        action=Action.LOWER_FEED,
+        observed=_deviates(evidence, Evaluated.ROUGHNESS),
+        advice=f"lower the feed per tooth by {_percent(lower)}",
+    )
+
+
+def _feed(evidence: Evidence) -> Remark | None:
+    """The feed is not the planned one, and no factor explains it."""
+    observed, mean = (
+        _deviates(evidence, Evaluated.FEED),
+        evidence.deviations[Evaluated.FEED].mean,
+    )
+    if not observed or mean is None:
+        return None
+    slower = mean < 0.0
+    return Remark(
+        about=Evaluated.FEED,
+        action=Action.CHECK_FEED if slower else Action.PLAN_BOLDER,
+        observed=observed,
+        advice="look for what holds the feed: override, force bound, short blocks"
+        if slower
+        else "plan with a lower quantile of the k_c factor",
+    )
+
+
+def _time(evidence: Evidence) -> Remark | None:
+    """The time is off, though the feed is not."""
+    observed = _deviates(evidence, Evaluated.TIME)
+    if not observed or _deviates(evidence, Evaluated.FEED):
+        return None
+    return Remark(
+        about=Evaluated.TIME,
+        action=Action.CALIBRATE,
+        observed=observed,
+        advice="calibrate the machine's cycle time",
+    )
+
+
+def _trend(evidence: Evidence, which: Evaluated) -> Remark | None:
+    """A quantity changes from run to run."""
+    trend = evidence.deviations[which].trend
+    if trend is None or not trend.is_significant or abs(trend.per_run) < STEEP:
+        return None
+    rises = trend.per_run > 0.0
+    worn = rises if which is not Evaluated.FEED else not rises
+    size, error = 100.0 * abs(trend.per_run), 100.0 * trend.standard_error
+    return Remark(
+        about=which,
+        action=Action.CHANGE_TOOL if worn else Action.WAIT,
+        observed=f"{which} {'rises' if rises else 'falls'} by {size:.1f} ± {error:.1f} % of "
+        f"the plan a run, over {trend.runs} runs",
+        advice="the edge wears, index or change the tool"
+        if worn
+        else "wait until it settles before a factor is accepted",
+    )
+
+
+def _deviates(evidence: Evidence, which: Evaluated) -> str:
+    """Deviation of a quantity in words; empty: not notable."""
+    seen = evidence.deviations[which]
+    if seen.mean is None or abs(seen.mean) <= NOTABLE:
+        return ""
+    above = seen.mean > 0.0
+    runs = seen.runs_above if above else seen.runs - seen.runs_above
+    side = "above" if above else "below"
+    return f"{which} {_percent(abs(seen.mean))} {side} plan in {runs} of {seen.runs} runs"
+
+
+def _percent(share: float) -> str:
+    """A share in words."""
+    return f"{100.0 * share:.0f} %"

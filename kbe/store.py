@@ -1,0 +1,232 @@
+"""The knowledge base as its users see it: outcomes go in, and nothing ever goes out of it.
+
+What was added when a call returned is kept, whatever breaks afterwards; what a call could not
+add as a whole is not there at all. One store may be used by many threads, and one place by
+many programs.
+
+Order: outcomes come by time of recording; corrections by proposal. In force for a context is
+the correction that was accepted last and not withdrawn since: withdrawing it puts the one
+before back in force.
+"""
+
+from collections import deque
+from collections.abc import Iterator, Sequence
+from datetime import datetime
+from types import TracebackType
+from typing import Self
+
+from sqlalchemy import Connection, func, insert, select, text
+from sqlalchemy.engine import Engine
+
+from kbe.connection import connected, reading, writing
+from kbe.errors import StoreDamaged, UnknownCorrection
+from kbe.groups import Group, group, grouped
+from kbe.ledger import Entry, Standing, entries, entry, in_force
+from kbe.migrate import migrate
+from kbe.place import Place, parsed_place, require_openable
+from kbe.rows import CORRECTION, OUTCOME, outcome_row, utc
+from kbe.schema import DECIDED, TABLES, correction, decision, outcome
+from kbe.selection import EVERYTHING, Selection, conditions
+from stepnc_model.outcome import Context, Correction, ProcessOutcome
+
+AT_ONCE = 1000
+"""rows that are fetched together"""
+
+
+class Store:
+    """An open knowledge base; :func:`open_store` makes it, ``with`` or ``close`` ends it."""
+
+    def __init__(self, engine: Engine, place: Place) -> None:
+        self.engine = engine
+        self.place = place
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close all connections."""
+        self.engine.dispose()
+
+    def add(self, outcomes: Sequence[ProcessOutcome]) -> None:
+        """Keep outcomes: all of them, or none when it fails.
+
+        Raises
+        ------
+        ValueError
+            When a number is not finite, a time has no zone, or a text cannot be stored.
+        KnowledgeError
+            When the store cannot take them.
+        """
+        rows = [outcome_row(each) for each in outcomes]
+        if not rows:
+            return
+        with writing(self.engine, self.place) as connection:
+            connection.execute(insert(outcome), rows)
+
+    def outcomes(self, selection: Selection = EVERYTHING) -> Iterator[ProcessOutcome]:
+        """Outcomes by time, read as they are asked for, as they were when the first was."""
+        columns = [outcome.c[leaf.name] for leaf in OUTCOME.leaves]
+        query = (
+            select(*columns)
+            .where(*conditions(selection))
+            .order_by(outcome.c.recorded_at, outcome.c.id)
+            .execution_options(yield_per=AT_ONCE)
+        )
+        with (
+            reading(self.engine, self.place) as connection,
+            connection.execute(query) as rows,
+        ):
+            for row in rows:
+                yield OUTCOME.noun(row)
+
+    def count(self, selection: Selection = EVERYTHING) -> int:
+        """How many outcomes there are."""
+        query = select(func.count()).select_from(outcome).where(*conditions(selection))
+        with reading(self.engine, self.place) as connection:
+            return connection.execute(query).scalar_one()
+
+    def contexts(self) -> tuple[Context, ...]:
+        """Machine, material and tool of all outcomes, in order."""
+        columns = (outcome.c.machine, outcome.c.material, outcome.c.tool)
+        with reading(self.engine, self.place) as connection:
+            rows = sorted(tuple(row) for row in connection.execute(select(*columns).distinct()))
+        return tuple(Context(machine=row[0], material=row[1], tool=row[2]) for row in rows)
+
+    def groups(self, selection: Selection = EVERYTHING) -> tuple[Group, ...]:
+        """Outcomes counted and averaged by context and kind of feature, in order."""
+        query = grouped(selection)
+        with reading(self.engine, self.place) as connection:
+            rows = sorted(connection.execute(query), key=lambda row: row[:4])
+        return tuple(group(row) for row in rows)
+
+    def propose(self, proposed: Correction) -> int:
+        """Keep a correction for a person to decide about; its id.
+
+        Raises
+        ------
+        ValueError
+            When it claims to be accepted already, and as :meth:`add`.
+        """
+        if proposed.accepted_by or proposed.accepted_at is not None:
+            raise ValueError("a correction is proposed before it is accepted")
+        row = CORRECTION.row(proposed)
+        stored = {name: value for name, value in row.items() if name not in DECIDED}
+        with writing(self.engine, self.place) as connection:
+            made = connection.execute(insert(correction).returning(correction.c.id), stored)
+            return int(made.scalar_one())
+
+    def accept(self, id: int, *, by: str, at: datetime) -> None:
+        """Put a correction in force, in the name of a person.
+
+        Raises
+        ------
+        UnknownCorrection
+            When there is none of this id.
+        ValueError
+            When nobody is named, or the time has no zone.
+        """
+        self._decide(id, Standing.ACCEPTED, by=by, at=at)
+
+    def withdraw(self, id: int, *, by: str, at: datetime) -> None:
+        """Take a correction out of force, or refuse a proposal; errors as :meth:`accept`."""
+        self._decide(id, Standing.WITHDRAWN, by=by, at=at)
+
+    def _decide(self, id_: int, standing: Standing, *, by: str, at: datetime) -> None:
+        """Keep a decision."""
+        if not by.strip():
+            raise ValueError("a decision is somebody's; name who decides")
+        row = {
+            "correction_id": id_,
+            "kind": standing.value,
+            "decided_by": by,
+            "decided_at": utc("at", at),
+        }
+        known = select(correction.c.id).where(correction.c.id == id_)
+        with writing(self.engine, self.place) as connection:
+            if connection.execute(known).first() is None:
+                raise UnknownCorrection(self.place.shown, id=id_)
+            connection.execute(insert(decision), row)
+
+    def corrections(self) -> tuple[Entry, ...]:
+        """All corrections, whatever was decided about them."""
+        with reading(self.engine, self.place) as connection:
+            return tuple(entry(row) for row in connection.execute(entries()))
+
+    def accepted(self, context: Context) -> Correction | None:
+        """The correction in force for a context, if there is one."""
+        with reading(self.engine, self.place) as connection:
+            row = connection.execute(in_force(context)).first()
+        return None if row is None else entry(row).correction
+
+    def check(self) -> None:
+        """Read all that is stored, to the last page.
+
+        Raises
+        ------
+        StoreDamaged
+            When it is not whole.
+        """
+        with reading(self.engine, self.place) as connection:
+            if self.place.file:
+                require_whole(connection, self.place)
+                return
+            # A server reports a page that it cannot read.
+            for table in TABLES:
+                query = select(table).execution_options(yield_per=AT_ONCE)
+                deque(connection.execute(query), maxlen=0)
+
+
+def require_whole(connection: Connection, place: Place) -> None:
+    """Refuse a file of SQLite whose pages, indexes or references do not agree.
+
+    Raises
+    ------
+    StoreDamaged
+        With the first thing that is wrong.
+    """
+    said = connection.execute(text("PRAGMA integrity_check(1)")).scalar_one()
+    if said != "ok":
+        raise StoreDamaged(place.shown, reason=str(said))
+    broken = connection.execute(text("PRAGMA foreign_key_check")).first()
+    if broken is not None:
+        raise StoreDamaged(place.shown, reason=f"a row of {broken[0]} refers to nothing")
+
+
+def open_store(url_or_path: str, *, is_new_allowed: bool = True) -> Store:
+    """Open a knowledge base, and make or upgrade it when that is needed.
+
+    Parameters
+    ----------
+    url_or_path : str
+        A file name, ``sqlite:///FILE`` or ``postgresql://USER:PASSWORD@HOST:PORT/DATABASE``.
+    is_new_allowed : bool
+        Whether to make one where there is none.
+
+    Raises
+    ------
+    StoreUnavailable
+        When it cannot be reached, or is something else's; DriverMissing without psycopg.
+    StoreDamaged, StoreTooNew, StoreReadOnly, StoreBusy, StoreFull
+        As they say.
+    """
+    return open_place(parsed_place(url_or_path), is_new_allowed=is_new_allowed)
+
+
+def open_place(place: Place, *, is_new_allowed: bool) -> Store:
+    """Open the store of a place; errors as :func:`open_store`."""
+    require_openable(place, is_new_allowed=is_new_allowed)
+    engine = connected(place)
+    try:
+        migrate(engine, place, is_new_allowed=is_new_allowed)
+    except BaseException:
+        engine.dispose()
+        raise
+    return Store(engine, place)

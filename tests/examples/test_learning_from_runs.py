@@ -1,0 +1,56 @@
+"""The story of the knowledge base: what three runs teach a plan whose catalogue is wrong."""
+
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+
+@dataclass(frozen=True)
+class Row:
+    planned: float
+    feed: float
+    time: float
+    share: float
+    learned: float
+
+
+def told(truth: float) -> list[Row]:
+    done = subprocess.run(
+        [sys.executable, "examples/03_learning_from_runs.py", str(truth)],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    rows = [line.split() for line in done.stdout.splitlines()[2:]]
+    return [
+        Row(
+            planned=float(row[1]),
+            feed=float(row[2]),
+            time=float(row[3]),
+            share=float(row[6]),
+            learned=float(row[7]),
+        )
+        for row in rows
+    ]
+
+
+@pytest.mark.parametrize("truth", [1.35, 0.7])
+def test_the_third_run_keeps_its_force_bound_and_uses_it(truth: float) -> None:
+    first, second, third = told(truth)
+    assert first.planned == 1.0
+    assert first.share == pytest.approx(truth, rel=0.03)
+    assert 0.9 <= second.share <= 1.0
+    assert 0.95 <= third.share <= 1.0
+    # Planned with a quantile above the truth, and closer to it with every run.
+    assert truth < third.planned <= second.planned
+    errors = [abs(row.learned / truth - 1.0) for row in (first, second, third)]
+    assert errors == sorted(errors, reverse=True)
+    assert errors[-1] < 0.02
+    # What was violated takes longer, what was wasted is won.
+    assert (third.time > first.time) is (truth > 1.0)

@@ -1,0 +1,49 @@
+"""Errors of the knowledge base say where, what and what to do."""
+
+import pytest
+
+from kbe.errors import (
+    BackupDiffers,
+    BackupExists,
+    DriverMissing,
+    KnowledgeError,
+    StoreBusy,
+    StoreDamaged,
+    StoreFull,
+    StoreNotEmpty,
+    StoreReadOnly,
+    StoreTooNew,
+    StoreUnavailable,
+    UnknownCorrection,
+)
+from stepnc_model.errors import StepNcError
+
+ALL = [
+    (StoreDamaged("a.db", reason="malformed"), "restore a backup"),
+    (StoreUnavailable("a.db", reason="the folder does not exist; make it"), "make it"),
+    (DriverMissing("a.db"), "stepnc-optimiser[postgres]"),
+    (StoreReadOnly("a.db"), "allow"),
+    (StoreBusy("a.db"), "try again"),
+    (StoreFull("a.db"), "Make room"),
+    (StoreTooNew("a.db", found="0009", known="0001"), "install the newer"),
+    (StoreNotEmpty("a.db", rows=3), "restore into a new file"),
+    (BackupExists("a.db"), "name another"),
+    (BackupDiffers("a.db"), "try again"),
+    (UnknownCorrection("a.db", id=7), "list them"),
+]
+
+
+@pytest.mark.parametrize(("error", "advice"), ALL, ids=lambda each: type(each).__name__)
+def test_error_names_its_place_and_what_to_do(error: KnowledgeError, advice: str) -> None:
+    assert isinstance(error, StepNcError)
+    assert error.place == "a.db"
+    assert str(error).startswith("a.db: ")
+    assert advice in str(error)
+
+
+def test_errors_carry_fields() -> None:
+    newer = StoreTooNew("a.db", found="0009", known="0001")
+    assert (newer.found, newer.known) == ("0009", "0001")
+    assert StoreNotEmpty("a.db", rows=3).rows == 3
+    assert UnknownCorrection("a.db", id=7).id == 7
+    assert StoreDamaged("a.db", reason="malformed").reason == "malformed"

@@ -1,0 +1,136 @@
+"""Plunges of a mill, from stations made by hand and along the paths of the bracket."""
+
+from dataclasses import replace
+from math import pi
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from optimiser.advice import Plan
+from optimiser.cut import Cut, CutKind
+from optimiser.formulate import Task
+from optimiser.hardest import Met
+from optimiser.limit import LimitName
+from optimiser.limits import PLUNGE_FEED_RATIO
+from optimiser.optimise import optimise
+from optimiser.plunge import CORE, plunge_of
+from optimiser.problem import Setting
+from simulator.library import load_machine
+from simulator.matching import match_material
+from simulator.physics.engagement import full_immersion
+from simulator.removal.stations import CutKind as StationKind
+from simulator.removal.stations import Stations
+from simulator.spec import ToolKind
+from stepnc_model.part21.reader import Part21File
+from stepnc_model.program import Program
+from stepnc_model.tool import Tool
+
+BRACKET = Path(__file__).parents[2] / "examples" / "parts" / "bracket.stpnc"
+FULL = 0.25 * pi * 10.0**2
+MILL = Cut(
+    kind=CutKind.MILLING,
+    tool=Tool(id="mill", keyword="TAPERED_ENDMILL", diameter=10.0, teeth=4),
+    tool_kind=ToolKind.ENDMILL,
+    diameter=10.0,
+    programmed=Setting(feed=0.05, depth=4.0, passes=2, speed=50.0),
+    length=100.0,
+    total_depth=8.0,
+    is_depth_free=True,
+    engagement=full_immersion(),
+)
+
+
+def met(section: float, inner: float, *, kind: StationKind = StationKind.DRILLING) -> Met:
+    """One stretch of 2 mm whose lips cut from an inner radius to the rim of 5 mm."""
+    one = np.ones(1)
+    stations = Stations(
+        segment=np.zeros(1, dtype=np.int64),
+        station=2.0 * one,
+        kind=np.array([int(kind)]),
+        section=section * one,
+        axial_depth=(5.0 - inner) * one,
+        radial_width=(5.0 - inner) * one,
+        entry_angle=0.0 * one,
+        exit_angle=0.0 * one,
+        contact_angle=0.0 * one,
+        chip_ratio=one,
+        diameter=(5.0 + inner) * one,
+    )
+    return Met(stations=stations, length=2.0 * one, cell=0.2)
+
+
+BOUND = np.array([True])
+
+
+def test_a_plunge_into_the_solid_is_a_hole_of_the_tools_diameter() -> None:
+    plunge = plunge_of(MILL, met(FULL, 0.0), BOUND)
+    assert plunge is not None
+    assert plunge.kind is CutKind.DRILLING
+    assert plunge.previous_diameter == 0.0
+    assert plunge.tool.point_angle == pytest.approx(pi)
+    assert (plunge.tool.teeth, plunge.engagement) == (4, None)
+
+
+def test_a_pilot_hole_is_taken_off() -> None:
+    plunge = plunge_of(MILL, met(0.9 * FULL, 1.0), BOUND)
+    assert plunge is not None
+    assert plunge.previous_diameter == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize(
+    ("cut", "found", "bound"),
+    [
+        (MILL, met(0.5 * FULL, 5.0 * CORE + 0.1), True),
+        (MILL, met(0.001 * FULL, 0.0), True),
+        (MILL, met(FULL, 0.0, kind=StationKind.MILLING), True),
+        (MILL, met(FULL, 0.0), False),
+        (replace(MILL, kind=CutKind.DRILLING), met(FULL, 0.0), True),
+    ],
+    ids=["beside the core", "a sliver", "a ramp", "a feed of its own", "a drill"],
+)
+def test_what_is_no_plunge_at_the_feed_of_the_cut(cut: Cut, found: Met, bound: bool) -> None:
+    assert plunge_of(cut, found, np.array([bound])) is None
+
+
+def plan_of(before: str = "", after: str = "") -> Plan:
+    text = BRACKET.read_text()
+    assert before in text
+    text = text.replace(before, after) if before else text
+    return optimise(
+        Program(Part21File.from_bytes(text.encode()), name="bracket"),
+        machine=load_machine("vmc15"),
+        material=match_material(["C45"]),
+        task=Task(),
+        selected=lambda step: step.id in {"ROUGH POCKET", "ROUGH OPEN POCKET"},
+    )
+
+
+def test_a_pocket_that_is_entered_straight_down_keeps_half_the_feed_per_tooth() -> None:
+    """ISCAR's 0.01·D for carbide in steel gives 0.1 mm along the pass."""
+    ramped, plunged = plan_of().advices
+    assert ramped.cut is not None
+    assert ramped.cut.plunge is None
+    assert plunged.cut is not None
+    assert plunged.cut.plunge is not None
+    assert plunged.after is not None
+    bounds = {
+        load.limit.words: load.bound
+        for load in plunged.after.loads
+        if load.limit.name is LimitName.FEED_PER_TOOTH
+    }
+    assert bounds == {
+        "feed per tooth": pytest.approx(0.1),
+        "feed per tooth straight down": pytest.approx(PLUNGE_FEED_RATIO * 0.1),
+    }
+    assert plunged.after.setting.feed <= PLUNGE_FEED_RATIO * 0.1 * (1.0 + 1e-9)
+
+
+def test_a_ramp_instead_frees_the_feed() -> None:
+    ramp = ("'ROUGH OPEN POCKET',10.,$,#430,#305,#330,5.,#340,",
+            "'ROUGH OPEN POCKET',10.,$,#430,#305,#330,5.,#342,")  # fmt: skip
+    _, ramped = plan_of(*ramp).advices
+    assert ramped.cut is not None
+    assert ramped.cut.plunge is None
+    assert ramped.after is not None
+    assert ramped.after.setting.feed > PLUNGE_FEED_RATIO * 0.1
