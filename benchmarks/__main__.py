@@ -1,6 +1,17 @@
 """All benchmarks in one run: ``python -m benchmarks``."""
 
-from benchmarks import part21, pockets, post, process, removal, simulation, umich, workingsteps
+from benchmarks import (
+    closed_loop,
+    control_step,
+    part21,
+    pockets,
+    post,
+    process,
+    removal,
+    simulation,
+    umich,
+    workingsteps,
+)
 
 for title, bench in (
     ("Part 21", part21),
@@ -11,6 +22,8 @@ for title, bench in (
     ("Removal", removal),
     ("Virtual machine", simulation),
     ("A real mill", umich),
+    ("Closed loop", closed_loop),
+    ("A control step", control_step),
 ):
     print(f"\n== {title}: {(bench.__doc__ or '').splitlines()[0]}")
     bench.main([])

@@ -1,6 +1,7 @@
 """What the loop is to do, in all and in each workingstep. Units mm, s, N."""
 
 from dataclasses import dataclass, field
+from math import inf
 
 from controller.guard import Band
 from controller.orders import Criterion
@@ -10,7 +11,13 @@ from controller.reference import Reference
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Aims:
-    """What the loop is to do."""
+    """What the loop is to do.
+
+    Raises
+    ------
+    ValueError
+        When a number is beyond its bounds.
+    """
 
     criterion: Criterion = Criterion.TC
     is_on: bool = True
@@ -26,10 +33,28 @@ class Aims:
     chips: float = 10.0
     """N, mean of a revolution above which there are chips: some times its noise"""
 
+    def __post_init__(self) -> None:
+        for thing, value in (
+            ("power factor", self.power_factor),
+            ("set point", 1.0 if self.set_point is None else self.set_point),
+            ("servo lag", self.servo_lag),
+            ("force of chips", self.chips),
+        ):
+            if not 0.0 < value < inf:
+                raise ValueError(f"{thing} {value:g} must be positive and finite")
+        if self.look_ahead < 0:
+            raise ValueError(f"look-ahead {self.look_ahead} must be at least 0")
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Step:
-    """One workingstep as the loop needs it."""
+    """One workingstep as the loop needs it.
+
+    Raises
+    ------
+    ValueError
+        When the exponent is not positive and finite.
+    """
 
     reference: Reference
     exponent: float = 0.8
@@ -38,6 +63,10 @@ class Step:
     """its id"""
     diameter: float = 0.0
     """mm at which the cutting speed drives the force; 0: not known"""
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.exponent < inf:
+            raise ValueError(f"exponent {self.exponent:g} must be positive and finite")
 
 
 AROUND = Step(reference=Reference(workingstep="", inhibition="it belongs to no workingstep"))

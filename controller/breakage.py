@@ -148,20 +148,11 @@ def _suspect(breakage: Breakage, shares: Floats, per_tooth: float) -> int | None
     usual = _median(breakage.shares)
     scatter = _DEVIATION * float(_median(np.abs(breakage.shares - usual)).max())
     offsets = (breakage.shares - 1.0) * breakage.feeds[:, None]
-    expected = _clipped((1.0 + _median(offsets) / per_tooth).tolist())
+    expected = 1.0 + _median(offsets) / per_tooth
     # A tooth that cuts nothing hides how low it lies: a share between the two tells nothing.
     missing = (np.minimum(usual, expected) - shares).tolist()
     excess = (shares - np.maximum(usual, expected)).tolist()
     return _first_missing(missing, excess, least=max(DROP, SCATTERS * scatter))
-
-
-def _clipped(shares: list[float]) -> Floats:
-    """(z,) shares, none negative: what one lacks to meet the work, the next one lacks too."""
-    lack, teeth = 0.0, len(shares)
-    for turn in range(2 * teeth if min(shares) < 0.0 else 0):
-        share = shares[turn % teeth] + lack
-        shares[turn % teeth], lack = max(share, 0.0), min(share, 0.0)
-    return np.array(shares)
 
 
 def _first_missing(missing: list[float], excess: list[float], *, least: float) -> int | None:

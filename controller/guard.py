@@ -1,16 +1,21 @@
 """The guard between any law and the machine: what a law wants is only a wish.
 
-What it promises: the force stays below the breakage force whatever the law does, when
+It promises that the mean force of a tooth period stays below the breakage force, whatever the
+law does, when
 
-- the first contact at an override of 1 stays below the breakage force over the sudden ratio,
-  which is the planner's promise;
-- within the time in which the feed follows, the force rises at a given feed no more than by
-  the sudden ratio, once;
-- the sensors show the force, or are known to be silent.
+- where the cutter enters the work at an override of 1, the tooth that takes most stays below
+  the breakage force over the sudden ratio: the planner's promise, with what the work hides. The
+  air before must last until the feed has come down to 1; otherwise it must hold at the ceiling;
+- at a given feed the force rises no more than by the sudden ratio from one revolution to the
+  next ones, once within the time in which the feed follows;
+- the sensors show the force within a fraction of a tooth period, or are known to be silent. The
+  power of a main drive does not: it comes late.
 
-The threshold is then the breakage force over the sudden ratio, or 1.5 times the set point where
-that is less. The override is held so low that the force measured now would stay below it, and
-the feed is held within one tooth period when a tooth passes it. Units s, N.
+The threshold is the breakage force over the sudden ratio, or 1.5 times the set point where that
+is less. The override is held so low that the force measured now would stay below it, and the
+feed is held within one tooth period when a tooth passes it. Against the set point, a tooth
+counts as what it takes more than usual (:mod:`controller.overload`), against the breakage
+force as what it takes. Where the program inhibits the override there is no promise. Units s, N.
 """
 
 from dataclasses import dataclass
@@ -31,6 +36,12 @@ MARGIN = 0.95
 RESUMED = 0.8
 """of the set point, aimed at after a hold"""
 
+AIMED = 0.8
+"""of the breakage force over the sudden ratio, that a set point is at most: a law that keeps it
+must not meet the threshold by noise"""
+
+LEAST_RESUMED = 0.02
+"""override after a hold: a force far beyond all is a fault, and the feed must not crawl"""
 
 NOTICED = 1e-3
 """of the threshold, below which a force bounds no override"""
@@ -96,10 +107,34 @@ class Keeping:
     ceiling: float
     exponent: float
     """p of force over feed"""
+    settled: float = 0.0
+    """N, greatest set point that the force had the time to follow: one that falls at once makes
+    no overload of a force that was none"""
+
+    @property
+    def strength(self) -> float:
+        """N that a tooth may take, so that a sudden rise does not break the tool."""
+        return self.breakage / SUDDEN_RATIO
 
     def threshold(self, band: Band) -> float:
         """N at which the feed is held."""
-        return min(band.overload_ratio * self.set_point, self.breakage / SUDDEN_RATIO)
+        overload = band.overload_ratio * max(self.set_point, self.settled)
+        return min(overload, self.strength)
+
+    def load(self, band: Band, *, level: float, force: float) -> float:
+        """What a tooth period counts against the threshold, N.
+
+        Parameters
+        ----------
+        band : Band
+        level : float, N
+            Its force as if all teeth were alike, to be compared with the set point.
+        force : float, N
+            As measured, to be compared with what the tool bears.
+        """
+        if self.strength == inf:
+            return level
+        return max(level, force * self.threshold(band) / self.strength)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -108,6 +143,11 @@ class Allowed:
 
     override: float
     holding: Holding = Holding.NOTHING
+
+
+def aimed(set_point: float, reference: Reference) -> float:
+    """The set point, N; less where the tool would not bear a sudden rise from it."""
+    return min(set_point, AIMED * reference.breakage / SUDDEN_RATIO)
 
 
 def keeping(
@@ -152,7 +192,7 @@ def allowed(
     actual : float
         Override that the axes ran in the last revolution.
     force : float, N
-        Greatest mean of a tooth period or of the revolution, measured.
+        Greatest load of a tooth period (:meth:`Keeping.load`), or mean of the revolution.
     """
     is_wish = isfinite(wanted) and wanted >= keep.floor
     override = wanted if is_wish else keep.floor
@@ -175,7 +215,18 @@ def in_air(keep: Keeping, *, last: float) -> Allowed:
 def after_hold(keep: Keeping, *, override: float, force: float) -> float:
     """Override to go on with after a force, N, has held the feed."""
     share = (RESUMED * keep.set_point / force) ** (1.0 / keep.exponent)
-    return min(max(override * share, 0.0), keep.ceiling, 1.0) or keep.floor
+    return float(min(max(override * share, LEAST_RESUMED), keep.ceiling, 1.0))
+
+
+def taught(band: Band, keep: Keeping, *, override: float, force: float) -> float:
+    """Override at which the force, N, that has held the feed would have been let through.
+
+    What was met once may be met again in the same workingstep: without it, a program whose
+    depth changes over and over would be held each time, and stopped in the end.
+    """
+    threshold = MARGIN * keep.threshold(band)
+    believed = min(force, SUDDEN_RATIO * keep.threshold(band))
+    return float(max(override * (threshold / believed) ** (1.0 / keep.exponent), keep.floor))
 
 
 def _by_force(band: Band, keep: Keeping, *, actual: float, force: float) -> float:

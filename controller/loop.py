@@ -7,40 +7,35 @@ Running state. Units mm, s, N, W, rev/s.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from math import inf, isfinite, isnan
+from math import inf, isfinite, isnan, nan
 from typing import Any
-
-import numpy as np
 
 from controller import overload
 from controller.aims import AROUND, Aims, Step
-from controller.conditioning import conditioned
 from controller.cycle import Cycle
-from controller.errors import MachineLost
 from controller.estimate import log_ratio
 from controller.guard import (
     Allowed,
     Holding,
-    Keeping,
     after_hold,
     allowed,
     in_air,
-    keeping,
+    taught,
 )
-from controller.law import Law, Plant, Situation
+from controller.law import Law, Plant
 from controller.monitor import Monitor
-from controller.orders import Criterion, CriterionTo, Event, EventKind, MotorPowerTo, Order
+from controller.orders import CriterionTo, Event, EventKind, MotorPowerTo, Order
 from controller.ports import Override, Sensor
 from controller.preview import Preview
 from controller.signal import Collector, Revolution
+from controller.silence import HEARD, is_blind, listened
 from controller.source import Source
+from controller.steering import Steering
+from controller.target import Target, approached, introduction, kept
 from simulator.reading import Reading
 
 STANDING = 0.02
 """override below which the axes count as standing"""
-
-LEAST_WAY = 0.1
-"""override at least with which the way of the next revolutions is reckoned"""
 
 
 @dataclass(kw_only=True)
@@ -54,6 +49,8 @@ class _Hold:
     """that the axes ran when it began"""
     force: float = 0.0
     """N, greatest since"""
+    calm: int = 0
+    """tooth periods in a row with a force below the set point: with runout, one says little"""
 
 
 class Loop:
@@ -88,20 +85,23 @@ class Loop:
         self.aims = aims
         self.is_stopped = False
         self._sensor, self._port, self._source = sensor, override, source
-        self._law_for, self._steps, self._preview = law, steps, preview
+        self._steps, self._steering = steps, Steering(law, preview)
         self._collector, self._monitor = Collector(), Monitor()
-        self._laws: dict[Plant, Law[Any]] = {}
-        self._cut: tuple[Law[Any], Any] | None = None
-        """law and its state while there are chips"""
         self._step, self._number = AROUND, 0
         self._allowed = Allowed(override=1.0)
-        self._set_point = 0.0
+        self._target = Target()
+        self._keep = kept(self._target, aims, AROUND)
         self._hold = _Hold()
         self._shares = overload.fresh(1)
+        self._has_chips = False
+        """whether the last revolution had"""
+        self._override_before = 1.0
+        """that was allowed before the last revolution was decided upon"""
         self._greatest = 0.0
-        self._silence = 0.0
+        """N, load of a tooth since the last decision"""
+        self._silence = HEARD
         self._expected = 0.0
-        self._time = 0.0
+        self._time = -inf
         self._orders: list[Order] = []
         self._events: list[Event] = []
 
@@ -117,37 +117,44 @@ class Loop:
     def cycle(self) -> Cycle | None:
         """Wait for a reading, and act upon it; None: the program has ended.
 
+        Whatever goes wrong in it, the safe override is commanded before it is raised.
+
         Raises
         ------
         MachineLost
-            When the machine does not answer any more; the safe override was commanded.
+            When the machine does not answer any more.
         """
         try:
             raw = self._sensor.read()
-        except MachineLost:
-            self._port.set(min(self._allowed.override, self.aims.band.safe))
+            return None if raw is None else self._answered(raw)
+        except BaseException:
+            self._port.set(self._safe())
             raise
-        if raw is None:
-            return None
-        self._time = raw.time
+
+    def _answered(self, raw: Reading) -> Cycle:
+        """What is done upon a reading."""
+        is_new, self._time = raw.time > self._time, raw.time
         self._events = []
         if raw.workingstep != self._number:
             self._begin(raw)
         while self._orders:
             self._obey(self._orders.pop(0))
         reading = self._source.conditioned(raw, self._step.diameter)
-        revolution = self._collector.add(reading)
+        # One that comes again tells nothing.
+        revolution = self._collector.add(reading) if is_new else None
         expected, ratio = 0.0, None
         if revolution is not None:
-            expected = self._expectation(revolution)
+            expected = self._steering.expectation(revolution, self._step.exponent)
             ratio = log_ratio(revolution, expected, expected_before=self._expected)
             self._expected = expected
-        self._act(reading, revolution, ratio)
+        self._act(
+            reading, revolution, ratio, force=overload.mean(reading.force) if is_new else nan
+        )
         self._port.set(self._allowed.override)
         return Cycle(
             reading=reading,
             allowed=self._allowed,
-            set_point=self._set_point or inf,
+            set_point=self._keep.set_point,
             revolution=revolution,
             expected=expected,
             ratio=ratio,
@@ -155,26 +162,36 @@ class Loop:
         )
 
     def _begin(self, reading: Reading) -> None:
-        """Another workingstep."""
+        """Another workingstep. A hold goes on: the axes may still be slowing down."""
         self._number = reading.workingstep
         at = self._number - 1
         self._step = self._steps[at] if 0 <= at < len(self._steps) else AROUND
-        reference = self._step.reference
-        self._hold, self._cut, self._set_point = _Hold(), None, 0.0
-        self._allowed = Allowed(override=1.0)
+        self._steering.leave()
+        self._has_chips, self._expected = False, 0.0
+        self._hold.count = 0
+        self._target = Target()
+        self._keep = kept(self._target, self.aims, self._step)
+        self._approach()
+        if not (self.is_stopped or self._hold.is_on):
+            self._allowed = self._beginning()
         self._shares = overload.fresh(reading.teeth)
-        self._expected = 0.0
         self._monitor.begin(self._step.tool)
+        reference = self._step.reference
         if reference.workingstep:
-            bound = reference.bound(power_factor=self.aims.power_factor)
-            words = "nothing bounds the force"
-            if self.aims.set_point is not None:
-                words = f"{self.aims.set_point:.4g} N as asked for"
-            elif bound is not None:
-                words = f"{bound.force:.4g} N by {bound.words}"
-            self._say(EventKind.WORKINGSTEP, f"{reference.workingstep}: force bound {words}")
+            self._say(EventKind.WORKINGSTEP, introduction(self.aims, reference))
             if reference.inhibition:
                 self._say(EventKind.INHIBITED, reference.inhibition)
+
+    def _beginning(self) -> Allowed:
+        """The override with which a workingstep begins."""
+        if not self.aims.is_on:
+            return Allowed(override=1.0, holding=Holding.OFF)
+        if self._step.reference.inhibition:
+            return Allowed(override=1.0, holding=Holding.INHIBITED)
+        begin = in_air(self._keep, last=1.0)
+        if self._allowed.holding is Holding.SILENCE:
+            return replace(self._allowed, override=min(begin.override, self.aims.band.safe))
+        return begin
 
     def _obey(self, order: Order) -> None:
         match order:
@@ -187,76 +204,98 @@ class Loop:
             case _:
                 self.aims = replace(self.aims, is_on=order.is_on)
                 text = "ON" if order.is_on else "OFF: the program's own feed"
-        self._cut = None
+        self._steering.leave()
+        self._keep = kept(self._target, self.aims, self._step)
         self._say(EventKind.ORDER, text)
 
     def _act(
-        self, reading: Reading, revolution: Revolution | None, ratio: float | None
+        self,
+        reading: Reading,
+        revolution: Revolution | None,
+        ratio: float | None,
+        *,
+        force: float,
     ) -> None:
-        """Choose the next override."""
-        force = _mean(reading)
-        self._silence = self._silence + reading.period if isnan(force) else 0.0
+        """Choose the next override; force in N is the mean of the reading, NaN: not known."""
         if not reading.can_override:
-            self._silence = 0.0
-            self._cut = None
+            self._steering.leave()
+            if self._has_chips:
+                self._monitor.out_of_cut()
+            self._silence, self._has_chips, self._greatest = HEARD, False, 0.0
             return
-        if len(self._shares.usual) != reading.teeth:
-            self._shares = overload.fresh(reading.teeth)
-        self._shares = overload.seen(self._shares, reading.tooth, force)
-        level = overload.level(self._shares, reading.tooth, force)
-        self._greatest = max(self._greatest, level)
+        self._silence = listened(self._silence, reading, revolution, has_force=not isnan(force))
+        load = self._loaded(reading, force)
         if revolution is not None:
-            self._set_point = self._conditioned()
-        keep = self._keep()
+            self._approach()
         if self.is_stopped:
             self._allowed = Allowed(override=0.0, holding=Holding.STOPPED)
         elif self._hold.is_on:
-            self._go_on_when_safe(keep, reading, level)
-        elif self.aims.is_on and level > keep.threshold(self.aims.band):
-            self._stop_feed(keep, reading, level)
-        elif revolution is not None or self._silence > self.aims.band.silence:
-            self._allowed = self._decided(keep, revolution, ratio)
+            self._go_on_when_safe(reading, load)
+        elif self._may_hold and load > self._keep.threshold(self.aims.band):
+            self._stop_feed(reading, load)
+        elif revolution is not None or self._is_blind(reading):
+            before = self._allowed.override
+            self._allowed = self._decided(reading, revolution, ratio)
+            self._override_before = before
             self._greatest = 0.0
 
-    def _conditioned(self) -> float:
-        """Set point on its way to what is wanted."""
-        wanted = self.aims.set_point
-        if wanted is None:
-            bound = self._step.reference.bound(power_factor=self.aims.power_factor)
-            wanted = inf if bound is None else bound.force
-        return conditioned(self._set_point, wanted)
+    @property
+    def _may_hold(self) -> bool:
+        return self.aims.is_on and not self._step.reference.inhibition
 
-    def _keep(self) -> Keeping:
-        most = 1.0 if self.aims.criterion is Criterion.QC else inf
-        return keeping(
-            self.aims.band,
-            self._step.reference,
-            set_point=self._set_point or inf,
-            exponent=self._step.exponent,
-            most=most,
+    def _is_blind(self, reading: Reading) -> bool:
+        return is_blind(
+            self._silence,
+            allowed=self.aims.band.silence,
+            spindle_speed=reading.spindle_speed,
         )
 
-    def _stop_feed(self, keep: Keeping, reading: Reading, level: float) -> None:
+    def _loaded(self, reading: Reading, force: float) -> float:
+        """Load of a tooth period, N, as the threshold counts it; NaN: not known."""
+        if len(self._shares.usual) != reading.teeth:
+            self._shares = overload.fresh(reading.teeth)
+        # Noise in the air and the way into the work tell nothing of runout.
+        see = overload.seen if self._has_chips else overload.noted
+        self._shares = see(self._shares, reading.tooth, force)
+        level = overload.level(self._shares, reading.tooth, force)
+        load = self._keep.load(self.aims.band, level=level, force=force)
+        self._greatest = max(self._greatest, load)
+        return load
+
+    def _approach(self) -> None:
+        """What holds for the next revolution."""
+        target = approached(self._target, self.aims, self._step.reference)
+        if target == self._target:
+            return
+        self._target = target
+        self._keep = kept(self._target, self.aims, self._step)
+
+    def _stop_feed(self, reading: Reading, load: float) -> None:
         """Hold the feed after an overload; once too often, for good."""
         hold = self._hold
         hold.count += 1
-        hold.is_on, hold.override, hold.force = True, reading.override, level
-        self._cut = None
+        hold.is_on, hold.override, hold.force, hold.calm = True, reading.override, load, 0
+        self._steering.leave()
         self._allowed = Allowed(override=0.0, holding=Holding.OVERLOAD)
-        bound = keep.threshold(self.aims.band)
-        text = f"force {level:.4g} N of a tooth exceeds {bound:.4g} N: feed held"
+        bound = self._keep.threshold(self.aims.band)
+        text = f"force {load:.4g} N of a tooth exceeds {bound:.4g} N: feed held"
         self._say(EventKind.HOLD, text)
         if hold.count > self.aims.band.holds:
             self._stop(f"held {hold.count} times in this workingstep")
 
-    def _go_on_when_safe(self, keep: Keeping, reading: Reading, level: float) -> None:
+    def _go_on_when_safe(self, reading: Reading, load: float) -> None:
         hold = self._hold
-        if level > hold.force:
-            hold.override, hold.force = reading.override, level
-        if reading.override > STANDING and not level < keep.set_point:
+        if load > hold.force:
+            hold.override, hold.force = reading.override, load
+        hold.calm = hold.calm + 1 if load < self._keep.set_point else 0
+        if reading.override > STANDING and hold.calm < reading.teeth:
             return
         hold.is_on = False
+        keep, band = self._keep, self.aims.band
         override = after_hold(keep, override=hold.override, force=hold.force)
+        cap = taught(band, keep, override=hold.override, force=hold.force)
+        self._target = replace(self._target, cap=min(cap, self._target.cap))
+        self._keep = kept(self._target, self.aims, self._step)
         self._allowed = Allowed(override=override, holding=Holding.OVERLOAD)
         self._greatest = 0.0
         self._say(EventKind.RESUME, f"override {100.0 * override:.4g} %")
@@ -267,96 +306,91 @@ class Loop:
         self._say(EventKind.STOP, why)
 
     def _decided(
-        self, keep: Keeping, revolution: Revolution | None, ratio: float | None
+        self, reading: Reading, revolution: Revolution | None, ratio: float | None
     ) -> Allowed:
         """The override after a revolution, or after too long without one that says a force."""
         if not self.aims.is_on:
             return Allowed(override=1.0, holding=Holding.OFF)
-        if self._silence > self.aims.band.silence:
-            return self._blind()
-        if revolution is None:
-            return self._allowed
-        if isnan(revolution.force):
-            return self._allowed
-        if not revolution.force > self.aims.chips:
-            self._cut = None
-            self._monitor.out_of_cut()
-            return in_air(keep, last=self._allowed.override)
-        self._events += self._monitor.seen(
-            revolution, ratio=ratio, set_point=keep.set_point, exponent=keep.exponent
-        )
-        if self._monitor.is_broken:
-            self._stop("a tooth is broken")
+        is_entry = not self._has_chips
+        if revolution is not None and revolution.is_covered:
+            self._watch(revolution, ratio)
+        if self.is_stopped:
             return self._allowed
         if self._step.reference.inhibition:
             return Allowed(override=1.0, holding=Holding.INHIBITED)
-        return self._by_law(keep, revolution)
+        if self._is_blind(reading):
+            return self._blind()
+        if revolution is None:
+            return self._allowed
+        if not revolution.is_covered:
+            return self._lowered(revolution)
+        if not self._has_chips:
+            return in_air(self._keep, last=self._left(is_exit=not is_entry))
+        return self._by_law(revolution, is_entry=is_entry)
+
+    def _watch(self, revolution: Revolution, ratio: float | None) -> None:
+        """What is looked at besides the feed."""
+        had_chips, self._has_chips = self._has_chips, revolution.force > self.aims.chips
+        if not self._has_chips:
+            if had_chips:
+                self._steering.leave()
+                self._monitor.out_of_cut()
+            return
+        self._events += self._monitor.seen(revolution, self._keep, ratio=ratio)
+        if self._monitor.is_broken:
+            self._stop("a tooth is broken")
 
     def _blind(self) -> Allowed:
         """The safe override, until forces are read again."""
         if self._allowed.holding is not Holding.SILENCE:
             safe = 100.0 * self.aims.band.safe
-            text = f"no force for {self._silence:.2g} s: override {safe:.4g} % at most"
+            text = (
+                f"no force for {self._silence.revolutions:.2g} s: override {safe:.4g} % at most"
+            )
             self._say(EventKind.SILENCE, text)
-        self._cut = None
-        override = min(self._allowed.override, self.aims.band.safe)
-        return Allowed(override=override, holding=Holding.SILENCE)
+        self._steering.leave()
+        return Allowed(override=self._safe(), holding=Holding.SILENCE)
 
-    def _by_law(self, keep: Keeping, revolution: Revolution) -> Allowed:
-        last, actual = self._allowed.override, revolution.override
+    def _safe(self) -> float:
+        """The override when nothing is known: what it is, at most the safe one."""
+        if self._step.reference.inhibition or not self.aims.is_on:
+            return self._allowed.override
+        return min(self._allowed.override, self.aims.band.safe)
+
+    def _lowered(self, revolution: Revolution) -> Allowed:
+        """The last override, or less where the few samples that arrived ask for it."""
+        last = self._allowed
+        got = allowed(
+            last.override,
+            self.aims.band,
+            self._keep,
+            last=last.override,
+            actual=revolution.override,
+            force=self._greatest,
+        )
+        return got if got.override < last.override else last
+
+    def _left(self, *, is_exit: bool) -> float:
+        """The override of the cut: its last revolution, half in the air, must not raise it."""
+        last = self._allowed.override
+        return min(last, self._override_before) if is_exit else last
+
+    def _by_law(self, revolution: Revolution, *, is_entry: bool) -> Allowed:
+        last, keep = self._allowed.override, self._keep
+        wanted = 1.0
         if isfinite(keep.set_point):
-            law, state = self._cut or self._entered(revolution)
-            state, wanted = law.decide(state, self._situation(keep, revolution))
-            self._cut = law, state
-        else:
-            wanted = 1.0
-        force = max(self._greatest, revolution.force)
-        return allowed(wanted, self.aims.band, keep, last=last, actual=actual, force=force)
-
-    def _entered(self, revolution: Revolution) -> tuple[Law[Any], Any]:
-        """The law, tuned for what begins, and its state."""
-        lag = round(max(self.aims.servo_lag * revolution.spindle_speed, 0.1), 1)
-        plant = Plant(exponent=round(self._step.exponent, 2), lag=lag)
-        if plant not in self._laws:
-            self._laws[plant] = self._law_for(plant)
-        law = self._laws[plant]
-        return law, law.begin(max(self._allowed.override, LEAST_WAY))
-
-    def _situation(self, keep: Keeping, revolution: Revolution) -> Situation:
-        known = Situation(
-            force=revolution.force,
-            set_point=keep.set_point,
-            override=self._allowed.override,
-            actual=max(revolution.override, LEAST_WAY * keep.floor),
-            floor=keep.floor,
-            ceiling=keep.ceiling,
+            wanted = self._steering.wish(revolution, keep, aims=self.aims, override=last)
+        if is_entry:
+            # The force of a revolution that began in the air is too small to be trusted.
+            wanted = min(wanted, last)
+        return allowed(
+            wanted,
+            self.aims.band,
+            keep,
+            last=last,
+            actual=revolution.override,
+            force=max(self._greatest, revolution.force),
         )
-        if not self.aims.look_ahead:
-            return known
-        preview = self._preview
-        way = revolution.period * max(revolution.override, LEAST_WAY)
-        return replace(
-            known,
-            expected=preview.mean(revolution.progress_before, revolution.progress),
-            ahead=preview.ahead(
-                revolution.progress, revolution=way, count=self.aims.look_ahead
-            ),
-        )
-
-    def _expectation(self, revolution: Revolution) -> float:
-        """Force that the catalogue's k_c gives at the override that was run, N."""
-        mean = self._preview.mean(revolution.progress_before, revolution.progress)
-        return float(mean * max(revolution.override, 0.0) ** self._step.exponent)
 
     def _say(self, kind: EventKind, text: str) -> None:
         self._events.append(Event(time=self._time, kind=kind, text=text))
-
-
-def _mean(reading: Reading) -> float:
-    """Mean force of a reading, N; NaN when no sample arrived."""
-    force = reading.force
-    total = float(np.add.reduce(force)) if len(force) else np.nan
-    if not isnan(total):
-        return total / len(force)
-    seen = force[~np.isnan(force)]
-    return float(seen.mean()) if len(seen) else np.nan

@@ -4,9 +4,11 @@ Running state: the states of the functions that look at each revolution. Units N
 """
 
 from collections.abc import Iterator
+from dataclasses import replace
 from math import expm1, inf
 
 from controller.breakage import Breakage, inspected
+from controller.guard import Keeping
 from controller.orders import Event, EventKind
 from controller.signal import Revolution
 from controller.threshold import Level, Watch, watched
@@ -15,11 +17,26 @@ from controller.tool_life import ToolLife, compared_anew, lived, new_tool
 STEADY = 0.02
 """greatest change of the override in a revolution that counts as steady, as a share"""
 
+CALM = 5.0
+"""s for which the level must have been lower until it is said: a force that flickers about a
+threshold must not flood who reads; what is worse is said at once"""
+
+PAUSE = 10.0
+"""s between two changes of the work that are told"""
+
+REACH = 20
+"""revolutions at the floor of the override with a force above the set point, after which that
+is said: more than any drive needs to slow down"""
+
+ABOVE = 1.05
+"""times the set point, and times the floor: what is nearer is at it"""
+
 _KINDS = {
     Level.SAFE: EventKind.SAFE,
     Level.WARNING: EventKind.WARNING,
     Level.OVER: EventKind.OVER,
 }
+_RANKS = {level: rank for rank, level in enumerate(_KINDS)}
 
 
 class Monitor:
@@ -27,6 +44,7 @@ class Monitor:
 
     def __init__(self) -> None:
         self.level = Level.SAFE
+        """that was told last"""
         self.is_broken = False
         self.lives: dict[str, ToolLife] = {}
         """by the tool's id"""
@@ -35,54 +53,82 @@ class Monitor:
         self._breakage = Breakage()
         self._override = 1.0
         self._has_chips = False
+        self._since = -inf
+        """s, when the level was last as high as was told"""
+        self._changed = -inf
+        """s, when a change of the work was told"""
+        self._worn: set[str] = set()
+        """tools of which it was told"""
+        self._at_floor = 0
+        """revolutions; negative: it was told"""
 
     def begin(self, tool: str) -> None:
         """A workingstep begins: its cut may err otherwise than the last one's."""
         if tool != self._tool:
             self._breakage = Breakage()
         self._tool, self._watch, self._has_chips = tool, Watch(), False
+        self._at_floor = 0
         life = self.lives.get(tool)
         self.lives[tool] = new_tool() if life is None else compared_anew(life)
 
     def out_of_cut(self) -> None:
-        """A revolution without chips."""
+        """Without chips. The ways out and in look alike, and each like a broken tooth."""
         self._has_chips = False
+        self._breakage = replace(self._breakage, force=0.0, suspect=None)
 
     def seen(
-        self, revolution: Revolution, *, ratio: float | None, set_point: float, exponent: float
+        self, revolution: Revolution, keep: Keeping, *, ratio: float | None
     ) -> Iterator[Event]:
         """What one more revolution with chips tells.
 
         Parameters
         ----------
         revolution : Revolution
+        keep : Keeping
+            What holds in the workingstep.
         ratio : float, optional
             ln(measured / expected); None: not to be compared.
-        set_point : float, N
-            Infinite: none.
-        exponent : float
-            p of force over feed.
         """
         if not self._has_chips:
             self._watch = Watch()
         is_steady = abs(revolution.override - self._override) <= STEADY * self._override
         self._has_chips, self._override = True, revolution.override
-        if set_point < inf:
-            yield from self._warned(revolution, set_point, is_steady=is_steady)
-        yield from self._inspected(revolution, exponent)
+        if keep.set_point < inf:
+            yield from self._warned(revolution, keep.set_point, is_steady=is_steady)
+            yield from self._reached(revolution, keep)
+        yield from self._inspected(revolution, keep.exponent)
         if ratio is not None:
             yield from self._lived(revolution, ratio)
 
     def _warned(
         self, revolution: Revolution, set_point: float, *, is_steady: bool
     ) -> Iterator[Event]:
-        """A change of the level."""
+        """A higher level at once, a lower one when it has lasted."""
         self._watch = watched(self._watch, revolution, set_point=set_point, is_steady=is_steady)
-        level = self._watch.level
-        if level is not self.level:
-            self.level = level
+        level, now = self._watch.level, revolution.time
+        if _RANKS[level] >= _RANKS[self.level]:
+            self._since = now
+        if _RANKS[level] > _RANKS[self.level] or now - self._since > CALM:
+            self.level, self._since = level, now
             text = f"{revolution.force:.4g} N, set point {set_point:.4g} N"
-            yield Event(time=revolution.time, kind=_KINDS[level], text=text)
+            yield Event(time=now, kind=_KINDS[level], text=text)
+
+    def _reached(self, revolution: Revolution, keep: Keeping) -> Iterator[Event]:
+        """Once in a workingstep: the force stays above its set point whatever the override."""
+        is_over = revolution.force > ABOVE * keep.set_point
+        is_at_floor = revolution.override <= ABOVE * keep.floor
+        if self._at_floor < 0 or not (is_over and is_at_floor):
+            self._at_floor = min(self._at_floor, 0)
+            return
+        self._at_floor += 1
+        if self._at_floor < REACH:
+            return
+        self._at_floor = -1
+        text = (
+            f"{revolution.force:.4g} N at an override of {100.0 * revolution.override:.3g} %: "
+            f"the set point of {keep.set_point:.4g} N cannot be reached within the band"
+        )
+        yield Event(time=revolution.time, kind=EventKind.UNREACHABLE, text=text)
 
     def _inspected(self, revolution: Revolution, exponent: float) -> Iterator[Event]:
         """A tooth that has broken."""
@@ -96,12 +142,14 @@ class Monitor:
         """A sudden change of the work, or the end of a tool's life."""
         before = self.lives[self._tool]
         life = self.lives[self._tool] = lived(before, ratio)
-        if len(life.changes) > len(before.changes):
+        is_due = revolution.time - self._changed > PAUSE
+        if len(life.changes) > len(before.changes) and is_due:
+            self._changed = revolution.time
             percent = 100.0 * expm1(life.changes[-1])
-            text = f"force {percent:+.0f} % against what is expected: harder or deeper"
-            if percent < 0.0:
-                text = f"force {percent:+.0f} % against what is expected: softer or shallower"
+            way = "harder or deeper" if percent > 0.0 else "softer or shallower"
+            text = f"force {percent:+.0f} % against what is expected: {way}"
             yield Event(time=revolution.time, kind=EventKind.HARDNESS, text=text)
-        if life.is_worn_out and not before.is_worn_out:
+        if life.is_worn_out and self._tool not in self._worn:
+            self._worn.add(self._tool)
             text = f"tool '{self._tool}': flank wear {life.flank_wear:.2f} mm by the force"
             yield Event(time=revolution.time, kind=EventKind.WEAR, text=text)

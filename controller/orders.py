@@ -10,6 +10,7 @@ References
 
 from dataclasses import dataclass
 from enum import StrEnum
+from math import inf
 
 
 class Criterion(StrEnum):
@@ -37,9 +38,19 @@ class CriterionTo:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MotorPowerTo:
-    """A share of the motor's power, above 0; 1: all that the machine has."""
+    """A share of the motor's power; 1: all that the machine has.
+
+    Raises
+    ------
+    ValueError
+        When it is not positive and finite.
+    """
 
     factor: float
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.factor < inf:
+            raise ValueError(f"motor power × {self.factor:g}: it must be positive")
 
 
 Order = SwitchTo | CriterionTo | MotorPowerTo
@@ -59,6 +70,7 @@ class EventKind(StrEnum):
     BREAKAGE = "breakage"
     WEAR = "wear"
     HARDNESS = "hardness"
+    UNREACHABLE = "unreachable"
     SILENCE = "silence"
     LOST = "lost"
     INHIBITED = "inhibited"

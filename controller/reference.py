@@ -40,7 +40,13 @@ class ForceBound:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reference:
-    """What the loop is to keep in one workingstep."""
+    """What the loop is to keep in one workingstep.
+
+    Raises
+    ------
+    ValueError
+        When the ceiling or the breakage force is not positive, or the floor is negative.
+    """
 
     workingstep: str
     bounds: tuple[ForceBound, ...] = ()
@@ -53,6 +59,13 @@ class Reference:
     """N that the tool bears"""
     inhibition: str = ""
     """why nobody may touch the feed; empty: the loop may"""
+
+    def __post_init__(self) -> None:
+        if not (self.ceiling > 0.0 and self.breakage > 0.0 and self.floor >= 0.0):
+            raise ValueError(
+                f"workingstep '{self.workingstep}': ceiling {self.ceiling:g} and breakage "
+                f"force {self.breakage:g} N must be positive, floor {self.floor:g} not negative"
+            )
 
     def bound(self, *, power_factor: float = 1.0) -> ForceBound | None:
         """The least force bound while the motor gives a factor of its power."""
@@ -80,28 +93,61 @@ def reference_of(advice: Advice) -> Reference:
     if state is None:
         return Reference(workingstep=name, inhibition=inhibition)
     bounds = sorted(_force_bounds(state), key=lambda bound: bound.force)
-    ceiling = min(_overrides(state, Sense.AT_MOST), default=inf)
+    rubbing = max(_overrides(state, Sense.AT_LEAST), default=0.0)
+    ceiling = _ceiling(state, rubbing)
     strengths = [each.force for each in bounds if each.name is LimitName.SHANK_STRENGTH]
     breakage = BREAKAGE_RATIO * bounds[0].force if bounds else inf
     return Reference(
         workingstep=name,
         bounds=tuple(bounds),
-        floor=min(max(_overrides(state, Sense.AT_LEAST), default=0.0), ceiling, 1.0),
+        floor=min(rubbing, ceiling, 1.0),
         ceiling=ceiling,
         breakage=min(strengths, default=breakage),
         inhibition=inhibition,
     )
 
 
+def _ceiling(state: State, rubbing: float) -> float:
+    """Override that all limits on the feed allow.
+
+    A roughness that no feed attains, or none at which the edge still cuts, bounds nothing: the
+    plan says so, and feeds that only rub make it worse.
+    """
+    ceiling = min(_overrides(state, Sense.AT_MOST), default=inf)
+    return ceiling if ceiling > rubbing else max(rubbing, 1.0)
+
+
 def _force_bounds(state: State) -> Iterator[ForceBound]:
     """Loads in proportion to the force, at the force that makes them reach their bounds."""
+    shares = _shares(state)
     for load in state.loads:
         if load.limit.name in FORCE_LIMITS and load.value > 0.0:
+            own = state.cutting_force * shares.get(_part(load), 1.0)
             yield ForceBound(
                 name=load.limit.name,
                 words=load.limit.words,
-                force=state.cutting_force * load.bound / load.value,
+                force=own * load.bound / load.value,
             )
+
+
+def _shares(state: State) -> dict[tuple[str, float], float]:
+    """Force of each part of the cut over that of the hardest, by their torques.
+
+    Walls, the floor that is swept with them and a plunge take different forces with the same
+    cutter; the state tells the greatest of them.
+    """
+    torques: dict[tuple[str, float], float] = {}
+    for load in state.loads:
+        if load.limit.name is LimitName.SPINDLE_TORQUE:
+            torques[_part(load)] = max(load.value, torques.get(_part(load), 0.0))
+    greatest = max(torques.values(), default=0.0)
+    return {part: torque / greatest for part, torque in torques.items() if torque > 0.0}
+
+
+def _part(load: Load) -> tuple[str, float]:
+    """What tells the parts of a cut: how they are labelled, and how they know their depth."""
+    label = load.limit.label.removeprefix(load.limit.name.words)
+    return label, load.limit.load.depth_exponent
 
 
 def _overrides(state: State, sense: Sense) -> Iterator[float]:

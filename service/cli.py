@@ -11,6 +11,8 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from service.cli_control import add_control_command
+from service.cli_kbe import add_knowledge_commands
 from service.cli_machine import add_machine_commands
 from service.cli_options import (
     BAD_INPUT,
@@ -21,6 +23,7 @@ from service.cli_options import (
     Commands,
     add_file,
     add_json,
+    add_knowledge,
 )
 from service.cli_paths import add_path_commands
 
@@ -59,6 +62,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     _add_convert(commands)
     add_path_commands(commands)
     add_machine_commands(commands)
+    add_knowledge_commands(commands)
+    add_control_command(commands)
     for kind in ("machines", "materials"):
         listing = commands.add_parser(kind, help=f"list the {kind}, or show one")
         listing.add_argument("name", nargs="?", default="", help="show this one in full")
@@ -139,6 +144,14 @@ def add_optimise_options(parser: argparse.ArgumentParser) -> None:
         default="",
         metavar="CONTROL",
         help=f"also NC code with the advised feeds, for {CONTROLS}",
+    )
+    add_knowledge(parser, "take accepted corrections of k_c from it")
+    add(
+        "--safety",
+        type=float,
+        default=0.9,
+        metavar="Q",
+        help="quantile of a corrected k_c to plan with, 0.5 to below 1 (default 0.9)",
     )
     add("--dry-run", action="store_true", help="write no STEP-NC file")
     add("--report", type=Path, metavar="HTML", help="write a self-contained page with plots")
@@ -222,6 +235,8 @@ def _optimise(options: argparse.Namespace) -> int:
             dry_run=options.dry_run,
             report=options.report,
             control=options.nc,
+            knowledge=options.kb,
+            safety=options.safety,
         ),
         tell=tell,
     )

@@ -20,7 +20,7 @@ def add_machine_commands(commands: Commands) -> None:
     _add_calibrate(commands)
 
 
-def _add_what_runs(parser: argparse.ArgumentParser) -> None:
+def add_what_runs(parser: argparse.ArgumentParser) -> None:
     """Machine, material, NC code, tools, stock and control."""
     add = parser.add_argument
     add("--units", default="iso", help="units of feeds and speeds in the file (default: iso)")
@@ -69,7 +69,7 @@ def _add_calibrate(commands: Commands) -> None:
         help="measured runs: time_s and powers in W, named as `simulate` writes them",
     )
     add("--program", type=Path, metavar="FILE", help="the STEP-NC program that was run")
-    _add_what_runs(parser)
+    add_what_runs(parser)
     add("-o", "--output", type=Path, metavar="TOML", help="write the machine as calibrated")
     add_json(parser)
     parser.set_defaults(run=_calibrate)
@@ -84,7 +84,7 @@ def _add_simulate(commands: Commands) -> None:
     parser._negative_number_matcher = re.compile(r"-[.\d]")
     add = parser.add_argument
     add("file", type=Path, nargs="?", metavar="FILE", help="a STEP-NC program (Part 21)")
-    _add_what_runs(parser)
+    add_what_runs(parser)
     add("--rate", type=float, default=10.0, metavar="HZ", help="samples a second, 1 to 10000")
     add("--force", default="mean", help="mean of a revolution (default), or tooth by tooth")
     add("--kc-factor", type=float, default=1.0, metavar="K", help="on k_c, from calibration")
@@ -107,7 +107,7 @@ def _add_simulate(commands: Commands) -> None:
     parser.set_defaults(run=_simulate)
 
 
-def _what_runs(options: argparse.Namespace, file: Path | None) -> "SimulationRequest":
+def what_runs(options: argparse.Namespace, file: Path | None) -> "SimulationRequest":
     """The request, as far as both commands share it."""
     from service.simulation import SimulationRequest
     from service.simulation_setup import CodeRequest
@@ -145,7 +145,7 @@ def _simulate(options: argparse.Namespace) -> int:
 
     carbon = WORLD if options.carbon_g_kwh is None else stated(options.carbon_g_kwh)
     request = replace(
-        _what_runs(options, options.file),
+        what_runs(options, options.file),
         rate=options.rate,
         zero=options.zero,
         noise=options.noise,
@@ -189,7 +189,7 @@ def _calibrate(options: argparse.Namespace) -> int:
 
     request = CalibrationRequest(
         runs=tuple(options.runs),
-        simulation=_what_runs(options, options.program),
+        simulation=what_runs(options, options.program),
         output=options.output,
     )
     with interruptible():

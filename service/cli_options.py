@@ -28,3 +28,13 @@ def add_file(parser: argparse.ArgumentParser) -> None:
 def add_json(parser: argparse.ArgumentParser) -> None:
     """JSON instead of a table."""
     parser.add_argument("--json", action="store_true", help="print JSON instead of a table")
+
+
+def add_knowledge(parser: argparse.ArgumentParser, why: str) -> None:
+    """The knowledge base."""
+    parser.add_argument(
+        "--kb",
+        default="",
+        metavar="PLACE",
+        help=f"knowledge base, a file or postgresql://…: {why} (default: $STEPNC_KB)",
+    )

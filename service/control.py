@@ -1,44 +1,44 @@
 """The verb ``control``: a program under the loop, on the virtual machine."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import inf
 from pathlib import Path
 
-import numpy as np
-
-from controller.aims import Aims, Step
+from controller.aims import Aims
 from controller.cycle import Cycle
 from controller.guard import Band
 from controller.laws.choice import LawName, law_named
 from controller.loop import Loop
 from controller.orders import Criterion, Event
-from controller.preview import LOOK_AHEAD, Preview
+from controller.preview import LOOK_AHEAD
 from controller.record import Record, Recorder
-from controller.reference import Reference, reference_of
 from controller.source import DrivePower, Dynamometer, Source
 from optimiser.advice import Advice, Plan
-from optimiser.formulate import Task
 from optimiser.modes import Mode
-from optimiser.optimise import optimise as advise
-from optimiser.source import from_features
+from service.buckets import Trace
+from service.control_setup import (
+    hardness_against,
+    plan_as_it_is,
+    planned_course,
+    preview_of,
+    steps_of,
+)
+from service.control_trace import ControlTrace, control_schema
 from service.disturbances import TimedOrder, disturbances
-from service.progress import Patience, Ticker, bar
+from service.holding import Held, Holdings
+from service.planned import Planned, planned_steps
+from service.progress import Ticker, bar
 from service.reading import Tell, one_of, silent
-from service.simulation import COMPILES, SimulationRequest, waiting_machine
-from service.usecases import load_material_named
-from simulator.machine.interpreter import interpret
+from service.run_file import RunFile
+from service.simulation import SimulationRequest, waiting_machine
 from simulator.plant.controlled import ControlledMachine, Truth
-from simulator.plant.course import NominalCourse, course_of
 from simulator.spec import Machine, MaterialMatch
 from stepnc_model.errors import Finding, StepNcError
 from stepnc_model.program import Program
 
 REVOLUTIONS = 50
 """greatest look-ahead"""
-
-CHIP = 0.1
-"""mm, thickness of the chip for which materials are compared"""
 
 CHIP_FORCES = {"dynamometer": 10.0, "power": 60.0}
 """N above which there are chips: several times the noise of either"""
@@ -63,13 +63,18 @@ class ControlRequest:
     sensor: str = "dynamometer"
     output: Path | None = None
     report: Path | None = None
+    knowledge: str = ""
+    """knowledge base: outcomes go there, accepted corrections come from there; that of the
+    environment when empty, and where there is none neither happens"""
+    recorded_by: str = ""
+    """who; the login name when empty"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ControlRun:
     """What ``control`` found."""
 
-    program: str
+    program: Program
     machine: Machine
     material: MaterialMatch
     law: LawName
@@ -79,6 +84,8 @@ class ControlRun:
     """the program as it is, without any change"""
     steps: tuple[tuple[Advice | None, Record], ...]
     """in the order of their beginning; None: what belongs to no workingstep"""
+    planned: Mapping[int, Planned]
+    """by the number of the workingstep"""
     events: tuple[Event, ...]
     findings: tuple[Finding, ...]
     time: float
@@ -87,6 +94,19 @@ class ControlRun:
     """s at an override of 1"""
     is_stopped: bool
     """whether the loop stopped the program"""
+    progress: float
+    """s of the program at an override of 1 that are behind"""
+    aims: Aims
+    """at the end"""
+    held: Mapping[int, Held]
+    """what held the override, by the number of the workingstep"""
+    disturbances: tuple[str, ...] = ()
+    """as asked for"""
+    seed: int = 0
+    samples: int = 0
+    """that were written"""
+    trace: Trace | None = None
+    """for a report, when one was asked for"""
 
 
 Watcher = Callable[[Cycle, Truth], None]
@@ -107,14 +127,21 @@ def control(
         For everything that is wrong with file, names, numbers or output.
     """
     session = prepare(request, tell=tell)
+    trace = session.trace()
+    looking: tuple[Watcher, ...] = (trace, *watchers)
     ticker = Ticker(tell)
-    for cycle in session.cycles():
-        for watcher in watchers:
-            watcher(cycle, session.machine.truth)
-        for event in cycle.events:
-            tell(f"{event.time:9.2f} s  {event.kind.value}: {event.text}")
-        ticker(lambda: _progress(session))
-    return session.result()
+    try:
+        with trace:
+            for cycle in session.cycles():
+                for watcher in looking:
+                    watcher(cycle, session.machine.truth)
+                for event in cycle.events:
+                    tell(f"{event.time:9.2f} s  {event.kind.value}: {event.text}")
+                ticker(lambda: _progress(session))
+    finally:
+        if trace.file is not None and trace.file.place is not None:
+            tell(f"written: {trace.file.place} ({trace.rows} rows)")
+    return replace(session.result(), samples=trace.rows, trace=trace.trace())
 
 
 def prepare(request: ControlRequest, *, tell: Tell = silent) -> "Session":
@@ -128,19 +155,24 @@ def prepare(request: ControlRequest, *, tell: Tell = silent) -> "Session":
     law = one_of(LawName, request.law, "law")
     criterion = one_of(Criterion, request.mode.upper(), "mode")
     aims = _aims(request, criterion)
-    prepared, virtual = waiting_machine(request.simulation, tell=tell)
+    asked = replace(request.simulation, output=request.output, report=request.report)
+    prepared, virtual = waiting_machine(asked, tell=tell)
     if prepared.material is None or prepared.program is None:
         raise StepNcError("control needs a STEP-NC program: it says what may be forced")
-    found = disturbances(request.disturbances, hardness=_hardness_against(prepared.material))
-    plan = _plan(prepared.program, virtual.machine, prepared.material, criterion)
-    with Patience(tell, COMPILES):
-        course = course_of(
-            virtual.run(interpret(prepared.blocks, virtual.machine)), virtual.machine
-        )
+    found = disturbances(request.disturbances, hardness=hardness_against(prepared.material))
+    plan = plan_as_it_is(
+        prepared.program,
+        virtual.machine,
+        material=prepared.material,
+        mode=Mode(criterion.value),
+        knowledge=request.knowledge,
+    )
+    course = planned_course(prepared, virtual, tell)
     bench = replace(
         found.bench, efficiency=virtual.machine.spindle.efficiency, seed=request.seed
     )
     machine = ControlledMachine(course, found.hidden, bench)
+    planned = planned_steps(course)
     by_id = {advice.workingstep.id: advice for advice in plan.advices}
     advices = tuple(by_id.get(name) for name in virtual.workingsteps)
     loop = Loop(
@@ -148,7 +180,7 @@ def prepare(request: ControlRequest, *, tell: Tell = silent) -> "Session":
         machine,
         source=_source(request.sensor, virtual.machine),
         law=lambda plant: law_named(law, plant, has_preview=request.has_preview),
-        steps=_steps(course, advices),
+        steps=steps_of(planned, advices),
         preview=preview_of(course),
         aims=aims,
     )
@@ -156,11 +188,15 @@ def prepare(request: ControlRequest, *, tell: Tell = silent) -> "Session":
         loop=loop,
         machine=machine,
         recorder=Recorder(aims.chips),
+        holdings=Holdings(advices),
+        workingsteps=tuple(virtual.workingsteps),
         orders=list(found.orders),
         request=request,
         law=law,
+        program=prepared.program,
         plan=plan,
         advices=advices,
+        planned=planned,
         findings=(*prepared.findings, *virtual.findings, *plan.findings),
         virtual=virtual.machine,
     )
@@ -173,11 +209,16 @@ class Session:
     loop: Loop
     machine: ControlledMachine
     recorder: Recorder
+    holdings: Holdings
+    workingsteps: tuple[str, ...]
+    """ids by their number, from 1"""
     orders: list[TimedOrder]
     request: ControlRequest
     law: LawName
+    program: Program
     plan: Plan
     advices: tuple[Advice | None, ...]
+    planned: Mapping[int, Planned]
     findings: tuple[Finding, ...]
     virtual: Machine
     events: list[Event] = field(default_factory=list)
@@ -191,16 +232,28 @@ class Session:
             if cycle is None:
                 return
             self.recorder.add(cycle)
+            self.holdings.add(cycle, self.loop.aims)
             self.events += cycle.events
             yield cycle
             if self.loop.is_stopped:
                 return
 
+    def trace(self) -> ControlTrace:
+        """What writes the run to a file and keeps it for plots, as asked for."""
+        output = self.request.output
+        return ControlTrace(
+            self.machine.course,
+            self.holdings,
+            workingsteps=self.workingsteps,
+            file=None if output is None else RunFile(output, control_schema()),
+            has_trace=self.request.report is not None,
+        )
+
     def result(self) -> ControlRun:
         """What was found so far."""
         records = self.recorder.records
         return ControlRun(
-            program=self.plan.program,
+            program=self.program,
             machine=self.virtual,
             material=self.plan.material,
             law=self.law,
@@ -211,18 +264,18 @@ class Session:
                 (self.advices[number - 1] if number else None, record)
                 for number, record in records.items()
             ),
+            planned=self.planned,
             events=tuple(self.events),
             findings=self.findings,
             time=self.machine.time,
             time_planned=self.machine.course.duration,
             is_stopped=self.loop.is_stopped,
+            progress=self.machine.share * self.machine.course.duration,
+            aims=self.loop.aims,
+            held=self.holdings.steps,
+            disturbances=self.request.disturbances,
+            seed=self.request.seed,
         )
-
-
-def preview_of(course: NominalCourse) -> Preview:
-    """What the program expects: the force where the override acts."""
-    force = np.where(course.can_override, course.force, np.float32(0.0))
-    return Preview(until=course.until, force=force)
 
 
 def _aims(request: ControlRequest, criterion: Criterion) -> Aims:
@@ -230,8 +283,6 @@ def _aims(request: ControlRequest, criterion: Criterion) -> Aims:
     if not 0.0 < floor <= 100.0 <= ceiling <= 200.0:
         bound = "above 0 to 100, and 100 to 200"
         raise StepNcError(f"override band {floor:g} to {ceiling:g} %: it must be {bound}")
-    if request.set_point is not None and not 0.0 < request.set_point < inf:
-        raise StepNcError(f"force {request.set_point:g} N: it must be positive")
     if not 1 <= request.look_ahead <= REVOLUTIONS:
         bound = f"1 to {REVOLUTIONS} revolutions"
         raise StepNcError(f"look-ahead {request.look_ahead}: it must be {bound}")
@@ -239,6 +290,10 @@ def _aims(request: ControlRequest, criterion: Criterion) -> Aims:
         raise StepNcError(f"unknown sensor '{request.sensor}'; known: dynamometer, power")
     if request.seed < 0:
         raise StepNcError(f"seed {request.seed}: it must be at least 0")
+    least = CHIP_FORCES[request.sensor]
+    if request.set_point is not None and not least < request.set_point < inf:
+        bound = f"above {least:g} N, which is noise of the {request.sensor}"
+        raise StepNcError(f"force {request.set_point:g} N: it must be {bound}")
     return Aims(
         criterion=criterion,
         is_on=request.law != LawName.NONE,
@@ -249,52 +304,8 @@ def _aims(request: ControlRequest, criterion: Criterion) -> Aims:
     )
 
 
-def _hardness_against(match: MaterialMatch) -> Callable[[str], float]:
-    """k_c of another material over that of the one that is cut, at a chip of 0.1 mm."""
-    cut = match.material.kienzle
-
-    def ratio(name: str) -> float:
-        other = load_material_named(name).material.kienzle
-        return float(other.k_c11 / cut.k_c11 * CHIP ** (cut.m_c - other.m_c))
-
-    return ratio
-
-
-def _plan(
-    program: Program, machine: Machine, material: MaterialMatch, criterion: Criterion
-) -> Plan:
-    """What the limits say of the program as it is."""
-    task = Task(mode=Mode(criterion.value), free=frozenset(), source=from_features)
-    return advise(program, machine=machine, material=material, task=task)
-
-
 def _source(sensor: str, machine: Machine) -> Source:
     return DrivePower(machine.spindle.efficiency) if sensor == "power" else Dynamometer()
-
-
-def _steps(course: NominalCourse, advices: Sequence[Advice | None]) -> list[Step]:
-    """Workingsteps with what the course knows of their cuts."""
-    steps = []
-    cuts = course.can_override & (course.force > 0.0)
-    for number, advice in enumerate(advices, 1):
-        if advice is None:
-            reference = Reference(workingstep="", inhibition="nothing is known of it")
-            steps.append(Step(reference=reference))
-            continue
-        rows = np.flatnonzero(cuts & (course.workingstep == number))
-        reference = reference_of(advice)
-        if not len(rows):
-            steps.append(Step(reference=reference))
-            continue
-        steps.append(
-            Step(
-                reference=reference,
-                tool=advice.tool.id,
-                exponent=float(np.median(course.exponent[rows])),
-                diameter=float(np.median(course.diameter[rows])),
-            )
-        )
-    return steps
 
 
 def _progress(session: Session) -> str:

@@ -40,6 +40,8 @@ NUMBER = re.compile(
 MOST_FACTOR = 100.0
 """on depth or k_c; more is a slip"""
 
+MOST_TEETH = 100.0
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TimedOrder:
@@ -87,6 +89,17 @@ def disturbances(words: Iterable[str], *, hardness: Callable[[str], float]) -> D
     return replace(found, orders=by_time)
 
 
+def time_of(word: str) -> float | None:
+    """When a word's disturbance comes, s; None: it holds from the start.
+
+    Raises
+    ------
+    StepNcError
+        When it is no word of the grammar.
+    """
+    return _split(word)[1].time
+
+
 def _with(found: Disturbances, text: str, hardness: Callable[[str], float]) -> Disturbances:
     what, word = _split(text)
     if what in _FROM_START:
@@ -127,10 +140,11 @@ def _time(word: _Word) -> float:
 
 def _number(text: str, value: str, units: dict[str, float]) -> float:
     """A number in one of some units, in the first's."""
-    match = NUMBER.fullmatch(value.strip())
+    match = NUMBER.fullmatch("".join(value.split()))
     if match is None or match["unit"] not in units:
-        known = " or ".join(unit or "none" for unit in units)
-        raise StepNcError(f"disturbance '{text}': '{value}' is no number in {known}")
+        known = " or ".join(unit for unit in units if unit)
+        unit = f" in {known}" if known else ""
+        raise StepNcError(f"disturbance '{text}': '{value}' is no number{unit}")
     try:
         number = float(match["number"]) * units[match["unit"]]
     except ValueError:
@@ -144,7 +158,7 @@ def _within(word: _Word, units: dict[str, float], low: float, high: float) -> fl
     value = _number(word.text, word.value, units)
     if not low <= value <= high:
         unit, scale = next(iter(units.items()))
-        bound = f"{low / scale:g} to {high / scale:g} {unit}"
+        bound = f"{low / scale:g} to {high / scale:g} {unit}".rstrip()
         raise StepNcError(f"disturbance '{word.text}': it must be {bound}")
     return value
 
@@ -156,8 +170,8 @@ def _factor(word: _Word) -> float:
     else:
         factor = _number(word.text, word.value, {"": 1.0})
     if not 0.0 < factor <= MOST_FACTOR:
-        bound = f"above -100 %, {100.0 * (MOST_FACTOR - 1.0):g} % at most"
-        raise StepNcError(f"disturbance '{word.text}': {bound}")
+        bound = f"above -100 % and {100.0 * (MOST_FACTOR - 1.0):+g} % at most"
+        raise StepNcError(f"disturbance '{word.text}': it must be {bound}")
     return factor
 
 
@@ -166,7 +180,10 @@ def _share(word: _Word) -> float:
 
 
 def _tooth(word: _Word) -> float:
-    return _within(word, {"": 1.0}, 1.0, 100.0) - 1.0
+    number = _within(word, {"": 1.0}, 1.0, MOST_TEETH)
+    if not number.is_integer():
+        raise StepNcError(f"disturbance '{word.text}': teeth are counted 1, 2, 3")
+    return number - 1.0
 
 
 def _power(word: _Word) -> Order:
@@ -206,7 +223,8 @@ _FROM_START: dict[str, Callable[[Disturbances, _Word], Disturbances]] = {
     "kc": _hidden("force_factor", _factor),
     "wear": _hidden("wear_rate", lambda word: _within(word, {"mm/min": 1.0}, 0.0, 1.0) / 60.0),
     "runout": _hidden(
-        "eccentricity", lambda word: _within(word, {"um": 1e-3, "µm": 1e-3}, 0.0, 0.5)
+        "eccentricity",
+        lambda word: _within(word, {"um": 1e-3, "µm": 1e-3, "μm": 1e-3}, 0.0, 0.5),
     ),
     "lag": _hidden("servo_lag", lambda word: _within(word, {"ms": 1e-3, "s": 1.0}, 1e-3, 10.0)),
     "noise": _instrument("noise", _share),

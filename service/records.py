@@ -87,7 +87,7 @@ def _record(plan: Plan, advised: _Advised) -> Record:
         energy=rounded(after.energy),
         surface_roughness=rounded(um_from_mm(after.roughness)) if after.roughness else None,
         contact_angle=rounded(deg_from_rad(engagement.contact_angle)) if engagement else None,
-        immersion=_immersion(engagement) if engagement else None,
+        immersion=immersion(engagement) if engagement else None,
         programmed_feedrate=raw_feed if is_feed else None,
         programmed_feedrate_per_tooth=None if is_feed else raw_feed,
         programmed_cutspeed=None if is_spindle else raw_speed,
@@ -109,7 +109,7 @@ def _removal_rate(cut: Cut, after: State) -> float:
     return width * best.feed * pi * cut.diameter * best.speed
 
 
-def _immersion(engagement: Engagement) -> str:
+def immersion(engagement: Engagement) -> str:
     """Name of the paper's face-milling type."""
     half = 0.5 * pi
     if engagement.contact_angle >= 2.0 * half - 1e-9:

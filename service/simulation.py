@@ -6,9 +6,11 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
 
+from service.buckets import Trace
 from service.files import require_place
 from service.progress import Patience, Ticker, bar
 from service.reading import Tell, one_of, silent
+from service.run_file import require_suffix
 from service.simulation_setup import (
     CodeRequest,
     Prepared,
@@ -16,8 +18,8 @@ from service.simulation_setup import (
     from_program,
     numbers_in,
 )
-from service.simulation_trace import Trace, TraceKeeper
-from service.timeline_file import TimelineFile, require_suffix
+from service.simulation_trace import TraceKeeper
+from service.timeline_file import TimelineFile
 from simulator.errors import ProgramFault, SimulationError
 from simulator.machine.disturbance import Disturbance, Disturbed, NoiseKind
 from simulator.machine.episode import Episode
@@ -144,7 +146,7 @@ def simulate(request: SimulationRequest, *, tell: Tell = silent) -> Simulation:
                 patience.end()
                 run.add(episode, ticked=lambda: ticker(lambda: _progress(prepared, virtual)))
     except SimulationError as error:
-        raise SimulationError(f"{_place(prepared, virtual)}: {error}") from error
+        raise SimulationError(f"{place_in(prepared, virtual)}: {error}") from error
     finally:
         if run.file is not None and run.file.place is not None:
             tell(f"written: {run.file.place} ({run.file.rows} samples)")
@@ -193,7 +195,7 @@ class _Run:
 
     def add(self, episode: Episode, *, ticked: Callable[[], None]) -> None:
         """One more episode."""
-        _require_sense(episode)
+        require_sense(episode)
         at = episode.state.workingstep
         self.totals += [Total() for _ in range(len(self.totals), at + 1)]
         self.totals[at] = added(self.totals[at], episode, self._machine)
@@ -208,7 +210,7 @@ class _Run:
             ticked()
 
 
-def _require_sense(episode: Episode) -> None:
+def require_sense(episode: Episode) -> None:
     """Refuse a program without anything in it, and one without an end."""
     if episode.state.execution is Execution.PROGRAM_COMPLETED and episode.end == 0.0:
         raise SimulationError("there is nothing in it that takes time")
@@ -224,7 +226,7 @@ def _progress(prepared: Prepared, virtual: VirtualMachine) -> str:
     return ", ".join((f"{bar(prepared.done())}  {virtual.now:.0f} s of machining", *at))
 
 
-def _place(prepared: Prepared, virtual: VirtualMachine) -> str:
+def place_in(prepared: Prepared, virtual: VirtualMachine) -> str:
     """Where a fault lies: the lines of NC code are known to the user, those of blocks not."""
     at = virtual.workingsteps[-1:]
     return ": ".join((prepared.name, *(f"workingstep '{name}'" for name in at)))

@@ -1,30 +1,31 @@
-"""One plotly figure of a run: panels above each other that share the axis of time.
+"""One plotly figure of a simulated run.
 
 Powers are stacked by their mean in each bucket of the trace; all else is drawn through the
-least and the greatest value of each bucket, so that peaks stay. Colours are those of Okabe and
-Ito (2008), which the colour-blind tell apart; lines and text are legible on light and on dark.
+least and the greatest value of each bucket.
 """
 
 from collections.abc import Sequence
-from html import escape
 
 import numpy as np
 import plotly.graph_objects as go
 
+from service.buckets import Trace
+from service.panels import (
+    BLUE,
+    DIM,
+    GREEN,
+    GREY,
+    ORANGE,
+    PINK,
+    RED,
+    SKY,
+    Panels,
+    Stretch,
+    key,
+    line,
+)
 from service.simulation_facts import Row
-from service.simulation_trace import Signal, Trace
-from simulator.motion.segments import Floats
-
-GREY, SKY, ORANGE, GREEN, PINK, BLUE, RED = (
-    "#8c8c8c", "#56B4E9", "#E69F00", "#009E73", "#CC79A7", "#0072B2", "#D55E00",
-)  # fmt: skip
-DIM = "#757575"
-"""of a line: as far from white as from black"""
-CLEAR = "rgba(0,0,0,0)"
-FAINT = "rgba(128,128,128,0.25)"
-BAND = "rgba(128,128,128,0.10)"
-STRIPES = ("rgba(86,180,233,0.45)", "rgba(230,159,0,0.45)")
-"""of workingsteps, in turns"""
+from service.simulation_trace import Signal
 
 AXES = (
     ("X", ORANGE, Signal.X_POWER),
@@ -32,114 +33,8 @@ AXES = (
     ("Z", PINK, Signal.Z_POWER),
 )
 
-MOST_BANDS = 200
-"""workingsteps whose bands are drawn behind all panels"""
-
-GAP = 52
-"""pixels between two panels, with two lines of title for the lower one"""
-
-MARGIN = 46
-"""pixels to the left of the panels"""
-
-TOP, BOTTOM = 26, 48
-"""pixels above and below all panels"""
-
 ROOM = 1.15
 """times the greatest feed of the program: what the panel of feed shows"""
-
-MINUTES, HOURS = 900.0, 3.0 * 3600.0
-"""s from which on the axis of time is in minutes, in hours"""
-
-
-class _Panels:
-    """A figure that grows panel by panel. Running state."""
-
-    def __init__(self, trace: Trace) -> None:
-        last = float(trace.end[-1]) if len(trace.end) else 0.0
-        self.second, self.unit = _clock(last)
-        self.end = last * self.second
-        self.figure = go.Figure()
-        self._trace = trace
-        self._heights: list[int] = []
-        self._titles: list[str] = []
-
-    def begin(self, title: str, *, height: int, **axis: object) -> None:
-        """The next panel, below those before."""
-        self._heights.append(height)
-        self._titles.append(title)
-        number = len(self._heights)
-        self.figure.layout[_name("yaxis", number)] = {"automargin": True, **axis}
-        self.figure.layout[_name("xaxis", number)] = {"anchor": _name("y", number)}
-
-    def add(self, drawn: go.Scatter | go.Bar) -> None:
-        """Draw in the last panel."""
-        number = len(self._heights)
-        self.figure.add_trace(drawn.update(xaxis=_name("x", number), yaxis=_name("y", number)))
-
-    def peaks(self, name: str, colour: str, signal: Signal, *, scale: float = 1.0) -> None:
-        """A line through least and greatest of each bucket."""
-        trace, curve = self._trace, self._trace.curve(signal)
-        times = np.column_stack((trace.begin, trace.end)).ravel()
-        values = np.column_stack((curve.low, curve.high)).ravel()
-        is_point = np.repeat(trace.begin == trace.end, 2)
-        is_point[::2] = False
-        at, shown = times[~is_point] * self.second, values[~is_point] * scale
-        self.add(_line(name, colour, at, shown))
-
-    def done(self, found: Sequence[Row]) -> go.Figure:
-        """Everything in its place."""
-        figure, last = self.figure, _name("x", len(self._heights))
-        inside = self._stack()
-        figure.update_xaxes(
-            matches=last, showticklabels=False, showspikes=True, spikemode="across",
-            spikethickness=1, spikecolor=GREY, spikedash="dot", gridcolor=FAINT,
-            zeroline=False, unifiedhovertitle_text=f"%{{x:.5~r}} {self.unit}",
-        )  # fmt: skip
-        bottom = figure.layout[_name("xaxis", len(self._heights))]
-        bottom.update(showticklabels=True, matches=None, range=[0.0, self.end])
-        bottom.title = f"time, {self.unit}"
-        figure.update_yaxes(gridcolor=FAINT, zerolinecolor=GREY, nticks=5)
-        return figure.update_layout(
-            height=inside + TOP + BOTTOM,
-            margin={"l": MARGIN, "r": 12, "t": TOP, "b": BOTTOM},
-            modebar={"bgcolor": CLEAR, "color": GREY, "activecolor": BLUE},
-            showlegend=False, hovermode="x unified", hoverlabel_bgcolor="#ffffff",
-            paper_bgcolor=CLEAR, plot_bgcolor=CLEAR, shapes=self._bands(found, last),
-            uniformtext={"mode": "hide", "minsize": 9},
-            font={"family": "system-ui, sans-serif", "size": 12},
-        )  # fmt: skip
-
-    def _stack(self) -> int:
-        """Put the panels below each other; the height of all in pixels."""
-        inside = sum(self._heights) + GAP * (len(self._heights) - 1)
-        top = 0
-        for number, (height, title) in enumerate(
-            zip(self._heights, self._titles, strict=True), 1
-        ):
-            above, below = 1.0 - top / inside, max(1.0 - (top + height) / inside, 0.0)
-            self.figure.layout[_name("yaxis", number)].update(
-                domain=[below, above], anchor=_name("x", number)
-            )
-            self.figure.add_annotation(
-                text=title, x=0.0, y=above, xref="paper", yref="paper", xanchor="left",
-                yanchor="bottom", showarrow=False, align="left", xshift=-MARGIN,
-            )  # fmt: skip
-            top += height + GAP
-        return inside
-
-    def _bands(self, found: Sequence[Row], axis: str) -> list[dict[str, object]]:
-        """Every second workingstep, behind all panels."""
-        if len(found) > MOST_BANDS:
-            return []
-        return [
-            {
-                "type": "rect", "layer": "below", "fillcolor": BAND, "line": {"width": 0},
-                "xref": axis, "yref": "paper", "y0": 0.0, "y1": 1.0,
-                "x0": row.begin * self.second,
-                "x1": (row.begin + row.total.duration) * self.second,
-            }
-            for row in found[1::2]
-        ]  # fmt: skip
 
 
 def run_figure(found: Sequence[Row], trace: Trace) -> go.Figure:
@@ -155,8 +50,11 @@ def run_figure(found: Sequence[Row], trace: Trace) -> go.Figure:
     -------
     plotly.graph_objects.Figure
     """
-    panels = _Panels(trace)
-    _steps(panels, found)
+    stretches = [
+        Stretch(name=row.name, begin=row.begin, duration=row.total.duration) for row in found
+    ]
+    panels = Panels(trace)
+    panels.strip(stretches)
     _power(panels, trace)
     _axes(panels, trace)
     _feed(panels, trace)
@@ -166,31 +64,10 @@ def run_figure(found: Sequence[Row], trace: Trace) -> go.Figure:
     panels.peaks("N", RED, Signal.FORCE)
     panels.begin("<b>Removal rate</b>, cm³/min", height=140)
     panels.peaks("cm³/min", GREEN, Signal.REMOVAL_RATE, scale=0.06)
-    return panels.done(found)
+    return panels.done(stretches)
 
 
-def _steps(panels: _Panels, found: Sequence[Row]) -> None:
-    """A strip with the names of the workingsteps."""
-    hidden = {"showticklabels": False, "showgrid": False, "zeroline": False}
-    panels.begin("<b>Workingsteps</b>", height=26, fixedrange=True, range=[0.0, 1.0], **hidden)
-    panels.add(
-        go.Bar(
-            x=[(row.begin + 0.5 * row.total.duration) * panels.second for row in found],
-            width=[row.total.duration * panels.second for row in found],
-            y=[1.0] * len(found),
-            text=[escape(row.name) for row in found],
-            customdata=[f"{row.begin:.1f} s for {row.total.duration:.1f} s" for row in found],
-            hovertemplate="%{text}<br>from %{customdata}<extra></extra>",
-            textposition="inside",
-            insidetextanchor="middle",
-            textangle=0,
-            marker_color=[STRIPES[number % 2] for number in range(len(found))],
-            marker_line_width=0,
-        )
-    )
-
-
-def _power(panels: _Panels, trace: Trace) -> None:
+def _power(panels: Panels, trace: Trace) -> None:
     """Components stacked, the greatest total, and where the drive is overloaded."""
     parts = [
         ("base", GREY, Signal.BASE_POWER),
@@ -201,33 +78,33 @@ def _power(panels: _Panels, trace: Trace) -> None:
     shown = [part for part in parts if _is_used(trace, part[2])]
     total = trace.curve(Signal.TOTAL_POWER)
     loaded = trace.curve(Signal.OVERLOAD).high > 0.0
-    keys = [_key(name, colour) for name, colour, _ in shown]
-    keys.append(_key("peak", DIM, "━"))
+    keys = [key(name, colour) for name, colour, _ in shown]
+    keys.append(key("peak", DIM, "━"))
     if loaded.any():
-        keys.append(_key("limit", RED, "●"))
+        keys.append(key("limit", RED, "●"))
     panels.begin(f"<b>Power</b>, kW<br>{' '.join(keys)}", height=230)
     middle = 0.5 * (trace.begin + trace.end) * panels.second
     for name, colour, signal in shown:
-        line = _line(name, colour, middle, trace.curve(signal).mean * 1e-3)
-        panels.add(line.update(stackgroup="power", line_width=0, fillcolor=colour))
-    panels.add(_line("peak of the total", DIM, middle, total.high * 1e-3))
+        shown_line = line(name, colour, middle, trace.curve(signal).mean * 1e-3)
+        panels.add(shown_line.update(stackgroup="power", line_width=0, fillcolor=colour))
+    panels.add(line("peak of the total", DIM, middle, total.high * 1e-3))
     if loaded.any():
-        marks = _line("above a limit", RED, middle[loaded], total.high[loaded] * 1e-3)
+        marks = line("above a limit", RED, middle[loaded], total.high[loaded] * 1e-3)
         panels.add(marks.update(mode="markers", marker={"color": RED, "size": 5}))
 
 
-def _axes(panels: _Panels, trace: Trace) -> None:
+def _axes(panels: Panels, trace: Trace) -> None:
     """The axes by themselves: they vanish beside the spindle."""
     shown = [part for part in AXES if _is_used(trace, part[2])]
-    keys = " ".join(_key(name, colour) for name, colour, _ in shown)
+    keys = " ".join(key(name, colour) for name, colour, _ in shown)
     panels.begin(f"<b>Axis power</b>, W<br>{keys}", height=130)
     for name, colour, signal in shown:
         panels.peaks(name, colour, signal)
 
 
-def _feed(panels: _Panels, trace: Trace) -> None:
+def _feed(panels: Panels, trace: Trace) -> None:
     """Feed as programmed and as it is; rapids are far above and leave the panel."""
-    keys = f"{_key('commanded', GREY)} {_key('actual', BLUE)}"
+    keys = f"{key('commanded', GREY)} {key('actual', BLUE)}"
     # fmax passes over what is missing.
     most = np.fmax.reduce(trace.curve(Signal.FEED_PROGRAMMED).high, initial=0.0) * 60.0
     title = f"<b>Feed</b>, mm/min<br>{keys} (rapids leave the frame)"
@@ -239,32 +116,3 @@ def _feed(panels: _Panels, trace: Trace) -> None:
 def _is_used(trace: Trace, signal: Signal) -> bool:
     curve = trace.curve(signal)
     return bool((curve.high > 0.0).any() or (curve.low < 0.0).any())
-
-
-def _key(name: str, colour: str, mark: str = "■") -> str:
-    """A name with its colour, for a title."""
-    return f'<span style="color:{colour}">{mark}</span> {name}'
-
-
-def _line(name: str, colour: str, times: Floats, values: Floats) -> go.Scatter:
-    """32 bits: no screen has the digits of more."""
-    return go.Scatter(
-        name=name,
-        x=times.astype(np.float32),
-        y=values.astype(np.float32),
-        mode="lines",
-        line={"color": colour, "width": 1},
-        hovertemplate="%{y:.4~r}",
-    )
-
-
-def _clock(last: float) -> tuple[float, str]:
-    """The unit of the axis of time, and how many of it are in a second."""
-    if last < MINUTES:
-        return 1.0, "s"
-    return (1.0 / 60.0, "min") if last < HOURS else (1.0 / 3600.0, "h")
-
-
-def _name(kind: str, number: int) -> str:
-    """Plotly's name of an axis: the first has no number."""
-    return kind if number == 1 else f"{kind}{number}"

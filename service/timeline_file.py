@@ -1,23 +1,15 @@
-"""A run of the machine as a Parquet or CSV file, written as it comes, in bounded memory.
+"""The samples of a simulated run as a Parquet or CSV file, in bounded memory."""
 
-The file gets its name when it is whole. A run that is broken off leaves what it has under
-``.partial``, closed and readable.
-"""
-
-import os
-import tempfile
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 
 import numpy as np
 import pyarrow as pa
-from pyarrow import csv, parquet
 
+from service.run_file import WORDS, RunFile
 from simulator.machine.samples import Samples, joined
 from simulator.timeline import COLUMNS, Column
-from stepnc_model.errors import WriteError
 
 ROWS = 32_768
 """in one group of the file"""
@@ -30,8 +22,6 @@ EXACT = frozenset({"time", "position"})
 
 WHOLE = frozenset({"line", "tool"})
 """columns of numbers that count"""
-
-SUFFIXES = (".parquet", ".csv")
 
 
 class TimelineFile:
@@ -53,26 +43,26 @@ class TimelineFile:
     """
 
     def __init__(self, path: Path, workingsteps: Sequence[str], *, program: str = "") -> None:
-        self.path = path
-        self.rows = 0
-        self.place: Path | None = None
-        """where the file lies once it is closed"""
+        self._run = RunFile(path, timeline_schema())
         self._workingsteps = workingsteps
         self._program = program
         self._waiting: list[Samples] = []
         self._count = 0
-        self._is_text = require_suffix(path) == ".csv"
-        try:
-            descriptor, self._name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
-            self._file = os.fdopen(descriptor, "wb")
-            self._writer = self._opened()
-        except OSError as error:
-            raise self._refused(error) from error
+
+    @property
+    def rows(self) -> int:
+        """That are written."""
+        return self._run.rows
+
+    @property
+    def place(self) -> Path | None:
+        """Where the file lies once it is closed."""
+        return self._run.place
 
     @property
     def partial(self) -> Path:
         """Where a broken-off run is left."""
-        return self.path.with_suffix(f".partial{self.path.suffix}")
+        return self._run.partial
 
     def __enter__(self) -> "TimelineFile":
         return self
@@ -83,23 +73,8 @@ class TimelineFile:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        try:
+        with self._run.closing(is_whole=kind is None):
             self._flush()
-            self._writer.close()
-            self._file.flush()
-            os.fsync(self._file.fileno())
-            if kind is None or self.rows:
-                place = self.path if kind is None else self.partial
-                os.chmod(self._name, _mode(place))
-                os.replace(self._name, place)
-                self.place = place
-        except OSError as failure:
-            raise self._refused(failure) from failure
-        finally:
-            # What the disk has refused once it refuses again.
-            with suppress(OSError):
-                self._file.close()
-            Path(self._name).unlink(missing_ok=True)
 
     def add(self, samples: Samples) -> None:
         """More samples, later than those before."""
@@ -110,54 +85,13 @@ class TimelineFile:
         elif len(self._waiting) >= MOST_PARTS:
             self._waiting = [joined(self._waiting)]
 
-    def _opened(self) -> parquet.ParquetWriter | csv.CSVWriter:
-        schema = timeline_schema(events=pa.string() if self._is_text else EVENT)
-        if self._is_text:
-            return csv.CSVWriter(self._file, schema)
-        floats = [field.name for field in schema if pa.types.is_floating(field.type)]
-        return parquet.ParquetWriter(
-            self._file,
-            schema,
-            compression="zstd",
-            # Measured values hardly repeat; their bytes compress when each has its stream.
-            use_dictionary=[name for name in schema.names if name not in floats],
-            use_byte_stream_split=floats,
-        )
-
     def _flush(self) -> None:
         if not self._count:
             return
         samples, self._waiting, self._count = joined(self._waiting), [], 0
         names = {"program": (self._program,), "workingstep": ("", *self._workingsteps)}
         arrays = [_array(column, samples, names) for column in COLUMNS]
-        if self._is_text:
-            arrays = [
-                array.dictionary_decode() if isinstance(array, pa.DictionaryArray) else array
-                for array in arrays
-            ]
-        headings = [column.name for column in COLUMNS]
-        try:
-            self._writer.write(pa.record_batch(arrays, names=headings))
-        except OSError as error:
-            raise self._refused(error) from error
-        self.rows += len(samples)
-
-    def _refused(self, error: OSError) -> WriteError:
-        return WriteError(error.strerror or str(error), path=str(self.path))
-
-
-def require_suffix(path: Path) -> str:
-    """The ending of a file for a run, in small letters.
-
-    Raises
-    ------
-    WriteError
-        When it is neither of the two.
-    """
-    suffix = path.suffix.lower()
-    if suffix not in SUFFIXES:
-        raise WriteError(f"a run is written as {' or '.join(SUFFIXES)}", path=str(path))
-    return suffix
+        self._run.write(arrays)
 
 
 Names = Mapping[str, tuple[str, ...]]
@@ -165,16 +99,13 @@ Names = Mapping[str, tuple[str, ...]]
 
 OF_RUN: Names = {"program": (), "workingstep": ()}
 
-EVENT = pa.dictionary(pa.int32(), pa.string())
-"""words that come again and again"""
 
-
-def timeline_schema(*, events: pa.DataType = EVENT) -> pa.Schema:
+def timeline_schema() -> pa.Schema:
     """Names and types of the columns, each with its unit as metadata."""
 
     def kind(column: Column) -> pa.DataType:
         if _words(column, OF_RUN) is not None:
-            return events
+            return WORDS
         if column.source in WHOLE:
             return pa.int32()
         return pa.float64() if column.source in EXACT else pa.float32()
@@ -205,12 +136,3 @@ def _array(column: Column, samples: Samples, of_run: Names) -> pa.Array:
     kind = np.float64 if column.source in EXACT else np.float32
     # NaN: the sample is missing.
     return pa.array((values * column.scale).astype(kind), from_pandas=True)
-
-
-def _mode(place: Path) -> int:
-    """Permissions of the file that is replaced, or what a new file gets."""
-    if place.exists():
-        return place.stat().st_mode & 0o777
-    umask = os.umask(0)
-    os.umask(umask)
-    return 0o666 & ~umask

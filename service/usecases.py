@@ -8,6 +8,7 @@ from optimiser.advice import Plan, Status
 from optimiser.formulate import Task
 from optimiser.modes import Free, Mode
 from optimiser.optimise import optimise as advise
+from service.corrected import SAFETY, factors_for, finding_of, with_corrections
 from service.files import (
     beside,
     is_same,
@@ -59,6 +60,10 @@ class Request:
     report: Path | None = None
     control: str = ""
     """for which NC code is written too; none when empty"""
+    knowledge: str = ""
+    """knowledge base with accepted corrections; that of the environment when empty"""
+    safety: float = SAFETY
+    """quantile of the factor on k_c that the plan takes from a correction"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -107,18 +112,31 @@ def optimise(request: Request, *, tell: Tell = silent) -> Outcome:
     machine = machine_for(request.machine, program)
     match = material_for(request.material, program)
     tell(f"material: {match.reason}")
+    factors = factors_for(
+        request.knowledge,
+        program,
+        chosen,
+        machine=machine,
+        material=match,
+        safety=request.safety,
+    )
+    notes = tuple(finding_of(each, safety=request.safety) for each in factors)
+    for note in notes:
+        tell(note.message)
     wanted = {int(step.ref) for step in chosen}
     plan = advise(
         program,
         machine=machine,
         material=match,
-        task=task,
+        task=replace(task, force_factors={each.tool: each.factor for each in factors}),
         selected=lambda step: int(step.ref) in wanted,
         progress=Progress(tell, total=len(chosen)),
     )
-    plan = _with_file_findings(plan, findings, match)
+    plan = _with_file_findings(plan, (*findings, *notes), match)
     changes = changes_of(plan)
     data = writeback.write(program, changes, profile) if changes else program.file.data
+    if changes and factors and profile is Profile.OPTIMISATION:
+        data = with_corrections(_read_again(program, data), factors)
     if nc_place is not None:
         # NC code first: where it cannot be made, nothing is written.
         code = _nc_code(program, data, request.control, tell)
@@ -260,10 +278,14 @@ def _nc_code(program: Program, data: bytes, control: str, tell: Tell) -> Iterato
     from service.toolpaths import nc_lines, paths_of, with_feeds  # noqa: PLC0415 (numpy, shapely)
     from stepnc_model.post.controls import Control  # noqa: PLC0415 (all dialects)
 
-    file = Part21File.from_bytes(data, name=program.name)
-    optimised = Program(file, units=program.units, name=program.name)
-    paths = with_feeds(paths_of(optimised, tell=tell), keep_going=False)
+    paths = with_feeds(paths_of(_read_again(program, data), tell=tell), keep_going=False)
     return nc_lines(paths, Control(control.lower()))
+
+
+def _read_again(program: Program, data: bytes) -> Program:
+    """A program as its file says it now."""
+    file = Part21File.from_bytes(data, name=program.name)
+    return Program(file, units=program.units, name=program.name)
 
 
 def _selected(program: Program, wanted: tuple[str, ...]) -> tuple[Workingstep, ...]:

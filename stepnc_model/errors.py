@@ -12,9 +12,15 @@
     │   ├── UnknownMachine, UnknownMaterial
     │   ├── LibraryError(path, key)
     │   └── CalibrationError(path, line, column)
-    └── OptimisationError                  optimiser.errors
-        ├── Infeasible(workingstep, limits)
-        └── SolverFailed(status)
+    ├── OptimisationError                  optimiser.errors
+    │   ├── Infeasible(workingstep, limits)
+    │   └── SolverFailed(status)
+    ├── ControlError                       controller.errors
+    │   ├── StaleSample(age)
+    │   └── MachineLost
+    └── KnowledgeError(place)              kbe.errors
+        ├── StoreDamaged, StoreUnavailable, StoreFull, StoreBusy, StoreReadOnly, StoreTooNew
+        └── UnknownCorrection(id)
 
 A caller's mistake is a ``ValueError`` or ``TypeError``; a bad file or an impossible cut is in
 this tree. What is no failure (a deviation from the schema, a guess) is a :class:`Finding`.

@@ -184,15 +184,16 @@ class ControlledMachine:
             period *= _part(ways, until - now.progress)
             ways, end = self._ways(period), until
         now.override = now.commanded + (now.override - now.commanded) * self._left(period)
-        overrides = np.diff(ways, prepend=0.0) * (SAMPLES / period)
+        overrides = _steps(ways) * (SAMPLES / period)
         rows = course.until.searchsorted(now.progress + ways, side="left")
         rows = np.minimum(rows, len(course) - 1)
         cut = int(rows[-1]) if course.force[rows[-1]] > 0.0 else cell
         tooth = now.turned % teeth
         mean = self._mean_force(rows, overrides)
         force = mean * self._pattern(cut)[tooth] if course.force[cut] > 0.0 else mean
-        override = float(overrides.mean())
-        self.truth = self._truth(cut, mean=float(mean.mean()), force=force, override=override)
+        override = float(ways[-1]) / period
+        average = float(np.add.reduce(mean)) / SAMPLES
+        self.truth = self._truth(cut, mean=average, force=force, override=override)
         if self.truth.force > 0.0:
             now.flank_wear += self.hidden.wear_rate * period
         now.turned += 1
@@ -304,6 +305,13 @@ class ControlledMachine:
             workingstep=int(course.workingstep[cell]),
             can_override=bool(course.can_override[cell]),
         )
+
+
+def _steps(ways: Floats) -> Floats:
+    """Ways between the samples, as numpy's ``diff`` with a zero before, quicker."""
+    steps = ways.copy()
+    steps[1:] -= ways[:-1]
+    return steps
 
 
 def _part(ways: Floats, way: float) -> float:

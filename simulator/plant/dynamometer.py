@@ -51,6 +51,10 @@ POWER_METER = Instrument(noise=0.0, floor=20.0, drift=0.0, step=1.0, lag=0.05)
 """20 W of noise, as slow as a main drive"""
 
 
+DRAWN = 4096
+"""random numbers of a kind that are drawn at once"""
+
+
 class Acquisition:
     """One instrument at work. Running state.
 
@@ -65,6 +69,8 @@ class Acquisition:
         self.instrument = instrument
         self._random = random
         self._held = 0.0
+        self._step = _Step(0.0, 0, 0.0)
+        self._drawn = np.empty((3, 0))
 
     def shown(self, truth: Floats, *, time: float, interval: float, is_lost: bool) -> Floats:
         """Samples as they arrive.
@@ -84,23 +90,47 @@ class Acquisition:
         (K,) array, NaN where a sample was lost
         """
         by, count = self.instrument, len(truth)
-        values = self._late(truth, interval) if by.lag > 0.0 else truth
+        values: Floats = self._late(truth, interval) if by.lag > 0.0 else truth
         # Drawn even when lost: later samples do not depend on what arrived.
-        normal = self._random.standard_normal((2, count))
-        gone = self._random.random(count) < by.missing
-        values = values * (1.0 + by.noise * normal[0]) + by.floor * normal[1] + by.drift * time
+        relative, absolute, luck = self._draws(count)
+        values = values * (1.0 + by.noise * relative) + (by.floor * absolute + by.drift * time)
         if by.step > 0.0:
-            values = by.step * np.round(values / by.step)
+            values = np.rint(values / by.step) * by.step
         if is_lost:
             return np.full(count, nan)
-        return np.where(gone, nan, values) if by.missing > 0.0 else values
+        if by.missing > 0.0:
+            values[luck < by.missing] = nan
+        return values
+
+    def _draws(self, count: int) -> Floats:
+        """(3, K) of luck: two normal, one even; drawn many at once, for speed."""
+        if self._drawn.shape[1] < count:
+            more = max(DRAWN, count)
+            normal = self._random.standard_normal((2, more))
+            fresh = np.concatenate((normal, self._random.random((1, more))))
+            self._drawn = np.concatenate((self._drawn, fresh), axis=1)
+        now, self._drawn = self._drawn[:, :count], self._drawn[:, count:]
+        return now
 
     def _late(self, truth: Floats, interval: float) -> Floats:
         """First-order lag; the truth holds between samples."""
-        decay, held = exp(-interval / self.instrument.lag), self._held
-        late = np.empty(len(truth))
-        for row, value in enumerate(truth.tolist()):
-            held = value + (held - value) * decay
-            late[row] = held
-        self._held = held
+        step = self._step
+        if step.interval != interval or len(step.kept) != len(truth):
+            step = self._step = _Step(interval, len(truth), self.instrument.lag)
+        late: Floats = step.weights @ truth + step.kept * self._held
+        self._held = float(late[-1])
         return late
+
+
+class _Step:
+    """What K samples of a first-order lag are made of, for one interval."""
+
+    def __init__(self, interval: float, count: int, lag: float) -> None:
+        self.interval = interval
+        decay = exp(-interval / lag) if lag > 0.0 else 0.0
+        rows = np.arange(count)
+        age = rows[:, None] - rows
+        self.weights = np.where(age >= 0, (1.0 - decay) * decay ** np.maximum(age, 0), 0.0)
+        """(K, K) of each sample of the truth"""
+        self.kept = decay ** (rows + 1.0)
+        """(K,) of what was held before"""

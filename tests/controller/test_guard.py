@@ -1,3 +1,4 @@
+from dataclasses import replace
 from math import inf, nan
 
 import pytest
@@ -5,15 +6,20 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from controller.guard import (
+    AIMED,
+    LEAST_RESUMED,
     MARGIN,
     RESUMED,
+    SUDDEN_RATIO,
     Band,
     Holding,
     Keeping,
     after_hold,
+    aimed,
     allowed,
     in_air,
     keeping,
+    taught,
 )
 from controller.reference import Reference
 
@@ -70,6 +76,51 @@ def test_without_chips_the_feed_is_at_most_the_programmed_one() -> None:
     assert in_air(KEEP, last=1.4).override == 1.0
     assert in_air(KEEP, last=0.7).override == 0.7
     assert in_air(KEEP, last=0.0).override == 0.2
+
+
+def test_against_the_strength_a_tooth_counts_as_what_it_takes() -> None:
+    """Against the set point, only as what it takes more than usual."""
+    assert KEEP.load(BAND, level=900.0, force=1100.0) == 900.0
+    # 2000 N are half of the strength, and count as the threshold of 1500 N.
+    assert KEEP.load(BAND, level=900.0, force=2000.0) == KEEP.threshold(BAND) == 1500.0
+    free = replace(KEEP, breakage=inf)
+    assert free.load(BAND, level=900.0, force=2000.0) == 900.0
+    unbound = replace(free, set_point=inf)
+    assert unbound.load(BAND, level=900.0, force=2000.0) == 900.0
+
+
+def test_a_set_point_that_falls_makes_no_overload_at_once() -> None:
+    lower = replace(KEEP, set_point=300.0, settled=900.0)
+    assert lower.threshold(BAND) == 1.5 * 900.0
+
+
+def test_a_set_point_leaves_the_tool_a_sudden_rise() -> None:
+    reference = Reference(workingstep="x", breakage=1000.0)
+    assert aimed(900.0, reference) == AIMED * 1000.0 / SUDDEN_RATIO
+    assert aimed(200.0, reference) == 200.0
+    assert aimed(900.0, Reference(workingstep="x")) == 900.0
+
+
+@given(st.floats(1500.0, 3000.0), st.floats(0.6, 1.5))
+def test_a_hold_teaches_the_override_that_would_have_been_let_through(
+    force: float, override: float
+) -> None:
+    cap = taught(BAND, KEEP, override=override, force=force)
+    assert cap < override
+    assert force * (cap / override) ** KEEP.exponent == pytest.approx(
+        MARGIN * KEEP.threshold(BAND)
+    )
+
+
+def test_a_fault_teaches_no_more_than_a_sudden_rise() -> None:
+    sudden = taught(BAND, KEEP, override=1.0, force=3000.0)
+    assert taught(BAND, KEEP, override=1.0, force=1e9) == sudden
+    low = replace(KEEP, floor=0.9)
+    assert taught(BAND, low, override=1.0, force=3000.0) == 0.9
+
+
+def test_after_a_force_beyond_all_the_feed_does_not_crawl() -> None:
+    assert after_hold(KEEP, override=1.0, force=1e9) == LEAST_RESUMED
 
 
 def test_a_hold_ends_with_an_override_that_would_have_kept_the_set_point() -> None:

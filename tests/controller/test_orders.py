@@ -1,3 +1,5 @@
+import pytest
+
 from controller.orders import Criterion, CriterionTo, Event, EventKind, MotorPowerTo, SwitchTo
 
 
@@ -10,3 +12,9 @@ def test_orders_of_the_same_wish_are_equal() -> None:
 def test_an_event_says_when_what_and_why() -> None:
     event = Event(time=1.5, kind=EventKind.HOLD, text="force 900 N exceeds 600 N: feed held")
     assert (event.time, event.kind.value) == (1.5, "hold")
+
+
+@pytest.mark.parametrize("factor", [0.0, -1.0, float("nan"), float("inf")])
+def test_a_share_of_the_power_must_be_positive(factor: float) -> None:
+    with pytest.raises(ValueError, match="must be positive"):
+        MotorPowerTo(factor=factor)

@@ -111,6 +111,13 @@ def test_spectrum_of_few_lost_samples_is_nearly_the_one_without() -> None:
     assert found.once_per_revolution == pytest.approx(30.0, rel=0.05)
 
 
+def test_samples_lost_where_the_revolution_closes_are_filled_across_it() -> None:
+    wave = 100.0 * np.sin(2.0 * np.pi * np.arange(32) / 32)
+    wave[[29, 30, 31, 0, 1, 2]] = nan
+    found = one(turn(wave.reshape(2, 16)))
+    assert found.once_per_revolution == pytest.approx(100.0, rel=0.01)
+
+
 def test_reading_without_samples_is_a_tooth_that_was_lost() -> None:
     readings = turn(np.full((4, 8), 100.0))
     readings[2] = replace(readings[2], force=np.empty(0))

@@ -1,14 +1,20 @@
 """A small run of a machine, made by hand."""
 
+import shutil
 from collections.abc import Callable
 from math import inf
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from kbe.store import open_store
+from service.buckets import Trace
 from service.calibration import CalibrationResult, CycleTime
-from service.simulation import Simulation
-from service.simulation_trace import Trace, TraceKeeper
+from service.control import ControlRequest, ControlRun, control
+from service.simulation import Simulation, SimulationRequest
+from service.simulation_setup import CodeRequest
+from service.simulation_trace import TraceKeeper
 from simulator.calibration.delay import Delay
 from simulator.calibration.estimates import Calibration, Estimate
 from simulator.calibration.features import Parameter
@@ -21,6 +27,8 @@ from simulator.machine.totals import Energy, Peak, Total
 from simulator.motion.control import Control
 from simulator.motion.segments import Floats
 from stepnc_model.errors import Finding, Severity
+from stepnc_model.outcome import ProcessOutcome
+from tests.service.shop import shop
 
 NAME = "<script>alert('a & b')</script>"
 
@@ -142,3 +150,62 @@ def calibration() -> CalibrationResult:
         times=(CycleTime(name="run", measured=100.0, simulated=101.0),),
         findings=(Finding(severity=Severity.WARNING, message="gap of 2 s", line=7),),
     )
+
+
+CONTROLLED = """(MILL SLOT)
+G17 G21 G40 G49 G54 G80 G90 G94
+T1 M6
+S3000 M3
+G0 X-12 Y50 Z5
+Z-2
+G1 X20 F600
+G0 Z5
+M30
+"""
+
+Controlled = Callable[..., ControlRequest]
+
+
+@pytest.fixture(scope="session")
+def controlled(tmp_path_factory: pytest.TempPathFactory) -> Controlled:
+    """A short slot of a public program, to be run under control."""
+    code = tmp_path_factory.mktemp("control") / "slot.ngc"
+    code.write_text(CONTROLLED, encoding="ascii")
+    program = Path(__file__).parents[2] / "examples" / "parts" / "paper003_case1.stpnc"
+
+    def request(**changed: object) -> ControlRequest:
+        asked = SimulationRequest(file=program, code=CodeRequest(code=code), machine="vmc15")
+        return ControlRequest(simulation=asked, **changed)  # type: ignore[arg-type]
+
+    return request
+
+
+@pytest.fixture(scope="session")
+def control_run(controlled: Controlled, tmp_path_factory: pytest.TempPathFactory) -> ControlRun:
+    """That slot with a harder second half, kept for plots."""
+    report = tmp_path_factory.mktemp("report") / "run.html"
+    words = ("hardness:+40%@7.5s", "kc:1.1", "mode:QC@900s")
+    return control(controlled(disturbances=words, report=report))
+
+
+@pytest.fixture(scope="session")
+def shop_outcomes() -> tuple[ProcessOutcome, ...]:
+    """Two hundred runs of a shop."""
+    return tuple(shop(200))
+
+
+@pytest.fixture(scope="session")
+def shop_file(
+    tmp_path_factory: pytest.TempPathFactory, shop_outcomes: tuple[ProcessOutcome, ...]
+) -> Path:
+    """A knowledge base of them; for all tests, so never to be written."""
+    path = tmp_path_factory.mktemp("shop") / "shop.db"
+    with open_store(str(path)) as store:
+        store.add(shop_outcomes)
+    return path
+
+
+@pytest.fixture
+def kb(tmp_path: Path, shop_file: Path) -> str:
+    """A knowledge base of them, for one test."""
+    return str(shutil.copy(shop_file, str(tmp_path / "kb.db")))

@@ -6,10 +6,12 @@ import numpy as np
 import plotly.graph_objects as go
 import pytest
 
+from service.buckets import Trace
+from service.panels import MOST_BANDS
 from service.simulation import Simulation
 from service.simulation_facts import rows
-from service.simulation_figures import MOST_BANDS, run_figure
-from service.simulation_trace import Signal, Trace, TraceKeeper
+from service.simulation_figures import run_figure
+from service.simulation_trace import Signal, TraceKeeper
 
 
 @pytest.fixture(scope="module")

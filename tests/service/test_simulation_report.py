@@ -7,10 +7,11 @@ from html.parser import HTMLParser
 
 import pytest
 
+from service.buckets import Trace
 from service.carbon import CarbonFactor
 from service.simulation import Simulation
 from service.simulation_report import simulation_page
-from service.simulation_trace import Trace, TraceKeeper
+from service.simulation_trace import TraceKeeper
 from simulator.library import load_material
 from simulator.machine.totals import Total
 from simulator.spec import Certainty, MaterialMatch

@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from service.simulation_trace import MOST, Signal, Trace, TraceKeeper
+from service.buckets import MOST, Trace
+from service.simulation_trace import Signal, TraceKeeper
 from simulator.machine.samples import Samples
 from simulator.motion.segments import Floats
 

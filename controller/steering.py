@@ -1,0 +1,96 @@
+"""The law at work: tuned for the cut that begins, told of each revolution what it may know.
+
+Running state. Units mm, s, N, rev/s.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+from controller.aims import Aims
+from controller.guard import Keeping
+from controller.law import Law, Plant, Situation
+from controller.preview import Preview
+from controller.signal import Revolution
+
+LEAST_WAY = 0.1
+"""override at least with which the way of the next revolutions is reckoned"""
+
+
+class Steering:
+    """A law, and its state while there are chips. Running state.
+
+    Parameters
+    ----------
+    law : callable
+        A law tuned for a process.
+    preview : Preview
+        What the program expects.
+    """
+
+    def __init__(self, law: Callable[[Plant], Law[Any]], preview: Preview) -> None:
+        self._law_for, self._preview = law, preview
+        self._laws: dict[Plant, Law[Any]] = {}
+        self._cut: tuple[Law[Any], Any] | None = None
+
+    def leave(self) -> None:
+        """The cut is over: what the law remembers of it does not hold in the next one."""
+        self._cut = None
+
+    def wish(
+        self, revolution: Revolution, keep: Keeping, *, aims: Aims, override: float
+    ) -> float:
+        """The override that the law wants after a revolution with chips.
+
+        Parameters
+        ----------
+        revolution : Revolution
+        keep : Keeping
+            With a finite set point.
+        aims : Aims
+        override : float
+            That was commanded last.
+        """
+        law, state = self._cut or self._entered(revolution, keep, aims, override)
+        situation = self._situation(revolution, keep, aims=aims, override=override)
+        state, wanted = law.decide(state, situation)
+        self._cut = law, state
+        return wanted
+
+    def expectation(self, revolution: Revolution, exponent: float) -> float:
+        """Force that the catalogue's k_c gives at the override that was run, N."""
+        mean = self._preview.mean(revolution.progress_before, revolution.progress)
+        return float(mean * max(revolution.override, 0.0) ** exponent)
+
+    def _entered(
+        self, revolution: Revolution, keep: Keeping, aims: Aims, override: float
+    ) -> tuple[Law[Any], Any]:
+        """The law, tuned for what begins, and its state."""
+        # Rounded, so that equal cuts find their law again.
+        lag = round(max(aims.servo_lag * revolution.spindle_speed, 0.1), 1)
+        plant = Plant(exponent=round(keep.exponent, 2) or keep.exponent, lag=lag)
+        if plant not in self._laws:
+            self._laws[plant] = self._law_for(plant)
+        law = self._laws[plant]
+        return law, law.begin(max(override, LEAST_WAY))
+
+    def _situation(
+        self, revolution: Revolution, keep: Keeping, *, aims: Aims, override: float
+    ) -> Situation:
+        known = Situation(
+            force=revolution.force,
+            set_point=keep.set_point,
+            override=override,
+            actual=max(revolution.override, LEAST_WAY * keep.floor),
+            floor=keep.floor,
+            ceiling=keep.ceiling,
+        )
+        if not aims.look_ahead:
+            return known
+        preview = self._preview
+        way = revolution.period * max(revolution.override, LEAST_WAY)
+        return replace(
+            known,
+            expected=preview.mean(revolution.progress_before, revolution.progress),
+            ahead=preview.ahead(revolution.progress, revolution=way, count=aims.look_ahead),
+        )

@@ -1,0 +1,197 @@
+"""A plotly figure of a run: panels above each other that share the axis of time.
+
+What is drawn by :meth:`Panels.peaks` goes through the least and the greatest value of each
+bucket of the trace, so that peaks stay. Colours are those of Okabe and Ito (2008), which the
+colour-blind tell apart; lines and text are legible on light and on dark.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from html import escape
+
+import numpy as np
+import plotly.graph_objects as go
+
+from service.buckets import Trace
+from simulator.motion.segments import Floats
+
+GREY, SKY, ORANGE, GREEN, PINK, BLUE, RED = (
+    "#8c8c8c", "#56B4E9", "#E69F00", "#009E73", "#CC79A7", "#0072B2", "#D55E00",
+)  # fmt: skip
+DIM = "#757575"
+"""of a line: as far from white as from black"""
+CLEAR = "rgba(0,0,0,0)"
+FAINT = "rgba(128,128,128,0.25)"
+BAND = "rgba(128,128,128,0.10)"
+STRIPES = ("rgba(86,180,233,0.45)", "rgba(230,159,0,0.45)")
+"""of workingsteps, in turns"""
+
+MOST_BANDS = 200
+"""workingsteps whose bands are drawn behind all panels"""
+
+GAP = 52
+"""pixels between two panels, with two lines of title for the lower one"""
+
+MARGIN = 46
+"""pixels to the left of the panels"""
+
+TOP, BOTTOM = 26, 48
+"""pixels above and below all panels"""
+
+MINUTES, HOURS = 900.0, 3.0 * 3600.0
+"""s from which on the axis of time is in minutes, in hours"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stretch:
+    """A workingstep on the axis of time."""
+
+    name: str
+    begin: float
+    """s"""
+    duration: float
+    """s"""
+
+
+class Panels:
+    """A figure that grows panel by panel. Running state."""
+
+    def __init__(self, trace: Trace) -> None:
+        last = float(trace.end[-1]) if len(trace.end) else 0.0
+        self.second, self.unit = _clock(last)
+        self.end = last * self.second
+        self.figure = go.Figure()
+        self._trace = trace
+        self._heights: list[int] = []
+        self._titles: list[str] = []
+
+    def begin(self, title: str, *, height: int, **axis: object) -> None:
+        """The next panel, below those before."""
+        self._heights.append(height)
+        self._titles.append(title)
+        number = len(self._heights)
+        self.figure.layout[_name("yaxis", number)] = {"automargin": True, **axis}
+        self.figure.layout[_name("xaxis", number)] = {"anchor": _name("y", number)}
+
+    def add(self, drawn: go.Scatter | go.Bar) -> None:
+        """Draw in the last panel."""
+        number = len(self._heights)
+        self.figure.add_trace(drawn.update(xaxis=_name("x", number), yaxis=_name("y", number)))
+
+    def strip(self, stretches: Sequence[Stretch]) -> None:
+        """The first panel: the names of the workingsteps where they run."""
+        hidden = {"showticklabels": False, "showgrid": False, "zeroline": False}
+        self.begin(
+            "<b>Workingsteps</b>", height=26, fixedrange=True, range=[0.0, 1.0], **hidden
+        )
+        self.add(
+            go.Bar(
+                x=[(each.begin + 0.5 * each.duration) * self.second for each in stretches],
+                width=[each.duration * self.second for each in stretches],
+                y=[1.0] * len(stretches),
+                text=[escape(each.name) for each in stretches],
+                customdata=[
+                    f"{each.begin:.1f} s for {each.duration:.1f} s" for each in stretches
+                ],
+                hovertemplate="%{text}<br>from %{customdata}<extra></extra>",
+                textposition="inside",
+                insidetextanchor="middle",
+                textangle=0,
+                marker_color=[STRIPES[number % 2] for number in range(len(stretches))],
+                marker_line_width=0,
+            )
+        )
+
+    def peaks(self, name: str, colour: str, signal: int, *, scale: float = 1.0) -> None:
+        """A line through least and greatest of each bucket."""
+        trace, curve = self._trace, self._trace.curve(signal)
+        times = np.column_stack((trace.begin, trace.end)).ravel()
+        values = np.column_stack((curve.low, curve.high)).ravel()
+        is_point = np.repeat(trace.begin == trace.end, 2)
+        is_point[::2] = False
+        at, shown = times[~is_point] * self.second, values[~is_point] * scale
+        self.add(line(name, colour, at, shown))
+
+    def done(self, stretches: Sequence[Stretch]) -> go.Figure:
+        """Everything in its place."""
+        figure, last = self.figure, _name("x", len(self._heights))
+        inside = self._stack()
+        figure.update_xaxes(
+            matches=last, showticklabels=False, showspikes=True, spikemode="across",
+            spikethickness=1, spikecolor=GREY, spikedash="dot", gridcolor=FAINT,
+            zeroline=False, unifiedhovertitle_text=f"%{{x:.5~r}} {self.unit}",
+        )  # fmt: skip
+        bottom = figure.layout[_name("xaxis", len(self._heights))]
+        bottom.update(showticklabels=True, matches=None, range=[0.0, self.end])
+        bottom.title = f"time, {self.unit}"
+        figure.update_yaxes(gridcolor=FAINT, zerolinecolor=GREY, nticks=5)
+        return figure.update_layout(
+            height=inside + TOP + BOTTOM,
+            margin={"l": MARGIN, "r": 12, "t": TOP, "b": BOTTOM},
+            modebar={"bgcolor": CLEAR, "color": GREY, "activecolor": BLUE},
+            showlegend=False, hovermode="x unified", hoverlabel_bgcolor="#ffffff",
+            paper_bgcolor=CLEAR, plot_bgcolor=CLEAR, shapes=self._bands(stretches, last),
+            uniformtext={"mode": "hide", "minsize": 9},
+            font={"family": "system-ui, sans-serif", "size": 12},
+        )  # fmt: skip
+
+    def _stack(self) -> int:
+        """Put the panels below each other; the height of all in pixels."""
+        inside = sum(self._heights) + GAP * (len(self._heights) - 1)
+        top = 0
+        for number, (height, title) in enumerate(
+            zip(self._heights, self._titles, strict=True), 1
+        ):
+            above, below = 1.0 - top / inside, max(1.0 - (top + height) / inside, 0.0)
+            self.figure.layout[_name("yaxis", number)].update(
+                domain=[below, above], anchor=_name("x", number)
+            )
+            self.figure.add_annotation(
+                text=title, x=0.0, y=above, xref="paper", yref="paper", xanchor="left",
+                yanchor="bottom", showarrow=False, align="left", xshift=-MARGIN,
+            )  # fmt: skip
+            top += height + GAP
+        return inside
+
+    def _bands(self, stretches: Sequence[Stretch], axis: str) -> list[dict[str, object]]:
+        """Every second workingstep, behind all panels."""
+        if len(stretches) > MOST_BANDS:
+            return []
+        return [
+            {
+                "type": "rect", "layer": "below", "fillcolor": BAND, "line": {"width": 0},
+                "xref": axis, "yref": "paper", "y0": 0.0, "y1": 1.0,
+                "x0": each.begin * self.second,
+                "x1": (each.begin + each.duration) * self.second,
+            }
+            for each in stretches[1::2]
+        ]  # fmt: skip
+
+
+def key(name: str, colour: str, mark: str = "■") -> str:
+    """A name with its colour, for a title."""
+    return f'<span style="color:{colour}">{mark}</span> {name}'
+
+
+def line(name: str, colour: str, times: Floats, values: Floats) -> go.Scatter:
+    """32 bits: no screen has the digits of more."""
+    return go.Scatter(
+        name=name,
+        x=times.astype(np.float32),
+        y=values.astype(np.float32),
+        mode="lines",
+        line={"color": colour, "width": 1},
+        hovertemplate="%{y:.4~r}",
+    )
+
+
+def _clock(last: float) -> tuple[float, str]:
+    """The unit of the axis of time, and how many of it are in a second."""
+    if last < MINUTES:
+        return 1.0, "s"
+    return (1.0 / 60.0, "min") if last < HOURS else (1.0 / 3600.0, "h")
+
+
+def _name(kind: str, number: int) -> str:
+    """Plotly's name of an axis: the first has no number."""
+    return kind if number == 1 else f"{kind}{number}"

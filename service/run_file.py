@@ -1,0 +1,154 @@
+"""Rows of a run on their way to a Parquet or CSV file, written as they come.
+
+The file gets its name when it is whole. A run that is broken off leaves what it has under
+``.partial``, closed and readable.
+"""
+
+import os
+import tempfile
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+import pyarrow as pa
+from pyarrow import csv, parquet
+
+from stepnc_model.errors import WriteError
+
+SUFFIXES = (".parquet", ".csv")
+
+WORDS = pa.dictionary(pa.int32(), pa.string())
+"""words that come again and again"""
+
+
+class RunFile:
+    """A file that grows. Running state; what ends it stands in :meth:`closing`.
+
+    Parameters
+    ----------
+    path : Path
+        Ends with ``.parquet`` or ``.csv``.
+    schema : Schema
+        Columns with their units as metadata.
+
+    Raises
+    ------
+    WriteError
+        When the ending is another, or the disk refuses.
+    """
+
+    def __init__(self, path: Path, schema: pa.Schema) -> None:
+        self.path = path
+        self.rows = 0
+        self.place: Path | None = None
+        """where the file lies once it is closed"""
+        self._is_text = require_suffix(path) == ".csv"
+        self._names = schema.names
+        try:
+            descriptor, self._name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+            self._file = os.fdopen(descriptor, "wb")
+            self._writer = self._opened(schema)
+        except OSError as error:
+            raise self._refused(error) from error
+
+    @property
+    def partial(self) -> Path:
+        """Where a broken-off run is left."""
+        return self.path.with_suffix(f".partial{self.path.suffix}")
+
+    def write(self, columns: Sequence[pa.Array]) -> None:
+        """More rows, as columns in the order of the schema.
+
+        Raises
+        ------
+        WriteError
+            When the disk refuses.
+        """
+        arrays = [_plain(column) for column in columns] if self._is_text else columns
+        batch = pa.record_batch(arrays, names=self._names)
+        try:
+            self._writer.write(batch)
+        except OSError as error:
+            raise self._refused(error) from error
+        self.rows += batch.num_rows
+
+    @contextmanager
+    def closing(self, *, is_whole: bool) -> Iterator[None]:
+        """Write the last rows within it; then the file gets its name, or is left as partial.
+
+        A file without rows is left only when it is whole.
+
+        Raises
+        ------
+        WriteError
+            When the disk refuses; nothing is left.
+        """
+        try:
+            yield
+            self._writer.close()
+            self._file.flush()
+            os.fsync(self._file.fileno())
+            if is_whole or self.rows:
+                place = self.path if is_whole else self.partial
+                os.chmod(self._name, _mode(place))
+                os.replace(self._name, place)
+                self.place = place
+        except OSError as failure:
+            raise self._refused(failure) from failure
+        finally:
+            # What the disk has refused once it refuses again.
+            with suppress(OSError):
+                self._file.close()
+            Path(self._name).unlink(missing_ok=True)
+
+    def _opened(self, schema: pa.Schema) -> parquet.ParquetWriter | csv.CSVWriter:
+        if self._is_text:
+            return csv.CSVWriter(self._file, _spelled_out(schema))
+        floats = [field.name for field in schema if pa.types.is_floating(field.type)]
+        return parquet.ParquetWriter(
+            self._file,
+            schema,
+            compression="zstd",
+            # Measured values hardly repeat; their bytes compress when each has its stream.
+            use_dictionary=[name for name in schema.names if name not in floats],
+            use_byte_stream_split=floats,
+        )
+
+    def _refused(self, error: OSError) -> WriteError:
+        return WriteError(error.strerror or str(error), path=str(self.path))
+
+
+def require_suffix(path: Path) -> str:
+    """The ending of a file for a run, in small letters.
+
+    Raises
+    ------
+    WriteError
+        When it is neither of the two.
+    """
+    suffix = path.suffix.lower()
+    if suffix not in SUFFIXES:
+        raise WriteError(f"a run is written as {' or '.join(SUFFIXES)}", path=str(path))
+    return suffix
+
+
+def _spelled_out(schema: pa.Schema) -> pa.Schema:
+    """Words as they are: text has no dictionaries."""
+    return pa.schema([
+        field.with_type(pa.string()) if pa.types.is_dictionary(field.type) else field
+        for field in schema
+    ])
+
+
+def _plain(column: pa.Array) -> pa.Array:
+    is_coded = isinstance(column, pa.DictionaryArray)
+    return column.dictionary_decode() if is_coded else column
+
+
+def _mode(place: Path) -> int:
+    """Permissions of the file that is replaced, or what a new file gets."""
+    if place.exists():
+        return place.stat().st_mode & 0o777
+    umask = os.umask(0)
+    os.umask(umask)
+    return 0o666 & ~umask

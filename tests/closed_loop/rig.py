@@ -1,0 +1,159 @@
+"""A loop on a virtual machine whose truth stays known, and laws that mean it harm."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from math import inf
+from typing import Any
+
+import numpy as np
+
+from controller.aims import Aims, Step
+from controller.cycle import Cycle
+from controller.law import Law, Plant, Situation
+from controller.laws.log_pi import LogPI
+from controller.loop import Loop
+from controller.orders import Event, EventKind
+from controller.ports import Floats, Reading
+from controller.preview import Preview
+from controller.reference import ForceBound, Reference
+from controller.source import Dynamometer, Source
+from optimiser.limit import LimitName
+from simulator.plant.controlled import Bench, ControlledMachine
+from simulator.plant.course import NominalCourse
+from simulator.plant.dynamometer import DYNAMOMETER, POWER_METER, Acquisition, Instrument
+from simulator.plant.hidden import Hidden
+from tests.simulator.plant.courses import EXPONENT
+
+SET_POINT = 400.0
+"""N"""
+
+BREAKAGE = 1200.0
+"""N"""
+
+
+def reference(
+    *,
+    set_point: float = SET_POINT,
+    breakage: float = BREAKAGE,
+    floor: float = 0.0,
+    ceiling: float = inf,
+    inhibition: str = "",
+) -> Reference:
+    """A workingstep with one bound on the force."""
+    bound = ForceBound(name=LimitName.TOOL_DEFLECTION, words="deflection", force=set_point)
+    return Reference(
+        workingstep="SLOT",
+        bounds=(bound,),
+        breakage=breakage,
+        floor=floor,
+        ceiling=ceiling,
+        inhibition=inhibition,
+    )
+
+
+def step(of: Reference) -> Step:
+    """The slot of :mod:`tests.simulator.plant.courses`."""
+    return Step(reference=of, exponent=EXPONENT, tool="mill", diameter=10.0)
+
+
+class Watched:
+    """A dynamometer that errs, on a machine with a perfect one. Running state."""
+
+    def __init__(self, machine: ControlledMachine, by: Instrument, *, seed: int) -> None:
+        self.truth: list[float] = []
+        """N, mean of each tooth period so far"""
+        self._machine = machine
+        self._instrument = Acquisition(by, np.random.default_rng(seed))
+
+    def read(self) -> Reading | None:
+        """See :class:`controller.ports.Sensor`."""
+        reading = self._machine.read()
+        if reading is None:
+            return None
+        force = reading.force
+        is_lost = bool(np.isnan(force).any())
+        # While the machine's own sensor is silent, the mean of all teeth is what is known.
+        self.truth.append(self._machine.truth.force if is_lost else float(force.mean()))
+        return replace(reading, force=self._shown(reading, is_lost=is_lost))
+
+    def _shown(self, reading: Reading, *, is_lost: bool) -> Floats:
+        interval = reading.period / len(reading.force)
+        return self._instrument.shown(
+            np.nan_to_num(reading.force), time=reading.time, interval=interval, is_lost=is_lost
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Hostile:
+    """A law that wants what it was told to want, whatever the force, over and over."""
+
+    wishes: tuple[float, ...]
+
+    def begin(self, _override: float) -> int:
+        """See :class:`controller.law.Law`."""
+        return 0
+
+    def decide(self, state: int, _at: Situation) -> tuple[int, float]:
+        """See :class:`controller.law.Law`."""
+        return state + 1, self.wishes[state % len(self.wishes)]
+
+
+@dataclass(kw_only=True)
+class Rig:
+    """A loop and what it ran. Running state."""
+
+    machine: ControlledMachine
+    sensor: Watched
+    loop: Loop
+    cycles: list[Cycle] = field(default_factory=list)
+
+    @property
+    def events(self) -> list[Event]:
+        """All that were told."""
+        return [event for cycle in self.cycles for event in cycle.events]
+
+    def told(self, kind: EventKind) -> list[Event]:
+        """Those of a kind."""
+        return [event for event in self.events if event.kind is kind]
+
+    def run(self, until: float = inf, *, most: int = 100_000) -> "Rig":
+        """To a time or so many cycles, or to the end of the program or its stop."""
+        while self.machine.time < until and not self.loop.is_stopped:
+            if len(self.cycles) >= most:
+                break
+            cycle = self.loop.cycle()
+            if cycle is None:
+                break
+            self.cycles.append(cycle)
+        return self
+
+    def between(self, begin: float, end: float) -> list[Cycle]:
+        """Cycles that ended between two times, s."""
+        return [each for each in self.cycles if begin < each.reading.time <= end]
+
+
+def rig(
+    course: NominalCourse,
+    hidden: Hidden | None = None,
+    *,
+    steps: Sequence[Step] | None = None,
+    law: Callable[[Plant], Law[Any]] = lambda plant: LogPI(plant=plant),
+    aims: Aims | None = None,
+    instrument: Instrument = DYNAMOMETER,
+    source: Source | None = None,
+    seed: int = 0,
+) -> Rig:
+    """Everything plugged together; log-PI, and a dynamometer with noise, unless said."""
+    bench = Bench(dynamometer=Instrument(), power_meter=POWER_METER, seed=seed)
+    machine = ControlledMachine(course, Hidden() if hidden is None else hidden, bench)
+    sensor = Watched(machine, instrument, seed=seed)
+    loop = Loop(
+        sensor,
+        machine,
+        source=Dynamometer() if source is None else source,
+        law=law,
+        steps=[step(reference())] if steps is None else steps,
+        preview=Preview(until=course.until, force=course.force),
+        aims=Aims(look_ahead=0) if aims is None else aims,
+    )
+    return Rig(machine=machine, sensor=sensor, loop=loop)

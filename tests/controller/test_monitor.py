@@ -1,0 +1,172 @@
+from dataclasses import replace
+from math import inf, log
+
+import numpy as np
+import pytest
+
+from controller.guard import Keeping
+from controller.monitor import CALM, PAUSE, REACH, Monitor
+from controller.orders import Event, EventKind
+from controller.signal import Revolution
+from simulator.physics.cutting import wear_factor
+from tests.controller.shown import REVOLUTION
+
+KEEP = Keeping(set_point=400.0, breakage=2000.0, floor=0.2, ceiling=1.2, exponent=0.8)
+PERIOD = REVOLUTION.period
+
+
+class Watching:
+    """A monitor that is shown one revolution after another."""
+
+    def __init__(self, keep: Keeping = KEEP) -> None:
+        self.monitor = Monitor()
+        self.monitor.begin("mill")
+        self.events: list[Event] = []
+        self.keep = keep
+        self._time = 0.0
+
+    def show(self, force: float, *, ratio: float | None = None, **more: float) -> None:
+        self._time += PERIOD
+        shown: Revolution = replace(
+            REVOLUTION,
+            time=self._time,
+            force=force,
+            tooth_means=np.full(4, force),
+            **more,  # type: ignore[arg-type]
+        )
+        self.events += self.monitor.seen(shown, self.keep, ratio=ratio)
+
+    @property
+    def kinds(self) -> list[EventKind]:
+        return [event.kind for event in self.events]
+
+
+def test_a_quiet_cut_tells_nothing() -> None:
+    watching = Watching()
+    for _ in range(100):
+        watching.show(390.0, ratio=0.0)
+    assert watching.events == []
+
+
+def test_what_is_worse_is_told_at_once_and_what_is_better_when_it_has_lasted() -> None:
+    watching = Watching()
+    for force in (300.0, 490.0, 300.0):
+        watching.show(force)
+    assert watching.kinds == [EventKind.OVER]
+    for _ in range(round(CALM / PERIOD) + 1):
+        watching.show(300.0)
+    assert watching.kinds == [EventKind.OVER, EventKind.SAFE]
+
+
+def test_a_force_that_flickers_about_a_threshold_is_told_once() -> None:
+    watching = Watching()
+    for _ in range(1500):
+        watching.show(485.0)
+        watching.show(475.0)
+    assert watching.kinds == [EventKind.OVER]
+
+
+def test_a_set_point_out_of_reach_is_told_once_in_a_workingstep() -> None:
+    watching = Watching()
+    for _ in range(3 * REACH):
+        watching.show(450.0, override=0.2)
+    assert watching.kinds == [EventKind.UNREACHABLE]
+    assert "450 N at an override of 20 %" in watching.events[0].text
+    watching.monitor.begin("mill")
+    for _ in range(REACH):
+        watching.show(450.0, override=0.2)
+    assert watching.kinds == [EventKind.UNREACHABLE] * 2
+
+
+@pytest.mark.parametrize(("force", "override"), [(450.0, 0.3), (410.0, 0.2)])
+def test_above_the_floor_or_at_the_set_point_it_is_within_reach(
+    force: float, override: float
+) -> None:
+    watching = Watching()
+    for _ in range(3 * REACH):
+        watching.show(force, override=override)
+    assert watching.events == []
+
+
+def test_where_nothing_bounds_the_force_no_level_is_told() -> None:
+    watching = Watching(replace(KEEP, set_point=inf))
+    for force in (300.0, 1e6, 300.0):
+        watching.show(force)
+    assert watching.events == []
+
+
+def test_a_jump_in_hardness_is_told_from_wear() -> None:
+    worn = Watching()
+    for wear in np.linspace(0.0, 0.1, 3000):
+        worn.show(390.0, ratio=log(wear_factor(float(wear)) / wear_factor(0.0)))
+    assert worn.events == []
+    assert worn.monitor.lives["mill"].flank_wear == pytest.approx(0.1, abs=0.01)
+    harder = Watching()
+    for ratio in [0.0] * 200 + [log(1.3)] * 50:
+        harder.show(390.0, ratio=ratio)
+    assert harder.kinds == [EventKind.HARDNESS]
+    assert "+30 %" in harder.events[0].text
+    assert "harder" in harder.events[0].text
+
+
+def test_softer_work_is_told_as_such() -> None:
+    softer = Watching()
+    for ratio in [0.0] * 200 + [log(0.7)] * 50:
+        softer.show(390.0, ratio=ratio)
+    assert "softer" in softer.events[0].text
+
+
+def test_changes_one_after_another_are_not_all_told() -> None:
+    watching = Watching()
+    for turn in range(3000):
+        watching.show(390.0, ratio=0.4 if turn % 200 < 100 else 0.0)
+    assert 1 <= len(watching.events) <= 3000 * PERIOD / PAUSE + 1
+
+
+def test_a_worn_out_tool_is_told_once_in_its_life() -> None:
+    watching = Watching()
+    for wear in np.linspace(0.0, 0.33, 6000):
+        watching.show(390.0, ratio=log(wear_factor(float(wear)) / wear_factor(0.0)))
+    watching.monitor.begin("drill")
+    watching.monitor.begin("mill")
+    for flicker in range(400):
+        wear = 0.33 if flicker % 2 else 0.25
+        watching.show(390.0, ratio=log(wear_factor(wear) / wear_factor(0.0)))
+    assert watching.kinds.count(EventKind.WEAR) == 1
+    assert "tool 'mill'" in watching.events[-1].text
+
+
+def test_a_broken_tooth_is_told_once_and_by_its_number() -> None:
+    watching = Watching()
+    for _ in range(30):
+        watching.show(400.0)
+    broken = np.array([400.0, 0.0, 750.0, 400.0])
+    for turn in range(10):
+        shown = replace(REVOLUTION, time=1.0 + turn, force=387.5, tooth_means=broken)
+        watching.events += watching.monitor.seen(shown, KEEP, ratio=None)
+    assert watching.kinds == [EventKind.BREAKAGE]
+    assert watching.events[0].text == "tooth 2 of 4 takes no chip"
+    assert watching.monitor.is_broken
+
+
+def test_the_way_out_of_a_cut_and_the_way_in_are_no_broken_tooth() -> None:
+    """In both, the same tooth may be in the air: neither confirms the other."""
+    watching = Watching()
+    for _ in range(5):
+        for _ in range(30):
+            watching.show(400.0)
+        for _ in range(2):
+            half = np.array([400.0, 0.0, 400.0, 400.0])
+            shown = replace(REVOLUTION, force=320.0, tooth_means=half)
+            watching.events += watching.monitor.seen(shown, KEEP, ratio=None)
+            watching.monitor.out_of_cut()
+    assert watching.events == []
+
+
+def test_each_tool_has_its_own_life() -> None:
+    watching = Watching()
+    for _ in range(60):
+        watching.show(390.0, ratio=0.2)
+    watching.monitor.begin("drill")
+    assert watching.monitor.lives["drill"].readings == 0
+    assert watching.monitor.lives["mill"].readings == 60

@@ -1,0 +1,82 @@
+from dataclasses import replace
+from math import pi
+
+import numpy as np
+import pytest
+
+from controller.ports import Reading
+from controller.source import DrivePower, Dynamometer
+from simulator.plant.controlled import Bench, ControlledMachine
+from simulator.plant.dynamometer import DYNAMOMETER, Instrument
+from simulator.plant.hidden import Hidden
+from tests.controller.plugged import SPINDLE_SPEED, reading
+from tests.simulator.plant.courses import course, levels
+
+EFFICIENCY = 0.8
+DIAMETER = 10.0
+"""mm, of :mod:`tests.simulator.plant.courses`"""
+
+WATTS = 20.0
+"""noise of the power meter"""
+
+
+def readings(power_meter: Instrument) -> list[Reading]:
+    """A rapid of 10 s, and a cut of 400 N for 10 s."""
+    can_override = np.arange(2000) >= 1000
+    path = course(levels(0.0, 400.0, cells=1000), can_override=can_override)
+    bench = Bench(dynamometer=DYNAMOMETER, power_meter=power_meter, efficiency=EFFICIENCY)
+    machine = ControlledMachine(path, Hidden(), bench)
+    found = []
+    while (each := machine.read()) is not None:
+        found.append(each)
+    return found
+
+
+def test_power_and_dynamometer_tell_the_same_force() -> None:
+    by_power, by_force = DrivePower(EFFICIENCY), Dynamometer()
+    pairs = [
+        (by_force.conditioned(each, DIAMETER), by_power.conditioned(each, DIAMETER))
+        for each in readings(Instrument(floor=WATTS, lag=0.05))
+    ]
+    # The power meter has settled after some of its time constants.
+    cut = [pair for pair in pairs if pair[0].can_override][50:]
+    forces, powers = (
+        np.array([float(each.force.mean()) for each in side]) for side in zip(*cut, strict=True)
+    )
+    assert forces.mean() == pytest.approx(400.0, rel=0.01)
+    per_watt = 1000.0 * EFFICIENCY / (pi * DIAMETER * SPINDLE_SPEED)
+    # The idle power is known by some ten samples.
+    assert powers.mean() == pytest.approx(400.0, abs=3.0 * WATTS * per_watt / 10.0**0.5)
+    assert powers.std() == pytest.approx(WATTS * per_watt, rel=0.1)
+
+
+def test_a_dynamometer_is_zeroed_while_nothing_can_be_cut() -> None:
+    source = Dynamometer()
+    rapid = reading(25.0, can_override=False)
+    assert source.conditioned(rapid, DIAMETER) is rapid
+    assert source.conditioned(reading(125.0), DIAMETER).force.mean() == pytest.approx(100.0)
+
+
+def test_a_force_in_the_cut_is_no_zero() -> None:
+    source = Dynamometer()
+    for _ in range(100):
+        found = source.conditioned(reading(125.0), DIAMETER)
+    assert found.force.mean() == 125.0
+
+
+def test_power_tells_no_force_without_a_diameter_or_an_idle_power() -> None:
+    source = DrivePower(EFFICIENCY)
+    assert np.isnan(source.conditioned(reading(0.0), DIAMETER).force).all()
+    idle = reading(0.0, can_override=False, power=200.0)
+    assert len(source.conditioned(idle, DIAMETER).force) == 0
+    assert len(source.conditioned(reading(0.0), 0.0).force) == 0
+
+
+def test_power_over_idle_power_is_force_times_speed() -> None:
+    source = DrivePower(EFFICIENCY)
+    source.conditioned(reading(0.0, can_override=False, power=200.0), DIAMETER)
+    found = source.conditioned(reading(0.0, power=200.0 + 1000.0), DIAMETER)
+    expected = 1000.0 * 1000.0 * EFFICIENCY / (pi * DIAMETER * SPINDLE_SPEED)
+    assert found.force == pytest.approx([expected])
+    other = replace(reading(0.0, power=1200.0), spindle_speed=2.0 * SPINDLE_SPEED)
+    assert np.isnan(source.conditioned(other, DIAMETER).force).all()

@@ -1,0 +1,176 @@
+"""Rude options, files and interrupts for ``control``: one sentence, exit code 3, no file."""
+
+import re
+import resource
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from pyarrow import parquet
+
+from service.cli import main
+from service.cli_options import BAD_INPUT, INTERRUPTED
+from service.control import ControlRequest, control
+from stepnc_model.errors import WriteError
+
+PARTS = Path(__file__).parents[2] / "examples" / "parts"
+SLOT = PARTS / "paper003_case1.stpnc"
+USAGE = 2
+
+# A shell that starts the tests in the background lets them ignore interrupts.
+STEPNC = [
+    sys.executable,
+    "-c",
+    "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+    "from service.cli import main; main()",
+]
+
+Refused = Callable[..., str]
+
+
+@pytest.fixture
+def refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Refused:
+    """Run a command that must refuse in one line and leave no file; that line."""
+
+    def run(*words: object) -> str:
+        before = sorted(tmp_path.iterdir())
+        with pytest.raises(SystemExit) as stopped:
+            main(["control", *map(str, words)])
+        out, told = capsys.readouterr()
+        assert stopped.value.code == BAD_INPUT, told
+        assert sorted(tmp_path.iterdir()) == before
+        assert not out
+        *_, last = told.splitlines()
+        assert last.startswith("error: ")
+        assert "Traceback" not in told
+        assert not re.search(r"\b(None|[A-Z]\w+Error)\b", last)
+        return last
+
+    return run
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ([], "name a STEP-NC program, or NC code with --nc"),
+        (["nowhere.stpnc"], "nowhere.stpnc: No such file"),
+        ([PARTS], "Is a directory"),
+        (["a\0b"], "is no file name"),
+        ([SLOT, "--machine", "titanic"], "unknown machine 'titanic'"),
+        ([SLOT, "--material", "butter"], "unknown material 'butter'"),
+        ([SLOT, "--law", "pid"], "unknown law 'pid'; known: pi, log-pi"),
+        ([SLOT, "--mode", "EC"], "unknown mode 'EC'; known: TC, QC"),
+        ([SLOT, "--sensor", "ear"], "unknown sensor 'ear'"),
+        ([SLOT, "--control", "magic"], "unknown control 'magic'"),
+        ([SLOT, "--units", "ell"], "unknown units 'ell'"),
+        ([SLOT, "--seed", "-1"], "seed -1: it must be at least 0"),
+        ([SLOT, "--look-ahead", "-3"], "look-ahead -3: it must be 1 to 50 revolutions"),
+        ([SLOT, "--force", "nan"], "force nan N: it must be above 10 N"),
+        ([SLOT, "--force", "inf"], "force inf N: it must be above 10 N"),
+        ([SLOT, "--force", "10"], "it must be above 10 N, which is noise of the dynamometer"),
+        ([SLOT, "--force", "-5"], "force -5 N: it must be above 10 N"),
+        ([SLOT, "--band", "20"], "override band '20': 2 numbers with commas"),
+        ([SLOT, "--band", "nan,120"], "override band 'nan,120': 2 numbers"),
+        ([SLOT, "--band", "a,b"], "override band 'a,b': 2 numbers"),
+        ([SLOT, "--band", "120,20"], "override band 120 to 20 %: it must be above 0 to 100"),
+        ([SLOT, "--band", "-20,120"], "override band -20 to 120 %"),
+        ([SLOT, "--disturb", "luck:1@2s"], "disturbance 'luck:1@2s': 'luck' is not one of"),
+        ([SLOT, "--disturb", "depth:+50%"], "say when, as in depth:+50%@12s"),
+        ([SLOT, "--disturb", "material:butter@1s"], "unknown material 'butter'"),
+        ([SLOT, "--disturb", "depth:nan@1s"], "'nan' is no number"),
+        ([SLOT, "--deviation-mm", "nan"], "deviation nan mm"),
+        ([SLOT, "--stock", "1,2,3"], "are for NC code: name it with --nc"),
+        ([PARTS / "shaft.stpnc", "--machine", "vmc15"], "turns, and the machine is a mill"),
+        ([PARTS / "paper002.stpnc", "--machine", "paper002"], "nothing of its axes"),
+    ],
+)
+def test_what_cannot_be_is_refused(refused: Refused, words: list[object], message: str) -> None:
+    assert message in refused(*words)
+
+
+def test_nc_code_alone_is_refused(
+    refused: Refused, controlled: Callable[..., ControlRequest]
+) -> None:
+    code = controlled().simulation.code
+    assert code is not None
+    told = refused("--nc", code.code, "--machine", "vmc15", "--material", "c45")
+    assert "control needs a STEP-NC program: it says what may be forced" in told
+
+
+@pytest.mark.parametrize(
+    ("output", "words"),
+    [
+        ("run.txt", "a run is written as .parquet or .csv"),
+        ("nowhere/run.csv", "the folder does not exist"),
+        ("part.csv", "name another file"),
+        ("folder.csv", "is no regular file"),
+    ],
+)
+def test_an_output_that_cannot_be_is_refused(
+    refused: Refused, tmp_path: Path, output: str, words: str
+) -> None:
+    part = tmp_path / "part.csv"
+    part.write_bytes(SLOT.read_bytes())
+    (tmp_path / "folder.csv").mkdir()
+    assert words in refused(part, "--machine", "vmc15", "-o", tmp_path / output)
+
+
+def test_a_report_over_the_program_or_the_output_is_refused(
+    refused: Refused, tmp_path: Path
+) -> None:
+    part, output = tmp_path / "part.stpnc", tmp_path / "run.csv"
+    part.write_bytes(SLOT.read_bytes())
+    assert "name another file" in refused(part, "--report", part)
+    assert "name another file" in refused(part, "-o", output, "--report", output)
+    assert "folder does not exist" in refused(part, "--report", tmp_path / "x" / "run.html")
+
+
+@pytest.mark.parametrize("option", ["--seed", "--look-ahead", "--force"])
+def test_words_for_numbers_are_a_matter_of_usage(
+    capsys: pytest.CaptureFixture[str], option: str
+) -> None:
+    with pytest.raises(SystemExit) as stopped:
+        main(["control", str(SLOT), option, "many"])
+    assert stopped.value.code == USAGE
+    assert f"argument {option}" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".parquet"])
+def test_a_disk_that_fills_leaves_the_old_run(
+    controlled: Callable[..., ControlRequest], tmp_path: Path, suffix: str
+) -> None:
+    path = tmp_path / f"run{suffix}"
+    path.write_text("old", encoding="ascii")
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (2_000, hard))
+    try:
+        with pytest.raises(WriteError, match=f"run{suffix}: .*too large"):
+            control(controlled(output=path))
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    assert path.read_text(encoding="ascii") == "old"
+    assert [each.name for each in tmp_path.iterdir()] == [path.name]
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupt_leaves_what_there_is(tmp_path: Path, number: signal.Signals) -> None:
+    path = tmp_path / "run.parquet"
+    path.write_text("old", encoding="ascii")
+    part = PARTS / "bracket.stpnc"
+    words = [*STEPNC, "control", str(part), "--machine", "vmc15", "-o", str(path)]
+    with subprocess.Popen(words, stderr=subprocess.PIPE, text=True) as running:
+        assert running.stderr is not None
+        while "workingstep: FINISH FACE" not in (line := running.stderr.readline()):
+            assert line, "the run ended before the interrupt"
+        running.send_signal(number)
+        *_, written, last = running.stderr.read().splitlines()
+        assert running.wait(60) == INTERRUPTED
+    partial = tmp_path / "run.partial.parquet"
+    rows = parquet.read_table(partial).num_rows
+    assert last == "interrupted"
+    assert written == f"written: {partial} ({rows} rows)"
+    assert path.read_text(encoding="ascii") == "old"
+    assert {each.name for each in tmp_path.iterdir()} == {path.name, partial.name}
