@@ -20,8 +20,8 @@ from controller.law import Law, Situation
 from controller.laws.choice import LawName
 from controller.ports import Reading
 from controller.preview import LOOK_AHEAD
-from service.control import ControlRequest, prepare
-from service.simulation import SimulationRequest
+from service.control.run import ControlRequest, prepare
+from service.simulation.run import SimulationRequest
 from simulator.plant.controlled import ControlledMachine
 from tests.closed_loop.trials import KNOWN, LAWS, Trial, law_of, loop, machine, run
 

@@ -17,7 +17,7 @@ import pytest
 from kbe.rows import outcome_row
 from kbe.selection import EVERYTHING
 from kbe.store import Store, open_store
-from service.evaluated import summary
+from service.knowledge.evaluated import summary
 from stepnc_model.outcome import ProcessOutcome
 from tests.kbe.conftest import started_server
 from tests.service.shop import outcomes

@@ -16,8 +16,8 @@ from pathlib import Path
 
 from pyarrow import parquet
 
-from service.simulation import SimulationRequest, simulate
-from service.simulation_setup import CodeRequest
+from service.simulation.run import SimulationRequest, simulate
+from service.simulation.setup import CodeRequest
 
 SPEED = 20.0
 """mm/s of the long program"""

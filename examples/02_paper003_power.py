@@ -12,7 +12,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from pyarrow import parquet
 
-from service.simulation import SimulationRequest, simulate
+from service.simulation.run import SimulationRequest, simulate
 
 PARTS = Path(__file__).parent / "parts"
 

@@ -1,8 +1,8 @@
 """How three runs teach the plan what the catalogue does not know of the material.
 
 The catalogue's k_c is wrong by a factor that nobody told; plan, run, record, review, accept,
-plan again. ``python examples/03_learning_from_runs.py [FACTOR]``: 1.35 when none is given; at 0.7
-force is wasted instead.
+plan again. ``python examples/03_learning_from_runs.py [FACTOR]``: 1.35 when none is given; at
+0.7 force is wasted instead.
 """
 
 import sys
@@ -10,11 +10,11 @@ from math import exp
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from service.control import ControlRequest
-from service.control_record import control_recorded
-from service.knowledge import accept
-from service.knowledge_review import ReviewRequest, review
-from service.simulation import SimulationRequest
+from service.control.record import control_recorded
+from service.control.run import ControlRequest
+from service.knowledge.review import ReviewRequest, review
+from service.knowledge.verbs import accept
+from service.simulation.run import SimulationRequest
 from service.usecases import Request, optimise
 
 PART = Path(__file__).parent / "parts" / "paper002.stpnc"

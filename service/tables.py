@@ -5,8 +5,8 @@ import sys
 from collections.abc import Sequence
 
 from optimiser.advice import Advice, Plan, Status
+from service.contents import Contents
 from service.terminal import clean
-from service.usecases import Contents
 from simulator.spec import Machine, Material
 from stepnc_model.errors import Finding, Severity
 from stepnc_model.units import (

@@ -8,33 +8,26 @@ from optimiser.advice import Plan, Status
 from optimiser.formulate import Task
 from optimiser.modes import Free, Mode
 from optimiser.optimise import optimise as advise
-from service.corrected import SAFETY, factors_for, finding_of, with_corrections
+from service.chosen import machine_for, material_for
 from service.files import (
     beside,
     is_same,
-    read_bytes,
     require_place,
     write_atomically,
     write_lines,
 )
+from service.knowledge.corrected import SAFETY, factors_for, finding_of, with_corrections
 from service.progress import Progress
-from service.reading import Tell, one_of, read_program, silent, unit_profile
+from service.reading import Tell, one_of, read_program, silent
 from service.records import changes_of
-from simulator.library import load_machine, load_material, machine_names, material_names
-from simulator.matching import match_material
-from simulator.spec import Certainty, Machine, Material, MaterialMatch
+from simulator.spec import Certainty, MaterialMatch
 from stepnc_model import writeback
-from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import Finding, SchemaError, Severity, StepNcError, WriteError
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.plausibility import implausible, refusal
+from stepnc_model.plausibility import refusal
 from stepnc_model.program import Program, Workingstep
 from stepnc_model.units import mm_from_um
 from stepnc_model.writeback import Profile
-
-DEFAULT_MILL, DEFAULT_LATHE = "vmc15", "lathe22"
-"""machines taken when none is named"""
-
 
 NOTHING_WRITTEN = "nothing was written: no workingstep was advised"
 
@@ -73,24 +66,6 @@ class Outcome:
     plan: Plan
     written: Path | None
     """the STEP-NC file, or None when nothing was written"""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Contents:
-    """What ``check`` shows of a file."""
-
-    name: str
-    schemas: tuple[str, ...]
-    instances: int
-    program: Program | None
-    findings: tuple[Finding, ...]
-
-    @property
-    def is_usable(self) -> bool:
-        """Whether the program can be worked with."""
-        return self.program is not None and not any(
-            finding.severity is Severity.ERROR for finding in self.findings
-        )
 
 
 def optimise(request: Request, *, tell: Tell = silent) -> Outcome:
@@ -160,61 +135,12 @@ def optimise(request: Request, *, tell: Tell = silent) -> Outcome:
     return Outcome(plan=plan, written=written)
 
 
-def check(path: Path, *, units: str = "iso") -> Contents:
-    """What is in a file, and what is wrong with it."""
-    profile = unit_profile(units)
-    file = Part21File.from_bytes(read_bytes(path), name=path.name)
-    try:
-        program = Program(file, units=profile, name=path.name)
-    except SchemaError as error:
-        fault = Finding(
-            severity=Severity.ERROR,
-            message=str(error),
-        )
-        return Contents(
-            name=path.name,
-            schemas=file.schemas,
-            instances=len(file),
-            program=None,
-            findings=(*file.findings, fault),
-        )
-    return Contents(
-        name=path.name,
-        schemas=file.schemas,
-        instances=len(file),
-        program=program,
-        findings=_all_findings(program),
-    )
-
-
-def _all_findings(program: Program) -> tuple[Finding, ...]:
-    """Findings of a program; its numbers are looked at only where its references are sound."""
-    findings = program.findings()
-    if any(finding.severity is Severity.ERROR for finding in findings):
-        return findings
-    return findings + implausible(program)
-
-
 def convert(path: Path, *, profile: str, output: Path) -> None:
     """Move the optimisation records of a file into another profile."""
     wanted = one_of(Profile, profile, "profile")
     require_place(output, apart_from=path)
     program = read_program(path, units="iso")
     write_atomically(output, writeback.convert(program, wanted))
-
-
-def library_entries(kind: str) -> tuple[Machine | Material, ...]:
-    """All machines or materials."""
-    if kind == "machines":
-        return tuple(load_machine(name) for name in machine_names())
-    return tuple(load_material(name) for name in material_names())
-
-
-def library_entry(kind: str, name: str) -> Machine | Material:
-    """One machine or material, by name or file."""
-    if kind == "machines":
-        return load_machine(name)
-    return load_material_named(name).material
 
 
 def _require_positive(value: float | None, what: str, unit: str) -> None:
@@ -275,7 +201,7 @@ def _nc_place(request: Request, output: Path) -> Path | None:
 
 def _nc_code(program: Program, data: bytes, control: str, tell: Tell) -> Iterator[str]:
     """NC code of the program as it is after optimisation."""
-    from service.toolpaths import nc_lines, paths_of, with_feeds  # noqa: PLC0415 (numpy, shapely)
+    from service.paths.toolpaths import nc_lines, paths_of, with_feeds  # noqa: PLC0415 (numpy, shapely)
     from stepnc_model.post.controls import Control  # noqa: PLC0415 (all dialects)
 
     paths = with_feeds(paths_of(_read_again(program, data), tell=tell), keep_going=False)
@@ -325,39 +251,6 @@ def _require_usable(
     error = refusal(program, chosen)
     if error is not None:
         raise error
-
-
-def machine_for(name: str, program: Program) -> Machine:
-    """The machine named, or one that suits the program's first workingstep."""
-    if name:
-        return load_machine(name)
-    first = program.workingsteps[0].operation
-    is_turning = isinstance(first, TurningMachiningOperation)
-    return load_machine(DEFAULT_LATHE if is_turning else DEFAULT_MILL)
-
-
-def material_for(name: str, program: Program) -> MaterialMatch:
-    """The material named, or the one the file names."""
-    if name:
-        return load_material_named(name)
-    material = program.material()
-    if material is None:
-        raise StepNcError(
-            "the file names no workpiece material: name one with --material "
-            "(`stepnc materials` lists them)"
-        )
-    return match_material((material.standard_identifier, material.material_identifier))
-
-
-def load_material_named(name: str) -> MaterialMatch:
-    """A material by library name, file, or any name that catalogues give it."""
-    if name in material_names() or Path(name).suffix == ".toml":
-        return MaterialMatch(
-            material=load_material(name),
-            certainty=Certainty.EXACT,
-            reason=f"'{name}' as asked for",
-        )
-    return match_material((name,))
 
 
 def _with_file_findings(

@@ -7,7 +7,7 @@ from math import isfinite
 from typing import Any
 
 from optimiser.advice import Advice, Load, Plan, State, tightest
-from service.usecases import Contents
+from service.contents import Contents
 from simulator.spec import Machine, Material
 from stepnc_model.errors import Finding
 from stepnc_model.units import (

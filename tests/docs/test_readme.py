@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from service.cli import main, optimise_main
+from service.cli.main import main, optimise_main
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")

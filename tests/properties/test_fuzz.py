@@ -10,6 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from service import usecases
+from service.contents import check
 from stepnc_model.errors import StepNcError
 
 ROOT = Path(__file__).parents[2]
@@ -86,7 +87,7 @@ def read_and_optimise(data: bytes, units: str = "iso") -> None:
         path = Path(folder) / "part.stpnc"
         path.write_bytes(data)
         with suppress(StepNcError):
-            usecases.check(path, units=units)
+            check(path, units=units)
         with suppress(StepNcError):
             usecases.optimise(usecases.Request(file=path, units=units, dry_run=True))
         assert [each.name for each in Path(folder).iterdir()] == ["part.stpnc"]

@@ -15,7 +15,7 @@ import pytest
 from numpy.typing import NDArray
 from pyarrow import parquet
 
-from service.simulation import Simulation, SimulationRequest, simulate
+from service.simulation.run import Simulation, SimulationRequest, simulate
 from simulator.library import load_machine
 from simulator.machine_toml import machine_toml
 

@@ -10,11 +10,11 @@ import pytest
 
 from kbe.store import open_store
 from service.buckets import Trace
-from service.calibration import CalibrationResult, CycleTime
-from service.control import ControlRequest, ControlRun, control
-from service.simulation import Simulation, SimulationRequest
-from service.simulation_setup import CodeRequest
-from service.simulation_trace import TraceKeeper
+from service.calibration.run import CalibrationResult, CycleTime
+from service.control.run import ControlRequest, ControlRun, control
+from service.simulation.run import Simulation, SimulationRequest
+from service.simulation.setup import CodeRequest
+from service.simulation.trace import TraceKeeper
 from simulator.calibration.delay import Delay
 from simulator.calibration.estimates import Calibration, Estimate
 from simulator.calibration.features import Parameter

@@ -11,9 +11,9 @@ from pathlib import Path
 import pytest
 from pyarrow import parquet
 
-from service.cli import main
-from service.cli_options import BAD_INPUT, INTERRUPTED
-from service.control import ControlRequest, control
+from service.cli.main import main
+from service.cli.options import BAD_INPUT, INTERRUPTED
+from service.control.run import ControlRequest, control
 from stepnc_model.errors import WriteError
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
@@ -25,7 +25,7 @@ STEPNC = [
     sys.executable,
     "-c",
     "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
-    "from service.cli import main; main()",
+    "from service.cli.main import main; main()",
 ]
 
 Refused = Callable[..., str]

@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 
 import pytest
 
-from service.cli import main, optimise_main
+from service.cli.main import main, optimise_main
 
 ROOT = Path(__file__).parents[2]
 PARTS = ROOT / "examples" / "parts"

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from service.cli import main, optimise_main
+from service.cli.main import main, optimise_main
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 BRACKET = (PARTS / "bracket.stpnc").read_text(encoding="ascii")
@@ -25,7 +25,7 @@ USAGE, BAD_INPUT, INTERRUPTED = 2, 3, 130
 START = """
 import signal
 signal.signal(signal.SIGINT, signal.default_int_handler)
-from service.cli import main
+from service.cli.main import main
 main()
 """
 STEPNC = [sys.executable, "-c", START]

@@ -16,10 +16,10 @@ from pathlib import Path
 import pytest
 from pyarrow import csv, parquet
 
-from service import timeline_file
-from service.cli import main
-from service.simulation import SimulationRequest, simulate
-from service.simulation_setup import CodeRequest
+from service.cli.main import main
+from service.simulation import timeline_file
+from service.simulation.run import SimulationRequest, simulate
+from service.simulation.setup import CodeRequest
 from stepnc_model.errors import StepNcError, WriteError
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
@@ -38,7 +38,7 @@ STEPNC = [
     sys.executable,
     "-c",
     "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
-    "from service.cli import main; main()",
+    "from service.cli.main import main; main()",
 ]
 
 Refused = Callable[..., str]

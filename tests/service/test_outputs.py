@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from service.cli import main, optimise_main
+from service.cli.main import main, optimise_main
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 

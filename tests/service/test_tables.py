@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from service import usecases
+from service import chosen, usecases
+from service.contents import Contents, check
 from service.tables import (
     MOST_FINDINGS,
     print_contents,
@@ -32,8 +33,8 @@ class Terminal:
         return True
 
 
-def contents(*findings: Finding) -> usecases.Contents:
-    return replace(usecases.check(PARTS / "paper002.stpnc"), findings=findings)
+def contents(*findings: Finding) -> Contents:
+    return replace(check(PARTS / "paper002.stpnc"), findings=findings)
 
 
 def warning(number: int) -> Finding:
@@ -66,7 +67,7 @@ def test_columns_of_a_plan_are_aligned(capsys: pytest.CaptureFixture[str]) -> No
 def test_contents_show_the_tree_and_whether_it_is_usable(
     capsys: pytest.CaptureFixture[str],
 ) -> None:
-    print_contents(usecases.check(PARTS / "bracket.stpnc"))
+    print_contents(check(PARTS / "bracket.stpnc"))
     shown = capsys.readouterr().out
     assert "workplan" in shown
     assert "REAM HOLE 2" in shown
@@ -104,7 +105,7 @@ def test_many_findings_are_counted_rather_than_told(capsys: pytest.CaptureFixtur
 
 @pytest.mark.parametrize("kind", ["machines", "materials"])
 def test_a_library_is_a_row_an_entry(kind: str, capsys: pytest.CaptureFixture[str]) -> None:
-    entries = usecases.library_entries(kind)
+    entries = chosen.library_entries(kind)
     print_entries(kind, entries)
     rows = capsys.readouterr().out.splitlines()[2:]
     assert [row.split()[0] for row in rows] == [entry.name for entry in entries]
@@ -114,7 +115,7 @@ def test_a_library_is_a_row_an_entry(kind: str, capsys: pytest.CaptureFixture[st
 def test_an_entry_tells_its_source(
     kind: str, name: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    print_entry(usecases.library_entry(kind, name))
+    print_entry(chosen.library_entry(kind, name))
     shown = capsys.readouterr().out
     assert shown.startswith(f"{name}: ")
     assert "\nsource: " in shown

@@ -6,6 +6,7 @@ import pytest
 
 from optimiser.advice import Status
 from service import usecases
+from service.contents import check
 from service.reading import read_program
 from service.usecases import Request
 from simulator.errors import UnknownMachine, UnknownMaterial
@@ -59,7 +60,7 @@ def test_the_result_lies_beside_the_program_and_the_program_stays(paper: Path) -
 def test_the_result_can_be_checked_and_optimised_again(paper: Path) -> None:
     first = usecases.optimise(Request(file=paper, machine="paper002"))
     assert first.written is not None
-    assert usecases.check(first.written).is_usable
+    assert check(first.written).is_usable
     again = usecases.optimise(Request(file=first.written, machine="paper002", dry_run=True))
     one, other = first.plan.advices[0].after, again.plan.advices[0].after
     assert one is not None
@@ -189,8 +190,8 @@ def test_records_convert_there_and_back(paper: Path, profile: str) -> None:
     there, back = paper.with_name("there"), paper.with_name("back")
     usecases.convert(written, profile=other, output=there)
     usecases.convert(there, profile=profile, output=back)
-    assert usecases.check(there).is_usable
-    assert usecases.check(back).is_usable
+    assert check(there).is_usable
+    assert check(back).is_usable
 
 
 def test_a_program_is_not_converted_onto_itself(paper: Path) -> None:
@@ -205,7 +206,7 @@ def test_check_tells_what_is_wrong_rather_than_raise(paper: Path) -> None:
         "#1=PROJECT('PAPER 002',#2", "#1=PROJECT('',$"
     )
     paper.write_text(text, encoding="ascii")
-    contents = usecases.check(paper)
+    contents = check(paper)
     assert not contents.is_usable
     assert contents.program is None
     assert contents.findings[-1].severity is Severity.ERROR

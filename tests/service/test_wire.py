@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 
 from optimiser.advice import tightest
-from service import usecases
+from service import chosen, usecases
+from service.contents import check
 from service.wire import contents_json, entries_json, entry_json, plan_json
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
@@ -113,7 +114,7 @@ def test_each_limit_is_told_once_for_each_sense() -> None:
 
 
 def test_contents_tell_the_workingsteps_in_order() -> None:
-    contents = json.loads(contents_json(usecases.check(PARTS / "bracket.stpnc")))
+    contents = json.loads(contents_json(check(PARTS / "bracket.stpnc")))
     assert contents["is_usable"] is True
     assert contents["schemas"] == ["MACHINING_SCHEMA", "MILLING_SCHEMA"]
     assert [step["id"] for step in contents["workingsteps"]][:3] == [
@@ -123,7 +124,7 @@ def test_contents_tell_the_workingsteps_in_order() -> None:
 
 @pytest.mark.parametrize("kind", ["machines", "materials"])
 def test_a_library_is_json(kind: str) -> None:
-    entries = usecases.library_entries(kind)
+    entries = chosen.library_entries(kind)
     listed = json.loads(entries_json(entries), parse_constant=refused)
     assert [each["name"] for each in listed] == [entry.name for entry in entries]
 
@@ -133,5 +134,5 @@ def test_a_library_is_json(kind: str) -> None:
     [("machines", "vmc15"), ("machines", "lathe22"), ("materials", "c45")],
 )
 def test_an_entry_is_json(kind: str, name: str) -> None:
-    entry = usecases.library_entry(kind, name)
+    entry = chosen.library_entry(kind, name)
     assert json.loads(entry_json(entry), parse_constant=refused)["name"] == name

@@ -3,7 +3,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from service.simulation import SimulationRequest, simulate, waiting_machine
+from service.simulation.run import SimulationRequest, simulate, waiting_machine
 from simulator.machine.interpreter import interpret
 from simulator.plant.course import NominalCourse, course_of
 from tests.simulator.plant.courses import course, levels

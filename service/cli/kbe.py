@@ -1,0 +1,213 @@
+"""Commands of the knowledge base: ``stepnc kbe …``."""
+
+import argparse
+from collections.abc import Callable
+from pathlib import Path
+
+from service.cli.kbe_verbs import (
+    SUFFIXES,
+    accept_command,
+    back_up_command,
+    check_command,
+    export_command,
+    list_corrections_command,
+    list_outcomes_command,
+    restore_command,
+    review_command,
+    show_command,
+    table_command,
+    withdraw_command,
+)
+from service.cli.options import Commands, add_json
+from service.knowledge.options import (
+    add_filters,
+    add_place,
+    count,
+    share,
+    text,
+)
+
+USAGE = 2
+
+EXAMPLES = """examples:
+  stepnc kbe list --machine vmc15 --since 2026-03-01
+  stepnc kbe table --only violated -o table.html
+  stepnc kbe review
+  stepnc kbe accept 3 --by "A. Smith"
+  stepnc kbe export outcomes --format parquet -o outcomes.parquet
+
+What runs have shown, and what plans take from it. The knowledge base is named by --kb, else by
+$STEPNC_KB, else it is ~/.local/share/stepnc/knowledge.db."""
+
+ONLY = ("all", "violated", "wasted", "with-remarks", "with-trend", "factor-pending")
+SORT = ("name", "grade", "runs", "latest", "force", "time", "feed", "roughness", "time-to-win")
+"""words of :mod:`kbe.evaluation`, which the shell must not split"""
+
+Run = Callable[[argparse.Namespace], int]
+
+
+def add_knowledge_commands(commands: Commands) -> None:
+    """Add them to ``stepnc``."""
+    parser = commands.add_parser(
+        "kbe",
+        help="the knowledge base: outcomes of runs, their evaluation, corrections",
+        description=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.set_defaults(run=lambda _: _show_help(parser))
+    verbs = parser.add_subparsers(dest="verb", metavar="VERB")
+    _add_list(verbs)
+    _add_show(verbs)
+    _add_table(verbs)
+    _add_review(verbs)
+    _add_decisions(verbs)
+    _add_export(verbs)
+    _add_copies(verbs)
+
+
+def _show_help(parser: argparse.ArgumentParser) -> int:
+    parser.print_help()
+    return USAGE
+
+
+def _verb(verbs: Commands, name: str, run: Run, what: str) -> argparse.ArgumentParser:
+    """A verb, which has a place."""
+    parser = verbs.add_parser(name, help=what, description=what)
+    add_place(parser)
+    parser.set_defaults(run=run)
+    return parser
+
+
+def _add_list(verbs: Commands) -> None:
+    parser = _verb(verbs, "list", list_outcomes_command, "list outcomes, newest first")
+    parser.add_argument(
+        "--limit", type=count, default=50, metavar="N", help="most to show (default 50)"
+    )
+    add_filters(parser)
+    add_json(parser)
+
+
+def _add_show(verbs: Commands) -> None:
+    what = "show one run in full, by its id or its beginning; or a correction, by its number"
+    parser = _verb(verbs, "show", show_command, what)
+    parser.add_argument("id", type=text, metavar="RUN|ID", help="see `list` and `corrections`")
+    add_json(parser)
+
+
+def _add_table(verbs: Commands) -> None:
+    what = "evaluate outcomes: planned, measured, deviations, grades, what to do"
+    parser = _verb(verbs, "table", table_command, what)
+    _add_table_options(parser)
+    form = parser.add_mutually_exclusive_group()
+    form.add_argument(
+        "--format",
+        choices=tuple(SUFFIXES.values()),
+        help="default: by the ending of the file; on stdout text",
+    )
+    form.add_argument(
+        "--json", action="store_const", const="json", dest="format", help="--format json"
+    )
+    parser.add_argument(
+        "-o", "--output", type=Path, metavar="FILE", help="write it there (default: stdout)"
+    )
+
+
+def _add_table_options(parser: argparse.ArgumentParser) -> None:
+    """Which table."""
+    add = parser.add_argument
+    add(
+        "--by",
+        choices=("feature", "kind"),
+        default="feature",
+        help="a row for each feature of each program (default), or for each kind of feature",
+    )
+    add("--only", choices=ONLY, default="all", help="rows with at least one such side")
+    add("--sort", choices=SORT, default="name", help="what comes first (default: name)")
+    add(
+        "--summary",
+        action="store_true",
+        help="counts, means and spreads by machine, material, tool and kind of feature only: "
+        "a million outcomes in about a second",
+    )
+    add_filters(parser)
+
+
+def _add_review(verbs: Commands) -> None:
+    what = "learn factors on k_c from outcomes and propose what is new or changed"
+    parser = _verb(verbs, "review", review_command, what)
+    add = parser.add_argument
+    add(
+        "--auto-accept",
+        action="store_true",
+        help="accept proposals that keep the three bounds; the others wait for a person",
+    )
+    add("--least-confidence", type=share, default=0.8, metavar="P", help="default 0.8")
+    add("--fewest-outcomes", type=count, default=3, metavar="N", help="default 3")
+    add(
+        "--greatest-change",
+        type=share,
+        default=0.25,
+        metavar="SHARE",
+        help="of the factor in force, 0.25 or 25%% (default)",
+    )
+    _add_by(parser)
+    add_filters(parser)
+    add_json(parser)
+
+
+def _add_decisions(verbs: Commands) -> None:
+    accept = _verb(
+        verbs, "accept", accept_command, "put corrections in force for the next plans"
+    )
+    withdraw = _verb(
+        verbs,
+        "withdraw",
+        withdraw_command,
+        "take corrections out of force, or refuse proposals",
+    )
+    for parser in (accept, withdraw):
+        parser.add_argument(
+            "ids", type=count, nargs="+", metavar="ID", help="see `corrections`"
+        )
+        _add_by(parser)
+        add_json(parser)
+    add_json(
+        _verb(
+            verbs,
+            "corrections",
+            list_corrections_command,
+            "list corrections and their standing",
+        )
+    )
+
+
+def _add_by(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--by", type=text, default="", metavar="NAME", help="who decides (default: the login)"
+    )
+
+
+def _add_export(verbs: Commands) -> None:
+    parser = _verb(
+        verbs,
+        "export",
+        export_command,
+        "write outcomes, corrections or the table to a file; JSON and Parquet keep every "
+        "value, CSV puts an apostrophe before a text that a spreadsheet would calculate",
+    )
+    add = parser.add_argument
+    add("what", choices=("outcomes", "corrections", "table"))
+    add("--format", choices=tuple(SUFFIXES.values()), help="default: by the ending")
+    add("-o", "--output", type=Path, required=True, metavar="FILE")
+    _add_table_options(parser)
+
+
+def _add_copies(verbs: Commands) -> None:
+    back_up = _verb(verbs, "backup", back_up_command, "copy the knowledge base to a new file")
+    restore = _verb(
+        verbs, "restore", restore_command, "fill an empty knowledge base from a backup"
+    )
+    for parser in (back_up, restore):
+        parser.add_argument("file", type=Path, metavar="FILE")
+        add_json(parser)
+    add_json(_verb(verbs, "check", check_command, "read all that is stored, to the last page"))

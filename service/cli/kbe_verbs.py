@@ -1,0 +1,303 @@
+"""What the commands ``stepnc kbe …`` do, once their options are read."""
+
+import argparse
+import getpass
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from service.cli.machine import interruptible
+from service.cli.options import OK
+from service.knowledge.options import selection_of
+from service.knowledge.place import usual_place
+from stepnc_model.errors import StepNcError
+
+if TYPE_CHECKING:
+    from kbe.backup import Content
+    from kbe.ledger import Entry
+    from service.knowledge.evaluated import TableRequest
+
+SUFFIXES = {
+    ".csv": "csv",
+    ".json": "json",
+    ".html": "html",
+    ".parquet": "parquet",
+    ".txt": "text",
+}
+"""formats by the ending of a file"""
+
+
+def list_outcomes_command(options: argparse.Namespace) -> int:
+    """``stepnc kbe list``."""
+    from service.knowledge.verbs import newest
+    from service.terminal import write_out
+
+    place, selection = usual_place(options.kb), selection_of(options)
+    listing = newest(place, selection, limit=options.limit)
+    if not listing.total:
+        _tell_why_empty(place, options)
+    if options.json:
+        from service.knowledge.wire import listing_json
+
+        write_out(listing_json(listing))
+    elif listing.total:
+        from service.knowledge.table import print_listing
+
+        print_listing(listing)
+    return OK
+
+
+def show_command(options: argparse.Namespace) -> int:
+    """``stepnc kbe show``."""
+    from service.knowledge import verbs as knowledge
+    from service.terminal import write_out
+
+    place = usual_place(options.kb)
+    outcomes = knowledge.outcomes_of_run(place, options.id)
+    if outcomes:
+        if options.json:
+            from service.knowledge.wire import run_json
+
+            write_out(run_json(outcomes))
+        else:
+            from service.knowledge.table import print_run
+
+            print_run(outcomes)
+        return OK
+    entries = [each for each in knowledge.corrections(place) if str(each.id) == options.id]
+    if not entries:
+        raise StepNcError(
+            f"{knowledge.shown(place)}: no run or correction '{options.id}'; list them: "
+            "stepnc kbe list, stepnc kbe corrections"
+        )
+    _show_corrections(entries, is_json=options.json)
+    return OK
+
+
+def table_command(options: argparse.Namespace) -> int:
+    """``stepnc kbe table``."""
+    from service.knowledge.output import put_summary, put_table
+
+    place, form = usual_place(options.kb), _format(options)
+    with interruptible():
+        if options.summary:
+            count = put_summary(place, selection_of(options), form=form, output=options.output)
+        else:
+            from service.terminal import tell
+
+            count = put_table(
+                place, _request(options), form=form, output=options.output, tell=tell
+            )
+    if not count:
+        _tell_why_empty(place, options)
+    return _written(options.output)
+
+
+def _request(options: argparse.Namespace) -> "TableRequest":
+    from kbe.evaluation import Grouping, RowFilter, SortKey
+    from service.knowledge.evaluated import TableRequest
+
+    return TableRequest(
+        selection=selection_of(options),
+        grouping=Grouping(options.by),
+        keep=RowFilter(options.only.replace("-", " ")),
+        by=SortKey(options.sort.replace("-", " ")),
+    )
+
+
+def _format(options: argparse.Namespace) -> str:
+    """As asked, else by the ending of the file, else text."""
+    if options.format or options.output is None:
+        return options.format or "text"
+    suffix = options.output.suffix.lower()
+    if suffix not in SUFFIXES:
+        known = ", ".join(SUFFIXES)
+        raise StepNcError(f"{options.output}: end the name with {known}, or add --format")
+    return SUFFIXES[suffix]
+
+
+def review_command(options: argparse.Namespace) -> int:
+    """``stepnc kbe review``."""
+    from kbe.acceptance import Bounds
+    from service.knowledge.review import ReviewRequest, review
+    from service.terminal import write_out
+
+    place = usual_place(options.kb)
+    request = ReviewRequest(
+        selection=selection_of(options),
+        by=_decider(options) if options.auto_accept else "",
+        is_automatic=options.auto_accept,
+        bounds=Bounds(
+            least_confidence=options.least_confidence,
+            fewest_outcomes=options.fewest_outcomes,
+            greatest_change=options.greatest_change,
+        ),
+    )
+    found = review(place, request)
+    if not found:
+        _tell_why_empty(place, options)
+    if options.json:
+        from service.knowledge.wire import review_json
+
+        write_out(review_json(found))
+    elif found:
+        from service.knowledge.review_table import print_review
+
+        print_review(found)
+    return OK
+
+
+def accept_command(options: argparse.Namespace) -> int:
+    """``stepnc kbe accept``."""
+    from service.knowledge.verbs import accept
+
+    entries = accept(usual_place(options.kb), options.ids, by=_decider(options))
+    _show_corrections(entries, is_json=options.json)
+    return OK
+
+
+def withdraw_command(options: argparse.Namespace) -> int:
+    """``stepnc kbe withdraw``."""
+    from service.knowledge.verbs import withdraw
+
+    entries = withdraw(usual_place(options.kb), options.ids, by=_decider(options))
+    _show_corrections(entries, is_json=options.json)
+    return OK
+
+
+def list_corrections_command(options: argparse.Namespace) -> int:
+    """``stepnc kbe corrections``."""
+    from service.knowledge.verbs import corrections, shown
+    from service.terminal import tell
+
+    place = usual_place(options.kb)
+    entries = corrections(place)
+    if not entries:
+        tell(f"{shown(place)}: no corrections yet; `stepnc kbe review` proposes them")
+    if entries or options.json:
+        _show_corrections(entries, is_json=options.json)
+    return OK
+
+
+def _show_corrections(entries: "Sequence[Entry]", *, is_json: bool) -> None:
+    from service.knowledge import table as knowledge_table
+    from service.knowledge import wire as knowledge_wire
+    from service.terminal import write_out
+
+    if is_json:
+        write_out(knowledge_wire.corrections_json(entries))
+    else:
+        knowledge_table.print_corrections(entries)
+
+
+def _decider(options: argparse.Namespace) -> str:
+    """Who decides; said, when nobody said it."""
+    from service.terminal import tell
+
+    if options.by.strip():
+        return str(options.by)
+    try:
+        name = getpass.getuser()
+    except (KeyError, OSError) as error:
+        raise StepNcError(
+            "nobody is logged in by a name; say who decides: --by NAME"
+        ) from error
+    tell(f"decided by {name}, the login; another: --by NAME")
+    return name
+
+
+def export_command(options: argparse.Namespace) -> int:
+    """``stepnc kbe export``."""
+    from service.flat_file import Format
+    from service.knowledge.export import export_corrections, export_outcomes
+    from service.terminal import tell
+
+    if options.what == "table":
+        return table_command(options)
+    place, name = usual_place(options.kb), _format(options)
+    if name not in set(Format):
+        raise StepNcError(f"only the table is written as {name}")
+    form, file = Format(name), options.output
+    with interruptible():
+        if options.what == "outcomes":
+            rows = export_outcomes(place, selection_of(options), file=file, form=form)
+        else:
+            rows = export_corrections(place, file=file, form=form)
+    tell(f"written: {file} ({rows} {options.what})")
+    return OK
+
+
+def back_up_command(options: argparse.Namespace) -> int:
+    """``stepnc kbe backup``."""
+    from service.knowledge.verbs import back_up
+
+    content = back_up(usual_place(options.kb), options.file)
+    _show_content(content, place=str(options.file), is_json=options.json)
+    return OK
+
+
+def restore_command(options: argparse.Namespace) -> int:
+    """``stepnc kbe restore``."""
+    from service.knowledge.verbs import restore, shown
+
+    place = usual_place(options.kb)
+    content = restore(options.file, place)
+    _show_content(content, place=shown(place), is_json=options.json)
+    return OK
+
+
+def check_command(options: argparse.Namespace) -> int:
+    """``stepnc kbe check``."""
+    from service.knowledge.verbs import check, shown
+    from service.terminal import tell
+
+    place = usual_place(options.kb)
+    content = check(place)
+    _show_content(content, place=shown(place), is_json=options.json)
+    tell("whole: every page was read")
+    return OK
+
+
+def _show_content(content: "Content", *, place: str, is_json: bool) -> None:
+    from service.terminal import write_out
+
+    if is_json:
+        from service.knowledge.wire import content_json
+
+        write_out(content_json(content, place=place))
+    else:
+        from service.knowledge.table import print_content
+
+        print_content(content, place=place)
+
+
+def _written(output: Path | None) -> int:
+    from service.terminal import tell
+
+    if output is not None:
+        tell(f"written: {output}")
+    return OK
+
+
+def _tell_why_empty(place: str, options: argparse.Namespace) -> None:
+    """Nothing is kept yet, or nothing of what is kept was meant."""
+    from service.knowledge.verbs import contexts, shown
+    from service.terminal import tell
+
+    known = contexts(place)
+    if not known:
+        tell(f"{shown(place)}: no outcomes yet; `stepnc control FILE --kb …` records them")
+        return
+    names = {
+        "machines": sorted({each.machine for each in known}),
+        "materials": sorted({each.material for each in known}),
+        "tools": sorted({each.tool for each in known}),
+    }
+    told = "; ".join(f"{what} {_some(them)}" for what, them in names.items())
+    tell(f"{shown(place)}: no outcome is meant; it knows {told}")
+
+
+def _some(names: Sequence[str]) -> str:
+    """The first of many."""
+    shown = ", ".join(names[:8])
+    return f"{shown} and {len(names) - 8} more" if len(names) > 8 else shown

@@ -1,0 +1,299 @@
+"""The command line: ``optimise`` and ``stepnc``. A thin skin over :mod:`service.usecases`.
+
+Data goes to stdout, messages and progress to stderr. Exit codes: 0 ok, 2 usage, 3 bad input,
+4 infeasible, 5 limit exceeded, 130 interrupted. Imports of what is slow stay inside the
+commands, so that ``--help`` answers at once.
+"""
+
+import argparse
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from service.cli.control import add_control_command
+from service.cli.kbe import add_knowledge_commands
+from service.cli.machine import add_machine_commands
+from service.cli.options import (
+    BAD_INPUT,
+    CONTROLS,
+    INFEASIBLE,
+    INTERRUPTED,
+    OK,
+    Commands,
+    add_file,
+    add_json,
+    add_knowledge,
+)
+from service.cli.paths import add_path_commands
+
+EXAMPLES = """examples:
+  optimise part.stpnc --mode TC --machine vmc15
+  optimise part.stpnc --mode QC --roughness 1.6 --report part.html
+  optimise part.stpnc --mode EC --free feed,depth,speed --dry-run --json
+  stepnc check part.stpnc
+  stepnc toolpath part.stpnc --plot path.png
+  stepnc post part.stpnc --control linuxcnc
+
+Optimise the feeds of a STEP-NC program and write them back as STEP-NC."""
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run ``stepnc``."""
+    parser = argparse.ArgumentParser(
+        prog="stepnc",
+        description=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument(
+        "--print-completion",
+        choices=("bash", "zsh", "tcsh"),
+        help="print a completion script for a shell",
+    )
+    commands = parser.add_subparsers(dest="command", metavar="COMMAND")
+    optimise = commands.add_parser(
+        "optimise",
+        help="optimise the feeds of a program and write them back",
+        description=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    add_optimise_options(optimise)
+    _add_check(commands)
+    _add_convert(commands)
+    add_path_commands(commands)
+    add_machine_commands(commands)
+    add_knowledge_commands(commands)
+    add_control_command(commands)
+    for kind in ("machines", "materials"):
+        listing = commands.add_parser(kind, help=f"list the {kind}, or show one")
+        listing.add_argument("name", nargs="?", default="", help="show this one in full")
+        add_json(listing)
+        listing.set_defaults(run=_show_library)
+    options = parser.parse_args(arguments)
+    if options.print_completion:
+        import shtab
+
+        from service.terminal import write_out
+
+        write_out(shtab.complete(parser, shell=options.print_completion))
+    elif options.command is None:
+        parser.print_help()
+        sys.exit(2)
+    else:
+        _run(options)
+
+
+def optimise_main(arguments: Sequence[str] | None = None) -> None:
+    """Run ``optimise``: the same as ``stepnc optimise``."""
+    parser = argparse.ArgumentParser(
+        prog="optimise",
+        description=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    add_optimise_options(parser)
+    _run(parser.parse_args(arguments))
+
+
+def add_optimise_options(parser: argparse.ArgumentParser) -> None:
+    """Options of ``optimise``."""
+    add = parser.add_argument
+    add_file(parser)
+    add(
+        "--mode",
+        default="TC",
+        help="TC least time (default), QC fastest feed that keeps the roughness, EC energy",
+    )
+    add("--machine", default="", help="one of `stepnc machines`, or your own TOML or XML file")
+    add("--material", default="", help="one of `stepnc materials`, or your own TOML file")
+    add(
+        "--roughness",
+        type=float,
+        metavar="UM",
+        help="Ra in µm that finished surfaces must keep",
+    )
+    add(
+        "--free",
+        default="feed,depth",
+        metavar="WORDS",
+        help="what may change, of feed,depth,speed (default: feed,depth)",
+    )
+    add(
+        "--profile",
+        default="optimisation",
+        help="how records are written: optimisation (default) or standard",
+    )
+    add("-o", "--output", type=Path, metavar="FILE", help="default: FILE.optimised.stpnc")
+    add("--in-place", action="store_true", help="overwrite the input file")
+    add(
+        "--workingstep",
+        action="append",
+        default=[],
+        metavar="ID",
+        help="only this one, by its id or #instance; repeatable",
+    )
+    add("--pareto", action="store_true", help="also the front of time, roughness and energy")
+    add(
+        "--tool-change-s",
+        type=float,
+        default=0.0,
+        metavar="S",
+        help="seconds to change a worn tool: tool life then counts",
+    )
+    add(
+        "--nc",
+        default="",
+        metavar="CONTROL",
+        help=f"also NC code with the advised feeds, for {CONTROLS}",
+    )
+    add_knowledge(parser, "take accepted corrections of k_c from it")
+    add(
+        "--safety",
+        type=float,
+        default=0.9,
+        metavar="Q",
+        help="quantile of a corrected k_c to plan with, 0.5 to below 1 (default 0.9)",
+    )
+    add("--dry-run", action="store_true", help="write no STEP-NC file")
+    add("--report", type=Path, metavar="HTML", help="write a self-contained page with plots")
+    add_json(parser)
+    parser.set_defaults(run=_optimise)
+
+
+def _add_check(commands: Commands) -> None:
+    """``stepnc check``."""
+    parser = commands.add_parser(
+        "check", help="show what is in a program and what is wrong; exit 3: cannot be used"
+    )
+    add_file(parser)
+    add_json(parser)
+    parser.set_defaults(run=_check)
+
+
+def _add_convert(commands: Commands) -> None:
+    """``stepnc convert``."""
+    parser = commands.add_parser(
+        "convert", help="move optimisation records into the other profile, losing nothing"
+    )
+    parser.add_argument("file", type=Path, metavar="FILE", help="a STEP-NC program (Part 21)")
+    parser.add_argument("--profile", required=True, help="optimisation or standard")
+    parser.add_argument("-o", "--output", type=Path, required=True, metavar="FILE")
+    parser.set_defaults(run=_convert)
+
+
+def _run(options: argparse.Namespace) -> None:
+    """Run a command and turn the project's errors into exit codes."""
+    from service.terminal import prepare, tell
+    from stepnc_model.errors import StepNcError
+
+    prepare()
+    code = OK
+    try:
+        code = options.run(options)
+        sys.stdout.flush()
+    except StepNcError as error:
+        tell(f"error: {error}")
+        code = _exit_code(error)
+    except KeyboardInterrupt:
+        tell("interrupted")
+        code = INTERRUPTED
+    except OSError as error:
+        # What is still buffered has nobody to go to; a reader that left (``| head``) is fine.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        if not isinstance(error, BrokenPipeError):
+            tell(f"error: stdout: {error.strerror}")
+            code = BAD_INPUT
+    sys.exit(code)
+
+
+def _exit_code(error: Exception) -> int:
+    """4 for limits that conflict, 3 for everything that is wrong with the input."""
+    from optimiser.errors import OptimisationError
+
+    return INFEASIBLE if isinstance(error, OptimisationError) else BAD_INPUT
+
+
+def _optimise(options: argparse.Namespace) -> int:
+    """``optimise``."""
+    from service import usecases
+    from service.terminal import tell, write_out
+
+    outcome = usecases.optimise(
+        usecases.Request(
+            file=options.file,
+            mode=options.mode,
+            machine=options.machine,
+            material=options.material,
+            units=options.units,
+            roughness_um=options.roughness,
+            free=options.free,
+            profile=options.profile,
+            output=options.output,
+            in_place=options.in_place,
+            workingsteps=tuple(options.workingstep),
+            pareto=options.pareto,
+            tool_change=options.tool_change_s,
+            dry_run=options.dry_run,
+            report=options.report,
+            control=options.nc,
+            knowledge=options.kb,
+            safety=options.safety,
+        ),
+        tell=tell,
+    )
+    if options.json:
+        from service.wire import plan_json
+
+        write_out(plan_json(outcome.plan))
+    else:
+        from service.tables import print_plan
+
+        print_plan(outcome.plan)
+    return INFEASIBLE if outcome.plan.is_infeasible else OK
+
+
+def _check(options: argparse.Namespace) -> int:
+    """``stepnc check``."""
+    from service.contents import check
+    from service.terminal import write_out
+
+    contents = check(options.file, units=options.units)
+    if options.json:
+        from service.wire import contents_json
+
+        write_out(contents_json(contents))
+    else:
+        from service.tables import print_contents
+
+        print_contents(contents)
+    return OK if contents.is_usable else BAD_INPUT
+
+
+def _convert(options: argparse.Namespace) -> int:
+    """``stepnc convert``."""
+    from service import usecases
+    from service.terminal import tell
+
+    usecases.convert(options.file, profile=options.profile, output=options.output)
+    tell(f"{options.output}: records in profile '{options.profile}'")
+    return OK
+
+
+def _show_library(options: argparse.Namespace) -> int:
+    """``stepnc machines`` and ``stepnc materials``."""
+    from service import tables, wire
+    from service.chosen import library_entries, library_entry
+    from service.terminal import write_out
+
+    kind, name = options.command, options.name
+    if name:
+        entry = library_entry(kind, name)
+        if options.json:
+            write_out(wire.entry_json(entry))
+        else:
+            tables.print_entry(entry)
+        return OK
+    entries = library_entries(kind)
+    write_out(wire.entries_json(entries)) if options.json else tables.print_entries(
+        kind, entries
+    )
+    return OK

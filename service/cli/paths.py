@@ -1,0 +1,116 @@
+"""Commands that make tool paths and NC code: ``toolpath``, ``post`` and ``canonical``."""
+
+import argparse
+from pathlib import Path
+
+from service.cli.options import BAD_INPUT, CONTROLS, OK, Commands, add_file, add_json
+
+
+def add_path_commands(commands: Commands) -> None:
+    """Add them to ``stepnc``."""
+    _add_toolpath(commands)
+    _add_post(commands)
+    _add_canonical(commands)
+
+
+def _add_toolpath(commands: Commands) -> None:
+    """``stepnc toolpath``."""
+    parser = commands.add_parser(
+        "toolpath", help="make the tool paths of a program, or take those it gives"
+    )
+    add_file(parser)
+    _add_keep_going(parser)
+    parser.add_argument("--plot", type=Path, metavar="PNG", help="draw them, coloured by type")
+    add_json(parser)
+    parser.set_defaults(run=_toolpath)
+
+
+def _add_post(commands: Commands) -> None:
+    """``stepnc post``."""
+    parser = commands.add_parser("post", help="write NC code for a control")
+    add_file(parser)
+    parser.add_argument("--control", required=True, metavar="NAME", help=CONTROLS)
+    parser.add_argument(
+        "-o",
+        "--output",
+        type=Path,
+        metavar="FILE",
+        help="default: beside the program, with the ending of the control",
+    )
+    parser.add_argument(
+        "--cycles", action="store_true", help="drill with the control's own cycles"
+    )
+    _add_keep_going(parser)
+    parser.set_defaults(run=_post)
+
+
+def _add_canonical(commands: Commands) -> None:
+    """``stepnc canonical``."""
+    parser = commands.add_parser(
+        "canonical", help="show NC code as canonical commands, to compare programs"
+    )
+    parser.add_argument("file", type=Path, metavar="FILE", help="NC code")
+    parser.add_argument("--control", required=True, metavar="NAME", help=CONTROLS)
+    parser.add_argument("--lathe", action="store_true", help="Fanuc or Haas code for a lathe")
+    parser.set_defaults(run=_canonical)
+
+
+def _add_keep_going(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--keep-going",
+        action="store_true",
+        help="leave out workingsteps for which no path can be made; exit 3 all the same",
+    )
+
+
+def _toolpath(options: argparse.Namespace) -> int:
+    """``stepnc toolpath``."""
+    from service.paths import toolpaths
+    from service.terminal import tell, write_out
+
+    paths = toolpaths.tool_paths(
+        options.file, units=options.units, keep_going=options.keep_going, tell=tell
+    )
+    if options.plot is not None:
+        toolpaths.plot(paths, options.file, options.plot)
+        tell(f"picture: {options.plot}")
+    if options.json:
+        from service.paths.wire import paths_json
+
+        write_out(paths_json(paths))
+    else:
+        from service.paths.table import print_paths
+
+        print_paths(paths)
+    return BAD_INPUT if paths.faults else OK
+
+
+def _post(options: argparse.Namespace) -> int:
+    """``stepnc post``."""
+    from service.paths import toolpaths
+    from service.terminal import tell
+
+    paths = toolpaths.post(
+        toolpaths.PostRequest(
+            file=options.file,
+            control=options.control,
+            units=options.units,
+            output=options.output,
+            cycles=options.cycles,
+            keep_going=options.keep_going,
+        ),
+        tell=tell,
+    )
+    return BAD_INPUT if paths.faults else OK
+
+
+def _canonical(options: argparse.Namespace) -> int:
+    """``stepnc canonical``."""
+    from service.paths import toolpaths
+    from service.terminal import write_out
+
+    for line in toolpaths.canonical_of(
+        options.file, control=options.control, is_lathe=options.lathe
+    ):
+        write_out(line)
+    return OK

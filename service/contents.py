@@ -1,0 +1,64 @@
+"""What is in a file, and what is wrong with it: the verb ``check``."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from service.files import read_bytes
+from service.reading import unit_profile
+from stepnc_model.errors import Finding, SchemaError, Severity
+from stepnc_model.part21.reader import Part21File
+from stepnc_model.plausibility import implausible
+from stepnc_model.program import Program
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Contents:
+    """What ``check`` shows of a file."""
+
+    name: str
+    schemas: tuple[str, ...]
+    instances: int
+    program: Program | None
+    findings: tuple[Finding, ...]
+
+    @property
+    def is_usable(self) -> bool:
+        """Whether the program can be worked with."""
+        return self.program is not None and not any(
+            finding.severity is Severity.ERROR for finding in self.findings
+        )
+
+
+def check(path: Path, *, units: str = "iso") -> Contents:
+    """What is in a file, and what is wrong with it."""
+    profile = unit_profile(units)
+    file = Part21File.from_bytes(read_bytes(path), name=path.name)
+    try:
+        program = Program(file, units=profile, name=path.name)
+    except SchemaError as error:
+        fault = Finding(
+            severity=Severity.ERROR,
+            message=str(error),
+        )
+        return Contents(
+            name=path.name,
+            schemas=file.schemas,
+            instances=len(file),
+            program=None,
+            findings=(*file.findings, fault),
+        )
+    return Contents(
+        name=path.name,
+        schemas=file.schemas,
+        instances=len(file),
+        program=program,
+        findings=_all_findings(program),
+    )
+
+
+def _all_findings(program: Program) -> tuple[Finding, ...]:
+    """Findings of a program; its numbers are looked at only where its references are sound."""
+    findings = program.findings()
+    if any(finding.severity is Severity.ERROR for finding in findings):
+        return findings
+    return findings + implausible(program)

@@ -1,0 +1,246 @@
+"""One plotly figure of a run under control, after Fig. 9 of the 2010 paper.
+
+Feed rate, cutting force with its set point, and removal rate against time as there; below them
+the override, the force against what is expected, what the teeth show, and the drive's power.
+What the operator and the virtual machine did to the run is marked through all panels.
+
+References
+----------
+.. [1] F. Ridwan, X. Xu, G. Liu, "A framework for machining optimisation based on STEP-NC",
+   J. Intell. Manuf., 2010, Fig. 9.
+"""
+
+from collections.abc import Sequence
+from html import escape
+
+import numpy as np
+import plotly.graph_objects as go
+
+from controller.orders import Event, EventKind
+from service.buckets import Trace
+from service.control.disturbances import time_of
+from service.control.facts import Row, disturbed
+from service.control.run import ControlRun
+from service.control.trace import Signal
+from service.panels import (
+    BLUE,
+    DIM,
+    GREEN,
+    GREY,
+    ORANGE,
+    PINK,
+    RED,
+    SKY,
+    Panels,
+    Stretch,
+    key,
+    line,
+)
+from simulator.motion.segments import Floats
+
+GRAVE = frozenset({
+    EventKind.STOP,
+    EventKind.BREAKAGE,
+    EventKind.HOLD,
+    EventKind.OVER,
+    EventKind.LOST,
+})
+"""events that no good run has"""
+
+PLAIN = frozenset({EventKind.WORKINGSTEP, EventKind.SAFE, EventKind.RESUME, EventKind.ORDER})
+"""events that are no trouble"""
+
+MOST_MARKS = 1000
+"""events that are drawn, grave ones first"""
+
+ROOM = 1.15
+"""times the greatest value: what a panel shows"""
+
+USUAL = 0.98
+"""quantile of the factor on k_c above which it is one of a tool that enters or leaves"""
+
+FAR = 4.0
+"""times the greatest force from which on a set point leaves the panel"""
+
+
+def control_figure(run: ControlRun, found: Sequence[Row], trace: Trace) -> go.Figure:
+    """Workingsteps, events, feed, force, removal rate, override and more against time.
+
+    Parameters
+    ----------
+    run : ControlRun
+    found : sequence of Row
+        The run's workingsteps.
+    trace : Trace
+        Of the same run.
+
+    Returns
+    -------
+    plotly.graph_objects.Figure
+    """
+    stretches = [
+        Stretch(name=row.name, begin=row.begin, duration=row.record.time) for row in found
+    ]
+    panels = Panels(trace)
+    panels.strip(stretches)
+    _events(panels, run)
+    _feed(panels, trace)
+    _force(panels, trace)
+    panels.begin("<b>Removal rate</b>, cm³/min", height=130)
+    panels.peaks("cm³/min", GREEN, Signal.REMOVAL_RATE, scale=0.06)
+    _override(panels, run)
+    _ratio(panels, trace)
+    _teeth(panels)
+    panels.begin("<b>Spindle power</b>, kW", height=110)
+    panels.peaks("kW", BLUE, Signal.SPINDLE_POWER_TRUE, scale=1e-3)
+    if _greatest(trace.curve(Signal.FLANK_WEAR).high) > 0.0:
+        panels.begin("<b>Flank wear</b>, µm", height=90)
+        panels.peaks("µm", DIM, Signal.FLANK_WEAR, scale=1e3)
+    figure = panels.done(stretches)
+    for time, _ in _interventions(run):
+        figure.add_shape(
+            type="line", xref="x", yref="paper", x0=time * panels.second,
+            x1=time * panels.second, y0=0.0, y1=1.0,
+            line={"color": ORANGE, "width": 1, "dash": "dash"},
+        )  # fmt: skip
+    return figure
+
+
+def chosen_events(run: ControlRun, most: int) -> tuple[Event, ...]:
+    """At most so many events in the order of time, grave ones first, beginnings last."""
+    if len(run.events) <= most:
+        return run.events
+
+    def rank(number: int) -> tuple[int, int]:
+        kind = run.events[number].kind
+        return (0 if kind in GRAVE else 2 if kind in PLAIN else 1), number
+
+    kept = sorted(sorted(range(len(run.events)), key=rank)[:most])
+    return tuple(run.events[number] for number in kept)
+
+
+def colour_of(kind: EventKind) -> str:
+    """By how bad an event is."""
+    if kind in GRAVE:
+        return RED
+    return DIM if kind in PLAIN else ORANGE
+
+
+def _interventions(run: ControlRun) -> list[tuple[float, str]]:
+    """Time and word of what was done to the run while it ran."""
+    return [
+        (time, word)
+        for word, has_come in disturbed(run)
+        if has_come and (time := time_of(word)) is not None
+    ]
+
+
+def _events(panels: Panels, run: ControlRun) -> None:
+    """What the loop told, and what was done to the run, as marks with their words."""
+    keys = " ".join((
+        key("grave", RED, "●"),
+        key("to be looked at", ORANGE, "●"),
+        key("plain", DIM, "●"),
+        key("disturbance or order", ORANGE, "┆"),
+    ))
+    hidden = {"showticklabels": False, "showgrid": False, "zeroline": False}
+    panels.begin(
+        f"<b>Events</b><br>{keys}", height=40, fixedrange=True, range=[-1.0, 1.0], **hidden
+    )
+    events = chosen_events(run, MOST_MARKS)
+    panels.add(
+        _marks(
+            [event.time * panels.second for event in events],
+            [f"{event.kind.value}: {event.text}" for event in events],
+            [colour_of(event.kind) for event in events],
+        )
+    )
+    done = _interventions(run)
+    marks = _marks(
+        [time * panels.second for time, _ in done],
+        [word for _, word in done],
+        [ORANGE] * len(done),
+    )
+    panels.add(marks.update(marker_symbol="diamond", marker_size=10))
+
+
+def _marks(times: Sequence[float], words: Sequence[str], colours: Sequence[str]) -> go.Scatter:
+    return go.Scatter(
+        x=list(times),
+        y=[0.0] * len(times),
+        mode="markers",
+        marker={"color": list(colours), "size": 8},
+        text=[escape(each) for each in words],
+        hovertemplate="%{text}<extra></extra>",
+        cliponaxis=False,
+    )
+
+
+def _feed(panels: Panels, trace: Trace) -> None:
+    """Feed as programmed and as it is; rapids are far above and leave the panel."""
+    keys = f"{key('programmed', GREY)} {key('actual', BLUE)}"
+    most = 60.0 * _greatest(trace.curve(Signal.FEED_PROGRAMMED).high)
+    title = f"<b>Feed rate</b>, mm/min<br>{keys} (rapids leave the frame)"
+    # A band above 100 % lets the actual feed rise above the programmed.
+    shown = [0.0, ROOM * 1.2 * most] if most > 0.0 else None
+    panels.begin(title, height=150, range=shown)
+    panels.peaks("actual", BLUE, Signal.FEED_ACTUAL, scale=60.0)
+    panels.peaks("programmed", GREY, Signal.FEED_PROGRAMMED, scale=60.0)
+
+
+def _force(panels: Panels, trace: Trace) -> None:
+    """Force of each revolution, what is expected at the feed that was run, and the bound."""
+    keys = " ".join((
+        key("measured", RED), key("expected", SKY), key("set point", DIM, "━"),
+    ))  # fmt: skip
+    force = _greatest(trace.curve(Signal.FORCE_MEASURED).high)
+    bound = _greatest(trace.curve(Signal.SET_POINT).high)
+    top = ROOM * max(force, min(bound, FAR * force))
+    title = f"<b>Cutting force</b>, tangential, mean of a revolution, N<br>{keys}"
+    if bound > FAR * force:
+        title += " (set points far above leave the frame)"
+    panels.begin(title, height=210, range=[0.0, top] if top > 0.0 else None)
+    middle = 0.5 * (trace.begin + trace.end) * panels.second
+    for name, colour, signal in (
+        ("expected", SKY, Signal.FORCE_EXPECTED), ("set point", DIM, Signal.SET_POINT),
+    ):  # fmt: skip
+        panels.add(line(name, colour, middle, trace.curve(signal).mean))
+    panels.peaks("measured", RED, Signal.FORCE_MEASURED)
+
+
+def _override(panels: Panels, run: ControlRun) -> None:
+    """Override as commanded and as the axes ran it."""
+    band = run.aims.band
+    keys = f"{key('commanded', GREY)} {key('actual', BLUE)}"
+    panels.begin(
+        f"<b>Feed override</b>, %<br>{keys} (band {100 * band.floor:g} to "
+        f"{100 * band.ceiling:g} %)",
+        height=130,
+        range=[0.0, 100.0 * ROOM * band.ceiling],
+    )
+    panels.peaks("commanded", GREY, Signal.OVERRIDE_COMMANDED, scale=100.0)
+    panels.peaks("actual", BLUE, Signal.OVERRIDE_ACTUAL, scale=100.0)
+
+
+def _ratio(panels: Panels, trace: Trace) -> None:
+    """What the knowledge base learns from: measured force over that of the catalogue's k_c."""
+    middle = 0.5 * (trace.begin + trace.end) * panels.second
+    mean = trace.curve(Signal.FORCE_RATIO).mean
+    known = mean[~np.isnan(mean)]
+    usual = float(np.quantile(known, USUAL)) if len(known) else 1.0
+    title = "<b>Measured over expected force</b>: the factor on k_c (spikes leave the frame)"
+    panels.begin(title, height=110, range=[0.0, ROOM * max(usual, 1.0)])
+    panels.add(line("factor", PINK, middle, mean))
+
+
+def _teeth(panels: Panels) -> None:
+    """Amplitudes at the teeth's frequency and at the spindle's: runout, a broken tooth."""
+    keys = f"{key('tooth passing', GREEN)} {key('once per revolution', ORANGE)}"
+    panels.begin(f"<b>Pattern of the teeth</b>, amplitudes, N<br>{keys}", height=130)
+    panels.peaks("tooth passing", GREEN, Signal.TOOTH_PASSING)
+    panels.peaks("once per revolution", ORANGE, Signal.ONCE_PER_REVOLUTION)
+
+
+def _greatest(values: Floats) -> float:
+    """Passing over what is missing; 0 of nothing."""
+    return float(np.fmax.reduce(values, initial=0.0))

@@ -1,0 +1,159 @@
+"""From a run under control to what the knowledge base keeps: one outcome a workingstep."""
+
+from dataclasses import dataclass
+from datetime import datetime
+from math import isfinite, pi
+
+import numpy as np
+
+from controller.estimate import force_ratio
+from controller.record import Record
+from optimiser.advice import Advice, State
+from optimiser.cut import Cut, CutKind
+from optimiser.limits import roughness_load
+from optimiser.region import region_of
+from service.control.planned import Planned
+from service.control.run import ControlRun
+from service.records import immersion
+from stepnc_model.entities.entity import Entity
+from stepnc_model.entities.optimisation import FaceMillingImmersion
+from stepnc_model.errors import SchemaError
+from stepnc_model.outcome import Context, FeatureFacts, ProcessOutcome, Quantity
+from stepnc_model.part21.values import Ref
+from stepnc_model.program import Program, Workingstep
+
+INSPECTION = 0.05
+"""standard deviation of an inspected roughness, as a share: a stylus instrument"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Recording:
+    """Who records what, and when."""
+
+    run: str
+    at: datetime
+    """with zone"""
+    by: str
+    trace: str = ""
+    seed: int = 0
+    """of the inspection of surfaces"""
+
+
+def outcomes_of(run: ControlRun, recording: Recording) -> tuple[ProcessOutcome, ...]:
+    """Outcomes of the workingsteps in which something was cut.
+
+    The roughness is what the feed that was run leaves by the model, with the error of an
+    inspection: a virtual machine leaves no surface to measure.
+    """
+    random = np.random.default_rng(recording.seed)
+    errors = 1.0 + INSPECTION * random.standard_normal(len(run.steps))
+    return tuple(
+        _outcome(run, step, recording, float(error))
+        for (advice, record), error in zip(run.steps, errors, strict=True)
+        if (step := _cut_step(run, advice, record)) is not None
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Step:
+    """A workingstep that was cut, with everything known of it."""
+
+    advice: Advice
+    cut: Cut
+    state: State
+    record: Record
+    planned: Planned
+
+
+def _cut_step(run: ControlRun, advice: Advice | None, record: Record) -> _Step | None:
+    """None where nothing was cut, or nothing is known of the plan."""
+    if advice is None or advice.cut is None or advice.before is None or not record.revolutions:
+        return None
+    planned = run.planned[record.workingstep]
+    return _Step(advice, advice.cut, advice.before, record, planned)
+
+
+def _outcome(
+    run: ControlRun, step: _Step, recording: Recording, error: float
+) -> ProcessOutcome:
+    """One outcome; the error is that of the inspected surface, as a factor."""
+    cut, setting, record = step.cut, step.state.setting, step.record
+    material, tool = run.material.material, step.advice.tool.id
+    per_tooth = record.feed / (cut.tool.teeth * setting.speed)
+    roughness = _roughness(cut, per_tooth)
+    return ProcessOutcome(
+        context=Context(machine=run.machine.name, material=material.name, tool=tool),
+        program=run.program.name,
+        workingstep=step.advice.workingstep.id,
+        feature=_feature(run.program, step.advice.workingstep, cut),
+        is_finishing=cut.is_finish_operation,
+        mode=run.criterion.value,
+        specific_force=material.kienzle.k_c11,
+        cutting_speed=pi * cut.diameter * setting.speed,
+        step_depth=Quantity(predicted=setting.depth),
+        feed_per_tooth=Quantity(predicted=setting.feed, measured=per_tooth),
+        immersion=_immersion(cut),
+        strategy=_strategy(run.program, step.advice.workingstep),
+        roughness=Quantity(
+            predicted=step.state.roughness,
+            measured=None if roughness is None else roughness * error,
+        ),
+        time=Quantity(predicted=step.planned.time, measured=record.time),
+        force=Quantity(
+            predicted=step.planned.force * step.advice.force_factor, measured=record.peak
+        ),
+        feed=Quantity(predicted=step.planned.feed, measured=record.feed),
+        force_bound=record.set_point if isfinite(record.set_point) else None,
+        force_ratio=force_ratio(record.ratio),
+        trace=recording.trace,
+        run=recording.run,
+        recorded_at=recording.at,
+        recorded_by=recording.by,
+    )
+
+
+def _roughness(cut: Cut, feed_per_tooth: float) -> float | None:
+    """Ra in mm that a feed per tooth leaves; None where the feed does not describe it."""
+    load = roughness_load(cut)
+    if load is None or not cut.is_finishing:
+        return None
+    return load.value(feed_per_tooth, 1.0, 1.0)
+
+
+def _immersion(cut: Cut) -> FaceMillingImmersion | None:
+    if cut.kind is not CutKind.MILLING or cut.engagement is None:
+        return None
+    return FaceMillingImmersion(immersion(cut.engagement))
+
+
+def _feature(program: Program, step: Workingstep, cut: Cut) -> FeatureFacts:
+    """Id, kind and sizes; the length is that of a rectangle of the same area."""
+    if not step.features:
+        return FeatureFacts(id="", kind="", total_depth=cut.total_depth)
+    ref = step.features[0]
+    entity = program.get(ref)
+    length = width = None
+    try:
+        region = region_of(program, ref)
+    except SchemaError:
+        # A feature that is no region: turned, or free in form.
+        region = None
+    if region is not None and region.area > 0.0:
+        length, width = region.area / region.width, region.width
+    return FeatureFacts(
+        id=_id(entity, ref),
+        kind=entity.express_name(),
+        length=length,
+        width=width,
+        total_depth=cut.total_depth,
+    )
+
+
+def _id(entity: Entity, ref: Ref[Entity]) -> str:
+    return str(getattr(entity, "its_id", "")) or str(ref)
+
+
+def _strategy(program: Program, step: Workingstep) -> str:
+    """EXPRESS name of the machining strategy, if the operation has one."""
+    ref = getattr(step.operation, "its_machining_strategy", None)
+    return "" if ref is None else program.get(ref).express_name()

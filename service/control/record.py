@@ -1,0 +1,42 @@
+"""A run under control, and its outcomes in the knowledge base."""
+
+import getpass
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from uuid import uuid4
+
+from service.control.outcomes import Recording, outcomes_of
+from service.control.run import ControlRequest, ControlRun, Watcher, control
+from service.knowledge.place import named_place
+from service.knowledge.verbs import record
+from service.reading import Tell, silent
+
+
+def control_recorded(
+    request: ControlRequest, *, tell: Tell = silent, watchers: Sequence[Watcher] = ()
+) -> ControlRun:
+    """Run a program under the loop, and keep what came out where a knowledge base is named.
+
+    What a run that was stopped or broken off has cut is not kept: its times are not those of
+    whole workingsteps.
+
+    Raises
+    ------
+    StepNcError
+        As :func:`service.control.run.control`, and when the knowledge base cannot take it.
+    """
+    place = named_place(request.knowledge)
+    run = control(request, tell=tell, watchers=watchers)
+    if place is None or run.is_stopped:
+        return run
+    recording = Recording(
+        run=uuid4().hex,
+        at=datetime.now(UTC),
+        by=request.recorded_by or getpass.getuser(),
+        trace="" if request.output is None else str(request.output.resolve()),
+        seed=request.seed,
+    )
+    outcomes = outcomes_of(run, recording)
+    record(place, outcomes)
+    tell(f"recorded: {len(outcomes)} outcomes, run {recording.run}")
+    return run

@@ -1,0 +1,119 @@
+"""What ``control`` plugs together: the course of the program, its plan, its workingsteps."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+
+import numpy as np
+
+from controller.aims import Step
+from controller.preview import Preview
+from controller.reference import Reference, reference_of
+from optimiser.advice import Advice, Plan
+from optimiser.formulate import Task
+from optimiser.modes import Mode
+from optimiser.optimise import optimise as advise
+from optimiser.source import from_features
+from service.chosen import load_material_named
+from service.control.planned import Planned
+from service.knowledge.corrected import factors_for
+from service.progress import Patience, Ticker, bar
+from service.reading import Tell
+from service.simulation.run import COMPILES, place_in, require_sense
+from service.simulation.setup import Prepared
+from simulator.errors import ProgramFault, SimulationError
+from simulator.machine.episode import Episode
+from simulator.machine.interpreter import interpret
+from simulator.machine.virtual import VirtualMachine
+from simulator.plant.course import NominalCourse, course_of
+from simulator.spec import Machine, MaterialMatch
+from stepnc_model.program import Program
+
+MOST_SECONDS = 86_400.0
+"""of a program under control: its course is held in memory, 10 MB for 1000 s"""
+
+CHIP = 0.1
+"""mm, thickness of the chip for which materials are compared"""
+
+
+def planned_course(prepared: Prepared, virtual: VirtualMachine, tell: Tell) -> NominalCourse:
+    """What the program does at an override of 1."""
+    ticker = Ticker(tell)
+
+    def episodes(patience: Patience) -> Iterator[Episode]:
+        for episode in virtual.run(interpret(prepared.blocks, virtual.machine)):
+            patience.end()
+            require_sense(episode)
+            if episode.end > MOST_SECONDS:
+                text = f"{episode.end:.3g} s of machining: {MOST_SECONDS:g} s under control"
+                raise ProgramFault(f"{text} at most", episode.state.line)
+            ticker(lambda: f"{bar(prepared.done())}  the run is planned")
+            yield episode
+
+    try:
+        with Patience(tell, COMPILES) as patience:
+            return course_of(episodes(patience), virtual.machine)
+    except SimulationError as error:
+        raise SimulationError(f"{place_in(prepared, virtual)}: {error}") from error
+
+
+def preview_of(course: NominalCourse) -> Preview:
+    """What the program expects: the force where the override acts."""
+    force = np.where(course.can_override, course.force, np.float32(0.0))
+    return Preview(until=course.until, force=force)
+
+
+def hardness_against(match: MaterialMatch) -> Callable[[str], float]:
+    """k_c of another material over that of the one that is cut, at a chip of 0.1 mm."""
+    cut = match.material.kienzle
+
+    def ratio(name: str) -> float:
+        other = load_material_named(name).material.kienzle
+        return float(other.k_c11 / cut.k_c11 * CHIP ** (cut.m_c - other.m_c))
+
+    return ratio
+
+
+def plan_as_it_is(
+    program: Program,
+    machine: Machine,
+    *,
+    material: MaterialMatch,
+    mode: Mode,
+    knowledge: str,
+) -> Plan:
+    """What the limits say of the program as it is, with what was learned of its tools."""
+    factors = factors_for(
+        knowledge,
+        program,
+        program.workingsteps,
+        machine=machine,
+        material=material,
+        safety=0.5,
+        is_new_allowed=True,
+    )
+    task = Task(
+        mode=mode,
+        free=frozenset(),
+        force_factors={each.tool: each.factor for each in factors},
+        source=from_features,
+    )
+    return advise(program, machine=machine, material=material, task=task)
+
+
+def steps_of(planned: Mapping[int, Planned], advices: Sequence[Advice | None]) -> list[Step]:
+    """Workingsteps with what is planned of their cuts."""
+    return [
+        _step(planned.get(number, Planned()), advice)
+        for number, advice in enumerate(advices, 1)
+    ]
+
+
+def _step(planned: Planned, advice: Advice | None) -> Step:
+    if advice is None:
+        inhibition = "the program says nothing of its limits"
+        return Step(reference=Reference(workingstep="", inhibition=inhibition))
+    return Step(
+        reference=reference_of(advice),
+        tool=advice.tool.id,
+        exponent=planned.exponent,
+        diameter=planned.diameter,
+    )

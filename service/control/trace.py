@@ -1,0 +1,299 @@
+"""A run under control, revolution by revolution: for a file, and for plots.
+
+A row is a revolution of the spindle; where there is none (rapid, a dwell, a spindle at rest)
+rows are a quarter of a second apart. What is true is the mean over the row, what is measured
+that of the revolution. Running state. Units mm, s, N, W.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import IntEnum, StrEnum
+from math import inf, isfinite, nan
+from types import TracebackType
+from typing import NamedTuple
+
+import numpy as np
+import pyarrow as pa
+
+from controller.cycle import Cycle
+from service.buckets import Buckets, Trace
+from service.control.holding import Holdings
+from service.run_file import WORDS, RunFile
+from simulator.plant.controlled import Truth
+from simulator.plant.course import NominalCourse
+
+ROWS = 8192
+"""in one group of the file"""
+
+APART = 0.25
+"""s between rows without a revolution, at least"""
+
+
+class Moment(NamedTuple):
+    """One row; NaN: not known, or there is none."""
+
+    time: float
+    progress: float
+    workingstep: str
+    x: float
+    y: float
+    z: float
+    feed_programmed: float
+    feed_actual: float
+    override_commanded: float
+    override_actual: float
+    set_point: float
+    force_measured: float
+    force_peak: float
+    force_true: float
+    force_expected: float
+    force_ratio: float
+    tooth_passing: float
+    once_per_revolution: float
+    spindle_power: float
+    spindle_power_true: float
+    removal_rate: float
+    axial_depth: float
+    flank_wear: float
+    level: str
+    holding: str
+    event: str | None
+
+
+class Kind(StrEnum):
+    """How a column is kept."""
+
+    EXACT = "64 bits"
+    NUMBER = "32 bits"
+    WORDS = "words"
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """One column of the file."""
+
+    name: str
+    unit: str = ""
+    kind: Kind = Kind.NUMBER
+
+
+COLUMNS = (
+    Column("time_s", "s", Kind.EXACT),
+    Column("progress_s", "s", Kind.EXACT),
+    Column("workingstep", kind=Kind.WORDS),
+    Column("x_axis_position_actual", "mm"),
+    Column("y_axis_position_actual", "mm"),
+    Column("z_axis_position_actual", "mm"),
+    Column("path_feedrate_programmed", "mm/s"),
+    Column("path_feedrate_actual", "mm/s"),
+    Column("override_commanded", "1"),
+    Column("override_actual", "1"),
+    Column("force_set_point", "N"),
+    Column("force_measured", "N"),
+    Column("force_peak", "N"),
+    Column("force_true", "N"),
+    Column("force_expected", "N"),
+    Column("force_ratio", "1"),
+    Column("force_tooth_passing", "N"),
+    Column("force_once_per_revolution", "N"),
+    Column("spindle_power", "W"),
+    Column("spindle_power_true", "W"),
+    Column("removal_rate", "mm³/s"),
+    Column("axial_depth", "mm"),
+    Column("flank_wear", "mm"),
+    Column("level", kind=Kind.WORDS),
+    Column("holding", kind=Kind.WORDS),
+    Column("event", kind=Kind.WORDS),
+)
+"""in the order of :class:`Moment`"""
+
+
+class Signal(IntEnum):
+    """What plots need of a row; the number is its column in the trace."""
+
+    FEED_PROGRAMMED = 0
+    FEED_ACTUAL = 1
+    OVERRIDE_COMMANDED = 2
+    OVERRIDE_ACTUAL = 3
+    SET_POINT = 4
+    FORCE_MEASURED = 5
+    FORCE_EXPECTED = 6
+    FORCE_RATIO = 7
+    TOOTH_PASSING = 8
+    ONCE_PER_REVOLUTION = 9
+    SPINDLE_POWER_TRUE = 10
+    REMOVAL_RATE = 11
+    FLANK_WEAR = 12
+
+
+_PLACES = [Moment._fields.index(signal.name.lower()) for signal in Signal]
+
+
+def control_schema() -> pa.Schema:
+    """Names and types of the columns, each with its unit as metadata."""
+    kinds = {Kind.EXACT: pa.float64(), Kind.NUMBER: pa.float32(), Kind.WORDS: WORDS}
+    return pa.schema([
+        pa.field(column.name, kinds[column.kind], metadata={"unit": column.unit})
+        for column in COLUMNS
+    ])
+
+
+@dataclass(slots=True)
+class _Sums:
+    """What was true since the last row. Running state."""
+
+    period: float = 0.0
+    feed: float = 0.0
+    override: float = 0.0
+    force: float = 0.0
+    power: float = 0.0
+    removal: float = 0.0
+
+    def add(self, cycle: Cycle, truth: Truth) -> None:
+        reading = cycle.reading
+        period = reading.period
+        self.period += period
+        self.feed += period * reading.feed
+        self.override += period * reading.override
+        self.force += period * truth.force
+        self.power += period * truth.power
+        self.removal += period * truth.removal_rate
+
+
+class ControlTrace:
+    """Looks at each cycle, and hands rows on in bulk. Running state; use it with ``with``.
+
+    Parameters
+    ----------
+    course : NominalCourse
+    holdings : Holdings
+        Which has seen each cycle before.
+    workingsteps : sequence of str
+        Ids by their number, from 1.
+    file : RunFile, optional
+        With the columns of :func:`control_schema`; it is closed at the end.
+    has_trace : bool
+        Whether there will be plots.
+    """
+
+    def __init__(
+        self,
+        course: NominalCourse,
+        holdings: Holdings,
+        *,
+        workingsteps: Sequence[str],
+        file: RunFile | None,
+        has_trace: bool,
+    ) -> None:
+        self.file = file
+        self._course, self._holdings = course, holdings
+        self._names = ("", *workingsteps)
+        self._buckets = Buckets(len(Signal)) if has_trace else None
+        self._moments: list[Moment] = []
+        self._sums = _Sums()
+        self._events: list[str] = []
+        self._last: tuple[Cycle, Truth] | None = None
+        self._written = -inf
+
+    def __enter__(self) -> "ControlTrace":
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        if self.file is None:
+            self._end()
+            return
+        with self.file.closing(is_whole=kind is None):
+            self._end()
+
+    @property
+    def rows(self) -> int:
+        """That are in the file."""
+        return 0 if self.file is None else self.file.rows
+
+    def __call__(self, cycle: Cycle, truth: Truth) -> None:
+        """One more cycle, and what really was."""
+        self._sums.add(cycle, truth)
+        for event in cycle.events:
+            self._events.append(f"{event.kind.value}: {event.text}")
+        self._last = cycle, truth
+        is_due = cycle.revolution is not None or cycle.reading.time - self._written >= APART
+        if is_due:
+            self._add(cycle, truth)
+
+    def trace(self) -> Trace | None:
+        """The run for plots; None when none was asked for."""
+        return None if self._buckets is None else self._buckets.trace()
+
+    def _add(self, cycle: Cycle, truth: Truth) -> None:
+        """One more row."""
+        self._moments.append(self._moment(cycle, truth))
+        self._written = cycle.reading.time
+        self._sums, self._last = _Sums(), None
+        self._events.clear()
+        if len(self._moments) >= ROWS:
+            self._flush()
+
+    def _moment(self, cycle: Cycle, truth: Truth) -> Moment:
+        reading, sums, turn, course = cycle.reading, self._sums, cycle.revolution, self._course
+        x, y, z = course.position[truth.cell].tolist()
+        period = sums.period
+        return Moment(
+            time=reading.time,
+            progress=reading.progress,
+            workingstep=self._names[reading.workingstep],
+            x=x,
+            y=y,
+            z=z,
+            feed_programmed=float(course.programmed[truth.cell]),
+            feed_actual=sums.feed / period,
+            override_commanded=cycle.allowed.override,
+            override_actual=sums.override / period if reading.can_override else nan,
+            set_point=cycle.set_point if isfinite(cycle.set_point) else nan,
+            force_measured=nan if turn is None else turn.force,
+            force_peak=nan if turn is None else turn.peak,
+            force_true=sums.force / period,
+            force_expected=nan if turn is None else cycle.expected,
+            force_ratio=nan if cycle.ratio is None else float(np.exp(cycle.ratio)),
+            tooth_passing=nan if turn is None else turn.tooth_passing,
+            once_per_revolution=nan if turn is None else turn.once_per_revolution,
+            spindle_power=reading.power if turn is None else turn.power,
+            spindle_power_true=sums.power / period,
+            removal_rate=sums.removal / period,
+            axial_depth=truth.axial_depth,
+            flank_wear=truth.flank_wear,
+            level=self._holdings.level.value,
+            holding=self._holdings.words,
+            event="; ".join(self._events) or None,
+        )
+
+    def _end(self) -> None:
+        """The row that was not due yet, and all that wait."""
+        if self._last is not None:
+            self._add(*self._last)
+        self._flush()
+
+    def _flush(self) -> None:
+        if not self._moments:
+            return
+        columns = list(zip(*self._moments, strict=True))
+        self._moments.clear()
+        if self._buckets is not None:
+            values = np.column_stack([np.array(columns[place]) for place in _PLACES])
+            self._buckets.add(np.array(columns[0]), values)
+        if self.file is not None:
+            self.file.write([
+                _array(column, values) for column, values in zip(COLUMNS, columns, strict=True)
+            ])
+
+
+def _array(column: Column, values: Sequence[object]) -> pa.Array:
+    """One column of the file."""
+    if column.kind is Kind.WORDS:
+        return pa.array(values, pa.string()).dictionary_encode()
+    kind = pa.float64() if column.kind is Kind.EXACT else pa.float32()
+    return pa.array(np.array(values), kind, from_pandas=True)

@@ -1,0 +1,83 @@
+"""What a plan takes from the knowledge base: accepted factors on k_c, by tool."""
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+from simulator.spec import Machine, MaterialMatch
+from stepnc_model.errors import Finding, Severity, StepNcError
+from stepnc_model.program import Program, Workingstep
+from stepnc_model.tool import tool_of
+
+if TYPE_CHECKING:
+    from service.knowledge.verbs import AcceptedFactor
+
+SAFETY = 0.9
+"""quantile of the factor on k_c: one run in ten needs more force than planned"""
+
+
+def factors_for(  # noqa: PLR0913 (all that a context is made of)
+    place: str,
+    program: Program,
+    steps: Iterable[Workingstep],
+    *,
+    machine: Machine,
+    material: MaterialMatch,
+    safety: float = SAFETY,
+    is_new_allowed: bool = False,
+) -> "tuple[AcceptedFactor, ...]":
+    """Accepted factors of the tools of some workingsteps.
+
+    Parameters
+    ----------
+    place : str
+        File or URL; when empty that of the environment, and where there is none: no factors.
+    program : Program
+    steps : iterable of Workingstep
+    machine : Machine
+    material : MaterialMatch
+    safety : float
+        Quantile of the factor that the plan takes, 0.5 to below 1.
+    is_new_allowed : bool
+        Whether it may be a file that is still to be made.
+
+    Raises
+    ------
+    StepNcError
+        When the quantile is out of range, or the knowledge base cannot be read.
+    """
+    if not 0.5 <= safety < 1.0:
+        raise StepNcError(f"safety {safety:g}: it must be at least 0.5 and below 1")
+    from service.knowledge.place import named_place  # noqa: PLC0415 (os and paths only when asked)
+
+    found = named_place(place)
+    if found is None:
+        return ()
+    from service.knowledge.verbs import accepted_factors  # noqa: PLC0415 (SQLAlchemy)
+
+    tools = sorted({tool_of(program, step.tool_ref).id for step in steps})
+    return accepted_factors(
+        found,
+        machine=machine.name,
+        material=material.material.name,
+        tools=tools,
+        quantile=safety,
+        is_new_allowed=is_new_allowed,
+    )
+
+
+def finding_of(factor: "AcceptedFactor", *, safety: float) -> Finding:
+    """What the user reads of a factor."""
+    when = factor.accepted_at.date().isoformat()
+    text = (
+        f"tool '{factor.tool}': learned k_c × {factor.centre:.3f} from {factor.outcomes} "
+        f"outcomes, accepted by {factor.accepted_by} on {when}; planned with its "
+        f"{100.0 * safety:g} % quantile, × {factor.factor:.3f}"
+    )
+    return Finding(severity=Severity.NOTE, message=text)
+
+
+def with_corrections(program: Program, factors: "Iterable[AcceptedFactor]") -> bytes:
+    """The program with the corrections that its plan took, as entities."""
+    from stepnc_model.outcome_record import write_outcomes  # noqa: PLC0415 (only when learned)
+
+    return write_outcomes(program, (), [each.correction for each in factors])

@@ -1,0 +1,69 @@
+"""Outcomes and corrections as rows of a file: columns as the database has them, with units.
+
+Canonical units (mm, s, N), so that what is read back is what was stored.
+"""
+
+from collections.abc import Iterable, Iterator, Sequence
+from datetime import datetime
+from pathlib import Path
+
+from kbe.factor import interval
+from kbe.ledger import Entry
+from kbe.rows import CORRECTION, OUTCOME
+from kbe.schema import DECIDED
+from kbe.selection import Selection
+from service.flat_file import Field, Format, Row, write_rows
+from service.knowledge.verbs import corrections, selected_outcomes
+from stepnc_model.outcome import ProcessOutcome
+
+OUTCOME_FIELDS = tuple(Field(name=leaf.name, kind=leaf.kind) for leaf in OUTCOME.leaves)
+
+CORRECTION_FIELDS = (
+    Field(name="id", kind=int),
+    *(Field(name=leaf.name, kind=leaf.kind) for leaf in CORRECTION.leaves
+      if leaf.name not in DECIDED),
+    Field(name="factor", kind=float),
+    Field(name="factor_low", kind=float),
+    Field(name="factor_high", kind=float),
+    Field(name="standing", kind=str),
+    Field(name="decided_by", kind=str),
+    Field(name="decided_at", kind=datetime),
+)  # fmt: skip
+
+
+def export_outcomes(place: str, selection: Selection, *, file: Path, form: Format) -> int:
+    """Write outcomes to a file, oldest first; how many.
+
+    Raises
+    ------
+    KnowledgeError, WriteError
+        When they cannot be read, or not be written.
+    """
+    with selected_outcomes(place, selection) as found:
+        return write_rows(file, OUTCOME_FIELDS, outcome_rows(found), form=form)
+
+
+def export_corrections(place: str, *, file: Path, form: Format) -> int:
+    """Write all corrections to a file; errors as :func:`export_outcomes`."""
+    return write_rows(file, CORRECTION_FIELDS, correction_rows(corrections(place)), form=form)
+
+
+def outcome_rows(outcomes: Iterable[ProcessOutcome]) -> Iterator[Row]:
+    """Columns of the database."""
+    return map(OUTCOME.row, outcomes)
+
+
+def correction_rows(entries: Sequence[Entry]) -> Iterator[Row]:
+    """Columns of the database, the factor with its 90 % interval, and the last decision."""
+    for entry in entries:
+        found = interval(entry.correction)
+        yield {
+            **CORRECTION.row(entry.correction),
+            "id": entry.id,
+            "factor": found.centre,
+            "factor_low": found.low,
+            "factor_high": found.high,
+            "standing": entry.standing.value,
+            "decided_by": entry.decided_by,
+            "decided_at": entry.decided_at,
+        }

@@ -1,0 +1,144 @@
+"""The review of the knowledge base: learn from outcomes, and propose what is new or changed.
+
+Nothing that is proposed is taken by a plan before it is accepted. A person accepts it; or,
+where that is asked for, nobody does, when it keeps the bounds of :mod:`kbe.acceptance`.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from datetime import UTC, datetime
+from enum import StrEnum
+from math import expm1
+
+from kbe.acceptance import Bounds, Objection, objections
+from kbe.corrections import Learned, learned
+from kbe.ledger import Entry, Standing
+from kbe.selection import EVERYTHING, Selection
+from kbe.store import Store
+from service.knowledge.verbs import readable
+from stepnc_model.outcome import Context, Correction
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReviewRequest:
+    """What to learn from, and whether to accept what is beyond doubt."""
+
+    selection: Selection = EVERYTHING
+    by: str
+    """who reviews"""
+    is_automatic: bool = False
+    """accept what keeps the bounds"""
+    bounds: Bounds = field(default_factory=Bounds)
+
+
+class Change(StrEnum):
+    """What a review did about one context."""
+
+    NOTHING_TO_LEARN = "nothing to learn from"
+    PROPOSED = "proposed"
+    UNCHANGED = "unchanged"
+    ACCEPTED = "accepted"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Reviewed:
+    """What a review found out about one context."""
+
+    learned: Learned
+    change: Change
+    entry: Entry | None
+    """the stored correction that says so; None: nothing to learn from"""
+    accepted: Correction | None
+    """in force before the review"""
+    objections: tuple[Objection, ...]
+    """against accepting it without a person"""
+
+
+SAME = 0.005
+"""change of the factor below which, with no more outcomes, nothing new is proposed"""
+
+AUTOMATIC = "{by} (automatically)"
+"""who accepted when no person looked"""
+
+
+def review(place: str, request: ReviewRequest) -> tuple[Reviewed, ...]:
+    """Learn from outcomes and propose what is new or changed, context after context."""
+    with readable(place) as store:
+        if store is None:
+            return ()
+        latest = {entry.correction.context: entry for entry in store.corrections()}
+        now = datetime.now(UTC)
+        found = [
+            _reviewed(store, each, latest.get(each.context), request=request)
+            for each in _learned(store, request.selection, at=now)
+        ]
+        return tuple(found)
+
+
+def _learned(store: Store, selection: Selection, *, at: datetime) -> Iterator[Learned]:
+    """One context after the other, so that only the outcomes of one are in memory."""
+    for context in store.contexts():
+        narrowed = narrowed_to(context, selection)
+        if narrowed is not None:
+            yield from learned(store.outcomes(narrowed), at=at)
+
+
+def narrowed_to(context: Context, selection: Selection) -> Selection | None:
+    """The selection within one context; None: they have nothing in common."""
+    names = ("machine", "material", "tool")
+    asked = [getattr(selection, name) for name in names]
+    given = [getattr(context, name) for name in names]
+    if any(one not in {None, other} for one, other in zip(asked, given, strict=True)):
+        return None
+    return replace(
+        selection, machine=context.machine, material=context.material, tool=context.tool
+    )
+
+
+def _reviewed(
+    store: Store, found: Learned, latest: Entry | None, *, request: ReviewRequest
+) -> Reviewed:
+    """Propose, and accept where that is wished and nothing speaks against it."""
+    accepted = store.accepted(found.context)
+    proposed = found.correction
+    if proposed is None:
+        return Reviewed(
+            learned=found,
+            change=Change.NOTHING_TO_LEARN,
+            entry=None,
+            accepted=accepted,
+            objections=(),
+        )
+    entry, change = latest, Change.UNCHANGED
+    if entry is None or is_changed(proposed, entry.correction):
+        entry, change = _proposed(store, proposed), Change.PROPOSED
+    against = objections(proposed, accepted, bounds=request.bounds)
+    # What a person has decided about is not decided again by nobody.
+    if request.is_automatic and not against and entry.standing is Standing.PROPOSED:
+        by, at = AUTOMATIC.format(by=request.by), datetime.now(UTC)
+        store.accept(entry.id, by=by, at=at)
+        taken = replace(entry.correction, accepted_by=by, accepted_at=at)
+        entry = replace(
+            entry, correction=taken, standing=Standing.ACCEPTED, decided_by=by, decided_at=at
+        )
+        change = Change.ACCEPTED
+    return Reviewed(
+        learned=found, change=change, entry=entry, accepted=accepted, objections=against
+    )
+
+
+def is_changed(proposed: Correction, before: Correction) -> bool:
+    """Whether it says something that the last proposal did not."""
+    change = abs(expm1(proposed.log_centre - before.log_centre))
+    return proposed.outcomes > before.outcomes or change > SAME
+
+
+def _proposed(store: Store, proposed: Correction) -> Entry:
+    """Keep a proposal."""
+    return Entry(
+        id=store.propose(proposed),
+        correction=proposed,
+        standing=Standing.PROPOSED,
+        decided_by="",
+        decided_at=None,
+    )

@@ -1,0 +1,1 @@
+"""Tool paths, and NC code made of them."""

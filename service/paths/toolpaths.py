@@ -1,0 +1,204 @@
+"""Tool paths and NC code of a program: the verbs ``toolpath``, ``post`` and ``canonical``."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from service.files import (
+    beside,
+    read_bytes,
+    require_place,
+    write_atomically,
+    write_lines,
+)
+from service.progress import Progress
+from service.reading import Tell, one_of, read_program, silent
+from stepnc_model.entities.entity import Entity
+from stepnc_model.entities.setup import Setup
+from stepnc_model.errors import Finding, PostError, SchemaError, StepNcError, WriteError
+from stepnc_model.part21.values import Ref
+from stepnc_model.plausibility import refusal
+from stepnc_model.post.blocks import Cycles, Machine
+from stepnc_model.post.controls import Control, read, write
+from stepnc_model.post.neutral import blocks_of
+from stepnc_model.program import Executable, Program
+from stepnc_model.technology import programmed
+from stepnc_model.toolpath.function import LEFT_OUT, Function
+from stepnc_model.toolpath.generate import generate, raised, require_ready
+from stepnc_model.toolpath.job import Stock, clamps_of, stock_of
+from stepnc_model.toolpath.path import Point, ToolPath
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Paths:
+    """What a program makes the tool do."""
+
+    program: Program
+    items: tuple[ToolPath | Function, ...]
+    faults: tuple[SchemaError, ...]
+    """why some executables were left out"""
+
+    @property
+    def paths(self) -> tuple[ToolPath, ...]:
+        """The tool paths without the functions between them."""
+        return tuple(item for item in self.items if isinstance(item, ToolPath))
+
+    @property
+    def clamps(self) -> tuple[Point, ...]:
+        """Where the workpiece is clamped, in the setup of the first workingstep."""
+        return clamps_of(self.program, self._setup)
+
+    @property
+    def stock(self) -> Stock | None:
+        """The raw part there."""
+        return stock_of(self.program, self._setup)
+
+    @property
+    def _setup(self) -> Ref[Setup] | None:
+        return next((step.setup for step in self.program.workingsteps), None)
+
+    @property
+    def findings(self) -> tuple[Finding, ...]:
+        """What was assumed."""
+        return tuple(finding for path in self.paths for finding in path.findings)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PostRequest:
+    """What the user asks of ``post``."""
+
+    file: Path
+    control: str
+    units: str = "iso"
+    output: Path | None = None
+    cycles: bool = False
+    keep_going: bool = False
+
+
+def tool_paths(
+    path: Path, *, units: str = "iso", keep_going: bool = False, tell: Tell = silent
+) -> Paths:
+    """Tool paths of a program, made or given.
+
+    Raises
+    ------
+    StepNcError
+        At the first executable for which no path can be made, unless it keeps going.
+    """
+    return paths_of(read_program(path, units=units), keep_going=keep_going, tell=tell)
+
+
+def paths_of(program: Program, *, keep_going: bool = False, tell: Tell = silent) -> Paths:
+    """Tool paths of a program that is read already."""
+    faults: list[SchemaError] = []
+    progress = Progress(tell, total=len(program.workingsteps))
+    items: list[ToolPath | Function] = []
+
+    def left_out(executable: Executable, fault: SchemaError) -> None:
+        faults.append(fault)
+        items.append(_left_out(executable.ref, executable.id))
+        tell(f"left out: '{executable.id}': {fault}")
+
+    for item in generate(program, left_out if keep_going else raised):
+        items.append(item)
+        progress()
+    if not any(isinstance(item, ToolPath) for item in items):
+        raise faults[0] if faults else SchemaError("the program has nothing to machine")
+    return Paths(program=program, items=tuple(items), faults=tuple(faults))
+
+
+def plot(paths: Paths, file: Path, picture: Path) -> None:
+    """Draw the tool paths of a file into a PNG file."""
+    from service.paths.plot import path_png  # noqa: PLC0415 (matplotlib takes a second)
+
+    if picture.suffix.lower() != ".png":
+        raise WriteError("a picture is a .png file", path=str(picture))
+    require_place(picture, apart_from=file)
+    data = path_png(paths.paths, paths.stock, paths.clamps, title=paths.program.name)
+    write_atomically(picture, data)
+
+
+def post(request: PostRequest, *, tell: Tell = silent) -> Paths:
+    """Write NC code for a control.
+
+    Raises
+    ------
+    StepNcError
+        When the control is unknown, a path cannot be made, or the file cannot be written.
+    """
+    control = one_of(Control, request.control.lower(), "control")
+    output = request.output or beside(request.file, control.suffix)
+    require_place(output, apart_from=request.file)
+    program = read_program(request.file, units=request.units)
+    error = refusal(program, program.workingsteps)
+    if error is not None:
+        raise error
+    paths = paths_of(program, keep_going=request.keep_going, tell=tell)
+    paths = with_feeds(paths, keep_going=request.keep_going, tell=tell)
+    cycles = Cycles.OWN if request.cycles else Cycles.EXPANDED
+    count = write_lines(output, nc_lines(paths, control, cycles))
+    tell(f"written: {output} ({count} lines)")
+    return paths
+
+
+def with_feeds(paths: Paths, *, keep_going: bool, tell: Tell = silent) -> Paths:
+    """The paths whose technology says how fast to run: a control cannot do without.
+
+    Raises
+    ------
+    SchemaError
+        At the first other path, unless it keeps going.
+    """
+    items: list[ToolPath | Function] = []
+    faults: list[SchemaError] = []
+    steps = {int(step.ref): step for step in paths.program.workingsteps}
+    missing: dict[int, str] = {}
+    for item in paths.items:
+        step = steps.get(int(item.workingstep)) if isinstance(item, ToolPath) else None
+        try:
+            if step is not None:
+                require_ready(paths.program, step, missing)
+                programmed(paths.program, step.technology_ref)
+            items.append(item)
+        except SchemaError as fault:
+            if not keep_going:
+                raise
+            if step is not None:
+                missing |= {int(feature): step.id for feature in step.features}
+                items.append(_left_out(step.ref, step.id))
+            faults.append(fault)
+            tell(f"left out: '{item.id}': {fault}")
+    if not any(isinstance(item, ToolPath) for item in items):
+        raise faults[0]
+    return replace(paths, items=tuple(items), faults=(*paths.faults, *faults))
+
+
+def _left_out(ref: Ref[Entity], name: str) -> Function:
+    """Where a workingstep is missing, so that NC code says so."""
+    return Function(ref=ref, keyword=LEFT_OUT, id=name)
+
+
+def nc_lines(paths: Paths, control: Control, cycles: Cycles = Cycles.EXPANDED) -> Iterator[str]:
+    """NC code of tool paths, line by line."""
+    blocks = blocks_of(paths.program, paths.items, name=Path(paths.program.name).stem)
+    return write(blocks, control, cycles=cycles)
+
+
+def canonical_of(path: Path, *, control: str, is_lathe: bool) -> Iterator[str]:
+    """Canonical commands of NC code, as lines.
+
+    Raises
+    ------
+    StepNcError
+        When the control is unknown, or a line cannot be read.
+    """
+    dialect = one_of(Control, control.lower(), "control")
+    machine = Machine.LATHE if is_lathe else Machine.MILL
+    lines = read_bytes(path).decode("utf-8", errors="replace").splitlines()
+    try:
+        commands = read(lines, dialect, machine=machine)
+    except PostError as error:
+        may_be_lathe = dialect in {Control.FANUC, Control.HAAS} and not is_lathe
+        hint = " (code for a lathe is read with --lathe)" if may_be_lathe else ""
+        raise StepNcError(f"{path.name}: {error}{hint}") from error
+    return (str(command) for command in commands)

@@ -1,0 +1,386 @@
+"""The verb ``simulate``: a program on the virtual machine."""
+
+from collections.abc import Callable
+from contextlib import nullcontext
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from pathlib import Path
+
+from service.buckets import Trace
+from service.files import require_place
+from service.progress import Patience, Ticker, bar
+from service.reading import Tell, one_of, silent
+from service.run_file import require_suffix
+from service.simulation.setup import (
+    CodeRequest,
+    Prepared,
+    from_code,
+    from_program,
+    numbers_in,
+)
+from service.simulation.timeline_file import TimelineFile
+from service.simulation.trace import TraceKeeper
+from simulator.errors import ProgramFault, SimulationError
+from simulator.machine.disturbance import Disturbance, Disturbed, NoiseKind
+from simulator.machine.episode import Episode
+from simulator.machine.interpreter import interpret
+from simulator.machine.samples import Execution
+from simulator.machine.sensing import Sampler
+from simulator.machine.tooth_loads import Teeth
+from simulator.machine.totals import Total, added
+from simulator.machine.transients import Response
+from simulator.machine.travel import Zero, zero_of
+from simulator.machine.virtual import LoadedTool, Setup, VirtualMachine
+from simulator.motion.control import DEVIATION, Control, control_model
+from simulator.motion.fir import FixedTimeFilter
+from simulator.motion.motion import ControlModel, axis_limits
+from simulator.spec import Machine, MachineKind, MaterialMatch
+from stepnc_model.errors import Finding, StepNcError, WriteError
+from stepnc_model.units import mm_from_um
+
+COMPILES = "removal is compiled for this machine, once: about half a minute"
+
+MOST_FACTOR = 100.0
+"""on k_c; more is a slip"""
+
+MOST_RATE = 10_000.0
+"""1/s"""
+
+MOST_RUNOUT_UM = 500.0
+
+MOST_DEVIATION = 10.0
+"""mm, of the junctions"""
+
+LEAST_FILTER, MOST_FILTER = 1e-6, 100.0
+"""s"""
+
+MOST_SECONDS = 1e7
+"""of machining, a hundred days: a slip of the feed or of a dwell rather than a program"""
+
+
+class ForceView(StrEnum):
+    """How forces are shown."""
+
+    MEAN = "mean"
+    """over a revolution"""
+    TOOTH = "tooth"
+    """of the teeth that cut at each time"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SimulationRequest:
+    """What the user asks of ``simulate``, in the user's units."""
+
+    file: Path | None = None
+    code: CodeRequest | None = None
+    machine: str = ""
+    material: str = ""
+    units: str = "iso"
+    rate: float = 10.0
+    control: str = Control.FIR.value
+    filter_s: str = ""
+    """times of the fixed-time filter, "T1,T2"; by the axes when empty"""
+    deviation: float = DEVIATION
+    """mm, of the junctions"""
+    zero: str = ""
+    noise: str = NoiseKind.NONE.value
+    missing: float = 0.0
+    has_lag: bool = False
+    """the main drive answers late and too far"""
+    has_wear: bool = False
+    """tools wear while they cut"""
+    force: str = ForceView.MEAN.value
+    runout_um: float = 0.0
+    kc_factor: float = 1.0
+    """on the specific cutting force"""
+    seed: int = 0
+    output: Path | None = None
+    report: Path | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Simulation:
+    """What ``simulate`` found."""
+
+    program: str
+    machine: Machine
+    control: Control
+    material: MaterialMatch | None = None
+    """None: not known"""
+    totals: tuple[tuple[str, Total], ...]
+    """by workingstep in the order of their beginning; the first is what comes before them"""
+    findings: tuple[Finding, ...]
+    samples: int = 0
+    """that were written"""
+    trace: Trace | None = None
+    """for a report, when one was asked for"""
+
+    @property
+    def whole(self) -> Total:
+        """Of the whole run."""
+        total = Total()
+        for _, part in self.totals:
+            total = total.plus(part)
+        return total
+
+
+def simulate(request: SimulationRequest, *, tell: Tell = silent) -> Simulation:
+    """Run a program on the virtual machine.
+
+    Raises
+    ------
+    StepNcError
+        For everything that is wrong with file, names, numbers or output.
+    """
+    kind, disturbance = _control_kind(request), _disturbance(request)
+    prepared, virtual = waiting_machine(request, tell=tell)
+    run = _Run(virtual, _of_machine(disturbance, virtual.machine), rate=request.rate)
+    if request.report is not None:
+        run.trace = TraceKeeper()
+    if request.output is not None:
+        run.file = TimelineFile(request.output, virtual.workingsteps, program=prepared.name)
+    ticker = Ticker(tell)
+    try:
+        with run.file or nullcontext(), Patience(tell, COMPILES) as patience:
+            for episode in virtual.run(interpret(prepared.blocks, virtual.machine)):
+                patience.end()
+                run.add(episode, ticked=lambda: ticker(lambda: _progress(prepared, virtual)))
+    except SimulationError as error:
+        raise SimulationError(f"{place_in(prepared, virtual)}: {error}") from error
+    finally:
+        if run.file is not None and run.file.place is not None:
+            tell(f"written: {run.file.place} ({run.file.rows} samples)")
+    return Simulation(
+        program=prepared.name,
+        machine=virtual.machine,
+        control=kind,
+        material=prepared.material,
+        totals=tuple(zip(("", *virtual.workingsteps), run.totals, strict=True)),
+        findings=(*prepared.findings, *virtual.findings),
+        samples=0 if run.file is None else run.file.rows,
+        trace=None if run.trace is None else run.trace.trace(),
+    )
+
+
+def waiting_machine(
+    request: SimulationRequest, *, tell: Tell = silent
+) -> tuple[Prepared, VirtualMachine]:
+    """A program and the machine that waits for it.
+
+    Raises
+    ------
+    StepNcError
+        As :func:`simulate`.
+    """
+    _require(request)
+    teeth = _teeth(request)
+    prepared = _prepared(request, tell)
+    return prepared, _machine(request, prepared, teeth=teeth)
+
+
+class _Run:
+    """What is gathered on the way. Running state."""
+
+    def __init__(
+        self, virtual: VirtualMachine, disturbance: Disturbance, *, rate: float
+    ) -> None:
+        self.totals = [Total()]
+        self.file: TimelineFile | None = None
+        self.trace: TraceKeeper | None = None
+        self._machine = virtual.machine
+        self._sampler = Sampler(virtual.machine, rate=rate)
+        self._disturbed = Disturbed(
+            disturbance=disturbance, rate=rate, efficiency=virtual.machine.spindle.efficiency
+        )
+
+    def add(self, episode: Episode, *, ticked: Callable[[], None]) -> None:
+        """One more episode."""
+        require_sense(episode)
+        at = episode.state.workingstep
+        self.totals += [Total() for _ in range(len(self.totals), at + 1)]
+        self.totals[at] = added(self.totals[at], episode, self._machine)
+        ticked()
+        takers = [taker for taker in (self.file, self.trace) if taker is not None]
+        if not takers:
+            return
+        for samples in self._sampler.samples(episode):
+            shown = self._disturbed.shown(samples)
+            for taker in takers:
+                taker.add(shown)
+            ticked()
+
+
+def require_sense(episode: Episode) -> None:
+    """Refuse a program without anything in it, and one without an end."""
+    if episode.state.execution is Execution.PROGRAM_COMPLETED and episode.end == 0.0:
+        raise SimulationError("there is nothing in it that takes time")
+    if episode.end > MOST_SECONDS:
+        course = episode.course
+        line = episode.state.line if course is None else int(course.segments.block[-1])
+        text = f"{episode.end:.3g} s of machining: {MOST_SECONDS:g} s at most"
+        raise ProgramFault(text, line)
+
+
+def _progress(prepared: Prepared, virtual: VirtualMachine) -> str:
+    at = virtual.workingsteps[-1:]
+    return ", ".join((f"{bar(prepared.done())}  {virtual.now:.0f} s of machining", *at))
+
+
+def place_in(prepared: Prepared, virtual: VirtualMachine) -> str:
+    """Where a fault lies: the lines of NC code are known to the user, those of blocks not."""
+    at = virtual.workingsteps[-1:]
+    return ": ".join((prepared.name, *(f"workingstep '{name}'" for name in at)))
+
+
+def _prepared(request: SimulationRequest, tell: Tell) -> Prepared:
+    if request.code is not None:
+        return from_code(
+            request.code,
+            program=request.file,
+            units=request.units,
+            machine=request.machine,
+            material=request.material,
+        )
+    if request.file is None:
+        raise StepNcError("name a STEP-NC program, or NC code with --nc")
+    return from_program(
+        request.file,
+        units=request.units,
+        machine=request.machine,
+        material=request.material,
+        tell=tell,
+    )
+
+
+def _machine(
+    request: SimulationRequest, prepared: Prepared, *, teeth: Teeth | None
+) -> VirtualMachine:
+    """The machine as it waits for the program."""
+    _require_axes(prepared.machine)
+    return VirtualMachine(
+        Setup(
+            machine=prepared.machine,
+            control=_control(request, prepared.machine),
+            tools=_tools(request, prepared),
+            stock=prepared.stock,
+            teeth=teeth,
+            zero=_zero(request.zero, prepared),
+        )
+    )
+
+
+def _require_axes(machine: Machine) -> None:
+    """A machine that can be run says how fast its axes are."""
+    known = {axis.name for axis in machine.axes}
+    needed = {"X", "Z"} if machine.kind is MachineKind.LATHE else {"X", "Y", "Z"}
+    if missing := sorted(needed - known):
+        text = f"machine '{machine.name}' says nothing of its axes {', '.join(missing)}"
+        raise SimulationError(f"{text}: it cannot be run")
+
+
+def _require(request: SimulationRequest) -> None:
+    """Refuse what cannot be, before anything is read."""
+    if not 1.0 <= request.rate <= MOST_RATE:
+        raise StepNcError(f"rate {request.rate:g} Hz: it must be 1 to {MOST_RATE:g} Hz")
+    code = request.code
+    if code is not None and request.file is not None and (code.tools or code.stock):
+        raise StepNcError("tools and stock are those of the program: name no others")
+    if request.output is not None:
+        require_suffix(request.output)
+    inputs = [request.file, *((code.code, code.tools) if code else ())]
+    outputs = [request.output, request.report]
+    for row, place in enumerate(outputs):
+        if place is None:
+            continue
+        for other in (*inputs, *outputs[:row]):
+            if other is not None:
+                require_place(place, apart_from=other)
+        if place.exists() and not place.is_file():
+            raise WriteError("is no regular file", path=str(place))
+
+
+def _control_kind(request: SimulationRequest) -> Control:
+    return one_of(Control, request.control, "control")
+
+
+def _control(request: SimulationRequest, machine: Machine) -> ControlModel:
+    """How the control runs the path."""
+    kind = _control_kind(request)
+    if not 0.0 < request.deviation <= MOST_DEVIATION:
+        bound = f"it must be above 0, at most {MOST_DEVIATION:g} mm"
+        raise StepNcError(f"deviation {request.deviation:g} mm: {bound}")
+    if not request.filter_s:
+        return _by_axes(kind, machine, deviation=request.deviation)
+    if kind is not Control.FIR:
+        raise StepNcError(f"control {kind.value}: filter times are for the control fir")
+    first, second = numbers_in(request.filter_s, "filter times", counts=(2,))
+    if not LEAST_FILTER <= second <= first <= MOST_FILTER:
+        bound = f"{LEAST_FILTER:g} to {MOST_FILTER:g} s, the longer first"
+        raise StepNcError(f"filter times {first:g} and {second:g} s: {bound}")
+    return FixedTimeFilter(first=first, second=second)
+
+
+def _by_axes(kind: Control, machine: Machine, *, deviation: float) -> ControlModel:
+    """The control that suits the axes."""
+    try:
+        return control_model(kind, axis_limits(machine), deviation=deviation)
+    except ValueError as error:
+        raise StepNcError(f"machine '{machine.name}', control {kind.value}: {error}") from error
+
+
+def _tools(request: SimulationRequest, prepared: Prepared) -> dict[int, LoadedTool] | None:
+    """The tools as asked for: they wear or not, the material is harder or not."""
+    if not 0.0 < request.kc_factor <= MOST_FACTOR:
+        bound = f"it must be positive, {MOST_FACTOR:g} at most"
+        raise StepNcError(f"factor on k_c {request.kc_factor:g}: {bound}")
+    if prepared.tools is None:
+        return None
+    return {
+        number: replace(
+            tool,
+            taylor=tool.taylor if request.has_wear else None,
+            edge=replace(tool.edge, factor=request.kc_factor * tool.edge.factor),
+        )
+        for number, tool in prepared.tools.items()
+    }
+
+
+def _teeth(request: SimulationRequest) -> Teeth | None:
+    view = one_of(ForceView, request.force, "force")
+    if not 0.0 <= request.runout_um <= MOST_RUNOUT_UM:
+        bound = f"0 to {MOST_RUNOUT_UM:g} µm"
+        raise StepNcError(f"runout {request.runout_um:g} µm: it must be {bound}")
+    if view is ForceView.MEAN:
+        if request.runout_um:
+            raise StepNcError("runout shows in forces tooth by tooth: --force tooth")
+        return None
+    return Teeth(eccentricity=mm_from_um(request.runout_um))
+
+
+def _disturbance(request: SimulationRequest) -> Disturbance:
+    if not 0.0 <= request.missing < 1.0:
+        raise StepNcError(f"missing {request.missing:g}: it must be at least 0 and below 1")
+    if request.seed < 0:
+        raise StepNcError(f"seed {request.seed}: it must be at least 0")
+    return Disturbance(
+        noise=one_of(NoiseKind, request.noise, "noise"),
+        missing=request.missing,
+        response=Response() if request.has_lag else None,
+        seed=request.seed,
+    )
+
+
+def _of_machine(disturbance: Disturbance, machine: Machine) -> Disturbance:
+    """The disturbance with the delay of a machine's own drive, where it is known."""
+    delay = machine.spindle.delay
+    if disturbance.response is None or delay is None:
+        return disturbance
+    return replace(disturbance, response=Response(delay=delay))
+
+
+def _zero(text: str, prepared: Prepared) -> Zero | None:
+    """Place of the program's zero: as the user says, or by the stock."""
+    if not text:
+        return None if prepared.raw is None else zero_of(prepared.machine, prepared.raw)
+    x, y, z = numbers_in(text, "zero", counts=(3,))
+    return x, y, z

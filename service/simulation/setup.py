@@ -1,0 +1,306 @@
+"""What ``simulate`` needs to run: blocks, tools and stock, from a program or from NC code."""
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from math import isfinite
+from pathlib import Path
+from typing import Generic, TypeVar
+
+from service.chosen import load_material_named, machine_for, material_for
+from service.files import open_lines
+from service.paths.toolpaths import paths_of, with_feeds
+from service.reading import Tell, one_of, read_program
+from simulator.library import load_machine
+from simulator.machine.interpreter import Numbered
+from simulator.machine.tooling import loaded_tool, table_tool
+from simulator.machine.virtual import LoadedTool, StockMap
+from simulator.removal.engage import MillingStock
+from simulator.removal.lathe import TurningStock
+from simulator.spec import Machine, MachineKind, MaterialMatch
+from simulator.tool_table import read_tool_table
+from stepnc_model.entities.entity import Entity
+from stepnc_model.errors import Finding, PostError, Severity, StepNcError
+from stepnc_model.part21.values import Ref
+from stepnc_model.post import blocks as post
+from stepnc_model.post.controls import SUFFIXES, Control, read_blocks
+from stepnc_model.post.neutral import blocks_of, tool_numbers
+from stepnc_model.program import Program
+from stepnc_model.toolpath.job import Stock, stock_of
+from stepnc_model.toolpath.path import FARTHEST
+
+T = TypeVar("T")
+
+LEAST_SIZE = 0.01
+"""mm, of a stock along an axis"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Prepared:
+    """A program and the machine that waits for it."""
+
+    name: str
+    machine: Machine
+    material: MaterialMatch | None
+    blocks: Iterator[Numbered]
+    tools: dict[int, LoadedTool] | None
+    stock: Callable[[str], StockMap | None]
+    raw: Stock | None
+    """the first workingstep's stock as it was bought"""
+    done: Callable[[], float]
+    """share of the program that has been read, 0 to 1"""
+    program: Program | None = None
+    """None: NC code alone"""
+    findings: tuple[Finding, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CodeRequest:
+    """NC code and what it does not say."""
+
+    code: Path
+    dialect: str = ""
+    """by the ending of the file when empty"""
+    tools: Path | None = None
+    stock: str = ""
+
+
+class Counted(Generic[T]):
+    """What is handed on one by one, and how many that were. Running state."""
+
+    def __init__(self, items: Iterable[T], size: Callable[[T], int] = lambda _: 1) -> None:
+        self.count = 0
+        self.size = 0
+        self._items = items
+        self._size = size
+
+    def __iter__(self) -> Iterator[T]:
+        for item in self._items:
+            self.count += 1
+            self.size += self._size(item)
+            yield item
+
+    def share(self, whole: int) -> float:
+        """Share of a whole that has been handed on."""
+        return min(1.0, self.size / max(1, whole))
+
+
+def from_program(
+    file: Path, *, units: str, machine: str, material: str, tell: Tell
+) -> Prepared:
+    """A STEP-NC program on a machine that suits it.
+
+    Raises
+    ------
+    StepNcError
+        For everything that is wrong with file or names.
+    """
+    program = read_program(file, units=units)
+    match = material_for(material, program)
+    tell(f"material: {match.reason}")
+    paths = with_feeds(paths_of(program, tell=tell), keep_going=False)
+    chosen = machine_for(machine, program)
+    numbers = tool_numbers(paths.paths)
+    steps = sum(len(path.steps) for path in paths.paths)
+    blocks = Counted(blocks_of(program, paths.items, name=file.stem))
+    return Prepared(
+        name=program.name,
+        machine=chosen,
+        material=match,
+        blocks=((blocks.count, block) for block in blocks),
+        tools=_tools(program, numbers, match),
+        stock=_Clamped(program, chosen).stock,
+        raw=paths.stock,
+        # Most steps become one block, and few blocks are more than a step.
+        done=lambda: blocks.share(steps),
+        program=program,
+        findings=paths.findings,
+    )
+
+
+def from_code(
+    request: CodeRequest, *, program: Path | None, units: str, machine: str, material: str
+) -> Prepared:
+    """NC code, with tools and stock of its program or of what the user says.
+
+    Raises
+    ------
+    StepNcError
+        For everything that is wrong with files or names.
+    """
+    if program is not None:
+        return _code_of_program(request, program, units=units, names=(machine, material))
+    if not machine:
+        raise StepNcError("NC code without a program: name a machine with --machine")
+    chosen = load_machine(machine)
+    match = load_material_named(material) if material else None
+    tools = None
+    if request.tools is not None:
+        if match is None:
+            raise StepNcError("a tool table without a material: name one with --material")
+        read = read_tool_table(request.tools)
+        tools = {tool.number: table_tool(tool, match.material) for tool in read}
+    raw = _stock(request.stock) if request.stock else None
+    size = _size(request.code)
+    lines = Counted(_lines(request.code), len)
+    clamped = None if raw is None else stock_map(chosen, raw)
+    findings: tuple[Finding, ...] = ()
+    if clamped is None or tools is None:
+        text = "nothing is cut without a stock, a tool table and a material: idle power only"
+        findings = (Finding(severity=Severity.WARNING, message=text),)
+    return Prepared(
+        name=request.code.name,
+        machine=chosen,
+        material=match,
+        blocks=_read(request, lines, chosen, {}),
+        tools=tools,
+        stock=lambda _: clamped,
+        raw=raw,
+        done=lambda: lines.share(size),
+        findings=findings,
+    )
+
+
+def _code_of_program(
+    request: CodeRequest, file: Path, *, units: str, names: tuple[str, str]
+) -> Prepared:
+    """NC code that was made of a program: its tools are numbered in their order there."""
+    program = read_program(file, units=units)
+    match = material_for(names[1], program)
+    machine = machine_for(names[0], program)
+    used = dict.fromkeys(step.tool_ref for step in program.workingsteps)
+    numbers = {ref: number for number, ref in enumerate(used, 1)}
+    ids = {_plain(step.id): step.id for step in program.workingsteps}
+    size = _size(request.code)
+    lines = Counted(_lines(request.code), len)
+    setup = next((step.setup for step in program.workingsteps), None)
+    return Prepared(
+        name=request.code.name,
+        machine=machine,
+        material=match,
+        blocks=_read(request, lines, machine, ids),
+        tools=_tools(program, numbers, match),
+        stock=_Clamped(program, machine).stock,
+        raw=stock_of(program, setup),
+        done=lambda: lines.share(size),
+        program=program,
+    )
+
+
+def stock_map(machine: Machine, raw: Stock) -> StockMap:
+    """The stock as a map that suits the machine.
+
+    Raises
+    ------
+    StepNcError
+        When there is nothing of it, or more than any machine holds.
+    """
+    for axis, low, high in zip("xyz", raw.low, raw.high, strict=True):
+        if not high - low >= LEAST_SIZE or max(abs(low), abs(high)) > FARTHEST:
+            bound = f"at least {LEAST_SIZE:g} mm, within {FARTHEST:g} mm of zero"
+            raise StepNcError(f"stock: {axis} from {low:g} to {high:g} mm: {bound}")
+    return TurningStock(raw) if machine.kind is MachineKind.LATHE else MillingStock(raw)
+
+
+class _Clamped:
+    """The stock of each setup, as far as it is cut away. Running state."""
+
+    def __init__(self, program: Program, machine: Machine) -> None:
+        self._program = program
+        self._machine = machine
+        self._setups = {step.id: step.setup for step in program.workingsteps}
+        self._maps: dict[object, StockMap | None] = {}
+
+    def stock(self, workingstep: str) -> StockMap | None:
+        """What is clamped when a workingstep begins."""
+        if workingstep not in self._setups:
+            return None
+        setup = self._setups[workingstep]
+        if setup not in self._maps:
+            raw = stock_of(self._program, setup)
+            self._maps[setup] = None if raw is None else stock_map(self._machine, raw)
+        return self._maps[setup]
+
+
+def _tools(
+    program: Program, numbers: dict[Ref[Entity], int], match: MaterialMatch
+) -> dict[int, LoadedTool]:
+    return {
+        number: loaded_tool(program, ref, number, match.material)
+        for ref, number in numbers.items()
+    }
+
+
+def _size(path: Path) -> int:
+    """Bytes of a file; an error of the project's own when there is none."""
+    try:
+        return path.stat().st_size
+    except OSError as error:
+        raise StepNcError(f"{path}: {error.strerror}") from error
+    except ValueError as error:
+        raise StepNcError(f"{str(path)!r} is no file name: {error}") from error
+
+
+def _lines(path: Path) -> Iterator[str]:
+    """Lines of a file that is not opened before the first is asked for."""
+    yield from open_lines(path)
+
+
+def _read(
+    request: CodeRequest, lines: Counted[str], machine: Machine, ids: dict[str, str]
+) -> Iterator[Numbered]:
+    """Blocks of NC code; remarks that name a workingstep begin it."""
+    kind = post.Machine.LATHE if machine.kind is MachineKind.LATHE else post.Machine.MILL
+    dialect = _dialect(request)
+    try:
+        for block in read_blocks(lines, dialect, machine=kind):
+            if isinstance(block, post.Comment) and _plain(block.text) in ids:
+                name = ids[_plain(block.text)]
+                yield lines.count, post.Comment(text=block.text, workingstep=name)
+            else:
+                yield lines.count, block
+    except PostError as error:
+        raise StepNcError(f"{request.code.name}: {error}") from error
+
+
+def _dialect(request: CodeRequest) -> Control:
+    if request.dialect:
+        return one_of(Control, request.dialect.lower(), "dialect")
+    for control, suffix in SUFFIXES.items():
+        if request.code.name.lower().endswith(suffix):
+            return control
+    known = ", ".join(control.value for control in Control)
+    raise StepNcError(f"{request.code}: name its dialect with --dialect: {known}")
+
+
+def _plain(text: str) -> str:
+    """A remark as any control spells it."""
+    return "".join(filter(str.isalnum, text)).upper()
+
+
+def _stock(text: str) -> Stock:
+    """Six corners of a block, or diameter and two ends of a bar, in mm."""
+    numbers = numbers_in(text, "stock", counts=(3, 6))
+    radius = None
+    if len(numbers) == 3:
+        radius = 0.5 * numbers[0]
+        numbers = (-radius, -radius, numbers[1], radius, radius, numbers[2])
+    low, high = numbers[:3], numbers[3:]
+    return Stock(low=(low[0], low[1], low[2]), high=(high[0], high[1], high[2]), radius=radius)
+
+
+def numbers_in(text: str, what: str, *, counts: tuple[int, ...]) -> tuple[float, ...]:
+    """Finite numbers with commas between them.
+
+    Raises
+    ------
+    StepNcError
+        When they are no numbers, or not as many as they may be.
+    """
+    try:
+        numbers = tuple(float(word) for word in text.split(","))
+    except ValueError:
+        numbers = ()
+    if len(numbers) not in counts or not all(map(isfinite, numbers)):
+        wanted = " or ".join(map(str, counts))
+        raise StepNcError(f"{what} '{text}': {wanted} numbers with commas between them")
+    return numbers

@@ -1,0 +1,32 @@
+"""What the commands share."""
+
+import argparse
+from pathlib import Path
+
+import pytest
+
+from service.cli import options as cli_options
+from service.cli.options import add_file, add_json
+from stepnc_model.post.controls import Control
+
+
+def test_exit_codes_can_be_told_apart_and_none_is_that_of_usage() -> None:
+    names = ("OK", "BAD_INPUT", "INFEASIBLE", "LIMIT_EXCEEDED", "INTERRUPTED")
+    codes = {getattr(cli_options, name) for name in names}
+    assert len(codes) == len(names)
+    assert 2 not in codes
+
+
+def test_every_control_is_named() -> None:
+    assert all(control.value in cli_options.CONTROLS for control in Control)
+
+
+def test_a_file_is_asked_for_and_units_and_json_need_not_be_given() -> None:
+    parser = argparse.ArgumentParser()
+    add_file(parser)
+    add_json(parser)
+    options = parser.parse_args(["part.stpnc"])
+    assert (options.file, options.units, options.json) == (Path("part.stpnc"), "iso", False)
+    assert parser.parse_args(["part.stpnc", "--units", "rpm-mmin", "--json"]).json
+    with pytest.raises(SystemExit):
+        parser.parse_args([])

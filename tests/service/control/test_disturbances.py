@@ -1,0 +1,138 @@
+"""What ``--disturb`` understands, and that it refuses the rest in one sentence."""
+
+from math import isfinite
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from controller.orders import Criterion, CriterionTo, MotorPowerTo, SwitchTo
+from service.control.disturbances import Disturbances, disturbances, time_of
+from simulator.plant.hidden import Change, Changed
+from stepnc_model.errors import StepNcError
+
+NAMES = (
+    "depth", "hardness", "material", "tooth", "silence", "kc", "wear", "runout", "lag", "noise",
+    "drift", "missing", "power", "mode", "control", "luck",
+)  # fmt: skip
+UNITS = ("", "%", "s", "ms", "min", "mm/min", "um", "µm", "N/s", "N")
+
+
+def read(*words: str) -> Disturbances:
+    return disturbances(words, hardness=lambda name: {"c45": 1.25}[name])
+
+
+@pytest.mark.parametrize(
+    ("word", "change"),
+    [
+        ("depth:+50%@12s", Change(time=12.0, what=Changed.DEPTH, value=1.5)),
+        ("depth:-50%@12", Change(time=12.0, what=Changed.DEPTH, value=0.5)),
+        ("hardness:1.3@2min", Change(time=120.0, what=Changed.HARDNESS, value=1.3)),
+        ("material:c45@0s", Change(time=0.0, what=Changed.HARDNESS, value=1.25)),
+        ("tooth:1@1e1s", Change(time=10.0, what=Changed.TOOTH, value=0.0)),
+        ("silence:500ms@1s", Change(time=1.0, what=Changed.SILENCE, value=0.5)),
+        (" depth:+50 %@12 s", Change(time=12.0, what=Changed.DEPTH, value=1.5)),
+    ],
+)
+def test_changes_come_at_their_time(word: str, change: Change) -> None:
+    assert read(word).hidden.changes == (change,)
+    assert time_of(word) == change.time
+
+
+def test_what_holds_from_the_start_has_no_time() -> None:
+    found = read("kc:+30%", "wear:0.06mm/min", "runout:20µm", "lag:0.1s", "noise:5%",
+                 "drift:-1N/s", "missing:10%")  # fmt: skip
+    hidden, dynamometer = found.hidden, found.bench.dynamometer
+    assert hidden.force_factor == pytest.approx(1.3)
+    assert hidden.wear_rate == pytest.approx(0.001)
+    assert hidden.eccentricity == pytest.approx(0.02)
+    assert hidden.servo_lag == pytest.approx(0.1)
+    assert dynamometer.noise == pytest.approx(0.05)
+    assert dynamometer.drift == -1.0
+    assert dynamometer.missing == pytest.approx(0.1)
+    assert time_of("kc:1.3") is None
+
+
+def test_orders_come_in_the_order_of_their_times() -> None:
+    found = read("mode:qc@9s", "power:-50%@3s", "control:off@1s", "control:on@2s")
+    assert [each.time for each in found.orders] == [1.0, 2.0, 3.0, 9.0]
+    assert [each.order for each in found.orders] == [
+        SwitchTo(is_on=False),
+        SwitchTo(is_on=True),
+        MotorPowerTo(factor=0.5),
+        CriterionTo(criterion=Criterion.QC),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("word", "message"),
+    [
+        ("", "write it as depth:+50%@12s or kc:1.3"),
+        ("depth", "write it as depth:+50%@12s or kc:1.3"),
+        ("luck:1@2s", "'luck' is not one of"),
+        ("depth:+50%", "say when, as in depth:+50%@12s"),
+        ("depth:+50%@", "'' is no number in s or min"),
+        ("depth:+50%@-1s", "the time must be at least 0 s"),
+        ("depth:+50%@nan", "'nan' is no number in s or min"),
+        ("depth:+50%@1e999s", "'1e999s' is no number"),
+        ("depth:-100%@1s", "it must be above -100 % and +9900 % at most"),
+        ("depth:nan@1s", "'nan' is no number"),
+        ("depth:1.2.3@1s", "'1.2.3' is no number"),
+        ("tooth:0@1s", "it must be 1 to 100"),
+        ("tooth:1.5@1s", "teeth are counted 1, 2, 3"),
+        ("silence:0s@1s", "it must be 0.001 to 10000 s"),
+        ("kc:1.3@5s", "it holds from the start, without '@'"),
+        ("runout:1mm", "'1mm' is no number in um or µm"),
+        ("noise:100%", "it must be 0 to 99 %"),
+        ("missing:5", "'5' is no number in %"),
+        ("mode:EC@1s", "the mode is TC or QC"),
+        ("control:maybe@1s", "control is on or off"),
+        ("power:-100%@1s", "it must be above -100 %"),
+    ],
+)
+def test_what_is_no_disturbance_is_refused(word: str, message: str) -> None:
+    with pytest.raises(StepNcError) as caught:
+        read(word)
+    assert message in str(caught.value)
+    assert word in str(caught.value)
+
+
+numbers = st.one_of(
+    st.floats(width=32).map(str),
+    st.integers(-200, 200).map(lambda value: f"{value:+d}"),
+    st.text(alphabet="0123456789.+-eE", max_size=6),
+)
+words = st.one_of(
+    st.builds(
+        lambda name, number, unit, time: f"{name}:{number}{unit}{time}",
+        st.sampled_from(NAMES),
+        numbers,
+        st.sampled_from(UNITS),
+        st.one_of(
+            st.just(""), st.builds(lambda n, u: f"@{n}{u}", numbers, st.sampled_from(UNITS))
+        ),
+    ),
+    st.text(max_size=20),
+    st.text(alphabet=":@%+s.1depthkcmo", max_size=14),
+)
+
+
+@given(word=words)
+def test_any_word_is_understood_with_sane_numbers_or_refused(word: str) -> None:
+    try:
+        found = disturbances([word], hardness=lambda _: 1.0)
+    except StepNcError:
+        return
+    hidden, dynamometer = found.hidden, found.bench.dynamometer
+    for change in hidden.changes:
+        assert isfinite(change.time)
+        assert change.time >= 0.0
+        assert isfinite(change.value)
+        if change.what in {Changed.DEPTH, Changed.HARDNESS}:
+            assert 0.0 < change.value <= 100.0
+    assert 0.0 < hidden.force_factor <= 100.0
+    assert 0.0 <= hidden.wear_rate <= 1.0 / 60.0
+    assert 0.0 < hidden.servo_lag <= 10.0
+    assert 0.0 <= dynamometer.missing < 1.0
+    assert all(isfinite(order.time) and order.time >= 0.0 for order in found.orders)
+    assert len(hidden.changes) + len(found.orders) <= 1

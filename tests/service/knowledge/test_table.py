@@ -1,0 +1,85 @@
+"""Outcomes and corrections on a terminal, in the user's units."""
+
+from dataclasses import replace
+from datetime import UTC, datetime
+
+import pytest
+
+from kbe.backup import Content
+from kbe.ledger import Entry, Standing
+from service.knowledge.table import (
+    evaluated,
+    local,
+    print_content,
+    print_corrections,
+    print_listing,
+    print_run,
+    told,
+)
+from service.knowledge.verbs import Listing
+from stepnc_model.outcome import ProcessOutcome, Quantity
+from tests.kbe.cuts import SLOT, correction
+
+CUT = replace(
+    SLOT,
+    roughness=Quantity(predicted=0.0016, measured=0.0020),
+    feed=Quantity(predicted=10.0, measured=5.0),
+    time=Quantity(predicted=50.0, measured=55.0),
+)
+
+
+def test_the_edge_speaks_micrometres_and_millimetres_a_minute() -> None:
+    told_of = dict(evaluated(CUT))
+    assert told_of["surface Ra, µm"].measured == pytest.approx(2.0)
+    assert told_of["feed, mm/min"] == Quantity(predicted=600.0, measured=300.0)
+
+
+def test_a_quantity_is_told_with_its_deviation() -> None:
+    assert told(Quantity(predicted=50.0, measured=55.0)) == "50 -> 55 (+10 %)"
+    assert told(Quantity(predicted=50.0)) == "50 -> –"
+    assert told(Quantity()) == ""
+
+
+def test_a_listing_has_a_line_for_each(
+    capsys: pytest.CaptureFixture[str], shop_outcomes: tuple[ProcessOutcome, ...]
+) -> None:
+    print_listing(Listing(outcomes=(CUT, shop_outcomes[0]), total=7))
+    out = capsys.readouterr().out.splitlines()
+    assert "Slot_2" not in out[2]
+    assert "600 -> 300 (-50 %)" in out[2]
+    assert out[-1].startswith("2 of 7 outcomes")
+
+
+def test_a_run_is_told_in_full(capsys: pytest.CaptureFixture[str]) -> None:
+    evil = replace(CUT, workingstep="a\nb\x1b[2J")
+    print_run([evil])
+    out = capsys.readouterr().out
+    assert "a b�[2J" in out
+    for name in ("surface Ra, µm", "time, s", "force, N", "feed, mm/min", "step depth, mm"):
+        assert name in out
+    assert "L 150, X 100, a_t 20 mm" in out
+    assert "cutting speed, m/min: 35" in out
+
+
+def test_corrections_tell_who_decided(capsys: pytest.CaptureFixture[str]) -> None:
+    at = datetime(2026, 3, 5, 12, 0, tzinfo=UTC)
+    entry = Entry(
+        id=3,
+        correction=correction(0.1),
+        standing=Standing.WITHDRAWN,
+        decided_by="B. Jones",
+        decided_at=at,
+    )
+    print_corrections([entry])
+    out = capsys.readouterr().out
+    assert "withdrawn" in out
+    assert "B. Jones" in out
+    assert local(at) in out
+    assert "1.11 (" in out
+
+
+def test_content_is_counted(capsys: pytest.CaptureFixture[str]) -> None:
+    print_content(
+        Content(outcomes=5, corrections=2, decisions=1, fingerprint="f"), place="kb.db"
+    )
+    assert capsys.readouterr().out.startswith("kb.db: 5 outcomes, 2 corrections, 1 decisions\n")

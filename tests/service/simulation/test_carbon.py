@@ -1,0 +1,28 @@
+"""The factor is stated, and may be another."""
+
+import pytest
+
+from service.simulation.carbon import WORLD, CarbonFactor, kilowatt_hours, stated
+from stepnc_model.errors import StepNcError
+
+
+def test_a_kilowatt_hour_is_3_6_megajoules() -> None:
+    assert kilowatt_hours(3.6e6) == 1.0
+    assert WORLD.grams(3.6e6) == 480.0
+
+
+@pytest.mark.parametrize("grams", [-1.0, float("inf"), float("nan")])
+def test_a_factor_that_cannot_be_is_refused(grams: float) -> None:
+    with pytest.raises(ValueError, match=r"carbon factor .* g/kWh must be at least 0"):
+        CarbonFactor(grams_per_kwh=grams, source="nobody")
+
+
+def test_a_stated_factor_counts_and_says_whose_it_is() -> None:
+    assert stated(36.0).grams(7.2e6) == 72.0
+    assert stated(0.0).source == "as asked for"
+
+
+@pytest.mark.parametrize("grams", [-1.0, float("inf"), float("nan")])
+def test_a_stated_factor_that_cannot_be_is_the_users_mistake(grams: float) -> None:
+    with pytest.raises(StepNcError, match=r"carbon factor .* g/kWh must be at least 0"):
+        stated(grams)

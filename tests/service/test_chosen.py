@@ -1,0 +1,43 @@
+from pathlib import Path
+
+import pytest
+
+from service.chosen import (
+    library_entries,
+    library_entry,
+    load_material_named,
+    machine_for,
+    material_for,
+)
+from service.reading import read_program
+from simulator.errors import UnknownMachine, UnknownMaterial
+from simulator.spec import MachineKind
+
+PARTS = Path(__file__).parents[2] / "examples" / "parts"
+
+
+@pytest.mark.parametrize(("part", "kind"), [("bracket", "mill"), ("shaft", "lathe")])
+def test_without_a_name_the_machine_suits_the_program(part: str, kind: str) -> None:
+    program = read_program(PARTS / f"{part}.stpnc", units="iso")
+    assert machine_for("", program).kind is MachineKind(kind)
+    assert machine_for("paper000", program).name == "paper000"
+
+
+def test_without_a_name_the_material_is_that_of_the_file() -> None:
+    program = read_program(PARTS / "bracket.stpnc", units="iso")
+    assert material_for("", program).material.name == "c45"
+    assert material_for("AISI 1045", program).material.name == "c45"
+
+
+def test_unknown_names_are_refused() -> None:
+    program = read_program(PARTS / "bracket.stpnc", units="iso")
+    with pytest.raises(UnknownMachine):
+        machine_for("none", program)
+    with pytest.raises(UnknownMaterial):
+        load_material_named("none")
+
+
+def test_entries_of_the_library_are_found_one_by_one() -> None:
+    for kind in ("machines", "materials"):
+        for entry in library_entries(kind):
+            assert library_entry(kind, entry.name) == entry

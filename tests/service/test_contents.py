@@ -1,0 +1,22 @@
+from pathlib import Path
+
+from service.contents import check
+
+PARTS = Path(__file__).parents[2] / "examples" / "parts"
+
+
+def test_a_sample_is_usable_and_told_whole() -> None:
+    contents = check(PARTS / "paper002.stpnc")
+    assert contents.is_usable
+    assert contents.program is not None
+    assert [step.id for step in contents.program.workingsteps] == ["ROUGH THE FACE"]
+    assert contents.name == "paper002.stpnc"
+
+
+def test_a_program_without_a_workplan_is_not(tmp_path: Path) -> None:
+    path = tmp_path / "empty.stpnc"
+    text = (PARTS / "paper002.stpnc").read_text(encoding="utf-8")
+    path.write_text(text.replace("=WORKPLAN(", "=GROUP("), encoding="utf-8")
+    contents = check(path)
+    assert not contents.is_usable
+    assert contents.findings
