@@ -1,4 +1,8 @@
-"""One cycle of the loop: what was read, what was commanded, and why. Units N."""
+"""One cycle of the loop: what was read, what was commanded, and why. Units N.
+
+Forces are equivalent ones, as the loop acts upon them (:mod:`controller.equivalent`); over the
+weight they are those that really were.
+"""
 
 from dataclasses import dataclass
 
@@ -24,4 +28,11 @@ class Cycle:
     """N at the override that was run, with the catalogue's k_c; 0: no revolution or no cut"""
     ratio: float | None
     """ln(measured / expected force); None: not to be compared"""
+    weight: float = 1.0
+    """equivalent over real force"""
     events: tuple[Event, ...]
+
+    @property
+    def bound(self) -> float:
+        """Real force that uses the whole bound here; infinite: none."""
+        return self.set_point / self.weight

@@ -13,6 +13,7 @@ from typing import Any
 from controller import overload
 from controller.aims import AROUND, Aims, Step
 from controller.cycle import Cycle
+from controller.equivalent import equivalent, weighed
 from controller.estimate import log_ratio
 from controller.guard import (
     Allowed,
@@ -85,7 +86,8 @@ class Loop:
         self.aims = aims
         self.is_stopped = False
         self._sensor, self._port, self._source = sensor, override, source
-        self._steps, self._steering = steps, Steering(law, preview)
+        self._steps, self._plain = steps, preview
+        self._steering = Steering(law, equivalent(preview, steps, aims))
         self._collector, self._monitor = Collector(), Monitor()
         self._step, self._number = AROUND, 0
         self._allowed = Allowed(override=1.0)
@@ -139,14 +141,17 @@ class Loop:
             self._begin(raw)
         while self._orders:
             self._obey(self._orders.pop(0))
-        reading = self._source.conditioned(raw, self._step.diameter)
+        weight = self._steering.weight(raw)
+        reading = weighed(self._source.conditioned(raw, self._step.diameter), weight)
         # One that comes again tells nothing.
         revolution = self._collector.add(reading) if is_new else None
         expected, ratio = 0.0, None
         if revolution is not None:
             expected = self._steering.expectation(revolution, self._step.exponent)
-            ratio = log_ratio(revolution, expected, expected_before=self._expected)
-            self._expected = expected
+            # Hardly a chip tells nothing of k_c.
+            known = expected if expected > weight * self.aims.chips else 0.0
+            ratio = log_ratio(revolution, known, expected_before=self._expected)
+            self._expected = known
         self._act(
             reading, revolution, ratio, force=overload.mean(reading.force) if is_new else nan
         )
@@ -158,6 +163,7 @@ class Loop:
             revolution=revolution,
             expected=expected,
             ratio=ratio,
+            weight=weight,
             events=tuple(self._events),
         )
 
@@ -200,6 +206,7 @@ class Loop:
                 text = f"mode {criterion.value}"
             case MotorPowerTo(factor=factor):
                 self.aims = replace(self.aims, power_factor=factor)
+                self._steering.preview = equivalent(self._plain, self._steps, self.aims)
                 text = f"motor power {100.0 * factor:.4g} %"
             case _:
                 self.aims = replace(self.aims, is_on=order.is_on)
@@ -244,11 +251,8 @@ class Loop:
         return self.aims.is_on and not self._step.reference.inhibition
 
     def _is_blind(self, reading: Reading) -> bool:
-        return is_blind(
-            self._silence,
-            allowed=self.aims.band.silence,
-            spindle_speed=reading.spindle_speed,
-        )
+        speed = reading.spindle_speed
+        return is_blind(self._silence, allowed=self.aims.band.silence, spindle_speed=speed)
 
     def _loaded(self, reading: Reading, force: float) -> float:
         """Load of a tooth period, N, as the threshold counts it; NaN: not known."""

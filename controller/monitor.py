@@ -24,6 +24,9 @@ threshold must not flood who reads; what is worse is said at once"""
 PAUSE = 10.0
 """s between two changes of the work that are told"""
 
+NOTABLE = 0.1
+"""change of ln F that is told; less is what the expected force errs by in corners"""
+
 REACH = 20
 """revolutions at the floor of the override with a force above the set point, after which that
 is said: more than any drive needs to slow down"""
@@ -142,8 +145,9 @@ class Monitor:
         """A sudden change of the work, or the end of a tool's life."""
         before = self.lives[self._tool]
         life = self.lives[self._tool] = lived(before, ratio)
+        is_new = len(life.changes) > len(before.changes)
         is_due = revolution.time - self._changed > PAUSE
-        if len(life.changes) > len(before.changes) and is_due:
+        if is_new and is_due and abs(life.changes[-1]) > NOTABLE:
             self._changed = revolution.time
             percent = 100.0 * expm1(life.changes[-1])
             way = "harder or deeper" if percent > 0.0 else "softer or shallower"

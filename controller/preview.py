@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 Values = NDArray[np.float32] | NDArray[np.float64]
 
-LOOK_AHEAD = 12
-"""revolutions"""
+LOOK_AHEAD = 8
+"""revolutions: with fewer the force overshoots, with more feed is lost (docs/closed_loop.md)"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -30,6 +30,12 @@ class Preview:
     """(N,) s at which each stretch of equal force ends"""
     force: Values
     """(N,) N at override 1 with the catalogue's k_c; 0 in air"""
+    peak: Values | None = None
+    """(N,) greatest force of a revolution over its mean; None: 1"""
+    workingstep: NDArray[np.int64] | None = None
+    """(N,) counted from 1; None: 1"""
+    weight: NDArray[np.float64] | None = None
+    """(N,) by which forces were multiplied already, :mod:`controller.equivalent`; None: 1"""
 
     def __post_init__(self) -> None:
         if self.until.shape != self.force.shape or self.until.ndim != 1 or not len(self.until):
@@ -43,6 +49,18 @@ class Preview:
         """Expected force between two times of the program, N: mean over what they touch."""
         first, beyond = self._rows(begin, end)
         return float(self.force[first:beyond].mean())
+
+    def weight_between(self, begin: float, end: float) -> float:
+        """Weight of what is cut between two times of the program: mean of the forces there.
+
+        A sliver with a great weight and hardly a force counts for what it is.
+        """
+        if self.weight is None:
+            return 1.0
+        first, beyond = self._rows(begin, end)
+        forces = self.force[first:beyond]
+        plain = float((forces / self.weight[first:beyond]).sum())
+        return float(forces.sum()) / plain if plain > 0.0 else 1.0
 
     def ahead(self, progress: float, *, revolution: float, count: int) -> tuple[float, ...]:
         """Greatest expected force around each of the next revolutions, N.

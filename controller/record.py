@@ -23,20 +23,20 @@ class Record:
     way: float = 0.0
     """mm of path with chips"""
     peak: float = 0.0
-    """N, greatest mean of a revolution"""
+    """N, mean of the revolution that came nearest to its bound; without one the greatest"""
     impulse: float = 0.0
     """N·s with chips"""
     excess: float = 0.0
-    """N·s above the set point"""
+    """N·s above the bound"""
     over_time: float = 0.0
-    """s above the set point by more than a twentieth"""
+    """s above the bound by more than a twentieth"""
     overrides: float = 0.0
     """s of the program that were cut"""
     least: float = inf
     greatest: float = 0.0
     """override with chips"""
     set_point: float = inf
-    """N, the last"""
+    """N, bound of that revolution"""
     revolutions: int = 0
     """with chips"""
     lost: int = 0
@@ -93,7 +93,8 @@ class Recorder:
             return
         if not revolution.force > self._chips:
             return
-        force, period, override = revolution.force, revolution.period, revolution.override
+        force, bound = revolution.force / cycle.weight, cycle.bound
+        period, override = revolution.period, revolution.override
         record.revolutions += 1
         record.cutting_time += period
         record.way += revolution.feed * period
@@ -102,11 +103,13 @@ class Recorder:
             min(record.least, override),
             max(record.greatest, override),
         )
-        record.peak = max(record.peak, force)
         record.impulse += force * period
-        record.set_point = cycle.set_point
+        # Shares of their bounds; where nothing bounds the force, the forces themselves.
+        share, most = force / bound, record.peak / record.set_point
+        if share > most or (share == most and force > record.peak) or not record.peak:
+            record.peak, record.set_point = force, bound
         if cycle.ratio is not None:
             record.ratio = counted(record.ratio, cycle.ratio)
-        if isfinite(cycle.set_point):
-            record.excess += max(force - cycle.set_point, 0.0) * period
-            record.over_time += period * (force > OVER * cycle.set_point)
+        if isfinite(bound):
+            record.excess += max(force - bound, 0.0) * period
+            record.over_time += period * (force > OVER * bound)

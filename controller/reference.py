@@ -5,11 +5,17 @@ every limit on the feed to the override at which it is reached. Units N, mm, rad
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 
+import numpy as np
+
 from optimiser.advice import Advice, Load, State
+from optimiser.cut import Cut
 from optimiser.limit import LimitName, Sense
+from simulator.physics.milling import MillingCut, mean_force, peak_force
+from simulator.reading import Floats
+from simulator.spec import Kienzle
 
 FORCE_LIMITS = frozenset({
     LimitName.MOTOR_POWER,
@@ -18,11 +24,18 @@ FORCE_LIMITS = frozenset({
     LimitName.TOOL_DEFLECTION,
     LimitName.SHANK_STRENGTH,
 })
+PEAK_LIMITS = frozenset({LimitName.TOOL_DEFLECTION, LimitName.SHANK_STRENGTH})
+"""of which the greatest force of a revolution counts"""
+
 FEED_LIMITS = frozenset({
     LimitName.FEED_PER_TOOTH,
     LimitName.FEED_MECHANISM,
     LimitName.ROUGHNESS,
 })
+
+RUPTURE_RATIO = 2.0
+"""of what breaks a shank over the bending stress that is permitted: transverse rupture
+strengths of cemented carbides begin at about 2000 N/mm² (tests after ISO 3327)"""
 
 BREAKAGE_RATIO = 3.0
 """of the set point, where the strength of the tool is not known; customary"""
@@ -35,7 +48,9 @@ class ForceBound:
     name: LimitName
     words: str
     force: float
-    """N, mean of a revolution"""
+    """N, mean of a revolution, where the plan cuts hardest"""
+    peak: float = 0.0
+    """N, greatest of a revolution, for what bends or breaks the tool; 0: the mean counts"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -69,13 +84,42 @@ class Reference:
 
     def bound(self, *, power_factor: float = 1.0) -> ForceBound | None:
         """The least force bound while the motor gives a factor of its power."""
-        scaled = (
-            ForceBound(name=each.name, words=each.words, force=each.force * power_factor)
-            if each.name is LimitName.MOTOR_POWER
-            else each
+        return min(self._scaled(power_factor), key=lambda each: each.force, default=None)
+
+    def weights(self, peak: Floats, *, power_factor: float = 1.0) -> Floats:
+        """What a mean force counts at other places than the plan's hardest, as a factor.
+
+        ``w = F_bound · max(1/F_mean, ρ/F_peak)``, F_mean and F_peak the least bounds on mean
+        and greatest force, ρ greatest over mean there: forces that use the same share of their
+        bounds count alike.
+
+        Parameters
+        ----------
+        peak : (N,) array
+            ρ, at least 1.
+        power_factor : float
+        """
+        least = self.bound(power_factor=power_factor)
+        if least is None:
+            return np.ones(len(peak))
+        bounds = list(self._scaled(power_factor))
+        mean = min((each.force for each in bounds if each.peak == 0.0), default=inf)
+        greatest = min((each.peak for each in bounds if each.peak > 0.0), default=inf)
+        weights: Floats = least.force * np.maximum(1.0 / mean, peak / greatest)
+        return weights
+
+    def scaled(self, factor: float) -> "Reference":
+        """The same in forces that are a factor greater."""
+        bounds = tuple(
+            replace(each, force=factor * each.force, peak=factor * each.peak)
             for each in self.bounds
         )
-        return min(scaled, key=lambda each: each.force, default=None)
+        return replace(self, bounds=bounds, breakage=factor * self.breakage)
+
+    def _scaled(self, power_factor: float) -> Iterator[ForceBound]:
+        for each in self.bounds:
+            is_power = each.name is LimitName.MOTOR_POWER
+            yield replace(each, force=each.force * power_factor) if is_power else each
 
 
 def reference_of(advice: Advice) -> Reference:
@@ -90,12 +134,14 @@ def reference_of(advice: Advice) -> Reference:
     inhibition = advice.programmed.inhibition
     if advice.programmed.is_synchronised:
         inhibition = inhibition or "the feed is bound to the pitch of the thread"
-    if state is None:
+    if state is None or advice.cut is None:
         return Reference(workingstep=name, inhibition=inhibition)
-    bounds = sorted(_force_bounds(state), key=lambda bound: bound.force)
+    bounds = sorted(_force_bounds(advice.cut, state), key=lambda bound: bound.force)
     rubbing = max(_overrides(state, Sense.AT_LEAST), default=0.0)
     ceiling = _ceiling(state, rubbing)
-    strengths = [each.force for each in bounds if each.name is LimitName.SHANK_STRENGTH]
+    strengths = [
+        RUPTURE_RATIO * each.force for each in bounds if each.name is LimitName.SHANK_STRENGTH
+    ]
     breakage = BREAKAGE_RATIO * bounds[0].force if bounds else inf
     return Reference(
         workingstep=name,
@@ -117,17 +163,38 @@ def _ceiling(state: State, rubbing: float) -> float:
     return ceiling if ceiling > rubbing else max(rubbing, 1.0)
 
 
-def _force_bounds(state: State) -> Iterator[ForceBound]:
+def _force_bounds(cut: Cut, state: State) -> Iterator[ForceBound]:
     """Loads in proportion to the force, at the force that makes them reach their bounds."""
     shares = _shares(state)
     for load in state.loads:
         if load.limit.name in FORCE_LIMITS and load.value > 0.0:
             own = state.cutting_force * shares.get(_part(load), 1.0)
+            force = own * load.bound / load.value
+            is_peak = load.limit.name in PEAK_LIMITS
             yield ForceBound(
                 name=load.limit.name,
                 words=load.limit.words,
-                force=own * load.bound / load.value,
+                force=force,
+                peak=force * _peak_over_mean(cut, load) if is_peak else 0.0,
             )
+
+
+def _peak_over_mean(cut: Cut, load: Load) -> float:
+    """Greatest force of a revolution over its mean, in the part of the cut that is loaded."""
+    is_floor = cut.floor is not None and load.limit.load.depth_exponent == 0.0
+    part = cut.floor if is_floor and cut.floor is not None else cut
+    place = part.bending or part.hardest
+    if place is None:
+        return 1.0
+    at = MillingCut(
+        feed_per_tooth=0.1,
+        teeth=part.tool.teeth,
+        axial_depth=1.0,
+        engagement=place.engagement,
+        cutting_edge_angle=part.tool.cutting_edge_angle,
+    )
+    law = Kienzle(k_c11=1.0, m_c=1.0 - load.limit.load.feed_exponent)
+    return peak_force(law, at) / mean_force(law, at)
 
 
 def _shares(state: State) -> dict[tuple[str, float], float]:

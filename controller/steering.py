@@ -12,6 +12,7 @@ from controller.guard import Keeping
 from controller.law import Law, Plant, Situation
 from controller.preview import Preview
 from controller.signal import Revolution
+from simulator.reading import Reading
 
 LEAST_WAY = 0.1
 """override at least with which the way of the next revolutions is reckoned"""
@@ -25,11 +26,12 @@ class Steering:
     law : callable
         A law tuned for a process.
     preview : Preview
-        What the program expects.
+        What the program expects, in equivalent forces.
     """
 
     def __init__(self, law: Callable[[Plant], Law[Any]], preview: Preview) -> None:
-        self._law_for, self._preview = law, preview
+        self.preview = preview
+        self._law_for = law
         self._laws: dict[Plant, Law[Any]] = {}
         self._cut: tuple[Law[Any], Any] | None = None
 
@@ -57,9 +59,16 @@ class Steering:
         self._cut = law, state
         return wanted
 
+    def weight(self, reading: Reading) -> float:
+        """Equivalent over real force, for a reading: mean over the revolution that it ends."""
+        if self.preview.weight is None:
+            return 1.0
+        way = reading.period * reading.teeth * max(reading.override, LEAST_WAY)
+        return self.preview.weight_between(reading.progress - way, reading.progress)
+
     def expectation(self, revolution: Revolution, exponent: float) -> float:
         """Force that the catalogue's k_c gives at the override that was run, N."""
-        mean = self._preview.mean(revolution.progress_before, revolution.progress)
+        mean = self.preview.mean(revolution.progress_before, revolution.progress)
         return float(mean * max(revolution.override, 0.0) ** exponent)
 
     def _entered(
@@ -87,7 +96,7 @@ class Steering:
         )
         if not aims.look_ahead:
             return known
-        preview = self._preview
+        preview = self.preview
         way = revolution.period * max(revolution.override, LEAST_WAY)
         return replace(
             known,

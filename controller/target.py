@@ -71,6 +71,6 @@ def introduction(aims: Aims, reference: Reference) -> str:
         words = f"{bound.force:.4g} N by {bound.words}"
     asked = wanted(aims, reference)
     least = aimed(asked, reference)
-    if least < asked:
+    if least < 0.999 * asked:
         words += f"; {least:.4g} N, for the tool to bear a sudden rise"
     return f"{reference.workingstep}: force bound {words}"

@@ -1,9 +1,10 @@
 """What the virtual machine expects of each workingstep at an override of 1. Units mm, s, N."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from simulator.motion.segments import Floats
 from simulator.plant.course import NominalCourse
 
 
@@ -18,7 +19,7 @@ class Planned:
     feed: float = 0.0
     """mm/s, mean with chips"""
     force: float = 0.0
-    """N, greatest mean of a revolution, with the catalogue's k_c"""
+    """N, mean of the revolution that comes nearest to its bound, with the catalogue's k_c"""
     exponent: float = 0.8
     """p of force over feed"""
     diameter: float = 0.0
@@ -26,7 +27,10 @@ class Planned:
 
 
 def planned_steps(course: NominalCourse) -> dict[int, Planned]:
-    """By the workingstep's number, in the order of their beginning; 0: around them."""
+    """By the workingstep's number, in the order of their beginning; 0: around them.
+
+    What bounds the force is not known yet: the greatest counts as the nearest to its bound.
+    """
     widths = np.diff(course.until, prepend=0.0)
     cuts = course.can_override & (course.force > 0.0)
     numbers, first = np.unique(course.workingstep, return_index=True)
@@ -46,4 +50,29 @@ def planned_steps(course: NominalCourse) -> dict[int, Planned]:
                 diameter=float(np.median(course.diameter[chips])),
             )
         found[number] = planned
+    return found
+
+
+def with_hardest(
+    planned: dict[int, Planned], course: NominalCourse, weight: Floats | None
+) -> dict[int, Planned]:
+    """The same with the force where it comes nearest to its bound.
+
+    Parameters
+    ----------
+    planned : dict of Planned
+    course : NominalCourse
+    weight : (N,) array, optional
+        What a force counts in each cell; None: all alike.
+    """
+    if weight is None:
+        return planned
+    counted = np.where(course.can_override, course.force * weight, 0.0)
+    found = {}
+    for number, each in planned.items():
+        rows = np.flatnonzero(course.workingstep == number)
+        hardest = rows[counted[rows].argmax()]
+        found[number] = (
+            replace(each, force=float(course.force[hardest])) if each.force else each
+        )
     return found

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from controller.aims import Aims
 from controller.cycle import Cycle
+from controller.equivalent import equivalent
 from controller.guard import Band
 from controller.laws.choice import LawName, law_named
 from controller.loop import Loop
@@ -19,7 +20,7 @@ from optimiser.modes import Mode
 from service.buckets import Trace
 from service.control.disturbances import TimedOrder, disturbances
 from service.control.holding import Held, Holdings
-from service.control.planned import Planned, planned_steps
+from service.control.planned import Planned, planned_steps, with_hardest
 from service.control.setup import (
     hardness_against,
     plan_as_it_is,
@@ -175,13 +176,15 @@ def prepare(request: ControlRequest, *, tell: Tell = silent) -> "Session":
     planned = planned_steps(course)
     by_id = {advice.workingstep.id: advice for advice in plan.advices}
     advices = tuple(by_id.get(name) for name in virtual.workingsteps)
+    steps, preview = steps_of(planned, advices), preview_of(course)
+    planned = with_hardest(planned, course, equivalent(preview, steps, aims).weight)
     loop = Loop(
         machine,
         machine,
         source=_source(request.sensor, virtual.machine),
         law=lambda plant: law_named(law, plant, has_preview=request.has_preview),
-        steps=steps_of(planned, advices),
-        preview=preview_of(course),
+        steps=steps,
+        preview=preview,
         aims=aims,
     )
     return Session(

@@ -8,6 +8,7 @@ from controller.aims import Step
 from controller.preview import Preview
 from controller.reference import Reference, reference_of
 from optimiser.advice import Advice, Plan
+from optimiser.cut import CutKind
 from optimiser.formulate import Task
 from optimiser.modes import Mode
 from optimiser.optimise import optimise as advise
@@ -58,7 +59,9 @@ def planned_course(prepared: Prepared, virtual: VirtualMachine, tell: Tell) -> N
 def preview_of(course: NominalCourse) -> Preview:
     """What the program expects: the force where the override acts."""
     force = np.where(course.can_override, course.force, np.float32(0.0))
-    return Preview(until=course.until, force=force)
+    return Preview(
+        until=course.until, force=force, peak=course.peak, workingstep=course.workingstep
+    )
 
 
 def hardness_against(match: MaterialMatch) -> Callable[[str], float]:
@@ -112,8 +115,20 @@ def _step(planned: Planned, advice: Advice | None) -> Step:
         inhibition = "the program says nothing of its limits"
         return Step(reference=Reference(workingstep="", inhibition=inhibition))
     return Step(
-        reference=reference_of(advice),
+        reference=_reference(planned, advice),
         tool=advice.tool.id,
         exponent=planned.exponent,
         diameter=planned.diameter,
     )
+
+
+def _reference(planned: Planned, advice: Advice) -> Reference:
+    """What is to be kept, in forces as they are measured.
+
+    The plan tells the force of one lip of a drill at its rim; torque over the radius in the
+    middle of the lips is that of all of them.
+    """
+    reference, cut = reference_of(advice), advice.cut
+    if cut is None or cut.kind is not CutKind.DRILLING or not planned.diameter:
+        return reference
+    return reference.scaled(cut.diameter / planned.diameter)

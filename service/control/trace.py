@@ -241,7 +241,7 @@ class ControlTrace:
     def _moment(self, cycle: Cycle, truth: Truth) -> Moment:
         reading, sums, turn, course = cycle.reading, self._sums, cycle.revolution, self._course
         x, y, z = course.position[truth.cell].tolist()
-        period = sums.period
+        period, weight = sums.period, cycle.weight
         return Moment(
             time=reading.time,
             progress=reading.progress,
@@ -253,14 +253,14 @@ class ControlTrace:
             feed_actual=sums.feed / period,
             override_commanded=cycle.allowed.override,
             override_actual=sums.override / period if reading.can_override else nan,
-            set_point=cycle.set_point if isfinite(cycle.set_point) else nan,
-            force_measured=nan if turn is None else turn.force,
-            force_peak=nan if turn is None else turn.peak,
+            set_point=cycle.bound if isfinite(cycle.bound) else nan,
+            force_measured=nan if turn is None else turn.force / weight,
+            force_peak=nan if turn is None else turn.peak / weight,
             force_true=sums.force / period,
-            force_expected=nan if turn is None else cycle.expected,
+            force_expected=nan if turn is None else cycle.expected / weight,
             force_ratio=nan if cycle.ratio is None else float(np.exp(cycle.ratio)),
-            tooth_passing=nan if turn is None else turn.tooth_passing,
-            once_per_revolution=nan if turn is None else turn.once_per_revolution,
+            tooth_passing=nan if turn is None else turn.tooth_passing / weight,
+            once_per_revolution=nan if turn is None else turn.once_per_revolution / weight,
             spindle_power=reading.power if turn is None else turn.power,
             spindle_power_true=sums.power / period,
             removal_rate=sums.removal / period,

@@ -16,10 +16,11 @@ from numpy.typing import NDArray
 
 from simulator.machine.cutting import Edge
 from simulator.machine.episode import Episode
-from simulator.machine.samples import PathMode
+from simulator.machine.samples import PathMode, Samples
 from simulator.machine.sensing import sensed
 from simulator.motion.segments import Bools, Floats, Ints
 from simulator.physics.spindle_motion import idle_power
+from simulator.plant.pattern import Teeth, peak_over_mean
 from simulator.removal.stations import CutKind
 from simulator.spec import Machine
 
@@ -64,6 +65,8 @@ class NominalCourse:
     """(N,) rad; both 0 where no arc is known"""
     exit_angle: Singles
     """(N,) rad"""
+    peak: Singles
+    """(N,) greatest force of a revolution over its mean; 1 where no arc is known"""
     teeth: Ints
     """(N,)"""
     workingstep: Ints
@@ -152,9 +155,40 @@ def _part(
         diameter=_single(diameter),
         entry_angle=_single(entry),
         exit_angle=_single(exit_),
+        peak=_single(_peaks(samples, entry, exit_, edge=edge)),
         teeth=np.full(count, 1 if edge is None else edge.teeth),
         workingstep=samples.workingstep,
     )
+
+
+def _peaks(samples: Samples, entry: Floats, exit_: Floats, *, edge: Edge | None) -> Floats:
+    """Greatest force over the mean, of arcs that are told apart by hundredths of a radian.
+
+    At most what the teeth in the cut take when each has its thickest chip: where the map knows
+    a section but hardly an arc, as on the way down, the arc alone would tell far too much.
+    """
+    peaks = np.ones(len(entry))
+    if edge is None:
+        return peaks
+    arcs, row = np.unique(np.round(np.stack((entry, exit_)), 2), axis=1, return_inverse=True)
+    told = [
+        peak_over_mean(
+            Teeth(
+                count=edge.teeth,
+                entry_angle=begin,
+                exit_angle=end,
+                exponent=_exponent(edge),
+            )
+        )
+        for begin, end in arcs.T.tolist()
+    ]
+    cuts = np.flatnonzero((samples.cutting_force > 0.0) & (exit_ > entry))
+    per_tooth = samples.path_speed[cuts] / (edge.teeth * np.abs(samples.spindle_speed[cuts]))
+    together = np.ceil((exit_ - entry)[cuts] * edge.teeth / (2.0 * np.pi))
+    whole = edge.factor * edge.kienzle.k_c11 * per_tooth ** _exponent(edge)
+    most = whole * samples.axial_depth[cuts] * together / samples.cutting_force[cuts]
+    peaks[cuts] = np.maximum(np.minimum(np.array(told)[row.ravel()][cuts], most), 1.0)
+    return peaks
 
 
 def _exponent(edge: Edge | None) -> float:

@@ -69,6 +69,16 @@ def pattern(teeth: Teeth) -> Floats:
     return shape
 
 
+@lru_cache(maxsize=4096)
+def peak_over_mean(teeth: Teeth) -> float:
+    """Greatest force of a revolution over its mean; 1 where no arc is known."""
+    if not teeth.exit_angle > teeth.entry_angle:
+        return 1.0
+    force = _force(teeth, eccentric_runout(teeth.runout, teeth.count))
+    mean = float(force.mean())
+    return float(force.max()) / mean if mean > 0.0 else 1.0
+
+
 def _force(teeth: Teeth, runout: Floats) -> Floats:
     """Sum over the teeth through a revolution that begins where tooth 0 enters."""
     pitch = 2.0 * pi / teeth.count

@@ -41,6 +41,7 @@ def course(
         diameter=single(np.where(cuts, 10.0, 0.0)),
         entry_angle=single(0.0),
         exit_angle=single(np.where(cuts, pi, 0.0)),
+        peak=single(1.0),
         teeth=np.full(count, TEETH),
         workingstep=np.ones(count, dtype=np.int64),
     )
