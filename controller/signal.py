@@ -201,17 +201,22 @@ def _partly_shown(readings: Sequence[Reading], samples: Floats) -> _Shown:
     """Forces of a revolution of which samples were lost, or that has unlike tooth periods."""
     means, peaks, shares = np.array([_seen(each.force) for each in readings]).T
     coverage = float(shares.mean())
-    is_covered = coverage >= COVERED
-    is_sampled = all(len(each.force) > 0 for each in readings)
+    known = means[~np.isnan(means)]
+    force, lines = float(known.mean()) if coverage >= COVERED else nan, UNKNOWN
+    counts = {len(each.force) for each in readings}
+    if coverage >= COVERED and 0 not in counts:
+        filled = _filled(samples)
+        lines = spectrum(filled, len(readings))
+        if len(counts) == 1:
+            # What is lost is not like what is there: a tooth enters, and leaves.
+            force = float(filled.mean())
     return _Shown(
-        force=float(means[~np.isnan(means)].mean()) if is_covered else nan,
+        force=force,
         peak=float(np.fmax.reduce(peaks)),
         means=means,
         peaks=peaks,
         coverage=coverage,
-        lines=spectrum(_filled(samples), len(readings))
-        if is_covered and is_sampled
-        else UNKNOWN,
+        lines=lines,
     )
 
 

@@ -7,7 +7,7 @@ what a dynamometer shows. Units mm, rad.
 
 from dataclasses import dataclass
 from functools import lru_cache
-from math import pi
+from math import cos, pi
 
 import numpy as np
 
@@ -71,12 +71,18 @@ def pattern(teeth: Teeth) -> Floats:
 
 @lru_cache(maxsize=4096)
 def peak_over_mean(teeth: Teeth) -> float:
-    """Greatest force of a revolution over its mean; 1 where no arc is known."""
-    if not teeth.exit_angle > teeth.entry_angle:
+    """Greatest force of a revolution over its mean; 1 where no arc is known.
+
+    The mean is that of the power, with k_c at the mean chip, as the optimiser has it:
+    ``z·φ/2π · (C/φ)^p`` over the force of one tooth at its thickest chip. Teeth without runout.
+    """
+    contact = teeth.exit_angle - teeth.entry_angle
+    if not contact > 0.0:
         return 1.0
-    force = _force(teeth, eccentric_runout(teeth.runout, teeth.count))
-    mean = float(force.mean())
-    return float(force.max()) / mean if mean > 0.0 else 1.0
+    force = _force(teeth, np.zeros(teeth.count))
+    chip = (cos(teeth.entry_angle) - cos(teeth.exit_angle)) / contact
+    mean = teeth.count * contact / (2.0 * pi) * chip**teeth.exponent
+    return float(max(force.max() / mean, 1.0))
 
 
 def _force(teeth: Teeth, runout: Floats) -> Floats:

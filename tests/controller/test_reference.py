@@ -5,7 +5,13 @@ from pathlib import Path
 
 import pytest
 
-from controller.reference import BREAKAGE_RATIO, ForceBound, Reference, reference_of
+from controller.reference import (
+    BREAKAGE_RATIO,
+    RUPTURE_RATIO,
+    ForceBound,
+    Reference,
+    reference_of,
+)
 from optimiser.advice import Advice, Load, State
 from optimiser.formulate import Task
 from optimiser.limit import Limit, LimitName, Monomial, Sense
@@ -95,7 +101,7 @@ def test_bounds_come_least_first_and_the_shank_tells_the_strength() -> None:
     reference = reference_of(advices("bracket")["ROUGH CONTOUR"])
     found = [each.force for each in reference.bounds]
     assert found == sorted(found)
-    assert reference.breakage == bounds(reference)[LimitName.SHANK_STRENGTH]
+    assert reference.breakage == RUPTURE_RATIO * bounds(reference)[LimitName.SHANK_STRENGTH]
 
 
 def test_without_a_shank_the_strength_is_thrice_the_least_bound() -> None:

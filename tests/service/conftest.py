@@ -185,7 +185,7 @@ def control_run(controlled: Controlled, tmp_path_factory: pytest.TempPathFactory
     """That slot with a harder second half, kept for plots."""
     report = tmp_path_factory.mktemp("report") / "run.html"
     words = ("hardness:+40%@7.5s", "kc:1.1", "mode:QC@900s")
-    return control(controlled(disturbances=words, report=report))
+    return control(controlled(disturbances=words, report=report, set_point=400.0))
 
 
 @pytest.fixture(scope="session")

@@ -272,14 +272,14 @@ def test_an_export_that_is_asked_to_end_leaves_what_was_there(
     file.write_text("before", encoding="ascii")
     code = (
         "import os, signal, sys\n"
-        "from service import knowledge_export\n"
+        "from service.knowledge import export\n"
         "from service.cli.main import main\n"
-        "rows = knowledge_export.outcome_rows\n"
+        "rows = export.outcome_rows\n"
         "def asked(outcomes):\n"
         "    for number, row in enumerate(rows(outcomes)):\n"
         "        if number == 5000: os.kill(os.getpid(), signal.SIGTERM)\n"
         "        yield row\n"
-        "knowledge_export.outcome_rows = asked\n"
+        "export.outcome_rows = asked\n"
         "main(sys.argv[1:])"
     )
     words = ("kbe", "export", "outcomes", "--kb", kb, "-o", str(file))

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from service.control.planned import Planned, planned_steps
+from service.control.planned import Planned, planned_steps, with_hardest
 from tests.simulator.plant.courses import EXPONENT, FEED, course, levels
 
 
@@ -22,3 +22,11 @@ def test_what_cuts_nothing_takes_its_time_only() -> None:
     planned = planned_steps(course(levels(0.0)))[1]
     assert planned == Planned(time=planned.time)
     assert planned.time == pytest.approx(1.0)
+
+
+def test_the_hardest_place_is_where_the_force_counts_most() -> None:
+    path = course(levels(100.0, 250.0))
+    weight = np.where(np.arange(200) < 100, 4.0, 1.0)
+    planned = planned_steps(path)
+    assert with_hardest(planned, path, weight)[1].force == 100.0
+    assert with_hardest(planned, path, None) == planned

@@ -23,8 +23,13 @@ def put(place: Path, form: str, output: Path | None) -> int:
 
 @pytest.mark.parametrize("form", ["text", "csv", "json", "html"])
 def test_a_file_is_what_stdout_shows(
-    form: str, shop_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    form: str,
+    shop_file: Path,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
+    monkeypatch.setenv("COLUMNS", "400")
     output = tmp_path / f"table.{form}"
     count = put(shop_file, form, output)
     assert capsys.readouterr().out == ""

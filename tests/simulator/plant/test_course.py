@@ -39,6 +39,15 @@ def test_force_over_feed_has_the_exponent_of_kienzle(milled: NominalCourse) -> N
     np.testing.assert_allclose(milled.exponent[cuts], 0.78, rtol=1e-6)
 
 
+def test_the_peak_over_the_mean_is_that_of_the_arc(milled: NominalCourse) -> None:
+    # Full slots with four teeth: √2 over 4/π with forces in proportion to the chip, less steep
+    # with Kienzle's exponent.
+    cuts = (milled.force > 0.99 * milled.force.max()) & milled.can_override
+    np.testing.assert_allclose(milled.peak[cuts], 2.0**0.5 * np.pi / 4.0, rtol=0.03)
+    assert (milled.peak >= 1.0).all()
+    assert (milled.peak[~milled.can_override] == 1.0).all()
+
+
 def test_nothing_is_no_course() -> None:
     with pytest.raises(ValueError, match="nothing that takes time"):
         course_of([], waiting_machine(REQUEST)[1].machine)

@@ -5,7 +5,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from simulator.plant.pattern import SAMPLES, Teeth, pattern
+from simulator.physics.engagement import Engagement
+from simulator.physics.milling import MillingCut, mean_force, peak_force
+from simulator.plant.pattern import SAMPLES, Teeth, pattern, peak_over_mean
+from simulator.spec import Kienzle
 
 SLOT = Teeth(count=2, entry_angle=0.0, exit_angle=pi, exponent=1.0)
 
@@ -68,3 +71,27 @@ def test_a_revolution_with_a_broken_tooth_takes_less_by_the_law_of_the_chip() ->
 
 def test_without_an_arc_the_force_is_even() -> None:
     assert (pattern(Teeth(count=3, entry_angle=0.0, exit_angle=0.0, exponent=0.8)) == 1.0).all()
+
+
+def test_the_peak_of_a_slot_with_four_teeth_is_that_of_two_at_45_degrees() -> None:
+    # Two teeth cut at 45° and 135°: √2 over the mean 4/π of four teeth in a slot.
+    slot = Teeth(count=4, entry_angle=0.0, exit_angle=pi, exponent=1.0)
+    assert peak_over_mean(slot) == pytest.approx(2.0**0.5 * pi / 4.0, rel=1e-3)
+
+
+def test_peak_over_mean_is_that_of_the_plan() -> None:
+    law, arc = Kienzle(k_c11=1500.0, m_c=0.22), Engagement(entry_angle=1.9, exit_angle=pi)
+    cut = MillingCut(feed_per_tooth=0.1, teeth=3, axial_depth=2.0, engagement=arc)
+    teeth = Teeth(count=3, entry_angle=1.9, exit_angle=pi, exponent=0.78)
+    expected = peak_force(law, cut) / mean_force(law, cut)
+    assert peak_over_mean(teeth) == pytest.approx(expected, rel=2e-3)
+
+
+@given(st.integers(1, 8), st.floats(0.01, pi), st.floats(0.5, 1.0))
+def test_no_mean_is_above_its_peak(count: int, contact: float, exponent: float) -> None:
+    arc = Teeth(count=count, entry_angle=0.0, exit_angle=contact, exponent=exponent)
+    assert peak_over_mean(arc) >= 1.0
+
+
+def test_without_an_arc_the_peak_is_the_mean() -> None:
+    assert peak_over_mean(Teeth(count=2, entry_angle=0.0, exit_angle=0.0, exponent=0.8)) == 1.0
