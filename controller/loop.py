@@ -93,12 +93,11 @@ class Loop:
         self._allowed = Allowed(override=1.0)
         self._target = Target()
         self._keep = kept(self._target, aims, AROUND)
-        self._hold = _Hold()
-        self._shares = overload.fresh(1)
+        self._hold, self._shares = _Hold(), overload.fresh(1)
         self._has_chips = False
         """whether the last revolution had"""
         self._override_before = 1.0
-        """that was allowed before the last revolution was decided upon"""
+        """before the last revolution was decided upon"""
         self._greatest = 0.0
         """N, load of a tooth since the last decision"""
         self._silence = HEARD
@@ -142,7 +141,10 @@ class Loop:
         while self._orders:
             self._obey(self._orders.pop(0))
         weight = self._steering.weight(raw)
-        reading = weighed(self._source.conditioned(raw, self._step.diameter), weight)
+        reading = self._source.conditioned(
+            raw, self._step.diameter, is_air=self._steering.is_air(raw)
+        )
+        reading = weighed(reading, weight)
         # One that comes again tells nothing.
         revolution = self._collector.add(reading) if is_new else None
         expected, ratio = 0.0, None
@@ -152,9 +154,8 @@ class Loop:
             known = expected if expected > weight * self.aims.chips else 0.0
             ratio = log_ratio(revolution, known, expected_before=self._expected)
             self._expected = known
-        self._act(
-            reading, revolution, ratio, force=overload.mean(reading.force) if is_new else nan
-        )
+        force = overload.mean(reading.force) if is_new else nan
+        self._act(reading, revolution, ratio, force=force)
         self._port.set(self._allowed.override)
         return Cycle(
             reading=reading,
@@ -243,8 +244,7 @@ class Loop:
         elif revolution is not None or self._is_blind(reading):
             before = self._allowed.override
             self._allowed = self._decided(reading, revolution, ratio)
-            self._override_before = before
-            self._greatest = 0.0
+            self._override_before, self._greatest = before, 0.0
 
     @property
     def _may_hold(self) -> bool:

@@ -50,6 +50,11 @@ class Preview:
         first, beyond = self._rows(begin, end)
         return float(self.force[first:beyond].mean())
 
+    def is_air(self, progress: float, *, revolution: float) -> bool:
+        """Whether no chip is expected within a revolution before and after a time."""
+        first, beyond = self._rows(progress - revolution, progress + revolution)
+        return not self.force[first:beyond].any()
+
     def weight_between(self, begin: float, end: float) -> float:
         """Weight of what is cut between two times of the program: mean of the forces there.
 

@@ -4,6 +4,7 @@ Running state: the zero of the instrument. Units mm, N, W.
 """
 
 from dataclasses import replace
+from math import nan
 from typing import Protocol
 
 from controller.conditioning import (
@@ -20,7 +21,9 @@ from simulator.reading import Reading
 class Source(Protocol):
     """What makes a force of a reading."""
 
-    def conditioned(self, reading: Reading, diameter: float) -> Reading:
+    def conditioned(
+        self, reading: Reading, diameter: float, *, is_air: bool = False
+    ) -> Reading:
         """The reading with the force that is to be acted upon.
 
         Parameters
@@ -29,20 +32,33 @@ class Source(Protocol):
             As the sensors show it.
         diameter : float, mm
             Of the tool that is in the spindle; 0: not known.
+        is_air : bool
+            Whether the program expects no chips here, nor near.
         """
         ...
 
 
 class Dynamometer:
-    """Force as measured, less the drift of its zero. Running state."""
+    """Force as measured, less the drift of its zero. Running state.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    chips : float, N
+        Mean force above which there are chips, whatever the program expects.
+    """
+
+    def __init__(self, chips: float) -> None:
+        self._chips = chips
         self._tare = Tare()
 
-    def conditioned(self, reading: Reading, _diameter: float) -> Reading:
+    def conditioned(
+        self, reading: Reading, _diameter: float, *, is_air: bool = False
+    ) -> Reading:
         """See :class:`Source`."""
-        self._tare = tared(self._tare, reading)
-        return without_offset(reading, self._tare) if reading.can_override else reading
+        less = without_offset(reading, self._tare)
+        is_still = is_air and not (self._tare.is_known and _mean(less) > self._chips)
+        self._tare = tared(self._tare, reading, has_chips=False if is_still else None)
+        return less if reading.can_override else reading
 
 
 class DrivePower:
@@ -52,17 +68,28 @@ class DrivePower:
     ----------
     efficiency : float
         Of the main drive.
+    chips : float, N
+        As of the :class:`Dynamometer`.
     """
 
-    def __init__(self, efficiency: float) -> None:
-        self._efficiency = efficiency
+    def __init__(self, efficiency: float, chips: float) -> None:
+        self._efficiency, self._chips = efficiency, chips
         self._idle = IdlePower()
 
-    def conditioned(self, reading: Reading, diameter: float) -> Reading:
+    def conditioned(
+        self, reading: Reading, diameter: float, *, is_air: bool = False
+    ) -> Reading:
         """See :class:`Source`; without a known diameter there is no force."""
-        self._idle = idled(self._idle, reading)
-        if not reading.can_override or not diameter > 0.0:
-            return replace(reading, force=reading.force[:0])
-        return force_from_power(
-            reading, self._idle, tool_diameter=diameter, efficiency=self._efficiency
-        )
+        told = replace(reading, force=reading.force[:0])
+        if diameter > 0.0:
+            told = force_from_power(
+                reading, self._idle, tool_diameter=diameter, efficiency=self._efficiency
+            )
+        is_still = is_air and not _mean(told) > self._chips
+        self._idle = idled(self._idle, reading, has_chips=False if is_still else None)
+        return told if reading.can_override else replace(told, force=told.force[:0])
+
+
+def _mean(reading: Reading) -> float:
+    """Mean of the samples, N; NaN when one of them is lost, or none was taken."""
+    return float(reading.force.mean()) if len(reading.force) else nan

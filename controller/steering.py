@@ -59,11 +59,15 @@ class Steering:
         self._cut = law, state
         return wanted
 
+    def is_air(self, reading: Reading) -> bool:
+        """Whether the program expects no chips where a reading was taken, nor near."""
+        return self.preview.is_air(reading.progress, revolution=_way(reading))
+
     def weight(self, reading: Reading) -> float:
         """Equivalent over real force, for a reading: mean over the revolution that it ends."""
         if self.preview.weight is None:
             return 1.0
-        way = reading.period * reading.teeth * max(reading.override, LEAST_WAY)
+        way = _way(reading)
         return self.preview.weight_between(reading.progress - way, reading.progress)
 
     def expectation(self, revolution: Revolution, exponent: float) -> float:
@@ -103,3 +107,8 @@ class Steering:
             expected=preview.mean(revolution.progress_before, revolution.progress),
             ahead=preview.ahead(revolution.progress, revolution=way, count=aims.look_ahead),
         )
+
+
+def _way(reading: Reading) -> float:
+    """S of the program that a revolution takes at the override that is run."""
+    return reading.period * reading.teeth * max(reading.override, LEAST_WAY)

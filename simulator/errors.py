@@ -24,6 +24,20 @@ class UnknownMachine(SimulationError):
         self.known = known
 
 
+class MachineSilent(SimulationError):
+    """The line to the machine is broken.
+
+    Parameters
+    ----------
+    time : float
+        s of the run.
+    """
+
+    def __init__(self, time: float) -> None:
+        super().__init__(f"the machine does not answer since {time:.2f} s")
+        self.time = time
+
+
 class ProgramFault(SimulationError):
     """The machine cannot run a line of the program.
 

@@ -16,7 +16,6 @@
     │   ├── Infeasible(workingstep, limits)
     │   └── SolverFailed(status)
     ├── ControlError                       controller.errors
-    │   ├── StaleSample(age)
     │   └── MachineLost
     └── KnowledgeError(place)              kbe.errors
         ├── StoreDamaged, StoreUnavailable, StoreFull, StoreBusy, StoreReadOnly, StoreTooNew

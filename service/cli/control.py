@@ -23,13 +23,13 @@ where the force demands it.
 
 disturbances, which the loop is not told of:
   from a time on        depth:+50%@12s hardness:+30%@12s material:NAME@12s tooth:1@12s
-                        silence:2s@12s
+                        silence:2s@12s line:off@12s
   from the start        kc:1.3 wear:0.05mm/min runout:20um lag:60ms noise:3% drift:1N/s
                         missing:5%
   what an operator does power:-50%@12s mode:QC@12s control:off@12s
 
-Exit code 5: the loop stopped the program (a broken tooth, too many holds of the feed), or the
-force stayed above its set point."""
+Exit code 5: the loop stopped the program (a broken tooth, too many holds of the feed), the
+machine did not answer any more, or the force stayed above its set point."""
 
 
 def add_control_command(commands: Commands) -> None:
@@ -54,9 +54,9 @@ def add_control_command(commands: Commands) -> None:
     add(
         "--look-ahead",
         type=int,
-        default=12,
+        default=8,
         metavar="N",
-        help="revolutions that the preview reaches, 1 to 50 (default 12)",
+        help="revolutions that the preview reaches, 1 to 50 (default 8)",
     )
     add(
         "--disturb",
@@ -77,6 +77,7 @@ def add_control_command(commands: Commands) -> None:
     add("-o", "--output", type=Path, metavar="FILE", help="write the run, .parquet or .csv")
     add("--report", type=Path, metavar="HTML", help="write a self-contained page with plots")
     add_knowledge(parser, "keep the outcomes there, take accepted corrections from it")
+    add("--by", default="", metavar="NAME", help="who records (default: the login name)")
     add_json(parser)
     parser.set_defaults(run=_control)
 
@@ -126,4 +127,5 @@ def _request(options: argparse.Namespace) -> "ControlRequest":
         output=options.output,
         report=options.report,
         knowledge=options.kb,
+        recorded_by=options.by,
     )

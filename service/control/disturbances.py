@@ -8,6 +8,7 @@ hardness:+30%@12s  k_c, against the start, from a time on
 material:NAME@12s  another material of the library, from a time on
 tooth:1@12s        that tooth breaks
 silence:2s@12s     no sample arrives for so long
+line:off@12s       the line to the machine breaks
 kc:1.3             factor on k_c from the start
 wear:0.05mm/min    flank wear in a minute of cutting
 runout:20um        eccentricity of the cutter
@@ -186,6 +187,12 @@ def _tooth(word: _Word) -> float:
     return number - 1.0
 
 
+def _line(word: _Word) -> float:
+    if word.value != "off":
+        raise StepNcError(f"disturbance '{word.text}': the line can only go off")
+    return 0.0
+
+
 def _power(word: _Word) -> Order:
     return MotorPowerTo(factor=_factor(word))
 
@@ -235,6 +242,7 @@ _CHANGES: dict[str, tuple[Changed, Callable[[_Word], float]]] = {
     "depth": (Changed.DEPTH, _factor),
     "hardness": (Changed.HARDNESS, _factor),
     "tooth": (Changed.TOOTH, _tooth),
+    "line": (Changed.LINE, _line),
     "silence": (Changed.SILENCE, lambda word: _within(word, {"s": 1.0, "ms": 1e-3}, 1e-3, 1e4)),
 }
 _ORDERS: dict[str, Callable[[_Word], Order]] = {

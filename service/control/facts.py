@@ -148,9 +148,10 @@ _ADDED = (
 
 def exceeded(run: ControlRun, found: Sequence[Row]) -> tuple[str, ...]:
     """A sentence for each thing that makes the run a failure; none: it is good."""
-    stops = [event for event in run.events if event.kind is EventKind.STOP]
+    ends = {EventKind.STOP: "stopped", EventKind.LOST: "lost"}
+    stops = [event for event in run.events if event.kind in ends]
     return (
-        *(f"stopped at {event.time:.2f} s: {event.text}" for event in stops),
+        *(f"{ends[event.kind]} at {event.time:.2f} s: {event.text}" for event in stops),
         *(
             f"{row.name}: {row.record.over_time:.3g} s of {row.record.cutting_time:.3g} s with "
             f"chips above {OVER:g} times the set point of {row.record.set_point:.4g} N"
@@ -201,9 +202,9 @@ def saved(run: ControlRun) -> str:
     if not run.progress:
         return "nothing was run"
     less = run.progress - run.time
-    word = "saved" if less >= 0.0 else "lost"
     share = abs(less) / run.progress
-    return f"{word} {abs(less):.1f} s of {run.progress:.1f} s ({share:.1%})"
+    word = "shorter" if less >= 0.0 else "longer"
+    return f"{abs(less):.1f} s {word} than {run.progress:.1f} s ({share:.1%})"
 
 
 def _percent(share: float) -> str:

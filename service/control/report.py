@@ -53,7 +53,7 @@ def control_page(run: ControlRun, trace: Trace) -> str:
 <p class="sub">time: programmed → under control; over s: above {OVER:g} times the set point;
  N·s: impulse above the set point</p>
 <h2>What held the override</h2>{_reasons(found)}
-<p class="sub">{escape(saved(run))} against the programmed feed</p>
+<p class="sub">{escape(saved(run))} at the programmed feed</p>
 <h2>Events</h2>{_events(run)}
 <h2>Disturbances</h2><p>{escape(disturbed_words(run))}; seed {run.seed}</p>
 <h2>Findings</h2>{bullets(_findings(run))}"""

@@ -8,10 +8,11 @@ from pathlib import Path
 from controller.aims import Aims
 from controller.cycle import Cycle
 from controller.equivalent import equivalent
+from controller.errors import MachineLost
 from controller.guard import Band
 from controller.laws.choice import LawName, law_named
 from controller.loop import Loop
-from controller.orders import Criterion, Event
+from controller.orders import Criterion, Event, EventKind
 from controller.preview import LOOK_AHEAD
 from controller.record import Record, Recorder
 from controller.source import DrivePower, Dynamometer, Source
@@ -33,7 +34,9 @@ from service.progress import Ticker, bar
 from service.reading import Tell, one_of, silent
 from service.run_file import RunFile
 from service.simulation.run import SimulationRequest, waiting_machine
+from simulator.errors import MachineSilent
 from simulator.plant.controlled import ControlledMachine, Truth
+from simulator.reading import Reading
 from simulator.spec import Machine, MaterialMatch
 from stepnc_model.errors import Finding, StepNcError
 from stepnc_model.program import Program
@@ -94,7 +97,7 @@ class ControlRun:
     time_planned: float
     """s at an override of 1"""
     is_stopped: bool
-    """whether the loop stopped the program"""
+    """whether the loop stopped the program, or lost the machine"""
     progress: float
     """s of the program at an override of 1 that are behind"""
     aims: Aims
@@ -137,8 +140,10 @@ def control(
                 for watcher in looking:
                     watcher(cycle, session.machine.truth)
                 for event in cycle.events:
-                    tell(f"{event.time:9.2f} s  {event.kind.value}: {event.text}")
+                    tell(_told(event))
                 ticker(lambda: _progress(session))
+            if session.is_lost:
+                tell(_told(session.events[-1]))
     finally:
         if trace.file is not None and trace.file.place is not None:
             tell(f"written: {trace.file.place} ({trace.rows} rows)")
@@ -179,9 +184,9 @@ def prepare(request: ControlRequest, *, tell: Tell = silent) -> "Session":
     steps, preview = steps_of(planned, advices), preview_of(course)
     planned = with_hardest(planned, course, equivalent(preview, steps, aims).weight)
     loop = Loop(
+        Line(machine),
         machine,
-        machine,
-        source=_source(request.sensor, virtual.machine),
+        source=_source(request.sensor, virtual.machine, aims.chips),
         law=lambda plant: law_named(law, plant, has_preview=request.has_preview),
         steps=steps,
         preview=preview,
@@ -205,6 +210,20 @@ def prepare(request: ControlRequest, *, tell: Tell = silent) -> "Session":
     )
 
 
+class Line:
+    """The virtual machine as a sensor of the loop: its silence is the loop's loss."""
+
+    def __init__(self, machine: ControlledMachine) -> None:
+        self._machine = machine
+
+    def read(self) -> Reading | None:
+        """See :class:`controller.ports.Sensor`."""
+        try:
+            return self._machine.read()
+        except MachineSilent as silent_:
+            raise MachineLost(str(silent_)) from silent_
+
+
 @dataclass(kw_only=True)
 class Session:
     """A program under control. Running state."""
@@ -225,13 +244,19 @@ class Session:
     findings: tuple[Finding, ...]
     virtual: Machine
     events: list[Event] = field(default_factory=list)
+    is_lost: bool = False
+    """whether the machine does not answer any more"""
 
     def cycles(self) -> Iterator[Cycle]:
         """Run on, cycle by cycle, to the end or until the loop stops the program."""
         while True:
             while self.orders and self.orders[0].time <= self.machine.time:
                 self.loop.order(self.orders.pop(0).order)
-            cycle = self.loop.cycle()
+            try:
+                cycle = self.loop.cycle()
+            except MachineLost as lost:
+                self._lose(lost)
+                return
             if cycle is None:
                 return
             self.recorder.add(cycle)
@@ -240,6 +265,13 @@ class Session:
             yield cycle
             if self.loop.is_stopped:
                 return
+
+    def _lose(self, lost: MachineLost) -> None:
+        """Nothing more can be done: what was commanded last is the safe override."""
+        override = 100.0 * self.machine.commanded
+        text = f"{lost}; override {override:.4g} % was commanded"
+        self.events.append(Event(time=self.machine.time, kind=EventKind.LOST, text=text))
+        self.is_lost = True
 
     def trace(self) -> ControlTrace:
         """What writes the run to a file and keeps it for plots, as asked for."""
@@ -272,13 +304,17 @@ class Session:
             findings=self.findings,
             time=self.machine.time,
             time_planned=self.machine.course.duration,
-            is_stopped=self.loop.is_stopped,
+            is_stopped=self.loop.is_stopped or self.is_lost,
             progress=self.machine.share * self.machine.course.duration,
             aims=self.loop.aims,
             held=self.holdings.steps,
             disturbances=self.request.disturbances,
             seed=self.request.seed,
         )
+
+
+def _told(event: Event) -> str:
+    return f"{event.time:9.2f} s  {event.kind.value}: {event.text}"
 
 
 def _aims(request: ControlRequest, criterion: Criterion) -> Aims:
@@ -307,8 +343,10 @@ def _aims(request: ControlRequest, criterion: Criterion) -> Aims:
     )
 
 
-def _source(sensor: str, machine: Machine) -> Source:
-    return DrivePower(machine.spindle.efficiency) if sensor == "power" else Dynamometer()
+def _source(sensor: str, machine: Machine, chips: float) -> Source:
+    if sensor == "power":
+        return DrivePower(machine.spindle.efficiency, chips)
+    return Dynamometer(chips)
 
 
 def _progress(session: Session) -> str:

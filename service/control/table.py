@@ -36,7 +36,7 @@ def print_control(run: ControlRun) -> None:
     for row in found:
         if row.id is not None:
             print_line(f"  {row.name}: {row.why}")
-    print_line(f"{saved(run)} against the programmed feed")
+    print_line(f"{saved(run)} at the programmed feed")
     print_line(f"events: {event_counts(run)}")
     print_line(f"disturbed: {disturbed_words(run)}; seed {run.seed}")
     for text in exceeded(run, found):

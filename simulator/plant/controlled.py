@@ -12,6 +12,7 @@ from math import exp, inf, pi
 
 import numpy as np
 
+from simulator.errors import MachineSilent
 from simulator.motion.segments import Floats, Ints
 from simulator.physics.cutting import wear_factor
 from simulator.plant.course import NominalCourse
@@ -78,6 +79,7 @@ class _Now:
     flank_wear: float = 0.0
     silent_until: float = -inf
     broken: int | None = None
+    is_cut_off: bool = False
     factors: dict[Changed, float] = field(
         default_factory=lambda: {Changed.DEPTH: 1.0, Changed.HARDNESS: 1.0}
     )
@@ -111,6 +113,11 @@ class ControlledMachine:
         return self._now.time
 
     @property
+    def commanded(self) -> float:
+        """Override that was set last."""
+        return self._now.commanded
+
+    @property
     def share(self) -> float:
         """Of the program that is behind, 0 to 1."""
         return self._now.progress / self.course.duration
@@ -131,12 +138,20 @@ class ControlledMachine:
         self._changes = sorted((*self._changes, change), key=lambda each: each.time)
 
     def read(self) -> Reading | None:
-        """Run one tooth period, or through what cannot be overridden; None at the end."""
+        """Run one tooth period, or through what cannot be overridden; None at the end.
+
+        Raises
+        ------
+        MachineSilent
+            When the line to it is broken.
+        """
         now, course = self._now, self.course
         if now.cell >= len(course):
             return None
         while self._changes and self._changes[0].time <= now.time:
             self._apply(self._changes.pop(0))
+        if now.is_cut_off:
+            raise MachineSilent(now.time)
         if course.can_override[now.cell]:
             return self._feed()
         return self._wait()
@@ -145,6 +160,8 @@ class ControlledMachine:
         match change.what:
             case Changed.TOOTH:
                 self._now.broken = int(change.value)
+            case Changed.LINE:
+                self._now.is_cut_off = True
             case Changed.SILENCE:
                 self._now.silent_until = change.time + change.value
             case _:

@@ -20,6 +20,8 @@ class Changed(StrEnum):
     """number of the tooth that breaks"""
     SILENCE = "silence"
     """s during which no sample arrives"""
+    LINE = "line"
+    """any number: from then on the machine does not answer"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

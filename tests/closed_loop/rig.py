@@ -150,7 +150,7 @@ def rig(
     loop = Loop(
         sensor,
         machine,
-        source=Dynamometer() if source is None else source,
+        source=Dynamometer(10.0) if source is None else source,
         law=law,
         steps=[step(reference())] if steps is None else steps,
         preview=Preview(until=course.until, force=course.force),

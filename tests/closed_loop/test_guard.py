@@ -180,5 +180,5 @@ def test_beyond_its_assumptions_the_promise_does_not_hold(beyond: Danger) -> Non
 def test_the_power_of_the_drive_comes_too_late_for_the_promise() -> None:
     danger = Danger(load=0.7, air=100, rapid=True, cut=4, ceiling=2.0, lag=0.005)
     assert max(danger.run((99.0,)).sensor.truth) <= BREAKAGE
-    by_power = danger.run((99.0,), source=DrivePower(1.0))
+    by_power = danger.run((99.0,), source=DrivePower(1.0, 60.0))
     assert max(by_power.sensor.truth) > BREAKAGE

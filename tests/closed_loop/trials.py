@@ -234,7 +234,7 @@ def loop(on: Plugged, law: Law[Any], trial: Trial) -> Loop:
     return Loop(
         on,
         on,
-        source=Dynamometer(),
+        source=Dynamometer(10.0),
         law=lambda _plant: law,
         steps=[step],
         preview=Preview(until=program.until, force=program.force),

@@ -150,7 +150,7 @@ def plugged(
     loop = Loop(
         Told(readings, is_lost=is_lost) if sensor is None else sensor,
         port,
-        source=Dynamometer(),
+        source=Dynamometer(10.0),
         law=law if callable(law) else lambda _plant: law,
         steps=[step()] if steps is None else steps,
         preview=Preview(until=np.array([1e6]), force=np.array([SET_POINT])),

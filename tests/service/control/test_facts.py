@@ -105,11 +105,13 @@ def test_law_and_mode_are_told_as_they_were(
     assert mode_words(run) == "QC at the end"
 
 
-def test_time_is_saved_or_lost(control_run: ControlRun) -> None:
+def test_time_is_won_or_lost(control_run: ControlRun) -> None:
     assert (
-        saved(replace(control_run, time=8.0, progress=10.0)) == "saved 2.0 s of 10.0 s (20.0%)"
+        saved(replace(control_run, time=8.0, progress=10.0))
+        == "2.0 s shorter than 10.0 s (20.0%)"
     )
     assert (
-        saved(replace(control_run, time=11.0, progress=10.0)) == "lost 1.0 s of 10.0 s (10.0%)"
+        saved(replace(control_run, time=11.0, progress=10.0))
+        == "1.0 s longer than 10.0 s (10.0%)"
     )
     assert saved(replace(control_run, time=0.0, progress=0.0)) == "nothing was run"

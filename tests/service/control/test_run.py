@@ -137,3 +137,25 @@ def test_a_file_that_is_not_there_is_named() -> None:
     request = ControlRequest(simulation=SimulationRequest(file=Path("nowhere.stpnc")))
     with pytest.raises(StepNcError, match=r"nowhere\.stpnc: No such file"):
         control(request)
+
+
+def test_a_machine_that_is_lost_is_told_and_left_with_the_safe_override(
+    controlled: Controlled,
+) -> None:
+    told: list[str] = []
+    session = prepare(controlled(disturbances=("line:off@8s",)))
+    run = control(controlled(disturbances=("line:off@8s",)), tell=told.append)
+    assert run.is_stopped
+    assert run.time == pytest.approx(8.0, abs=0.3)
+    assert run.events[-1].kind is EventKind.LOST
+    assert "lost: the machine does not answer since 8." in told[-1]
+    assert sum(1 for _ in session.cycles()) > 0
+    assert session.machine.commanded == 0.5
+
+
+def test_the_power_of_the_drive_serves_a_program_of_one_cut(controlled: Controlled) -> None:
+    run = control(controlled(sensor="power", set_point=250.0))
+    _, record = run.steps[-1]
+    assert record.revolutions > 50
+    assert record.override < 1.0
+    assert exp(record.ratio.log_mean) == pytest.approx(1.0, abs=0.05)

@@ -80,7 +80,7 @@ def test_speed_never_jumps_nor_changes_too_fast(
 
 @settings(max_examples=40)
 @given(
-    spans=st.lists(st.floats(0.0, 2.0), min_size=1, max_size=8),
+    spans=st.lists(st.just(0.0) | st.floats(1e-6, 2.0), min_size=1, max_size=8),
     data=st.data(),
     acceleration=st.floats(1.0, 100.0),
 )
