@@ -17,6 +17,7 @@ from service.cli.kbe_verbs import (
     show_command,
     table_command,
     withdraw_command,
+    write_command,
 )
 from service.cli.options import Commands, add_json
 from service.knowledge.options import (
@@ -62,6 +63,7 @@ def add_knowledge_commands(commands: Commands) -> None:
     _add_review(verbs)
     _add_decisions(verbs)
     _add_export(verbs)
+    _add_write(verbs)
     _add_copies(verbs)
 
 
@@ -200,6 +202,18 @@ def _add_export(verbs: Commands) -> None:
     add("--format", choices=tuple(SUFFIXES.values()), help="default: by the ending")
     add("-o", "--output", type=Path, required=True, metavar="FILE")
     _add_table_options(parser)
+
+
+def _add_write(verbs: Commands) -> None:
+    what = (
+        "write a run's outcomes, and the corrections in force for its tools, into the program "
+        "as STEP-NC entities"
+    )
+    parser = _verb(verbs, "write", write_command, what)
+    add = parser.add_argument
+    add("file", type=Path, metavar="FILE", help="the program that was run")
+    add("--run", type=text, default="", dest="of_run", metavar="ID", help="default: its newest")
+    add("-o", "--output", type=Path, metavar="FILE", help="default: FILE.recorded.stpnc")
 
 
 def _add_copies(verbs: Commands) -> None:

@@ -227,6 +227,20 @@ def export_command(options: argparse.Namespace) -> int:
     return OK
 
 
+def write_command(options: argparse.Namespace) -> int:
+    """``stepnc kbe write``."""
+    from service.knowledge.written import write_back
+    from service.terminal import tell
+
+    place = usual_place(options.kb)
+    done = write_back(place, options.file, run=options.of_run, output=options.output)
+    tell(
+        f"written: {done.place} (outcomes {done.outcomes}, corrections {done.corrections}, "
+        f"run {done.run})"
+    )
+    return OK
+
+
 def back_up_command(options: argparse.Namespace) -> int:
     """``stepnc kbe backup``."""
     from service.knowledge.verbs import back_up
