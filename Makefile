@@ -18,7 +18,7 @@ PYTHON ?= $(shell for p in python3.11 python3.12 python3.13 python3; do \
 .PHONY: help setup demo test check bench lock clean
 
 help:
-	@echo "make demo   optimise a sample part, simulate it, and show what changed"
+	@echo "make demo   optimise a sample part, simulate it, run it under control, and learn from it"
 	@echo "make test   run the tests"
 	@echo "make check  formatting, lint, types, layers"
 	@echo "make bench  speed, side by side with peers"
@@ -59,6 +59,11 @@ demo: $(READY) $(KERNELS)
 	$(BIN)/stepnc toolpath $(DEMO)/bracket.optimised.stpnc --plot $(DEMO)/bracket.png
 	$(BIN)/stepnc simulate $(DEMO)/bracket.optimised.stpnc --machine vmc15 \
 		-o $(DEMO)/bracket.parquet --report $(DEMO)/bracket.run.html
+	rm -f $(DEMO)/knowledge.db*
+	$(BIN)/stepnc control $(DEMO)/bracket.optimised.stpnc --machine vmc15 --preview --disturb kc:1.2 \
+		--kb $(DEMO)/knowledge.db -o $(DEMO)/bracket.control.parquet --report $(DEMO)/bracket.control.html
+	$(BIN)/stepnc kbe review --kb $(DEMO)/knowledge.db
+	$(BIN)/stepnc kbe table --kb $(DEMO)/knowledge.db -o $(DEMO)/knowledge.html
 	$(BIN)/optimise examples/parts/paper002.stpnc --mode TC --machine paper002 --json \
 		-o $(DEMO)/paper002.optimised.stpnc
 

@@ -3,6 +3,7 @@
 import contextlib
 import io
 import re
+import shlex
 from pathlib import Path
 
 import pytest
@@ -70,3 +71,29 @@ def test_the_python_of_the_readme_prints_its_comment(monkeypatch: pytest.MonkeyP
 
 def test_the_readme_is_one_screen() -> None:
     assert len(README.splitlines()) <= 66
+
+
+def test_the_loop_and_what_it_teaches_run_as_the_readme_shows(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    first = re.search(r"    \$ optimise (.*) -o part\.stpnc\n", README)
+    block = re.search(r"((?:    \$ .*\n)+)\n`optimise`", README)
+    assert first is not None
+    assert block is not None
+    monkeypatch.setenv("STEPNC_KB", "")
+    source = first[1].replace("examples", str(ROOT / "examples"))
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SystemExit):
+        optimise_main([*shlex.split(source), "-o", "part.stpnc"])
+    lines = [line for line in block[1].splitlines() if "kb" in line]
+    assert len(lines) == 3
+    for line in lines:
+        for command in line.removeprefix("    $ ").split(" && "):
+            name, *words = shlex.split(command, comments=True)
+            with pytest.raises(SystemExit) as stopped:
+                {"stepnc": main, "optimise": optimise_main}[name](words)
+            assert stopped.value.code == 0, capsys.readouterr().err
+    assert "learned k_c" in capsys.readouterr().out
+    assert {"shop.db", "control.html", "next.stpnc"} <= {
+        path.name for path in tmp_path.iterdir()
+    }
