@@ -81,7 +81,7 @@ class Band:
     """s without a reading after which it holds"""
     overload_ratio: float = OVERLOAD_RATIO
     holds: int = 3
-    """holds of the feed in one workingstep after which the program is stopped"""
+    """holds of the feed in quick succession after which the program is stopped"""
 
     def __post_init__(self) -> None:
         if not 0.0 < self.floor <= min(self.ceiling, 1.0) <= self.ceiling < inf:

@@ -6,7 +6,7 @@ Running state. Units mm, s, N, W, rev/s.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from math import inf, isfinite, isnan, nan
 from typing import Any
 
@@ -23,6 +23,7 @@ from controller.guard import (
     in_air,
     taught,
 )
+from controller.hold import Hold
 from controller.law import Law, Plant
 from controller.monitor import Monitor
 from controller.orders import CriterionTo, Event, EventKind, MotorPowerTo, Order
@@ -37,21 +38,6 @@ from simulator.reading import Reading
 
 STANDING = 0.02
 """override below which the axes count as standing"""
-
-
-@dataclass(kw_only=True)
-class _Hold:
-    """A hold of the feed. Running state."""
-
-    count: int = 0
-    """in this workingstep"""
-    is_on: bool = False
-    override: float = 1.0
-    """that the axes ran when it began"""
-    force: float = 0.0
-    """N, greatest since"""
-    calm: int = 0
-    """tooth periods in a row with a force below the set point: with runout, one says little"""
 
 
 class Loop:
@@ -93,7 +79,7 @@ class Loop:
         self._allowed = Allowed(override=1.0)
         self._target = Target()
         self._keep = kept(self._target, aims, AROUND)
-        self._hold, self._shares = _Hold(), overload.fresh(1)
+        self._hold, self._shares = Hold(), overload.fresh(1)
         self._has_chips = False
         """whether the last revolution had"""
         self._override_before = 1.0
@@ -175,7 +161,7 @@ class Loop:
         self._step = self._steps[at] if 0 <= at < len(self._steps) else AROUND
         self._steering.leave()
         self._has_chips, self._expected = False, 0.0
-        self._hold.count = 0
+        self._hold.count = 0.0
         self._target = Target()
         self._keep = kept(self._target, self.aims, self._step)
         self._approach()
@@ -268,6 +254,7 @@ class Loop:
 
     def _approach(self) -> None:
         """What holds for the next revolution."""
+        self._hold.forgive()
         target = approached(self._target, self.aims, self._step.reference)
         if target == self._target:
             return
@@ -285,7 +272,7 @@ class Loop:
         text = f"force {load:.4g} N of a tooth exceeds {bound:.4g} N: feed held"
         self._say(EventKind.HOLD, text)
         if hold.count > self.aims.band.holds:
-            self._stop(f"held {hold.count} times in this workingstep")
+            self._stop(f"held {hold.count:.0f} times in quick succession")
 
     def _go_on_when_safe(self, reading: Reading, load: float) -> None:
         hold = self._hold

@@ -9,6 +9,7 @@ from math import exp, inf
 from controller.aims import Aims, Step
 from controller.conditioning import RISE, conditioned
 from controller.guard import Keeping, aimed, keeping
+from controller.hold import FORGIVING
 from controller.orders import Criterion
 from controller.reference import Reference
 
@@ -37,9 +38,11 @@ def approached(target: Target, aims: Aims, reference: Reference) -> Target:
     """The target of the next revolution.
 
     A set point that falls holds at once for the law, but the force needs its time: what is an
-    overload falls as slowly as a set point rises, :data:`controller.conditioning.RISE`.
+    overload falls as slowly as a set point rises, :data:`controller.conditioning.RISE`. What a
+    hold has taught is eased little by little: the cut that was too hard may be over.
     """
     goal = aimed(wanted(aims, reference), reference)
+    target = replace(target, cap=target.cap * (1.0 + FORGIVING))
     if goal == inf:
         return replace(target, set_point=inf, settled=inf)
     if target.set_point == inf:
@@ -66,11 +69,11 @@ def introduction(aims: Aims, reference: Reference) -> str:
     bound = reference.bound(power_factor=aims.power_factor)
     words = "nothing bounds the force"
     if aims.set_point is not None:
-        words = f"{aims.set_point:.4g} N as asked for"
+        words = f"force bound {aims.set_point:.4g} N as asked for"
     elif bound is not None:
-        words = f"{bound.force:.4g} N by {bound.words}"
+        words = f"force bound {bound.force:.4g} N by {bound.words}, where the plan cuts hardest"
     asked = wanted(aims, reference)
     least = aimed(asked, reference)
     if least < 0.999 * asked:
         words += f"; {least:.4g} N, for the tool to bear a sudden rise"
-    return f"{reference.workingstep}: force bound {words}"
+    return f"{reference.workingstep}: {words}"

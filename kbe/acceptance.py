@@ -65,7 +65,7 @@ def objections(
     grounds = {
         Ground.CONFIDENCE: ""
         if proposed.confidence >= keep.least_confidence
-        else f"confidence {proposed.confidence:.2f} below {keep.least_confidence:g}",
+        else f"confidence {proposed.confidence:.3f} below {keep.least_confidence:g}",
         Ground.OUTCOMES: ""
         if proposed.outcomes >= keep.fewest_outcomes
         else f"learned from {proposed.outcomes} outcomes, fewer than {keep.fewest_outcomes}",

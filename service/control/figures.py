@@ -59,7 +59,7 @@ ROOM = 1.15
 USUAL = 0.98
 """quantile of the factor on k_c above which it is one of a tool that enters or leaves"""
 
-FAR = 4.0
+FAR = 1.5
 """times the greatest force from which on a set point leaves the panel"""
 
 
@@ -194,10 +194,11 @@ def _force(panels: Panels, trace: Trace) -> None:
         key("measured", RED), key("expected", SKY), key("set point", DIM, "━"),
     ))  # fmt: skip
     force = _greatest(trace.curve(Signal.FORCE_MEASURED).high)
-    bound = _greatest(trace.curve(Signal.SET_POINT).high)
-    top = ROOM * max(force, min(bound, FAR * force))
+    bounds = trace.curve(Signal.SET_POINT).mean
+    is_far = bounds > FAR * force
+    top = ROOM * max(force, _greatest(bounds[~is_far]))
     title = f"<b>Cutting force</b>, tangential, mean of a revolution, N<br>{keys}"
-    if bound > FAR * force:
+    if is_far.any():
         title += " (set points far above leave the frame)"
     panels.begin(title, height=210, range=[0.0, top] if top > 0.0 else None)
     middle = 0.5 * (trace.begin + trace.end) * panels.second

@@ -86,8 +86,8 @@ def _resolution(trace: Trace) -> str:
 
 def _numbers(found: Sequence[Row], total: Row) -> str:
     heads = (
-        "workingstep", "time s", "cutting", "feed mm/min", "override %", "force N", "peak N",
-        "set point N", "over s", "N·s", "holds", "factor on k_c",
+        "workingstep", "time s", "cutting", "feed mm/min", "override %", "force N", "hardest N",
+        "bound there N", "over s", "N·s", "holds", "factor on k_c",
     )  # fmt: skip
     body = [(row.name, *_cells(row)) for row in found]
     return table(heads, body, (("total", *_cells(total)),))

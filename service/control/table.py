@@ -28,7 +28,7 @@ def print_control(run: ControlRun) -> None:
     )
     header = (
         "workingstep", "time s", "cutting s", "feed mm/min", "override %", "force N",
-        "set point N", "over s", "excess N·s", "holds", "k_c factor",
+        "bound there N", "over s", "excess N·s", "holds", "k_c factor",
     )  # fmt: skip
     found = rows(run)
     body = [(row.name, *_numbers(row)) for row in found]
@@ -37,6 +37,7 @@ def print_control(run: ControlRun) -> None:
         if row.id is not None:
             print_line(f"  {row.name}: {row.why}")
     print_line(f"{saved(run)} at the programmed feed")
+    print_line("hardest: the mean of a revolution that came nearest to what bounds it there")
     print_line(f"events: {event_counts(run)}")
     print_line(f"disturbed: {disturbed_words(run)}; seed {run.seed}")
     for text in exceeded(run, found):
@@ -57,7 +58,7 @@ def _numbers(row: Row) -> tuple[str, ...]:
         f"{record.cutting_time:.1f}",
         f"{mm_min_from_speed(record.feed):.1f}",
         f"{100.0 * record.override:.0f} ({100.0 * least:.0f}–{100.0 * greatest:.0f})",
-        f"{record.force:.0f}, peak {record.peak:.0f}",
+        f"{record.force:.0f}, hardest {record.peak:.0f}",
         "" if row.set_point is None else f"{row.set_point:.1f}{limit}",
         f"{record.over_time:.2f}",
         f"{record.excess:.2f}",

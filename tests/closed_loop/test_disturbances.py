@@ -209,11 +209,14 @@ def test_runout_is_no_overload_for_ever() -> None:
     assert forces(done, 50).mean() > 0.6 * SET_POINT
 
 
-def test_a_depth_that_changes_over_and_over_is_held_once() -> None:
-    """And does not stop the program: each step is 1.75 times what the law has settled at."""
+def test_a_depth_that_changes_over_and_over_is_held_now_and_then() -> None:
+    """And does not stop the program: each step is 1.75 times what the law has settled at.
+
+    Of eight steps up, one teaches the next; what it has taught is eased little by little.
+    """
     steps = np.tile(np.concatenate([np.full(50, SET_POINT), np.full(50, 1.75 * SET_POINT)]), 8)
     done = rig(course(np.concatenate([AIR, steps]))).run()
     told = kinds(done)
-    assert told[EventKind.HOLD] <= 2
+    assert 1 <= told[EventKind.HOLD] <= 4
     assert told[EventKind.STOP] == 0
     assert done.machine.share == pytest.approx(1.0)

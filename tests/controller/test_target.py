@@ -5,6 +5,7 @@ import pytest
 
 from controller.aims import Aims
 from controller.conditioning import RISE
+from controller.hold import FORGIVING
 from controller.orders import Criterion
 from controller.reference import Reference
 from controller.target import Target, approached, introduction, kept, wanted
@@ -59,12 +60,17 @@ def test_quality_keeps_the_override_at_one() -> None:
 
 
 def test_a_workingstep_is_introduced_with_what_bounds_it() -> None:
-    assert introduction(AIMS, REFERENCE) == "SLOT: force bound 400 N by motor power"
-    assert introduction(AIMS, FREE) == "FREE: force bound nothing bounds the force"
+    assert (
+        introduction(AIMS, REFERENCE)
+        == "SLOT: force bound 400 N by motor power, where the plan cuts hardest"
+    )
+    assert introduction(AIMS, FREE) == "FREE: nothing bounds the force"
 
 
-def test_what_a_hold_has_taught_holds_for_the_workingstep() -> None:
-    capped = approached(Target(cap=0.7), AIMS, REFERENCE)
-    assert approached(capped, AIMS, REFERENCE).cap == 0.7
-    assert approached(approached(capped, AIMS, FREE), AIMS, REFERENCE).cap == 0.7
+def test_what_a_hold_has_taught_is_eased_little_by_little() -> None:
+    capped = Target(cap=0.7)
     assert kept(capped, AIMS, step()).ceiling == 0.7
+    for reference in (REFERENCE, FREE) * 50:
+        capped = approached(capped, AIMS, reference)
+    assert capped.cap == pytest.approx(0.7 * (1.0 + FORGIVING) ** 100)
+    assert 0.9 < capped.cap < 1.0

@@ -26,7 +26,7 @@ def test_sure_and_modest_correction_is_acceptable() -> None:
 @pytest.mark.parametrize(
     ("proposed", "ground", "words"),
     [
-        (replace(GOOD, confidence=0.79), Ground.CONFIDENCE, "confidence 0.79 below 0.8"),
+        (replace(GOOD, confidence=0.79), Ground.CONFIDENCE, "confidence 0.790 below 0.8"),
         (replace(GOOD, outcomes=2), Ground.OUTCOMES, "2 outcomes, fewer than 3"),
         (replace(GOOD, log_centre=log(2.1)), Ground.RANGE, "factor 2.10 outside 0.5 to 2"),
         (replace(GOOD, log_centre=log(0.4)), Ground.RANGE, "factor 0.40 outside 0.5 to 2"),

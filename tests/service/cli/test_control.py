@@ -35,7 +35,7 @@ def test_a_table_goes_to_stdout_and_events_to_stderr(
     assert run(*words, "-o", output, "--report", report, "--preview") == OK
     out, told = capsys.readouterr()
     assert "MILL SLOT" in out
-    assert "log-pi with preview of 12 revolutions" in out
+    assert "log-pi with preview of 8 revolutions" in out
     assert " s  workingstep: MILL SLOT: force bound " in told
     assert f"written: {output} (" in told
     assert f"report: {report}" in told

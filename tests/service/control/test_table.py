@@ -25,7 +25,7 @@ def test_a_row_has_programmed_and_actual(
     number = r"\d+\.\d"
     assert re.match(rf"MILL SLOT +{number} -> {number} +{number} ", slot)
     assert f"-> {control_run.time:.1f}" in total
-    assert re.search(r" \d+ \(\d+–\d+\) +\d+, peak \d+ +\d+\.\d [a-z ]+ +0\.\d\d ", slot)
+    assert re.search(r" \d+ \(\d+–\d+\) +\d+, hardest \d+ +\d+\.\d [a-z ]+ +0\.\d\d ", slot)
     assert re.search(r" 1\.\d{3} ± 0\.\d{3}$", slot)
 
 

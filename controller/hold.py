@@ -1,0 +1,26 @@
+"""A hold of the feed after an overload, and how long it is remembered. Running state."""
+
+from dataclasses import dataclass
+
+FORGIVING = 1.0 / 350.0
+"""of a hold forgotten in a revolution, and share by which what it has taught is eased: after
+350 revolutions, some seconds, it counts no more"""
+
+
+@dataclass(kw_only=True)
+class Hold:
+    """A hold, and those before it. Running state."""
+
+    count: float = 0.0
+    """in this workingstep, old ones less and less"""
+    is_on: bool = False
+    override: float = 1.0
+    """that the axes ran when it began"""
+    force: float = 0.0
+    """N, greatest since"""
+    calm: int = 0
+    """tooth periods in a row with a force below the set point: with runout, one says little"""
+
+    def forgive(self) -> None:
+        """One revolution went by."""
+        self.count = max(0.0, self.count - FORGIVING)

@@ -1,0 +1,21 @@
+import pytest
+
+from controller.hold import FORGIVING, Hold
+
+
+def test_a_hold_is_forgotten_after_some_hundred_revolutions() -> None:
+    hold = Hold(count=2.0)
+    for _ in range(350):
+        hold.forgive()
+    assert hold.count == pytest.approx(1.0)
+    for _ in range(1000):
+        hold.forgive()
+    assert hold.count == 0.0
+
+
+def test_holds_in_quick_succession_add_up() -> None:
+    hold = Hold()
+    for _ in range(4):
+        hold.count += 1
+        hold.forgive()
+    assert hold.count == pytest.approx(4.0 - 4.0 * FORGIVING)
