@@ -53,6 +53,8 @@ $(READY): requirements.lock pyproject.toml
 
 demo: $(READY) $(KERNELS)
 	@mkdir -p $(DEMO)
+	$(BIN)/optimise examples/parts/paper002.stpnc --mode TC --machine paper002 \
+		-o $(DEMO)/paper002.optimised.stpnc
 	$(BIN)/stepnc check examples/parts/bracket.stpnc
 	$(BIN)/optimise examples/parts/bracket.stpnc --mode TC --machine vmc15 \
 		-o $(DEMO)/bracket.optimised.stpnc --report $(DEMO)/bracket.html --nc linuxcnc
@@ -64,8 +66,7 @@ demo: $(READY) $(KERNELS)
 		--kb $(DEMO)/knowledge.db -o $(DEMO)/bracket.control.parquet --report $(DEMO)/bracket.control.html
 	$(BIN)/stepnc kbe review --kb $(DEMO)/knowledge.db
 	$(BIN)/stepnc kbe table --kb $(DEMO)/knowledge.db -o $(DEMO)/knowledge.html
-	$(BIN)/optimise examples/parts/paper002.stpnc --mode TC --machine paper002 --json \
-		-o $(DEMO)/paper002.optimised.stpnc
+	@echo "look at: $(DEMO)/bracket.html, bracket.run.html, bracket.control.html, knowledge.html, bracket.png"
 
 test: $(READY) $(KERNELS)
 	$(BIN)/python -m pytest -n auto

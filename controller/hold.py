@@ -2,9 +2,12 @@
 
 from dataclasses import dataclass
 
-FORGIVING = 1.0 / 350.0
-"""of a hold forgotten in a revolution, and share by which what it has taught is eased: after
-350 revolutions, some seconds, it counts no more"""
+FORGIVING = 1.0 / 100.0
+"""of a hold forgotten in a revolution: holds in quick succession are a fault"""
+
+EASING = 1.0 / 2000.0
+"""share by which the override that a hold has taught is eased in a revolution: some per cent in
+a second, so that cuts which come again and again hold the feed now and then only"""
 
 
 @dataclass(kw_only=True)

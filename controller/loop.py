@@ -173,7 +173,7 @@ class Loop:
         if reference.workingstep:
             self._say(EventKind.WORKINGSTEP, introduction(self.aims, reference))
             if reference.inhibition:
-                self._say(EventKind.INHIBITED, reference.inhibition)
+                self._say(EventKind.INHIBITED, f"feed left as it is: {reference.inhibition}")
 
     def _beginning(self) -> Allowed:
         """The override with which a workingstep begins."""

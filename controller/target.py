@@ -9,7 +9,7 @@ from math import exp, inf
 from controller.aims import Aims, Step
 from controller.conditioning import RISE, conditioned
 from controller.guard import Keeping, aimed, keeping
-from controller.hold import FORGIVING
+from controller.hold import EASING
 from controller.orders import Criterion
 from controller.reference import Reference
 
@@ -42,7 +42,7 @@ def approached(target: Target, aims: Aims, reference: Reference) -> Target:
     hold has taught is eased little by little: the cut that was too hard may be over.
     """
     goal = aimed(wanted(aims, reference), reference)
-    target = replace(target, cap=target.cap * (1.0 + FORGIVING))
+    target = replace(target, cap=target.cap * (1.0 + EASING))
     if goal == inf:
         return replace(target, set_point=inf, settled=inf)
     if target.set_point == inf:

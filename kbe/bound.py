@@ -18,6 +18,8 @@ class BoundUse:
     """outcomes with a bound and a measured force"""
     violated: int = 0
     wasted: int = 0
+    overplanned: int = 0
+    """in which the plan itself expected to pass the bound"""
     highest: float | None = None
     """greatest measured force over its bound"""
     time_to_win: float = 0.0
@@ -35,6 +37,7 @@ def used(sum_before: BoundUse, outcome: ProcessOutcome) -> BoundUse:
         known=sum_before.known + 1,
         violated=sum_before.violated + (share > PASSED),
         wasted=sum_before.wasted + wasted,
+        overplanned=sum_before.overplanned + is_overplanned(outcome),
         highest=max(share, sum_before.highest or 0.0),
         time_to_win=sum_before.time_to_win + (time_to_win(outcome) if wasted else 0.0),
     )
@@ -59,6 +62,12 @@ def is_wasted(outcome: ProcessOutcome) -> bool:
         return False
     predicted = outcome.force.predicted
     return predicted is None or predicted >= UNUSED * outcome.force_bound
+
+
+def is_overplanned(outcome: ProcessOutcome) -> bool:
+    """Whether the plan itself expected more force than its bound."""
+    predicted, bound = outcome.force.predicted, outcome.force_bound
+    return predicted is not None and bound is not None and predicted > PASSED * bound
 
 
 def time_to_win(outcome: ProcessOutcome) -> float:

@@ -69,6 +69,7 @@ def remarks(evidence: Evidence) -> tuple[Remark, ...]:
     """All that is worth saying, the gravest first."""
     proposed = evidence.proposed if is_pending(evidence) else None
     found = [
+        _overplanned(evidence.bound),
         _violated(evidence.bound),
         _force(evidence) if proposed is None else _factor(evidence, proposed),
         _wasted(evidence),
@@ -95,6 +96,19 @@ def _learned(evidence: Evidence) -> float:
 def _in_force(evidence: Evidence) -> float:
     """Centre of the factor that plans take."""
     return 1.0 if evidence.accepted is None else factor_at(evidence.accepted, quantile=0.5)
+
+
+def _overplanned(bound: BoundUse) -> Remark | None:
+    """The plan is not made for what it meets."""
+    if not bound.overplanned:
+        return None
+    return Remark(
+        about=Evaluated.FORCE,
+        action=Action.PLAN_AGAIN,
+        observed=f"the plan itself expected to pass the force bound in {bound.overplanned} of "
+        f"{bound.known} cuts",
+        advice="optimise the program for this machine and material",
+    )
 
 
 def _violated(bound: BoundUse) -> Remark | None:
@@ -156,7 +170,7 @@ def _wasted(evidence: Evidence) -> Remark | None:
         f"{bound.known} cuts{won}",
         advice="accept the k_c factor and plan again"
         if overestimated
-        else "let the controller raise the feed, or plan with a lower quantile of the factor",
+        else f"let the controller raise the feed, or {_bolder(evidence)}",
     )
 
 
@@ -189,8 +203,15 @@ def _feed(evidence: Evidence) -> Remark | None:
         observed=observed,
         advice="look for what holds the feed: override, force bound, short blocks"
         if slower
-        else "plan with a lower quantile of the k_c factor",
+        else _bolder(evidence),
     )
+
+
+def _bolder(evidence: Evidence) -> str:
+    """How a plan takes more: with less caution, or at all."""
+    if evidence.accepted is None:
+        return "optimise the program: it leaves room for more feed"
+    return "plan with a lower quantile of the k_c factor"
 
 
 def _time(evidence: Evidence) -> Remark | None:

@@ -1,7 +1,8 @@
 """Model-reference adaptive control (MRAC) of the cutting force, in logarithms.
 
 The reference model says how a deviation ``η = ln(F/F_ref)`` should die out, ``η_{k+1} = λ·η_k``
-with ``λ = exp(−1/T_c)``. The plant does ``η_{k+1} = a·η_k + b·ln u_k + c`` with
+with ``λ = exp(−1/T_c)``, T_c at most the lag of the drives. The plant does
+``η_{k+1} = a·η_k + b·ln u_k + c`` with
 ``a = exp(−1/T)`` and ``b = p·(1 − a)`` by its lag and exponent, and c, what is cut, unknown.
 The law ``ln u = θ_0 − θ_1·η`` would make it follow the model if its parameters were
 ``θ_1 = (a − λ)/b`` and ``θ_0 = −c/b``; what is missing shows as the model's error
@@ -78,7 +79,7 @@ class ModelReference:
     ) -> tuple[float, float]:
         """θ_0 and θ_1 after one more revolution."""
         sensitivity = self._sensitivity()
-        error = deviation - exp(-1.0 / self.closing) * state.deviation
+        error = deviation - self._model() * state.deviation
         error -= sensitivity * (let_through - state.wanted)
         step = self.adaptation * error / (sensitivity * (2.0 + state.deviation**2))
         nominal = self._nominal()
@@ -92,5 +93,8 @@ class ModelReference:
 
     def _nominal(self) -> float:
         """θ_1 if the plant is what it was taken for."""
-        pole = exp(-1.0 / self.plant.lag)
-        return (pole - exp(-1.0 / self.closing)) / self._sensitivity()
+        return (exp(-1.0 / self.plant.lag) - self._model()) / self._sensitivity()
+
+    def _model(self) -> float:
+        """λ; a model slower than the drives would take feed away for too little force."""
+        return exp(-1.0 / min(self.closing, self.plant.lag))

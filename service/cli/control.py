@@ -72,7 +72,12 @@ def add_control_command(commands: Commands) -> None:
         metavar="N",
         help="set point of the cutting force (default: what the plan's limits allow)",
     )
-    add("--band", default="20,120", metavar="LOW,HIGH", help="of the override, %% (20,120)")
+    add(
+        "--band",
+        default="20,120",
+        metavar="LOW,HIGH",
+        help="of the override, %% (20,120); the guard goes below where the tool is in danger",
+    )
     add("--sensor", default="dynamometer", help="dynamometer (default), or power of the drive")
     add("-o", "--output", type=Path, metavar="FILE", help="write the run, .parquet or .csv")
     add("--report", type=Path, metavar="HTML", help="write a self-contained page with plots")

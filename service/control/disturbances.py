@@ -38,8 +38,8 @@ NUMBER = re.compile(
     r"(?P<number>[+-]?[0-9.]+(?:e[+-]?[0-9]+)?)(?P<unit>[^0-9.]*)", re.IGNORECASE
 )
 
-MOST_FACTOR = 100.0
-"""on depth or k_c; more is a slip"""
+MOST_FACTOR = 10.0
+"""on depth, k_c or power; more is a slip"""
 
 MOST_TEETH = 100.0
 
@@ -167,6 +167,9 @@ def _within(word: _Word, units: dict[str, float], low: float, high: float) -> fl
 def _factor(word: _Word) -> float:
     """``+50%`` or a plain factor."""
     if word.value.endswith("%"):
+        if not word.value.startswith(("+", "-")):
+            way = "say which way, as in +50% or -50%"
+            raise StepNcError(f"disturbance '{word.text}': {way}")
         factor = 1.0 + 0.01 * _number(word.text, word.value, {"%": 1.0})
     else:
         factor = _number(word.text, word.value, {"": 1.0})

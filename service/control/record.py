@@ -18,7 +18,8 @@ def control_recorded(
     """Run a program under the loop, and keep what came out where a knowledge base is named.
 
     What a run that was stopped or broken off has cut is not kept: its times are not those of
-    whole workingsteps.
+    whole workingsteps. Who reads the outcomes is told that they are of a virtual machine, and
+    what was disturbed: nothing else tells a depth that nobody knew of from a harder material.
 
     Raises
     ------
@@ -32,7 +33,11 @@ def control_recorded(
     recording = Recording(
         run=uuid4().hex,
         at=datetime.now(UTC),
-        by=request.recorded_by or getpass.getuser(),
+        by=", ".join((
+            request.recorded_by or getpass.getuser(),
+            "virtual machine",
+            *request.disturbances,
+        )),
         trace="" if request.output is None else str(request.output.resolve()),
         seed=request.seed,
     )

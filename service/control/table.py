@@ -1,5 +1,6 @@
 """A run under control as a table on a terminal."""
 
+from controller.record import OVER
 from service.control.facts import (
     Row,
     disturbed_words,
@@ -37,7 +38,10 @@ def print_control(run: ControlRun) -> None:
         if row.id is not None:
             print_line(f"  {row.name}: {row.why}")
     print_line(f"{saved(run)} at the programmed feed")
-    print_line("hardest: the mean of a revolution that came nearest to what bounds it there")
+    print_line(
+        "hardest: the revolution that came nearest to what bounds it there; over: above "
+        f"{OVER:g} times its bound; excess: all above it, noise too"
+    )
     print_line(f"events: {event_counts(run)}")
     print_line(f"disturbed: {disturbed_words(run)}; seed {run.seed}")
     for text in exceeded(run, found):

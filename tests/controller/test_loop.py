@@ -147,7 +147,7 @@ def test_an_inhibited_override_is_never_touched() -> None:
         run.run()
     assert set(run.port.overrides) == {1.0}
     assert run.kinds[:2] == [EventKind.WORKINGSTEP, EventKind.INHIBITED]
-    assert run.events[1].text == "inhibit_feedrate_override"
+    assert run.events[1].text == "feed left as it is: inhibit_feedrate_override"
 
 
 def test_what_belongs_to_no_workingstep_is_left_alone() -> None:

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kbe.bound import BoundUse, is_wasted, share_of, time_to_win, used
+from kbe.bound import BoundUse, is_overplanned, is_wasted, share_of, time_to_win, used
 from stepnc_model.outcome import ProcessOutcome, Quantity
 from tests.kbe.cuts import SLOT
 
@@ -66,3 +66,10 @@ def test_no_cut_is_violated_and_wasted(measured: float) -> None:
     found = use_of(cut(measured))
     assert found.violated + found.wasted <= 1
     assert 0.0 <= time_to_win(cut(measured)) <= 60.0
+
+
+def test_plans_that_expect_to_pass_their_bound_are_counted() -> None:
+    over, within = cut(900.0, predicted=1200.0), cut(900.0)
+    assert is_overplanned(over)
+    assert not is_overplanned(within)
+    assert use_of(over, within).overplanned == 1

@@ -172,3 +172,9 @@ def test_trend_of_wear_asks_for_a_new_edge(
 def test_trend_by_chance_or_too_flat_is_not_told() -> None:
     assert remarks(evidence({Evaluated.FORCE: rising(0.021, chance=0.02)})) == ()
     assert remarks(evidence({Evaluated.FORCE: rising(0.004)})) == ()
+
+
+def test_a_plan_that_passes_its_own_bound_is_to_be_made_anew() -> None:
+    found = remarks(evidence(bound=BoundUse(known=3, overplanned=2)))
+    assert found[0].action is Action.PLAN_AGAIN
+    assert "in 2 of 3 cuts: optimise the program" in str(found[0])

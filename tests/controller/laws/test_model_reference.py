@@ -57,3 +57,23 @@ def test_deviations_die_out_as_the_model_says() -> None:
     away = np.abs(done.error[40:])
     assert away[6] < away[0] * exp(-6.0 / 2.0) + 0.05
     assert away[20:] == pytest.approx(0.0, abs=0.001)
+
+
+@pytest.mark.parametrize("lag", [0.1, 0.7, 1.5, 3.0, 12.0])
+@pytest.mark.parametrize("deviation", [-4.0, -1.0])
+def test_a_force_far_below_its_set_point_raises_the_override(
+    lag: float, deviation: float
+) -> None:
+    law = ModelReference(plant=Plant(lag=lag))
+    state, override = law.begin(1.0), 1.0
+    for _ in range(30):
+        at = Situation(
+            force=1000.0 * exp(deviation) * override**0.8,
+            set_point=1000.0,
+            override=override,
+            actual=override,
+            floor=0.2,
+            ceiling=1.2,
+        )
+        state, override = law.decide(state, at)
+    assert override == pytest.approx(1.2)

@@ -75,7 +75,7 @@ def test_orders_come_in_the_order_of_their_times() -> None:
         ("depth:+50%@-1s", "the time must be at least 0 s"),
         ("depth:+50%@nan", "'nan' is no number in s or min"),
         ("depth:+50%@1e999s", "'1e999s' is no number"),
-        ("depth:-100%@1s", "it must be above -100 % and +9900 % at most"),
+        ("depth:-100%@1s", "it must be above -100 % and +900 % at most"),
         ("depth:nan@1s", "'nan' is no number"),
         ("depth:1.2.3@1s", "'1.2.3' is no number"),
         ("tooth:0@1s", "it must be 1 to 100"),

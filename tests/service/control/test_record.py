@@ -20,10 +20,13 @@ def request(**more: object) -> ControlRequest:
 
 def test_a_run_is_recorded_where_a_knowledge_base_is_named(tmp_path: Path) -> None:
     place, told = str(tmp_path / "knowledge.db"), list[str]()
-    control_recorded(request(knowledge=place, recorded_by="Ada"), tell=told.append)
+    words = ("kc:1.1",)
+    control_recorded(
+        request(knowledge=place, recorded_by="Ada", disturbances=words), tell=told.append
+    )
     found = newest(place, EVERYTHING, limit=10)
     assert found.total == 1
-    assert found.outcomes[0].recorded_by == "Ada"
+    assert found.outcomes[0].recorded_by == "Ada, virtual machine, kc:1.1"
     assert told[-1] == f"recorded: 1 outcomes, run {found.outcomes[0].run}"
 
 
