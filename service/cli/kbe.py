@@ -7,6 +7,7 @@ from pathlib import Path
 from service.cli.kbe_verbs import (
     SUFFIXES,
     accept_command,
+    add_command,
     back_up_command,
     check_command,
     export_command,
@@ -64,6 +65,7 @@ def add_knowledge_commands(commands: Commands) -> None:
     _add_decisions(verbs)
     _add_export(verbs)
     _add_write(verbs)
+    _add_add(verbs)
     _add_copies(verbs)
 
 
@@ -214,6 +216,12 @@ def _add_write(verbs: Commands) -> None:
     add("file", type=Path, metavar="FILE", help="the program that was run")
     add("--run", type=text, default="", dest="of_run", metavar="ID", help="default: its newest")
     add("-o", "--output", type=Path, metavar="FILE", help="default: FILE.recorded.stpnc")
+
+
+def _add_add(verbs: Commands) -> None:
+    what = "keep outcomes of real runs from a file: JSON as `export outcomes` writes it"
+    parser = _verb(verbs, "add", add_command, what)
+    parser.add_argument("file", type=Path, metavar="FILE.json")
 
 
 def _add_copies(verbs: Commands) -> None:

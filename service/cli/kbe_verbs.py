@@ -241,6 +241,16 @@ def write_command(options: argparse.Namespace) -> int:
     return OK
 
 
+def add_command(options: argparse.Namespace) -> int:
+    """``stepnc kbe add``."""
+    from service.knowledge.added import add_outcomes
+    from service.terminal import tell
+
+    count = add_outcomes(usual_place(options.kb), options.file)
+    tell(f"added: {count} outcomes")
+    return OK
+
+
 def back_up_command(options: argparse.Namespace) -> int:
     """``stepnc kbe backup``."""
     from service.knowledge.verbs import back_up

@@ -1,0 +1,92 @@
+"""Outcomes of real runs come in as others go out."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from kbe.selection import EVERYTHING
+from kbe.store import open_store
+from service.flat_file import Format
+from service.knowledge.added import add_outcomes
+from service.knowledge.export import export_outcomes
+from stepnc_model.errors import StepNcError
+
+LEAST = {
+    "machine": "DMU 50",
+    "material": "c45",
+    "tool": "MILL 18MM",
+    "program": "part.stpnc",
+    "workingstep": "ROUGH THE FACE",
+    "feature_id": "FACE",
+    "feature_kind": "planar_face",
+    "is_finishing": False,
+    "mode": "TC",
+    "strategy": "",
+    "trace": "",
+    "run": "shift 3",
+    "recorded_at": "2026-03-02T08:00:00+01:00",
+    "recorded_by": "Ada",
+    "force_measured_n": 812,
+}
+
+
+def written(folder: Path, rows: Any) -> Path:
+    path = folder / "outcomes.json"
+    path.write_text(json.dumps(rows), encoding="utf-8")
+    return path
+
+
+def test_what_was_exported_is_added_unchanged(kb: str, tmp_path: Path) -> None:
+    file, place = tmp_path / "out.json", str(tmp_path / "new.db")
+    count = export_outcomes(kb, EVERYTHING, file=file, form=Format.JSON)
+    assert add_outcomes(place, file) == count
+    with open_store(kb) as old, open_store(place) as new:
+        assert list(new.outcomes()) == list(old.outcomes())
+
+
+def test_what_nobody_measured_may_be_left_out(tmp_path: Path) -> None:
+    place = str(tmp_path / "new.db")
+    assert add_outcomes(place, written(tmp_path, [LEAST])) == 1
+    with open_store(place) as store:
+        (outcome,) = store.outcomes()
+    assert outcome.force.measured == 812.0
+    assert outcome.force.predicted is None
+    assert outcome.force_ratio is None
+    assert outcome.context.machine == "DMU 50"
+
+
+@pytest.mark.parametrize(
+    ("rows", "message"),
+    [
+        ({}, "must hold a list of outcomes"),
+        ([], "at least one"),
+        ([3], "outcome 1: is no object"),
+        ([LEAST, {**LEAST, "colour": "red"}], "outcome 2: unknown key 'colour'"),
+        ([{**LEAST, "tool": None}], "'tool' is missing"),
+        ([{**LEAST, "tool": 7}], "'tool' is 7 and must be a text"),
+        ([{**LEAST, "is_finishing": 1}], "'is_finishing' is 1 and must be true or false"),
+        ([{**LEAST, "force_measured_n": "much"}], "'much' and must be a finite number"),
+        ([{**LEAST, "force_measured_n": True}], "True and must be a finite number"),
+        ([{**LEAST, "force_measured_n": float("nan")}], "nan and must be a finite number"),
+        ([{**LEAST, "recorded_at": "2026-03-02T08:00:00"}], "a time with its zone"),
+        ([{**LEAST, "recorded_at": 5}], "a time with its zone"),
+        ([{**LEAST, "immersion": "sideways"}], "outcome 1: 'sideways' is not a valid"),
+    ],
+)
+def test_what_is_no_outcome_is_refused_and_nothing_kept(
+    rows: Any, message: str, tmp_path: Path
+) -> None:
+    place = tmp_path / "new.db"
+    with pytest.raises(StepNcError) as caught:
+        add_outcomes(str(place), written(tmp_path, rows))
+    assert message in str(caught.value)
+    assert not place.exists()
+
+
+def test_what_is_no_json_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "x.json"
+    path.write_bytes(b"\xff{")
+    with pytest.raises(StepNcError, match="is no JSON"):
+        add_outcomes(str(tmp_path / "new.db"), path)
