@@ -24,8 +24,8 @@ from service.page import STYLE, clock, headline
 
 OWN_STYLE = """
 body { max-width: 118rem; }
-table.evaluation { font-size: 13px; line-height: 1.35; }
-table.evaluation th, table.evaluation td { padding: .25rem .45rem; vertical-align: top; }
+table.evaluation { font-size: 12px; line-height: 1.35; }
+table.evaluation th, table.evaluation td { padding: .2rem .3rem; vertical-align: top; }
 table.evaluation th.first, table.evaluation td.first { border-left: 1px solid var(--rule); }
 table.evaluation thead tr:first-child th { text-align: left; border-bottom: none;
          color: var(--soft); font-weight: 500; }
