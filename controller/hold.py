@@ -5,9 +5,9 @@ from dataclasses import dataclass
 FORGIVING = 1.0 / 100.0
 """of a hold forgotten in a revolution: holds in quick succession are a fault"""
 
-EASING = 1.0 / 2000.0
-"""share by which the override that a hold has taught is eased in a revolution: some per cent in
-a second, so that cuts which come again and again hold the feed now and then only"""
+EASING = 1.0 / 200.0
+"""share by which the override that a hold has taught is eased in a revolution: cuts that come
+again within a second or two hold the feed now and then, and those that are over cost little"""
 
 
 @dataclass(kw_only=True)
