@@ -166,7 +166,8 @@ def keeping(
     most : float
         Override that the mode allows.
     """
-    ceiling = min(band.ceiling, reference.ceiling, most)
+    # What is programmed may pass the plan's limits by far: the band's floor is kept.
+    ceiling = max(min(band.ceiling, reference.ceiling, most), band.floor)
     return Keeping(
         set_point=set_point,
         breakage=reference.breakage,

@@ -10,6 +10,10 @@ EASING = 1.0 / 200.0
 again within a second or two hold the feed now and then, and those that are over cost little"""
 
 
+BELOW = 500
+"""revolutions in a row in which the guard goes below the band, until it stops the program"""
+
+
 @dataclass(kw_only=True)
 class Hold:
     """A hold, and those before it. Running state."""
@@ -23,6 +27,14 @@ class Hold:
     """N, greatest since"""
     calm: int = 0
     """tooth periods in a row with a force below the set point: with runout, one says little"""
+
+    below: int = 0
+    """revolutions in a row below the floor of the band"""
+
+    def stays_below(self, *, is_below: bool) -> bool:
+        """Whether the override has been below the band for too long, this revolution too."""
+        self.below = self.below + 1 if is_below else 0
+        return self.below > BELOW
 
     def forgive(self) -> None:
         """One revolution went by."""

@@ -30,7 +30,7 @@ from controller.orders import CriterionTo, Event, EventKind, MotorPowerTo, Order
 from controller.ports import Override, Sensor
 from controller.preview import Preview
 from controller.signal import Collector, Revolution
-from controller.silence import HEARD, is_blind, listened
+from controller.silence import HEARD, is_blind, is_implausible, listened
 from controller.source import Source
 from controller.steering import Steering
 from controller.target import Target, approached, introduction, kept
@@ -133,6 +133,8 @@ class Loop:
         reading = weighed(reading, weight)
         # One that comes again tells nothing.
         revolution = self._collector.add(reading) if is_new else None
+        if revolution is not None and is_implausible(revolution.force, self.aims.chips):
+            revolution = None
         expected, ratio = 0.0, None
         if revolution is not None:
             expected = self._steering.expectation(revolution, self._step.exponent)
@@ -141,6 +143,7 @@ class Loop:
             ratio = log_ratio(revolution, known, expected_before=self._expected)
             self._expected = known
         force = overload.mean(reading.force) if is_new else nan
+        force = nan if is_implausible(force, self.aims.chips) else force
         self._act(reading, revolution, ratio, force=force)
         self._port.set(self._allowed.override)
         return Cycle(
@@ -374,7 +377,7 @@ class Loop:
         if is_entry:
             # The force of a revolution that began in the air is too small to be trusted.
             wanted = min(wanted, last)
-        return allowed(
+        got = allowed(
             wanted,
             self.aims.band,
             keep,
@@ -382,6 +385,11 @@ class Loop:
             actual=revolution.override,
             force=max(self._greatest, revolution.force),
         )
+        if self._hold.stays_below(is_below=got.override < keep.floor):
+            percent = 100.0 * keep.floor
+            self._stop(f"the tool is in danger even at {percent:.3g} % of the programmed feed")
+            return self._allowed
+        return got
 
     def _say(self, kind: EventKind, text: str) -> None:
         self._events.append(Event(time=self._time, kind=kind, text=text))

@@ -23,7 +23,7 @@ class Record:
     way: float = 0.0
     """mm of path with chips"""
     peak: float = 0.0
-    """N, mean of the revolution that came nearest to its bound; without one the greatest"""
+    """N, where it came nearest to its bound, for some revolutions; without one the greatest"""
     impulse: float = 0.0
     """N·s with chips"""
     excess: float = 0.0
@@ -35,6 +35,10 @@ class Record:
     least: float = inf
     greatest: float = 0.0
     """override with chips"""
+    share: float = 0.0
+    """force over its bound, a moving mean"""
+    most: float = 0.0
+    """greatest such share"""
     set_point: float = inf
     """N, bound of that revolution"""
     revolutions: int = 0
@@ -58,6 +62,12 @@ class Record:
         """Mean with chips; 1 without."""
         return self.overrides / self.cutting_time if self.cutting_time else 1.0
 
+
+LASTING = 0.2
+"""weight of a revolution in the moving mean: one that enters a cut, or noise, breaks nothing"""
+
+FREE = 1e9
+"""N, in place of no bound"""
 
 OVER = 1.05
 """times the set point, from which a force counts as over it: its noise is not"""
@@ -105,9 +115,10 @@ class Recorder:
         )
         record.impulse += force * period
         # Shares of their bounds; where nothing bounds the force, the forces themselves.
-        share, most = force / bound, record.peak / record.set_point
-        if share > most or (share == most and force > record.peak) or not record.peak:
-            record.peak, record.set_point = force, bound
+        record.share += LASTING * (force / min(bound, FREE) - record.share)
+        if record.share > record.most:
+            record.most, record.set_point = record.share, bound
+            record.peak = record.share * min(bound, FREE)
         if cycle.ratio is not None:
             record.ratio = counted(record.ratio, cycle.ratio)
         if isfinite(bound):

@@ -15,6 +15,10 @@ REVOLUTIONS = 2.0
 begun in its middle"""
 
 
+IMPLAUSIBLE = 5.0
+"""times the force of chips that a force may be below zero: no cut pulls, the zero is wrong"""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Silence:
     """Time at feed since a force was told."""
@@ -63,3 +67,8 @@ def is_blind(silence: Silence, *, allowed: float, spindle_speed: float) -> bool:
     """
     turning = REVOLUTIONS / spindle_speed if spindle_speed > 0.0 else inf
     return silence.samples > allowed or silence.revolutions > allowed + turning
+
+
+def is_implausible(force: float, chips: float) -> bool:
+    """Whether a force, N, is none, with chips from so many N on."""
+    return force < -IMPLAUSIBLE * chips

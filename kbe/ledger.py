@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
+from math import log
 from typing import Any
 
 from sqlalchemy import Select, func, select
@@ -36,6 +37,9 @@ class Entry:
     """who accepted or withdrew it last; empty: nobody yet"""
     decided_at: datetime | None
 
+
+GREATEST_LOG = log(20.0)
+"""of a factor on k_c, either way: beyond is no material"""
 
 _LATEST = select(func.max(decision.c.id)).group_by(decision.c.correction_id)
 _LAST = select(decision).where(decision.c.id.in_(_LATEST)).subquery("last_decision")
@@ -74,10 +78,30 @@ def entry(row: Sequence[Any]) -> Entry:
     standing = Standing(kind or Standing.PROPOSED)
     is_accepted = standing is Standing.ACCEPTED
     columns = [*stored, by if is_accepted else "", at if is_accepted else None]
+    learned = CORRECTION.noun(columns)
+    _require_sound(id_, learned)
     return Entry(
         id=id_,
-        correction=CORRECTION.noun(columns),
+        correction=learned,
         standing=standing,
         decided_by=by or "",
         decided_at=at,
     )
+
+
+def _require_sound(id_: int, learned: Correction) -> None:
+    """Refuse what no learning proposes: somebody else has written it.
+
+    Raises
+    ------
+    ValueError
+        With what is wrong.
+    """
+    is_sound = (
+        abs(learned.log_centre) <= GREATEST_LOG
+        and 0.0 < learned.log_scale <= GREATEST_LOG
+        and learned.degrees > 0.0
+        and 0.0 <= learned.confidence <= 1.0
+    )
+    if not is_sound:
+        raise ValueError(f"correction {id_} is none that was learned: {learned}")

@@ -164,7 +164,7 @@ class Store:
         """The correction in force for a context, if there is one."""
         with reading(self.engine, self.place) as connection:
             row = connection.execute(in_force(context)).first()
-        return None if row is None else entry(row).correction
+            return None if row is None else entry(row).correction
 
     def check(self) -> None:
         """Read all that is stored, to the last page.

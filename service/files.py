@@ -11,6 +11,8 @@ from stepnc_model.errors import StepNcError, WriteError
 def read_bytes(path: Path) -> bytes:
     """All bytes of a file; an error of the project's own when it cannot be read."""
     try:
+        if path.is_char_device():
+            raise StepNcError(f"{path}: is a device, no file")
         return path.read_bytes()
     except OSError as error:
         raise StepNcError(f"{path}: {_reason(error)}") from error
@@ -58,6 +60,8 @@ def is_same(one: Path, other: Path) -> bool:
         return one.exists() and other.exists() and one.samefile(other)
     except OSError as error:
         raise StepNcError(f"{error.filename}: {_reason(error)}") from error
+    except RuntimeError as error:
+        raise StepNcError(f"{one} or {other}: links that lead in a circle") from error
     except ValueError as error:
         raise StepNcError(f"{str(one)!r} or {str(other)!r} is no file name") from error
 

@@ -17,6 +17,7 @@ from service.files import (
     write_lines,
 )
 from service.knowledge.corrected import SAFETY, factors_for, finding_of, with_corrections
+from service.knowledge.place import named_place, require_apart
 from service.progress import Progress
 from service.reading import Tell, one_of, read_program, silent
 from service.records import changes_of
@@ -80,6 +81,7 @@ def optimise(request: Request, *, tell: Tell = silent) -> Outcome:
     profile = one_of(Profile, request.profile, "profile")
     output = _output(request)
     nc_place = _nc_place(request, output)
+    require_apart(named_place(request.knowledge), output, request.report, nc_place)
     program = read_program(request.file, units=request.units)
     chosen = _selected(program, request.workingsteps)
     findings = program.file.findings + program.model.findings()

@@ -187,6 +187,8 @@ def read_toml_head(path: Path) -> Table:
 def read_text(path: Path) -> str:
     """Text of a library file in UTF-8."""
     try:
+        if path.is_char_device():
+            raise LibraryError("is a device, no file", path=str(path))
         return path.read_text(encoding="utf-8")
     except OSError as error:
         raise LibraryError(f"cannot be read: {error.strerror}", path=str(path)) from error

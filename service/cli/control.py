@@ -6,7 +6,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from service.cli.machine import add_what_runs, interruptible, what_runs
-from service.cli.options import LIMIT_EXCEEDED, OK, Commands, add_json, add_knowledge
+from service.cli.options import (
+    LIMIT_EXCEEDED,
+    OK,
+    Commands,
+    add_json,
+    add_knowledge,
+    text,
+)
 
 if TYPE_CHECKING:
     from service.control.run import ControlRequest
@@ -82,7 +89,7 @@ def add_control_command(commands: Commands) -> None:
     add("-o", "--output", type=Path, metavar="FILE", help="write the run, .parquet or .csv")
     add("--report", type=Path, metavar="HTML", help="write a self-contained page with plots")
     add_knowledge(parser, "keep the outcomes there, take accepted corrections from it")
-    add("--by", default="", metavar="NAME", help="who records (default: the login name)")
+    add("--by", type=text, default="", metavar="NAME", help="who records (the login name)")
     add_json(parser)
     parser.set_defaults(run=_control)
 
@@ -99,7 +106,7 @@ def _control(options: argparse.Namespace) -> int:
         from service.control.report import control_page
         from service.files import write_atomically
 
-        write_atomically(options.report, control_page(run, run.trace).encode())
+        write_atomically(options.report, control_page(run, run.trace).encode(errors="replace"))
         tell(f"report: {options.report}")
     if options.json:
         from service.control.wire import control_json

@@ -4,6 +4,12 @@ import argparse
 from collections.abc import Callable
 from pathlib import Path
 
+from service.cli.kbe_options import (
+    add_filters,
+    add_place,
+    count,
+    share,
+)
 from service.cli.kbe_verbs import (
     SUFFIXES,
     accept_command,
@@ -20,14 +26,7 @@ from service.cli.kbe_verbs import (
     withdraw_command,
     write_command,
 )
-from service.cli.options import Commands, add_json
-from service.knowledge.options import (
-    add_filters,
-    add_place,
-    count,
-    share,
-    text,
-)
+from service.cli.options import Commands, add_json, text
 
 USAGE = 2
 

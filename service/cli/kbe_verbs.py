@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from service.cli.kbe_options import selection_of
 from service.cli.machine import interruptible
 from service.cli.options import OK
-from service.knowledge.options import selection_of
 from service.knowledge.place import usual_place
 from stepnc_model.errors import StepNcError
 

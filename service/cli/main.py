@@ -151,7 +151,7 @@ def add_optimise_options(parser: argparse.ArgumentParser) -> None:
         type=float,
         default=0.9,
         metavar="Q",
-        help="quantile of a corrected k_c to plan with, 0.5 to below 1 (default 0.9)",
+        help="quantile of a corrected k_c to plan with, 0.5 to 0.999 (default 0.9)",
     )
     add("--dry-run", action="store_true", help="write no STEP-NC file")
     add("--report", type=Path, metavar="HTML", help="write a self-contained page with plots")

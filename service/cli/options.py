@@ -30,10 +30,26 @@ def add_json(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--json", action="store_true", help="print JSON instead of a table")
 
 
+def text(word: str) -> str:
+    """A word of the command line; bytes that are no text are none.
+
+    Raises
+    ------
+    ArgumentTypeError
+        When no file and no database could hold it.
+    """
+    try:
+        word.encode()
+    except UnicodeEncodeError as error:
+        raise argparse.ArgumentTypeError(f"{word!r} is no text") from error
+    return word
+
+
 def add_knowledge(parser: argparse.ArgumentParser, why: str) -> None:
     """The knowledge base."""
     parser.add_argument(
         "--kb",
+        type=text,
         default="",
         metavar="PLACE",
         help=f"knowledge base, a file or postgresql://…: {why} (default: $STEPNC_KB)",

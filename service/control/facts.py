@@ -16,6 +16,9 @@ STAYED = 0.1
 """share of the time with chips above the set point from which the force stayed above it; less
 are entries and steps of depth, which no feedback can avoid"""
 
+BLIND = 0.1
+"""share of the time of a workingstep that may go by without a force"""
+
 ALL = 0.995
 """share of the time from which a reason is told alone"""
 
@@ -35,6 +38,8 @@ class Row:
     """s at an override of 1, of what was run of it"""
     record: Record
     holds: int = 0
+    blind: float = 0.0
+    """s at feed without a force"""
     bound: str = ""
     """what the set point follows from; empty: there is none"""
     inhibition: str = ""
@@ -109,6 +114,7 @@ def _row(run: ControlRun, advice: Advice | None, record: Record, planned: float)
         planned=planned,
         record=record,
         holds=held.holds,
+        blind=held.blind,
         bound="" if ends is None else ends.force_bound(run.aims),
         inhibition="" if ends is None else ends.reference.inhibition,
         shares=held.shares,
@@ -157,6 +163,12 @@ def exceeded(run: ControlRun, found: Sequence[Row]) -> tuple[str, ...]:
             f"chips above {OVER:g} times the set point of {row.record.set_point:.4g} N"
             for row in found
             if row.has_stayed_over
+        ),
+        *(
+            f"{row.name}: no force for {row.blind:.3g} s of {row.record.time:.3g} s: run at "
+            "the safe override"
+            for row in found
+            if row.blind > BLIND * row.record.time
         ),
     )
 

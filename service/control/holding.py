@@ -75,6 +75,8 @@ class Held:
     """of the feed"""
     seconds: dict[str, float] = field(default_factory=dict)
     """with chips, by what held the override"""
+    blind: float = 0.0
+    """s without a force at feed"""
 
     @property
     def shares(self) -> tuple[tuple[str, float], ...]:
@@ -111,6 +113,8 @@ class Holdings:
         for event in cycle.events:
             held.holds += event.kind is EventKind.HOLD
             self.level = _LEVELS.get(event.kind, self.level)
+        if reading.can_override and cycle.allowed.holding is Holding.SILENCE:
+            held.blind += reading.period
         if not reading.can_override:
             self.words = ""
         elif cycle.revolution is not None:

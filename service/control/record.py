@@ -5,11 +5,13 @@ from collections.abc import Sequence
 from datetime import UTC, datetime
 from uuid import uuid4
 
+from kbe.place import parsed_place, require_openable
 from service.control.outcomes import Recording, outcomes_of
 from service.control.run import ControlRequest, ControlRun, Watcher, control
-from service.knowledge.place import named_place
+from service.knowledge.place import make_folder, named_place, require_apart
 from service.knowledge.verbs import record
 from service.reading import Tell, silent
+from stepnc_model.errors import StepNcError
 
 
 def control_recorded(
@@ -27,6 +29,10 @@ def control_recorded(
         As :func:`service.control.run.control`, and when the knowledge base cannot take it.
     """
     place = named_place(request.knowledge)
+    if place is not None:
+        require_apart(place, request.output, request.report)
+        make_folder(place)
+        require_openable(parsed_place(place), is_new_allowed=True)
     run = control(request, tell=tell, watchers=watchers)
     if place is None or run.is_stopped:
         return run
@@ -42,6 +48,10 @@ def control_recorded(
         seed=request.seed,
     )
     outcomes = outcomes_of(run, recording)
-    record(place, outcomes)
+    try:
+        record(place, outcomes)
+    except ValueError as error:
+        # A name of a file or of the user that is no text.
+        raise StepNcError(f"the outcomes cannot be kept: {error}") from error
     tell(f"recorded: {len(outcomes)} outcomes, run {recording.run}")
     return run

@@ -11,6 +11,9 @@ from stepnc_model.tool import tool_of
 if TYPE_CHECKING:
     from service.knowledge.verbs import AcceptedFactor
 
+MOST_SAFETY = 0.999
+"""greatest quantile: beyond, the tail of a distribution decides that nobody has seen"""
+
 SAFETY = 0.9
 """quantile of the factor on k_c: one run in ten needs more force than planned"""
 
@@ -36,7 +39,7 @@ def factors_for(  # noqa: PLR0913 (all that a context is made of)
     machine : Machine
     material : MaterialMatch
     safety : float
-        Quantile of the factor that the plan takes, 0.5 to below 1.
+        Quantile of the factor that the plan takes, 0.5 to 0.999.
     is_new_allowed : bool
         Whether it may be a file that is still to be made.
 
@@ -45,8 +48,8 @@ def factors_for(  # noqa: PLR0913 (all that a context is made of)
     StepNcError
         When the quantile is out of range, or the knowledge base cannot be read.
     """
-    if not 0.5 <= safety < 1.0:
-        raise StepNcError(f"safety {safety:g}: it must be at least 0.5 and below 1")
+    if not 0.5 <= safety <= MOST_SAFETY:
+        raise StepNcError(f"safety {safety:g}: it must be 0.5 to {MOST_SAFETY:g}")
     from service.knowledge.place import named_place  # noqa: PLC0415 (os and paths only when asked)
 
     found = named_place(place)

@@ -13,6 +13,7 @@ from kbe.rows import CORRECTION, OUTCOME
 from kbe.schema import DECIDED
 from kbe.selection import Selection
 from service.flat_file import Field, Format, Row, write_rows
+from service.knowledge.place import require_apart
 from service.knowledge.verbs import corrections, selected_outcomes
 from stepnc_model.outcome import ProcessOutcome
 
@@ -39,12 +40,14 @@ def export_outcomes(place: str, selection: Selection, *, file: Path, form: Forma
     KnowledgeError, WriteError
         When they cannot be read, or not be written.
     """
+    require_apart(place, file)
     with selected_outcomes(place, selection) as found:
         return write_rows(file, OUTCOME_FIELDS, outcome_rows(found), form=form)
 
 
 def export_corrections(place: str, *, file: Path, form: Format) -> int:
     """Write all corrections to a file; errors as :func:`export_outcomes`."""
+    require_apart(place, file)
     return write_rows(file, CORRECTION_FIELDS, correction_rows(corrections(place)), form=form)
 
 

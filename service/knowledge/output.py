@@ -8,6 +8,7 @@ from kbe.selection import Selection
 from service.files import write_atomically
 from service.flat_file import Field, Format, Row, csv_lines, write_rows
 from service.knowledge.evaluated import TableRequest, summary, table
+from service.knowledge.place import require_apart
 from service.reading import Tell
 from service.terminal import write_out
 from stepnc_model.errors import StepNcError
@@ -24,6 +25,7 @@ def put_table(
         When it cannot be made, or not be written.
     """
     _require_output(form, output)
+    require_apart(place, output)
     found = table(place, request, tell=tell)
     if form in {Format.CSV, Format.PARQUET}:
         from service.knowledge.evaluation_export import FIELDS, table_rows  # noqa: PLC0415
@@ -55,6 +57,7 @@ def put_table(
 def put_summary(place: str, selection: Selection, *, form: str, output: Path | None) -> int:
     """The same for the summary."""
     _require_output(form, output)
+    require_apart(place, output)
     if form == "html" or (form == "text" and output is not None):
         raise StepNcError("a summary in a file is CSV, JSON or Parquet")
     found = summary(place, selection)

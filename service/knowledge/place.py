@@ -6,6 +6,7 @@ Knows no database, so that who has none does not load one.
 import os
 from pathlib import Path
 
+from service.files import is_same
 from stepnc_model.errors import StepNcError, WriteError
 
 VARIABLE = "STEPNC_KB"
@@ -80,3 +81,20 @@ def make_folder(place: str) -> None:
     except OSError as error:
         reason = error.strerror or str(error)
         raise WriteError(f"{reason}; name another place with --kb", path=str(folder)) from error
+
+
+def require_apart(place: str | None, *outputs: Path | None) -> None:
+    """Refuse an output that is the knowledge base itself, or one of the files beside it.
+
+    Raises
+    ------
+    WriteError
+        Nothing was written.
+    """
+    name = (place or "").removeprefix("sqlite:///")
+    if not name or "://" in name:
+        return
+    for output in outputs:
+        for ending in ("", "-wal", "-shm", "-journal"):
+            if output is not None and is_same(Path(name + ending), output):
+                raise WriteError("is the knowledge base; name another file", path=str(output))

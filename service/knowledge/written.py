@@ -6,6 +6,7 @@ from pathlib import Path
 from kbe.selection import Selection
 from kbe.store import Store, open_store
 from service.files import beside, require_place, write_atomically
+from service.knowledge.place import require_apart
 from service.reading import read_program
 from stepnc_model.errors import StepNcError
 from stepnc_model.outcome import Correction, ProcessOutcome
@@ -43,6 +44,7 @@ def write_back(place: str, file: Path, *, run: str = "", output: Path | None = N
     """
     target = output or beside(file, ".recorded.stpnc")
     require_place(target, apart_from=file)
+    require_apart(place, target)
     program = read_program(file, units="iso")
     with open_store(place, is_new_allowed=False) as store:
         outcomes = _outcomes(store, program.name, run)

@@ -13,7 +13,7 @@ from controller.orders import EventKind
 from controller.ports import Floats
 from controller.reference import Reference
 from simulator.plant.course import NominalCourse
-from simulator.plant.dynamometer import DYNAMOMETER
+from simulator.plant.dynamometer import DYNAMOMETER, Instrument
 from simulator.plant.hidden import Change, Changed, Hidden
 from tests.closed_loop.rig import SET_POINT, Rig, rig, step
 from tests.simulator.plant.courses import EXPONENT, course
@@ -220,3 +220,16 @@ def test_a_depth_that_changes_over_and_over_is_held_now_and_then() -> None:
     assert 1 <= told[EventKind.HOLD] <= 8
     assert told[EventKind.STOP] == 0
     assert done.machine.share == pytest.approx(1.0)
+
+
+def test_a_force_below_zero_is_no_force() -> None:
+    """A zero that ran away: the loop is blind and says so."""
+    done = rig(course(cut()), instrument=Instrument(drift=-400.0)).run()
+    assert kinds(done)[EventKind.SILENCE] == 1
+    assert done.cycles[-1].allowed.override <= 0.5
+
+
+def test_a_tool_in_danger_below_the_band_stops_the_program() -> None:
+    done = rig(course(cut(force=3000.0, cells=6000)), Hidden(servo_lag=0.06)).run()
+    assert kinds(done)[EventKind.STOP] == 1
+    assert done.machine.share < 1.0

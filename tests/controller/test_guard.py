@@ -136,10 +136,10 @@ def test_the_band_is_narrowed_by_what_the_workingstep_allows() -> None:
     assert quality.ceiling == 1.0
 
 
-def test_a_ceiling_below_the_floor_counts() -> None:
+def test_the_floor_of_the_band_holds_against_a_ceiling_of_the_plan() -> None:
     reference = Reference(workingstep="x", ceiling=0.1)
     keep = keeping(BAND, reference, set_point=inf, exponent=0.8)
-    assert (keep.floor, keep.ceiling) == (0.1, 0.1)
+    assert (keep.floor, keep.ceiling) == (0.2, 0.2)
 
 
 @pytest.mark.parametrize(

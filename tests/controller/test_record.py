@@ -44,7 +44,10 @@ def test_a_workingstep_is_summed_up_in_closed_form() -> None:
     assert record.time == record.cutting_time == pytest.approx(0.06)
     assert record.way == pytest.approx(20.0 * 0.06)
     assert record.feed == pytest.approx(20.0)
-    assert record.peak == 500.0
+    lasting = [0.0]
+    for force in FORCES:
+        lasting.append(0.8 * lasting[-1] + 0.2 * force)
+    assert record.peak == pytest.approx(max(lasting))
     assert record.impulse == pytest.approx(0.02 * 1020.0)
     assert record.force == pytest.approx(340.0)
     assert record.excess == pytest.approx(0.02 * (20.0 + 100.0))
@@ -58,6 +61,13 @@ def test_a_workingstep_is_summed_up_in_closed_form() -> None:
     assert record.ratio.log_mean == pytest.approx(
         sum(log(force / 400.0) for force in FORCES) / 3.0
     )
+
+
+def test_what_lasts_counts_and_not_one_revolution() -> None:
+    steady = [cycle(1, force=380.0)] * 60
+    record = recorded(*steady, cycle(1, force=600.0), *steady)[1]
+    assert record.peak == pytest.approx(380.0 + 0.2 * 220.0, rel=1e-3)
+    assert record.set_point == 400.0
 
 
 def test_air_takes_time_and_nothing_else() -> None:

@@ -3,7 +3,7 @@ from math import nan
 
 import numpy as np
 
-from controller.silence import HEARD, REVOLUTIONS, Silence, is_blind, listened
+from controller.silence import HEARD, REVOLUTIONS, Silence, is_blind, is_implausible, listened
 from tests.controller.plugged import PERIOD, SPINDLE_SPEED, reading
 from tests.controller.shown import REVOLUTION
 
@@ -46,3 +46,9 @@ def test_a_slow_spindle_has_its_time() -> None:
 def test_a_standing_spindle_makes_no_revolution_to_be_missed() -> None:
     standing = Silence(samples=0.0, revolutions=np.inf)
     assert not is_blind(standing, allowed=0.5, spindle_speed=0.0)
+
+
+def test_a_little_below_zero_is_noise_and_far_below_no_force() -> None:
+    assert not is_implausible(-30.0, 10.0)
+    assert is_implausible(-60.0, 10.0)
+    assert not is_implausible(float("nan"), 10.0)

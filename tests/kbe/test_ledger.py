@@ -4,12 +4,13 @@ from collections.abc import Iterator
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from itertools import count
+from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from kbe.errors import UnknownCorrection
+from kbe.errors import StoreDamaged, UnknownCorrection
 from kbe.ledger import Standing
 from kbe.store import Store, open_store
 from stepnc_model.outcome import Correction
@@ -108,3 +109,16 @@ def test_proposal_cannot_be_accepted_already(store: Store, proposal: Correction)
     with pytest.raises(ValueError, match="proposed before"):
         store.propose(replace(proposal, accepted_by="Ann", accepted_at=LATER))
     assert store.corrections() == ()
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [{"log_scale": 0.0}, {"degrees": 0.0}, {"log_centre": 1e6}, {"confidence": 7.0}],
+)
+def test_a_correction_that_nobody_learned_is_damage(
+    tmp_path: Path, proposal: Correction, wrong: dict[str, float]
+) -> None:
+    with open_store(str(tmp_path / "store.db")) as store:
+        store.propose(replace(proposal, **wrong))  # type: ignore[arg-type]
+        with pytest.raises(StoreDamaged, match="none that was learned"):
+            store.corrections()

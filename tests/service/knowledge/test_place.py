@@ -9,6 +9,7 @@ from service.knowledge.place import (
     is_usual,
     make_folder,
     named_place,
+    require_apart,
     usual_file,
     usual_place,
 )
@@ -70,3 +71,17 @@ def test_who_has_no_home_is_asked_for_a_place(monkeypatch: pytest.MonkeyPatch) -
     with pytest.raises(StepNcError, match="--kb FILE"):
         usual_place("")
     assert not is_usual("shop.db")
+
+
+@pytest.mark.parametrize("ending", ["", "-wal", "-shm"])
+@pytest.mark.parametrize("prefix", ["", "sqlite:///"])
+def test_no_output_may_be_the_knowledge_base(tmp_path: Path, prefix: str, ending: str) -> None:
+    place = tmp_path / "kb.db"
+    output = tmp_path / f"kb.db{ending}"
+    output.write_bytes(b"kept")
+    with pytest.raises(WriteError, match="is the knowledge base"):
+        require_apart(f"{prefix}{place}", None, output)
+    assert output.read_bytes() == b"kept"
+    require_apart(f"{prefix}{place}", tmp_path / "other.db", None)
+    require_apart(None, output)
+    require_apart("postgresql://host/kb.db", output)

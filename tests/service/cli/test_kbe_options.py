@@ -8,15 +8,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from service.knowledge.options import (
+from service.cli.kbe_options import (
     add_filters,
     count,
     end,
     moment,
     selection_of,
     share,
-    text,
 )
+from service.cli.options import text
 from stepnc_model.errors import StepNcError
 
 

@@ -4,6 +4,7 @@ import argparse
 from datetime import date, datetime, time, timedelta
 from typing import TYPE_CHECKING
 
+from service.cli.options import text
 from stepnc_model.errors import StepNcError
 
 if TYPE_CHECKING:
@@ -60,7 +61,7 @@ def selection_of(options: argparse.Namespace) -> "Selection":
     StepNcError
         When no time lies between the two.
     """
-    from kbe.selection import Selection  # noqa: PLC0415 (SQLAlchemy)
+    from kbe.selection import Selection
 
     since, until = options.since, options.until
     if since is not None and until is not None and since >= until:
@@ -75,21 +76,6 @@ def selection_of(options: argparse.Namespace) -> "Selection":
         since=since,
         until=until,
     )
-
-
-def text(word: str) -> str:
-    """A name; bytes that are no text are none.
-
-    Raises
-    ------
-    ArgumentTypeError
-        When no database could hold it.
-    """
-    try:
-        word.encode()
-    except UnicodeEncodeError as error:
-        raise argparse.ArgumentTypeError(f"{word!r} is no text") from error
-    return word
 
 
 def moment(word: str) -> datetime:
