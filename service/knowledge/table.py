@@ -6,12 +6,12 @@ from math import exp
 
 from kbe.backup import Content
 from kbe.factor import interval
-from kbe.ledger import Entry
+from kbe.ledger import Entry, Standing
 from service.knowledge.evaluation_cells import NOTHING, factor, number
 from service.knowledge.evaluation_table import plain
 from service.knowledge.verbs import Listing
 from service.tables import print_line, print_table
-from stepnc_model.outcome import ProcessOutcome, Quantity
+from stepnc_model.outcome import Context, ProcessOutcome, Quantity
 from stepnc_model.units import m_min_from_speed, mm_min_from_speed, um_from_mm
 
 GREEN = "32"
@@ -57,10 +57,11 @@ def print_corrections(entries: Sequence[Entry]) -> None:
         "id", "standing", "machine", "material", "tool", "k_c factor", "confidence",
         "outcomes", "proposed", "decided by", "decided",
     )  # fmt: skip
+    holding = _in_force(entries)
     rows = [
         (
             str(entry.id),
-            entry.standing.value,
+            "in force" if entry.id in holding else entry.standing.value,
             *map(plain, (entry.correction.context.machine, entry.correction.context.material)),
             plain(entry.correction.context.tool),
             factor(interval(entry.correction)),
@@ -73,6 +74,19 @@ def print_corrections(entries: Sequence[Entry]) -> None:
         for entry in entries
     ]
     print_table(header, rows)
+
+
+def _in_force(entries: Sequence[Entry]) -> frozenset[int]:
+    """Of each context the correction that was accepted last."""
+    decided = [
+        (entry.decided_at, entry)
+        for entry in entries
+        if entry.standing is Standing.ACCEPTED and entry.decided_at is not None
+    ]
+    latest: dict[Context, int] = {}
+    for _, entry in sorted(decided, key=lambda each: each[0]):
+        latest[entry.correction.context] = entry.id
+    return frozenset(latest.values())
 
 
 def print_content(content: Content, *, place: str) -> None:

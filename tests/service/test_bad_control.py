@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 from pyarrow import parquet
 
+from kbe.store import open_store
 from service.cli.main import main
 from service.cli.options import BAD_INPUT, INTERRUPTED
 from service.control.run import ControlRequest, control
@@ -174,3 +175,28 @@ def test_an_interrupt_leaves_what_there_is(tmp_path: Path, number: signal.Signal
     assert written == f"written: {partial} ({rows} rows)"
     assert path.read_text(encoding="ascii") == "old"
     assert {each.name for each in tmp_path.iterdir()} == {path.name, partial.name}
+
+
+@pytest.mark.parametrize("option", ["-o", "--report"])
+def test_no_output_replaces_the_knowledge_base(
+    refused: Refused, tmp_path: Path, option: str
+) -> None:
+    base = tmp_path / "kb.csv"
+    with open_store(str(base)):
+        pass
+    before = base.read_bytes()
+    told = refused(PARTS / "paper002.stpnc", "--kb", base, option, base)
+    assert "is the knowledge base; name another file" in told
+    assert base.read_bytes() == before
+
+
+def test_a_knowledge_base_without_a_folder_is_refused_before_the_run(
+    refused: Refused, tmp_path: Path
+) -> None:
+    told = refused(PARTS / "paper002.stpnc", "--kb", tmp_path / "none" / "kb.db")
+    assert "the folder does not exist" in told
+
+
+def test_an_endless_machine_file_is_refused(refused: Refused) -> None:
+    told = refused(PARTS / "paper002.stpnc", "--machine", "/dev/zero")
+    assert "is a device, no file" in told or "unknown machine" in told

@@ -78,6 +78,25 @@ def test_corrections_tell_who_decided(capsys: pytest.CaptureFixture[str]) -> Non
     assert "1.11 (" in out
 
 
+def test_the_correction_that_plans_take_is_told_from_those_before(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    entries = [
+        Entry(
+            id=number,
+            correction=correction(0.1),
+            standing=Standing.ACCEPTED,
+            decided_by="Ada",
+            decided_at=datetime(2026, 3, day, tzinfo=UTC),
+        )
+        for number, day in ((1, 7), (2, 5))
+    ]
+    print_corrections(entries)
+    first, second = capsys.readouterr().out.splitlines()[-2:]
+    assert "in force" in first
+    assert "accepted" in second
+
+
 def test_content_is_counted(capsys: pytest.CaptureFixture[str]) -> None:
     print_content(
         Content(outcomes=5, corrections=2, decisions=1, fingerprint="f"), place="kb.db"
