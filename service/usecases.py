@@ -89,15 +89,11 @@ def optimise(request: Request, *, tell: Tell = silent) -> Outcome:
     machine = machine_for(request.machine, program)
     match = material_for(request.material, program)
     tell(f"material: {match.reason}")
+    known, safety = request.knowledge, request.safety
     factors = factors_for(
-        request.knowledge,
-        program,
-        chosen,
-        machine=machine,
-        material=match,
-        safety=request.safety,
+        known, program, chosen, machine=machine, material=match, safety=safety
     )
-    notes = tuple(finding_of(each, safety=request.safety) for each in factors)
+    notes = tuple(finding_of(each, safety=safety) for each in factors)
     for note in notes:
         tell(note.message)
     wanted = {int(step.ref) for step in chosen}
@@ -130,11 +126,15 @@ def optimise(request: Request, *, tell: Tell = silent) -> Outcome:
 
         write_atomically(request.report, report_page(plan).encode())
         tell(f"report: {request.report}")
+    _tell_conflicts(plan, tell)
+    return Outcome(plan=plan, written=written)
+
+
+def _tell_conflicts(plan: Plan, tell: Tell) -> None:
     conflicts = [each for each in plan.advices if each.status is Status.INFEASIBLE]
     if conflicts:
         names = ", ".join(f"'{each.workingstep.id}'" for each in conflicts)
         tell(f"infeasible, left as programmed: {names}")
-    return Outcome(plan=plan, written=written)
 
 
 def convert(path: Path, *, profile: str, output: Path) -> None:

@@ -145,18 +145,23 @@ def add_optimise_options(parser: argparse.ArgumentParser) -> None:
         metavar="CONTROL",
         help=f"also NC code with the advised feeds, for {CONTROLS}",
     )
+    _add_learned(parser)
+    add("--dry-run", action="store_true", help="write no STEP-NC file")
+    add("--report", type=Path, metavar="HTML", help="write a self-contained page with plots")
+    add_json(parser)
+    parser.set_defaults(run=_optimise)
+
+
+def _add_learned(parser: argparse.ArgumentParser) -> None:
+    """What a plan takes from the knowledge base."""
     add_knowledge(parser, "take accepted corrections of k_c from it")
-    add(
+    parser.add_argument(
         "--safety",
         type=float,
         default=0.9,
         metavar="Q",
         help="quantile of a corrected k_c to plan with, 0.5 to 0.999 (default 0.9)",
     )
-    add("--dry-run", action="store_true", help="write no STEP-NC file")
-    add("--report", type=Path, metavar="HTML", help="write a self-contained page with plots")
-    add_json(parser)
-    parser.set_defaults(run=_optimise)
 
 
 def _add_check(commands: Commands) -> None:

@@ -129,7 +129,7 @@ def walk(place: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert (again["change"], again["correction"]["id"]) == ("unchanged", 1)
     assert kbe("accept", 1, "--kb", place, "--by", "A. Smith") == OK
     out, error = told(capsys)
-    assert "accepted" in out
+    assert "in force" in out
     assert "A. Smith" in out
     assert not error
     assert kbe("withdraw", 1, "--kb", place) == OK
