@@ -102,12 +102,13 @@ def _control(options: argparse.Namespace) -> int:
 
     with interruptible():
         run = control_recorded(_request(options), tell=tell)
-    if options.report is not None and run.trace is not None:
-        from service.control.report import control_page
-        from service.files import write_atomically
+        if options.report is not None and run.trace is not None:
+            from service.control.report import control_page
+            from service.files import write_atomically
 
-        write_atomically(options.report, control_page(run, run.trace).encode(errors="replace"))
-        tell(f"report: {options.report}")
+            page = control_page(run, run.trace).encode(errors="replace")
+            write_atomically(options.report, page)
+            tell(f"report: {options.report}")
     if options.json:
         from service.control.wire import control_json
         from service.terminal import write_out

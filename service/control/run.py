@@ -27,6 +27,7 @@ from service.control.setup import (
     plan_as_it_is,
     planned_course,
     preview_of,
+    require_teeth,
     steps_of,
 )
 from service.control.trace import ControlTrace, control_schema
@@ -174,6 +175,7 @@ def prepare(request: ControlRequest, *, tell: Tell = silent) -> "Session":
         knowledge=request.knowledge,
     )
     course = planned_course(prepared, virtual, tell)
+    require_teeth(found.hidden, course)
     bench = replace(
         found.bench, efficiency=virtual.machine.spindle.efficiency, seed=request.seed
     )

@@ -25,7 +25,9 @@ from simulator.machine.episode import Episode
 from simulator.machine.interpreter import interpret
 from simulator.machine.virtual import VirtualMachine
 from simulator.plant.course import NominalCourse, course_of
+from simulator.plant.hidden import Changed, Hidden
 from simulator.spec import Machine, MaterialMatch
+from stepnc_model.errors import StepNcError
 from stepnc_model.program import Program
 
 MOST_SECONDS = 86_400.0
@@ -54,6 +56,21 @@ def planned_course(prepared: Prepared, virtual: VirtualMachine, tell: Tell) -> N
             return course_of(episodes(patience), virtual.machine)
     except SimulationError as error:
         raise SimulationError(f"{place_in(prepared, virtual)}: {error}") from error
+
+
+def require_teeth(hidden: Hidden, course: NominalCourse) -> None:
+    """Refuse a tooth that no cutter of the program has.
+
+    Raises
+    ------
+    StepNcError
+        With the most that there are.
+    """
+    most = int(course.teeth.max())
+    for change in hidden.changes:
+        if change.what is Changed.TOOTH and change.value >= most:
+            text = f"tooth {change.value + 1.0:g}: the cutters have {most} teeth at most"
+            raise StepNcError(f"disturbance: {text}")
 
 
 def preview_of(course: NominalCourse) -> Preview:

@@ -106,6 +106,7 @@ def test_nothing_is_kept_that_nobody_asked_for(controlled: Controlled) -> None:
         ({"band": (float("nan"), 120.0)}, "override band nan to 120 %"),
         ({"disturbances": ("depth:+50%",)}, "say when, as in depth:+50%@12s"),
         ({"disturbances": ("material:butter@1s",)}, "unknown material 'butter'"),
+        ({"disturbances": ("tooth:50@1s",)}, "tooth 50: the cutters have "),
     ],
 )
 def test_what_cannot_be_is_refused(
