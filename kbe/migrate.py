@@ -11,7 +11,7 @@ from sqlalchemy.engine import Engine
 from sqlalchemy.schema import Column
 
 from kbe.connection import PATIENCE, reading, writing
-from kbe.errors import StoreBusy, StoreTooNew, StoreUnavailable
+from kbe.errors import StoreBusy, StoreDamaged, StoreTooNew, StoreUnavailable
 from kbe.faults import translated
 from kbe.place import Place
 from kbe.schema import VERSION, VERSION_TABLE
@@ -53,16 +53,25 @@ def _found(connection: Connection, place: Place, *, is_new_allowed: bool) -> str
     """Version of the schema; empty when there is none yet."""
     tables = inspect(connection).get_table_names()
     if VERSION_TABLE in tables:
-        found = connection.execute(select(_version.c.version_num)).scalar_one_or_none() or ""
-        if found > VERSION:
-            raise StoreTooNew(place.shown, found=found, known=VERSION)
-        return found
+        found = connection.execute(select(_version.c.version_num)).scalars().all()
+        if found and max(found) > VERSION:
+            raise StoreTooNew(place.shown, found=max(found), known=VERSION)
+        if len(found) > 1 or not set(found) <= _known_versions():
+            versions = ", ".join(map(str, found))
+            raise StoreDamaged(
+                place.shown, reason=f"its schema says it is of version {versions}"
+            )
+        return found[0] if found else ""
     if tables:
         reason = f"holds something else (table {tables[0]}); name another file or database"
         raise StoreUnavailable(place.shown, reason=reason)
     if not is_new_allowed:
         raise StoreUnavailable(place.shown, reason="is empty; check the name")
     return ""
+
+
+def _known_versions() -> set[str]:
+    return {path.name[: len(VERSION)] for path in (MIGRATIONS / "versions").glob("[0-9]*.py")}
 
 
 def _write_ahead(engine: Engine, place: Place) -> None:

@@ -76,9 +76,13 @@ class _Now:
     override: float = 1.0
     """that the axes run"""
     commanded: float = 1.0
-    flank_wear: float = 0.0
+    tool: int = 0
+    """that cuts, or cut last"""
+    flank_wear: dict[int, float] = field(default_factory=dict)
+    """mm, by the tool's number"""
+    broken: dict[int, int] = field(default_factory=dict)
+    """tooth, by the tool's number"""
     silent_until: float = -inf
-    broken: int | None = None
     is_cut_off: bool = False
     factors: dict[Changed, float] = field(
         default_factory=lambda: {Changed.DEPTH: 1.0, Changed.HARDNESS: 1.0}
@@ -103,7 +107,8 @@ class ControlledMachine:
         forces, powers = np.random.default_rng(bench.seed).spawn(2)
         self._forces = Acquisition(bench.dynamometer, forces)
         self._powers = Acquisition(bench.power_meter, powers)
-        self._now = _Now(flank_wear=hidden.flank_wear)
+        # What breaks before anything cuts is of the first tool.
+        self._now = _Now(tool=int(course.tool[course.can_override.argmax()]))
         self._changes = sorted(hidden.changes, key=lambda change: change.time)
         self._ends: list[float] = course.until.tolist()
 
@@ -159,7 +164,7 @@ class ControlledMachine:
     def _apply(self, change: Change) -> None:
         match change.what:
             case Changed.TOOTH:
-                self._now.broken = int(change.value)
+                self._now.broken[self._now.tool] = int(change.value)
             case Changed.LINE:
                 self._now.is_cut_off = True
             case Changed.SILENCE:
@@ -184,7 +189,7 @@ class ControlledMachine:
         now.override = now.commanded
         self._go_on(end, period)
         idle = float(course.idle_power[cell])
-        self.truth = Truth(power=idle, flank_wear=now.flank_wear, cell=cell)
+        self.truth = Truth(power=idle, flank_wear=self._flank_wear, cell=cell)
         feed = float(course.feed[cell:beyond].max())
         still = np.zeros(SAMPLES)
         return self._reading(cell, period, still, feed=feed, tooth=0, override=now.override)
@@ -192,6 +197,7 @@ class ControlledMachine:
     def _feed(self) -> Reading:
         """One tooth period at the override, or less when the feed ends."""
         now, course, cell = self._now, self.course, self._now.cell
+        now.tool = int(course.tool[cell])
         teeth, speed = int(course.teeth[cell]), float(course.spindle_speed[cell])
         period = 1.0 / (teeth * speed) if speed > SLOWEST else LONGEST
         ways = self._ways(period)
@@ -212,7 +218,7 @@ class ControlledMachine:
         average = float(np.add.reduce(mean)) / SAMPLES
         self.truth = self._truth(cut, mean=average, force=force, override=override)
         if self.truth.force > 0.0:
-            now.flank_wear += self.hidden.wear_rate * period
+            now.flank_wear[now.tool] = self._flank_wear + self.hidden.wear_rate * period
         now.turned += 1
         self._go_on(end, period)
         feed = override * float(course.feed[cell])
@@ -228,9 +234,14 @@ class ControlledMachine:
             power=float(course.idle_power[cut]) + cutting / self._bench.efficiency,
             removal_rate=depth * override * float(course.removal_rate[cut]),
             axial_depth=depth * float(course.axial_depth[cut]),
-            flank_wear=self._now.flank_wear,
+            flank_wear=self._flank_wear,
             cell=cut,
         )
+
+    @property
+    def _flank_wear(self) -> float:
+        """Of the tool that cuts, mm."""
+        return self._now.flank_wear.get(self._now.tool, self.hidden.flank_wear)
 
     def _left(self, seconds: float) -> float:
         """Share of the way to a commanded override that is left after some seconds."""
@@ -263,7 +274,7 @@ class ControlledMachine:
             hidden.force_factor
             * now.factors[Changed.DEPTH]
             * now.factors[Changed.HARDNESS]
-            * wear_factor(now.flank_wear)
+            * wear_factor(self._flank_wear)
             / wear_factor(0.0)
         )
         exponent = float(self.course.exponent[self._now.cell])
@@ -282,7 +293,7 @@ class ControlledMachine:
                 exit_angle=_rounded(float(course.exit_angle[cell])),
                 exponent=round(float(course.exponent[cell]), 4),
                 runout=_rounded(runout),
-                broken=self._now.broken,
+                broken=self._now.broken.get(self._now.tool),
             )
         )
 

@@ -69,6 +69,8 @@ class NominalCourse:
     """(N,) greatest force of a revolution over its mean; 1 where no arc is known"""
     teeth: Ints
     """(N,)"""
+    tool: Ints
+    """(N,) number of the tool"""
     workingstep: Ints
     """(N,) counted from 1; 0: none"""
 
@@ -157,6 +159,7 @@ def _part(
         exit_angle=_single(exit_),
         peak=_single(_peaks(samples, entry, exit_, edge=edge)),
         teeth=np.full(count, 1 if edge is None else edge.teeth),
+        tool=samples.tool,
         workingstep=samples.workingstep,
     )
 

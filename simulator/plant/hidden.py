@@ -17,7 +17,7 @@ class Changed(StrEnum):
     HARDNESS = "hardness"
     """factor on k_c"""
     TOOTH = "tooth"
-    """number of the tooth that breaks"""
+    """number of the tooth that breaks, of the tool that cuts"""
     SILENCE = "silence"
     """s during which no sample arrives"""
     LINE = "line"
@@ -48,9 +48,9 @@ class Hidden:
     force_factor: float = 1.0
     """on k_c, from the start"""
     wear_rate: float = 0.0
-    """mm of flank wear in a second of cutting"""
+    """mm of flank wear in a second of cutting, each tool for itself"""
     flank_wear: float = 0.0
-    """mm, when the program starts"""
+    """mm, of each tool when the program starts"""
     eccentricity: float = 0.0
     """mm, of the cutter's axis off the spindle's"""
     servo_lag: float = 0.06

@@ -12,7 +12,7 @@ import pytest
 from sqlalchemy import make_url, text
 
 from kbe.connection import connected, writing
-from kbe.errors import StoreTooNew, StoreUnavailable
+from kbe.errors import StoreDamaged, StoreTooNew, StoreUnavailable
 from kbe.migrate import _write_ahead
 from kbe.place import parsed_place
 from kbe.schema import VERSION_TABLE
@@ -114,3 +114,18 @@ def test_database_that_is_not_unicode_is_refused(postgres_url: str) -> None:
                 open_store(latin.render_as_string(hide_password=False))
         finally:
             connection.execute(f"DROP DATABASE {name}")
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        f"UPDATE {VERSION_TABLE} SET version_num = '0000'",
+        f"INSERT INTO {VERSION_TABLE} VALUES ('0')",
+    ],
+)
+def test_a_version_that_never_was_is_damage(sqlite_place: UrlMaker, change: str) -> None:
+    place = sqlite_place()
+    with open_store(place) as store, writing(store.engine, store.place) as connection:
+        connection.execute(text(change))
+    with pytest.raises(StoreDamaged, match="its schema says it is of version"):
+        open_store(place)

@@ -43,6 +43,7 @@ def course(
         exit_angle=single(np.where(cuts, pi, 0.0)),
         peak=single(1.0),
         teeth=np.full(count, TEETH),
+        tool=np.ones(count, dtype=np.int64),
         workingstep=np.ones(count, dtype=np.int64),
     )
 

@@ -153,3 +153,20 @@ def test_same_seed_same_readings() -> None:
 def test_an_impossible_override_is_refused(override: float) -> None:
     with pytest.raises(ValueError, match="override"):
         machine(course(levels(100.0))).set(override)
+
+
+def test_each_tool_wears_and_breaks_for_itself() -> None:
+    path = course(levels(100.0, 100.0, 100.0))
+    tools = np.repeat([1, 2, 1], 100)
+    broken = Change(time=0.5, what=Changed.TOOTH, value=1.0)
+    hidden = replace(QUICK, wear_rate=0.05, changes=(broken,))
+    at = machine(replace(path, tool=tools), hidden)
+    readings = run(at)
+    assert at.truth.flank_wear == pytest.approx(0.1, abs=0.05 * 2 * PERIOD)
+
+    def least(begin: float, end: float) -> float:
+        return min(float(each.force.max()) for each in readings if begin < each.time < end)
+
+    assert least(0.6, 0.98) == 0.0
+    assert least(1.02, 1.98) > 50.0
+    assert least(2.02, 2.98) == 0.0
