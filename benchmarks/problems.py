@@ -1,10 +1,37 @@
 """Random workingsteps with the limits and the proportions of real ones."""
 
+from dataclasses import dataclass
 from math import pi
 from random import Random
 
 from optimiser.limit import Limit, LimitName, Monomial, Sense
 from optimiser.problem import Cost, Problem, Setting
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Cut:
+    """A tool in its cut; mm, rev/s."""
+
+    diameter: float
+    teeth: int
+    chip: float
+    """chip thickness by feed per tooth"""
+    speed: float
+    m_c: float
+    per_removal: float
+    """W·s by mm of feed and of depth"""
+    ploughing: float
+    """the same at no feed"""
+
+    def load(self, speed_exponent: float, factor: float = 1.0) -> Monomial:
+        """Of force, torque or power."""
+        return Monomial(
+            coefficient=self.per_removal * factor,
+            offset=self.ploughing * factor,
+            feed_exponent=1.0 - self.m_c,
+            depth_exponent=1.0,
+            speed_exponent=speed_exponent,
+        )
 
 
 def random_problem(random: Random, *, free_speed: bool = False, edge: bool = False) -> Problem:
@@ -19,6 +46,34 @@ def random_problem(random: Random, *, free_speed: bool = False, edge: bool = Fal
     edge : bool
         Whether the force has an edge term (linear-edge model) instead of Kienzle's exponent.
     """
+    cut = _random_cut(random, edge=edge)
+    power = random.uniform(300.0, 15000.0)
+    total = random.uniform(1.0, 40.0)
+    limits = _random_limits(random, cut)
+    base_speed = cut.speed * random.uniform(0.7, 1.4)
+    torque, constant = _spindle(cut, power, base_speed)
+    passes = random.randint(1, 6)
+    return Problem(
+        limits=limits,
+        cost=Cost(
+            length=random.uniform(50.0, 3000.0),
+            teeth=cut.teeth,
+            motor_power=cut.load(1.0, 1.0 / 0.85),
+            link_time=random.choice((0.0, random.uniform(0.2, 4.0))),
+            standby_power=random.uniform(200.0, 2000.0),
+            standby_power_per_speed=random.uniform(0.0, 5.0),
+        ),
+        total_depth=total,
+        passes=(1, 60),
+        speeds=(0.5 * base_speed, base_speed, 1.6 * base_speed) if free_speed else (cut.speed,),
+        programmed=Setting(
+            feed=0.004 * cut.diameter, depth=total / passes, passes=passes, speed=cut.speed
+        ),
+        stretches=((torque,), (constant,)) if free_speed else ((constant,),),
+    )
+
+
+def _random_cut(random: Random, *, edge: bool) -> _Cut:
     diameter = random.choice((6.0, 8.0, 10.0, 12.0, 16.0, 20.0, 32.0, 50.0))
     teeth = random.randint(2, 6)
     width = diameter * random.uniform(0.05, 1.0)
@@ -27,38 +82,36 @@ def random_problem(random: Random, *, free_speed: bool = False, edge: bool = Fal
     speed = random.uniform(1000.0, 6000.0) / (pi * diameter)
     chip = 2.0 * width / diameter / 2.0
     per_removal = k_c11 * chip ** (-m_c) * width * teeth / 1000.0
-    ploughing = random.uniform(0.005, 0.03) * per_removal if edge else 0.0
+    return _Cut(
+        diameter=diameter,
+        teeth=teeth,
+        chip=chip,
+        speed=speed,
+        m_c=m_c,
+        per_removal=per_removal,
+        ploughing=random.uniform(0.005, 0.03) * per_removal if edge else 0.0,
+    )
 
-    def cut_load(speed_exponent: float, factor: float = 1.0) -> Monomial:
-        return Monomial(
-            coefficient=per_removal * factor,
-            offset=ploughing * factor,
-            feed_exponent=1.0 - m_c,
-            depth_exponent=1.0,
-            speed_exponent=speed_exponent,
-        )
 
-    def linear(coefficient: float) -> Monomial:
-        return Monomial(coefficient=coefficient, feed_exponent=1.0)
-
-    power = random.uniform(300.0, 15000.0)
-    total = random.uniform(1.0, 40.0)
-    limits = (
+def _random_limits(random: Random, cut: _Cut) -> tuple[Limit, ...]:
+    """All but those of the spindle."""
+    diameter = cut.diameter
+    return (
         Limit(
             name=LimitName.CUTTING_FORCE,
-            load=cut_load(0.0, 1000.0 / (pi * diameter)),
+            load=cut.load(0.0, 1000.0 / (pi * diameter)),
             bound=random.uniform(100.0, 3000.0),
             unit="N",
         ),
         Limit(
             name=LimitName.FEED_PER_TOOTH,
-            load=linear(1.0),
+            load=Monomial(coefficient=1.0, feed_exponent=1.0),
             bound=diameter * random.uniform(0.004, 0.02),
             unit="mm",
         ),
         Limit(
             name=LimitName.CHIP_THICKNESS,
-            load=linear(chip),
+            load=Monomial(coefficient=cut.chip, feed_exponent=1.0),
             bound=random.uniform(0.0005, 0.004),
             unit="mm",
             sense=Sense.AT_LEAST,
@@ -76,7 +129,7 @@ def random_problem(random: Random, *, free_speed: bool = False, edge: bool = Fal
         ),
         Limit(
             name=LimitName.FEED_MECHANISM,
-            load=Monomial(coefficient=teeth, feed_exponent=1.0, speed_exponent=1.0),
+            load=Monomial(coefficient=cut.teeth, feed_exponent=1.0, speed_exponent=1.0),
             bound=random.uniform(20.0, 300.0),
             unit="mm/min",
             scale=60.0,
@@ -88,36 +141,19 @@ def random_problem(random: Random, *, free_speed: bool = False, edge: bool = Fal
             unit="mm",
         ),
     )
-    base_speed = speed * random.uniform(0.7, 1.4)
-    constant_power = Limit(
-        name=LimitName.MOTOR_POWER, load=cut_load(1.0), bound=power, unit="kW", scale=1e-3
-    )
+
+
+def _spindle(cut: _Cut, power: float, base_speed: float) -> tuple[Limit, Limit]:
+    """Constant torque below the base speed, constant power above it."""
     constant_torque = Limit(
         name=LimitName.MOTOR_POWER,
-        load=cut_load(1.0),
+        load=cut.load(1.0),
         bound=power / base_speed,
         bound_speed_exponent=1.0,
         unit="kW",
         scale=1e-3,
     )
-    passes = random.randint(1, 6)
-    return Problem(
-        limits=limits,
-        cost=Cost(
-            length=random.uniform(50.0, 3000.0),
-            teeth=teeth,
-            motor_power=cut_load(1.0, 1.0 / 0.85),
-            link_time=random.choice((0.0, random.uniform(0.2, 4.0))),
-            standby_power=random.uniform(200.0, 2000.0),
-            standby_power_per_speed=random.uniform(0.0, 5.0),
-        ),
-        total_depth=total,
-        passes=(1, 60),
-        speeds=(0.5 * base_speed, base_speed, 1.6 * base_speed) if free_speed else (speed,),
-        programmed=Setting(
-            feed=0.004 * diameter, depth=total / passes, passes=passes, speed=speed
-        ),
-        stretches=(
-            ((constant_torque,), (constant_power,)) if free_speed else ((constant_power,),)
-        ),
+    constant_power = Limit(
+        name=LimitName.MOTOR_POWER, load=cut.load(1.0), bound=power, unit="kW", scale=1e-3
     )
+    return constant_torque, constant_power

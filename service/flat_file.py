@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from service.files import write_lines
+from service.formula import disarmed
 from stepnc_model.errors import WriteError
 
 if TYPE_CHECKING:
@@ -26,9 +27,6 @@ Row = Mapping[str, Value]
 
 AT_ONCE = 10_000
 """rows in memory; those of one group of a Parquet file"""
-
-FORMULA = ("=", "+", "-", "@", "\t", "\r")
-"""what a text begins with that a spreadsheet would calculate"""
 
 
 class Format(StrEnum):
@@ -128,7 +126,7 @@ def _csv_cell(value: Value) -> str:
     if isinstance(value, datetime):
         return value.isoformat()
     if isinstance(value, str):
-        return f"'{value}" if value.startswith(FORMULA) else value
+        return disarmed(value)
     return repr(value)
 
 

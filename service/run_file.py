@@ -5,14 +5,16 @@ The file gets its name when it is whole. A run that is broken off leaves what it
 """
 
 import os
+import re
 import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
 import pyarrow as pa
-from pyarrow import csv, parquet
+from pyarrow import compute, csv, parquet
 
+from service.formula import FIRST
 from stepnc_model.errors import WriteError
 
 SUFFIXES = (".parquet", ".csv")
@@ -141,8 +143,12 @@ def _spelled_out(schema: pa.Schema) -> pa.Schema:
 
 
 def _plain(column: pa.Array) -> pa.Array:
-    is_coded = isinstance(column, pa.DictionaryArray)
-    return column.dictionary_decode() if is_coded else column
+    """Words spelled out, none of them a formula; numbers as they are."""
+    if not isinstance(column, pa.DictionaryArray):
+        return column
+    return compute.replace_substring_regex(
+        column.dictionary_decode(), pattern=f"^([{re.escape(FIRST)}])", replacement=r"'\1"
+    )
 
 
 def _mode(place: Path) -> int:

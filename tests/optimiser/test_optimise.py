@@ -4,93 +4,31 @@ What belongs to the mathematics alone is asked of estimated cuts, which take no 
 """
 
 from collections.abc import Callable
-from dataclasses import replace
-from functools import cache
-from math import pi, sqrt
 from pathlib import Path
 
 import pytest
 
-from optimiser.advice import Advice, Plan, State, Status
+from optimiser.advice import Plan, Status
 from optimiser.formulate import Task
 from optimiser.limit import LimitName
 from optimiser.modes import Free, Mode
 from optimiser.optimise import DEFAULT_QUALITY, optimise
 from optimiser.source import from_features
-from service.records import changes_of
 from simulator.library import load_machine
 from simulator.matching import match_material
-from stepnc_model import writeback
-from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
 from stepnc_model.toolpath.generate import workingstep_path
 from stepnc_model.toolpath.path import length
 from stepnc_model.units import mm_min_from_speed
-from stepnc_model.writeback import Profile
-
-PARTS = Path(__file__).parents[2] / "examples" / "parts"
-USUAL = {
-    "bracket": ("vmc15", "C45"),
-    "paper002": ("paper002", "paper002"),
-    "shaft": ("lathe22", "42CrMo4"),
-}
-ALL_FREE = frozenset(Free)
-
-
-def edited(name: str, *changes: tuple[str, str]) -> Program:
-    """A sample part with some texts replaced."""
-    text = (PARTS / f"{name}.stpnc").read_text()
-    for before, after in changes:
-        assert before in text
-        text = text.replace(before, after)
-    return Program(Part21File.from_bytes(text.encode(), name=name), name=name)
-
-
-@cache
-def measured(name: str, task: Task, *changes: tuple[str, str], machine: str = "") -> Plan:
-    """Advice along the real paths."""
-    usual, material = USUAL[name]
-    return optimise(
-        edited(name, *changes),
-        machine=load_machine(machine or usual),
-        material=match_material([material]),
-        task=task,
-    )
-
-
-def plan_of(name: str, task: Task, *changes: tuple[str, str], machine: str = "") -> Plan:
-    """Advice by the features."""
-    return measured(name, replace(task, source=from_features), *changes, machine=machine)
-
-
-def advice_of(plan: Plan, name: str) -> Advice:
-    (found,) = (advice for advice in plan.advices if advice.workingstep.id == name)
-    return found
-
-
-def after(advice: Advice) -> State:
-    assert advice.after is not None
-    return advice.after
-
-
-def before(advice: Advice) -> State:
-    assert advice.before is not None
-    return advice.before
-
-
-@pytest.fixture(scope="module")
-def bracket() -> Plan:
-    return measured("bracket", Task())
-
-
-@pytest.fixture(scope="module")
-def shaft() -> Plan:
-    return measured("shaft", Task())
-
-
-@pytest.fixture(scope="module")
-def paper() -> Plan:
-    return measured("paper002", Task())
+from tests.optimiser.plans import (
+    ALL_FREE,
+    PARTS,
+    advice_of,
+    after,
+    before,
+    edited,
+    measured,
+    plan_of,
+)
 
 
 def test_paper_002_runs_at_290_mm_min_at_its_motor_power(paper: Plan) -> None:
@@ -249,84 +187,6 @@ def test_energy_critical_never_needs_more_energy_than_time_critical(
             assert after(one).time <= after(other).time * (1.0 + 1e-8)
 
 
-def test_feed_that_is_not_free_stays() -> None:
-    plan = plan_of("bracket", Task(free=frozenset({Free.DEPTH})))
-    advice = advice_of(plan, "ROUGH POCKET")
-    assert advice.status is Status.ADVISED
-    assert after(advice).setting.feed == pytest.approx(before(advice).setting.feed)
-    assert after(advice).setting.passes < before(advice).setting.passes
-    assert advice.active is LimitName.PROGRAMMED_FEED
-
-
-def test_programmed_feed_that_breaks_a_limit_is_infeasible_when_it_is_not_free() -> None:
-    """Three times the roughness: the cap and the held feed conflict."""
-    plan = plan_of("bracket", Task(free=frozenset({Free.DEPTH})))
-    advice = advice_of(plan, "FINISH FACE")
-    assert advice.status is Status.INFEASIBLE
-    assert plan.is_infeasible
-    assert advice.after is None
-    for part in ("roughness", "1.6 µm", "programmed feed", "0.06 mm"):
-        assert part in advice.reason
-
-
-def test_depth_that_is_not_free_stays() -> None:
-    plan = plan_of("bracket", Task(free=frozenset({Free.FEED})))
-    for advice in plan.advices:
-        if advice.status is Status.ADVISED:
-            setting, given = after(advice).setting, before(advice).setting
-            assert (setting.depth, setting.passes) == (given.depth, given.passes)
-
-
-def test_speed_that_is_not_free_stays(bracket: Plan) -> None:
-    for advice in bracket.advices:
-        assert after(advice).setting.speed == before(advice).setting.speed
-
-
-def test_free_speed_lies_in_the_window_of_the_tool() -> None:
-    """End mills of carbide in C45: 200 to 250 m/min."""
-    advice = advice_of(plan_of("bracket", Task(free=ALL_FREE)), "ROUGH POCKET")
-    velocity = pi * 12.0 * after(advice).setting.speed * 60.0 / 1000.0
-    assert 200.0 - 1e-6 <= velocity <= 250.0 + 1e-6
-
-
-def test_free_speed_is_never_slower_where_the_programmed_one_is_allowed() -> None:
-    fixed, free = plan_of("bracket", Task()), plan_of("bracket", Task(free=ALL_FREE))
-    compared = 0
-    for one, other in zip(fixed.advices, free.advices, strict=True):
-        is_allowed = all(
-            load.margin >= 0.0
-            for load in before(one).loads
-            if load.limit.name is LimitName.CUTTING_SPEED
-        )
-        if one.status is Status.ADVISED and is_allowed:
-            compared += 1
-            assert after(other).time <= after(one).time * (1.0 + 1e-8)
-    assert compared >= 2
-
-
-def test_finishing_operations_keep_their_depth() -> None:
-    plan = plan_of("bracket", Task(free=ALL_FREE))
-    for name in ("FINISH CONTOUR", "FINISH POCKET", "DRILL HOLE 1"):
-        advice = advice_of(plan, name)
-        assert after(advice).setting.depth == before(advice).setting.depth
-
-
-def test_floor_of_a_bottom_and_side_finish_limits_the_feed_too() -> None:
-    """Eight millimetres of floor instead of 0.2 mm."""
-    thin = plan_of("bracket", Task())
-    thick = plan_of("bracket", Task(), ("4.,6.,0.3,0.2", "4.,6.,0.3,8."))
-    name = "FINISH POCKET"
-    forces = [after(advice_of(plan, name)).cutting_force for plan in (thin, thick)]
-    assert forces[1] > 5.0 * forces[0]
-
-
-def test_roughness_of_the_floor_limits_the_feed_too() -> None:
-    """The floor's Ra 0.4 µm at a corner of 0.2 mm; 0.2 µm of it are there at any feed."""
-    advice = advice_of(plan_of("bracket", Task(roughness=0.4e-3)), "FINISH POCKET")
-    assert advice.active is LimitName.ROUGHNESS
-    assert after(advice).setting.feed == pytest.approx(sqrt(18 * sqrt(3) * 0.2 * 0.2e-3))
-
-
 def test_more_passes_are_told_when_the_deepest_is_not_the_best(bracket: Plan) -> None:
     """Contour: one pass of 20 mm bends the tool."""
     advice = advice_of(bracket, "ROUGH CONTOUR")
@@ -435,85 +295,3 @@ def test_front_trades_time_for_roughness(name: str) -> None:
         assert times == sorted(times)
         roughness = [point.state.roughness for point in front]
         assert roughness[-1] == min(value for value in roughness if value is not None)
-
-
-def test_the_first_cut_of_a_pocket_is_protected_like_a_slot(bracket: Plan) -> None:
-    """Its path begins at full width: the same tool in a slot of that depth bends as much."""
-    pocket, slot = advice_of(bracket, "ROUGH POCKET"), advice_of(bracket, "MILL SLOT")
-    ratio = after(pocket).setting.depth / after(slot).setting.depth
-    (bent,) = (
-        load for load in after(slot).loads if load.limit.name is LimitName.TOOL_DEFLECTION
-    )
-    setting = after(pocket).setting
-    in_slot = bent.limit.load.value(setting.feed, setting.depth, setting.speed)
-    assert pocket.active is LimitName.TOOL_DEFLECTION
-    assert ratio < 1.0
-    # The levels of the pocket meet a little more than their depth: what the face left.
-    assert in_slot == pytest.approx(bent.bound, rel=0.06)
-
-
-def test_advice_that_was_taken_is_given_again_in_the_same_time(bracket: Plan) -> None:
-    """The time of the advice is that of the path which the written file gives."""
-    for name, plan in (("bracket", bracket), ("shaft", measured("shaft", Task()))):
-        usual, material = USUAL[name]
-        data = writeback.write(edited(name), changes_of(plan), Profile.OPTIMISATION)
-        again = optimise(
-            Program(Part21File.from_bytes(data, name=name), name=name),
-            machine=load_machine(usual),
-            material=match_material([material]),
-            task=Task(),
-        )
-        for one, other in zip(plan.advices, again.advices, strict=True):
-            if one.status is Status.ADVISED:
-                assert before(other).time == pytest.approx(after(one).time, rel=1e-6)
-                assert after(other).setting.passes == after(one).setting.passes
-                assert after(other).feed == pytest.approx(after(one).feed, rel=0.02)
-
-
-def test_a_workingstep_that_meets_nothing_keeps_its_feed_and_says_so() -> None:
-    """The same face twice: nothing is left for the second time."""
-    twice = (
-        ("#2=WORKPLAN('MAIN WORKPLAN',(#3),$,#20,$);",
-         "#2=WORKPLAN('MAIN WORKPLAN',(#3,#4),$,#20,$);\n"
-         "#4=MACHINING_WORKINGSTEP('AGAIN',#22,#30,#40,$);"),
-    )  # fmt: skip
-    plan = measured("paper002", Task(), *twice)
-    first, second = plan.advices
-    assert first.status is Status.ADVISED
-    assert second.status is Status.UNTOUCHED
-    assert second.reason == "the tool meets no material: the feed stays as programmed"
-    assert after(second).setting == before(second).setting
-    assert after(second).motor_power == 0.0
-    assert before(second).time == pytest.approx(before(first).time)
-    assert any("meets no material" in str(finding) for finding in plan.findings)
-
-
-def test_without_a_stock_the_engagement_is_estimated_and_said() -> None:
-    plan = measured("paper002", Task(), ("0.1,$,$,#13,());", "0.1,$,$,$,());"))
-    (advice,) = plan.advices
-    assert mm_min_from_speed(after(advice).feed) == pytest.approx(290.0)
-    texts = [str(finding) for finding in plan.findings]
-    assert any("no stock is known" in text for text in texts)
-
-
-def test_without_a_path_everything_is_estimated_and_said() -> None:
-    """No path lies between a feature and a retract plane below it."""
-    below = ("'ROUGH THE FACE',10.,$,#50", "'ROUGH THE FACE',-10.,$,#50")
-    plan = measured("paper002", Task(), below)
-    (advice,) = plan.advices
-    assert mm_min_from_speed(after(advice).feed) == pytest.approx(290.0)
-    assert after(advice).time == pytest.approx(318.0 / 290.0 * 60.0)
-    texts = [str(finding) for finding in plan.findings]
-    said = "no tool path: length, time and engagement are estimated"
-    assert any(said in text and "retract plane lies above" in text for text in texts)
-
-
-def test_time_counts_the_way_through_air(bracket: Plan) -> None:
-    for advice in bracket.advices:
-        cut = advice.cut
-        assert cut is not None
-        assert 0.0 < cut.air_length < cut.length
-        feed = after(advice).feed
-        passes = after(advice).setting.passes
-        whole = passes * (cut.length / feed + cut.rest_time)
-        assert after(advice).time == pytest.approx(whole, rel=1e-9)

@@ -37,6 +37,25 @@ def test_words_that_change_from_batch_to_batch_are_kept(tmp_path: Path, suffix: 
     assert [each.name for each in tmp_path.iterdir()] == [f"run{suffix}"]
 
 
+def test_csv_makes_no_formula_of_a_name(tmp_path: Path) -> None:
+    names = ["=HYPERLINK(1)", "+1", "-1", "@A1", "\tx", "\rx", "a=b", None, "two\n=3"]
+    for suffix, before in ((".csv", "'"), (".parquet", "")):
+        file = RunFile(tmp_path / f"run{suffix}", SCHEMA)
+        with file.closing(is_whole=True):
+            file.write(columns(*names))
+        assert file.place is not None
+        if suffix == ".csv":
+            options = csv.ParseOptions(newlines_in_values=True)
+            convert = csv.ConvertOptions(
+                strings_can_be_null=True, quoted_strings_can_be_null=False
+            )
+            table = csv.read_csv(file.place, parse_options=options, convert_options=convert)
+        else:
+            table = read(file.place)
+        expected = [f"{before}{name}" for name in names[:6] if name] + names[6:]
+        assert table["step"].to_pylist() == expected
+
+
 def test_units_are_metadata(tmp_path: Path) -> None:
     file = RunFile(tmp_path / "run.parquet", SCHEMA)
     with file.closing(is_whole=True):

@@ -1,7 +1,6 @@
 """The optimum goes into the file, and nothing else of the file changes."""
 
 import re
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -10,154 +9,32 @@ from service.usecases import Request, convert, optimise
 from stepnc_model import writeback
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program, Workingstep
-from stepnc_model.record import PREFIX, Record
-from stepnc_model.record_edit import RECORD_KEYWORDS
+from stepnc_model.record import Record
 from stepnc_model.technology import programmed
-from stepnc_model.writeback import SCHEMA, Change, Profile
-
-PARTS = Path(__file__).parents[2] / "examples" / "parts"
-EX1 = Path(__file__).parents[3] / "shared" / "corpus" / "iso14649" / "ex1.stp"
-
-PARTS_NAMES = ("bracket", "paper002", "shaft")
-PROFILES = tuple(Profile)
-BOTH_WAYS = (PROFILES, PROFILES[::-1])
-
-RECORD = Record(
-    mode="TC",
-    id="OP",
-    description="as fast as it goes",
-    machine="vmc15",
-    material="c45",
-    generator="stepnc-optimiser",
-    active_limit="motor power",
-    number_of_passes=1,
-    feed_per_tooth=0.1,
-    axial_depth=3.0,
-    machine_power=7.5,
-    cutting_power=4.0,
-    spindle_speed=-10.0,
-    specific_cutting_resistance=2000.0,
-    machining_time=30.0,
-    motor_power=5.0,
-    cutting_force=800.0,
-    energy=1e5,
-    programmed_cutspeed=0.58,
-    programmed_feedrate_per_tooth=0.05,
+from stepnc_model.writeback import SCHEMA, Profile
+from tests.stepnc_model.written import (
+    ADAPTIVE,
+    BOTH_WAYS,
+    OPERATION,
+    PARTS_NAMES,
+    PROFILES,
+    SECOND,
+    TECHNOLOGY,
+    added,
+    change_of,
+    changed,
+    converted,
+    ex1,
+    instances,
+    optimised,
+    part,
+    program_of,
+    stand_in_order,
+    two_operations,
+    untouched_lines,
+    without_functions,
+    write_first,
 )
-
-OPERATION = (
-    b"#40=PLANE_ROUGH_MILLING($,$,'ROUGH THE FACE',10.,$,#50,#41,#42,$,#43,#43,#44,3.,0.);"
-)
-SECOND = OPERATION.replace(b"#40=", b"#45=")
-TECHNOLOGY = b"#41=MILLING_TECHNOLOGY($,.TCP.,0.583333333333333,$,0.05,.F.,.F.,.F.,$);"
-ADAPTIVE = (
-    b"#41=MILLING_TECHNOLOGY(#46,#47,.F.,.F.,.F.);\n"
-    b"#46=CUTSPEED(.T.,0.58);\n#47=FEEDRATE_PER_TOOTH(.T.,0.05);"
-)
-
-
-def part(name: str) -> bytes:
-    return (PARTS / f"{name}.stpnc").read_bytes()
-
-
-def ex1() -> bytes:
-    if not EX1.exists():
-        pytest.skip("ex1.stp is not beside the project")
-    return EX1.read_bytes()
-
-
-def two_operations() -> bytes:
-    """Paper 002's part, with a second operation that shares tool, technology, functions."""
-    data = part("paper002")
-    data = data.replace(b"(#3),$,#20,$", b"(#3,#4),$,#20,$")
-    steps = b"#3=MACHINING_WORKINGSTEP('ROUGH THE FACE',#22,#30,#40,$);"
-    data = data.replace(steps, steps + b"\n#4=MACHINING_WORKINGSTEP('AGAIN',#22,#30,#45,$);")
-    return data.replace(OPERATION, OPERATION + b"\n" + SECOND)
-
-
-def program_of(data: bytes) -> Program:
-    return Program(Part21File.from_bytes(data))
-
-
-def optimised(data: bytes, folder: Path, profile: Profile, **options: str) -> bytes:
-    """What ``optimise`` makes of a file."""
-    source, output = folder / "in.stpnc", folder / "out.stpnc"
-    source.write_bytes(data)
-    optimise(Request(file=source, output=output, profile=profile.value, **options))  # type: ignore[arg-type]
-    return output.read_bytes()
-
-
-def converted(data: bytes, profile: Profile) -> bytes:
-    return writeback.convert(program_of(data), profile)
-
-
-def change_of(
-    program: Program,
-    step: Workingstep,
-    *,
-    feed: float | None = None,
-    speed: float | None = None,
-    depth: float | None = None,
-) -> Change:
-    conditions = programmed(program, step.technology_ref)
-    return Change(
-        workingstep=step,
-        programmed=conditions,
-        record=RECORD,
-        feed=conditions.feed.in_file(conditions.feed.value) if feed is None else feed,
-        speed=speed,
-        depth=depth,
-    )
-
-
-def write_first(data: bytes, profile: Profile = Profile.STANDARD, **numbers: float) -> bytes:
-    """Change of the first workingstep alone."""
-    program = program_of(data)
-    change = change_of(program, program.workingsteps[0], **numbers)
-    return writeback.write(program, [change], profile)
-
-
-def instances(data: bytes) -> dict[int, bytes]:
-    """Text of every instance."""
-    file = Part21File.from_bytes(data)
-    return {id: data[slice(*file.span(id))] for id in file.ids()}
-
-
-def changed(before: bytes, after: bytes) -> dict[int, bytes]:
-    """Instances of the input that have another text in the output."""
-    old, new = instances(before), instances(after)
-    return {id: new[id] for id, text in old.items() if new[id] != text}
-
-
-def added(before: bytes, after: bytes) -> dict[int, bytes]:
-    old = instances(before)
-    return {id: text for id, text in instances(after).items() if id not in old}
-
-
-def without_functions(text: bytes) -> bytes:
-    """An operation with its eighth parameter, the machine functions, left out."""
-    parameters = text.split(b",")
-    return b",".join([*parameters[:7], *parameters[8:]])
-
-
-def untouched_lines(before: bytes, after: bytes) -> list[bytes]:
-    """Lines of the input that belong to no edited instance."""
-    file = Part21File.from_bytes(before)
-    spans = [file.span(id) for id in changed(before, after)]
-    lines, place = [], 0
-    for line in before.splitlines(keepends=True):
-        end = place + len(line)
-        if not any(start < end and place < stop for start, stop in spans):
-            lines.append(line)
-        place = end
-    return lines
-
-
-def stand_in_order(lines: list[bytes], data: bytes) -> bool:
-    """Whether all lines are there, in order."""
-    rest: Iterator[bytes] = iter(data.splitlines(keepends=True))
-    return all(line in rest for line in lines)
 
 
 class TestConversion:
@@ -458,145 +335,3 @@ class TestShared:
         assert edits.keys() == {40, 46, 47}
         assert edits[46] == b"#46=CUTSPEED(.T.,0.75);"
         assert edits[47] == b"#47=FEEDRATE_PER_TOOTH(.T.,0.125);"
-
-
-class TestTurning:
-    def test_the_depth_goes_to_the_strategy(self) -> None:
-        program = program_of(part("shaft"))
-        step = next(each for each in program.workingsteps if int(each.operation_ref) == 202)
-        data = writeback.write(
-            program, [change_of(program, step, depth=1.25)], Profile.STANDARD
-        )
-        edits = changed(part("shaft"), data)
-        assert edits.keys() == {202, 352}
-        assert edits[352] == (
-            b"#352=UNIDIRECTIONAL_TURNING(1.,.T.,(1.25),$,#504,#501,#502,#506,1.,$,$);"
-        )
-
-    def test_a_shared_strategy_is_copied_first(self) -> None:
-        before = part("shaft").replace(b"#330,$,$,#351,0.);", b"#330,$,$,#350,0.);")
-        assert before != part("shaft")
-        program = program_of(before)
-        data = writeback.write(
-            program,
-            [change_of(program, program.workingsteps[0], depth=1.25)],
-            Profile.STANDARD,
-        )
-        assert instances(data)[350] == instances(before)[350]
-        assert instances(data)[201] == instances(before)[201]
-        copies = [text for text in added(before, data).values() if b"(1.25)" in text]
-        assert len(copies) == 1
-
-    def test_a_speed_goes_to_a_copy_of_the_shared_speed(self) -> None:
-        before = part("shaft")
-        program = program_of(before)
-        data = writeback.write(
-            program, [change_of(program, program.workingsteps[0], speed=2.0)], Profile.STANDARD
-        )
-        after = program_of(data)
-        assert instances(data)[310] == instances(before)[310]
-        speeds = [
-            programmed(after, step.technology_ref).speed.value for step in after.workingsteps
-        ]
-        old = [
-            programmed(program, step.technology_ref).speed.value
-            for step in program.workingsteps
-        ]
-        assert speeds == [2000.0, *old[1:]]
-
-
-class TestProfiles:
-    @pytest.mark.parametrize("name", PARTS_NAMES)
-    def test_standard_has_no_entities_of_the_optimisation(
-        self, name: str, tmp_path: Path
-    ) -> None:
-        data = optimised(part(name), tmp_path, Profile.STANDARD)
-        self.assert_standard(data, before=part(name))
-
-    def test_ex1_as_standard_has_none_either(self, tmp_path: Path) -> None:
-        self.assert_standard(optimised(ex1(), tmp_path, Profile.STANDARD), before=ex1())
-
-    @staticmethod
-    def assert_standard(data: bytes, *, before: bytes) -> None:
-        file = Part21File.from_bytes(data)
-        own = RECORD_KEYWORDS - {"NUMERIC_PARAMETER"}
-        assert not [keyword for keyword in own if file.ids_of(keyword)]
-        assert SCHEMA.encode() not in data
-        assert file.schemas == Part21File.from_bytes(before).schemas
-        assert writeback.records(program_of(data))
-
-    @pytest.mark.parametrize("name", PARTS_NAMES)
-    def test_an_operation_has_no_surplus_parameter_in_the_standard(
-        self, name: str, tmp_path: Path
-    ) -> None:
-        data = optimised(part(name), tmp_path, Profile.STANDARD)
-        before = Part21File.from_bytes(part(name))
-        after = Part21File.from_bytes(data)
-        for id in before.ids():
-            assert len(after.parameters(id)) == len(before.parameters(id))
-
-    @pytest.mark.parametrize("name", PARTS_NAMES)
-    def test_standard_parameters_are_prefixed(self, name: str, tmp_path: Path) -> None:
-        before = part(name)
-        new = added(before, optimised(before, tmp_path, Profile.STANDARD)).values()
-        parameters = [text for text in new if b"_PARAMETER(" in text]
-        assert parameters
-        assert all(f"('{PREFIX}".encode() in text for text in parameters)
-
-    @pytest.mark.parametrize("name", PARTS_NAMES)
-    def test_optimisation_names_its_schema_last(self, name: str, tmp_path: Path) -> None:
-        data = optimised(part(name), tmp_path, Profile.OPTIMISATION)
-        old = Part21File.from_bytes(part(name)).schemas
-        assert Part21File.from_bytes(data).schemas == (*old, SCHEMA)
-
-    @pytest.mark.parametrize("profile", PROFILES)
-    @pytest.mark.parametrize("name", PARTS_NAMES)
-    def test_what_is_written_has_no_new_warning(
-        self, name: str, profile: Profile, tmp_path: Path
-    ) -> None:
-        after = program_of(optimised(part(name), tmp_path, profile))
-        before = program_of(part(name))
-        assert [each.message for each in after.findings()] == [
-            each.message for each in before.findings()
-        ]
-
-    def test_a_process_model_of_the_file_is_kept(self) -> None:
-        model = b"#96=PROCESS_MODEL_LIST((#97));\n#97=PROCESS_MODEL('mine.ini','force');\n"
-        functions = b"#42=MILLING_MACHINE_FUNCTIONS(.T.,$,$,.F.,$,(),.T.,$,$,());"
-        with_model = functions.replace(b"$,());", b"#96,());")
-        before = part("paper002").replace(functions, model + with_model)
-        after = write_first(before, Profile.STANDARD, feed=0.125)
-        assert len(Part21File.from_bytes(after).ids_of("PROCESS_MODEL")) == 1
-        back = converted(converted(after, Profile.OPTIMISATION), Profile.OPTIMISATION)
-        assert instances(back)[97] == b"#97=PROCESS_MODEL('mine.ini','force');"
-
-    def test_other_functions_of_the_file_are_kept(self) -> None:
-        functions = b"#42=MILLING_MACHINE_FUNCTIONS(.T.,$,$,.F.,$,(),.T.,$,$,());"
-        mine = functions.replace(b"());", b"(#96));") + b"\n#96=DESCRIPTIVE_PARAMETER('a','b');"
-        before = part("paper002").replace(functions, mine)
-        after = write_first(before, Profile.STANDARD, feed=0.125)
-        program = program_of(after)
-        (step,) = program.workingsteps
-        assert step.functions_ref is not None
-        other = program.file.parameters(int(step.functions_ref))[-1]
-        assert isinstance(other, tuple)
-        assert other[0] == Ref(96)
-        back = converted(after, Profile.OPTIMISATION)
-        assert b"#96=DESCRIPTIVE_PARAMETER('a','b');" in back
-        assert instances(back)[42] == mine.split(b"\n")[0]
-
-    def test_without_advice_nothing_is_written(self) -> None:
-        for name in PARTS_NAMES:
-            program = program_of(part(name))
-            assert writeback.write(program, [], Profile.OPTIMISATION) == part(name)
-
-
-def test_a_file_without_records_has_none() -> None:
-    for name in PARTS_NAMES:
-        assert writeback.records(program_of(part(name))) == {}
-
-
-@pytest.mark.parametrize("number", [1 / 3, 1e-300, 123456789.123456789, -0.1])
-def test_a_rounded_number_has_twelve_digits(number: float) -> None:
-    assert writeback.rounded(number) == pytest.approx(number, rel=1e-11)
-    assert writeback.rounded(writeback.rounded(number)) == writeback.rounded(number)

@@ -3,10 +3,8 @@
 import getpass
 import json
 import os
-import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import pyarrow.parquet as pq
@@ -22,7 +20,6 @@ from tests.kbe.conftest import (  # fixtures are found by their names  # noqa: F
     postgres_place,
     postgres_url,
 )
-from tests.service.test_bad_input import without_rights
 
 OK, BAD_INPUT, INTERRUPTED = 0, 3, 130
 
@@ -320,103 +317,3 @@ def test_filters_that_leave_nothing_say_what_there_is(
     out, error = told(capsys)
     assert not out
     assert "machines hmc8, vmc15, vmc22; materials AlMgSi1, C45; tools DRILL 8.5" in error
-
-
-READ = (
-    ("list",), ("show", "1"), ("table",), ("review",), ("accept", "1"), ("corrections",),
-    ("export", "outcomes", "-o", "x.csv"), ("backup", "copy.db"), ("check",),
-)  # fmt: skip
-
-
-@pytest.mark.parametrize("words", READ)
-def test_a_name_that_is_wrong_makes_no_file(
-    words: tuple[str, ...],
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    assert kbe(*words, "--kb", tmp_path / "none.db") == BAD_INPUT
-    out, error = told(capsys)
-    assert not out
-    assert error.splitlines()[-1].startswith(f"error: {tmp_path / 'none.db'}: there is no such")
-    assert list(tmp_path.iterdir()) == []
-
-
-@pytest.mark.parametrize("words", READ)
-def test_a_file_that_is_something_else_says_so(
-    words: tuple[str, ...],
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    damaged = tmp_path / "part.db"
-    damaged.write_bytes(b"ISO-10303-21;\n" * 1000)
-    assert kbe(*words, "--kb", damaged) == BAD_INPUT
-    out, error = told(capsys)
-    assert not out
-    assert "damaged, or no knowledge base" in error
-    assert [each.name for each in tmp_path.iterdir()] == ["part.db"]
-
-
-def test_a_torn_file_fails_its_check(kb: str, capsys: pytest.CaptureFixture[str]) -> None:
-    bytes_ = Path(kb).read_bytes()
-    half = len(bytes_) // 2 // 4096 * 4096
-    Path(kb).write_bytes(bytes_[:half] + b"\xff" * 8192 + bytes_[half + 8192 :])
-    assert kbe("check", "--kb", kb) == BAD_INPUT
-    assert "damaged" in told(capsys)[1]
-
-
-def test_an_unknown_correction_is_refused(kb: str, capsys: pytest.CaptureFixture[str]) -> None:
-    for verb in ("accept", "withdraw"):
-        assert kbe(verb, 7, "--kb", kb, "--by", "A. Smith") == BAD_INPUT
-        assert "has no correction 7; list them: stepnc kbe corrections" in told(capsys)[1]
-
-
-def test_an_address_that_is_none_keeps_its_password(
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    for place in ("mysql://me:secret@host/db", "postgresql://me:secret@127.0.0.1:1/db"):
-        assert kbe("list", "--kb", place) == BAD_INPUT
-        out, error = told(capsys)
-        assert not out
-        assert "secret" not in error
-
-
-@pytest.fixture
-def public(shop_file: Path) -> Iterator[Path]:
-    """A folder with a knowledge base that others may read."""
-    folder = Path("/tmp") / f"stepnc-kbe-{os.getpid()}"
-    folder.mkdir(mode=0o755)
-    shutil.copy(shop_file, folder / "kb.db")
-    (folder / "kb.db").chmod(0o644)
-    yield folder
-    shutil.rmtree(folder)
-
-
-def test_a_folder_that_may_not_be_written_stays_as_it_is(
-    public: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    with without_rights():
-        for words in (
-            ("review", "--kb", public / "kb.db"),
-            ("restore", public / "kb.db", "--kb", public / "new.db"),
-            ("backup", public / "copy.db", "--kb", public / "kb.db"),
-            ("export", "outcomes", "--kb", public / "kb.db", "-o", public / "o.parquet"),
-            ("export", "outcomes", "--kb", public / "kb.db", "-o", public / "o.csv"),
-        ):
-            assert kbe(*words) == BAD_INPUT, words
-            out, error = told(capsys)
-            assert not out
-            assert error.startswith("error: ")
-            assert str(public) in error
-    assert [each.name for each in public.iterdir()] == ["kb.db"]
-
-
-def test_times_the_wrong_way_round_are_refused(
-    kb: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    words = ("--since", "2026-03-06", "--until", "2026-03-05")
-    assert kbe("list", "--kb", kb, *words) == BAD_INPUT
-    assert "is not before --until" in told(capsys)[1]

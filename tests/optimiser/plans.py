@@ -1,0 +1,64 @@
+"""Plans for the parts of the examples."""
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+from optimiser.advice import Advice, Plan, State
+from optimiser.formulate import Task
+from optimiser.modes import Free
+from optimiser.optimise import optimise
+from optimiser.source import from_features
+from simulator.library import load_machine
+from simulator.matching import match_material
+from stepnc_model.part21.reader import Part21File
+from stepnc_model.program import Program
+
+PARTS = Path(__file__).parents[2] / "examples" / "parts"
+USUAL = {
+    "bracket": ("vmc15", "C45"),
+    "paper002": ("paper002", "paper002"),
+    "shaft": ("lathe22", "42CrMo4"),
+}
+ALL_FREE = frozenset(Free)
+
+
+def edited(name: str, *changes: tuple[str, str]) -> Program:
+    """A sample part with some texts replaced."""
+    text = (PARTS / f"{name}.stpnc").read_text()
+    for before, after in changes:
+        assert before in text
+        text = text.replace(before, after)
+    return Program(Part21File.from_bytes(text.encode(), name=name), name=name)
+
+
+@cache
+def measured(name: str, task: Task, *changes: tuple[str, str], machine: str = "") -> Plan:
+    """Advice along the real paths."""
+    usual, material = USUAL[name]
+    return optimise(
+        edited(name, *changes),
+        machine=load_machine(machine or usual),
+        material=match_material([material]),
+        task=task,
+    )
+
+
+def plan_of(name: str, task: Task, *changes: tuple[str, str], machine: str = "") -> Plan:
+    """Advice by the features."""
+    return measured(name, replace(task, source=from_features), *changes, machine=machine)
+
+
+def advice_of(plan: Plan, name: str) -> Advice:
+    (found,) = (advice for advice in plan.advices if advice.workingstep.id == name)
+    return found
+
+
+def after(advice: Advice) -> State:
+    assert advice.after is not None
+    return advice.after
+
+
+def before(advice: Advice) -> State:
+    assert advice.before is not None
+    return advice.before
