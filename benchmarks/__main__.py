@@ -3,6 +3,7 @@
 from benchmarks import (
     closed_loop,
     control_step,
+    knowledge,
     part21,
     pockets,
     post,
@@ -24,6 +25,7 @@ for title, bench in (
     ("A real mill", umich),
     ("Closed loop", closed_loop),
     ("A control step", control_step),
+    ("The knowledge base", knowledge),
 ):
     print(f"\n== {title}: {(bench.__doc__ or '').splitlines()[0]}")
     bench.main([])
