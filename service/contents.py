@@ -29,26 +29,26 @@ class Contents:
         )
 
 
-def check(path: Path, *, units: str = "iso") -> Contents:
+def check(path: Path, *, units: str = "iso", name: str = "") -> Contents:
     """What is in a file, and what is wrong with it."""
-    profile = unit_profile(units)
-    file = Part21File.from_bytes(read_bytes(path), name=path.name)
+    profile, called = unit_profile(units), name or path.name
+    file = Part21File.from_bytes(read_bytes(path), name=called)
     try:
-        program = Program(file, units=profile, name=path.name)
+        program = Program(file, units=profile, name=called)
     except SchemaError as error:
         fault = Finding(
             severity=Severity.ERROR,
             message=str(error),
         )
         return Contents(
-            name=path.name,
+            name=called,
             schemas=file.schemas,
             instances=len(file),
             program=None,
             findings=(*file.findings, fault),
         )
     return Contents(
-        name=path.name,
+        name=called,
         schemas=file.schemas,
         instances=len(file),
         program=program,

@@ -1,5 +1,6 @@
 """Progress of what takes longer than a person likes to wait."""
 
+import re
 import threading
 import time
 from collections.abc import Callable
@@ -19,6 +20,15 @@ def bar(share: float) -> str:
     """A bar for a share of 0 to 1, and the share in per cent."""
     full = int(share * WIDTH)
     return f"[{'#' * full}{'-' * (WIDTH - full)}] {share:4.0%}"
+
+
+def share_in(message: str) -> float | None:
+    """The share that a message with a :func:`bar` or a count tells; None: it tells none."""
+    if found := re.search(r"\[[#-]+\] +(\d+)%", message):
+        return int(found[1]) / 100.0
+    if found := re.match(r"(\d+) of (\d+) ", message):
+        return int(found[1]) / max(int(found[2]), 1)
+    return None
 
 
 class Ticker:

@@ -21,11 +21,12 @@ def silent(_message: str) -> None:
     """Messages go nowhere."""
 
 
-def read_program(path: Path, *, units: str) -> Program:
-    """A program from a file."""
+def read_program(path: Path, *, units: str, name: str = "") -> Program:
+    """A program from a file, which is called as the file is unless a name is given."""
     profile = unit_profile(units)
-    file = Part21File.from_bytes(read_bytes(path), name=path.name)
-    return Program(file, units=profile, name=path.name)
+    called = name or path.name
+    file = Part21File.from_bytes(read_bytes(path), name=called)
+    return Program(file, units=profile, name=called)
 
 
 def unit_profile(name: str) -> UnitProfile:

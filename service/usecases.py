@@ -38,6 +38,8 @@ class Request:
     """What the user asks of ``optimise``, in the user's units."""
 
     file: Path
+    name: str = ""
+    """what the program is called; as its file when empty"""
     mode: str = "TC"
     machine: str = ""
     material: str = ""
@@ -82,7 +84,7 @@ def optimise(request: Request, *, tell: Tell = silent) -> Outcome:
     output = _output(request)
     nc_place = _nc_place(request, output)
     require_apart(named_place(request.knowledge), output, request.report, nc_place)
-    program = read_program(request.file, units=request.units)
+    program = read_program(request.file, units=request.units, name=request.name)
     chosen = _selected(program, request.workingsteps)
     findings = program.file.findings + program.model.findings()
     _require_usable(program, chosen, findings)

@@ -26,6 +26,7 @@ from service.cli.options import (
     add_knowledge,
 )
 from service.cli.paths import add_path_commands
+from service.cli.serve import add_service_commands
 
 EXAMPLES = """examples:
   optimise part.stpnc --mode TC --machine vmc15
@@ -38,19 +39,19 @@ EXAMPLES = """examples:
 Optimise the feeds of a STEP-NC program and write them back as STEP-NC."""
 
 
-def main(arguments: Sequence[str] | None = None) -> None:
-    """Run ``stepnc``."""
-    parser = argparse.ArgumentParser(
+def parser() -> argparse.ArgumentParser:
+    """All words that ``stepnc`` takes."""
+    top = argparse.ArgumentParser(
         prog="stepnc",
         description=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument(
+    top.add_argument(
         "--print-completion",
         choices=("bash", "zsh", "tcsh"),
         help="print a completion script for a shell",
     )
-    commands = parser.add_subparsers(dest="command", metavar="COMMAND")
+    commands = top.add_subparsers(dest="command", metavar="COMMAND")
     optimise = commands.add_parser(
         "optimise",
         help="optimise the feeds of a program and write them back",
@@ -64,20 +65,27 @@ def main(arguments: Sequence[str] | None = None) -> None:
     add_machine_commands(commands)
     add_knowledge_commands(commands)
     add_control_command(commands)
+    add_service_commands(commands)
     for kind in ("machines", "materials"):
         listing = commands.add_parser(kind, help=f"list the {kind}, or show one")
         listing.add_argument("name", nargs="?", default="", help="show this one in full")
         add_json(listing)
         listing.set_defaults(run=_show_library)
-    options = parser.parse_args(arguments)
+    return top
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Run ``stepnc``."""
+    top = parser()
+    options = top.parse_args(arguments)
     if options.print_completion:
         import shtab
 
         from service.terminal import write_out
 
-        write_out(shtab.complete(parser, shell=options.print_completion))
+        write_out(shtab.complete(top, shell=options.print_completion))
     elif options.command is None:
-        parser.print_help()
+        top.print_help()
         sys.exit(2)
     else:
         _run(options)

@@ -30,7 +30,7 @@ from service.control.setup import (
     require_teeth,
     steps_of,
 )
-from service.control.trace import ControlTrace, control_schema
+from service.control.trace import ControlTrace, Moment, control_schema
 from service.progress import Ticker, bar
 from service.reading import Tell, one_of, silent
 from service.run_file import RunFile
@@ -137,9 +137,7 @@ def control(
     ticker = Ticker(tell)
     try:
         with trace:
-            for cycle in session.cycles():
-                for watcher in looking:
-                    watcher(cycle, session.machine.truth)
+            for cycle in session.cycles(looking):
                 for event in cycle.events:
                     tell(_told(event))
                 ticker(lambda: _progress(session))
@@ -148,7 +146,7 @@ def control(
     finally:
         if trace.file is not None and trace.file.place is not None:
             tell(f"written: {trace.file.place} ({trace.rows} rows)")
-    return replace(session.result(), samples=trace.rows, trace=trace.trace())
+    return session.result(trace)
 
 
 def prepare(request: ControlRequest, *, tell: Tell = silent) -> "Session":
@@ -249,7 +247,7 @@ class Session:
     is_lost: bool = False
     """whether the machine does not answer any more"""
 
-    def cycles(self) -> Iterator[Cycle]:
+    def cycles(self, watchers: Sequence[Watcher] = ()) -> Iterator[Cycle]:
         """Run on, cycle by cycle, to the end or until the loop stops the program."""
         while True:
             while self.orders and self.orders[0].time <= self.machine.time:
@@ -264,6 +262,8 @@ class Session:
             self.recorder.add(cycle)
             self.holdings.add(cycle, self.loop.aims)
             self.events += cycle.events
+            for watcher in watchers:
+                watcher(cycle, self.machine.truth)
             yield cycle
             if self.loop.is_stopped:
                 return
@@ -275,8 +275,14 @@ class Session:
         self.events.append(Event(time=self.machine.time, kind=EventKind.LOST, text=text))
         self.is_lost = True
 
-    def trace(self) -> ControlTrace:
-        """What writes the run to a file and keeps it for plots, as asked for."""
+    def trace(self, sink: Callable[[Moment], None] | None = None) -> ControlTrace:
+        """What writes the run to a file and keeps it for plots, as asked for.
+
+        Parameters
+        ----------
+        sink : callable, optional
+            Is given each row as well.
+        """
         output = self.request.output
         return ControlTrace(
             self.machine.course,
@@ -284,10 +290,11 @@ class Session:
             workingsteps=self.workingsteps,
             file=None if output is None else RunFile(output, control_schema()),
             has_trace=self.request.report is not None,
+            sink=sink,
         )
 
-    def result(self) -> ControlRun:
-        """What was found so far."""
+    def result(self, trace: ControlTrace | None = None) -> ControlRun:
+        """What was found so far, and what a trace has kept of it."""
         records = self.recorder.records
         return ControlRun(
             program=self.program,
@@ -312,6 +319,8 @@ class Session:
             held=self.holdings.steps,
             disturbances=self.request.disturbances,
             seed=self.request.seed,
+            samples=0 if trace is None else trace.rows,
+            trace=None if trace is None else trace.trace(),
         )
 
 

@@ -18,7 +18,8 @@ from service.control.planned import Planned
 from service.knowledge.corrected import factors_for
 from service.progress import Patience, Ticker, bar
 from service.reading import Tell
-from service.simulation.run import COMPILES, place_in, require_sense
+from service.simulation.gathering import require_sense
+from service.simulation.run import COMPILES, place_in
 from service.simulation.setup import Prepared
 from simulator.errors import ProgramFault, SimulationError
 from simulator.machine.episode import Episode

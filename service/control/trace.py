@@ -5,7 +5,7 @@ rows are a quarter of a second apart. What is true is the mean over the row, wha
 that of the revolution. Running state. Units mm, s, N, W.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from enum import IntEnum, StrEnum
 from math import inf, isfinite, nan
@@ -16,6 +16,7 @@ import numpy as np
 import pyarrow as pa
 
 from controller.cycle import Cycle
+from controller.orders import Event
 from service.buckets import Buckets, Trace
 from service.control.holding import Holdings
 from service.run_file import WORDS, RunFile
@@ -174,6 +175,8 @@ class ControlTrace:
         With the columns of :func:`control_schema`; it is closed at the end.
     has_trace : bool
         Whether there will be plots.
+    sink : callable, optional
+        Is given each row at once, whatever the file waits for.
     """
 
     def __init__(
@@ -182,10 +185,12 @@ class ControlTrace:
         holdings: Holdings,
         *,
         workingsteps: Sequence[str],
-        file: RunFile | None,
-        has_trace: bool,
+        file: RunFile | None = None,
+        has_trace: bool = False,
+        sink: Callable[[Moment], None] | None = None,
     ) -> None:
         self.file = file
+        self._sink = sink
         self._course, self._holdings = course, holdings
         self._names = ("", *workingsteps)
         self._buckets = Buckets(len(Signal)) if has_trace else None
@@ -204,11 +209,15 @@ class ControlTrace:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
+        self.close(is_whole=kind is None)
+
+    def close(self, *, is_whole: bool) -> None:
+        """The last rows; then the file gets its name, or is left as partial."""
         if self.file is None:
-            self._end()
+            self.end()
             return
-        with self.file.closing(is_whole=kind is None):
-            self._end()
+        with self.file.closing(is_whole=is_whole):
+            self.end()
 
     @property
     def rows(self) -> int:
@@ -219,19 +228,32 @@ class ControlTrace:
         """One more cycle, and what really was."""
         self._sums.add(cycle, truth)
         for event in cycle.events:
-            self._events.append(f"{event.kind.value}: {event.text}")
+            self.note(event)
         self._last = cycle, truth
         is_due = cycle.revolution is not None or cycle.reading.time - self._written >= APART
         if is_due:
             self._add(cycle, truth)
 
+    def note(self, event: Event) -> None:
+        """Something that happened, for the row that is to come."""
+        self._events.append(f"{event.kind.value}: {event.text}")
+
     def trace(self) -> Trace | None:
         """The run for plots; None when none was asked for."""
         return None if self._buckets is None else self._buckets.trace()
 
+    def end(self) -> None:
+        """The row that was not due yet, and all that wait."""
+        if self._last is not None:
+            self._add(*self._last)
+        self._flush()
+
     def _add(self, cycle: Cycle, truth: Truth) -> None:
         """One more row."""
-        self._moments.append(self._moment(cycle, truth))
+        moment = self._moment(cycle, truth)
+        self._moments.append(moment)
+        if self._sink is not None:
+            self._sink(moment)
         self._written = cycle.reading.time
         self._sums, self._last = _Sums(), None
         self._events.clear()
@@ -270,12 +292,6 @@ class ControlTrace:
             holding=self._holdings.words,
             event="; ".join(self._events) or None,
         )
-
-    def _end(self) -> None:
-        """The row that was not due yet, and all that wait."""
-        if self._last is not None:
-            self._add(*self._last)
-        self._flush()
 
     def _flush(self) -> None:
         if not self._moments:

@@ -1,6 +1,6 @@
 """The verb ``simulate``: a program on the virtual machine."""
 
-from collections.abc import Callable
+from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from enum import StrEnum
@@ -11,6 +11,7 @@ from service.files import require_place
 from service.progress import Patience, Ticker, bar
 from service.reading import Tell, one_of, silent
 from service.run_file import require_suffix
+from service.simulation.gathering import Gathering, Watcher
 from service.simulation.setup import (
     CodeRequest,
     Prepared,
@@ -20,14 +21,11 @@ from service.simulation.setup import (
 )
 from service.simulation.timeline_file import TimelineFile
 from service.simulation.trace import TraceKeeper
-from simulator.errors import ProgramFault, SimulationError
-from simulator.machine.disturbance import Disturbance, Disturbed, NoiseKind
-from simulator.machine.episode import Episode
+from simulator.errors import SimulationError
+from simulator.machine.disturbance import Disturbance, NoiseKind
 from simulator.machine.interpreter import interpret
-from simulator.machine.samples import Execution
-from simulator.machine.sensing import Sampler
 from simulator.machine.tooth_loads import Teeth
-from simulator.machine.totals import Total, added
+from simulator.machine.totals import Total
 from simulator.machine.transients import Response
 from simulator.machine.travel import Zero, zero_of
 from simulator.machine.virtual import LoadedTool, Setup, VirtualMachine
@@ -54,9 +52,6 @@ MOST_DEVIATION = 10.0
 LEAST_FILTER, MOST_FILTER = 1e-6, 100.0
 """s"""
 
-MOST_SECONDS = 1e7
-"""of machining, a hundred days: a slip of the feed or of a dwell rather than a program"""
-
 
 class ForceView(StrEnum):
     """How forces are shown."""
@@ -72,6 +67,8 @@ class SimulationRequest:
     """What the user asks of ``simulate``, in the user's units."""
 
     file: Path | None = None
+    name: str = ""
+    """what the program is called; as its file when empty"""
     code: CodeRequest | None = None
     machine: str = ""
     material: str = ""
@@ -124,7 +121,9 @@ class Simulation:
         return total
 
 
-def simulate(request: SimulationRequest, *, tell: Tell = silent) -> Simulation:
+def simulate(
+    request: SimulationRequest, *, tell: Tell = silent, watchers: Sequence[Watcher] = ()
+) -> Simulation:
     """Run a program on the virtual machine.
 
     Raises
@@ -134,7 +133,8 @@ def simulate(request: SimulationRequest, *, tell: Tell = silent) -> Simulation:
     """
     kind, disturbance = _control_kind(request), _disturbance(request)
     prepared, virtual = waiting_machine(request, tell=tell)
-    run = _Run(virtual, _of_machine(disturbance, virtual.machine), rate=request.rate)
+    disturbance = _of_machine(disturbance, virtual.machine)
+    run = Gathering(virtual, disturbance, rate=request.rate, watchers=watchers)
     if request.report is not None:
         run.trace = TraceKeeper()
     if request.output is not None:
@@ -178,49 +178,6 @@ def waiting_machine(
     return prepared, _machine(request, prepared, teeth=teeth)
 
 
-class _Run:
-    """What is gathered on the way. Running state."""
-
-    def __init__(
-        self, virtual: VirtualMachine, disturbance: Disturbance, *, rate: float
-    ) -> None:
-        self.totals = [Total()]
-        self.file: TimelineFile | None = None
-        self.trace: TraceKeeper | None = None
-        self._machine = virtual.machine
-        self._sampler = Sampler(virtual.machine, rate=rate)
-        self._disturbed = Disturbed(
-            disturbance=disturbance, rate=rate, efficiency=virtual.machine.spindle.efficiency
-        )
-
-    def add(self, episode: Episode, *, ticked: Callable[[], None]) -> None:
-        """One more episode."""
-        require_sense(episode)
-        at = episode.state.workingstep
-        self.totals += [Total() for _ in range(len(self.totals), at + 1)]
-        self.totals[at] = added(self.totals[at], episode, self._machine)
-        ticked()
-        takers = [taker for taker in (self.file, self.trace) if taker is not None]
-        if not takers:
-            return
-        for samples in self._sampler.samples(episode):
-            shown = self._disturbed.shown(samples)
-            for taker in takers:
-                taker.add(shown)
-            ticked()
-
-
-def require_sense(episode: Episode) -> None:
-    """Refuse a program without anything in it, and one without an end."""
-    if episode.state.execution is Execution.PROGRAM_COMPLETED and episode.end == 0.0:
-        raise SimulationError("there is nothing in it that takes time")
-    if episode.end > MOST_SECONDS:
-        course = episode.course
-        line = episode.state.line if course is None else int(course.segments.block[-1])
-        text = f"{episode.end:.3g} s of machining: {MOST_SECONDS:g} s at most"
-        raise ProgramFault(text, line)
-
-
 def _progress(prepared: Prepared, virtual: VirtualMachine) -> str:
     at = virtual.workingsteps[-1:]
     return ", ".join((f"{bar(prepared.done())}  {virtual.now:.0f} s of machining", *at))
@@ -245,6 +202,7 @@ def _prepared(request: SimulationRequest, tell: Tell) -> Prepared:
         raise StepNcError("name a STEP-NC program, or NC code with --nc")
     return from_program(
         request.file,
+        name=request.name,
         units=request.units,
         machine=request.machine,
         material=request.material,

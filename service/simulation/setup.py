@@ -85,7 +85,7 @@ class Counted(Generic[T]):
 
 
 def from_program(
-    file: Path, *, units: str, machine: str, material: str, tell: Tell
+    file: Path, *, name: str = "", units: str, machine: str, material: str, tell: Tell
 ) -> Prepared:
     """A STEP-NC program on a machine that suits it.
 
@@ -94,14 +94,14 @@ def from_program(
     StepNcError
         For everything that is wrong with file or names.
     """
-    program = read_program(file, units=units)
+    program = read_program(file, units=units, name=name)
     match = material_for(material, program)
     tell(f"material: {match.reason}")
     paths = with_feeds(paths_of(program, tell=tell), keep_going=False)
     chosen = machine_for(machine, program)
     numbers = tool_numbers(paths.paths)
     steps = sum(len(path.steps) for path in paths.paths)
-    blocks = Counted(blocks_of(program, paths.items, name=file.stem))
+    blocks = Counted(blocks_of(program, paths.items, name=Path(program.name).stem))
     return Prepared(
         name=program.name,
         machine=chosen,

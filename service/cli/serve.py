@@ -1,0 +1,215 @@
+"""``stepnc serve`` and ``stepnc keys``: the service, and who may use it."""
+
+import argparse
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from service.cli.options import OK, Commands, text
+
+if TYPE_CHECKING:
+    from service.depot.folder import Depot
+
+VARIABLE = "STEPNC_DATA"
+"""environment variable that names the data folder"""
+
+USUAL_RATE = 50.0
+"""requests a second of one client, from other computers"""
+
+LEVELS = ("debug", "info", "warning", "error")
+ROLES = ("viewer", "planner", "operator")
+LOOPBACK = ("127.0.0.1", "::1", "localhost")
+
+SERVE = """examples:
+  stepnc serve
+  stepnc serve --data /srv/stepnc --workers 2
+  stepnc serve --host 0.0.0.0 --name planner.shop --tls-cert shop.crt --tls-key shop.key
+
+Serve REST and the dashboard. On a host that is not this computer's own loopback, keys are
+needed: see `stepnc keys create`."""
+
+
+def add_service_commands(commands: Commands) -> None:
+    """``serve`` and ``keys``."""
+    parser = commands.add_parser(
+        "serve",
+        help="serve advised feeds over REST, and the dashboard",
+        description=SERVE,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    add = parser.add_argument
+    add("--host", default="127.0.0.1", help="address to listen on (default: 127.0.0.1)")
+    add("--port", type=int, default=8000, help="default: 8000")
+    _add_data(parser)
+    add(
+        "--kb",
+        type=text,
+        default="",
+        metavar="PLACE",
+        help="knowledge base, a file or postgresql://… (default: $STEPNC_KB, else in the folder)",
+    )
+    add("--workers", type=int, default=1, metavar="N", help="web processes (default: 1)")
+    add("--jobs", type=int, default=1, metavar="N", help="long jobs at once (default: 1)")
+    add(
+        "--name",
+        action="append",
+        default=[],
+        metavar="HOST",
+        help="a name under which clients know this computer; repeatable",
+    )
+    add("--keys", action="store_true", help="ask for keys on loopback too")
+    add("--tls-cert", type=Path, metavar="FILE", help="certificate: serve https")
+    add("--tls-key", type=Path, metavar="FILE", help="its private key")
+    add(
+        "--upload-mb",
+        type=int,
+        default=32,
+        metavar="MB",
+        help="greatest program, unpacked (default: 32)",
+    )
+    add(
+        "--rate",
+        type=float,
+        metavar="R",
+        help="requests a second of one client (default: 50, without bound on loopback)",
+    )
+    add("--log-level", choices=LEVELS, default="info", help="of the JSON log on stderr")
+    parser.set_defaults(run=_serve)
+    _add_keys(commands)
+
+
+def _add_keys(commands: Commands) -> None:
+    parser = commands.add_parser(
+        "keys", help="keys that open the service: create, list, revoke"
+    )
+    verbs = parser.add_subparsers(dest="verb", metavar="VERB", required=True)
+    create = verbs.add_parser("create", help="a new key; it is shown this once")
+    create.add_argument("--for", dest="who", type=text, required=True, metavar="NAME")
+    create.add_argument(
+        "--role",
+        action="append",
+        choices=ROLES,
+        default=[],
+        help="viewer looks, planner plans, operator runs machines; repeatable (default: viewer)",
+    )
+    listing = verbs.add_parser("list", help="all keys, without their secrets")
+    revoke = verbs.add_parser("revoke", help="make a key useless")
+    revoke.add_argument("id", help="as listed")
+    for verb, run in ((create, _create), (listing, _list), (revoke, _revoke)):
+        _add_data(verb)
+        verb.set_defaults(run=run)
+
+
+def _add_data(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--data",
+        type=Path,
+        default=None,
+        metavar="DIR",
+        help="data folder (default: $STEPNC_DATA, else ~/.local/share/stepnc/service)",
+    )
+
+
+def _serve(options: argparse.Namespace) -> int:
+    from service.rest.serve import Start, serve
+    from service.rest.settings import MIB, Settings
+
+    _require(options)
+    is_loopback = options.host in LOOPBACK
+    rate = options.rate if options.rate is not None else (0.0 if is_loopback else USUAL_RATE)
+    settings = Settings(
+        data=str(_data(options)),
+        knowledge=options.kb,
+        host=options.host,
+        port=options.port,
+        names=tuple(options.name),
+        needs_keys=options.keys or not is_loopback,
+        upload_bytes=options.upload_mb * MIB,
+        rate=rate,
+    )
+    serve(
+        Start(
+            settings=settings,
+            workers=options.workers,
+            jobs=options.jobs,
+            level=options.log_level,
+            certificate=options.tls_cert,
+            key=options.tls_key,
+        )
+    )
+    return OK
+
+
+def _require(options: argparse.Namespace) -> None:
+    """Refuse numbers that cannot be."""
+    from stepnc_model.errors import StepNcError
+
+    for name, value, low, high in (
+        ("port", options.port, 0, 65_535),
+        ("workers", options.workers, 1, 64),
+        ("jobs", options.jobs, 1, 64),
+        ("upload-mb", options.upload_mb, 1, 1024),
+        ("rate", 0.0 if options.rate is None else options.rate, 0.0, 1e6),
+    ):
+        if not low <= value <= high:
+            raise StepNcError(f"--{name} {value:g}: it must be {low:g} to {high:g}")
+    if (options.tls_cert is None) != (options.tls_key is None):
+        raise StepNcError("--tls-cert and --tls-key go together")
+
+
+def _data(options: argparse.Namespace) -> Path:
+    """The data folder: as named, that of the environment, or the usual one."""
+    from service.knowledge.place import usual_file
+
+    named = options.data or os.environ.get(VARIABLE)
+    return Path(named) if named else usual_file().with_name("service")
+
+
+def _depot(options: argparse.Namespace) -> "Depot":
+    from service.depot.folder import open_depot
+
+    return open_depot(_data(options))
+
+
+def _create(options: argparse.Namespace) -> int:
+    from service.depot import keys
+    from service.depot.keys import Role
+    from service.terminal import tell, write_out
+
+    roles = frozenset(Role(word) for word in options.role)
+    write_out(keys.create(_depot(options), name=options.who, roles=roles))
+    tell("keep it: it is not shown again. Send it as  Authorization: Bearer …")
+    return OK
+
+
+def _list(options: argparse.Namespace) -> int:
+    from service.depot import keys
+    from service.tables import print_table
+
+    rows = [
+        (
+            each.id,
+            each.name,
+            ", ".join(sorted(each.roles)),
+            _day(each.created),
+            "valid" if each.revoked is None else f"revoked {_day(each.revoked)}",
+        )
+        for each in keys.listed(_depot(options))
+    ]
+    print_table(("id", "for", "roles", "created", "state"), rows)
+    return OK
+
+
+def _day(seconds: float) -> str:
+    from datetime import UTC, datetime
+
+    return datetime.fromtimestamp(seconds, UTC).date().isoformat()
+
+
+def _revoke(options: argparse.Namespace) -> int:
+    from service.depot import keys
+    from service.terminal import tell
+
+    keys.revoke(_depot(options), options.id)
+    tell(f"revoked: {options.id}")
+    return OK

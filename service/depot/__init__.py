@@ -1,0 +1,1 @@
+"""What the service keeps in its data folder: programs, jobs, keys, machines, materials."""

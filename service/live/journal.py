@@ -1,0 +1,47 @@
+"""Lines of JSON that one process appends and others read while it goes on.
+
+A line is written at once, so that a reader meets whole lines only; what stands behind the last
+line break is still being written, or was cut off when its writer died.
+"""
+
+import json
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+LONGEST = 1 << 20
+"""bytes that are read at once"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Read:
+    """Lines, and where the next begins."""
+
+    lines: tuple[dict[str, Any], ...]
+    offset: int
+    """bytes from the beginning of the file"""
+
+
+def append(file: Path, entry: Mapping[str, Any]) -> None:
+    """Add a line; several processes may."""
+    line = json.dumps(entry, ensure_ascii=False, allow_nan=False).encode() + b"\n"
+    descriptor = os.open(file, os.O_WRONLY | os.O_APPEND | os.O_CREAT, 0o600)
+    try:
+        os.write(descriptor, line)
+    finally:
+        os.close(descriptor)
+
+
+def read_on(file: Path, offset: int) -> Read:
+    """Lines from an offset on; none when the file does not exist yet."""
+    try:
+        with file.open("rb") as opened:
+            opened.seek(offset)
+            text = opened.read(LONGEST)
+    except FileNotFoundError:
+        return Read(lines=(), offset=offset)
+    whole = text[: text.rfind(b"\n") + 1]
+    lines = tuple(json.loads(line) for line in whole.splitlines())
+    return Read(lines=lines, offset=offset + len(whole))

@@ -1,0 +1,116 @@
+"""An error of the project as a problem body after RFC 9457, for jobs and for REST."""
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from kbe.errors import KnowledgeError, StoreBusy, StoreUnavailable, UnknownCorrection
+from optimiser.errors import SolverFailed
+from service.errors import (
+    Conflict,
+    Forbidden,
+    NotFound,
+    TooLarge,
+    TooMany,
+    Unauthorised,
+    Unavailable,
+    Unreadable,
+)
+from stepnc_model.errors import Part21Error, StepNcError, WriteError
+
+PREFIX = "urn:stepnc:problem:"
+
+STATUS: tuple[tuple[type[StepNcError], int], ...] = (
+    (NotFound, 404),
+    (UnknownCorrection, 404),
+    (Conflict, 409),
+    (TooLarge, 413),
+    (Unreadable, 400),
+    (Unauthorised, 401),
+    (Forbidden, 403),
+    (TooMany, 429),
+    (Unavailable, 503),
+    (StoreBusy, 503),
+    (StoreUnavailable, 503),
+    (KnowledgeError, 500),
+    (SolverFailed, 500),
+    (WriteError, 507),
+    (Part21Error, 422),
+    (StepNcError, 422),
+)
+"""the first class that fits; what a client sent is at fault unless it says otherwise"""
+
+TITLES = {
+    "StepNcError": "Request refused",
+    "Part21Error": "No ISO 10303-21 file",
+    "SchemaError": "No usable STEP-NC program",
+    "NotFound": "Not found",
+    "TooLarge": "Too large",
+    "TooMany": "Too many requests",
+}
+
+
+def problem_of(error: StepNcError, *, hidden: str = "") -> dict[str, Any]:
+    """The body: type, title, status, detail, and the fields that the error carries.
+
+    Parameters
+    ----------
+    error : StepNcError
+    hidden : str
+        The data folder, which is nobody's business.
+    """
+    name = type(error).__name__
+    fields = {key: value for key, value in vars(error).items() if _is_plain(value)}
+    return {
+        "type": type_of(name),
+        "title": TITLES.get(name, _words(name).capitalize()),
+        "status": status_of(error),
+        "detail": _without(str(error), hidden),
+        **{key: _hidden(value, hidden) for key, value in fields.items()},
+    }
+
+
+def status_of(error: StepNcError) -> int:
+    """The HTTP status of an error."""
+    return next(status for kind, status in STATUS if isinstance(error, kind))
+
+
+def type_of(name: str) -> str:
+    """The type of a problem by the name of its error class."""
+    return PREFIX + _words(name).replace(" ", "-")
+
+
+def plain_problem(status: int, title: str, detail: str, **more: object) -> dict[str, Any]:
+    """A problem that no error of the tree stands for."""
+    kind = title.lower().replace(" ", "-")
+    return {
+        "type": PREFIX + kind,
+        "title": title,
+        "status": status,
+        "detail": detail,
+        **more,
+    }
+
+
+def _words(name: str) -> str:
+    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", " ", name).lower()
+
+
+def _is_plain(value: object) -> bool:
+    """Whether it goes into JSON as it is."""
+    if isinstance(value, tuple):
+        return all(isinstance(each, str) for each in value)
+    return isinstance(value, str | int | float) and not isinstance(value, bool)
+
+
+def _hidden(value: Any, folder: str) -> Any:
+    return _without(value, folder) if isinstance(value, str) else value
+
+
+def _without(text: str, folder: str) -> str:
+    return text.replace(f"{folder}/", "").replace(folder, "") if folder else text
+
+
+def title_and_detail(problem: Mapping[str, Any]) -> str:
+    """A problem in a line, for logs and terminals."""
+    return f"{problem['title']}: {problem['detail']}"

@@ -1,0 +1,1 @@
+"""REST: the door through which other programs and the dashboard come."""

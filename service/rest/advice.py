@@ -1,0 +1,169 @@
+"""``/v1/advice``: feeds with their reasons, the optimised program, NC code, the report.
+
+A look-up of one workingstep is what machines and panels ask again and again: results do not
+change once they are there, so their parts are kept ready as bytes.
+"""
+
+from collections import OrderedDict
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import orjson
+from fastapi import APIRouter, Request, Response
+from starlette.concurrency import run_in_threadpool
+
+from service.depot import jobs, programs
+from service.depot.folder import Depot
+from service.depot.jobs import Kind, State
+from service.errors import Conflict, NotFound
+from service.jobs.task import NC_CODE, OPTIMISED, REPORT, RESULT, optimised_name
+from service.rest.bodies import Id
+from service.rest.context import AtPlace, InDepot, depot_of, page_reply
+from service.rest.replies import file_reply, report_reply, tag_of, tagged
+from service.rest.views import AdviceView, AdvisedView, JobView, PageView, job_view
+from stepnc_model.post.controls import SUFFIXES, Control
+
+ROUTES = APIRouter(prefix="/v1/advice", tags=["advice"])
+
+MOST_READY = 64
+"""results whose parts are kept ready"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ready:
+    """A result as bytes, with its tags."""
+
+    stamp: int
+    """when its file was written, ns"""
+    whole: tuple[bytes, str]
+    workingsteps: dict[str, tuple[bytes, str]]
+    """by id and by instance"""
+    result: dict[str, Any]
+
+
+class Shelf:
+    """Results that were asked for lately. Running state."""
+
+    def __init__(self) -> None:
+        self._ready: OrderedDict[str, Ready] = OrderedDict()
+
+    def get(self, depot: Depot, id: str) -> Ready:
+        """A result.
+
+        Raises
+        ------
+        NotFound, Conflict
+            When there is none, or not yet.
+        """
+        file = depot.job_folder(id) / RESULT
+        known = self._ready.get(id)
+        try:
+            stamp = file.stat().st_mtime_ns
+        except OSError:
+            self._ready.pop(id, None)
+            raise _missing(depot, id) from None
+        if known is None or known.stamp != stamp:
+            jobs.get(depot, id, Kind.ADVICE)
+            known = self._ready[id] = _ready(file, stamp)
+            while len(self._ready) > MOST_READY:
+                self._ready.popitem(last=False)
+        else:
+            self._ready.move_to_end(id)
+        return known
+
+
+def _ready(file: Path, stamp: int) -> Ready:
+    whole = file.read_bytes()
+    result = orjson.loads(whole)
+    parts: dict[str, tuple[bytes, str]] = {}
+    for step in result["workingsteps"]:
+        body = orjson.dumps(step)
+        for name in (step["instance"], step["id"]):
+            parts.setdefault(name, (body, tag_of(body)))
+    return Ready(stamp=stamp, whole=(whole, tag_of(whole)), workingsteps=parts, result=result)
+
+
+def _missing(depot: Depot, id: str) -> Exception:
+    """Why there is no result."""
+    job = jobs.get(depot, id, Kind.ADVICE)
+    if job.state in {State.QUEUED, State.RUNNING}:
+        return Conflict(f"advice '{id}' is {job.state.value}: look again, or at its job")
+    return Conflict(f"advice '{id}' has {job.state.value}: its job says why")
+
+
+def _shelf(request: Request) -> Shelf:
+    found: Shelf = request.app.state.advice
+    return found
+
+
+@ROUTES.get("", response_model=PageView[JobView], summary="All advice, newest first")
+async def list_advice(request: Request, depot: InDepot, place: AtPlace) -> Response:
+    """The jobs that made it, or will."""
+    page = jobs.listed(depot, place, kind=Kind.ADVICE)
+    return page_reply(request, page, [job_view(job) for job in page.items])
+
+
+@ROUTES.get("/{id}", response_model=AdviceView, summary="One advice")
+async def advice(request: Request, id: Id) -> Response:
+    """All workingsteps with programmed and advised feed, limits and reason."""
+    body, tag = _shelf(request).get(depot_of(request), id).whole
+    return tagged(request, body, tag)
+
+
+@ROUTES.get(
+    "/{id}/workingsteps/{workingstep}",
+    response_model=AdvisedView,
+    summary="The feed of one workingstep, with its reason",
+)
+async def advised(request: Request, id: Id, workingstep: str) -> Response:
+    """By its id, or its instance without ``#``."""
+    parts = _shelf(request).get(depot_of(request), id).workingsteps
+    found = parts.get(workingstep) or parts.get(f"#{workingstep}")
+    if found is None:
+        raise NotFound("workingstep", workingstep)
+    return tagged(request, *found)
+
+
+@ROUTES.get(
+    "/{id}/file",
+    summary="The optimised program",
+    response_class=Response,
+    responses={200: {"content": {"application/step": {}}}},
+)
+async def optimised(request: Request, depot: InDepot, id: Id) -> Response:
+    """The program as it came, with the advised feeds; nothing else is changed."""
+    name = await run_in_threadpool(_name, request, depot, id)
+    file = depot.job_folder(id) / OPTIMISED
+    return file_reply(file, name=name, kind="application/step", thing="optimised program")
+
+
+@ROUTES.get(
+    "/{id}/nc",
+    summary="NC code with the advised feeds",
+    response_class=Response,
+    responses={200: {"content": {"text/plain": {}}}},
+)
+async def nc_code(request: Request, depot: InDepot, id: Id) -> Response:
+    """For the control that was named when the advice was asked for."""
+    name = await run_in_threadpool(_name, request, depot, id)
+    control = _shelf(request).get(depot, id).result["nc_control"]
+    if control is None:
+        raise NotFound("NC code (ask for advice with nc_control)", id)
+    name = f"{Path(name).stem}{SUFFIXES[Control(control)]}"
+    file = depot.job_folder(id) / NC_CODE
+    return file_reply(file, name=name, kind="text/plain; charset=utf-8", thing="NC code")
+
+
+@ROUTES.get("/{id}/report", summary="The report as a page", response_class=Response,
+            responses={200: {"content": {"text/html": {}}}})  # fmt: skip
+async def report(depot: InDepot, id: Id) -> Response:
+    """A page that stands for itself: save it, print it, send it."""
+    jobs.get(depot, id, Kind.ADVICE)
+    return report_reply(depot.job_folder(id) / REPORT, id=id)
+
+
+def _name(request: Request, depot: Depot, id: str) -> str:
+    """What the optimised program is called, also when the program was deleted."""
+    program = str(_shelf(request).get(depot, id).result["program"])
+    return optimised_name(programs.shown_name(program))

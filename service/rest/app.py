@@ -1,0 +1,149 @@
+"""The application: routes, gate, problems, the OpenAPI document."""
+
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from typing import Any
+
+from fastapi import FastAPI, Request, Response
+from fastapi.exceptions import RequestValidationError
+from fastapi.openapi.utils import get_openapi
+from starlette.exceptions import HTTPException
+
+from kbe.store import open_store
+from service.depot.folder import open_depot
+from service.lifeline import end_with_parent
+from service.problem import plain_problem, problem_of
+from service.rest import (
+    advice,
+    health,
+    jobs,
+    knowledge,
+    library,
+    pages,
+    programs,
+    simulations,
+)
+from service.rest.context import PROBLEMS
+from service.rest.gate import Gate
+from service.rest.replies import problem_reply
+from service.rest.rights import is_protected, role_for
+from service.rest.settings import Settings, handed_on
+from service.rest.streams import Hub
+from stepnc_model.errors import StepNcError
+
+TITLE = "stepnc-optimiser"
+ABOUT = """Feeds of STEP-NC programs, optimal within the limits of machine, tool and part; runs on
+a virtual machine; runs under a force loop; and what was learned from them.
+
+Names of fields carry their units. Long work is a job: the answer is 202 with its place; look
+at it, watch its events, cancel it. Problems are told as in RFC 9457. Lists come in pages with a
+cursor. Answers to GET have an ETag. A POST with an `Idempotency-Key` makes nothing twice."""
+
+
+def application(settings: Settings) -> FastAPI:
+    """A service on a data folder.
+
+    Raises
+    ------
+    ServiceError, KnowledgeError
+        When folder or knowledge base cannot be used.
+    """
+    depot = open_depot(settings.root, knowledge=settings.knowledge)
+    with open_store(depot.knowledge):
+        """made when it is new"""
+    hub = Hub(depot)
+
+    @asynccontextmanager
+    async def living(_: FastAPI) -> AsyncIterator[None]:
+        yield
+        await hub.close()
+
+    app = FastAPI(
+        title=TITLE,
+        description=ABOUT,
+        version="1",
+        lifespan=living,
+        docs_url=None,
+        redoc_url=None,
+        openapi_url="/v1/openapi.json",
+        responses=PROBLEMS,
+    )
+    app.state.depot, app.state.settings, app.state.hub = depot, settings, hub
+    app.state.advice = advice.Shelf()
+    # The most frequent first: routes are tried in their order.
+    for routes in (
+        advice.ROUTES, jobs.ROUTES, programs.ROUTES, simulations.ROUTES,
+        knowledge.EVALUATIONS, knowledge.REVIEWS, knowledge.CORRECTIONS, knowledge.OUTCOMES,
+        library.MACHINES, library.MATERIALS, health.ROUTES, pages.ROUTES,
+    ):  # fmt: skip
+        app.include_router(routes)
+    app.add_exception_handler(StepNcError, _project)
+    app.add_exception_handler(RequestValidationError, _invalid)
+    app.add_exception_handler(HTTPException, _http)
+    app.add_middleware(Gate, settings=settings, depot=depot)
+    app.openapi = lambda: described(app)  # type: ignore[method-assign]
+    return app
+
+
+def from_environment() -> FastAPI:
+    """The application of a process that was started by another."""
+    settings = handed_on()
+    end_with_parent()
+    return application(settings)
+
+
+def described(app: FastAPI) -> dict[str, Any]:
+    """The OpenAPI document, with the role that each route needs."""
+    if app.openapi_schema:
+        return app.openapi_schema
+    found = get_openapi(
+        title=app.title, version=app.version, description=app.description, routes=app.routes
+    )
+    found["components"]["securitySchemes"] = {"key": {"type": "http", "scheme": "bearer"}}
+    for path, methods in found["paths"].items():
+        for method, operation in methods.items():
+            if is_protected(path):
+                role = role_for(method.upper(), path)
+                operation["security"] = [{"key": []}]
+                operation["x-role"] = role.value
+    app.openapi_schema = found
+    return found
+
+
+async def _project(request: Request, error: Exception) -> Response:
+    """An error of the project's tree."""
+    if not isinstance(error, StepNcError):
+        raise error
+    root = str(request.app.state.depot.root)
+    reply = problem_reply({**problem_of(error, hidden=root), "instance": request.state.id})
+    if hasattr(error, "wait"):
+        reply.headers["retry-after"] = str(int(error.wait) + 1)
+    return reply
+
+
+async def _invalid(request: Request, error: Exception) -> Response:
+    """A body or a parameter that is not what it should be."""
+    if not isinstance(error, RequestValidationError):
+        raise error
+    wrong = [
+        {"place": ".".join(str(each) for each in one["loc"]), "message": one["msg"]}
+        for one in error.errors()
+    ]
+    detail = "; ".join(f"{each['place']}: {each['message']}" for each in wrong)
+    problem = plain_problem(
+        422, "Invalid request", detail, errors=wrong, instance=request.state.id
+    )
+    return problem_reply(problem)
+
+
+async def _http(request: Request, error: Exception) -> Response:
+    """What the framework refuses: an unknown path, a method that is not there."""
+    if not isinstance(error, HTTPException):
+        raise error
+    title = {404: "Not found", 405: "Method not allowed"}.get(error.status_code, "Refused")
+    problem = plain_problem(
+        error.status_code, title, str(error.detail), instance=request.state.id
+    )
+    reply = problem_reply(problem)
+    reply.headers.update(error.headers or {})
+    return reply

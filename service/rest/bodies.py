@@ -1,0 +1,129 @@
+"""What clients send: the bodies of requests, with bounds and units. In the user's units."""
+
+from datetime import datetime
+from enum import StrEnum
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from kbe.evaluation import Grouping, RowFilter, SortKey
+from optimiser.modes import Free, Mode
+from service.depot.ids import PATTERN
+from service.knowledge.corrected import SAFETY
+from simulator.machine.disturbance import NoiseKind
+from simulator.motion.control import Control as MotionControl
+from stepnc_model.post.controls import Control as NcControl
+from stepnc_model.unit_profiles import PROFILES
+from stepnc_model.writeback import Profile
+
+Id = Annotated[str, Field(pattern=PATTERN, examples=["01jd3m8y7q2v4x6z8b0c1d2e3f"])]
+Name = Annotated[str, Field(max_length=200)]
+Units = StrEnum("Units", {name.replace("-", "_"): name for name in PROFILES})  # type: ignore[misc]
+
+
+class Body(BaseModel):
+    """A request's body: what is not known is refused."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    def words(self) -> dict[str, Any]:
+        """As JSON."""
+        return self.model_dump(mode="json")
+
+
+class AdviceBody(Body):
+    """Which feeds are wanted."""
+
+    mode: Mode = Field(
+        Mode.TC,
+        description="TC least time, QC fastest feed that keeps the roughness, EC energy",
+    )
+    machine: Name = Field("", description="empty: one that suits", examples=["vmc15"])
+    material: Name = Field("", description="empty: the one the program names", examples=["c45"])
+    units: Units = Field(Units.iso, description="of feeds and speeds in the file")
+    roughness_um: float | None = Field(
+        None, gt=0.0, le=1000.0, description="Ra that finished surfaces must keep, µm"
+    )
+    free: list[Free] = Field(
+        [Free.FEED, Free.DEPTH], min_length=1, max_length=3, description="what may change"
+    )
+    workingsteps: list[Name] = Field(
+        [], max_length=10_000, description="ids or #instances; empty: all"
+    )
+    profile: Profile = Field(Profile.OPTIMISATION, description="how records are written")
+    nc_control: NcControl | None = Field(
+        None, description="also NC code, for this control", examples=["linuxcnc"]
+    )
+    has_pareto: bool = Field(False, description="also fronts of time, roughness and energy")
+    tool_change_s: float = Field(
+        0.0,
+        ge=0.0,
+        le=86_400.0,
+        description="s to change a worn tool; 0: tool life is left out",
+    )
+    has_corrections: bool = Field(True, description="plan with what was learned and accepted")
+    safety: float = Field(
+        SAFETY, ge=0.5, le=0.999, description="quantile of a corrected k_c to plan with"
+    )
+
+    def words(self) -> dict[str, Any]:
+        """As the job takes them."""
+        found = super().words()
+        return {**found, "nc_control": found["nc_control"] or ""}
+
+
+class RunBody(Body):
+    """A program on the virtual machine: the program as it came, or as an advice made it."""
+
+    program_id: Id | None = Field(None, description="a program as it came")
+    advice_id: Id | None = Field(None, description="or what an advice made of one")
+    machine: Name = Field("", description="empty: one that suits", examples=["vmc15"])
+    material: Name = Field("", description="empty: the one the program names", examples=["c45"])
+    units: Units = Field(Units.iso, description="of feeds and speeds in the file")
+    seed: int = Field(0, ge=0, le=2**31, description="of noise and scatter")
+    pace: float = Field(
+        0.0, ge=0.0, le=1000.0,
+        description="s of the machine in one of ours; 0: as fast as can be",
+    )  # fmt: skip
+
+
+class SimulationBody(RunBody):
+    """A simulation."""
+
+    rate_hz: float = Field(20.0, ge=1.0, le=1000.0, description="samples a second, Hz")
+    control: MotionControl = Field(MotionControl.FIR, description="how the control runs paths")
+    noise: NoiseKind = Field(NoiseKind.NONE, description="of the sensors")
+    has_lag: bool = Field(False, description="the main drive answers late and too far")
+    has_wear: bool = Field(False, description="tools wear while they cut")
+    kc_factor: float = Field(1.0, gt=0.0, le=100.0, description="on the specific cutting force")
+
+
+class SelectionBody(Body):
+    """Which outcomes; null: any."""
+
+    machine: Name | None = None
+    material: Name | None = None
+    tool: Name | None = None
+    feature_kind: Name | None = Field(None, examples=["closed_pocket"])
+    program: Name | None = None
+    run: Name | None = None
+    since: datetime | None = Field(None, description="first moment that counts, with zone")
+    until: datetime | None = Field(None, description="first moment that counts no more")
+
+
+class EvaluationBody(SelectionBody):
+    """Which evaluation table."""
+
+    grouping: Grouping = Field(Grouping.FEATURE, description="what a row is for")
+    only: RowFilter = Field(RowFilter.ALL, description="which rows to keep")
+    sort: SortKey = Field(SortKey.NAME, description="what comes first")
+
+
+class ReviewBody(SelectionBody):
+    """What to learn from."""
+
+
+class DecisionBody(Body):
+    """Who decides."""
+
+    by: str = Field(min_length=1, max_length=100, examples=["A. Smith"])

@@ -1,0 +1,114 @@
+"""What the routes share: the data folder, pages, keys that make a request once."""
+
+import hashlib
+from typing import Annotated, Any
+
+from fastapi import Depends, Header, Query, Request, Response
+from starlette.concurrency import run_in_threadpool
+
+from service.depot import jobs
+from service.depot.folder import Depot
+from service.depot.jobs import Job, Order
+from service.depot.once import Once
+from service.depot.pages import MOST, USUAL, Page, Place
+from service.errors import Unreadable
+from service.rest.replies import json_reply
+from service.rest.settings import Settings
+from service.rest.streams import Hub
+from service.rest.views import Problem, job_view
+
+LONGEST_KEY = 128
+
+PROBLEMS: dict[int | str, dict[str, Any]] = {
+    status: {
+        "model": Problem,
+        "description": what,
+        "content": {"application/problem+json": {}},
+    }
+    for status, what in (
+        (400, "The request cannot be read"),
+        (401, "A key is needed"),
+        (403, "The key, or the page it comes from, does not open this"),
+        (404, "There is none"),
+        (409, "It is not in the state for that"),
+        (413, "The body is too large"),
+        (422, "What is asked is not possible; the detail names value, bound and unit"),
+        (429, "Too many requests; Retry-After says when"),
+        (503, "Something the service stands on does not answer"),
+    )
+}
+"""that any route may answer with"""
+
+
+def depot_of(request: Request) -> Depot:
+    """The data folder."""
+    found: Depot = request.app.state.depot
+    return found
+
+
+def settings_of(request: Request) -> Settings:
+    """What the service was told."""
+    found: Settings = request.app.state.settings
+    return found
+
+
+def hub_of(request: Request) -> Hub:
+    """Who tells clients of runs."""
+    found: Hub = request.app.state.hub
+    return found
+
+
+def owner_of(request: Request) -> str:
+    """Who asks."""
+    return str(request.state.owner)
+
+
+def place_of(
+    limit: Annotated[int, Query(ge=1, le=MOST, description="entries of a page")] = USUAL,
+    cursor: Annotated[str | None, Query(description="next_cursor of the page before")] = None,
+) -> Place:
+    """Which page of a list."""
+    return Place(limit=limit, cursor=cursor)
+
+
+InDepot = Annotated[Depot, Depends(depot_of)]
+AtPlace = Annotated[Place, Depends(place_of)]
+ByOwner = Annotated[str, Depends(owner_of)]
+OnceKey = Annotated[
+    str | None,
+    Header(
+        alias="Idempotency-Key",
+        description="the same key with the same request makes nothing twice, for a day",
+        max_length=LONGEST_KEY,
+    ),
+]
+
+
+def once_of(request: Request, key: str | None, body: bytes) -> Once | None:
+    """What tells a request from others; None: it may be repeated.
+
+    Raises
+    ------
+    Unreadable
+        When the key is empty.
+    """
+    if key is None:
+        return None
+    if not key.strip():
+        raise Unreadable("Idempotency-Key is empty")
+    text = f"{request.method} {request.url.path}?{request.url.query}\n".encode()
+    digest = hashlib.sha256(text + body).hexdigest()
+    return Once(owner=owner_of(request), key=key, fingerprint=digest)
+
+
+def page_reply(request: Request, page: Page[Any], items: list[Any]) -> Response:
+    """A page of a list."""
+    return json_reply(request, {"items": items, "next_cursor": page.cursor})
+
+
+async def queued(request: Request, order: Order, key: str | None) -> Response:
+    """Queue a job: 202, and where to look."""
+    once = once_of(request, key, repr(sorted(order.request.items())).encode())
+    job: Job = await run_in_threadpool(jobs.add, depot_of(request), order, once=once)
+    headers = {"location": f"/v1/jobs/{job.id}", "retry-after": "1"}
+    return json_reply(request, job_view(job), status=202, headers=headers)

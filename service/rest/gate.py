@@ -1,0 +1,234 @@
+"""What every request goes through: who it is, whether it may, how long it took.
+
+One middleware of plain ASGI, so that a look-up costs little more than the framework's own.
+"""
+
+import asyncio
+import re
+import secrets
+import time
+from typing import Any
+
+import orjson
+import structlog
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from service.depot import keys
+from service.depot.folder import Depot
+from service.depot.keys import Key, Role
+from service.errors import Forbidden, StepNcError, TooLarge, Unauthorised, Unreadable
+from service.problem import plain_problem, problem_of
+from service.rest.metrics import REQUESTS, SECONDS
+from service.rest.rate import RateLimit
+from service.rest.rights import LOOKING, is_protected, role_for
+from service.rest.settings import LOOPBACK, Settings
+
+LOG = structlog.get_logger("rest")
+
+BODY_BYTES = 1 << 20
+"""of a body that is no program"""
+
+UPLOADS = frozenset({"/v1/programs"})
+"""paths whose bodies may be as large as a program; they count what they unpack"""
+
+PATIENT = 5.0
+"""s for which a key that was found good need not be looked up again"""
+
+REQUEST_ID = re.compile(rb"^[A-Za-z0-9._-]{1,64}$")
+
+HEADERS = [
+    (b"x-content-type-options", b"nosniff"),
+    (b"referrer-policy", b"no-referrer"),
+    (b"x-frame-options", b"DENY"),
+    (b"cross-origin-resource-policy", b"same-origin"),
+    (b"cross-origin-opener-policy", b"same-origin"),
+    (
+        b"permissions-policy",
+        b"camera=(), microphone=(), geolocation=(), payment=(), usb=()",
+    ),
+]
+
+# plotly.js puts styles of its own into the page; scripts come from files only.
+POLICY = (
+    "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; "
+    "img-src 'self' data: blob:; connect-src 'self'; font-src 'self'; base-uri 'none'; "
+    "form-action 'none'; frame-ancestors 'none'"
+)
+
+# A report is a page of its own that carries its scripts inside, and talks to nobody.
+REPORT_POLICY = (
+    "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; "
+    "img-src data: blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'; "
+    "sandbox allow-scripts allow-downloads"
+)
+
+ANYBODY = Key(id="", name="local", roles=frozenset(Role), created=0.0, revoked=None)
+"""who comes where no keys are asked for"""
+
+
+class Gate:
+    """The middleware. Running state."""
+
+    def __init__(self, app: ASGIApp, *, settings: Settings, depot: Depot) -> None:
+        self._app, self._settings, self._depot = app, settings, depot
+        self._rate = RateLimit(settings.rate, burst=settings.burst)
+        self._names = frozenset(
+            name.lower() for name in ({settings.host, *settings.names} | LOOPBACK)
+        )
+        self._good: dict[str, tuple[float, Key]] = {}
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """See ASGI."""
+        if scope["type"] != "http":
+            await self._app(scope, receive, send)
+            return
+        begin = time.perf_counter()
+        headers: dict[bytes, bytes] = dict(scope["headers"])
+        asked = headers.get(b"x-request-id", b"")
+        id = asked if REQUEST_ID.match(asked) else secrets.token_hex(8).encode()
+        status = 0
+
+        async def answer(message: Message) -> None:
+            nonlocal status
+            if message["type"] == "http.response.start":
+                status = message["status"]
+                message["headers"] = [
+                    *message["headers"], *HEADERS, (b"x-request-id", id),
+                ]  # fmt: skip
+                if not any(
+                    name == b"content-security-policy" for name, _ in message["headers"]
+                ):
+                    message["headers"].append((b"content-security-policy", POLICY.encode()))
+            await send(message)
+
+        key = ANYBODY
+        try:
+            self._require_known_host(scope, headers)
+            key = self._key(scope, headers)
+            scope["state"] = {**scope.get("state", {}), "owner": key.name, "id": id.decode()}
+            bound = self._bound(scope["path"], headers)
+            await self._app(scope, self._bounded(receive, bound), answer)
+        except StepNcError as error:
+            if status:
+                raise
+            await _refuse(answer, problem_of(error), error)
+        except Exception:
+            LOG.exception("fault", request=id.decode(), path=scope["path"])
+            if status:
+                raise
+            problem = plain_problem(500, "Fault", "the program is at fault; its log says more")
+            await _refuse(answer, {**problem, "instance": id.decode()}, None)
+        finally:
+            self._count(scope, status, time.perf_counter() - begin, id=id, who=key.name)
+
+    def _require_known_host(self, scope: Scope, headers: dict[bytes, bytes]) -> None:
+        """Pages of other hosts may not reach a service on this one through a browser."""
+        name = _host(headers.get(b"host", b"").decode("latin-1")).lower()
+        if name not in self._names:
+            raise Forbidden(f"host '{name}': not a name of this service; see --name")
+        if scope["method"] in LOOKING:
+            return
+        site = headers.get(b"sec-fetch-site", b"same-origin")
+        origin = headers.get(b"origin", b"").decode("latin-1")
+        is_own = not origin or _host(origin.partition("://")[2]).lower() == name
+        if site not in {b"same-origin", b"none"} or not is_own:
+            raise Forbidden(f"a page of '{origin or 'another site'}' may change nothing here")
+
+    def _key(self, scope: Scope, headers: dict[bytes, bytes]) -> Key:
+        client = (scope.get("client") or ("?",))[0]
+        if not self._settings.needs_keys:
+            self._rate.take(client)
+            return ANYBODY
+        path = scope["path"]
+        if not is_protected(path):
+            self._rate.take(client)
+            return ANYBODY
+        word = headers.get(b"authorization", b"").decode("latin-1")
+        scheme, _, word = word.partition(" ")
+        try:
+            key = self._known(word.strip()) if scheme.lower() == "bearer" else None
+        except StepNcError:
+            self._rate.take(client)
+            raise
+        # Who has no key shares a bucket with all who come from there: no trying out.
+        self._rate.take(client if key is None else key.id)
+        if key is None:
+            raise Unauthorised("a key is needed: Authorization: Bearer stepnc_…; `stepnc keys`")
+        role = role_for(scope["method"], path)
+        if not key.opens(role):
+            has = ", ".join(sorted(key.roles))
+            raise Forbidden(f"this needs the role {role.value}; the key has {has}")
+        return key
+
+    def _known(self, word: str) -> Key | None:
+        now = time.monotonic()
+        at, key = self._good.get(word, (0.0, None))
+        if key is not None and now - at < PATIENT:
+            return key
+        found = keys.known(self._depot, word)
+        if found is None:
+            self._good.pop(word, None)
+            return None
+        self._good[word] = now, found
+        return found
+
+    def _bound(self, path: str, headers: dict[bytes, bytes]) -> int:
+        """Bytes that the body may have."""
+        bound = self._settings.upload_bytes if path in UPLOADS else BODY_BYTES
+        length = headers.get(b"content-length", b"0")
+        if not length.isdigit():
+            raise Unreadable("Content-Length is no number")
+        if int(length) > bound:
+            raise TooLarge("the body", bound=bound)
+        return bound
+
+    def _bounded(self, receive: Receive, bound: int) -> Receive:
+        """A body that arrives in time and is no larger than allowed."""
+        taken = 0
+        is_whole = False
+        until = time.monotonic() + self._settings.body_s
+
+        async def bounded() -> Message:
+            nonlocal taken, is_whole
+            if is_whole:
+                return await receive()
+            try:
+                async with asyncio.timeout(max(until - time.monotonic(), 0.0)):
+                    message = await receive()
+            except TimeoutError as error:
+                limit = self._settings.body_s
+                raise Unreadable(f"the body did not arrive in {limit:g} s") from error
+            taken += len(message.get("body", b""))
+            is_whole = not message.get("more_body", False)
+            if taken > bound:
+                raise TooLarge("the body", bound=bound)
+            return message
+
+        return bounded
+
+    def _count(self, scope: Scope, status: int, seconds: float, *, id: bytes, who: str) -> None:
+        route: Any = scope.get("route")
+        name = getattr(route, "path", "unknown")
+        REQUESTS.labels(scope["method"], name, status).inc()
+        SECONDS.labels(name).observe(seconds)
+        LOG.info(
+            "request", request=id.decode(), method=scope["method"], path=scope["path"],
+            status=status, seconds=round(seconds, 6), who=who,
+        )  # fmt: skip
+
+
+def _host(name: str) -> str:
+    """A name without its port."""
+    if name.startswith("["):
+        return name[1:].partition("]")[0]
+    return name.partition(":")[0]
+
+
+async def _refuse(send: Send, problem: dict[str, Any], error: StepNcError | None) -> None:
+    headers = [(b"content-type", b"application/problem+json")]
+    if isinstance(error, Unauthorised):
+        headers.append((b"www-authenticate", b"Bearer"))
+    if hasattr(error, "wait"):
+        headers.append((b"retry-after", str(int(error.wait) + 1).encode()))
+    await send({"type": "http.response.start", "status": problem["status"], "headers": headers})
+    await send({"type": "http.response.body", "body": orjson.dumps(problem)})

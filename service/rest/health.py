@@ -1,0 +1,64 @@
+"""Signs of life for those who run the service, and its counts."""
+
+from typing import Any
+
+from fastapi import APIRouter, Request, Response
+
+from service.depot.folder import Depot
+from service.depot.jobs import State
+from service.errors import ServiceError
+from service.jobs.runner import is_alive
+from service.rest.context import depot_of, settings_of
+from service.rest.metrics import JOBS, TYPE, exposition
+from service.rest.programs import samples
+from service.rest.replies import json_reply
+
+ROUTES = APIRouter(tags=["service"])
+
+
+@ROUTES.get("/healthz", summary="Whether the process answers")
+async def healthz(request: Request) -> Response:
+    """It does."""
+    return json_reply(request, {"status": "ok"})
+
+
+@ROUTES.get("/readyz", summary="Whether requests can be served")
+async def readyz(request: Request) -> Response:
+    """The database answers, and somebody runs jobs; else 503."""
+    found = _state(depot_of(request))
+    return json_reply(request, found, status=200 if all(found.values()) else 503)
+
+
+@ROUTES.get("/metrics", summary="Counts for Prometheus", response_class=Response,
+            responses={200: {"content": {"text/plain": {}}}})  # fmt: skip
+async def metrics(request: Request) -> Response:
+    """Requests by route and status, their times, streams, jobs by state."""
+    with depot_of(request).database.reading() as connection:
+        rows = connection.execute("SELECT state, count(*) FROM jobs GROUP BY state").fetchall()
+    counts = dict(map(tuple, rows))
+    for state in State:
+        JOBS.labels(state.value).set(counts.get(state.value, 0))
+    return Response(exposition(), media_type=TYPE)
+
+
+@ROUTES.get("/v1/about", summary="What this service is, and has")
+async def about(request: Request) -> Response:
+    """For the dashboard: version, whether keys are needed, samples."""
+    from importlib.metadata import version  # noqa: PLC0415 (used once a page)
+
+    return json_reply(
+        request,
+        {
+            "version": version("stepnc-optimiser"),
+            "needs_keys": settings_of(request).needs_keys,
+            "samples": samples(),
+            "owner": request.state.owner,
+        },
+    )
+
+
+def _state(depot: Depot) -> dict[str, Any]:
+    try:
+        return {"database": True, "runner": is_alive(depot)}
+    except ServiceError:
+        return {"database": False, "runner": False}

@@ -1,0 +1,58 @@
+"""``/v1/jobs``: long work, how far it is, its end; what happens in it as it happens."""
+
+from typing import Annotated
+
+from fastapi import APIRouter, Query, Request, Response
+from starlette.concurrency import run_in_threadpool
+
+from service.depot import jobs
+from service.depot.jobs import Kind, State
+from service.rest.bodies import Id
+from service.rest.context import AtPlace, InDepot, page_reply
+from service.rest.replies import json_reply
+from service.rest.results import stream_reply
+from service.rest.views import JobView, PageView, job_view
+
+ROUTES = APIRouter(prefix="/v1/jobs", tags=["jobs"])
+
+EVENTS = {200: {"content": {"text/event-stream": {}}, "description": "server-sent events"}}
+
+
+@ROUTES.get("", response_model=PageView[JobView], summary="List jobs, newest first")
+async def list_jobs(
+    request: Request,
+    depot: InDepot,
+    place: AtPlace,
+    kind: Annotated[Kind | None, Query(description="of this kind")] = None,
+    state: Annotated[State | None, Query(description="in this state")] = None,
+) -> Response:
+    """A page of them."""
+    page = jobs.listed(depot, place, kind=kind, state=state)
+    return page_reply(request, page, [job_view(job) for job in page.items])
+
+
+@ROUTES.get("/{id}", response_model=JobView, summary="One job")
+async def job(request: Request, depot: InDepot, id: Id) -> Response:
+    """How far it is."""
+    return json_reply(request, job_view(jobs.get(depot, id)))
+
+
+@ROUTES.get(
+    "/{id}/events", summary="What happens in it", response_class=Response, responses=EVENTS
+)
+async def job_events(request: Request, depot: InDepot, id: Id) -> Response:
+    """Events ``job``, ``status``, ``rows``, ``event`` and ``gap``, until the job is over."""
+    return await stream_reply(request, jobs.get(depot, id))
+
+
+@ROUTES.post("/{id}/cancel", response_model=JobView, summary="Ask for its end")
+async def cancel(request: Request, depot: InDepot, id: Id) -> Response:
+    """One that waits is cancelled at once, one that runs within seconds."""
+    return json_reply(request, job_view(await run_in_threadpool(jobs.cancel, depot, id)))
+
+
+@ROUTES.delete("/{id}", status_code=204, summary="Delete a job that is over, with its results")
+async def delete(depot: InDepot, id: Id) -> Response:
+    """What was recorded in the knowledge base stays there."""
+    await run_in_threadpool(jobs.remove, depot, id)
+    return Response(status_code=204)

@@ -1,0 +1,175 @@
+"""``/v1/evaluations``, ``/v1/reviews``, ``/v1/corrections``, ``/v1/outcomes``: what was learned."""
+
+import json
+from collections.abc import Callable, Sequence
+from enum import StrEnum
+from typing import Annotated
+
+from fastapi import APIRouter, Path, Query, Request, Response
+from starlette.concurrency import run_in_threadpool
+
+from kbe.ledger import Entry
+from kbe.selection import Selection
+from service.depot import jobs
+from service.depot.jobs import Kind, Order
+from service.errors import NotFound
+from service.jobs.evaluate import TABLE
+from service.jobs.task import REPORT
+from service.knowledge import verbs
+from service.knowledge.wire import corrections_json, listing_json, run_json
+from service.rest.bodies import DecisionBody, EvaluationBody, Id, ReviewBody
+from service.rest.context import (
+    AtPlace,
+    ByOwner,
+    InDepot,
+    OnceKey,
+    depot_of,
+    page_reply,
+    queued,
+)
+from service.rest.replies import file_reply, json_reply, report_reply
+from service.rest.results import result_reply
+from service.rest.views import JobView, PageView, job_view
+
+EVALUATIONS = APIRouter(prefix="/v1/evaluations", tags=["knowledge"])
+REVIEWS = APIRouter(prefix="/v1/reviews", tags=["knowledge"])
+CORRECTIONS = APIRouter(prefix="/v1/corrections", tags=["knowledge"])
+OUTCOMES = APIRouter(prefix="/v1/outcomes", tags=["knowledge"])
+
+MOST_NUMBER = 2**31 - 1
+
+Number = Annotated[int, Path(ge=1, le=MOST_NUMBER, description="of the correction")]
+
+
+class Form(StrEnum):
+    """Forms of a table for other programs."""
+
+    CSV = "csv"
+    PARQUET = "parquet"
+
+
+KINDS = {Form.CSV: "text/csv; charset=utf-8", Form.PARQUET: "application/vnd.apache.parquet"}
+
+
+@EVALUATIONS.post("", status_code=202, response_model=JobView, summary="Make a table")
+async def ask_evaluation(
+    request: Request, body: EvaluationBody, owner: ByOwner, key: OnceKey = None
+) -> Response:
+    """A job: what was planned against what it was, feature by feature."""
+    order = Order(kind=Kind.EVALUATION, request=body.words(), owner=owner)
+    return await queued(request, order, key)
+
+
+@EVALUATIONS.get("", response_model=PageView[JobView], summary="List tables, newest first")
+async def list_evaluations(request: Request, depot: InDepot, place: AtPlace) -> Response:
+    """A page of their jobs."""
+    page = jobs.listed(depot, place, kind=Kind.EVALUATION)
+    return page_reply(request, page, [job_view(job) for job in page.items])
+
+
+@EVALUATIONS.get("/{id}", summary="A table")
+async def evaluation(request: Request, id: Id) -> Response:
+    """Rows with their roughing and finishing sides, grades and remarks."""
+    return await result_reply(request, id, Kind.EVALUATION)
+
+
+@EVALUATIONS.get("/{id}/table", summary="A table as a file", response_class=Response,
+                 responses={200: {"content": {kind: {} for kind in KINDS.values()}}})  # fmt: skip
+async def evaluation_file(
+    depot: InDepot, id: Id, form: Annotated[Form, Query(description="of the file")] = Form.CSV
+) -> Response:
+    """A line for each side of a row."""
+    jobs.get(depot, id, Kind.EVALUATION)
+    name = f"{TABLE}.{form.value}"
+    file = depot.job_folder(id) / name
+    return file_reply(
+        file, name=f"evaluation-{id}.{form.value}", kind=KINDS[form], thing="table"
+    )
+
+
+@EVALUATIONS.get("/{id}/report", summary="A table as a page", response_class=Response,
+                 responses={200: {"content": {"text/html": {}}}})  # fmt: skip
+async def evaluation_report(depot: InDepot, id: Id) -> Response:
+    """A page that stands for itself."""
+    jobs.get(depot, id, Kind.EVALUATION)
+    return report_reply(depot.job_folder(id) / REPORT, id=id)
+
+
+@REVIEWS.post("", status_code=202, response_model=JobView, summary="Learn from outcomes")
+async def ask_review(
+    request: Request, body: ReviewBody, owner: ByOwner, key: OnceKey = None
+) -> Response:
+    """A job: it proposes corrections; a person accepts them."""
+    order = Order(kind=Kind.REVIEW, request=body.words(), owner=owner)
+    return await queued(request, order, key)
+
+
+@REVIEWS.get("/{id}", summary="What a review found")
+async def review(request: Request, id: Id) -> Response:
+    """Context by context: the factor on k_c, what speaks against it, what was done."""
+    return await result_reply(request, id, Kind.REVIEW)
+
+
+@CORRECTIONS.get("", summary="All corrections, with what was decided last")
+async def corrections(request: Request, depot: InDepot) -> Response:
+    """In the order of their proposal."""
+    return await _corrections(request, lambda: verbs.corrections(depot.knowledge))
+
+
+@CORRECTIONS.post("/{number}/accept", summary="Put a correction in force")
+async def accept(
+    request: Request, depot: InDepot, number: Number, body: DecisionBody
+) -> Response:
+    """In the name of a person; the next plan takes it."""
+    place = depot.knowledge
+    return await _corrections(request, lambda: verbs.accept(place, [number], by=body.by))
+
+
+@CORRECTIONS.post("/{number}/withdraw", summary="Take a correction out of force")
+async def withdraw(
+    request: Request, depot: InDepot, number: Number, body: DecisionBody
+) -> Response:
+    """Or refuse what is proposed."""
+    place = depot.knowledge
+    return await _corrections(request, lambda: verbs.withdraw(place, [number], by=body.by))
+
+
+async def _corrections(request: Request, work: Callable[[], Sequence[Entry]]) -> Response:
+    entries = await run_in_threadpool(work)
+    return json_reply(request, corrections_json(entries).encode())
+
+
+@OUTCOMES.get("", summary="Outcomes, newest first")
+async def outcomes(
+    request: Request,
+    machine: Annotated[str | None, Query(max_length=200)] = None,
+    material: Annotated[str | None, Query(max_length=200)] = None,
+    tool: Annotated[str | None, Query(max_length=200)] = None,
+    program: Annotated[str | None, Query(max_length=200)] = None,
+    limit: Annotated[int, Query(ge=1, le=2000)] = 200,
+) -> Response:
+    """What runs showed, workingstep by workingstep; canonical units, as in exports."""
+    selection = Selection(machine=machine, material=material, tool=tool, program=program)
+    place = depot_of(request).knowledge
+    listing = await run_in_threadpool(verbs.newest, place, selection, limit=limit)
+    return json_reply(request, listing_json(listing).encode())
+
+
+@OUTCOMES.get("/runs/{run}", summary="The outcomes of one run")
+async def run_outcomes(
+    request: Request, depot: InDepot, run: Annotated[str, Path(max_length=200)]
+) -> Response:
+    """With their deviations."""
+    found = await run_in_threadpool(verbs.outcomes_of_run, depot.knowledge, run)
+    if not found:
+        raise NotFound("run", run)
+    return json_reply(request, run_json(found).encode())
+
+
+@OUTCOMES.get("/contexts", summary="Machines, materials and tools of which something is known")
+async def contexts(request: Request, depot: InDepot) -> Response:
+    """For filters."""
+    found = await run_in_threadpool(verbs.contexts, depot.knowledge)
+    known = [{"machine": each.machine, "material": each.material, "tool": each.tool}
+             for each in found]  # fmt: skip
+    return json_reply(request, json.dumps({"contexts": known}).encode())

@@ -1,0 +1,80 @@
+"""The dashboard's files, and the plotly.js that the installed package carries."""
+
+import gzip
+import hashlib
+from functools import cache
+from pathlib import Path
+
+from fastapi import APIRouter, Request, Response
+from fastapi.responses import RedirectResponse
+from starlette.concurrency import run_in_threadpool
+
+from service.errors import NotFound
+from service.rest.replies import matches
+
+ROUTES = APIRouter(include_in_schema=False)
+
+FOLDER = Path(__file__).parents[1] / "dashboard"
+
+KINDS = {
+    ".html": "text/html; charset=utf-8",
+    ".css": "text/css; charset=utf-8",
+    ".js": "text/javascript; charset=utf-8",
+    ".svg": "image/svg+xml",
+}
+
+
+@ROUTES.get("/")
+async def root() -> Response:
+    """The first page."""
+    return RedirectResponse("/dashboard/plan.html")
+
+
+@ROUTES.get("/dashboard/plotly.min.js")
+async def plotly(request: Request) -> Response:
+    """From the installed package: nothing is fetched from another host."""
+    content, tag = await run_in_threadpool(_plotly)
+    headers = {"etag": tag, "cache-control": "public, max-age=86400", "vary": "accept-encoding"}
+    if matches(request.headers.get("if-none-match"), tag):
+        return Response(status_code=304, headers=headers)
+    if "gzip" in request.headers.get("accept-encoding", ""):
+        return Response(
+            content, media_type=KINDS[".js"], headers={**headers, "content-encoding": "gzip"}
+        )
+    return Response(gzip.decompress(content), media_type=KINDS[".js"], headers=headers)
+
+
+@ROUTES.get("/dashboard/{name}")
+async def file(request: Request, name: str) -> Response:
+    """One of the dashboard's files."""
+    found = files().get(name)
+    if found is None:
+        raise NotFound("page", name)
+    body = await run_in_threadpool(found.read_bytes)
+    tag = f'"{hashlib.blake2b(body, digest_size=12).hexdigest()}"'
+    headers = {"etag": tag, "cache-control": "no-cache"}
+    if matches(request.headers.get("if-none-match"), tag):
+        return Response(status_code=304, headers=headers)
+    return Response(body, media_type=KINDS[found.suffix], headers=headers)
+
+
+@ROUTES.get("/favicon.ico")
+async def favicon() -> Response:
+    """Browsers ask for it."""
+    return RedirectResponse("/dashboard/icon.svg")
+
+
+@cache
+def files() -> dict[str, Path]:
+    """By name."""
+    return {path.name: path for path in FOLDER.iterdir() if path.suffix in KINDS}
+
+
+@cache
+def _plotly() -> tuple[bytes, str]:
+    """Packed once."""
+    from plotly.offline import get_plotlyjs  # noqa: PLC0415 (plotly takes a second)
+
+    text = get_plotlyjs().encode()
+    tag = f'"{hashlib.blake2b(text, digest_size=12).hexdigest()}"'
+    return gzip.compress(text, 6, mtime=0), tag

@@ -1,0 +1,195 @@
+"""``/v1/programs``: upload, list, look at, delete."""
+
+import asyncio
+import zlib
+from pathlib import Path as FilePath
+from typing import Annotated
+
+from fastapi import APIRouter, Query, Request, Response
+from starlette.concurrency import run_in_threadpool
+
+from service.contents import check
+from service.depot import jobs, programs
+from service.depot.folder import Depot
+from service.depot.jobs import Kind, Order
+from service.depot.pages import Page
+from service.depot.programs import StoredProgram
+from service.errors import TooLarge, Unreadable
+from service.files import read_bytes
+from service.rest.bodies import AdviceBody, Id, Name, Units
+from service.rest.context import (
+    AtPlace,
+    ByOwner,
+    InDepot,
+    OnceKey,
+    once_of,
+    page_reply,
+    queued,
+    settings_of,
+)
+from service.rest.replies import file_reply, json_reply, tagged
+from service.rest.views import (
+    ContentsView,
+    JobView,
+    PageView,
+    ProgramView,
+    job_view,
+    program_view,
+)
+from service.wire import contents_json
+from stepnc_model.part21.reader import Part21File
+
+ROUTES = APIRouter(prefix="/v1/programs", tags=["programs"])
+
+EXAMPLES = FilePath(__file__).parents[2] / "examples" / "parts"
+"""samples, where the sources are; an installed wheel has none"""
+
+STEP = "application/step"
+
+
+@ROUTES.post(
+    "",
+    status_code=201,
+    response_model=ProgramView,
+    summary="Upload a program",
+    openapi_extra={
+        "requestBody": {
+            "required": False,
+            "description": "the bytes of a Part 21 file; may be packed with gzip",
+            "content": {
+                "application/octet-stream": {"schema": {"type": "string", "format": "binary"}}
+            },
+        }
+    },
+)
+async def upload(
+    request: Request,
+    depot: InDepot,
+    owner: ByOwner,
+    name: Annotated[str, Query(max_length=200, description="what it is called")] = "",
+    example: Annotated[
+        str, Query(max_length=64, description="a sample, instead of a body")
+    ] = "",
+    key: OnceKey = None,
+) -> Response:
+    """Keep the bytes as they are. They need to be a Part 21 file; its findings are another call."""
+    if example:
+        data = await run_in_threadpool(_sample, example)
+        name = name or f"{example}.stpnc"
+    else:
+        data = await _body(request)
+        if not data:
+            raise Unreadable("the body is empty: send the bytes of the file")
+    await run_in_threadpool(Part21File.from_bytes, data, name=programs.shown_name(name))
+    stored = await run_in_threadpool(
+        programs.add, depot, data, name=name, owner=owner, once=once_of(request, key, data)
+    )
+    headers = {"location": f"/v1/programs/{stored.id}"}
+    return json_reply(request, program_view(stored), status=201, headers=headers)
+
+
+@ROUTES.get("", response_model=PageView[ProgramView], summary="List programs, newest first")
+async def list_programs(request: Request, depot: InDepot, place: AtPlace) -> Response:
+    """A page of them."""
+    page: Page[StoredProgram] = programs.listed(depot, place)
+    return page_reply(request, page, [program_view(each) for each in page.items])
+
+
+@ROUTES.get("/{id}", response_model=ProgramView, summary="One program")
+async def program(request: Request, depot: InDepot, id: Id) -> Response:
+    """What is known of it."""
+    return json_reply(request, program_view(programs.get(depot, id)))
+
+
+@ROUTES.get(
+    "/{id}/file",
+    summary="The bytes of a program, as they came",
+    response_class=Response,
+    responses={200: {"content": {STEP: {}}}},
+)
+async def program_bytes(depot: InDepot, id: Id) -> Response:
+    """Byte for byte."""
+    stored = programs.get(depot, id)
+    return file_reply(depot.program_file(id), name=stored.name, kind=STEP, thing="program")
+
+
+@ROUTES.get("/{id}/findings", response_model=ContentsView, summary="What is wrong with it")
+async def findings(
+    request: Request, depot: InDepot, id: Id, units: Units = Units.iso
+) -> Response:
+    """Workingsteps and findings, as ``stepnc check`` tells them."""
+    stored = programs.get(depot, id)
+    tag = f'"{stored.sha256[:24]}-{units.value}"'
+    body = await run_in_threadpool(_contents, depot, stored, units.value)
+    return tagged(request, body, tag)
+
+
+@ROUTES.delete("/{id}", status_code=204, summary="Delete a program")
+async def delete(depot: InDepot, id: Id) -> Response:
+    """What was made of it stays."""
+    await run_in_threadpool(programs.remove, depot, id)
+    return Response(status_code=204)
+
+
+@ROUTES.post("/{id}/advice", status_code=202, response_model=JobView, summary="Ask for feeds")
+async def ask_advice(
+    request: Request, id: Id, body: AdviceBody, owner: ByOwner, key: OnceKey = None
+) -> Response:
+    """A job; its result is at ``/v1/advice/{job}``."""
+    order = Order(kind=Kind.ADVICE, request=body.words(), program=id, owner=owner)
+    return await queued(request, order, key)
+
+
+@ROUTES.get(
+    "/{id}/advice", response_model=PageView[JobView], summary="Advice that was asked for"
+)
+async def advice_of(request: Request, depot: InDepot, place: AtPlace, id: Id) -> Response:
+    """Newest first."""
+    programs.get(depot, id)
+    page = jobs.listed(depot, place, kind=Kind.ADVICE, program=id)
+    return page_reply(request, page, [job_view(job) for job in page.items])
+
+
+def samples() -> list[str]:
+    """Names of the samples."""
+    return sorted(path.stem for path in EXAMPLES.glob("*.stpnc"))
+
+
+def _sample(name: Name) -> bytes:
+    if name not in samples():
+        raise Unreadable(f"no sample '{name}'; known: {', '.join(samples()) or 'none'}")
+    return read_bytes(EXAMPLES / f"{name}.stpnc")
+
+
+def _contents(depot: Depot, stored: StoredProgram, units: str) -> bytes:
+    found = check(depot.program_file(stored.id), units=units, name=stored.name)
+    return contents_json(found).encode()
+
+
+async def _body(request: Request) -> bytes:
+    """The body, unpacked, within its bound."""
+    packing = request.headers.get("content-encoding", "identity").lower()
+    if packing not in {"identity", "gzip"}:
+        raise Unreadable(f"Content-Encoding '{packing}': gzip or none")
+    bound = settings_of(request).upload_bytes
+    unpack = zlib.decompressobj(wbits=31) if packing == "gzip" else None
+    parts: list[bytes] = []
+    size = 0
+    async for chunk in request.stream():
+        part = chunk if unpack is None else _unpacked(unpack, chunk, bound + 1 - size)
+        size += len(part)
+        if size > bound:
+            raise TooLarge("the program", bound=bound)
+        parts.append(part)
+        await asyncio.sleep(0)
+    if unpack is not None and not unpack.eof:
+        raise Unreadable("the gzip body is cut off")
+    return b"".join(parts)
+
+
+def _unpacked(unpack: "zlib._Decompress", chunk: bytes, most: int) -> bytes:
+    """What a chunk holds, but no more than a bound."""
+    try:
+        return unpack.decompress(chunk, most)
+    except zlib.error as error:
+        raise Unreadable(f"the body is no gzip: {error}") from error

@@ -1,0 +1,135 @@
+"""What all kinds of jobs offer: their result, the rows of their run, what happens in it."""
+
+from collections.abc import AsyncIterator
+from math import inf
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+from fastapi import Query, Request, Response
+from fastapi.responses import StreamingResponse
+from starlette.concurrency import run_in_threadpool
+
+from service.depot import jobs
+from service.depot.folder import Depot
+from service.depot.jobs import Job, Kind, State
+from service.errors import Conflict, NotFound, Unreadable
+from service.jobs.task import RESULT
+from service.live.folder import LiveFolder
+from service.live.series import TIME, Series, Window, open_series, window
+from service.rest.context import depot_of, hub_of
+from service.rest.replies import json_reply, tag_of, tagged
+
+SERIES_POINTS = 1000
+
+Begin = Annotated[float | None, Query(description="first moment, s", allow_inf_nan=False)]
+End = Annotated[float | None, Query(description="last moment, s", allow_inf_nan=False)]
+Points = Annotated[int, Query(ge=1, le=5000, description="at most, in each signal")]
+Signals = Annotated[
+    str, Query(max_length=1000, description="names with commas between; empty: all")
+]
+
+
+async def result_reply(request: Request, id: str, kind: Kind) -> Response:
+    """The result of a job.
+
+    Raises
+    ------
+    NotFound, Conflict
+        When there is no such job, or it has no result (yet).
+    """
+    depot = depot_of(request)
+    job = jobs.get(depot, id, kind)
+    require_done(job)
+    body = await run_in_threadpool((depot.job_folder(id) / RESULT).read_bytes)
+    return tagged(request, body, tag_of(body))
+
+
+def require_done(job: Job) -> None:
+    """Refuse what needs the end of a job.
+
+    Raises
+    ------
+    Conflict
+        When it has not succeeded.
+    """
+    if job.state is not State.SUCCEEDED:
+        where = f"see /v1/jobs/{job.id}"
+        raise Conflict(f"{job.kind.value} '{job.id}' is {job.state.value}: {where}")
+
+
+async def series_reply(
+    request: Request,
+    job: Job,
+    *,
+    signals: str,
+    begin: float | None,
+    end: float | None,
+    points: int,
+) -> Response:
+    """Signals of a range of time, as many points as a screen shows."""
+    first = -inf if begin is None else begin
+    last = inf if end is None else end
+    if first > last:
+        raise Unreadable(f"begin_s {first:g} s is after end_s {last:g} s")
+    series = await run_in_threadpool(open_series, _live(request, job).series)
+    if series is None:
+        raise Conflict(f"{job.kind.value} '{job.id}' is {job.state.value}: it has no rows yet")
+    names = [name for name in signals.split(",") if name] or list(series.columns[1:])
+    found = await run_in_threadpool(window, series, names, begin=first, end=last, points=points)
+    return json_reply(request, _window(found, series, job))
+
+
+def _window(found: Window, series: Series, job: Job) -> dict[str, Any]:
+    return {
+        "begin_s": found.time,
+        "end_s": found.end,
+        "signals": {
+            name: {
+                "low": np.ascontiguousarray(found.low[:, place]),
+                "mean": np.ascontiguousarray(found.mean[:, place]),
+                "high": np.ascontiguousarray(found.high[:, place]),
+            }
+            for place, name in enumerate(found.names)
+        },
+        "rows": found.rows,
+        "is_reduced": found.is_reduced,
+        "is_growing": not job.state.is_over,
+        "columns": [name for name in series.columns if name != TIME],
+    }
+
+
+def _live(request: Request, job: Job) -> LiveFolder:
+    return LiveFolder(path=depot_of(request).job_folder(job.id))
+
+
+def status_reply(request: Request, job: Job) -> Response:
+    """How a run is now; null: nothing was said yet."""
+    return json_reply(request, _live(request, job).read_status())
+
+
+async def stream_reply(request: Request, job: Job) -> Response:
+    """What happens, as it happens."""
+    hub = hub_of(request)
+
+    async def messages() -> AsyncIterator[bytes]:
+        yield b"retry: 2000\n\n"
+        async for message in hub.watch(job.id):
+            yield message
+
+    headers = {"cache-control": "no-store", "x-accel-buffering": "no"}
+    return StreamingResponse(messages(), media_type="text/event-stream", headers=headers)
+
+
+def file_of(depot: Depot, job: Job, name: str, *, thing: str) -> Path:
+    """A file that a job has left.
+
+    Raises
+    ------
+    NotFound
+        When it has left none.
+    """
+    file = depot.job_folder(job.id) / name
+    if not file.is_file():
+        raise NotFound(thing, job.id)
+    return file

@@ -1,0 +1,147 @@
+"""Start the service: web processes, and beside them the one that runs jobs."""
+
+import multiprocessing
+import os
+import shutil
+import threading
+from dataclasses import dataclass
+from multiprocessing.context import SpawnProcess
+from pathlib import Path
+
+import structlog
+import uvicorn
+
+from service.depot import keys
+from service.depot.folder import open_depot
+from service.errors import Forbidden, StepNcError
+from service.jobs import runner
+from service.rest import logs
+from service.rest.metrics import SHARED
+from service.rest.settings import Settings
+
+LOG = structlog.get_logger("serve")
+
+AGAIN = 1.0
+"""s before a runner that has ended is started again"""
+
+KEEP_ALIVE = 20
+"""s for which an idle connection is kept"""
+
+FAREWELL = 5
+"""s for open requests when the service stops"""
+
+MOST_CONNECTIONS = 2000
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Start:
+    """How the service is started."""
+
+    settings: Settings
+    workers: int
+    """web processes"""
+    jobs: int
+    """jobs at once"""
+    level: str
+    certificate: Path | None = None
+    key: Path | None = None
+
+
+def serve(start: Start) -> None:
+    """Serve until told to stop.
+
+    Raises
+    ------
+    StepNcError
+        When it cannot be started.
+    """
+    settings = start.settings
+    depot = open_depot(settings.root, knowledge=settings.knowledge)
+    if settings.needs_keys and not any(each.revoked is None for each in keys.listed(depot)):
+        command = f"stepnc keys create --role planner --data {settings.data}"
+        raise Forbidden(f"host {settings.host}: keys are needed, and there is none: {command}")
+    for file in (start.certificate, start.key):
+        if file is not None and not file.is_file():
+            raise StepNcError(f"{file}: no such file")
+    with runner.locked(depot.root):
+        """another server's folder is refused at once"""
+    settings.hand_on()
+    logs.configure(start.level)
+    if start.workers > 1:
+        _share_metrics(depot.root)
+    keeper = RunnerKeeper(start, knowledge=depot.knowledge)
+    keeper.start()
+    LOG.info("serving", host=settings.host, port=settings.port, data=str(depot.root))
+    try:
+        uvicorn.run(
+            "service.rest.app:from_environment",
+            factory=True,
+            host=settings.host,
+            port=settings.port,
+            workers=start.workers,
+            log_config=None,
+            access_log=False,
+            server_header=False,
+            proxy_headers=False,
+            timeout_keep_alive=KEEP_ALIVE,
+            timeout_graceful_shutdown=FAREWELL,
+            limit_concurrency=MOST_CONNECTIONS,
+            ssl_certfile=None if start.certificate is None else str(start.certificate),
+            ssl_keyfile=None if start.key is None else str(start.key),
+        )
+    finally:
+        keeper.stop()
+
+
+class RunnerKeeper:
+    """Keeps a runner alive. Running state."""
+
+    def __init__(self, start: Start, *, knowledge: str) -> None:
+        self._arguments = (start.settings.data, knowledge, start.jobs, os.getpid(), start.level)
+        self._is_stopping = threading.Event()
+        self._process: SpawnProcess | None = None
+        self._thread = threading.Thread(target=self._keep, daemon=True)
+
+    def start(self) -> None:
+        """Start the first."""
+        self._process = self._started()
+        self._thread.start()
+
+    def stop(self) -> None:
+        """End it; jobs that run are taken up by the next."""
+        self._is_stopping.set()
+        self._thread.join()
+        if self._process is not None:
+            self._process.terminate()
+            self._process.join(FAREWELL)
+            self._process.kill()
+            self._process.join()
+
+    def _started(self) -> SpawnProcess:
+        context = multiprocessing.get_context("spawn")
+        process = context.Process(target=run_jobs, args=self._arguments, daemon=False)
+        process.start()
+        return process
+
+    def _keep(self) -> None:
+        while not self._is_stopping.wait(AGAIN):
+            if self._process is not None and not self._process.is_alive():
+                LOG.error("the runner of jobs has ended", exit_code=self._process.exitcode)
+                self._process = self._started()
+
+
+def run_jobs(data: str, knowledge: str, workers: int, parent: int, level: str) -> None:
+    """What the process does that runs jobs."""
+    logs.configure(level)
+    try:
+        runner.main(data, knowledge, workers, parent)
+    except StepNcError as error:
+        LOG.error("jobs cannot be run", reason=str(error))
+
+
+def _share_metrics(root: Path) -> None:
+    """Processes count into files of one folder, begun anew at each start."""
+    folder = root / "metrics"
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(mode=0o700)
+    os.environ[SHARED] = str(folder)

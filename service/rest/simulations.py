@@ -1,0 +1,97 @@
+"""``/v1/simulations``: programs on the virtual machine."""
+
+from fastapi import APIRouter, Request, Response
+
+from service.depot import jobs
+from service.depot.folder import Depot
+from service.depot.jobs import Kind, Order
+from service.errors import Unreadable
+from service.jobs.task import REPORT, SAMPLES
+from service.rest.bodies import Id, RunBody, SimulationBody
+from service.rest.context import AtPlace, ByOwner, InDepot, OnceKey, page_reply, queued
+from service.rest.replies import file_reply, report_reply
+from service.rest.results import (
+    SERIES_POINTS,
+    Begin,
+    End,
+    Points,
+    Signals,
+    file_of,
+    result_reply,
+    series_reply,
+)
+from service.rest.views import JobView, PageView, SeriesView, SimulationView, job_view
+
+ROUTES = APIRouter(prefix="/v1/simulations", tags=["simulations"])
+
+PARQUET = "application/vnd.apache.parquet"
+
+
+@ROUTES.post("", status_code=202, response_model=JobView, summary="Simulate a program")
+async def ask(
+    request: Request, depot: InDepot, body: SimulationBody, owner: ByOwner, key: OnceKey = None
+) -> Response:
+    """A job; watch it by its events, then read its result."""
+    return await queued(request, run_order(depot, Kind.SIMULATION, body, owner), key)
+
+
+def run_order(depot: Depot, kind: Kind, body: RunBody, owner: str) -> Order:
+    """A job for a run of a program, or of what an advice made of it.
+
+    Raises
+    ------
+    Unreadable, NotFound
+        When neither or both are named, or there is none.
+    """
+    if (body.program_id is None) == (body.advice_id is None):
+        raise Unreadable("name a program_id or an advice_id")
+    program, source = body.program_id or "", body.advice_id or ""
+    if source:
+        program = jobs.get(depot, source, Kind.ADVICE).program
+    return Order(kind=kind, request=body.words(), program=program, source=source, owner=owner)
+
+
+@ROUTES.get("", response_model=PageView[JobView], summary="List simulations, newest first")
+async def list_simulations(request: Request, depot: InDepot, place: AtPlace) -> Response:
+    """A page of their jobs."""
+    page = jobs.listed(depot, place, kind=Kind.SIMULATION)
+    return page_reply(request, page, [job_view(job) for job in page.items])
+
+
+@ROUTES.get("/{id}", response_model=SimulationView, summary="The result of a simulation")
+async def simulation(request: Request, id: Id) -> Response:
+    """Time, energy, peaks and removal, of the run and of each workingstep."""
+    return await result_reply(request, id, Kind.SIMULATION)
+
+
+@ROUTES.get("/{id}/series", response_model=SeriesView, summary="Signals against time")
+async def series(  # noqa: PLR0913 (each is a parameter of the request)
+    request: Request,
+    depot: InDepot,
+    id: Id,
+    signals: Signals = "",
+    begin_s: Begin = None,
+    end_s: End = None,
+    points: Points = SERIES_POINTS,
+) -> Response:
+    """A range of time, brought down to as many points as are wanted; also while it runs."""
+    job = jobs.get(depot, id, Kind.SIMULATION)
+    return await series_reply(
+        request, job, signals=signals, begin=begin_s, end=end_s, points=points
+    )
+
+
+@ROUTES.get("/{id}/samples", summary="All samples as a Parquet file", response_class=Response,
+            responses={200: {"content": {PARQUET: {}}}})  # fmt: skip
+async def samples(depot: InDepot, id: Id) -> Response:
+    """As ``stepnc simulate -o run.parquet`` writes them."""
+    file = file_of(depot, jobs.get(depot, id, Kind.SIMULATION), SAMPLES, thing="samples")
+    return file_reply(file, name=f"simulation-{id}.parquet", kind=PARQUET, thing="samples")
+
+
+@ROUTES.get("/{id}/report", summary="The report as a page", response_class=Response,
+            responses={200: {"content": {"text/html": {}}}})  # fmt: skip
+async def report(depot: InDepot, id: Id) -> Response:
+    """A page that stands for itself."""
+    jobs.get(depot, id, Kind.SIMULATION)
+    return report_reply(depot.job_folder(id) / REPORT, id=id)

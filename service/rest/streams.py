@@ -1,0 +1,215 @@
+"""Server-sent events of runs: one reader of a run's files for all clients that watch it.
+
+A reader looks at the files of a run some times a second as long as somebody watches, makes one
+message of what is new, and hands the same bytes to everybody. A client that cannot follow
+loses messages, is told so by an event ``gap``, and reads the series again. Running state.
+"""
+
+import asyncio
+from collections.abc import AsyncIterator
+from contextlib import suppress
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import orjson
+
+from service.depot import jobs
+from service.depot.folder import Depot
+from service.depot.jobs import Job
+from service.errors import NotFound, ServiceError, TooMany
+from service.live.folder import LiveFolder
+from service.live.journal import read_on
+from service.live.series import open_series
+from service.rest.metrics import STREAMS
+from service.rest.views import job_view
+
+TICK = 0.1
+"""s between two looks at a run"""
+
+ROWS = 40
+"""of the series in one message; more are thinned out: whoever needs them asks for a window"""
+
+WAITING = 50
+"""messages that wait for a client before it has lost some"""
+
+MOST_CLIENTS = 1000
+
+QUIET = 10.0
+"""s after which something is said, so that a broken line is noticed"""
+
+OVER = b""
+"""the last message"""
+
+
+def event(name: str, content: Any) -> bytes:
+    """One server-sent event."""
+    data = orjson.dumps(content, option=orjson.OPT_SERIALIZE_NUMPY)
+    return b"event: " + name.encode() + b"\ndata: " + data + b"\n\n"
+
+
+@dataclass(eq=False)
+class Client:
+    """Somebody who watches. Running state."""
+
+    queue: asyncio.Queue[bytes] = field(default_factory=lambda: asyncio.Queue(WAITING))
+    has_lost: bool = False
+
+    def give(self, message: bytes) -> None:
+        """A message, if the client can follow."""
+        if self.has_lost and self.queue.qsize() < WAITING // 2:
+            self.has_lost = False
+            self.queue.put_nowait(event("gap", {}))
+        if self.has_lost:
+            return
+        try:
+            self.queue.put_nowait(message)
+        except asyncio.QueueFull:
+            self.has_lost = True
+
+    def end(self) -> None:
+        """Nothing more comes."""
+        while self.queue.full():
+            self.queue.get_nowait()
+        self.queue.put_nowait(OVER)
+
+
+class Reader:
+    """Reads one run for all its clients. Running state."""
+
+    def __init__(self, depot: Depot, id: str) -> None:
+        self.clients: set[Client] = set()
+        self._depot, self._id = depot, id
+        self._folder = LiveFolder(path=depot.job_folder(id))
+        self._row = 0
+        self._offset = 0
+        self._job: bytes = b""
+        self._status: bytes = b""
+
+    async def run(self) -> None:
+        """Until the job is over, or nobody watches any more."""
+        with suppress(NotFound):
+            self._skip()
+            while self.clients:
+                job = jobs.get(self._depot, self._id)
+                # After the job was looked at: what it wrote before its end is seen.
+                for message in self._news(job):
+                    for client in self.clients:
+                        client.give(message)
+                if job.state.is_over:
+                    break
+                await asyncio.sleep(TICK)
+        for client in self.clients:
+            client.end()
+
+    def _skip(self) -> None:
+        """What was before is in the series and in the list of events."""
+        series = open_series(self._folder.series)
+        self._row = 0 if series is None else len(series)
+        while (read := read_on(self._folder.events, self._offset)).lines:
+            self._offset = read.offset
+
+    def first(self) -> list[bytes]:
+        """What a client needs that comes later: how the run is."""
+        return [message for message in (self._job, self._status) if message]
+
+    def _news(self, job: Job) -> list[bytes]:
+        """Messages about what has changed."""
+        news = []
+        status = self._folder.read_status()
+        said = b"" if status is None else event("status", status)
+        if said != self._status:
+            self._status = said
+            news.append(said)
+        rows = self._rows()
+        if rows is not None:
+            news.append(rows)
+        read = read_on(self._folder.events, self._offset)
+        self._offset = read.offset
+        news += [event("event", line) for line in read.lines]
+        told = event("job", job_view(job))
+        if told != self._job:
+            self._job = told
+            news.append(told)
+        return news
+
+    def _rows(self) -> bytes | None:
+        series = open_series(self._folder.series)
+        if series is None or len(series) <= self._row:
+            return None
+        count = len(series) - self._row
+        at = np.unique(np.linspace(self._row, len(series) - 1, min(count, ROWS)).astype(int))
+        values = np.asarray(series.values[at])
+        self._row = len(series)
+        columns = {name: values[:, place] for place, name in enumerate(series.columns)}
+        return event("rows", {"columns": columns, "is_reduced": count > ROWS})
+
+
+class Hub:
+    """Readers by run. Running state."""
+
+    def __init__(self, depot: Depot) -> None:
+        self._depot = depot
+        self._readers: dict[str, Reader] = {}
+        self._tasks: set[asyncio.Task[None]] = set()
+        self._clients = 0
+
+    async def watch(self, id: str) -> AsyncIterator[bytes]:
+        """Messages for one more client.
+
+        Raises
+        ------
+        TooMany
+            When as many as can be watch already.
+        """
+        if self._clients >= MOST_CLIENTS:
+            raise TooMany(10.0)
+        client = Client()
+        reader = self._joined(id, client)
+        self._clients += 1
+        STREAMS.inc()
+        try:
+            for message in reader.first():
+                yield message
+            while True:
+                try:
+                    async with asyncio.timeout(QUIET):
+                        message = await client.queue.get()
+                except TimeoutError:
+                    yield b": still here\n\n"
+                    continue
+                if message == OVER:
+                    return
+                yield message
+        finally:
+            self._clients -= 1
+            STREAMS.dec()
+            reader.clients.discard(client)
+
+    def _joined(self, id: str, client: Client) -> Reader:
+        reader = self._readers.get(id)
+        if reader is not None:
+            reader.clients.add(client)
+            return reader
+        reader = self._readers[id] = Reader(self._depot, id)
+        reader.clients.add(client)
+        task = asyncio.create_task(reader.run())
+        self._tasks.add(task)
+
+        def done(_: object) -> None:
+            self._tasks.discard(task)
+            if self._readers.get(id) is reader:
+                del self._readers[id]
+
+        task.add_done_callback(done)
+        return reader
+
+    async def close(self) -> None:
+        """End all streams: the service stops."""
+        for reader in self._readers.values():
+            for client in reader.clients:
+                client.end()
+        for task in list(self._tasks):
+            task.cancel()
+            with suppress(asyncio.CancelledError, ServiceError):
+                await task

@@ -1,0 +1,80 @@
+"""What is gathered while a program runs on the virtual machine: totals, samples, a trace."""
+
+from collections.abc import Callable, Sequence
+from typing import Protocol
+
+from service.simulation.timeline_file import TimelineFile
+from service.simulation.trace import TraceKeeper
+from simulator.errors import ProgramFault, SimulationError
+from simulator.machine.disturbance import Disturbance, Disturbed
+from simulator.machine.episode import Episode
+from simulator.machine.samples import Execution, Samples
+from simulator.machine.sensing import Sampler
+from simulator.machine.totals import Total, added
+from simulator.machine.virtual import VirtualMachine
+
+MOST_SECONDS = 1e7
+"""of machining, a hundred days: a slip of the feed or of a dwell rather than a program"""
+
+
+class Watcher(Protocol):
+    """Who looks at the samples while the machine runs: a live view."""
+
+    def begin(self, workingsteps: Sequence[str]) -> None:
+        """Told once: ids of the workingsteps by their number, from 1; they grow on the way."""
+
+    def add(self, samples: Samples) -> None:
+        """More samples, later than those before."""
+
+
+class Gathering:
+    """What is gathered on the way. Running state."""
+
+    def __init__(
+        self,
+        virtual: VirtualMachine,
+        disturbance: Disturbance,
+        *,
+        rate: float,
+        watchers: Sequence[Watcher],
+    ) -> None:
+        self.totals = [Total()]
+        self.file: TimelineFile | None = None
+        self.trace: TraceKeeper | None = None
+        self._watchers = watchers
+        for watcher in watchers:
+            watcher.begin(virtual.workingsteps)
+        self._machine = virtual.machine
+        self._sampler = Sampler(virtual.machine, rate=rate)
+        self._disturbed = Disturbed(
+            disturbance=disturbance, rate=rate, efficiency=virtual.machine.spindle.efficiency
+        )
+
+    def add(self, episode: Episode, *, ticked: Callable[[], None]) -> None:
+        """One more episode."""
+        require_sense(episode)
+        at = episode.state.workingstep
+        self.totals += [Total() for _ in range(len(self.totals), at + 1)]
+        self.totals[at] = added(self.totals[at], episode, self._machine)
+        ticked()
+        takers = [
+            taker for taker in (self.file, self.trace, *self._watchers) if taker is not None
+        ]
+        if not takers:
+            return
+        for samples in self._sampler.samples(episode):
+            shown = self._disturbed.shown(samples)
+            for taker in takers:
+                taker.add(shown)
+            ticked()
+
+
+def require_sense(episode: Episode) -> None:
+    """Refuse a program without anything in it, and one without an end."""
+    if episode.state.execution is Execution.PROGRAM_COMPLETED and episode.end == 0.0:
+        raise SimulationError("there is nothing in it that takes time")
+    if episode.end > MOST_SECONDS:
+        course = episode.course
+        line = episode.state.line if course is None else int(course.segments.block[-1])
+        text = f"{episode.end:.3g} s of machining: {MOST_SECONDS:g} s at most"
+        raise ProgramFault(text, line)

@@ -1,0 +1,74 @@
+"""A simulated run while it runs: its samples as rows that others read. In the user's units."""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from service.live.folder import LiveFolder
+from service.live.series import SeriesWriter
+from simulator.machine.samples import Samples
+from simulator.motion.segments import Floats
+from stepnc_model.units import mm_min_from_speed, rpm_from_rev_s
+
+MM_MIN, RPM = mm_min_from_speed(1.0), rpm_from_rev_s(1.0)
+"""the user's units in one of ours"""
+
+CM3_MIN = 0.001 * mm_min_from_speed(1.0)
+"""cm³/min in one mm³/s"""
+
+COLUMNS: Mapping[str, Callable[[Samples], Floats]] = {
+    "time_s": lambda samples: samples.time,
+    "x_mm": lambda samples: samples.position[:, 0],
+    "y_mm": lambda samples: samples.position[:, 1],
+    "z_mm": lambda samples: samples.position[:, 2],
+    "feed_programmed_mm_min": lambda samples: MM_MIN * samples.feed_programmed,
+    "feed_actual_mm_min": lambda samples: MM_MIN * samples.path_speed,
+    "spindle_speed_rpm": lambda samples: RPM * samples.spindle_speed,
+    "x_power_w": lambda samples: samples.axis_power[:, 0],
+    "y_power_w": lambda samples: samples.axis_power[:, 1],
+    "z_power_w": lambda samples: samples.axis_power[:, 2],
+    "spindle_power_w": lambda samples: samples.spindle_power,
+    "coolant_power_w": lambda samples: samples.coolant_power,
+    "base_power_w": lambda samples: samples.base_power,
+    "total_power_w": lambda samples: samples.total_power,
+    "cutting_force_n": lambda samples: samples.cutting_force,
+    "removal_rate_cm3_min": lambda samples: CM3_MIN * samples.removal_rate,
+    "axial_depth_mm": lambda samples: samples.axial_depth,
+    "radial_width_mm": lambda samples: samples.radial_width,
+    "execution": lambda samples: samples.execution.astype(np.float64),
+    "path_mode": lambda samples: samples.path_mode.astype(np.float64),
+    "overload": lambda samples: samples.overload.astype(np.float64),
+    "tool": lambda samples: samples.tool.astype(np.float64),
+    "workingstep": lambda samples: samples.workingstep.astype(np.float64),
+}
+"""what a row holds; words of the last are those of :mod:`simulator.machine.samples`"""
+
+
+class LiveSamples:
+    """Looks at the samples of a run. Running state; use the writer with ``with``."""
+
+    def __init__(self, folder: LiveFolder, paced: Callable[[float], None]) -> None:
+        self.writer = SeriesWriter(folder.series, list(COLUMNS))
+        self._folder, self._paced = folder, paced
+        self._workingsteps: Sequence[str] = ()
+
+    def begin(self, workingsteps: Sequence[str]) -> None:
+        """See :class:`service.simulation.gathering.Watcher`."""
+        self._workingsteps = workingsteps
+
+    def add(self, samples: Samples) -> None:
+        """See :class:`service.simulation.gathering.Watcher`."""
+        if not len(samples):
+            return
+        self.writer.add(np.column_stack([of(samples) for of in COLUMNS.values()]))
+        self._folder.write_status(self._status(samples))
+        self._paced(float(samples.time[-1]))
+
+    def _status(self, samples: Samples) -> dict[str, Any]:
+        number = int(samples.workingstep[-1])
+        return {
+            "time_s": float(samples.time[-1]),
+            "workingstep": self._workingsteps[number - 1] if number else None,
+            "workingsteps": list(self._workingsteps),
+        }

@@ -1,0 +1,1 @@
+"""The trial cut: the paper's monitoring and optimisation simulator, on the real loop."""

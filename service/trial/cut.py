@@ -1,0 +1,274 @@
+"""The cut of a trial: from a user's inputs to what machine and loop are given.
+
+A cutter enters a workpiece that has no end. While it enters, the arc of contact opens about the
+feed direction, as the edge of the work moves from the front of the cutter towards its axis;
+then the engagement is constant. The real way in is half a diameter; here it takes a number of
+revolutions, so that large cutters need no minutes. All forces are those of
+:mod:`simulator.physics`; the workpiece's k_c is the library's, without correction for a tool.
+
+Units mm, s, N, W, rad, rev/s.
+
+References
+----------
+.. [1] F. Ridwan, X. Xu, G. Liu, "A framework for machining optimisation based on STEP-NC",
+   J. Intell. Manuf., 2010, eqs. (1) to (6).
+"""
+
+from dataclasses import dataclass, replace
+from math import acos, pi
+
+import numpy as np
+
+from controller.aims import Step
+from controller.preview import Preview
+from controller.reference import ForceBound, Reference
+from optimiser.limit import LimitName
+from service.trial.inputs import Inputs, MillingType
+from simulator.library import find_grade, load_material
+from simulator.motion.segments import Floats
+from simulator.physics import kinematics
+from simulator.physics.engagement import (
+    Engagement,
+    bilateral,
+    conventional,
+    full_immersion,
+    mean_chip_ratio,
+    unidirectional,
+)
+from simulator.physics.milling import MillingCut, mean_force, mean_specific_force
+from simulator.physics.power import cutting_power, motor_power
+from simulator.plant.course import NominalCourse, Singles
+from simulator.plant.pattern import Teeth, peak_over_mean
+from simulator.spec import CuttingMaterial, Kienzle, ToolKind
+from stepnc_model.units import rad_from_deg, speed_from_m_min, watts_from_kw
+
+NAME = "trial cut"
+
+AIR = 10
+"""revolutions before the work, in which the dynamometer's zero is taken"""
+
+ENTRY = 30
+"""revolutions of the way in, and cells; more than the loop needs to settle"""
+
+ENDLESS = 1e9
+"""s of the program that the cut lasts: thirty years"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TrialCut:
+    """The engaged cut at the chip load, and what drives it."""
+
+    cut: MillingCut
+    kienzle: Kienzle
+    tool_diameter: float
+    radial_width: float
+    cutting_speed: float
+    spindle_speed: float
+    efficiency: float
+
+    @property
+    def feed(self) -> float:
+        """Feed at the chip load, mm/s."""
+        return self.feed_at(self.cut.feed_per_tooth)
+
+    def feed_at(self, feed_per_tooth: float) -> float:
+        """Feed of a feed per tooth, mm/s."""
+        return kinematics.feed(feed_per_tooth, self.spindle_speed, teeth=self.cut.teeth)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Prediction:
+    """What the closed form says of a feed; the governing equations of [1]_."""
+
+    force: float = 0.0
+    """F_mt, N"""
+    power: float = 0.0
+    """of the motor, W"""
+    removal_rate: float = 0.0
+    """mm³/s"""
+    chip_thickness: float = 0.0
+    """h_m, mm"""
+    specific_cutting_force: float | None = None
+    """N/mm²; None: there is no chip"""
+
+
+def trial_cut(inputs: Inputs) -> TrialCut:
+    """The cut that some inputs mean."""
+    engagement = engagement_of(inputs)
+    speed = speed_from_m_min(inputs.cutting_speed_m_min)
+    is_full = inputs.milling_type is MillingType.FULL
+    return TrialCut(
+        cut=MillingCut(
+            feed_per_tooth=inputs.feed_per_tooth_mm,
+            teeth=inputs.teeth,
+            axial_depth=inputs.axial_depth_mm,
+            engagement=engagement,
+            cutting_edge_angle=rad_from_deg(inputs.cutting_edge_angle_deg),
+        ),
+        kienzle=load_material(inputs.material).kienzle,
+        tool_diameter=inputs.tool_diameter_mm,
+        radial_width=inputs.tool_diameter_mm if is_full else inputs.radial_width_mm,
+        cutting_speed=speed,
+        spindle_speed=kinematics.spindle_speed(inputs.tool_diameter_mm, speed),
+        efficiency=inputs.efficiency,
+    )
+
+
+def engagement_of(inputs: Inputs) -> Engagement:
+    """Arc of contact of a milling type."""
+    width, diameter = inputs.radial_width_mm, inputs.tool_diameter_mm
+    match inputs.milling_type:
+        case MillingType.FULL:
+            return full_immersion()
+        case MillingType.UP:
+            return conventional(width, diameter)
+        case MillingType.DOWN:
+            return unidirectional(width, diameter)
+        case MillingType.SYMMETRIC:
+            return bilateral(width, diameter)
+
+
+def predicted(trial: TrialCut, feed_per_tooth: float) -> Prediction:
+    """What the closed form says of a feed per tooth, mm; at rest there is nothing."""
+    if not feed_per_tooth > 0.0:
+        return Prediction()
+    cut = replace(trial.cut, feed_per_tooth=feed_per_tooth)
+    force = mean_force(trial.kienzle, cut)
+    return Prediction(
+        force=force,
+        power=motor_power(cutting_power(force, trial.cutting_speed), trial.efficiency),
+        removal_rate=kinematics.milling_removal_rate(
+            trial.feed_at(feed_per_tooth),
+            axial_depth=cut.axial_depth,
+            radial_width=trial.radial_width,
+        ),
+        chip_thickness=cut.mean_chip_thickness,
+        specific_cutting_force=mean_specific_force(trial.kienzle, cut),
+    )
+
+
+def force_bound(trial: TrialCut, power: float) -> float:
+    """Cutting force, N, at which the motor gives a power, W: the two are in proportion."""
+    at = predicted(trial, trial.cut.feed_per_tooth)
+    return at.force * power / at.power
+
+
+def course_of(trial: TrialCut) -> NominalCourse:
+    """What the cut does at an override of 1, which is the chip load: air, way in, the cut."""
+    arcs = _arcs(trial.cut.engagement)
+    forces = [
+        0.0 if arc is None else mean_force(trial.kienzle, replace(trial.cut, engagement=arc))
+        for arc in arcs
+    ]
+    force = np.array(forces)
+    cuts = force > 0.0
+    until = (AIR + np.arange(len(arcs))) / trial.spindle_speed
+    until[-1] = ENDLESS
+    ends = [(0.0, 0.0) if arc is None else (arc.entry_angle, arc.exit_angle) for arc in arcs]
+    entry, exit_ = np.array(ends).T
+    widths = 0.5 * trial.tool_diameter * (np.cos(entry) - np.cos(exit_))
+    count = len(arcs)
+    return NominalCourse(
+        until=until,
+        can_override=np.ones(count, dtype=bool),
+        # Seen from the tool: the work has no end, and so no place.
+        position=np.zeros((count, 3), np.float32),
+        feed=_single(trial.feed, count),
+        programmed=_single(trial.feed, count),
+        force=_single(force, count),
+        exponent=_single(exponent_of(trial), count),
+        removal_rate=_single(trial.cut.axial_depth * widths * trial.feed, count),
+        axial_depth=_single(np.where(cuts, trial.cut.axial_depth, 0.0), count),
+        # The paper's motor power is that of the cut alone, eq. (6).
+        idle_power=_single(0.0, count),
+        spindle_speed=_single(trial.spindle_speed, count),
+        diameter=_single(np.where(cuts, trial.tool_diameter, 0.0), count),
+        entry_angle=_single(entry, count),
+        exit_angle=_single(exit_, count),
+        peak=_single(np.array([_peak(trial, arc) for arc in arcs]), count),
+        teeth=np.full(count, trial.cut.teeth),
+        tool=np.ones(count, dtype=np.int64),
+        workingstep=np.ones(count, dtype=np.int64),
+    )
+
+
+def preview_of(course: NominalCourse) -> Preview:
+    """What the loop is told of the cut."""
+    return Preview(until=course.until, force=course.force)
+
+
+def step_of(trial: TrialCut, inputs: Inputs) -> Step:
+    """What the loop is to keep: the motor's power as a force, the chip load as the ceiling."""
+    power = watts_from_kw(inputs.motor_power_kw)
+    bound = ForceBound(
+        name=LimitName.MOTOR_POWER,
+        words=LimitName.MOTOR_POWER.words,
+        force=force_bound(trial, power),
+    )
+    # What a cutter of which only size and teeth are known bears, nobody knows: no breakage
+    # force. The overload threshold is in proportion to the bound and stays.
+    reference = Reference(
+        workingstep=NAME,
+        bounds=(bound,),
+        floor=min(_rubbing(trial, inputs), 1.0),
+        ceiling=1.0,
+    )
+    return Step(
+        reference=reference,
+        exponent=exponent_of(trial),
+        tool="trial cutter",
+        diameter=trial.tool_diameter,
+    )
+
+
+def exponent_of(trial: TrialCut) -> float:
+    """P of force over feed, 1 − m_c."""
+    return 1.0 - trial.kienzle.m_c
+
+
+def _rubbing(trial: TrialCut, inputs: Inputs) -> float:
+    """Override at which the mean chip of a carbide insert is too thin to be cut.
+
+    A material that is of no ISO group has no grade of inserts and no such bound.
+    """
+    group = load_material(inputs.material).iso_group
+    if not group:
+        return 0.0
+    grade = find_grade(ToolKind.FACEMILL, CuttingMaterial.CARBIDE, group)
+    cut = trial.cut
+    ratio = mean_chip_ratio(cut.engagement, cutting_edge_angle=cut.cutting_edge_angle)
+    return grade.min_chip_thickness / (ratio * cut.feed_per_tooth)
+
+
+def _arcs(engagement: Engagement) -> list[Engagement | None]:
+    """Arc of each cell; None: air.
+
+    The edge of the work, x in front of the axis of a cutter of radius R, leaves the arc
+    ``π/2 ± acos(x/R)`` to it; x falls evenly from R to 0.
+    """
+    arcs: list[Engagement | None] = [None]
+    for cell in range(ENTRY):
+        half = acos(1.0 - (cell + 0.5) / ENTRY)
+        entry = max(engagement.entry_angle, pi / 2.0 - half)
+        exit_ = min(engagement.exit_angle, pi / 2.0 + half)
+        # On one side of the cutter the work is met late.
+        is_met = exit_ > entry
+        arcs.append(Engagement(entry_angle=entry, exit_angle=exit_) if is_met else None)
+    return [*arcs, engagement]
+
+
+def _peak(trial: TrialCut, arc: Engagement | None) -> float:
+    """Greatest force of a revolution over its mean."""
+    if arc is None:
+        return 1.0
+    teeth = Teeth(
+        count=trial.cut.teeth,
+        entry_angle=arc.entry_angle,
+        exit_angle=arc.exit_angle,
+        exponent=exponent_of(trial),
+    )
+    return peak_over_mean(teeth)
+
+
+def _single(values: Floats | float, count: int) -> Singles:
+    return np.broadcast_to(np.asarray(values, dtype=np.float32), (count,)).copy()

@@ -1,0 +1,199 @@
+"""One cutter in its work: the virtual machine and the loop of a trial, plugged together.
+
+Running state. The machine's clock begins anew with each set-up and its motor power is that at
+the tool; here both are brought to the run's time and to the drive of the inputs, so that times
+go on over all changes and an efficiency can change while the cut goes on. Units s, N, W.
+"""
+
+from collections.abc import Callable
+from dataclasses import replace
+from math import inf
+
+from controller.aims import Aims
+from controller.cycle import Cycle
+from controller.guard import Band
+from controller.laws.choice import LawName, law_named
+from controller.loop import STANDING, Loop
+from controller.orders import Criterion, CriterionTo, EventKind, MotorPowerTo, SwitchTo
+from controller.source import Dynamometer
+from optimiser.limit import LimitName
+from service.control.holding import NO_CHIPS, Ends, Holdings, reason
+from service.control.trace import ControlTrace, Moment
+from service.trial.cut import NAME, course_of, preview_of, step_of, trial_cut
+from service.trial.inputs import Inputs
+from simulator.plant.controlled import Bench, ControlledMachine, Truth
+from simulator.plant.dynamometer import DYNAMOMETER
+from simulator.plant.hidden import Change, Changed, Hidden
+from simulator.reading import Reading
+
+BAND = Band(floor=0.05)
+"""of the override: 100 % is the greatest chip load, far above what a weak motor allows"""
+
+INSTRUMENT = replace(DYNAMOMETER, drift=0.0)
+"""without drift: the cut has no end after which its zero could be taken again"""
+
+
+class Drive:
+    """The machine as the loop meets it, in the run's time. Running state.
+
+    Parameters
+    ----------
+    machine : ControlledMachine
+        Whose drive loses nothing.
+    begin : float
+        S of the run at which the machine's time begins.
+    efficiency : float
+        Of the drive.
+    """
+
+    def __init__(self, machine: ControlledMachine, *, begin: float, efficiency: float) -> None:
+        self.efficiency = efficiency
+        self._machine, self._begin = machine, begin
+
+    @property
+    def time(self) -> float:
+        """S of the run."""
+        return self._begin + self._machine.time
+
+    @property
+    def truth(self) -> Truth:
+        """What really was in the last period."""
+        truth = self._machine.truth
+        return replace(truth, power=truth.power / self.efficiency)
+
+    def read(self) -> Reading | None:
+        """See :class:`controller.ports.Sensor`."""
+        raw = self._machine.read()
+        if raw is None:
+            return None
+        return replace(raw, time=self._begin + raw.time, power=raw.power / self.efficiency)
+
+    def set(self, override: float, /) -> None:
+        """See :class:`controller.ports.Override`."""
+        self._machine.set(override)
+
+
+class SetUp:
+    """A cutter that enters its work and stays there. Running state.
+
+    Parameters
+    ----------
+    inputs : Inputs
+        As the plan knows them.
+    begin : float
+        S of the run.
+    seed : int
+    law : LawName
+    sink : callable
+        Is given the rows.
+    """
+
+    def __init__(
+        self,
+        inputs: Inputs,
+        *,
+        begin: float,
+        seed: int,
+        law: LawName,
+        sink: Callable[[Moment], None],
+    ) -> None:
+        trial = trial_cut(inputs)
+        course = course_of(trial)
+        self._planned = self._inputs = inputs
+        self._step = step_of(trial, inputs)
+        self._machine = ControlledMachine(
+            course, Hidden(), Bench(dynamometer=INSTRUMENT, seed=seed)
+        )
+        self._drive = Drive(self._machine, begin=begin, efficiency=inputs.efficiency)
+        aims = Aims(criterion=inputs.mode, is_on=inputs.is_on, band=BAND, look_ahead=0)
+        self.loop = Loop(
+            self._drive,
+            self._drive,
+            source=Dynamometer(aims.chips),
+            law=lambda plant: law_named(law, plant, has_preview=False),
+            steps=[self._step],
+            preview=preview_of(course),
+            aims=aims,
+        )
+        self._holdings = Holdings([])
+        self.trace = ControlTrace(course, self._holdings, workingsteps=(NAME,), sink=sink)
+        self._override = 1.0
+
+    @property
+    def time(self) -> float:
+        """S of the run."""
+        return self._drive.time
+
+    @property
+    def holdings(self) -> Holdings:
+        """What holds the feed, and how far the force is from what it may be."""
+        return self._holdings
+
+    @property
+    def is_done(self) -> bool:
+        """Whether the loop has stopped the program and the axes stand."""
+        return self.loop.is_stopped and self._override < STANDING
+
+    def cycle(self) -> Cycle:
+        """One cycle of the loop."""
+        cycle = self.loop.cycle()
+        if cycle is None:
+            raise RuntimeError("a trial cut has no end")
+        # The run tells what was ordered itself, with both values.
+        events = tuple(each for each in cycle.events if each.kind is not EventKind.ORDER)
+        if len(events) < len(cycle.events):
+            cycle = replace(cycle, events=events)
+        self._override = cycle.reading.override
+        self._hold(cycle)
+        self.trace(cycle, self._drive.truth)
+        return cycle
+
+    def change(self, inputs: Inputs) -> None:
+        """What differs without another set-up, from the next cycle on.
+
+        Depth and workpiece change behind the loop's back: it is told nothing, and still
+        compares the force with that of the inputs with which it began.
+        """
+        before, self._inputs = self._inputs, inputs
+        machine, planned = self._machine, self._planned
+        if inputs.axial_depth_mm != before.axial_depth_mm:
+            depth = inputs.axial_depth_mm / planned.axial_depth_mm
+            machine.change(Change(time=machine.time, what=Changed.DEPTH, value=depth))
+        if inputs.material != before.material:
+            # Its exponent is another as well, which no factor on k_c would tell.
+            real = replace(planned, material=inputs.material)
+            machine.course = course_of(trial_cut(real))
+        self._order(before, inputs)
+
+    def _order(self, before: Inputs, inputs: Inputs) -> None:
+        """What the operator may switch."""
+        if inputs.mode is not before.mode:
+            self.loop.order(CriterionTo(criterion=inputs.mode))
+        if inputs.is_on is not before.is_on:
+            self.loop.order(SwitchTo(is_on=inputs.is_on))
+        if _power(inputs) != _power(before):
+            self.loop.order(MotorPowerTo(factor=_power(inputs) / _power(self._planned)))
+        self._drive.efficiency = inputs.efficiency
+
+    def _hold(self, cycle: Cycle) -> None:
+        """What holds the override, in words."""
+        aims, holdings = self.loop.aims, self._holdings
+        holdings.add(cycle, aims)
+        if cycle.revolution is not None and holdings.words != NO_CHIPS:
+            holdings.words = reason(cycle, self._ends, aims)
+
+    @property
+    def _ends(self) -> Ends:
+        """Between which overrides the cut may run; in mode QC the mode is the ceiling."""
+        reference = self._step.reference
+        is_quality = self.loop.aims.criterion is Criterion.QC
+        return Ends(
+            reference=reference,
+            ceiling=(inf, "") if is_quality else (reference.ceiling, "chip load"),
+            floor=(reference.floor, LimitName.CHIP_THICKNESS.words),
+        )
+
+
+def _power(inputs: Inputs) -> float:
+    """What the motor gives at the tool, kW."""
+    return inputs.motor_power_kw * inputs.efficiency
