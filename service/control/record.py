@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from datetime import UTC, datetime
 from uuid import uuid4
 
+from controller.orders import EventKind
 from kbe.place import parsed_place, require_openable
 from service.control.outcomes import Recording, outcomes_of
 from service.control.run import ControlRequest, ControlRun, Watcher, control
@@ -34,18 +35,45 @@ def control_recorded(
         make_folder(place)
         require_openable(parsed_place(place), is_new_allowed=True)
     run = control(request, tell=tell, watchers=watchers)
-    if place is None or run.is_stopped:
-        return run
+    if place is not None:
+        trace = "" if request.output is None else str(request.output.resolve())
+        keep(run, place, by=request.recorded_by or getpass.getuser(), trace=trace, tell=tell)
+    return run
+
+
+def keep(run: ControlRun, place: str, *, by: str, trace: str, tell: Tell = silent) -> None:
+    """Keep what came out of a run, unless it was stopped.
+
+    Parameters
+    ----------
+    run : ControlRun
+    place : str
+        Of the knowledge base.
+    by : str
+        Who records.
+    trace : str
+        Where the samples are.
+    tell : callable
+
+    Raises
+    ------
+    StepNcError
+        When the knowledge base cannot take it.
+    """
+    if run.is_stopped:
+        return
+    orders = any(event.kind is EventKind.ORDER for event in run.events)
     recording = Recording(
         run=uuid4().hex,
         at=datetime.now(UTC),
         by=", ".join((
-            request.recorded_by or getpass.getuser(),
+            by,
             "virtual machine",
-            *request.disturbances,
+            *run.disturbances,
+            *(("changed while it ran",) if orders else ()),
         )),
-        trace="" if request.output is None else str(request.output.resolve()),
-        seed=request.seed,
+        trace=trace,
+        seed=run.seed,
     )
     outcomes = outcomes_of(run, recording)
     try:
@@ -54,4 +82,3 @@ def control_recorded(
         # A name of a file or of the user that is no text.
         raise StepNcError(f"the outcomes cannot be kept: {error}") from error
     tell(f"recorded: {len(outcomes)} outcomes, run {recording.run}")
-    return run

@@ -60,7 +60,7 @@ def _work(job: Job) -> Callable[[Task], None]:
         case Kind.CONTROL | Kind.TRIAL:
             from service.jobs import steer  # noqa: PLC0415
 
-            return steer.run
+            return steer.run_trial if job.kind is Kind.TRIAL else steer.run_control
         case Kind.EVALUATION | Kind.REVIEW:
             from service.jobs import evaluate  # noqa: PLC0415
 

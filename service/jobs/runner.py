@@ -12,6 +12,7 @@ import signal
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from multiprocessing import forkserver
 from multiprocessing.context import ForkServerProcess
 from pathlib import Path
 from types import FrameType
@@ -65,6 +66,7 @@ class Runner:
         """Work until the end; jobs that run then are queued again by the next runner."""
         context = multiprocessing.get_context("forkserver")
         context.set_forkserver_preload(["service.jobs.preloaded"])
+        forkserver.ensure_running()
         jobs.recover(self.depot)
         beaten = 0.0
         try:

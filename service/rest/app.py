@@ -19,6 +19,7 @@ from service.rest import (
     jobs,
     knowledge,
     library,
+    live,
     pages,
     programs,
     simulations,
@@ -72,7 +73,7 @@ def application(settings: Settings) -> FastAPI:
     app.state.advice = advice.Shelf()
     # The most frequent first: routes are tried in their order.
     for routes in (
-        advice.ROUTES, jobs.ROUTES, programs.ROUTES, simulations.ROUTES,
+        advice.ROUTES, jobs.ROUTES, live.CONTROL, live.TRIALS, programs.ROUTES, simulations.ROUTES,
         knowledge.EVALUATIONS, knowledge.REVIEWS, knowledge.CORRECTIONS, knowledge.OUTCOMES,
         library.MACHINES, library.MATERIALS, health.ROUTES, pages.ROUTES,
     ):  # fmt: skip

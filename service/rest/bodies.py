@@ -4,12 +4,18 @@ from datetime import datetime
 from enum import StrEnum
 from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, create_model
 
+from controller.laws.choice import LawName
+from controller.orders import Criterion
+from controller.preview import LOOK_AHEAD
 from kbe.evaluation import Grouping, RowFilter, SortKey
 from optimiser.modes import Free, Mode
+from service.control.live import MOST_PERCENT
 from service.depot.ids import PATTERN
 from service.knowledge.corrected import SAFETY
+from service.live.pace import MOST
+from service.trial.inputs import FIELDS, MillingType
 from simulator.machine.disturbance import NoiseKind
 from simulator.motion.control import Control as MotionControl
 from stepnc_model.post.controls import Control as NcControl
@@ -18,7 +24,16 @@ from stepnc_model.writeback import Profile
 
 Id = Annotated[str, Field(pattern=PATTERN, examples=["01jd3m8y7q2v4x6z8b0c1d2e3f"])]
 Name = Annotated[str, Field(max_length=200)]
+Percent = Annotated[float, Field(gt=0.0, le=MOST_PERCENT)]
+Pace = Annotated[float, Field(ge=0.01, le=MOST)]
 Units = StrEnum("Units", {name.replace("-", "_"): name for name in PROFILES})  # type: ignore[misc]
+
+
+class Sensor(StrEnum):
+    """What the loop measures."""
+
+    DYNAMOMETER = "dynamometer"
+    POWER = "power"
 
 
 class Body(BaseModel):
@@ -96,6 +111,87 @@ class SimulationBody(RunBody):
     has_lag: bool = Field(False, description="the main drive answers late and too far")
     has_wear: bool = Field(False, description="tools wear while they cut")
     kc_factor: float = Field(1.0, gt=0.0, le=100.0, description="on the specific cutting force")
+
+
+class ControlBody(RunBody):
+    """A program under the force loop."""
+
+    mode: Criterion = Field(Criterion.TC, description="TC fast, QC the programmed chip load")
+    law: LawName = Field(LawName.LOG_PI, description="how the override is chosen")
+    has_preview: bool = Field(True, description="whether the law knows what is ahead")
+    look_ahead: int = Field(LOOK_AHEAD, ge=1, le=50, description="revolutions of preview")
+    disturbances: list[Annotated[str, Field(max_length=60)]] = Field(
+        [], max_length=50, description="as `stepnc control --disturb`", examples=[["kc:1.3"]]
+    )
+    force_set_point_n: float | None = Field(
+        None, gt=0.0, le=1e6, description="of the cutting force, N; null: the plan's bounds"
+    )
+    override_low_percent: float = Field(20.0, gt=0.0, le=100.0, description="of the band, %")
+    override_high_percent: float = Field(
+        120.0, ge=100.0, le=200.0, description="of the band, %"
+    )
+    sensor: Sensor = Field(Sensor.DYNAMOMETER, description="what the loop measures")
+    has_corrections: bool = Field(True, description="expect what was learned and accepted")
+    is_recorded: bool = Field(True, description="keep the outcomes in the knowledge base")
+    pace: float = Field(
+        10.0, ge=0.0, le=1000.0,
+        description="s of the machine in one of ours; 0: as fast as can be",
+    )  # fmt: skip
+
+
+class ControlChanges(Body):
+    """What is to be otherwise in a run under control; what is left out stays."""
+
+    mode: Criterion | None = None
+    is_on: bool | None = Field(None, description="whether the loop acts")
+    motor_power_percent: Percent | None = Field(None, description="that the operator allows, %")
+    depth_percent: Percent | None = Field(None, description="of the programmed depth; hidden")
+    hardness_percent: Percent | None = Field(None, description="k_c of the workpiece; hidden")
+    material: Name | None = Field(None, description="another workpiece; hidden from the loop")
+    pace: Pace | None = Field(None, description="s of the machine in one of ours")
+
+
+def _numbers() -> dict[str, Any]:
+    """Numbers of a trial with their bounds, as the trial itself knows them."""
+    return {
+        field.name: (
+            (int if field.is_whole else float) | None,
+            Field(
+                None, ge=field.low, le=field.high,
+                description=f"{field.words}{', ' if field.unit else ''}{field.unit}",
+            ),
+        )
+        for field in FIELDS
+    }  # fmt: skip
+
+
+TrialInputs = create_model(
+    "TrialInputs",
+    __base__=Body,
+    __doc__="Inputs of a trial cut; what is left out stays as it is, at first as usual.",
+    milling_type=(MillingType | None, Field(None, description="immersion of the cutter")),
+    material=(Name | None, Field(None, description="workpiece", examples=["c45"])),
+    mode=(Criterion | None, Field(None, description="TC or QC")),
+    is_on=(bool | None, Field(None, description="whether the loop acts")),
+    **_numbers(),
+)
+
+
+class TrialBody(Body):
+    """A trial cut."""
+
+    inputs: TrialInputs = TrialInputs()  # type: ignore[valid-type]
+    seed: int = Field(0, ge=0, le=2**31, description="of the sensors' noise")
+    pace: Pace = Field(1.0, description="s of the machine in one of ours")
+
+
+class TrialChanges(Body):
+    """What is to be otherwise in a trial; ``restart`` goes on with a new cutter."""
+
+    inputs: TrialInputs = TrialInputs()  # type: ignore[valid-type]
+    pace: Pace | None = Field(None, description="s of the machine in one of ours")
+    restart: bool = Field(False, description="a new cutter, after the loop has stopped")
+    end: bool = Field(False, description="end the trial")
 
 
 class SelectionBody(Body):

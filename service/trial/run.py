@@ -127,6 +127,8 @@ class TrialRun:
                 self._tape.note(event)
                 if event.kind is EventKind.STOP:
                     self._stopped_by = event.text
+        if set_up.is_done:
+            set_up.trace.end()
         return not set_up.is_done
 
     def taken(self) -> Taken:

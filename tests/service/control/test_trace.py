@@ -10,7 +10,7 @@ import pytest
 from pyarrow import csv, parquet
 
 from controller.cycle import Cycle
-from service.control.run import ControlRequest, ControlRun, control
+from service.control.run import ControlRequest, ControlRun, control, prepare
 from service.control.trace import COLUMNS, Moment, Signal, control_schema
 from simulator.plant.controlled import Truth
 
@@ -145,3 +145,18 @@ def test_what_was_removed_is_the_slot(control_run: ControlRun, controlled: Contr
             unheeded = whole
     assert whole == pytest.approx(unheeded, rel=0.01)
     assert control_run.progress > 0.0
+
+
+def test_a_sink_is_given_each_row_at_once(
+    controlled: Controlled, written: Path, table: pa.Table, tmp_path: Path
+) -> None:
+    rows: list[Moment] = []
+    output = tmp_path / "run.parquet"
+    session = prepare(controlled(disturbances=("hardness:+40%@7.5s",), output=output))
+    trace = session.trace(rows.append)
+    with trace:
+        for cycle in session.cycles([trace]):
+            if cycle.revolution is not None:
+                assert rows[-1].time == cycle.reading.time
+    assert [row.time for row in rows] == table["time_s"].to_pylist()
+    assert output.read_bytes() == written.read_bytes()

@@ -1,0 +1,266 @@
+// What all pages share: the frame, requests, streams, words for numbers.
+
+const PAGES = [
+  ["plan", "Plan"], ["control", "Control"], ["machine", "Machine"],
+  ["knowledge", "Knowledge"], ["jobs", "Jobs"],
+];
+const KEY = "stepnc.key", THEME = "stepnc.theme";
+
+// -- elements ---------------------------------------------------------------------------------
+
+/** An element: attributes, `on…` listeners, children (texts are texts, never HTML). */
+export function el(tag, attributes = {}, ...children) {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (value === undefined || value === null || value === false) continue;
+    if (name.startsWith("on")) made.addEventListener(name.slice(2), value);
+    else if (name === "class") made.className = value;
+    else if (name in made && typeof value !== "string") made[name] = value;
+    else made.setAttribute(name, value === true ? "" : value);
+  }
+  made.append(...children.flat().filter((child) => child !== null && child !== undefined));
+  return made;
+}
+
+export const byId = (id) => document.getElementById(id);
+
+/** Replace what is in an element. */
+export function fill(place, ...children) {
+  place.replaceChildren(...children.flat().filter((child) => child !== null && child !== undefined));
+}
+
+/** A named figure; `value` may be set later by its class. */
+export function figure(name, value, unit = "", kind = "") {
+  return el("div", { class: `figure ${kind}` }, el("div", { class: "name" }, name),
+    el("div", {}, el("span", { class: "value" }, value), el("span", { class: "unit" }, unit)));
+}
+
+// -- words for numbers ------------------------------------------------------------------------
+
+/** A number with so many significant digits, as people write it; a dash for none. */
+export function number(value, digits = 3) {
+  if (value === null || value === undefined || Number.isNaN(value)) return "–";
+  const size = Math.abs(value);
+  if (size !== 0 && (size >= 1e7 || size < 1e-4)) return value.toExponential(digits - 1);
+  const places = size === 0 ? 0 : Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
+  return value.toLocaleString("en-GB", { maximumFractionDigits: places, useGrouping: size >= 1e4 });
+}
+
+export function fixed(value, places) {
+  if (value === null || value === undefined || Number.isNaN(value)) return "–";
+  return value.toLocaleString("en-GB",
+    { minimumFractionDigits: places, maximumFractionDigits: places, useGrouping: Math.abs(value) >= 1e4 });
+}
+
+/** Seconds as people say them. */
+export function duration(seconds) {
+  if (seconds === null || seconds === undefined) return "–";
+  if (seconds < 120) return `${fixed(seconds, 1)} s`;
+  const minutes = Math.floor(seconds / 60), rest = Math.round(seconds % 60);
+  if (minutes < 60) return `${minutes} min ${String(rest).padStart(2, "0")} s`;
+  return `${Math.floor(minutes / 60)} h ${String(minutes % 60).padStart(2, "0")} min`;
+}
+
+export const percent = (share, places = 0) =>
+  share === null || share === undefined ? "–" : `${fixed(100 * share, places)} %`;
+
+export const moment = (text) => (text ? new Date(text).toLocaleString("en-GB") : "–");
+
+/** EXPRESS and limit names as words. */
+export const words = (name) => (name ?? "").replaceAll("_", " ");
+
+// -- requests ---------------------------------------------------------------------------------
+
+export class Problem extends Error {
+  constructor(body, status) {
+    super(body.detail ?? body.title ?? `HTTP ${status}`);
+    this.body = body;
+    this.status = status;
+  }
+}
+
+function withKey(headers) {
+  const key = sessionStorage.getItem(KEY);
+  return key ? { ...headers, authorization: `Bearer ${key}` } : headers;
+}
+
+async function ask(path, options = {}) {
+  const { json, headers = {}, ...rest } = options;
+  const sent = json === undefined ? headers : { "content-type": "application/json", ...headers };
+  const body = json === undefined ? rest.body : JSON.stringify(json);
+  const answer = await fetch(path, { ...rest, body, headers: withKey(sent) });
+  if (answer.status === 401) {
+    await askForKey();
+    return ask(path, options);
+  }
+  if (answer.ok) return answer;
+  const type = answer.headers.get("content-type") ?? "";
+  const problem = type.includes("json") ? await answer.json() : { detail: await answer.text() };
+  throw new Problem(problem, answer.status);
+}
+
+/** JSON of an answer; null when it has no body. `json` is sent as the body. */
+export async function api(path, options = {}) {
+  const answer = await ask(path, options);
+  return answer.status === 204 ? null : answer.json();
+}
+
+/** Save what an address holds as a file: with the key, which a plain link would not send. */
+export async function save(path) {
+  const answer = await ask(path);
+  const named = /filename="([^"]+)"/.exec(answer.headers.get("content-disposition") ?? "");
+  const link = el("a", { href: URL.createObjectURL(await answer.blob()),
+    download: named ? named[1] : path.split("/").pop() });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+}
+
+/** Show a report in a window of its own. */
+export async function show(path) {
+  const opened = window.open("about:blank", "_blank");
+  const key = sessionStorage.getItem(KEY);
+  if (!key && opened) { opened.location = path; return; }
+  opened?.close();
+  await save(path);
+}
+
+let asking = null;
+/** A dialog for the key; all requests that need one wait for the same. */
+function askForKey() {
+  asking ??= new Promise((done) => {
+    const field = el("input", { type: "password", autocomplete: "off", required: true,
+      "aria-label": "key" });
+    const dialog = el("dialog", { "aria-labelledby": "key-title" },
+      el("h2", { id: "key-title" }, "A key is needed"),
+      el("p", { class: "soft" }, "Keys are made with “stepnc keys create”. It is kept until this window is closed."),
+      el("form", { method: "dialog", onsubmit: () => {
+        sessionStorage.setItem(KEY, field.value.trim());
+        dialog.remove();
+        asking = null;
+        done();
+      } }, el("label", {}, "Key", field), el("p", {}, el("button", { class: "main" }, "Use it"))));
+    dialog.addEventListener("cancel", (event) => event.preventDefault());
+    document.body.append(dialog);
+    dialog.showModal();
+  });
+  return asking;
+}
+
+// -- streams ----------------------------------------------------------------------------------
+
+/**
+ * Watch a job: `handlers` by event (`job`, `status`, `rows`, `event`, `gap`), `lost` when the line
+ * breaks, `back` when it holds again, `end` when the job is over. Returns a function that ends it.
+ */
+export function watch(id, handlers) {
+  const stop = new AbortController();
+  let isOver = false, wasLost = false;
+  (async () => {
+    while (!stop.signal.aborted && !isOver) {
+      try {
+        const answer = await ask(`/v1/jobs/${id}/events`, { signal: stop.signal });
+        if (wasLost) handlers.back?.();
+        wasLost = false;
+        for await (const [name, content] of messages(answer.body)) {
+          if (name === "job") isOver = ["succeeded", "failed", "cancelled"].includes(content.state);
+          handlers[name]?.(content);
+          handlers.any?.();
+        }
+      } catch (error) {
+        if (stop.signal.aborted) return;
+        if (error instanceof Problem && error.status === 404) isOver = true;
+        else { wasLost = true; handlers.lost?.(error); }
+      }
+      if (!isOver) await new Promise((again) => setTimeout(again, 1000));
+    }
+    if (!stop.signal.aborted) handlers.end?.();
+  })();
+  return () => stop.abort();
+}
+
+async function* messages(body) {
+  const reader = body.pipeThrough(new TextDecoderStream()).getReader();
+  let rest = "";
+  while (true) {
+    const { value, done } = await reader.read();
+    if (done) return;
+    rest += value;
+    for (let end = rest.indexOf("\n\n"); end >= 0; end = rest.indexOf("\n\n")) {
+      const block = rest.slice(0, end);
+      rest = rest.slice(end + 2);
+      const name = /^event: (.*)$/m.exec(block)?.[1], data = /^data: (.*)$/m.exec(block)?.[1];
+      if (name && data) yield [name, JSON.parse(data)];
+    }
+  }
+}
+
+/** Ask for a job and wait for its end; `tell` hears how far it is. Throws its problem. */
+export async function done(path, json, tell = () => {}) {
+  const asked = await api(path, { method: "POST", json,
+    headers: { "idempotency-key": crypto.randomUUID?.() ?? String(Math.random()) } });
+  tell(asked);
+  return followed(asked, tell);
+}
+
+/** Wait for the end of a job. */
+export function followed(asked, tell = () => {}) {
+  return new Promise((resolve, reject) => {
+    let last = asked;
+    watch(asked.id, {
+      job: (job) => { last = job; tell(job); },
+      end: async () => {
+        last = await api(`/v1/jobs/${asked.id}`).catch(() => last);
+        if (last.state === "succeeded") resolve(last);
+        else reject(new Problem(last.problem ?? { detail: `the job is ${last.state}` }, 0));
+      },
+    });
+  });
+}
+
+// -- the frame --------------------------------------------------------------------------------
+
+/** Say something to everybody, also to those who do not see it. */
+export function announce(text) {
+  const place = byId("said");
+  if (place) place.textContent = text;
+}
+
+/** Tell of a problem in a place of the page; empty it with null. */
+export function tell(place, error) {
+  if (!error) { fill(place); return; }
+  const detail = error instanceof Problem ? error.message : `the service does not answer (${error.message})`;
+  fill(place, el("div", { class: "banner bad", role: "alert" }, detail));
+}
+
+function theme() {
+  const wanted = localStorage.getItem(THEME);
+  const isDark = wanted ? wanted === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
+  document.documentElement.dataset.theme = isDark ? "dark" : "light";
+  return isDark;
+}
+
+function frame() {
+  theme();
+  const at = location.pathname.split("/").pop().replace(".html", "");
+  const links = PAGES.map(([name, text]) => el("a", { href: `/dashboard/${name}.html`,
+    "aria-current": name === at ? "page" : undefined }, text));
+  const toggle = el("button", { class: "plain", "aria-label": "light or dark", title: "light or dark",
+    onclick: () => {
+      localStorage.setItem(THEME, theme() ? "light" : "dark");
+      theme();
+      document.dispatchEvent(new Event("theme"));
+    } }, "◐");
+  const bar = el("header", { class: "bar" },
+    el("a", { class: "brand", href: "/dashboard/plan.html" },
+      el("img", { src: "/dashboard/icon.svg", alt: "", width: "24", height: "24" }), "stepnc"),
+    el("nav", { "aria-label": "pages" }, links),
+    el("div", { class: "right" }, el("a", { class: "small", href: "/v1/openapi.json" }, "API"), toggle));
+  document.body.prepend(el("a", { class: "skip", href: "#main" }, "to the content"), bar);
+  document.body.append(el("div", { id: "said", class: "unseen", role: "status", "aria-live": "polite" }));
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+    theme();
+    document.dispatchEvent(new Event("theme"));
+  });
+}
+
+frame();

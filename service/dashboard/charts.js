@@ -1,0 +1,161 @@
+// Plots: plotly.js of the installed package, in the colours of the page; series by range.
+
+import { api } from "/dashboard/app.js";
+
+let loading = null;
+/** plotly.js, loaded when the first plot is wanted. */
+export function plotly() {
+  loading ??= new Promise((resolve, reject) => {
+    const script = document.createElement("script");
+    script.src = "/dashboard/plotly.min.js";
+    script.onload = () => resolve(window.Plotly);
+    script.onerror = () => reject(new Error("plotly.js was not found"));
+    document.head.append(script);
+  });
+  return loading;
+}
+
+/** A colour of the page, by its name in app.css. */
+export const colour = (name) =>
+  getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+
+const CONFIG = { displaylogo: false, responsive: true, showSendToCloud: false,
+  modeBarButtonsToRemove: ["select2d", "lasso2d", "sendDataToCloud", "autoScale2d"] };
+
+/** Layout in the page's colours. */
+export function layout(more = {}) {
+  const ink = colour("ink"), rule = colour("rule");
+  const axis = { gridcolor: rule, zerolinecolor: rule, linecolor: rule, automargin: true };
+  const { xaxis = {}, yaxis = {}, ...rest } = more;
+  return {
+    paper_bgcolor: "rgba(0,0,0,0)", plot_bgcolor: "rgba(0,0,0,0)",
+    font: { family: "system-ui, sans-serif", size: 12, color: ink },
+    margin: { l: 56, r: 12, t: 10, b: 36 }, showlegend: false, hovermode: "x unified",
+    hoverlabel: { bgcolor: colour("card"), font: { color: ink } },
+    modebar: { bgcolor: "rgba(0,0,0,0)", color: colour("soft"), activecolor: colour("accent") },
+    dragmode: matchMedia("(pointer: coarse)").matches ? false : "zoom",
+    ...rest, xaxis: { ...axis, ...xaxis }, yaxis: { ...axis, ...yaxis },
+  };
+}
+
+/**
+ * A plot that is drawn anew in the page's colours when these change.
+ * `make()` returns {data, layout}, colours by `colour(…)`.
+ */
+export async function plot(place, make) {
+  const Plotly = await plotly();
+  const draw = () => { const { data, layout: laid } = make(); return Plotly.react(place, data, laid, CONFIG); };
+  place.onTheme ??= (document.addEventListener("theme", () => place.redraw?.()), true);
+  place.redraw = draw;
+  await draw();
+  return Plotly;
+}
+
+/** Least and greatest of each point as one line, so that peaks stay. */
+export function envelope(series, name, scale = 1) {
+  const { low, high } = series.signals[name], x = [], y = [];
+  for (let at = 0; at < low.length; at += 1) {
+    x.push(series.begin_s[at]);
+    y.push(low[at] === null ? null : low[at] * scale);
+    if (series.is_reduced) {
+      x.push(series.end_s[at]);
+      y.push(high[at] === null ? null : high[at] * scale);
+    }
+  }
+  return { x, y };
+}
+
+/**
+ * Panels of signals against one time axis, read from the server by range: zooming reads again.
+ * `source(begin, end, points)` → the path of a series; `panels` = [{title, unit, signals:
+ * [{name, label, colour, dash, scale}]}]. Returns {reload, add(columns), Plotly}.
+ */
+export async function timePanels(place, source, panels, { points = 1500, height = 150 } = {}) {
+  const Plotly = await plotly();
+  const names = panels.flatMap((panel) => panel.signals);
+  let series = null, range = null;
+  const live = new Map(names.map((signal) => [signal.name, { x: [], y: [] }]));
+
+  const make = () => {
+    const data = [], laid = layout({ height: height * panels.length + 40, hovermode: "x unified",
+      margin: { l: 62, r: 12, t: 22, b: 36 }, uirevision: "keep",
+      grid: { rows: panels.length, columns: 1, pattern: "independent" } });
+    laid.annotations = [];
+    const share = 1 / panels.length, space = 26 / (height * panels.length);
+    panels.forEach((panel, row) => {
+      const number = row === 0 ? "" : String(row + 1), top = 1 - row * share;
+      laid[`yaxis${number}`] = { ...laid.yaxis, domain: [Math.max(top - share + space, 0), top - 0.002],
+        rangemode: "tozero", title: undefined, nticks: 4, anchor: `x${number}` };
+      laid[`xaxis${number}`] = { ...laid.xaxis, anchor: `y${number}`, matches: row ? "x" : undefined,
+        showticklabels: row === panels.length - 1, range: range ?? undefined,
+        title: row === panels.length - 1 ? { text: "time, s", standoff: 4 } : undefined };
+      laid.annotations.push({ text: panel.title, x: 0, xref: "paper", xanchor: "left", y: top,
+        yref: "paper", yanchor: "bottom", showarrow: false, font: { size: 12 } });
+      for (const signal of panel.signals) {
+        const { x, y } = series ? envelope(series, signal.name, signal.scale) : { x: [], y: [] };
+        const more = live.get(signal.name);
+        data.push({ type: "scatter", mode: "lines", name: signal.label, x: x.concat(more.x),
+          y: y.concat(more.y), xaxis: `x${number}`, yaxis: `y${number}`,
+          line: { color: colour(signal.colour), width: 1.5, dash: signal.dash },
+          hovertemplate: `%{y:.4~r} ${panel.unit}` });
+      }
+    });
+    return { data, layout: laid };
+  };
+
+  async function reload(begin = null, end = null) {
+    series = await api(source(begin, end, points)).catch((error) => {
+      if (error.status === 409) return series;  // no rows yet
+      throw error;
+    });
+    const last = series?.end_s.at(-1) ?? -Infinity;
+    for (const [, line] of live) {
+      const keep = line.x.findIndex((time) => time > last);
+      if (end !== null || keep < 0) { line.x = []; line.y = []; } else {
+        line.x = line.x.slice(keep);
+        line.y = line.y.slice(keep);
+      }
+    }
+    await plot(place, make);
+  }
+
+  let wanted = null;
+  await reload();
+  place.on("plotly_relayout", (changed) => {
+    const begin = changed["xaxis.range[0]"], end = changed["xaxis.range[1]"];
+    if (begin !== undefined) range = [begin, end];
+    else if (changed["xaxis.autorange"]) range = null;
+    else return;
+    clearTimeout(wanted);
+    wanted = setTimeout(() => reload(...(range ?? [null, null])), 120);
+  });
+
+  /** Rows that have just come; `window` keeps the last so many seconds in sight. */
+  function add(columns, window = null) {
+    const times = columns.time_s, from = series?.end_s.at(-1) ?? -Infinity;
+    const xs = [], ys = [];
+    for (const signal of names) {
+      const line = live.get(signal.name), x = [], y = [];
+      times.forEach((time, at) => {
+        if (time <= (line.x.at(-1) ?? from)) return;
+        const value = columns[signal.name][at];
+        x.push(time);
+        y.push(value === null ? null : value * (signal.scale ?? 1));
+      });
+      line.x.push(...x);
+      line.y.push(...y);
+      if (line.x.length > 6000) { line.x.splice(0, 3000); line.y.splice(0, 3000); }
+      xs.push(x);
+      ys.push(y);
+    }
+    Plotly.extendTraces(place, { x: xs, y: ys }, names.map((_, at) => at), 12_000);
+    const last = times.at(-1);
+    if (window && !range) {
+      const shown = [Math.max(0, last - window), Math.max(window, last)];
+      Plotly.relayout(place, Object.fromEntries(panels.map((_, row) =>
+        [`xaxis${row ? row + 1 : ""}.range`, shown])));
+    }
+  }
+
+  return { reload, add, Plotly };
+}

@@ -1,0 +1,114 @@
+"""A run that goes on in wall time, tells how it is, and does what it is asked. Running state.
+
+Each tick: what was asked of it is done, it goes on as far as it is time for, what came of it is
+written where others read it.
+"""
+
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+from service.control.live_run import Taken
+from service.live.folder import LiveFolder
+from service.live.journal import append, read_on
+from service.live.pace import TICK
+from service.live.rows import COLUMNS, rows_of
+from service.live.series import SeriesWriter
+from stepnc_model.errors import StepNcError
+
+AT_ONCE = 2.0
+"""s of the machine in one tick when nobody waits for the clock"""
+
+REFUSED = "refused"
+"""kind of the event that tells of an order that could not be done"""
+
+
+class Steered(Protocol):
+    """What is steered: see :class:`service.control.live_run.LiveRun`, but for its orders."""
+
+    @property
+    def time(self) -> float:
+        """S of the machine."""
+        ...
+
+    @property
+    def is_waiting(self) -> bool:
+        """Whether it stands until somebody does something."""
+        ...
+
+    def advance(self, until: float) -> bool:
+        """Go on until a time, s; False: it does not go on any more."""
+        ...
+
+    def taken(self) -> Taken:
+        """Rows and events since it was asked last."""
+        ...
+
+    def obey(self, order: Mapping[str, Any]) -> None:
+        """Do what is asked.
+
+        Raises
+        ------
+        StepNcError
+            When it cannot be; nothing has changed then.
+        """
+        ...
+
+    def status(self) -> dict[str, Any]:
+        """How it is, as JSON."""
+        ...
+
+
+@dataclass(kw_only=True)
+class Helm:
+    """Steers one run. Running state."""
+
+    run: Steered
+    folder: LiveFolder
+    pace: float
+    """s of the machine in one of ours; 0: as fast as can be"""
+    now: Callable[[], float] = time.monotonic
+    wait: Callable[[float], None] = time.sleep
+    tell: Callable[[dict[str, Any]], None] = lambda _: None
+    """hears the status of each tick"""
+    _offset: int = 0
+
+    def go(self) -> None:
+        """To the end of the run."""
+        with SeriesWriter(self.folder.series, list(COLUMNS)) as series:
+            goes_on = True
+            while goes_on:
+                begin = self.now()
+                self._obey()
+                goes_on = self.run.advance(self.run.time + (TICK * self.pace or AT_ONCE))
+                goes_on = goes_on or self.run.is_waiting
+                self._publish(series)
+                if self.pace or self.run.is_waiting:
+                    self.wait(max(TICK - (self.now() - begin), 0.0))
+
+    def _obey(self) -> None:
+        """All that was asked since the last tick."""
+        read = read_on(self.folder.orders, self._offset)
+        self._offset = read.offset
+        for order in read.lines:
+            try:
+                if "pace" in order:
+                    self.pace = float(order["pace"])
+                self.run.obey({name: order[name] for name in order if name != "pace"})
+            except StepNcError as error:
+                self._say(REFUSED, str(error))
+
+    def _publish(self, series: SeriesWriter) -> None:
+        taken = self.run.taken()
+        if taken.moments:
+            series.add(rows_of(taken.moments))
+        for event in taken.events:
+            self._say(event.kind.value, event.text, at=event.time)
+        status = {**self.run.status(), "pace": self.pace}
+        self.folder.write_status(status)
+        self.tell(status)
+
+    def _say(self, kind: str, text: str, *, at: float | None = None) -> None:
+        moment = self.run.time if at is None else at
+        append(self.folder.events, {"time_s": moment, "kind": kind, "text": text})

@@ -1,0 +1,210 @@
+"""A program under control, piece by piece: the same run, and one that can be changed."""
+
+from collections.abc import Callable
+from math import inf, nan
+from pathlib import Path
+
+import pytest
+from pyarrow import parquet
+
+from controller.orders import Criterion, Event, EventKind
+from service.control.holding import OFF
+from service.control.live import Changes, LiveControl
+from service.control.live_run import Taken
+from service.control.run import ControlRequest, control, prepare
+from stepnc_model.errors import StepNcError
+
+Controlled = Callable[..., ControlRequest]
+
+IN_CUT = 7.5
+"""s, when the slot is being cut"""
+
+
+def begun(request: ControlRequest, *, until: float = IN_CUT) -> LiveControl:
+    live = LiveControl(prepare(request))
+    assert live.advance(until)
+    return live
+
+
+def through(live: LiveControl) -> Taken:
+    while live.advance(live.time + 1.0):
+        pass
+    return live.taken()
+
+
+@pytest.mark.parametrize("piece", [0.3, inf])
+def test_in_pieces_it_is_the_same_run(
+    controlled: Controlled, tmp_path: Path, piece: float
+) -> None:
+    words = ("hardness:+40%@7.5s", "mode:QC@8s")
+    once, live_file = tmp_path / "once.parquet", tmp_path / "live.parquet"
+    whole = control(controlled(disturbances=words, output=once))
+    live = LiveControl(prepare(controlled(disturbances=words, output=live_file)))
+    rows = 0
+    events: list[Event] = []
+    while True:
+        goes_on = live.advance(live.time + piece)
+        taken = live.taken()
+        rows += len(taken.moments)
+        events += taken.events
+        if not goes_on:
+            break
+    found = live.finish()
+    rows += len(live.taken().moments)
+    assert live_file.read_bytes() == once.read_bytes()
+    assert rows == found.samples == whole.samples
+    assert tuple(events) == found.events == whole.events
+    assert found.time == whole.time
+    assert live.status().is_done
+    assert live.status().progress == pytest.approx(1.0)
+
+
+def test_a_run_that_is_not_done_is_left_as_partial(
+    controlled: Controlled, tmp_path: Path
+) -> None:
+    live = begun(controlled(output=tmp_path / "run.parquet"))
+    found = live.finish()
+    assert [each.name for each in tmp_path.iterdir()] == ["run.partial.parquet"]
+    table = parquet.read_table(tmp_path / "run.partial.parquet")
+    assert table.num_rows == found.samples
+    assert found.time == pytest.approx(IN_CUT, abs=0.3)
+
+
+def test_the_status_is_that_of_the_cut(controlled: Controlled) -> None:
+    live = begun(controlled())
+    status = live.status()
+    assert status.workingstep == "MILL SLOT"
+    assert 0.0 < status.progress < 1.0
+    assert status.feed_programmed_mm_min == pytest.approx(600.0)
+    assert status.feed_advised_mm_min == pytest.approx(6.0 * status.override_percent)
+    assert status.feed_actual_mm_min == pytest.approx(status.feed_advised_mm_min, rel=0.1)
+    assert status.force_measured is not None
+    assert status.force_expected == pytest.approx(status.force_measured, rel=0.1)
+    assert status.set_point is not None
+    assert status.axial_depth_mm == pytest.approx(2.0)
+    # 2 mm deep and 8 mm wide.
+    assert status.removal_rate_cm3_min == pytest.approx(
+        0.016 * status.feed_actual_mm_min, rel=0.05
+    )
+    # 15 kW from 1500 to 8000 rpm.
+    assert status.motor_power_kw == pytest.approx(15.0)
+    assert 0.0 < status.power_kw < 15.0
+    assert (status.is_over, status.is_stopped, status.is_done) == (False, False, False)
+    assert (status.criterion, status.is_on) == (Criterion.TC, True)
+    assert status.holding
+    assert status.level == "safe"
+
+
+def test_before_it_begins_nothing_is_known(controlled: Controlled) -> None:
+    status = LiveControl(prepare(controlled())).status()
+    assert (status.time, status.workingstep, status.force_measured) == (0.0, "", None)
+    assert status.power_kw == 0.0
+
+
+def test_a_spindle_that_stands_has_no_power(controlled: Controlled) -> None:
+    live = LiveControl(prepare(controlled()))
+    live.advance(0.1)
+    assert live.status().motor_power_kw is None
+    assert not live.status().is_over
+
+
+@pytest.mark.parametrize(
+    ("changes", "factor"),
+    [
+        (Changes(depth_percent=130.0), 1.3),
+        (Changes(hardness_percent=80.0), 0.8),
+        # k_c1.1 of an aluminium over that of the program's steel is about a half.
+        (Changes(material="al7075"), None),
+    ],
+)
+def test_what_the_loop_is_not_told_it_finds_by_the_force(
+    controlled: Controlled, changes: Changes, factor: float | None
+) -> None:
+    live = begun(controlled(law="none"))
+    before = live.status().force_measured
+    live.taken()
+    live.change(changes)
+    live.advance(live.time + 0.5)
+    status = live.status()
+    assert before is not None
+    assert status.force_measured is not None
+    ratio = status.force_measured / before
+    assert ratio == pytest.approx(factor, rel=0.05) if factor else 0.3 < ratio < 0.8
+    assert status.force_expected == pytest.approx(before, rel=0.1)
+    first = live.taken().events[0]
+    assert first.kind is EventKind.ORDER
+    assert first.time == pytest.approx(IN_CUT, abs=0.1)
+
+
+def test_hardness_and_material_go_together(controlled: Controlled) -> None:
+    live = begun(controlled(law="none"))
+    own = live.session.plan.material.material.name
+    before = live.status().force_measured
+    live.change(Changes(hardness_percent=120.0))
+    live.change(Changes(material=own))
+    live.advance(live.time + 0.5)
+    after = live.status().force_measured
+    assert before is not None
+    assert after == pytest.approx(1.2 * before, rel=0.05)
+
+
+def test_what_the_operator_switches_is_obeyed(controlled: Controlled) -> None:
+    live = begun(controlled(set_point=300.0))
+    live.change(Changes(mode="qc", is_on=False, motor_power_percent=50.0))
+    live.advance(live.time + 0.5)
+    status = live.status()
+    assert (status.criterion, status.is_on) == (Criterion.QC, False)
+    assert status.holding == OFF
+    assert status.override_percent == 100.0
+    assert status.motor_power_kw == pytest.approx(7.5)
+    texts = [event.text for event in live.taken().events]
+    assert {"mode QC", "OFF: the program's own feed", "motor power 50 %"} <= set(texts)
+
+
+def test_a_drive_that_draws_too_much_is_told(controlled: Controlled) -> None:
+    live = begun(controlled(law="none"))
+    live.change(Changes(motor_power_percent=1.0))
+    live.advance(live.time + 0.5)
+    assert live.status().is_over
+    through(live)
+    assert not live.status().is_over
+
+
+def test_changes_stand_in_the_rows(controlled: Controlled) -> None:
+    live = begun(controlled())
+    live.taken()
+    live.change(Changes(depth_percent=150.0))
+    live.advance(live.time + 0.2)
+    told = [row.event for row in live.taken().moments if row.event]
+    assert "order: depth 150 % of the program's" in told[0]
+
+
+def test_a_lost_machine_ends_the_run(controlled: Controlled) -> None:
+    live = LiveControl(prepare(controlled(disturbances=("line:off@8s",))))
+    taken = through(live)
+    assert taken.events[-1].kind is EventKind.LOST
+    assert live.status().is_stopped
+    assert live.finish().is_stopped
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"depth_percent": 0.0}, "depth 0 %: it must be above 0 to 1000 %"),
+        ({"hardness_percent": 2000.0}, "hardness 2000 %: it must be above 0 to 1000 %"),
+        ({"motor_power_percent": nan}, "motor power nan %: it must be above 0 to 1000 %"),
+        ({"mode": "EC"}, "unknown mode 'EC'; known: TC, QC"),
+        ({"material": "butter"}, "unknown material 'butter'; known: "),
+        ({"material": "/etc/passwd.toml"}, "unknown material '/etc/passwd.toml'; known: "),
+    ],
+)
+def test_what_cannot_be_is_refused_and_changes_nothing(
+    controlled: Controlled, changes: dict[str, object], message: str
+) -> None:
+    live = begun(controlled())
+    live.taken()
+    with pytest.raises(StepNcError) as caught:
+        live.change(Changes(**{"is_on": False, **changes}))  # type: ignore[arg-type]
+    assert message in str(caught.value)
+    live.advance(live.time + 0.1)
+    assert live.status().is_on

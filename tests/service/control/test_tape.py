@@ -1,0 +1,64 @@
+"""Rows wait until they are taken, and the lamp is lit long enough to be seen."""
+
+from math import nan
+
+import pytest
+
+from controller.orders import Event, EventKind
+from service.control.tape import LIT, Tape, known
+from service.control.trace import Moment
+
+EVENT = Event(time=1.0, kind=EventKind.ORDER, text="depth 2 -> 4 mm")
+
+
+def row(time: float, *, power: float = 0.0) -> Moment:
+    numbers = dict.fromkeys(Moment._fields, 0.0)
+    numbers |= {"time": time, "spindle_power_true": power}
+    words = {"workingstep": "", "level": "safe", "holding": "", "event": None}
+    return Moment(**{**numbers, **words})  # type: ignore[arg-type]
+
+
+def test_what_was_taken_does_not_come_again() -> None:
+    tape = Tape(lambda: 1000.0)
+    assert tape.last is None
+    tape(row(0.1))
+    tape(row(0.2))
+    tape.note(EVENT)
+    taken = tape.taken()
+    assert [each.time for each in taken.moments] == [0.1, 0.2]
+    assert taken.events == (EVENT,)
+    again = tape.taken()
+    assert (again.moments, again.events) == ((), ())
+    assert tape.last == row(0.2)
+
+
+@pytest.mark.parametrize(
+    ("power", "is_over"), [(1000.0, False), (1049.0, False), (1051.0, True)]
+)
+def test_the_noise_of_a_force_at_its_bound_lights_no_lamp(power: float, is_over: bool) -> None:
+    tape = Tape(lambda: 1000.0)
+    tape(row(1.0, power=power))
+    assert tape.is_over(1.0) is is_over
+
+
+def test_the_lamp_is_lit_for_a_while() -> None:
+    tape = Tape(lambda: 1000.0)
+    tape(row(1.0, power=2000.0))
+    tape(row(1.1, power=900.0))
+    assert tape.is_over(1.0 + 0.9 * LIT)
+    assert not tape.is_over(1.0 + 1.1 * LIT)
+
+
+def test_a_weaker_motor_is_over_sooner() -> None:
+    powers = [1000.0]
+    tape = Tape(lambda: powers[0])
+    tape(row(1.0, power=800.0))
+    assert not tape.is_over(1.0)
+    powers[0] = 500.0
+    tape(row(1.1, power=800.0))
+    assert tape.is_over(1.1)
+
+
+def test_what_is_not_known_is_none() -> None:
+    assert known(nan) is None
+    assert known(0.0) == 0.0
