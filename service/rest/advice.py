@@ -4,6 +4,7 @@ A look-up of one workingstep is what machines and panels ask again and again: re
 change once they are there, so their parts are kept ready as bytes.
 """
 
+import os
 from collections import OrderedDict
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,7 +21,14 @@ from service.errors import Conflict, NotFound
 from service.jobs.task import NC_CODE, OPTIMISED, REPORT, RESULT, optimised_name
 from service.rest.bodies import Id
 from service.rest.context import AtPlace, InDepot, depot_of, page_reply
-from service.rest.replies import file_reply, report_reply, tag_of, tagged
+from service.rest.replies import (
+    JSON,
+    Prepared,
+    file_reply,
+    matches,
+    report_reply,
+    tag_of,
+)
 from service.rest.views import AdviceView, AdvisedView, JobView, PageView, job_view
 from stepnc_model.post.controls import SUFFIXES, Control
 
@@ -31,13 +39,30 @@ MOST_READY = 64
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Part:
+    """An answer, and the one for clients that have it already."""
+
+    tag: bytes
+    whole: Prepared
+    same: Prepared
+
+    def reply(self, request: Request) -> Response:
+        """Whichever is due."""
+        for name, value in request.scope["headers"]:
+            if name == b"if-none-match" and matches(value.decode("latin-1"), self.tag.decode()):
+                return self.same
+        return self.whole
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Ready:
     """A result as bytes, with its tags."""
 
+    file: str
     stamp: int
     """when its file was written, ns"""
-    whole: tuple[bytes, str]
-    workingsteps: dict[str, tuple[bytes, str]]
+    whole: Part
+    workingsteps: dict[str, Part]
     """by id and by instance"""
     result: dict[str, Any]
 
@@ -56,10 +81,10 @@ class Shelf:
         NotFound, Conflict
             When there is none, or not yet.
         """
-        file = depot.job_folder(id) / RESULT
         known = self._ready.get(id)
+        file = str(depot.job_folder(id) / RESULT) if known is None else known.file
         try:
-            stamp = file.stat().st_mtime_ns
+            stamp = os.stat(file).st_mtime_ns
         except OSError:
             self._ready.pop(id, None)
             raise _missing(depot, id) from None
@@ -73,15 +98,26 @@ class Shelf:
         return known
 
 
-def _ready(file: Path, stamp: int) -> Ready:
-    whole = file.read_bytes()
+def _ready(file: str, stamp: int) -> Ready:
+    whole = Path(file).read_bytes()
     result = orjson.loads(whole)
-    parts: dict[str, tuple[bytes, str]] = {}
+    parts: dict[str, Part] = {}
     for step in result["workingsteps"]:
-        body = orjson.dumps(step)
+        part = _part(orjson.dumps(step))
         for name in (step["instance"], step["id"]):
-            parts.setdefault(name, (body, tag_of(body)))
-    return Ready(stamp=stamp, whole=(whole, tag_of(whole)), workingsteps=parts, result=result)
+            parts.setdefault(name, part)
+    return Ready(file=file, stamp=stamp, whole=_part(whole), workingsteps=parts, result=result)
+
+
+def _part(body: bytes) -> Part:
+    tag = tag_of(body).encode()
+    common = [(b"etag", tag), (b"cache-control", b"no-cache")]
+    kind, length = (b"content-type", JSON.encode()), str(len(body)).encode()
+    return Part(
+        tag=tag,
+        whole=Prepared(200, body, [*common, kind, (b"content-length", length)]),
+        same=Prepared(304, b"", common),
+    )
 
 
 def _missing(depot: Depot, id: str) -> Exception:
@@ -97,6 +133,20 @@ def _shelf(request: Request) -> Shelf:
     return found
 
 
+@ROUTES.get(
+    "/{id}/workingsteps/{workingstep}",
+    response_model=AdvisedView,
+    summary="The feed of one workingstep, with its reason",
+)
+async def advised(request: Request, id: str, workingstep: str) -> Response:
+    """By its id, or its instance without ``#``."""
+    parts = _shelf(request).get(depot_of(request), id).workingsteps
+    found = parts.get(workingstep) or parts.get(f"#{workingstep}")
+    if found is None:
+        raise NotFound("workingstep", workingstep)
+    return found.reply(request)
+
+
 @ROUTES.get("", response_model=PageView[JobView], summary="All advice, newest first")
 async def list_advice(request: Request, depot: InDepot, place: AtPlace) -> Response:
     """The jobs that made it, or will."""
@@ -107,22 +157,7 @@ async def list_advice(request: Request, depot: InDepot, place: AtPlace) -> Respo
 @ROUTES.get("/{id}", response_model=AdviceView, summary="One advice")
 async def advice(request: Request, id: Id) -> Response:
     """All workingsteps with programmed and advised feed, limits and reason."""
-    body, tag = _shelf(request).get(depot_of(request), id).whole
-    return tagged(request, body, tag)
-
-
-@ROUTES.get(
-    "/{id}/workingsteps/{workingstep}",
-    response_model=AdvisedView,
-    summary="The feed of one workingstep, with its reason",
-)
-async def advised(request: Request, id: Id, workingstep: str) -> Response:
-    """By its id, or its instance without ``#``."""
-    parts = _shelf(request).get(depot_of(request), id).workingsteps
-    found = parts.get(workingstep) or parts.get(f"#{workingstep}")
-    if found is None:
-        raise NotFound("workingstep", workingstep)
-    return tagged(request, *found)
+    return _shelf(request).get(depot_of(request), id).whole.reply(request)
 
 
 @ROUTES.get(

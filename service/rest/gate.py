@@ -18,7 +18,7 @@ from service.depot.folder import Depot
 from service.depot.keys import Key, Role
 from service.errors import Forbidden, StepNcError, TooLarge, Unauthorised, Unreadable
 from service.problem import plain_problem, problem_of
-from service.rest.metrics import REQUESTS, SECONDS
+from service.rest.metrics import count
 from service.rest.rate import RateLimit
 from service.rest.rights import LOOKING, is_protected, role_for
 from service.rest.settings import LOOPBACK, Settings
@@ -36,7 +36,7 @@ PATIENT = 5.0
 
 REQUEST_ID = re.compile(rb"^[A-Za-z0-9._-]{1,64}$")
 
-HEADERS = [
+HEADERS = (
     (b"x-content-type-options", b"nosniff"),
     (b"referrer-policy", b"no-referrer"),
     (b"x-frame-options", b"DENY"),
@@ -46,13 +46,14 @@ HEADERS = [
         b"permissions-policy",
         b"camera=(), microphone=(), geolocation=(), payment=(), usb=()",
     ),
-]
+)
 
 # plotly.js puts styles of its own into the page; scripts come from files only.
 POLICY = (
-    "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; "
-    "img-src 'self' data: blob:; connect-src 'self'; font-src 'self'; base-uri 'none'; "
-    "form-action 'none'; frame-ancestors 'none'"
+    b"content-security-policy",
+    b"default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; "
+    b"img-src 'self' data: blob:; connect-src 'self'; font-src 'self'; base-uri 'none'; "
+    b"form-action 'none'; frame-ancestors 'none'",
 )
 
 # A report is a page of its own that carries its scripts inside, and talks to nobody.
@@ -92,13 +93,10 @@ class Gate:
             nonlocal status
             if message["type"] == "http.response.start":
                 status = message["status"]
-                message["headers"] = [
-                    *message["headers"], *HEADERS, (b"x-request-id", id),
-                ]  # fmt: skip
-                if not any(
-                    name == b"content-security-policy" for name, _ in message["headers"]
-                ):
-                    message["headers"].append((b"content-security-policy", POLICY.encode()))
+                own = message["headers"]
+                has_policy = any(name == POLICY[0] for name, _ in own)
+                common = HEADERS if has_policy else (*HEADERS, POLICY)
+                message["headers"] = [*own, *common, (b"x-request-id", id)]
             await send(message)
 
         key = ANYBODY
@@ -106,8 +104,7 @@ class Gate:
             self._require_known_host(scope, headers)
             key = self._key(scope, headers)
             scope["state"] = {**scope.get("state", {}), "owner": key.name, "id": id.decode()}
-            bound = self._bound(scope["path"], headers)
-            await self._app(scope, self._bounded(receive, bound), answer)
+            await self._app(scope, self._bounded(scope, receive, headers), answer)
         except StepNcError as error:
             if status:
                 raise
@@ -172,18 +169,21 @@ class Gate:
         self._good[word] = now, found
         return found
 
-    def _bound(self, path: str, headers: dict[bytes, bytes]) -> int:
+    def _bound(self, path: str, length: bytes) -> int:
         """Bytes that the body may have."""
         bound = self._settings.upload_bytes if path in UPLOADS else BODY_BYTES
-        length = headers.get(b"content-length", b"0")
         if not length.isdigit():
             raise Unreadable("Content-Length is no number")
         if int(length) > bound:
             raise TooLarge("the body", bound=bound)
         return bound
 
-    def _bounded(self, receive: Receive, bound: int) -> Receive:
+    def _bounded(self, scope: Scope, receive: Receive, headers: dict[bytes, bytes]) -> Receive:
         """A body that arrives in time and is no larger than allowed."""
+        length = headers.get(b"content-length")
+        if length is None and b"transfer-encoding" not in headers:
+            return receive
+        bound = self._bound(scope["path"], length or b"0")
         taken = 0
         is_whole = False
         until = time.monotonic() + self._settings.body_s
@@ -207,10 +207,8 @@ class Gate:
         return bounded
 
     def _count(self, scope: Scope, status: int, seconds: float, *, id: bytes, who: str) -> None:
-        route: Any = scope.get("route")
-        name = getattr(route, "path", "unknown")
-        REQUESTS.labels(scope["method"], name, status).inc()
-        SECONDS.labels(name).observe(seconds)
+        """Into the metrics, and into the log."""
+        count(scope["method"], getattr(scope.get("route"), "path", "unknown"), status, seconds)
         LOG.info(
             "request", request=id.decode(), method=scope["method"], path=scope["path"],
             status=status, seconds=round(seconds, 6), who=who,

@@ -43,6 +43,14 @@ def tagged(
     return Response(body, 200, told, JSON)
 
 
+class Prepared(Response):
+    """A body whose headers were made before: what is asked again and again is sent as it is."""
+
+    def __init__(self, status: int, body: bytes, headers: list[tuple[bytes, bytes]]) -> None:
+        self.status_code, self.body, self.raw_headers = status, body, headers
+        self.background = None
+
+
 def tag_of(body: bytes) -> str:
     """What changes with every byte."""
     return f'"{hashlib.blake2b(body, digest_size=12).hexdigest()}"'
