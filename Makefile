@@ -15,13 +15,14 @@ PYTHON ?= $(shell for p in python3.11 python3.12 python3.13 python3; do \
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; \
 	done)
 
-.PHONY: help setup demo test check bench lock clean
+.PHONY: help setup demo test check bench docs lock clean
 
 help:
 	@echo "make demo   optimise a sample part, simulate it, run it under control, and learn from it"
 	@echo "make test   run the tests"
 	@echo "make check  formatting, lint, types, layers"
 	@echo "make bench  speed, side by side with peers"
+	@echo "make docs   the documentation as a site, in build/site"
 	@echo "make setup  only install into $(VENV)"
 
 setup: $(READY)
@@ -79,6 +80,11 @@ check: $(READY)
 
 bench: $(READY) $(KERNELS)
 	$(BIN)/python -m benchmarks
+
+# Whatever mkdocs would warn of is an error. The variable stills an advertisement of its theme.
+docs: $(READY)
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict --quiet
+	@echo "open: build/site/index.html"
 
 # Needs uv. Universal (every platform, Python 3.11 and later), hashes, no index addresses.
 lock:

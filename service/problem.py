@@ -20,6 +20,9 @@ from stepnc_model.errors import Part21Error, StepNcError, WriteError
 
 PREFIX = "urn:stepnc:problem:"
 
+STANDARD = frozenset({"type", "title", "status", "detail", "instance"})
+"""members of RFC 9457, §3.1: no field of an error takes the place of one"""
+
 STATUS: tuple[tuple[type[StepNcError], int], ...] = (
     (NotFound, 404),
     (UnknownCorrection, 404),
@@ -60,7 +63,11 @@ def problem_of(error: StepNcError, *, hidden: str = "") -> dict[str, Any]:
         The data folder, which is nobody's business.
     """
     name = type(error).__name__
-    fields = {key: value for key, value in vars(error).items() if _is_plain(value)}
+    fields = {
+        key: value
+        for key, value in vars(error).items()
+        if _is_plain(value) and key not in STANDARD
+    }
     return {
         "type": type_of(name),
         "title": TITLES.get(name, _words(name).capitalize()),
@@ -104,6 +111,8 @@ def _is_plain(value: object) -> bool:
 
 
 def _hidden(value: Any, folder: str) -> Any:
+    if isinstance(value, tuple):
+        return tuple(_without(each, folder) for each in value)
     return _without(value, folder) if isinstance(value, str) else value
 
 

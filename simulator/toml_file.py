@@ -200,5 +200,8 @@ def _parsed(text: str, path: Path) -> dict[str, object]:
     """Content of a TOML text."""
     try:
         return tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
+    except RecursionError as error:
+        raise LibraryError("is no TOML: too many brackets", path=str(path)) from error
+    except ValueError as error:
+        # Also a number of more digits than Python reads, which is no TOMLDecodeError.
         raise LibraryError(f"is no TOML: {error}", path=str(path)) from error

@@ -126,6 +126,7 @@ def _serve(options: argparse.Namespace) -> int:
         needs_keys=options.keys or not is_loopback,
         upload_bytes=options.upload_mb * MIB,
         rate=rate,
+        has_request_log=options.log_level in {"debug", "info"},
     )
     serve(
         Start(

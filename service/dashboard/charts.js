@@ -44,7 +44,12 @@ export function layout(more = {}) {
  */
 export async function plot(place, make) {
   const Plotly = await plotly();
-  const draw = () => { const { data, layout: laid } = make(); return Plotly.react(place, data, laid, CONFIG); };
+  const draw = () => {
+    const { data, layout: laid } = make();
+    // When the window changes its size, plotly takes the height of the place.
+    if (laid.height) place.style.height = `${laid.height}px`;
+    return Plotly.react(place, data, laid, CONFIG);
+  };
   place.onTheme ??= (document.addEventListener("theme", () => place.redraw?.()), true);
   place.redraw = draw;
   await draw();
@@ -65,38 +70,55 @@ export function envelope(series, name, scale = 1) {
   return { x, y };
 }
 
+/** Mean of each point: means of parts sum up to the mean of the whole. */
+function means(series, name, scale = 1) {
+  return { x: series.begin_s,
+    y: series.signals[name].mean.map((value) => (value === null ? null : value * scale)) };
+}
+
 /**
  * Panels of signals against one time axis, read from the server by range: zooming reads again.
- * `source(begin, end, points)` → the path of a series; `panels` = [{title, unit, signals:
- * [{name, label, colour, dash, scale}]}]. Returns {reload, add(columns), Plotly}.
+ * `source(begin, end, points)` → the path of a series; `panels` = [{title, unit, isStacked,
+ * top(greatest) → where its axis ends by the greatest of signals, signals: [{name, label, colour, dash, scale}]}]; `shapes()`
+ * are plotly's, drawn over it. Returns {reload, redraw, add(columns), Plotly}.
  */
-export async function timePanels(place, source, panels, { points = 1500, height = 150 } = {}) {
+export async function timePanels(place, source, panels,
+  { points = 1500, height = 150, shapes = () => [] } = {}) {
   const Plotly = await plotly();
   const names = panels.flatMap((panel) => panel.signals);
   let series = null, range = null;
   const live = new Map(names.map((signal) => [signal.name, { x: [], y: [] }]));
+
+  const greatest = (name) => [series?.signals[name].high ?? [], live.get(name).y].flat()
+    .reduce((most, value) => Math.max(most, value ?? 0), 0);
 
   const make = () => {
     const data = [], laid = layout({ height: height * panels.length + 40, hovermode: "x unified",
       margin: { l: 62, r: 12, t: 22, b: 36 }, uirevision: "keep",
       grid: { rows: panels.length, columns: 1, pattern: "independent" } });
     laid.annotations = [];
+    laid.shapes = shapes();
     const share = 1 / panels.length, space = 26 / (height * panels.length);
     panels.forEach((panel, row) => {
       const number = row === 0 ? "" : String(row + 1), top = 1 - row * share;
       laid[`yaxis${number}`] = { ...laid.yaxis, domain: [Math.max(top - share + space, 0), top - 0.002],
         rangemode: "tozero", title: undefined, nticks: 4, anchor: `x${number}` };
+      const end = panel.top?.(greatest);
+      if (end) laid[`yaxis${number}`].range = [0, end];
       laid[`xaxis${number}`] = { ...laid.xaxis, anchor: `y${number}`, matches: row ? "x" : undefined,
         showticklabels: row === panels.length - 1, range: range ?? undefined,
         title: row === panels.length - 1 ? { text: "time, s", standoff: 4 } : undefined };
       laid.annotations.push({ text: panel.title, x: 0, xref: "paper", xanchor: "left", y: top,
         yref: "paper", yanchor: "bottom", showarrow: false, font: { size: 12 } });
       for (const signal of panel.signals) {
-        const { x, y } = series ? envelope(series, signal.name, signal.scale) : { x: [], y: [] };
+        const points = panel.isStacked ? means : envelope;
+        const { x, y } = series ? points(series, signal.name, signal.scale) : { x: [], y: [] };
         const more = live.get(signal.name);
         data.push({ type: "scatter", mode: "lines", name: signal.label, x: x.concat(more.x),
           y: y.concat(more.y), xaxis: `x${number}`, yaxis: `y${number}`,
-          line: { color: colour(signal.colour), width: 1.5, dash: signal.dash },
+          line: { color: colour(signal.colour), width: panel.isStacked ? 0.5 : 1.5,
+            dash: signal.dash },
+          stackgroup: panel.isStacked ? `stack${number}` : undefined,
           hovertemplate: `%{y:.4~r} ${panel.unit}` });
       }
     });
@@ -149,13 +171,14 @@ export async function timePanels(place, source, panels, { points = 1500, height 
       ys.push(y);
     }
     Plotly.extendTraces(place, { x: xs, y: ys }, names.map((_, at) => at), 12_000);
-    const last = times.at(-1);
-    if (window && !range) {
-      const shown = [Math.max(0, last - window), Math.max(window, last)];
-      Plotly.relayout(place, Object.fromEntries(panels.map((_, row) =>
-        [`xaxis${row ? row + 1 : ""}.range`, shown])));
-    }
+    const last = times.at(-1), changes = {};
+    panels.forEach((panel, row) => {
+      const number = row ? row + 1 : "", end = panel.top?.(greatest);
+      if (end) changes[`yaxis${number}.range`] = [0, end];
+      if (window && !range) changes[`xaxis${number}.range`] = [Math.max(0, last - window), Math.max(window, last)];
+    });
+    if (Object.keys(changes).length) Plotly.relayout(place, changes);
   }
 
-  return { reload, add, Plotly };
+  return { reload, redraw: () => place.redraw(), add, Plotly };
 }

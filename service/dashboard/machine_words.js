@@ -24,7 +24,7 @@ export const PANELS = [
   { title: "Power by component, W", unit: "W", isStacked: true,
     signals: COMPONENTS.map(({ signal, label, colour }) => ({ name: signal, label, colour })) },
   { title: "Feed, mm/min (rapids leave the top)", unit: "mm/min",
-    top: (series) => 1.35 * Math.max(...series.signals.feed_programmed_mm_min.high, 0) || undefined,
+    top: (greatest) => 1.35 * greatest("feed_programmed_mm_min"),
     signals: [
       { name: "feed_actual_mm_min", label: "actual", colour: "curve-1" },
       { name: "feed_programmed_mm_min", label: "commanded", colour: "curve-2", dash: "dash" },

@@ -12,9 +12,9 @@ from tempfile import TemporaryDirectory
 
 from service.chosen import load_material_named
 from service.depot.folder import Depot
-from service.errors import Conflict, NotFound, Unreadable
+from service.errors import Conflict, NotFound, TooLarge, Unreadable
 from service.files import read_bytes, write_atomically
-from simulator.errors import UnknownMachine
+from simulator.errors import LibraryError, UnknownMachine
 from simulator.library import (
     load_machine,
     load_material,
@@ -30,6 +30,9 @@ _NAME = re.compile(NAME)
 
 LONGEST = 200
 """letters of any name of a material"""
+
+LARGEST = 1 << 16
+"""bytes of a file, ten times those of the library's: a parser's time may grow with the square"""
 
 
 class Shelf(StrEnum):
@@ -115,24 +118,35 @@ def put(depot: Depot, shelf: Shelf, name: str, data: bytes) -> Held:
 
     Raises
     ------
-    Unreadable, Conflict, LibraryError
+    Unreadable, Conflict, TooLarge, LibraryError
         When the name cannot be one, is the library's, or the file is no good.
     """
-    if not _NAME.match(name):
+    if not _NAME.fullmatch(name):
         raise Unreadable(f"'{name[:LONGEST]}': a name is small letters, digits, '-' and '_'")
     if name in _library(shelf):
         raise Conflict(f"{shelf.one} '{name}' is of the library: take another name")
+    if len(data) > LARGEST:
+        raise TooLarge(f"the file of a {shelf.one}", bound=LARGEST)
     suffix = _suffix(shelf, data)
-    with TemporaryDirectory() as folder:
-        trial = Path(folder) / f"{name}{suffix}"
-        trial.write_bytes(data)
-        _LOADERS[shelf](str(trial))
+    _try_out(shelf, f"{name}{suffix}", data)
     before = _own_file(depot, shelf, name)
     file = depot.root / shelf.value / f"{name}{suffix}"
     write_atomically(file, data)
     if before is not None and before != file:
         before.unlink(missing_ok=True)
     return one(depot, shelf, name)
+
+
+def _try_out(shelf: Shelf, name: str, data: bytes) -> None:
+    """Read a file before it is kept; what is wrong is told by its name alone."""
+    with TemporaryDirectory() as folder:
+        trial = Path(folder) / name
+        trial.write_bytes(data)
+        try:
+            _LOADERS[shelf](str(trial))
+        except LibraryError as error:
+            told = str(error).removeprefix(f"{error.path}: ").removeprefix(f"{error.key}: ")
+            raise LibraryError(told, path=name, key=error.key) from error
 
 
 def text_of(depot: Depot, shelf: Shelf, name: str) -> bytes:
@@ -171,7 +185,7 @@ def _suffix(shelf: Shelf, data: bytes) -> str:
 
 
 def _own_file(depot: Depot, shelf: Shelf, name: str) -> Path | None:
-    if not _NAME.match(name):
+    if not _NAME.fullmatch(name):
         return None
     for suffix in (".toml", ".xml"):
         file = depot.root / shelf.value / f"{name}{suffix}"
@@ -186,7 +200,7 @@ def _names(depot: Depot, shelf: Shelf) -> list[str]:
 
 
 def _files(folder: Path) -> Iterable[Path]:
-    return (path for path in folder.iterdir() if _NAME.match(path.stem))
+    return (path for path in folder.iterdir() if _NAME.fullmatch(path.stem))
 
 
 def _library(shelf: Shelf) -> tuple[str, ...]:

@@ -47,8 +47,8 @@ def add(
     kept = ""
     try:
         with depot.database.writing() as connection:
-            kept = made_before(connection, once) or program.id
-            if kept == program.id:
+            known = made_before(connection, once)
+            if known is None:
                 connection.execute(
                     "INSERT INTO programs VALUES (?, ?, ?, ?, ?, ?)",
                     (
@@ -57,6 +57,7 @@ def add(
                     ),
                 )  # fmt: skip
                 remember(connection, once, program.id)
+        kept = known or program.id
     finally:
         if kept != program.id:
             place.unlink(missing_ok=True)

@@ -1,4 +1,4 @@
-"""The jobs ``evaluation`` and ``review``: tables of the knowledge base, and what it proposes."""
+"""The jobs ``evaluation`` and ``review``: tables of the knowledge base, and proposals."""
 
 import json
 from collections.abc import Mapping
@@ -58,8 +58,12 @@ def run_review(task: Task) -> None:
 
 def selection_of(asked: Mapping[str, Any]) -> Selection:
     """The outcomes that are meant."""
-    times = {
-        name: None if asked[name] is None else datetime.fromisoformat(asked[name])
-        for name in ("since", "until")
-    }
-    return Selection(**{name: asked[name] for name in NAMES}, **times)
+    return Selection(
+        **{name: asked[name] for name in NAMES},
+        since=_moment(asked["since"]),
+        until=_moment(asked["until"]),
+    )
+
+
+def _moment(text: str | None) -> datetime | None:
+    return None if text is None else datetime.fromisoformat(text)

@@ -1,6 +1,7 @@
 """The job ``simulation``: a program on the virtual machine, watched while it runs."""
 
 import json
+from math import inf
 
 from service.depot.library import machine_word, material_word
 from service.jobs.task import REPORT, SAMPLES, Task
@@ -8,6 +9,9 @@ from service.live.pace import Pace
 from service.simulation.live import LiveSamples
 from service.simulation.run import SimulationRequest, simulate
 from service.simulation.wire import simulation_json
+
+SHOWN = 0.1
+"""s of ours between two looks at a run with a pace"""
 
 
 def run(task: Task) -> None:
@@ -21,7 +25,7 @@ def run(task: Task) -> None:
     asked = task.request
     file, name = task.program_file()
     pace = Pace(asked["pace"])
-    live = LiveSamples(task.live, pace.wait_for)
+    live = LiveSamples(task.live, pace.wait_for, apart=pace.factor * SHOWN or inf)
     with live.writer:
         simulation = simulate(
             SimulationRequest(

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from service.control.facts import exceeded, rows
@@ -20,6 +20,9 @@ from service.live.steering import Helm
 from service.simulation.run import SimulationRequest
 from service.trial.inputs import Inputs, changed
 from service.trial.run import TrialRun
+
+UNCHANGED = {"motor_power_percent": 100.0, "depth_percent": 100.0, "hardness_percent": 100.0}
+"""of a run of which nothing was asked yet"""
 
 LONGEST = 4 * 3600.0
 """s of a trial: then it was forgotten"""
@@ -71,6 +74,8 @@ class SteeredControl:
     """A program under control as the helm knows it. Running state."""
 
     control: LiveControl
+    _asked: dict[str, Any] = field(default_factory=dict)
+    """changes that the run has taken"""
 
     @property
     def time(self) -> float:
@@ -94,10 +99,19 @@ class SteeredControl:
         """What is to be otherwise."""
         if order:
             self.control.change(Changes(**order))
+            self._asked |= order
 
     def status(self) -> dict[str, Any]:
-        """How it is."""
-        return status_words(self.control.status())
+        """How it is, and with what it was told to run; the machine's truth may be another."""
+        found, session = status_words(self.control.status()), self.control.session
+        held = {"mode": found["criterion"], "is_on": found["is_on"]}
+        usual = {**UNCHANGED, "material": session.plan.material.material.name}
+        tools = {each.workingstep.id: each.tool.id for each in session.advices if each}
+        return {
+            **found,
+            "tool": tools.get(found["workingstep"], ""),
+            "inputs": {**usual, **self._asked, **held},
+        }
 
 
 def run_trial(task: Task) -> None:

@@ -1,7 +1,8 @@
 """Lines of JSON that one process appends and others read while it goes on.
 
 A line is written at once, so that a reader meets whole lines only; what stands behind the last
-line break is still being written, or was cut off when its writer died.
+line break is still being written, or was cut off when its writer died or the disk was full. A
+line that was cut off and went on as another is none: it is passed over.
 """
 
 import json
@@ -43,5 +44,14 @@ def read_on(file: Path, offset: int) -> Read:
     except FileNotFoundError:
         return Read(lines=(), offset=offset)
     whole = text[: text.rfind(b"\n") + 1]
-    lines = tuple(json.loads(line) for line in whole.splitlines())
-    return Read(lines=lines, offset=offset + len(whole))
+    lines = (_parsed(line) for line in whole.split(b"\n"))
+    found = tuple(line for line in lines if line is not None)
+    return Read(lines=found, offset=offset + len(whole))
+
+
+def _parsed(line: bytes) -> dict[str, Any] | None:
+    try:
+        found = json.loads(line)
+    except ValueError:
+        return None
+    return found if isinstance(found, dict) else None

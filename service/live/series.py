@@ -37,7 +37,8 @@ class SeriesWriter:
 
     def __init__(self, file: Path, columns: Sequence[str]) -> None:
         self.rows = 0
-        self._count = len(columns)
+        # Not cut short in place: whoever has mapped the rows of an earlier attempt keeps them.
+        file.unlink(missing_ok=True)
         self._file = file.open("wb")
         self._file.write(json.dumps(list(columns)).encode() + b"\n")
         self._file.flush()

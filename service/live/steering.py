@@ -7,6 +7,7 @@ written where others read it.
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from typing import Any, Protocol
 
 from service.control.live_run import Taken
@@ -70,6 +71,9 @@ class Helm:
     """s of the machine in one of ours; 0: as fast as can be"""
     now: Callable[[], float] = time.monotonic
     wait: Callable[[float], None] = time.sleep
+    clock: Callable[[], datetime] = lambda: datetime.now(UTC)
+    """of the moment that each status carries: who watches knows a run that hangs from one that
+    stands"""
     tell: Callable[[dict[str, Any]], None] = lambda _: None
     """hears the status of each tick"""
     _offset: int = 0
@@ -77,12 +81,15 @@ class Helm:
     def go(self) -> None:
         """To the end of the run."""
         with SeriesWriter(self.folder.series, list(COLUMNS)) as series:
-            goes_on = True
+            goes_on, due = True, self.run.time
             while goes_on:
                 begin = self.now()
                 self._obey()
-                goes_on = self.run.advance(self.run.time + (TICK * self.pace or AT_ONCE))
-                goes_on = goes_on or self.run.is_waiting
+                # A cycle passes the time that is due: what it was too early waits in the next.
+                if self.run.is_waiting or not self.pace:
+                    due = self.run.time
+                due += TICK * self.pace or AT_ONCE
+                goes_on = self.run.advance(due) or self.run.is_waiting
                 self._publish(series)
                 if self.pace or self.run.is_waiting:
                     self.wait(max(TICK - (self.now() - begin), 0.0))
@@ -105,7 +112,8 @@ class Helm:
             series.add(rows_of(taken.moments))
         for event in taken.events:
             self._say(event.kind.value, event.text, at=event.time)
-        status = {**self.run.status(), "pace": self.pace}
+        told_at = self.clock().isoformat(timespec="milliseconds")
+        status = {**self.run.status(), "pace": self.pace, "told_at": told_at}
         self.folder.write_status(status)
         self.tell(status)
 

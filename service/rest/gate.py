@@ -7,6 +7,7 @@ import asyncio
 import re
 import secrets
 import time
+from itertools import count as count_up
 from typing import Any
 
 import orjson
@@ -18,6 +19,7 @@ from service.depot.folder import Depot
 from service.depot.keys import Key, Role
 from service.errors import Forbidden, StepNcError, TooLarge, Unauthorised, Unreadable
 from service.problem import plain_problem, problem_of
+from service.rest.logs import RequestLog
 from service.rest.metrics import count
 from service.rest.rate import RateLimit
 from service.rest.rights import LOOKING, is_protected, role_for
@@ -76,6 +78,9 @@ class Gate:
         self._names = frozenset(
             name.lower() for name in ({settings.host, *settings.names} | LOOPBACK)
         )
+        self._log = RequestLog() if settings.has_request_log else None
+        # Ids of requests: random for the process, then counted.
+        self._prefix, self._count_of = secrets.token_hex(6), count_up(1)
         self._good: dict[str, tuple[float, Key]] = {}
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -86,7 +91,11 @@ class Gate:
         begin = time.perf_counter()
         headers: dict[bytes, bytes] = dict(scope["headers"])
         asked = headers.get(b"x-request-id", b"")
-        id = asked if REQUEST_ID.match(asked) else secrets.token_hex(8).encode()
+        id = (
+            asked
+            if REQUEST_ID.match(asked)
+            else f"{self._prefix}{next(self._count_of):x}".encode()
+        )
         status = 0
 
         async def answer(message: Message) -> None:
@@ -209,10 +218,11 @@ class Gate:
     def _count(self, scope: Scope, status: int, seconds: float, *, id: bytes, who: str) -> None:
         """Into the metrics, and into the log."""
         count(scope["method"], getattr(scope.get("route"), "path", "unknown"), status, seconds)
-        LOG.info(
-            "request", request=id.decode(), method=scope["method"], path=scope["path"],
-            status=status, seconds=round(seconds, 6), who=who,
-        )  # fmt: skip
+        if self._log is not None:
+            self._log.add({
+                "request": id.decode(), "method": scope["method"], "path": scope["path"],
+                "status": status, "seconds": round(seconds, 6), "who": who,
+            })  # fmt: skip
 
 
 def _host(name: str) -> str:

@@ -1,7 +1,8 @@
-"""``/v1/evaluations``, ``/v1/reviews``, ``/v1/corrections``, ``/v1/outcomes``: what was learned."""
+"""``/v1/evaluations``, ``/v1/reviews``, ``/v1/corrections``, ``/v1/outcomes``: learning."""
 
 import json
 from collections.abc import Callable, Sequence
+from datetime import datetime
 from enum import StrEnum
 from typing import Annotated
 
@@ -9,10 +10,11 @@ from fastapi import APIRouter, Path, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from kbe.ledger import Entry
+from kbe.rows import utc
 from kbe.selection import Selection
 from service.depot import jobs
 from service.depot.jobs import Kind, Order
-from service.errors import NotFound
+from service.errors import NotFound, Unreadable
 from service.jobs.evaluate import TABLE
 from service.jobs.task import REPORT
 from service.knowledge import verbs
@@ -39,6 +41,11 @@ OUTCOMES = APIRouter(prefix="/v1/outcomes", tags=["knowledge"])
 MOST_NUMBER = 2**31 - 1
 
 Number = Annotated[int, Path(ge=1, le=MOST_NUMBER, description="of the correction")]
+Word = Annotated[str | None, Query(max_length=200)]
+Since = Annotated[datetime | None, Query(description="first moment that counts, with zone")]
+Until = Annotated[
+    datetime | None, Query(description="first moment that counts no more, with zone")
+]
 
 
 class Form(StrEnum):
@@ -56,6 +63,7 @@ async def ask_evaluation(
     request: Request, body: EvaluationBody, owner: ByOwner, key: OnceKey = None
 ) -> Response:
     """A job: what was planned against what it was, feature by feature."""
+    _require_moments(since=body.since, until=body.until)
     order = Order(kind=Kind.EVALUATION, request=body.words(), owner=owner)
     return await queued(request, order, key)
 
@@ -73,8 +81,12 @@ async def evaluation(request: Request, id: Id) -> Response:
     return await result_reply(request, id, Kind.EVALUATION)
 
 
-@EVALUATIONS.get("/{id}/table", summary="A table as a file", response_class=Response,
-                 responses={200: {"content": {kind: {} for kind in KINDS.values()}}})  # fmt: skip
+@EVALUATIONS.get(
+    "/{id}/table",
+    summary="A table as a file",
+    response_class=Response,
+    responses={200: {"content": {kind: {} for kind in KINDS.values()}}},
+)
 async def evaluation_file(
     depot: InDepot, id: Id, form: Annotated[Form, Query(description="of the file")] = Form.CSV
 ) -> Response:
@@ -100,6 +112,7 @@ async def ask_review(
     request: Request, body: ReviewBody, owner: ByOwner, key: OnceKey = None
 ) -> Response:
     """A job: it proposes corrections; a person accepts them."""
+    _require_moments(since=body.since, until=body.until)
     order = Order(kind=Kind.REVIEW, request=body.words(), owner=owner)
     return await queued(request, order, key)
 
@@ -134,22 +147,46 @@ async def withdraw(
     return await _corrections(request, lambda: verbs.withdraw(place, [number], by=body.by))
 
 
+def _require_moments(**times: datetime | None) -> None:
+    """Refuse a moment that no clock shows, before a job meets it.
+
+    Raises
+    ------
+    Unreadable
+        When it has no zone, or lies beyond the years that there are.
+    """
+    for name, time in times.items():
+        try:
+            if time is not None:
+                utc(name, time)
+        except (ValueError, OverflowError) as error:
+            raise Unreadable(str(error)) from error
+
+
 async def _corrections(request: Request, work: Callable[[], Sequence[Entry]]) -> Response:
     entries = await run_in_threadpool(work)
     return json_reply(request, corrections_json(entries).encode())
 
 
 @OUTCOMES.get("", summary="Outcomes, newest first")
-async def outcomes(
+async def outcomes(  # noqa: PLR0913 (each is a parameter of the request)
     request: Request,
-    machine: Annotated[str | None, Query(max_length=200)] = None,
-    material: Annotated[str | None, Query(max_length=200)] = None,
-    tool: Annotated[str | None, Query(max_length=200)] = None,
-    program: Annotated[str | None, Query(max_length=200)] = None,
+    *,
+    machine: Word = None,
+    material: Word = None,
+    tool: Word = None,
+    feature_kind: Word = None,
+    program: Word = None,
+    since: Since = None,
+    until: Until = None,
     limit: Annotated[int, Query(ge=1, le=2000)] = 200,
 ) -> Response:
     """What runs showed, workingstep by workingstep; canonical units, as in exports."""
-    selection = Selection(machine=machine, material=material, tool=tool, program=program)
+    _require_moments(since=since, until=until)
+    selection = Selection(
+        machine=machine, material=material, tool=tool, feature_kind=feature_kind,
+        program=program, since=since, until=until,
+    )  # fmt: skip
     place = depot_of(request).knowledge
     listing = await run_in_threadpool(verbs.newest, place, selection, limit=limit)
     return json_reply(request, listing_json(listing).encode())

@@ -1,6 +1,7 @@
 """``/v1/control-runs`` and ``/v1/trials``: runs that are steered while they go on."""
 
 from collections.abc import Mapping
+from dataclasses import asdict
 from typing import Any
 
 from fastapi import APIRouter, Request, Response
@@ -39,6 +40,11 @@ TRIALS = APIRouter(prefix="/v1/trials", tags=["control"])
 
 SHOWN_EVENTS = 500
 
+USUAL = {
+    "requestBody": {"content": {"application/json": {"example": {"inputs": asdict(Inputs())}}}}
+}
+"""of a trial: what is left out is as here"""
+
 
 @CONTROL.post(
     "", status_code=202, response_model=JobView, summary="Run a program under control"
@@ -50,7 +56,8 @@ async def ask_control(
     return await queued(request, run_order(depot, Kind.CONTROL, body, owner), key)
 
 
-@TRIALS.post("", status_code=202, response_model=JobView, summary="Begin a trial cut")
+@TRIALS.post("", status_code=202, response_model=JobView, summary="Begin a trial cut",
+             openapi_extra=USUAL)  # fmt: skip
 async def ask_trial(
     request: Request, body: TrialBody, owner: ByOwner, key: OnceKey = None
 ) -> Response:

@@ -111,6 +111,7 @@ def status_reply(request: Request, job: Job) -> Response:
 async def stream_reply(request: Request, job: Job) -> Response:
     """What happens, as it happens."""
     hub = hub_of(request)
+    hub.require_room()
 
     async def messages() -> AsyncIterator[bytes]:
         yield b"retry: 2000\n\n"

@@ -36,7 +36,8 @@ class Settings:
     """requests at once"""
     body_s: float = 60.0
     """in which a body arrives"""
-    is_tls: bool = False
+    has_request_log: bool = True
+    """a line for each request"""
 
     @property
     def is_loopback(self) -> bool:

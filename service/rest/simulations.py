@@ -1,15 +1,22 @@
 """``/v1/simulations``: programs on the virtual machine."""
 
-from fastapi import APIRouter, Request, Response
+from typing import Annotated, Any
+
+import numpy as np
+from fastapi import APIRouter, Query, Request, Response
+from starlette.concurrency import run_in_threadpool
 
 from service.depot import jobs
 from service.depot.folder import Depot
-from service.depot.jobs import Kind, Order
-from service.errors import Unreadable
+from service.depot.jobs import Job, Kind, Order
+from service.errors import Conflict, Unreadable
 from service.jobs.task import REPORT, SAMPLES
+from service.live.folder import LiveFolder
+from service.live.path import deviation, path_of, thinned
+from service.live.series import open_series
 from service.rest.bodies import Id, RunBody, SimulationBody
 from service.rest.context import AtPlace, ByOwner, InDepot, OnceKey, page_reply, queued
-from service.rest.replies import file_reply, report_reply
+from service.rest.replies import file_reply, json_reply, report_reply
 from service.rest.results import (
     SERIES_POINTS,
     Begin,
@@ -20,11 +27,22 @@ from service.rest.results import (
     result_reply,
     series_reply,
 )
-from service.rest.views import JobView, PageView, SeriesView, SimulationView, job_view
+from service.rest.views import (
+    JobView,
+    PageView,
+    PathView,
+    SeriesView,
+    SimulationView,
+    job_view,
+)
 
 ROUTES = APIRouter(prefix="/v1/simulations", tags=["simulations"])
 
 PARQUET = "application/vnd.apache.parquet"
+
+PATH_POINTS = 20_000
+
+PathPoints = Annotated[int, Query(ge=100, le=50_000, description="of the path, at most")]
 
 
 @ROUTES.post("", status_code=202, response_model=JobView, summary="Simulate a program")
@@ -65,7 +83,7 @@ async def simulation(request: Request, id: Id) -> Response:
 
 
 @ROUTES.get("/{id}/series", response_model=SeriesView, summary="Signals against time")
-async def series(  # noqa: PLR0913 (each is a parameter of the request)
+async def series(  # noqa: PLR0913, PLR0917 (each is a parameter of the request)
     request: Request,
     depot: InDepot,
     id: Id,
@@ -79,6 +97,43 @@ async def series(  # noqa: PLR0913 (each is a parameter of the request)
     return await series_reply(
         request, job, signals=signals, begin=begin_s, end=end_s, points=points
     )
+
+
+@ROUTES.get("/{id}/path", response_model=PathView, summary="Where the tool went")
+async def path(
+    request: Request, depot: InDepot, id: Id, points: PathPoints = PATH_POINTS
+) -> Response:
+    """Thinned so that corners and changes of feed and force stay; also while it runs."""
+    job = jobs.get(depot, id, Kind.SIMULATION)
+    found = await run_in_threadpool(_path, depot, job, points)
+    return json_reply(request, found)
+
+
+def _path(depot: Depot, job: Job, points: int) -> dict[str, Any]:
+    folder = LiveFolder(path=depot.job_folder(job.id))
+    series, status = open_series(folder.series), folder.read_status()
+    if series is None or not len(series) or status is None:
+        raise Conflict(f"{job.kind.value} '{job.id}' is {job.state.value}: it has no rows yet")
+    whole = path_of(series)
+    kept = thinned(whole, points)
+    off, shown = deviation(whole, kept), whole.at(kept)
+    x, y, z = np.ascontiguousarray(np.round(shown.position, 4).T)
+    return {
+        "workingsteps": status["workingsteps"],
+        "rows": len(whole),
+        "deviation_mm": off.length,
+        "deviation_mm_min": off.feed,
+        "deviation_n": off.force,
+        "is_growing": not job.state.is_over,
+        "time_s": np.round(shown.time, 4),
+        "x_mm": x,
+        "y_mm": y,
+        "z_mm": z,
+        "feed_actual_mm_min": np.round(shown.feed, 2),
+        "cutting_force_n": np.round(shown.force, 2),
+        "is_rapid": shown.is_rapid,
+        "workingstep": shown.workingstep,
+    }
 
 
 @ROUTES.get("/{id}/samples", summary="All samples as a Parquet file", response_class=Response,

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import orjson
+import structlog
 
 from service.depot import jobs
 from service.depot.folder import Depot
@@ -23,6 +24,8 @@ from service.live.journal import read_on
 from service.live.series import open_series
 from service.rest.metrics import STREAMS
 from service.rest.views import job_view
+
+LOG = structlog.get_logger("streams")
 
 TICK = 0.1
 """s between two looks at a run"""
@@ -68,9 +71,11 @@ class Client:
             self.has_lost = True
 
     def end(self) -> None:
-        """Nothing more comes."""
-        while self.queue.full():
-            self.queue.get_nowait()
+        """Nothing more comes; who could not follow to the end is told so first."""
+        if self.has_lost or self.queue.full():
+            while self.queue.qsize() > WAITING - 2:
+                self.queue.get_nowait()
+            self.queue.put_nowait(event("gap", {}))
         self.queue.put_nowait(OVER)
 
 
@@ -79,6 +84,7 @@ class Reader:
 
     def __init__(self, depot: Depot, id: str) -> None:
         self.clients: set[Client] = set()
+        self.is_over = False
         self._depot, self._id = depot, id
         self._folder = LiveFolder(path=depot.job_folder(id))
         self._row = 0
@@ -88,19 +94,23 @@ class Reader:
 
     async def run(self) -> None:
         """Until the job is over, or nobody watches any more."""
-        with suppress(NotFound):
-            self._skip()
-            while self.clients:
-                job = jobs.get(self._depot, self._id)
-                # After the job was looked at: what it wrote before its end is seen.
-                for message in self._news(job):
-                    for client in self.clients:
-                        client.give(message)
-                if job.state.is_over:
-                    break
-                await asyncio.sleep(TICK)
-        for client in self.clients:
-            client.end()
+        try:
+            with suppress(NotFound):
+                self._skip()
+                while self.clients:
+                    job = jobs.get(self._depot, self._id)
+                    # After the job was looked at: what it wrote before its end is seen.
+                    for message in self._news(job):
+                        for client in self.clients:
+                            client.give(message)
+                    if job.state.is_over:
+                        break
+                    await asyncio.sleep(TICK)
+        finally:
+            # Also after a fault: nobody waits for what does not come.
+            self.is_over = True
+            for client in self.clients:
+                client.end()
 
     def _skip(self) -> None:
         """What was before is in the series and in the list of events."""
@@ -135,13 +145,16 @@ class Reader:
 
     def _rows(self) -> bytes | None:
         series = open_series(self._folder.series)
+        if series is not None and len(series) < self._row:
+            # Another attempt has begun anew.
+            self._row = 0
         if series is None or len(series) <= self._row:
             return None
         count = len(series) - self._row
         at = np.unique(np.linspace(self._row, len(series) - 1, min(count, ROWS)).astype(int))
-        values = np.asarray(series.values[at])
+        values = np.ascontiguousarray(series.values[at].T)
         self._row = len(series)
-        columns = {name: values[:, place] for place, name in enumerate(series.columns)}
+        columns = {name: values[place] for place, name in enumerate(series.columns)}
         return event("rows", {"columns": columns, "is_reduced": count > ROWS})
 
 
@@ -154,6 +167,16 @@ class Hub:
         self._tasks: set[asyncio.Task[None]] = set()
         self._clients = 0
 
+    def require_room(self) -> None:
+        """Refuse one client more than can watch, before anything was answered.
+
+        Raises
+        ------
+        TooMany
+        """
+        if self._clients >= MOST_CLIENTS:
+            raise TooMany(10.0)
+
     async def watch(self, id: str) -> AsyncIterator[bytes]:
         """Messages for one more client.
 
@@ -162,8 +185,7 @@ class Hub:
         TooMany
             When as many as can be watch already.
         """
-        if self._clients >= MOST_CLIENTS:
-            raise TooMany(10.0)
+        self.require_room()
         client = Client()
         reader = self._joined(id, client)
         self._clients += 1
@@ -188,7 +210,7 @@ class Hub:
 
     def _joined(self, id: str, client: Client) -> Reader:
         reader = self._readers.get(id)
-        if reader is not None:
+        if reader is not None and not reader.is_over:
             reader.clients.add(client)
             return reader
         reader = self._readers[id] = Reader(self._depot, id)
@@ -196,10 +218,12 @@ class Hub:
         task = asyncio.create_task(reader.run())
         self._tasks.add(task)
 
-        def done(_: object) -> None:
-            self._tasks.discard(task)
+        def done(ended: asyncio.Task[None]) -> None:
+            self._tasks.discard(ended)
             if self._readers.get(id) is reader:
                 del self._readers[id]
+            if not ended.cancelled() and (error := ended.exception()) is not None:
+                LOG.error("a run cannot be watched", job=id, reason=str(error))
 
         task.add_done_callback(done)
         return reader

@@ -18,7 +18,7 @@ class View(BaseModel):
 
 
 class Problem(BaseModel):
-    """A problem after RFC 9457; errors of the project add their fields (line, entity, limits …)."""
+    """A problem after RFC 9457; errors of the project add fields (line, entity, limits …)."""
 
     model_config = ConfigDict(extra="allow")
 
@@ -216,6 +216,27 @@ class SeriesView(View):
     is_reduced: bool = Field(description="whether rows were brought together")
     is_growing: bool = Field(description="whether the run goes on")
     columns: list[str] = Field(description="all signals that there are")
+
+
+class PathView(View):
+    """The way of the tool, thinned to as many points as were asked for at most."""
+
+    workingsteps: list[str] = Field(description="ids, in the order of their numbers")
+    rows: int = Field(description="that the run has")
+    deviation_mm: float = Field(
+        description="at most, of what was left out, from the line between its neighbours"
+    )
+    deviation_mm_min: float = Field(description="of the feed, outside of rapid moves")
+    deviation_n: float = Field(description="of the force")
+    is_growing: bool = Field(description="whether the run goes on")
+    time_s: list[float]
+    x_mm: list[float]
+    y_mm: list[float]
+    z_mm: list[float]
+    feed_actual_mm_min: list[float]
+    cutting_force_n: list[float | None]
+    is_rapid: list[bool] = Field(description="of the move that ends in the point")
+    workingstep: list[int] = Field(description="its number from 1; 0: none")
 
 
 class EntryView(View):

@@ -1,6 +1,7 @@
 """A simulated run while it runs: its samples as rows that others read. In the user's units."""
 
 from collections.abc import Callable, Mapping, Sequence
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -46,11 +47,22 @@ COLUMNS: Mapping[str, Callable[[Samples], Floats]] = {
 
 
 class LiveSamples:
-    """Looks at the samples of a run. Running state; use the writer with ``with``."""
+    """Looks at the samples of a run. Running state; use the writer with ``with``.
 
-    def __init__(self, folder: LiveFolder, paced: Callable[[float], None]) -> None:
+    Parameters
+    ----------
+    folder : LiveFolder
+    paced : callable
+        Returns when the machine may have come to a time, s.
+    apart : float, s
+        Of the machine, that are shown at once: a paced run shows nothing before its time.
+    """
+
+    def __init__(
+        self, folder: LiveFolder, paced: Callable[[float], None], *, apart: float = inf
+    ) -> None:
         self.writer = SeriesWriter(folder.series, list(COLUMNS))
-        self._folder, self._paced = folder, paced
+        self._folder, self._paced, self._apart = folder, paced, apart
         self._workingsteps: Sequence[str] = ()
 
     def begin(self, workingsteps: Sequence[str]) -> None:
@@ -61,14 +73,19 @@ class LiveSamples:
         """See :class:`service.simulation.gathering.Watcher`."""
         if not len(samples):
             return
-        self.writer.add(np.column_stack([of(samples) for of in COLUMNS.values()]))
-        self._folder.write_status(self._status(samples))
-        self._paced(float(samples.time[-1]))
+        rows = np.column_stack([of(samples) for of in COLUMNS.values()])
+        ends = np.flatnonzero(np.diff(samples.time // self._apart)) + 1
+        first = 0
+        for end in [*ends.tolist(), len(samples)]:
+            self.writer.add(rows[first:end])
+            self._folder.write_status(self._status(samples, end - 1))
+            self._paced(float(samples.time[end - 1]))
+            first = end
 
-    def _status(self, samples: Samples) -> dict[str, Any]:
-        number = int(samples.workingstep[-1])
+    def _status(self, samples: Samples, at: int) -> dict[str, Any]:
+        number = int(samples.workingstep[at])
         return {
-            "time_s": float(samples.time[-1]),
+            "time_s": float(samples.time[at]),
             "workingstep": self._workingsteps[number - 1] if number else None,
             "workingsteps": list(self._workingsteps),
         }

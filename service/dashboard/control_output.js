@@ -1,0 +1,148 @@
+// The output pane: feeds, override, force against its set point, the lamp of the power limit.
+
+import { announce, byId, el, figure, fixed, number } from "/dashboard/app.js";
+import { switchField } from "/dashboard/control_fields.js";
+
+const FEEDS = [
+  ["feed_programmed_mm_min", "Programmed feed", "mm/min"],
+  ["feed_advised_mm_min", "Advised feed", "mm/min"],
+  ["feed_actual_mm_min", "Actual feed", "mm/min"],
+  ["override_percent", "Override", "%"],
+];
+
+/** Small figures by kind of run: [name in the status, words, unit, decimals or undefined]. */
+const SMALL = {
+  "trial": [
+    ["power_predicted_kw", "Predicted power", "kW", 2],
+    ["power_kw", "Drive power", "kW", 2],
+    ["force_predicted_n", "Predicted force", "N", 0],
+    ["force_measured_n", "Measured force", "N", 0],
+    ["feed_per_tooth_mm", "Feed per tooth", "mm", 3],
+    ["removal_rate_cm3_min", "Removal rate", "cm³/min", 1],
+    ["specific_cutting_force_n_mm2", "Specific force", "N/mm²", 0],
+  ],
+  "control-run": [
+    ["power_kw", "Drive power", "kW", 2],
+    ["motor_power_kw", "Motor gives", "kW", 2],
+    ["force_expected_n", "Expected force", "N", 0],
+    ["force_measured_n", "Measured force", "N", 0],
+    ["removal_rate_cm3_min", "Removal rate", "cm³/min", 1],
+    ["axial_depth_mm", "Depth cut now", "mm", 2],
+  ],
+};
+const BAR_TOP = 1.5;
+
+function named(name, words, unit, kind) {
+  const node = figure(words, "–", unit, kind);
+  const value = node.querySelector(".value");
+  value.id = `out-${name}`;
+  node.dataset.name = name;
+  return { node, put: (text) => { if (value.textContent !== text) value.textContent = text; } };
+}
+
+/** The pane; `ask(name, value)` hears the switches. */
+export class Output {
+  constructor(ask) {
+    this.isOn = switchField({ name: "is_on", words: "loop on or off" },
+      [[true, "ON", "the loop sets the feed"], [false, "OFF", "the programmed feed, whatever the force"]], ask);
+    this.mode = switchField({ name: "mode", words: "mode" },
+      [["TC", "TC", "time-critical: as fast as the limits allow"],
+        ["QC", "QC", "quality-critical: the programmed chip load"]], ask);
+    this.feeds = FEEDS.map(([name, words, unit]) => named(name, words, unit, "big"));
+    this.lampWord = el("span", { class: "word" }, "–");
+    this.lamp = el("div", { class: "lamp idle", id: "lamp", role: "img", "aria-label": "power limit: no run" },
+      el("span", { class: "cap" }, "Power limit"), this.lampWord);
+    this.depth = el("div", { id: "depth-warning", class: "depth" });
+    this.holding = el("b", { id: "out-holding" }, "–");
+    this.forceText = el("span", { id: "out-force" }, "–");
+    this.fillBar = el("div", { class: "fill" });
+    this.bar = el("div", { class: "meter", role: "meter", id: "force-bar", "aria-label": "force against set point",
+      "aria-valuemin": "0", "aria-valuemax": "150" }, this.fillBar, el("div", { class: "aim" }));
+    this.small = el("div", { class: "figures small-figures", id: "out-small" });
+    this.kind = "";
+    this.node = el("section", { class: "card output", id: "output", "aria-labelledby": "output-title" },
+      el("h2", { id: "output-title", class: "unseen" }, "Output"),
+      el("div", { class: "top" }, el("div", { class: "figures feeds" }, this.feeds.map((each) => each.node)),
+        this.lamp),
+      el("div", { class: "middle" },
+        el("div", { class: "force" },
+          el("div", { class: "soft" }, "Cutting force ", this.forceText), this.bar,
+          el("div", { class: "row spread" }, el("span", { class: "soft" }, "Feed held by ", this.holding),
+            this.depth)),
+        el("div", { class: "switches" }, this.isOn.node, this.mode.node)),
+      this.small);
+  }
+
+  /** Figures of another kind of run. */
+  shape(kind) {
+    if (kind === this.kind) return;
+    this.kind = kind;
+    this.smalls = SMALL[kind].map(([name, words, unit, places]) => ({ name, places, ...named(name, words, unit, "") }));
+    this.small.replaceChildren(...this.smalls.map((each) => each.node));
+  }
+
+  /** How the run is; null: there is none. `isOver`: these are its last figures. */
+  show(status, isOver) {
+    this.node.classList.toggle("over-now", isOver || !status);
+    const feeds = FEEDS.map(([name]) => status?.[name]);
+    this.feeds.forEach((each, at) => each.put(fixed(feeds[at], Math.abs(feeds[at]) < 100 && at < 3 ? 1 : 0)));
+    for (const each of this.smalls) each.put(fixed(status?.[each.name], each.places));
+    this.showForce(status);
+    this.put(this.holding, !status ? "–" : (status.holding || "nothing"));
+    this.showLamp(status, isOver);
+    const warning = status?.depth_warning ? `Warning: ${status.depth_warning}` : "";
+    if (this.depth.textContent !== warning) {
+      this.depth.textContent = warning;
+      if (warning) announce(warning);
+    }
+  }
+
+  put(place, text) { if (place.textContent !== text) place.textContent = text; }
+
+  showForce(status) {
+    const force = status?.force_measured_n, aim = status?.force_set_point_n;
+    const share = Number.isFinite(force) && aim ? Math.max(force, 0) / aim : null;
+    const of = aim ? `of ${fixed(aim, 0)} N set point` : "no set point";
+    this.put(this.forceText, !status ? "–"
+      : `${fixed(force, 0)} N ${of}${share === null ? "" : `, ${fixed(100 * share, 0)} %`}`);
+    this.fillBar.style.transform = `scaleX(${Math.min(share ?? 0, BAR_TOP) / BAR_TOP})`;
+    const tone = share > 1.1 ? "over" : share > 1.02 ? "near" : "";
+    this.bar.className = `meter ${tone}`;
+    this.bar.setAttribute("aria-valuenow", number(100 * (share ?? 0), 3));
+  }
+
+  showLamp(status, isOver) {
+    const [tone, word] = !status ? ["idle", "NO RUN"] : isOver ? ["idle", "AT REST"]
+      : status.is_over ? ["over", "OVER"] : ["safe", "SAFE"];
+    if (this.lampWord.textContent === word) return;
+    if (tone === "over" || this.lamp.classList.contains("over")) announce(`power limit: ${word}`);
+    this.lampWord.textContent = word;
+    this.lamp.className = `lamp ${tone}`;
+    this.lamp.setAttribute("aria-label", `power limit: ${word}`);
+  }
+}
+
+/** Tells that data are old, and greys what they say. */
+export class Freshness {
+  constructor() {
+    this.age = el("span", { id: "stale-age" });
+    this.node = el("div", { class: "stale-banner", id: "stale", role: "alert", hidden: true });
+    this.isStale = false;
+  }
+
+  show(age, isLost) {
+    const isStale = age !== null;
+    if (isStale) this.age.textContent = `last data ${fixed(Math.floor(age), 0)} s ago`;
+    if (isStale === this.isStale && isLost === this.isLost) return;
+    this.isStale = isStale;
+    this.isLost = isLost;
+    byId("main").classList.toggle("is-stale", isStale);
+    this.node.hidden = !isStale;
+    // The age is set apart: an alert is read out once, not each second.
+    this.age.setAttribute("aria-hidden", "true");
+    this.node.replaceChildren(...(isStale ? [el("strong", {}, isLost ? "LINE LOST" : "NO DATA"),
+      el("span", {}, isLost ? "the service does not answer; the run may go on" : "the figures are old"),
+      this.age] : []));
+    if (!isStale) announce("data come again");
+  }
+}

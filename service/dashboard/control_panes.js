@@ -1,0 +1,134 @@
+// The panes of what is set: Input and Machine, for a trial cut and for a program.
+
+import { el, fill } from "/dashboard/app.js";
+import { checkField, choiceField, described, numberField, told } from "/dashboard/control_fields.js";
+
+const STEPS = { tool_diameter_mm: 1, teeth: 1, cutting_edge_angle_deg: 5, radial_width_mm: 1,
+  cutting_speed_m_min: 10, efficiency: 0.05, feed_per_tooth_mm: 0.01, axial_depth_mm: 0.5,
+  motor_power_kw: 0.5, axial_depth_max_mm: 0.5,
+  motor_power_percent: 5, depth_percent: 5, hardness_percent: 5 };
+const WORDS = { efficiency: "efficiency", motor_power_percent: "allowed motor power",
+  depth_percent: "depth of the program's", hardness_percent: "hardness (k_c)" };
+const UNITS = { depth_percent: "%", hardness_percent: "%" };
+const MILLING = { full: "full: a slot", up: "up: conventional", down: "down: climb",
+  symmetric: "symmetric: the middle" };
+const LAWS = { "log-pi": "log PI", "pi": "PI", "fuzzy": "fuzzy", "self-tuning": "self-tuning",
+  "mrac": "model reference (MRAC)", "mpc": "predictive (MPC)", "none": "none: only watch" };
+const PACES = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100];
+
+/** What the service says of inputs and laws, from its OpenAPI document. */
+export function bookOf(document) {
+  const { schemas } = document.components;
+  const example = document.paths["/v1/trials"].post.requestBody.content["application/json"].example;
+  const usualRun = Object.fromEntries(Object.entries(schemas.ControlBody.properties)
+    .map(([name, property]) => [name, property.default]));
+  return { trial: schemas.TrialInputs, run: schemas.ControlChanges, usual: example.inputs, usualRun,
+    milling: schemas.MillingType.enum, laws: schemas.LawName.enum,
+    paceTrial: schemas.TrialBody.properties.pace.default };
+}
+
+function number(schema, name, ask) {
+  const spec = described(schema, name);
+  return numberField({ ...spec, words: WORDS[name] ?? spec.words, unit: UNITS[name] ?? spec.unit,
+    step: STEPS[name] }, ask);
+}
+
+/** Materials as people know them; those of the shop can be had at the start of a program only. */
+export const materialOptions = (materials, hasOwn = false) => materials
+  .filter((each) => hasOwn || !each.is_own).map(({ name, title }) => [name, `${name} · ${title}`]);
+
+export const paceField = (ask) => choiceField({ name: "pace", words: "Pace", isNumber: true },
+  PACES.map((pace) => [pace, `${pace} ×`]), ask);
+
+const pane = (id, title, fields, ...more) => el("section", { class: "card pane", id,
+  "aria-labelledby": `${id}-title` }, el("h2", { id: `${id}-title` }, title), more,
+el("div", { class: "grid" }, fields.map((field) => field.node)));
+
+/** Panes of the trial cut. */
+export function trialPanes(book, materials, ask) {
+  const milling = choiceField({ name: "milling_type", words: "milling type" },
+    book.milling.map((each) => [each, MILLING[each] ?? each]), ask);
+  const material = choiceField({ name: "material", words: "workpiece material" },
+    materialOptions(materials), ask);
+  const inputs = ["tool_diameter_mm", "teeth", "cutting_edge_angle_deg", "radial_width_mm",
+    "cutting_speed_m_min", "efficiency", "feed_per_tooth_mm", "axial_depth_mm"]
+    .map((name) => number(book.trial, name, ask));
+  const machine = ["motor_power_kw", "axial_depth_max_mm"].map((name) => number(book.trial, name, ask));
+  milling.node.classList.add("half");
+  material.node.classList.add("half");
+  const width = inputs.find((field) => field.spec.name === "radial_width_mm");
+  return {
+    fields: [milling, material, ...inputs, ...machine],
+    nodes: [pane("input", "Input", [milling, material, ...inputs]), pane("machine", "Machine", machine)],
+    /** In a slot the width is the cutter's. */
+    fit(values) {
+      const isFull = values.milling_type === "full";
+      width.enable(!isFull && width.isFree);
+      width.node.title = isFull ? "in full milling the width is the tool's diameter" : "";
+    },
+    enable(isFree) {
+      for (const field of this.fields) { field.isFree = isFree; field.enable(isFree); }
+    },
+  };
+}
+
+/** Panes of a program under control while it runs. */
+export function programPanes(book, materials, ask) {
+  const material = choiceField({ name: "material", words: "workpiece material" },
+    materialOptions(materials), ask);
+  material.node.classList.add("wide");
+  const hidden = ["depth_percent", "hardness_percent"].map((name) => number(book.run, name, ask));
+  const power = number(book.run, "motor_power_percent", ask);
+  const shown = { program: told("program", "program"), workingstep: told("workingstep", "workingstep"),
+    tool: told("tool", "tool"), depth: told("depth", "depth cut now", "mm"),
+    motor: told("motor", "motor gives", "kW"), done: told("progress", "program behind", "%") };
+  for (const each of [shown.program, shown.workingstep, shown.tool]) each.node.classList.add("wide");
+  return {
+    fields: [material, ...hidden, power], told: shown,
+    nodes: [
+      pane("input", "Input", [shown.program, shown.workingstep, shown.tool, shown.depth, shown.done,
+        material, ...hidden], el("p", { class: "soft small" },
+        "The program fixes tool, width and speed. What is changed here the loop is not told: it finds out by the force.")),
+      pane("machine", "Machine", [power, shown.motor]),
+    ],
+    fit() {},
+    enable(isFree) { for (const field of this.fields) field.enable(isFree); },
+  };
+}
+
+/** What is asked before a program starts. */
+export function startPanes(book, { programs, advices, machines, materials }) {
+  const choice = (name, words, options) => choiceField({ name, words }, options, () => {});
+  const program = choice("program", "program", []);
+  fill(program.select,
+    programs.length ? el("optgroup", { label: "as they came" }, programs.map((each) =>
+      el("option", { value: `program:${each.id}` }, each.name))) : null,
+    advices.length ? el("optgroup", { label: "with advised feeds" }, advices.map((each) =>
+      el("option", { value: `advice:${each.id}` }, each.name))) : null);
+  const machine = choice("machine", "machine", [["", "one that suits"],
+    ...machines.map(({ name, title }) => [name, `${name} · ${title}`])]);
+  const material = choice("material", "workpiece material",
+    [["", "the one the program names"], ...materialOptions(materials, true)]);
+  const law = choice("law", "control law", book.laws.map((each) => [each, LAWS[each] ?? each]));
+  const preview = checkField({ name: "has_preview", words: "the law knows what is ahead (preview)" }, () => {});
+  const recorded = checkField({ name: "is_recorded", words: "keep the outcome in the knowledge base" }, () => {});
+  const fields = [program, machine, material, law, preview, recorded];
+  for (const field of fields) field.node.classList.add("wide");
+  for (const field of [law, preview, recorded]) field.show(book.usualRun[field.spec.name]);
+  const isEmpty = !programs.length && !advices.length;
+  program.enable(!isEmpty);
+  return {
+    fields,
+    nodes: [pane("input", "Input", fields, isEmpty ? el("p", { class: "banner warn", id: "no-programs" },
+      "There is no program yet: ", el("a", { href: "/dashboard/plan.html" }, "upload one"), ".") : null)],
+    isEmpty,
+    /** As POST /v1/control-runs takes it. */
+    body() {
+      const [kind, id] = program.read().split(":");
+      return { [`${kind}_id`]: id, machine: machine.read(), material: material.read(), law: law.read(),
+        has_preview: preview.node.firstChild.checked, is_recorded: recorded.node.firstChild.checked };
+    },
+    fit() {},
+    enable() {},
+  };
+}

@@ -1,0 +1,83 @@
+// Machine: a run of the virtual machine, live or recorded.
+
+import { api, byId, el, fill, tell } from "/dashboard/app.js";
+import { isOver, programNames, programOf, shortMoment, stateBadge } from "/dashboard/records.js";
+import { paceWord } from "/dashboard/machine_words.js";
+import { showRun } from "/dashboard/machine_run.js";
+import { startForm } from "/dashboard/machine_start.js";
+
+const asked = new URLSearchParams(location.search);
+const known = new Map();
+let names = new Map(), leave = null, cursor = null;
+
+const choice = el("select", { id: "run", onchange: () => open(known.get(choice.value)) });
+const older = el("button", { id: "runs-older", hidden: true, onclick: () => list() }, "Older");
+const badge = el("span", { id: "run-state" });
+const starting = el("details", { id: "start-box" }, el("summary", {}, "Start a run"),
+  el("div", { id: "start-place" }, el("p", { class: "soft" }, "…")));
+const trouble = el("div", { id: "problem" }), place = el("div", { id: "run-place", class: "pieces" });
+
+fill(byId("main"),
+  el("div", { class: "title" }, el("h1", {}, "Machine"),
+    el("span", { class: "soft" }, "a run of the virtual machine, while it runs and afterwards")),
+  trouble,
+  el("section", { class: "card", "aria-label": "which run" },
+    el("div", { class: "row" }, el("label", { class: "grow" }, "Run", choice), older, badge), starting),
+  place);
+
+const label = (job) => [programOf(job, names), job.request.machine || "a machine that suits",
+  paceWord(job.request.pace), shortMoment(job.created_at), isOver(job) ? "" : job.state,
+  ["failed", "cancelled"].includes(job.state) ? job.state : ""].filter(Boolean).join(" · ");
+
+function know(job, isFirst = false) {
+  const option = choice.querySelector(`option[value="${job.id}"]`);
+  if (option) option.textContent = label(job);
+  else if (isFirst) choice.prepend(el("option", { value: job.id }, label(job)));
+  else choice.append(el("option", { value: job.id }, label(job)));
+  known.set(job.id, job);
+}
+
+/** The next page of runs. */
+async function list() {
+  const page = await api(`/v1/simulations?limit=50${cursor ? `&cursor=${cursor}` : ""}`);
+  page.items.forEach((job) => know(job));
+  cursor = page.next_cursor;
+  older.hidden = !cursor;
+}
+
+function open(job) {
+  leave?.();
+  choice.value = job.id;
+  history.replaceState(null, "", `?id=${job.id}`);
+  leave = showRun(place, job, (now) => { know(now); fill(badge, stateBadge(now)); });
+}
+
+function started(job) {
+  know(job, true);
+  starting.open = false;
+  open(job);
+  byId("state-title").scrollIntoView({ block: "nearest" });
+}
+
+async function begin() {
+  names = await programNames();
+  await list();
+  const wanted = asked.get("id");
+  if (wanted && !known.has(wanted)) {
+    const job = await api(`/v1/jobs/${wanted}`);
+    if (job.kind === "simulation") know(job, true);
+  }
+  const wish = { program: asked.get("program"), advice: asked.get("advice") };
+  const isStart = Boolean(wish.program || wish.advice);
+  const first = known.get(wanted) ?? (isStart ? null : [...known.values()][0]);
+  if (first) open(first);
+  else if (!isStart || !known.size) fill(place, el("p", { class: "card empty", id: "no-runs" }, "No run yet: start one above."));
+  if (!first) {
+    starting.open = true;
+    choice.selectedIndex = -1;
+  }
+  choice.disabled = !known.size;
+  await startForm(byId("start-place"), names, wish, (job) => { choice.disabled = false; started(job); });
+}
+
+begin().catch((error) => tell(trouble, error));

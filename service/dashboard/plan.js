@@ -1,0 +1,147 @@
+// The plan page: choose a program, say what is wanted, see what is advised and why.
+
+import { Problem, announce, api, byId, duration, el, fill, followed, tell } from "/dashboard/app.js";
+import { programChoice } from "/dashboard/plan_program.js";
+import { showResult } from "/dashboard/plan_result.js";
+import { beginRuns, endRuns } from "/dashboard/plan_runs.js";
+
+const form = byId("advice-form"), button = byId("optimise"), hint = byId("optimise-hint");
+let program = null, working = null;
+
+// -- the program ------------------------------------------------------------------------------
+
+const choice = programChoice((chosen, contents) => {
+  program = chosen && contents.is_usable ? chosen : null;
+  ready();
+  const steps = chosen ? contents.workingsteps : [];
+  const place = byId("only-steps");
+  place.hidden = steps.length < 2;
+  fill(place, el("legend", {}, "Workingsteps"), steps.map((step) =>
+    el("label", { class: "inline" }, el("input", { type: "checkbox", name: "only",
+      value: step.instance, checked: true }), step.id)));
+});
+
+byId("units").addEventListener("change", () => choice.again(program?.id));
+
+function ready() {
+  button.disabled = !program || working !== null;
+  hint.textContent = working ? "" : program ? "" : "Choose a program first.";
+}
+
+// -- what is wanted ---------------------------------------------------------------------------
+
+async function library(path, select) {
+  const entries = await api(path);
+  select.append(...entries.map((each) => el("option", { value: each.name },
+    each.title === each.name ? each.name : `${each.name}: ${each.title}`)));
+}
+
+const checked = (name) =>
+  [...form.querySelectorAll(`input[name="${name}"]:checked`)].map((each) => each.value);
+const numeric = (id) => (byId(id).value === "" ? null : byId(id).valueAsNumber);
+
+/** The body of the request. Throws in words what is missing. */
+function wish() {
+  const free = checked("free"), only = checked("only");
+  const all = form.querySelectorAll('input[name="only"]').length;
+  if (!free.length) throw new Problem({ detail: "Tick what may change: feed, depth or speed." }, 0);
+  if (all && !only.length) throw new Problem({ detail: "Tick a workingstep at least." }, 0);
+  const safety = numeric("safety");
+  return {
+    mode: form.elements.mode.value, machine: byId("machine").value, material: byId("material").value,
+    units: byId("units").value, roughness_um: numeric("roughness"), free,
+    workingsteps: only.length < all ? only : [], profile: byId("profile").value,
+    nc_control: byId("nc-control").value || null, has_pareto: byId("pareto").checked,
+    tool_change_s: numeric("tool-change") ?? 0, has_corrections: byId("corrections").checked,
+    ...(safety === null ? {} : { safety: safety / 100 }),
+  };
+}
+
+/** The form as a request had it. */
+function recall(request) {
+  const put = (id, value) => { byId(id).value = value ?? ""; };
+  for (const each of form.querySelectorAll('input[name="mode"]')) each.checked = each.value === request.mode;
+  for (const each of form.querySelectorAll('input[name="free"]')) each.checked = request.free.includes(each.value);
+  for (const [id, name] of [["machine", "machine"], ["material", "material"], ["units", "units"],
+    ["roughness", "roughness_um"], ["profile", "profile"], ["nc-control", "nc_control"],
+    ["tool-change", "tool_change_s"]]) put(id, request[name]);
+  byId("pareto").checked = request.has_pareto;
+  byId("corrections").checked = request.has_corrections;
+}
+
+form.addEventListener("submit", (event) => {
+  event.preventDefault();
+  if (program && !working) optimise();
+});
+
+async function optimise() {
+  const problem = byId("advice-problem");
+  tell(problem, null);
+  let body;
+  try { body = wish(); } catch (error) { tell(problem, error); return; }
+  endRuns();
+  byId("result").hidden = true;
+  try {
+    const asked = await api(`/v1/programs/${program.id}/advice`, { method: "POST", json: body,
+      headers: { "idempotency-key": crypto.randomUUID?.() ?? String(Math.random()) } });
+    history.replaceState(null, "", `?advice=${asked.id}`);
+    await follow(asked);
+  } catch (error) {
+    tell(problem, error);
+    announce(error.message);
+  }
+}
+
+/** Wait for an advice, and show it. */
+async function follow(asked) {
+  const place = byId("advice-work"), bar = el("progress", { max: 1, "aria-label": "progress" });
+  const words = el("span", { class: "soft small" }, "waiting …");
+  const cancel = el("button", { type: "button", id: "cancel-advice", onclick: () => {
+    cancel.disabled = true;
+    words.textContent = "cancelling …";
+    api(`/v1/jobs/${asked.id}/cancel`, { method: "POST" }).catch((error) => tell(byId("advice-problem"), error));
+  } }, "Cancel");
+  fill(place, el("div", { class: "row" }, bar, cancel), words);
+  place.hidden = false;
+  working = asked;
+  ready();
+  const begun = performance.now();
+  try {
+    const job = await followed(asked, (news) => {
+      if (news.share) bar.value = news.share;
+      if (!cancel.disabled) words.textContent = news.state === "queued" ? "waiting for its turn …"
+        : news.message || "optimising …";
+    });
+    const result = await api(`/v1/advice/${job.id}`);
+    byId("result").hidden = false;
+    showResult(job, result);
+    announce(`Optimised: ${duration(result.total_time_s.before)} becomes ${duration(result.total_time_s.after)}`);
+    performance.measure("optimise to table", { start: begun });
+    if (!matchMedia("(prefers-reduced-motion: reduce)").matches && begun)
+      byId("result").scrollIntoView({ behavior: "smooth", block: "start" });
+    beginRuns(job, result, { rate: byId("rate").valueAsNumber || 20,
+      isWanted: byId("simulate-after").checked });
+  } finally {
+    working = null;
+    place.hidden = true;
+    ready();
+  }
+}
+
+// -- an advice that was made before -------------------------------------------------------------
+
+async function reopen(id) {
+  const job = await api(`/v1/jobs/${id}`);
+  recall(job.request);
+  if (job.program_id) await choice.use(job.program_id);
+  await follow(job);
+}
+
+async function begin() {
+  const asked = new URLSearchParams(location.search);
+  await Promise.all([library("/v1/machines", byId("machine")), library("/v1/materials", byId("material"))]);
+  if (asked.get("advice")) await reopen(asked.get("advice"));
+  else if (asked.get("program")) await choice.use(asked.get("program"));
+}
+
+begin().catch((error) => tell(byId("advice-problem"), error));

@@ -1,0 +1,122 @@
+// The program of the plan page: upload, example or one uploaded before; what was found in it.
+
+import { announce, api, byId, el, fill, tell } from "/dashboard/app.js";
+
+const RANK = ["error", "warning", "note"];
+const KIND = { error: "bad", warning: "warn", note: "soft" };
+
+/** Findings as counts by severity, which open to the list. */
+export function findingsList(findings, what) {
+  if (!findings.length) return el("p", { class: "soft small" }, `No findings ${what}.`);
+  const counts = RANK.map((name) => [name, findings.filter((each) => each.severity === name).length])
+    .filter(([, count]) => count);
+  const sorted = [...findings].sort((a, b) => RANK.indexOf(a.severity) - RANK.indexOf(b.severity));
+  return el("details", { class: "findings" },
+    el("summary", {}, `Findings ${what}: `, counts.flatMap(([name, count]) =>
+      [el("span", { class: `badge ${KIND[name]}` }, `${count} ${name}${count > 1 ? "s" : ""}`), " "])),
+    el("ul", { class: "plain small" }, sorted.map((each) => el("li", {},
+      el("span", { class: `badge ${KIND[each.severity] ?? ""}` }, each.severity), each.message,
+      el("span", { class: "soft" }, place(each))))));
+}
+
+function place({ entity, attribute, line }) {
+  const at = [[entity, attribute].filter(Boolean).join(" "), line ? `line ${line}` : ""];
+  const told = at.filter(Boolean).join(", ");
+  return told ? ` (${told})` : "";
+}
+
+/** Ways to a program; `chosen(program, contents)` hears of it, `chosen(null)` when there is none. */
+export function programChoice(chosen) {
+  const drop = byId("drop"), problem = byId("program-problem");
+  const examples = byId("program-example"), known = byId("program-known");
+  let wanted = 0;
+
+  async function use(getting, words) {
+    const mine = wanted += 1;
+    tell(problem, null);
+    fill(byId("program-shown"), el("p", { class: "soft" }, words));
+    chosen(null);
+    try {
+      const program = await getting;
+      const units = byId("units").value;
+      const contents = await api(`/v1/programs/${program.id}/findings?units=${units}`);
+      if (mine !== wanted) return;
+      shown(program, contents);
+      chosen(program, contents);
+      announce(`${program.name}: ${contents.workingsteps.length} workingsteps`);
+      await list(program.id);
+    } catch (error) {
+      if (mine !== wanted) return;
+      fill(byId("program-shown"));
+      tell(problem, error);
+    }
+  }
+
+  const upload = (file) => use(api(`/v1/programs?name=${encodeURIComponent(file.name.replace(/\.gz$/, ""))}`,
+    { method: "POST", body: file, headers: { "content-type": "application/octet-stream",
+      ...(file.name.endsWith(".gz") ? { "content-encoding": "gzip" } : {}) } }), `reading ${file.name} …`);
+
+  byId("program-file").addEventListener("change", (event) => {
+    const [file] = event.target.files;
+    if (file) upload(file);
+    event.target.value = "";
+    examples.value = known.value = "";
+  });
+  examples.addEventListener("change", () => {
+    if (!examples.value) return;
+    const name = examples.value;
+    use(api(`/v1/programs?example=${encodeURIComponent(name)}`, { method: "POST" }), `reading ${name} …`);
+  });
+  known.addEventListener("change", () => {
+    if (!known.value) return;
+    examples.value = "";
+    use(api(`/v1/programs/${known.value}`), "reading …");
+  });
+  // A file that misses its place must not take the page away.
+  for (const name of ["dragover", "drop"])
+    document.addEventListener(name, (event) => event.preventDefault());
+  for (const name of ["dragenter", "dragover"])
+    drop.addEventListener(name, () => drop.classList.add("over"));
+  for (const name of ["dragleave", "drop"])
+    drop.addEventListener(name, () => drop.classList.remove("over"));
+  drop.addEventListener("drop", (event) => {
+    const [file] = event.dataTransfer.files;
+    if (file) upload(file);
+  });
+
+  async function list(selected = "") {
+    const { items } = await api("/v1/programs?limit=200");
+    fill(known, el("option", { value: "" }, items.length ? "choose …" : "none yet"),
+      items.map((each) => el("option", { value: each.id },
+        `${each.name}, ${new Date(each.created_at).toLocaleString("en-GB",
+          { day: "numeric", month: "short", hour: "2-digit", minute: "2-digit" })}`)));
+    known.value = selected;
+  }
+
+  async function begin() {
+    const about = await api("/v1/about");
+    examples.append(...about.samples.map((name) => el("option", { value: name }, name)));
+    await list();
+  }
+  begin().catch((error) => tell(problem, error));
+
+  return {
+    use: (id) => use(api(`/v1/programs/${id}`), "reading …"),
+    again: (id) => id && use(api(`/v1/programs/${id}`), "reading …"),
+  };
+}
+
+function shown(program, contents) {
+  const count = contents.workingsteps.length, size = program.size_bytes;
+  const large = size >= 1e6 ? `${(size / 1e6).toFixed(1)} MB` : `${(size / 1e3).toFixed(1)} kB`;
+  fill(byId("program-shown"),
+    el("p", {}, el("b", { id: "program-name" }, program.name), " ", el("span", { class: "soft" },
+      `${count} workingstep${count === 1 ? "" : "s"}, ${contents.instances} instances, ${large}`)),
+    contents.is_usable ? null
+      : el("div", { class: "banner bad", role: "alert" }, "This program cannot be optimised: see its errors."),
+    findingsList(contents.findings, "in the file"));
+  if (!contents.is_usable) {
+    const list = byId("program-shown").querySelector("details");
+    if (list) list.open = true;
+  }
+}

@@ -1,0 +1,102 @@
+// An advice: its figures, downloads, times as bars; the table is in plan_table.js.
+
+import { api, byId, duration, el, fill, fixed, number, save, show, tell } from "/dashboard/app.js";
+import { findingsList } from "/dashboard/plan_program.js";
+import { stepsCsv, stepsTable } from "/dashboard/plan_table.js";
+
+const MODES = { TC: "least time", QC: "roughness kept", EC: "least energy" };
+let job = null, result = null;
+
+/** `before → after` as a figure. */
+function pair(name, before, after, unit, kind = "") {
+  return el("div", { class: `figure ${kind}` }, el("div", { class: "name" }, name),
+    el("div", {}, el("span", { class: "was" }, before), el("span", { class: "was arrow", "aria-label": "becomes" }, "→"),
+      el("span", { class: "value" }, after), unit ? el("span", { class: "unit" }, unit) : null));
+}
+
+/** A saving as a figure; a rise says so. */
+function saving(name, before, after) {
+  const share = before ? (before - after) / before : null;
+  const [word, colour] = share === null || Math.abs(share) < 5e-4 ? ["no change", "soft"]
+    : share > 0 ? ["saved", "good"] : ["more", "warn"];
+  return el("div", { class: "figure big" }, el("div", { class: "name" }, name),
+    el("div", {}, el("span", { class: `value ${colour}` }, share === null ? "–" : `${fixed(100 * Math.abs(share), 1)} %`),
+      el("span", { class: "unit" }, word)));
+}
+
+/** Show an advice. */
+export function showResult(asked, found) {
+  job = asked;
+  result = found;
+  const { before, after } = found.total_time_s, steps = found.workingsteps;
+  const count = (status) => steps.filter((step) => step.status === status).length;
+  byId("result-of").textContent = [found.program, found.machine, found.material,
+    `${found.mode}, ${MODES[found.mode]}`].join(" · ");
+  const infeasible = count("infeasible");
+  fill(byId("figures"), pair("Machining time", duration(before), duration(after), "", "big"),
+    saving("Time", before, after),
+    el("div", { class: "figure" }, el("div", { class: "name" }, "Workingsteps advised"),
+      el("div", {}, el("span", { class: "value" }, `${count("advised")} of ${steps.length}`),
+        count("untouched") ? el("span", { class: "unit" }, `${count("untouched")} untouched`) : null)),
+    infeasible ? el("div", { class: "figure" }, el("div", { class: "name" }, "Infeasible"),
+      el("div", {}, el("span", { class: "value bad" }, String(infeasible)))) : null,
+    el("div", { class: "figures", id: "figures-simulated" }));
+  fill(byId("result-findings"), el("p", { class: "soft small" },
+    "As planned: without tool changes and moves between workingsteps."),
+  infeasible ? el("div", { class: "banner bad", role: "alert" },
+    `${infeasible} workingstep${infeasible > 1 ? "s have" : " has"} no feasible feed: the table says which limits conflict.`) : null,
+  found.is_written ? null : el("div", { class: "banner warn" }, "No optimised program was written: nothing was changed in it."),
+  findingsList(found.findings, "of the plan"));
+  byId("download-program").disabled = !found.is_written;
+  byId("download-nc").disabled = !found.nc_control;
+  byId("download-nc").title = found.nc_control ? `for ${found.nc_control}` : "choose a control and optimise again";
+  byId("download-nc").textContent = found.nc_control ? `NC code, ${found.nc_control}` : "NC code";
+  stepsTable(byId("steps"), steps);
+  times(steps);
+}
+
+/** What the simulations add: time with all moves, energy. */
+export function showSimulated(before, after) {
+  const place = byId("figures-simulated");
+  if (!before || !after || !place) return;
+  const kj = (run) => number(run.total.energy_j.total / 1000, 4);
+  fill(place, pair("Energy, simulated", kj(before), kj(after), "kJ"),
+    pair("Time, simulated with all moves", duration(before.total.time_s), duration(after.total.time_s)));
+}
+
+function times(steps) {
+  const known = steps.filter((step) => step.time_s.before || step.time_s.after);
+  const most = Math.max(...known.flatMap((step) => [step.time_s.before ?? 0, step.time_s.after ?? 0]), 1e-9);
+  const bar = (kind, value) => el("div", { class: kind, style: `width:${(100 * (value ?? 0) / most).toFixed(2)}%` });
+  fill(byId("times"), known.length ? el("div", { class: "times" }, known.flatMap((step) => {
+    const { before } = step.time_s, after = step.time_s.after ?? before;
+    return [el("span", { class: "name", title: step.id }, step.id),
+      el("div", { class: "pair-bars", "aria-hidden": "true" }, bar("was", before), bar("is", after)),
+      el("span", { class: "told" }, `${fixed(before, 1)} → ${fixed(after, 1)}`)];
+  })) : el("p", { class: "empty" }, "No time is known."));
+}
+
+// -- downloads --------------------------------------------------------------------------------
+
+const stem = () => result.program.replace(/\.[^.]+$/, "");
+
+function keep(text, name, type) {
+  const link = el("a", { href: URL.createObjectURL(new Blob([text], { type })), download: name });
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+}
+
+const DOWNLOADS = {
+  "download-program": () => save(`/v1/advice/${job.id}/file`),
+  "download-nc": () => save(`/v1/advice/${job.id}/nc`),
+  "open-report": () => show(`/v1/advice/${job.id}/report`),
+  "download-json": async () => keep(JSON.stringify(await api(`/v1/advice/${job.id}`), null, 2),
+    `${stem()}.advice.json`, "application/json"),
+  "download-csv": () => keep(stepsCsv(result.workingsteps), `${stem()}.advice.csv`, "text/csv"),
+};
+for (const [id, action] of Object.entries(DOWNLOADS))
+  byId(id).addEventListener("click", async () => {
+    tell(byId("download-problem"), null);
+    try { await action(); } catch (error) { tell(byId("download-problem"), error); }
+  });
+

@@ -1,0 +1,108 @@
+"""Names and units of the nomenclature are those of the code."""
+
+import ast
+import re
+from collections import defaultdict
+from functools import cache
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PAGE = ROOT / "docs" / "nomenclature.md"
+PACKAGES = ("stepnc_model", "simulator", "optimiser", "controller", "kbe", "service")
+NONE = "–"
+
+
+def rows() -> list[tuple[str, str, str, str, str]]:
+    """Rows of the tables of quantities."""
+    found = []
+    for line in PAGE.read_text(encoding="utf-8").splitlines():
+        cells = [each.strip() for each in line.strip("|").split("|")]
+        if len(cells) == 5 and cells[0].startswith("`"):
+            found.append((cells[0].strip("`"), cells[1], cells[2], cells[3], cells[4]))
+    return found
+
+
+@cache
+def nodes() -> list[ast.AST]:
+    """All of the code."""
+    return [
+        node
+        for package in PACKAGES
+        for path in (ROOT / package).rglob("*.py")
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.FunctionDef | ast.ClassDef | ast.Constant)
+    ]
+
+
+def text_of(statement: ast.stmt) -> str:
+    """A docstring of a field; empty for another statement."""
+    if isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant):
+        return str(statement.value.value)
+    return ""
+
+
+@cache
+def said() -> dict[str, list[str]]:
+    """What docstrings say of each parameter and field; empty text where they say nothing."""
+    found: defaultdict[str, list[str]] = defaultdict(list)
+    for each in nodes():
+        if isinstance(each, ast.FunctionDef):
+            for argument in (*each.args.args, *each.args.kwonlyargs):
+                found[argument.arg].append("")
+        if isinstance(each, ast.ClassDef):
+            for field, after in pairwise([*each.body, ast.Pass()]):
+                if isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name):
+                    found[field.target.id].append(text_of(after))
+        if isinstance(each, ast.FunctionDef | ast.ClassDef):
+            text = ast.get_docstring(each) or ""
+            for names, kind in re.findall(r"^(\w+(?:, \w+)*) : (.*)$", text, flags=re.M):
+                for name in names.split(", "):
+                    found[name].append(kind)
+    return found
+
+
+@cache
+def words() -> set[str]:
+    """Names and texts of the code, and keys of the library's files."""
+    found = set(said())
+    for each in nodes():
+        if isinstance(each, ast.Constant) and isinstance(each.value, str):
+            found.add(each.value)
+    for path in (ROOT / "simulator" / "data").rglob("*.toml"):
+        found |= set(re.findall(r"^(\w+) =", path.read_text(encoding="utf-8"), flags=re.M))
+    return found
+
+
+def test_the_tables_are_read() -> None:
+    assert len(rows()) >= 50
+
+
+@pytest.mark.parametrize("name", [row[0] for row in rows()])
+def test_the_name_is_a_parameter_or_a_field(name: str) -> None:
+    assert name in said()
+
+
+@pytest.mark.parametrize(
+    ("name", "unit"), [(row[0], row[2]) for row in rows() if row[2] != NONE]
+)
+def test_a_docstring_gives_the_name_that_unit(name: str, unit: str) -> None:
+    pattern = re.compile(rf"(?<![\w/·']){re.escape(unit)}(?![\w/·²³])")
+    assert any(pattern.search(text) for text in said()[name])
+
+
+@pytest.mark.parametrize("edge", [row[3] for row in rows() if "`" in row[3]])
+def test_names_at_the_edge_exist_and_carry_the_unit(edge: str) -> None:
+    names = re.findall(r"`([^`]+)`", edge)
+    assert set(names) <= words()
+    unit, _, _ = edge.partition(":")
+    plain = {"%": "percent", "degrees": "deg", "µm": "um", "N·m": "nm", "kg·m²": "kg_m2"}
+    spelt = plain.get(unit, unit.lower().replace("²", "2").replace("³", "3").replace("/", "_"))
+    assert names[0].endswith(f"_{spelt}")
+
+
+def test_no_name_stands_twice() -> None:
+    names = [row[0] for row in rows()]
+    assert len(names) == len(set(names))

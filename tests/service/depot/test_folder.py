@@ -1,0 +1,57 @@
+"""The data folder: private, and addressed by ids alone."""
+
+import stat
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from service.depot.folder import Depot, open_depot
+from service.depot.ids import is_id, new_id
+from service.errors import NotFound, Unavailable
+
+
+def test_a_new_folder_is_its_owners_alone(depot: Depot) -> None:
+    folders = [depot.root, *(each for each in depot.root.iterdir() if each.is_dir())]
+    assert {each.name for each in folders[1:]} == {"programs", "jobs", "machines", "materials"}
+    assert {stat.S_IMODE(each.stat().st_mode) for each in folders} == {0o700}
+
+
+def test_what_is_of_an_id_lies_in_the_folder(depot: Depot) -> None:
+    id = new_id()
+    assert depot.program_file(id) == depot.root / "programs" / f"{id}.stpnc"
+    assert depot.job_folder(id) == depot.root / "jobs" / id
+
+
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(st.one_of(st.text(), st.sampled_from(["..", "../x", "/etc/passwd", "a\0b", "." * 26])))
+def test_nothing_but_an_id_becomes_a_path(depot: Depot, word: str) -> None:
+    if not is_id(word):
+        with pytest.raises(NotFound):
+            depot.program_file(word)
+        with pytest.raises(NotFound):
+            depot.job_folder(word)
+
+
+def test_a_link_is_followed_once_so_that_paths_are_told_alike(tmp_path: Path) -> None:
+    (tmp_path / "real").mkdir()
+    (tmp_path / "link").symlink_to(tmp_path / "real")
+    assert open_depot(tmp_path / "link").root == (tmp_path / "real").resolve()
+
+
+def test_a_folder_that_cannot_be_made_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("in the way")
+    with pytest.raises(Unavailable, match="file"):
+        open_depot(tmp_path / "file" / "data")
+
+
+def test_the_knowledge_base_is_what_is_named_else_the_environments_else_the_folders(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv("STEPNC_KB", raising=False)
+    root = tmp_path / "data"
+    assert open_depot(root).knowledge == str(root.resolve() / "knowledge.db")
+    monkeypatch.setenv("STEPNC_KB", "of-environment.db")
+    assert open_depot(root).knowledge == "of-environment.db"
+    assert open_depot(root, knowledge="named.db").knowledge == "named.db"

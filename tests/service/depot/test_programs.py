@@ -1,0 +1,96 @@
+"""Programs: bytes as they came, under an id; a name is words, never a path."""
+
+import hashlib
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from service.depot import jobs, programs
+from service.depot.folder import Depot
+from service.depot.ids import new_id
+from service.depot.jobs import Kind, Order, State
+from service.depot.pages import Place
+from service.depot.programs import LONGEST_NAME, shown_name
+from service.errors import Conflict, NotFound, Unavailable
+
+
+def test_a_program_is_kept_byte_for_byte(depot: Depot) -> None:
+    data = bytes(range(256)) * 10
+    made = programs.add(depot, data, name="../../part one.stpnc", owner="anna")
+    assert depot.program_file(made.id).read_bytes() == data
+    assert made == programs.get(depot, made.id)
+    assert (made.name, made.size, made.owner) == ("part one.stpnc", 2560, "anna")
+    assert made.sha256 == hashlib.sha256(data).hexdigest()
+
+
+def test_pages_go_on_where_they_ended_while_programs_are_added(depot: Depot) -> None:
+    def add() -> str:
+        return programs.add(depot, b"x", name="x", owner="anna").id
+
+    made = sorted((add() for _ in range(5)), reverse=True)
+    first = programs.listed(depot, Place(limit=2))
+    add()
+    second = programs.listed(depot, Place(limit=2, cursor=first.cursor))
+    third = programs.listed(depot, Place(limit=2, cursor=second.cursor))
+    shown = [each.id for page in (first, second, third) for each in page.items]
+    assert shown == made
+    assert third.cursor is None
+
+
+def test_a_program_that_is_worked_on_stays(depot: Depot) -> None:
+    made = programs.add(depot, b"x", name="x", owner="anna")
+    job = jobs.add(
+        depot, Order(kind=Kind.ADVICE, request={}, program=made.id, owner="anna")
+    )
+    with pytest.raises(Conflict, match=job.id):
+        programs.remove(depot, made.id)
+    jobs.cancel(depot, job.id)
+    programs.remove(depot, made.id)
+    assert not depot.program_file(made.id).exists()
+    with pytest.raises(NotFound):
+        programs.get(depot, made.id)
+    with pytest.raises(NotFound):
+        programs.remove(depot, made.id)
+    assert jobs.get(depot, job.id).state is State.CANCELLED
+
+
+def test_no_job_is_queued_for_a_program_that_is_gone(depot: Depot) -> None:
+    order = Order(kind=Kind.ADVICE, request={}, program=new_id(), owner="anna")
+    with pytest.raises(NotFound, match="program"):
+        jobs.add(depot, order)
+
+
+def test_what_could_not_be_listed_leaves_no_file(
+    depot: Depot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with depot.database.writing() as connection:
+        connection.execute("DROP TABLE programs")
+    with pytest.raises(Unavailable):
+        programs.add(depot, b"x", name="x", owner="anna")
+    assert list((depot.root / "programs").iterdir()) == []
+
+
+Names = st.one_of(
+    st.text(max_size=200),
+    st.lists(st.sampled_from(["..", ".", "/", "\\", "a", " ", "\0", "\n", "C:", "\u202e"])).map(
+        "".join
+    ),
+)
+
+
+@given(Names)
+def test_no_name_is_a_path_or_breaks_a_line(name: str) -> None:
+    shown = shown_name(name)
+    assert shown
+    assert shown.isprintable()
+    assert not set(shown) & set("/\\\0\n\r")
+    assert shown not in {".", ".."}
+    assert shown == shown.strip(". ")
+    assert len(shown) <= LONGEST_NAME
+    shown.encode()
+    assert shown_name(shown) == shown
+
+
+def test_a_name_of_which_nothing_is_left_is_the_usual_one() -> None:
+    assert {shown_name(name) for name in ("", "..", "a/", "\0\n", " . ")} == {"program.stpnc"}

@@ -1,0 +1,55 @@
+"""Wall time for a run, by a clock that the test turns."""
+
+from math import inf, nan
+
+import pytest
+
+from service.live.pace import MOST, Pace
+from stepnc_model.errors import StepNcError
+
+
+class Clock:
+    """Turned by those who wait."""
+
+    def __init__(self) -> None:
+        self.time = 100.0
+        self.waits: list[float] = []
+
+    def now(self) -> float:
+        return self.time
+
+    def wait(self, seconds: float) -> None:
+        self.waits.append(seconds)
+        self.time += seconds
+
+
+@pytest.mark.parametrize("factor", [0.5, 1.0, 10.0])
+def test_the_machines_time_passes_by_the_factor(factor: float) -> None:
+    clock = Clock()
+    pace = Pace(factor, now=clock.now, wait=clock.wait)
+    for machine_time in (1.0, 2.0, 5.0):
+        pace.wait_for(machine_time)
+        assert clock.time - 100.0 == pytest.approx(machine_time / factor)
+    assert pace.factor == factor
+
+
+def test_who_is_late_does_not_wait_and_catches_up() -> None:
+    clock = Clock()
+    pace = Pace(1.0, now=clock.now, wait=clock.wait)
+    clock.time += 3.0
+    pace.wait_for(2.0)
+    assert clock.waits == []
+    pace.wait_for(4.0)
+    assert clock.waits == pytest.approx([1.0])
+
+
+def test_nobody_waits_without_a_pace() -> None:
+    clock = Clock()
+    Pace(0.0, now=clock.now, wait=clock.wait).wait_for(1e9)
+    assert clock.waits == []
+
+
+@pytest.mark.parametrize("factor", [-1.0, MOST + 1.0, inf, nan])
+def test_a_pace_beyond_its_bounds_is_refused(factor: float) -> None:
+    with pytest.raises(StepNcError, match="it must be 0 to 1000"):
+        Pace(factor)
