@@ -15,10 +15,11 @@ PYTHON ?= $(shell for p in python3.11 python3.12 python3.13 python3; do \
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; \
 	done)
 
-.PHONY: help setup demo test check bench docs lock clean
+.PHONY: help setup demo serve test check bench docs lock clean
 
 help:
 	@echo "make demo   optimise a sample part, simulate it, run it under control, and learn from it"
+	@echo "make serve  the dashboard and REST at http://127.0.0.1:8000"
 	@echo "make test   run the tests"
 	@echo "make check  formatting, lint, types, layers"
 	@echo "make bench  speed, side by side with peers"
@@ -77,6 +78,9 @@ check: $(READY)
 	$(BIN)/ruff check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+
+serve: $(READY) $(KERNELS)
+	$(BIN)/stepnc serve
 
 bench: $(READY) $(KERNELS)
 	$(BIN)/python -m benchmarks

@@ -10,7 +10,8 @@ import { PLACES, Run, newest, refusals } from "/dashboard/control_run.js";
 
 const SOURCES = [["trial", "Trial cut"], ["control-run", "Program"]];
 
-const state = { kind: "trial", run: null, draft: {}, panes: null, fresh: null, stop: "", program: "" };
+const state = { kind: "trial", run: null, draft: {}, panes: null, fresh: null, stop: "", program: "",
+  refused: "" };
 const output = new Output(ask), fresh = new Freshness(), plots = new Plots(), pace = paceField(ask);
 const log = new Log((events) => plots.mark(events));
 let book = null, machines = [], materials = [];
@@ -34,7 +35,10 @@ function ask(name, value) {
 function refused(name, text) {
   const field = fields().find((each) => each.spec.name === name);
   const bounds = field?.spec.low === undefined ? "" : ` (${boundsOf(field.spec)})`;
-  if (field) field.refuse(text.includes(" must be ") ? text : `${text}${bounds}`);
+  const isAlso = state.refused === text;
+  state.refused = text;
+  setTimeout(() => { state.refused = ""; }, 300);
+  if (field) field.refuse(text.includes(" must be ") ? text : `${text}${bounds}`, isAlso);
   else tell(byId("trouble"), new Error(text));
 }
 

@@ -3,7 +3,7 @@
 
 import { announce, el, fill } from "/dashboard/app.js";
 
-const HOLD_MS = 450, REPEAT_MS = 90, TOLD_MS = 15_000;
+const HOLD_MS = 450, REPEAT_MS = 90, TOLD_MS = 12_000;
 
 /** Words, unit and bounds of a number as the OpenAPI document tells them. */
 export function described(schema, name) {
@@ -25,7 +25,8 @@ export const same = (one, other) => (typeof one === "number" && typeof other ===
 /** The frame of a field: its name, whether it is pending, what was refused. */
 function framed(spec, id, ...inside) {
   const state = el("span", { class: "state", id: `${id}-state` }, spec.unit ?? "");
-  const note = el("span", { class: "note", id: `${id}-note`, hidden: true });
+  const note = el("span", { class: "note", id: `${id}-note`, hidden: true,
+    onclick: () => { note.hidden = true; } });
   const node = el("div", { class: "field", id: `${id}-field`, "data-field": spec.name },
     el("div", { class: "head" }, el("label", { for: id, title: spec.words }, spec.words), state),
     ...inside, note);
@@ -37,13 +38,15 @@ function framed(spec, id, ...inside) {
       node.classList.toggle("pending", isPending);
       state.textContent = isPending ? "pending" : (spec.unit ?? "");
     },
-    refuse(text) {
+    /** `isAlso`: another field shows the same already; here it is for who reads by ear. */
+    refuse(text, isAlso = false) {
       clearTimeout(timer);
       note.textContent = text ?? "";
       note.hidden = !text;
+      note.classList.toggle("unseen", isAlso);
       if (text) {
         aim()?.setAttribute("aria-invalid", "true");
-        announce(`${spec.words}: ${text}`);
+        if (!isAlso) announce(`${spec.words}: ${text}`);
         timer = setTimeout(() => this.refuse(null), TOLD_MS);
       } else aim()?.removeAttribute("aria-invalid");
     },

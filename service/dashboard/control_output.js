@@ -67,8 +67,7 @@ export class Output {
       el("div", { class: "middle" },
         el("div", { class: "force" },
           el("div", { class: "soft" }, "Cutting force ", this.forceText), this.bar,
-          el("div", { class: "row spread" }, el("span", { class: "soft" }, "Feed held by ", this.holding),
-            this.depth)),
+          el("div", { class: "soft" }, "Feed held by ", this.holding), this.depth),
         el("div", { class: "switches" }, this.isOn.node, this.mode.node)),
       this.small);
   }

@@ -235,7 +235,8 @@ export class Plots {
     const step = stepOf(most * 1.04, 3), high = Math.ceil((most * 1.04) / step) * step;
     const y = (value) => height - foot - (Math.max(value, 0) / high) * (height - foot - top);
     pen.font = "11px system-ui, sans-serif";
-    this.grid(pen, { x, y, begin, end, step, high, width, height, foot, top, isLast: panel.isLast });
+    this.grid(pen, { x, y, begin, end, step, high, width, height, foot, top, isLast: panel.isLast,
+      hasData: drawn.some((each) => each.runs.length) });
     pen.save();
     pen.beginPath();
     pen.rect(LEFT, 0, width - LEFT - RIGHT, height - foot + 1);
@@ -282,7 +283,7 @@ export class Plots {
     pen.setLineDash([]);
   }
 
-  grid(pen, { x, y, begin, end, step, high, width, height, foot, top, isLast }) {
+  grid(pen, { x, y, begin, end, step, high, width, height, foot, top, isLast, hasData }) {
     pen.strokeStyle = this.ink("rule");
     pen.fillStyle = this.ink("soft");
     pen.lineWidth = 1;
@@ -293,7 +294,7 @@ export class Plots {
       const at = Math.round(y(value)) + 0.5;
       pen.moveTo(LEFT, at);
       pen.lineTo(width - RIGHT, at);
-      pen.fillText(number(value, 3), LEFT - 6, Math.max(at, top + 2));
+      if (hasData || value === 0) pen.fillText(number(value, 3), LEFT - 6, Math.max(at, top + 2));
     }
     const apart = stepOf(end - begin, Math.max(2, Math.floor(width / 110)));
     pen.textAlign = "center";

@@ -29,7 +29,7 @@ const READINGS = [
 /** Show the run of a job in a place; returns a function that lets go of it. */
 export function showRun(place, first, told = () => {}) {
   let job = first, status = null, row = null, chart = null, energy = 0, energyAt = 0;
-  let waiting = [], heard = Date.now(), isLost = false, isShut = false, at = null, asked = 0;
+  let waiting = [], heard = Date.now(), isLost = false, isShut = false, isHeld = false, at = null, asked = 0;
   const path = `/v1/simulations/${job.id}`;
 
   const lamp = el("span", { class: "lamp idle", id: "now-execution" }, "–");
@@ -56,6 +56,10 @@ export function showRun(place, first, told = () => {}) {
   const drawn = el("div", { class: "chart", id: "run-chart", role: "img",
     "aria-label": "power by component, feed commanded and actual, cutting force against time" });
   const outcome = el("div", { id: "results" });
+  const hold = () => { isHeld = true; }, release = () => { isHeld = false; };
+  drawn.addEventListener("pointerdown", hold, true);
+  window.addEventListener("pointerup", release, true);
+  window.addEventListener("pointercancel", release, true);
 
   fill(place,
     el("section", { class: "card", "aria-labelledby": "state-title" },
@@ -135,7 +139,8 @@ export function showRun(place, first, told = () => {}) {
   // -- the stream -------------------------------------------------------------------------------
 
   function flush() {
-    if (!waiting.length || !chart) return;
+    // A range that is being drawn would be lost.
+    if (!waiting.length || !chart || isHeld) return;
     const parts = waiting;
     waiting = [];
     const names = Object.keys(parts[0].columns);
@@ -230,7 +235,7 @@ export function showRun(place, first, told = () => {}) {
   };
   let ready = null;
   /** Draw the chart, once there is something to draw. */
-  const begin = () => (ready ??= timePanels(drawn, source, PANELS, { points: 1200, height: 170, shapes })
+  const begin = () => (ready ??= timePanels(drawn, source, PANELS, { points: 800, height: 170, shapes })
     .then(async (made) => {
       if (isShut) return;
       chart = made;
@@ -246,6 +251,8 @@ export function showRun(place, first, told = () => {}) {
     isShut = true;
     leave();
     clearInterval(ticks);
+    window.removeEventListener("pointerup", release, true);
+    window.removeEventListener("pointercancel", release, true);
     drawn.redraw = null;
     chart?.Plotly.purge(drawn);
   };

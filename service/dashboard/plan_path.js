@@ -236,8 +236,8 @@ function solid() {
   const axis = (text) => ({ title: { text }, gridcolor: colour("rule"), zerolinecolor: colour("rule"), color: colour("ink"),
     showbackground: false, nticks: 5, showspikes: false });
   return layout({ hovermode: "closest", showlegend: state.colour === "limit", legend: { ...legend(), y: 0 },
-    height: byId("path-plot").clientHeight || 480, margin: { l: 0, r: 0, t: 0, b: 0 }, uirevision: "solid",
+    height: byId("path-plot").clientHeight || 480, margin: { l: 0, r: 0, t: isNarrow() ? 30 : 0, b: 0 }, uirevision: "solid",
     dragmode: "orbit",
     scene: { aspectmode: "data", xaxis: axis("x, mm"), yaxis: axis("y, mm"), zaxis: axis("z, mm"), dragmode: "orbit",
-      uirevision: "solid", camera: { eye: isNarrow() ? { x: 1.5, y: -1.7, z: 1.3 } : { x: 0.9, y: -1.25, z: 0.9 } } } });
+      uirevision: "solid", camera: { eye: isNarrow() ? { x: 1.6, y: -1.8, z: 1.4 } : { x: 1, y: -1.4, z: 1 }, center: { x: 0, y: 0, z: -0.12 } } } });
 }

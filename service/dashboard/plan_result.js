@@ -68,11 +68,11 @@ function times(steps) {
   const known = steps.filter((step) => step.time_s.before || step.time_s.after);
   const most = Math.max(...known.flatMap((step) => [step.time_s.before ?? 0, step.time_s.after ?? 0]), 1e-9);
   const bar = (kind, value) => el("div", { class: kind, style: `width:${(100 * (value ?? 0) / most).toFixed(2)}%` });
-  fill(byId("times"), known.length ? el("div", { class: "times" }, known.flatMap((step) => {
+  fill(byId("times"), known.length ? el("div", { class: "times" }, known.map((step) => {
     const { before } = step.time_s, after = step.time_s.after ?? before;
-    return [el("span", { class: "name", title: step.id }, step.id),
+    return el("div", { class: "time" }, el("span", { class: "name", title: step.id }, step.id),
       el("div", { class: "pair-bars", "aria-hidden": "true" }, bar("was", before), bar("is", after)),
-      el("span", { class: "told" }, `${fixed(before, 1)} → ${fixed(after, 1)}`)];
+      el("span", { class: "told" }, `${fixed(before, 1)} → ${fixed(after, 1)}`));
   })) : el("p", { class: "empty" }, "No time is known."));
 }
 

@@ -137,15 +137,15 @@ function limits(step) {
   const sorted = [...step.limits].sort((a, b) => a.margin - b.margin);
   const told = step.advised ? "as advised" : "as programmed";
   return el("table", {}, el("caption", {}, `Limits ${told}, nearest first`),
-    el("thead", {}, el("tr", {}, ["Limit", "Value", "Bound", "Use", "Margin"].map((title, at) =>
-      el("th", { scope: "col", class: at === 1 || at === 2 || at === 4 ? "n" : undefined }, title)))),
+    el("thead", {}, el("tr", {}, ["Limit", "Value and bound", "Use", "Margin"].map((title, at) =>
+      el("th", { scope: "col", class: at % 2 ? "n" : undefined }, title)))),
     el("tbody", {}, sorted.map((limit) => {
       const share = used(limit), isOver = limit.margin < -1e-6, isNear = limit.margin < 1e-3;
       const name = limitWords(limit.name, step);
       return el("tr", {},
         el("th", { scope: "row" }, limit.name === step.active_limit && isNear ? el("b", {}, name) : name),
-        el("td", { class: "n" }, four(limit.value)),
-        el("td", { class: "n" }, `${limit.sense === "at least" ? "≥" : "≤"} ${four(limit.bound)} ${limit.unit}`),
+        el("td", { class: "n" }, four(limit.value), limit.sense === "at least" ? " ≥ " : " ≤ ",
+          `${four(limit.bound)} ${limit.unit}`),
         el("td", { class: "bar" }, el("div", { class: `meter ${isOver ? "over" : isNear ? "near" : ""}`,
           role: "img", "aria-label": `${percent(share)} of ${name} used` },
         el("div", { style: `width:${(100 * Math.min(Math.max(share, 0), 1)).toFixed(1)}%` }))),
@@ -183,7 +183,7 @@ function sentences(step) {
     found.push(`1 % more ${limitWords(name, step)} lowers the cost by ${number(price, 2)} %.`);
   if (deepest && step.time_s.after && deepest - step.time_s.after > 0.05)
     found.push(`Fewest passes would take ${fixed(deepest, 1)} s instead of ${fixed(step.time_s.after, 1)} s.`);
-  return found.length ? [el("h3", {}, "What more would bring"), found.map((text) => el("p", {}, text))] : null;
+  return found.length ? [el("h3", {}, "What more would bring"), ...found.map((text) => el("p", {}, text))] : null;
 }
 
 function front(step) {

@@ -52,38 +52,49 @@ def application(settings: Settings) -> FastAPI:
     depot = open_depot(settings.root, knowledge=settings.knowledge)
     with open_store(depot.knowledge):
         """made when it is new"""
-    hub = Hub(depot)
+    app = _routed()
+    app.state.depot, app.state.settings, app.state.hub = depot, settings, Hub(depot)
+    app.state.advice = advice.Shelf()
+    app.add_middleware(Gate, settings=settings, depot=depot)
+    return app
 
-    @asynccontextmanager
-    async def living(_: FastAPI) -> AsyncIterator[None]:
-        yield
-        await hub.close()
 
+def openapi() -> dict[str, Any]:
+    """The OpenAPI document, without a service."""
+    return described(_routed())
+
+
+def _routed() -> FastAPI:
+    """Routes and what becomes of errors."""
     app = FastAPI(
         title=TITLE,
         description=ABOUT,
         version="1",
-        lifespan=living,
+        lifespan=_living,
         docs_url=None,
         redoc_url=None,
         openapi_url="/v1/openapi.json",
         responses=PROBLEMS,
     )
-    app.state.depot, app.state.settings, app.state.hub = depot, settings, hub
-    app.state.advice = advice.Shelf()
     # The most frequent first: routes are tried in their order.
     for routes in (
-        advice.ROUTES, jobs.ROUTES, live.CONTROL, live.TRIALS, programs.ROUTES, simulations.ROUTES,
-        knowledge.EVALUATIONS, knowledge.REVIEWS, knowledge.CORRECTIONS, knowledge.OUTCOMES,
-        library.MACHINES, library.MATERIALS, health.ROUTES, pages.ROUTES,
+        advice.ROUTES, jobs.ROUTES, live.CONTROL, live.TRIALS, programs.ROUTES,
+        simulations.ROUTES, knowledge.EVALUATIONS, knowledge.REVIEWS, knowledge.CORRECTIONS,
+        knowledge.OUTCOMES, library.MACHINES, library.MATERIALS, health.ROUTES, pages.ROUTES,
     ):  # fmt: skip
         app.include_router(routes)
     app.add_exception_handler(StepNcError, _project)
     app.add_exception_handler(RequestValidationError, _invalid)
     app.add_exception_handler(HTTPException, _http)
-    app.add_middleware(Gate, settings=settings, depot=depot)
     app.openapi = lambda: described(app)  # type: ignore[method-assign]
     return app
+
+
+@asynccontextmanager
+async def _living(app: FastAPI) -> AsyncIterator[None]:
+    """From start to end: streams do not outlive the service."""
+    yield
+    await app.state.hub.close()
 
 
 def from_environment() -> FastAPI:

@@ -40,6 +40,8 @@ def configure(level: str) -> None:
         )
     )
     logging.basicConfig(level=max(least, logging.INFO), handlers=[handler], force=True)
+    # It tells of every version that it looks at.
+    logging.getLogger("alembic").setLevel(logging.WARNING)
 
 
 class RequestLog:

@@ -1,0 +1,129 @@
+"""A runner of jobs in a process of its own, on a data folder of its own."""
+
+import os
+import signal
+import sys
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+from subprocess import DEVNULL, Popen
+
+import pytest
+
+from kbe.store import open_store
+from service.depot import jobs, programs
+from service.depot.folder import Depot, open_depot
+from service.depot.jobs import Job, Kind, Order, State
+from service.rest.bodies import AdviceBody, ControlBody, SimulationBody
+from tests.service.rest.samples import SAMPLE
+from tests.service.shop import outcomes
+from tests.service.waiting import environment, until
+
+MAIN = """
+import sys
+from service.jobs.runner import main
+main(sys.argv[1], sys.argv[2], 1, int(sys.argv[3]))
+"""
+
+
+@dataclass(kw_only=True)
+class Shop:
+    """A data folder, and who runs its jobs. Running state."""
+
+    depot: Depot
+    program: str = ""
+    runners: list[Popen[bytes]] = field(default_factory=list)
+
+    def start(self) -> Popen[bytes]:
+        """A runner, once it looks at the queue."""
+        with self.depot.database.writing() as connection:
+            connection.execute("DELETE FROM runner")
+        words = [str(self.depot.root), self.depot.knowledge, str(os.getpid())]
+        runner = Popen(
+            [sys.executable, "-c", MAIN, *words],
+            env=environment(self.depot.root.parent),
+            stdin=DEVNULL,
+            stdout=DEVNULL,
+        )
+        self.runners.append(runner)
+        until(self._has_beaten, within=90.0)
+        return runner
+
+    def _has_beaten(self) -> bool:
+        with self.depot.database.reading() as connection:
+            return connection.execute("SELECT 1 FROM runner").fetchone() is not None
+
+    def end(self) -> None:
+        """All runners."""
+        for runner in self.runners:
+            runner.send_signal(signal.SIGTERM)
+        for runner in self.runners:
+            runner.wait(30.0)
+
+    def order(self, kind: Kind, program: str | None = None, **words: object) -> Job:
+        """A job with the usual request, but for some words."""
+        usual = {
+            Kind.ADVICE: AdviceBody().words,
+            Kind.SIMULATION: SimulationBody().words,
+            Kind.CONTROL: ControlBody().words,
+            Kind.TRIAL: lambda: {"inputs": {}, "seed": 0, "pace": 1.0},
+        }[kind]()
+        named = "" if kind is Kind.TRIAL else (program or self.program)
+        request = {**usual, **words}
+        return jobs.add(
+            self.depot, Order(kind=kind, request=request, program=named, owner="anna")
+        )
+
+    def job(self, id: str) -> Job:
+        """As it is now."""
+        return jobs.get(self.depot, id)
+
+    def over(self, id: str, *, within: float = 60.0) -> Job:
+        """As it is once it is over."""
+
+        def look() -> Job | None:
+            found = self.job(id)
+            return found if found.state.is_over else None
+
+        return until(look, within=within)
+
+    def runs(self, id: str) -> Job:
+        """As it is once it has shown something."""
+
+        def look() -> Job | None:
+            found = self.job(id)
+            assert not found.state.is_over, found.problem
+            series = self.depot.job_folder(id) / "series.bin"
+            is_shown = series.exists() and series.stat().st_size > 2000
+            return found if found.state is State.RUNNING and is_shown else None
+
+        return until(look, within=60.0)
+
+
+ShopMaker = Callable[[], Shop]
+
+
+def made_shop(folder: Path) -> Shop:
+    shop = Shop(depot=open_depot(folder / "data", knowledge=str(folder / "knowledge.db")))
+    sample = SAMPLE.read_bytes()
+    shop.program = programs.add(shop.depot, sample, name=SAMPLE.name, owner="anna").id
+    return shop
+
+
+@pytest.fixture(scope="session")
+def shop(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Shop]:
+    """With a runner that nobody may end."""
+    made = made_shop(tmp_path_factory.mktemp("shop"))
+    with open_store(made.depot.knowledge) as store:
+        store.add(list(outcomes(300)))
+    made.start()
+    yield made
+    made.end()
+
+
+@pytest.fixture
+def own_shop(tmp_path: Path) -> Iterator[Shop]:
+    """Whose runners come and go."""
+    made = made_shop(tmp_path)
+    yield made
+    made.end()

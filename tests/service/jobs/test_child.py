@@ -1,0 +1,91 @@
+"""The process of one job, here in ours: however it ends, the job says how."""
+
+import signal
+from collections.abc import Iterator
+
+import pytest
+
+from service.depot import jobs, programs
+from service.depot.jobs import Job, Kind, State
+from service.jobs import child
+from tests.service.jobs.conftest import Shop, made_shop
+from tests.service.rest.samples import SAMPLE
+
+
+@pytest.fixture(autouse=True)
+def _own_signals() -> Iterator[None]:
+    before = {each: signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM)}
+    yield
+    for each, handler in before.items():
+        signal.signal(each, handler)
+
+
+@pytest.fixture
+def idle(tmp_path_factory: pytest.TempPathFactory) -> Shop:
+    """Without a runner."""
+    return made_shop(tmp_path_factory.mktemp("idle"))
+
+
+def ran(shop: Shop, job: Job) -> Job:
+    assert jobs.claim(shop.depot, kinds=[job.kind]) is not None
+    child.main(str(shop.depot.root), shop.depot.knowledge, job.id)
+    return shop.job(job.id)
+
+
+def upload(shop: Shop, data: bytes) -> str:
+    return programs.add(shop.depot, data, name="bad.stpnc", owner="anna").id
+
+
+def test_a_bad_line_is_named(idle: Shop) -> None:
+    lines = SAMPLE.read_bytes().splitlines(keepends=True)
+    bad = upload(idle, b"".join([*lines[:20], b"#17=BROKEN((;\n", *lines[20:]]))
+    job = ran(idle, idle.order(Kind.ADVICE, bad))
+    assert job.state is State.FAILED
+    assert job.problem is not None
+    assert job.problem["status"] == 422
+    assert job.problem["line"] == 21 or "#" in job.problem["entity"]
+
+
+def test_a_workingstep_that_is_not_there_is_named(idle: Shop) -> None:
+    job = ran(idle, idle.order(Kind.ADVICE, workingsteps=["NO SUCH STEP"]))
+    assert job.state is State.FAILED
+    assert job.problem is not None
+    assert "NO SUCH STEP" in job.problem["detail"]
+
+
+def test_no_problem_tells_where_the_data_lies(idle: Shop) -> None:
+    programs_folder = idle.depot.root / "programs"
+    (programs_folder / f"{idle.program}.stpnc").unlink()
+    for kind in (Kind.ADVICE, Kind.SIMULATION, Kind.CONTROL):
+        job = ran(idle, idle.order(kind))
+        assert job.state is State.FAILED
+        assert str(idle.depot.root) not in str(job.problem)
+
+
+def test_a_fault_of_the_program_is_no_fault_of_the_client(idle: Shop) -> None:
+    job = idle.order(Kind.ADVICE, mode=None)
+    with pytest.raises(Exception, match=r".") as fault:
+        ran(idle, job)
+    assert not isinstance(fault.value, jobs.NotFound)
+    found = idle.job(job.id)
+    assert found.state is State.FAILED
+    assert found.problem is not None
+    assert (found.problem["status"], found.problem["title"]) == (500, "Fault")
+    assert "Traceback" not in str(found.problem)
+    assert str(fault.value) not in found.problem["detail"]
+
+
+def test_a_job_that_was_asked_to_end_is_cancelled(idle: Shop) -> None:
+    with pytest.raises(child.Cancelled):
+        child._cancel(signal.SIGTERM, None)
+    # Told to end before its first line of work.
+    job = idle.order(Kind.SIMULATION, pace=0.5)
+    signal.setitimer(signal.ITIMER_REAL, 0.0)
+    previous = signal.signal(signal.SIGALRM, lambda *_: signal.raise_signal(signal.SIGTERM))
+    try:
+        signal.setitimer(signal.ITIMER_REAL, 2.0)
+        found = ran(idle, job)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, previous)
+    assert (found.state, found.problem) == (State.CANCELLED, None)

@@ -1,0 +1,129 @@
+"""The runner: what is killed is not forgotten, what is cancelled ends, nobody is left behind."""
+
+import os
+import signal
+from pathlib import Path
+
+import pytest
+
+from service.depot import jobs
+from service.depot.folder import open_depot
+from service.depot.jobs import Kind, State
+from service.errors import Conflict
+from service.jobs import preloaded, runner
+from tests.service.jobs.conftest import Shop
+from tests.service.waiting import children, is_alive, until
+
+
+def process_of(shop: Shop, id: str) -> int:
+    """Of a running job: the one that has its rows open."""
+    series = str(shop.depot.job_folder(id) / "series.bin")
+    for pid in children(shop.runners[-1].pid):
+        try:
+            opened = [os.readlink(each) for each in Path(f"/proc/{pid}/fd").iterdir()]
+        except OSError:
+            continue
+        if series in opened:
+            return pid
+    raise AssertionError("no process works on it")
+
+
+def test_a_running_simulation_is_cancelled_within_seconds(shop: Shop) -> None:
+    id = shop.order(Kind.SIMULATION, pace=0.1).id
+    shop.runs(id)
+    jobs.cancel(shop.depot, id)
+    job = shop.over(id, within=10.0)
+    assert (job.state, job.problem) == (State.CANCELLED, None)
+    folder = shop.depot.job_folder(id)
+    assert not (folder / "result.json").exists()
+    assert not [each.name for each in folder.iterdir() if each.name.startswith(".samples")]
+
+
+def test_a_job_whose_process_was_killed_says_so_and_the_next_one_runs(shop: Shop) -> None:
+    id = shop.order(Kind.SIMULATION, pace=0.1).id
+    shop.runs(id)
+    next_one = shop.order(Kind.SIMULATION).id
+    os.kill(process_of(shop, id), signal.SIGKILL)
+    job = shop.over(id, within=10.0)
+    assert job.state is State.FAILED
+    assert job.problem is not None
+    assert job.problem["type"] == "urn:stepnc:problem:job-lost"
+    assert "SIGKILL" in job.problem["detail"]
+    assert shop.over(next_one).state is State.SUCCEEDED
+
+
+def test_live_runs_do_not_wait_for_other_jobs(shop: Shop) -> None:
+    long = shop.order(Kind.SIMULATION, pace=0.1).id
+    waits = shop.order(Kind.SIMULATION).id
+    trials = [shop.order(Kind.TRIAL).id for _ in range(2)]
+    for id in (long, *trials):
+        shop.runs(id)
+    assert shop.job(waits).state is State.QUEUED
+    for id in (waits, long, *trials):
+        jobs.cancel(shop.depot, id)
+    assert {shop.over(id).state for id in (waits, long, *trials)} == {State.CANCELLED}
+
+
+def test_one_runner_works_for_a_folder(shop: Shop) -> None:
+    with pytest.raises(Conflict, match="another server works with this folder"):
+        runner.locked(shop.depot.root)
+
+
+def test_a_lock_is_free_again_when_it_is_closed(tmp_path: Path) -> None:
+    with runner.locked(tmp_path):
+        pass
+    with runner.locked(tmp_path):
+        pass
+
+
+def test_a_sign_of_life_grows_old(tmp_path: Path) -> None:
+    depot = open_depot(tmp_path, knowledge="none.db")
+    assert not runner.is_alive(depot)
+    runner.beat(depot)
+    runner.beat(depot)
+    assert runner.is_alive(depot)
+    with depot.database.writing() as connection:
+        connection.execute("UPDATE runner SET seen = seen - ?", (5.0 * runner.BEAT,))
+    assert not runner.is_alive(depot)
+
+
+def test_what_is_preloaded_loads() -> None:
+    assert preloaded.__doc__
+
+
+def test_a_killed_runner_leaves_nobody_and_the_next_one_finishes_its_job(
+    own_shop: Shop,
+) -> None:
+    killed = own_shop.start()
+    id, trial = own_shop.order(Kind.SIMULATION, pace=1.0).id, own_shop.order(Kind.TRIAL).id
+    own_shop.runs(id)
+    own_shop.runs(trial)
+    below = children(killed.pid)
+    assert {process_of(own_shop, id), process_of(own_shop, trial)} <= below
+    killed.kill()
+    killed.wait(10.0)
+    until(lambda: not any(map(is_alive, below)), within=20.0)
+    assert own_shop.job(id).state is State.RUNNING
+    own_shop.start()
+    job = own_shop.over(id)
+    assert (job.state, job.attempt) == (State.SUCCEEDED, 2)
+    lost = own_shop.job(trial)
+    assert (lost.state, lost.attempt) == (State.FAILED, 1)
+    assert lost.problem is not None
+    assert "people" in lost.problem["detail"]
+
+
+def test_a_runner_that_is_told_to_stop_ends_its_jobs_for_the_next_one(own_shop: Shop) -> None:
+    first = own_shop.start()
+    id = own_shop.order(Kind.SIMULATION, pace=1.0).id
+    own_shop.runs(id)
+    below = children(first.pid)
+    first.send_signal(signal.SIGINT)
+    first.send_signal(signal.SIGTERM)
+    assert first.wait(20.0) == 0
+    until(lambda: not any(map(is_alive, below)), within=20.0)
+    with runner.locked(own_shop.depot.root):
+        """free at once"""
+    assert own_shop.job(id).state is State.RUNNING
+    own_shop.start()
+    assert own_shop.over(id).state is State.SUCCEEDED
