@@ -125,7 +125,7 @@ export async function timePanels(place, source, panels,
     return { data, layout: laid };
   };
 
-  async function reload(begin = null, end = null) {
+  async function reload(begin = range?.[0] ?? null, end = range?.[1] ?? null) {
     series = await api(source(begin, end, points)).catch((error) => {
       if (error.status === 409) return series;  // no rows yet
       throw error;

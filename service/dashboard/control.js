@@ -275,7 +275,7 @@ fill(byId("main"),
     el("span", { class: "row tight commands" }, pace.node, begin, cutter, finish)),
   el("div", { id: "trouble" }), stopped, fresh.node,
   el("div", { class: "panel" }, el("div", { class: "seen" }, output.node, plots.node),
-    el("div", { class: "set" }, panes, log.node)));
+    el("div", { class: "set" }, panes, log.node)), output.glance);
 
 async function open() {
   const asked = new URLSearchParams(location.search);

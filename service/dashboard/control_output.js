@@ -59,6 +59,7 @@ export class Output {
     this.bar = el("div", { class: "meter", role: "meter", id: "force-bar", "aria-label": "force against set point",
       "aria-valuemin": "0", "aria-valuemax": "150" }, this.fillBar, el("div", { class: "aim" }));
     this.small = el("div", { class: "figures small-figures", id: "out-small" });
+    this.glance = el("div", { class: "glance", id: "glance", "aria-hidden": "true" });
     this.kind = "";
     this.node = el("section", { class: "card output", id: "output", "aria-labelledby": "output-title" },
       el("h2", { id: "output-title", class: "unseen" }, "Output"),
@@ -89,6 +90,10 @@ export class Output {
     this.showForce(status);
     this.put(this.holding, !status ? "–" : (status.holding || "nothing"));
     this.showLamp(status, isOver);
+    this.glance.hidden = !status || isOver;
+    this.glance.className = `glance ${this.lamp.classList[1]}`;
+    this.put(this.glance, `${this.lampWord.textContent} · ${fixed(feeds[2], 0)} mm/min · `
+      + `${fixed(status?.force_measured_n, 0)} N`);
     const warning = status?.depth_warning ? `Warning: ${status.depth_warning}` : "";
     if (this.depth.textContent !== warning) {
       this.depth.textContent = warning;

@@ -31,6 +31,7 @@ export async function results(place, job, goTo) {
       el("p", { class: "soft small" }, `CO₂ by ${number(found.carbon.factor_g_kwh, 3)} g/kWh: ${found.carbon.source}`)),
     el("section", { class: "card", style: "grid-column: 1 / -1" }, el("h2", { id: "steps-title" }, "Workingsteps"),
       framed("workingsteps of the run", steps(found.workingsteps, goTo)))));
+  return found;
 }
 
 function steps(rows, goTo) {

@@ -210,8 +210,9 @@ export function showRun(place, first, told = () => {}) {
     if (at === found.end_s[0]) showEnd();
     byId("at-words").textContent = "State at the end of the run; move the slider to look back";
     if (job.state === "succeeded") {
-      await results(outcome, job, (time) => { slider.value = String(time); goTo(time); })
+      const result = await results(outcome, job, (time) => { slider.value = String(time); goTo(time); })
         .catch((error) => tell(outcome, error));
+      if (result) byId("run-facts").textContent = facts(job, result.machine);
       announce("the run has ended");
     }
   }
@@ -259,9 +260,9 @@ export function showRun(place, first, told = () => {}) {
 }
 
 /** What a run was asked for, in a line. */
-function facts(job) {
+function facts(job, known = "a machine that suits") {
   const { machine, material, pace, kc_factor: factor, noise, has_lag: lag, has_wear: wear } = job.request;
-  return [machine || "a machine that suits", material || "the program's material",
+  return [machine || known, material || "the program's material",
     paceWord(pace), factor !== 1 ? `k_c × ${factor}` : "", noise !== "none" ? `noise ${noise}` : "",
     lag ? "lag of the drive" : "", wear ? "tools wear" : ""].filter(Boolean).join(" · ");
 }

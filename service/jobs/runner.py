@@ -36,6 +36,9 @@ BEAT = 2.0
 GRACE = 5.0
 """s that a cancelled job has to end by itself"""
 
+LONGEST = 2 * 3600.0
+"""s of a job with which nobody talks: a program that takes longer is a slip, or an attack"""
+
 MOST_LIVE = 16
 """runs that somebody may steer, at once: they mostly wait"""
 
@@ -48,8 +51,10 @@ class Running:
 
     job: Job
     process: ForkServerProcess
+    began_at: float = field(default_factory=time.monotonic)
     asked_at: float | None = None
     """when it was asked to end"""
+    is_overdue: bool = False
 
 
 @dataclass(kw_only=True)
@@ -59,6 +64,8 @@ class Runner:
     depot: Depot
     workers: int
     """jobs at once, live runs aside"""
+    longest: float = LONGEST
+    """s of a job that is no live run"""
     is_stopping: bool = False
     running: dict[str, Running] = field(default_factory=dict)
 
@@ -111,13 +118,17 @@ class Runner:
                 del self.running[id]
             elif id in cancelling:
                 _ask_to_end(each)
+            elif not each.job.kind.is_live and time.monotonic() - each.began_at > self.longest:
+                each.is_overdue = True
+                each.process.kill()
 
     def _ended(self, each: Running) -> None:
         """A process has ended; one that said nothing of its job was lost."""
         code = each.process.exitcode
         each.process.close()
         state = State.CANCELLED if each.asked_at is not None else State.FAILED
-        problem = None if state is State.CANCELLED else jobs.lost(_why(code))
+        why = f"after {self.longest:g} s, the most" if each.is_overdue else _why(code)
+        problem = None if state is State.CANCELLED else jobs.lost(why)
         jobs.finish(self.depot, each.job, state, problem=problem)
         LOG.info("job ended", job=each.job.id, kind=each.job.kind.value, exit_code=code)
 
