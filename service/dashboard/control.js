@@ -179,6 +179,7 @@ async function shape() {
   if (kind === "trial") state.panes = trialPanes(book, materials, ask);
   else if (isLive) state.panes = programPanes(book, materials, ask);
   else state.panes = startPanes(book, { ...(await programsAndAdvices()), machines, materials });
+  if (run?.isOver) state.panes.preset?.(run.job.request);
   state.isFree = null;
   fill(panes, state.panes.nodes);
 }

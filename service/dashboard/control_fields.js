@@ -35,7 +35,7 @@ function framed(spec, id, ...inside) {
   return {
     node,
     pending(isPending) {
-      node.classList.toggle("pending", isPending);
+      node.classList.toggle("pending", Boolean(isPending));
       state.textContent = isPending ? "pending" : (spec.unit ?? "");
     },
     /** `isAlso`: another field shows the same already; here it is for who reads by ear. */
@@ -141,7 +141,7 @@ export function switchField(spec, options, ask) {
   const note = el("span", { class: "note", id: `switch-${spec.name}-note`, hidden: true });
   return { node: el("div", { class: "switched" }, group, note), spec,
     show(value, isPending) {
-      group.classList.toggle("pending", isPending);
+      group.classList.toggle("pending", Boolean(isPending));
       options.forEach(([each], at) => buttons[at].setAttribute("aria-pressed", String(each === value)));
     },
     refuse(text) {

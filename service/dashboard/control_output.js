@@ -107,7 +107,7 @@ export class Output {
     const force = status?.force_measured_n, aim = status?.force_set_point_n;
     const share = Number.isFinite(force) && aim ? Math.max(force, 0) / aim : null;
     const of = aim ? `of ${fixed(aim, 0)} N set point` : "no set point";
-    this.put(this.forceText, !status ? "–"
+    this.put(this.forceText, !Number.isFinite(force) ? "–"
       : `${fixed(force, 0)} N ${of}${share === null ? "" : `, ${fixed(100 * share, 0)} %`}`);
     this.fillBar.style.transform = `scaleX(${Math.min(share ?? 0, BAR_TOP) / BAR_TOP})`;
     const tone = share > 1.1 ? "over" : share > 1.02 ? "near" : "";
@@ -116,7 +116,7 @@ export class Output {
   }
 
   showLamp(status, isOver) {
-    const [tone, word] = !status ? ["idle", "NO RUN"] : isOver ? ["idle", "AT REST"]
+    const [tone, word] = !status ? ["idle", "NO RUN"] : isOver || status.is_stopped ? ["idle", "AT REST"]
       : status.is_over ? ["over", "OVER"] : ["safe", "SAFE"];
     if (this.lampWord.textContent === word) return;
     if (tone === "over" || this.lamp.classList.contains("over")) announce(`power limit: ${word}`);

@@ -7,8 +7,8 @@ const STEPS = { tool_diameter_mm: 1, teeth: 1, cutting_edge_angle_deg: 5, radial
   cutting_speed_m_min: 10, efficiency: 0.05, feed_per_tooth_mm: 0.01, axial_depth_mm: 0.5,
   motor_power_kw: 0.5, axial_depth_max_mm: 0.5,
   motor_power_percent: 5, depth_percent: 5, hardness_percent: 5 };
-const WORDS = { efficiency: "efficiency", motor_power_percent: "allowed motor power",
-  depth_percent: "depth of the program's", hardness_percent: "hardness (k_c)" };
+const WORDS = { efficiency: "efficiency", motor_power_percent: "motor allowed",
+  depth_percent: "depth", hardness_percent: "hardness" };
 const UNITS = { depth_percent: "%", hardness_percent: "%" };
 const MILLING = { full: "full: a slot", up: "up: conventional", down: "down: climb",
   symmetric: "symmetric: the middle" };
@@ -88,7 +88,8 @@ export function programPanes(book, materials, ask) {
     nodes: [
       pane("input", "Input", [shown.program, shown.workingstep, shown.tool, shown.depth, shown.done,
         material, ...hidden], el("p", { class: "soft small" },
-        "The program fixes tool, width and speed. What is changed here the loop is not told: it finds out by the force.")),
+        "The program fixes tool, width and speed. Material, depth and hardness, in % of what is planned, "
+        + "are changed behind the loop’s back: it finds out by the force.")),
       pane("machine", "Machine", [power, shown.motor]),
     ],
     fit() {},
@@ -127,6 +128,12 @@ export function startPanes(book, { programs, advices, machines, materials }) {
       const [kind, id] = program.read().split(":");
       return { [`${kind}_id`]: id, machine: machine.read(), material: material.read(), law: law.read(),
         has_preview: preview.node.firstChild.checked, is_recorded: recorded.node.firstChild.checked };
+    },
+    /** As another run was asked for. */
+    preset(request) {
+      const source = request.advice_id ? `advice:${request.advice_id}` : `program:${request.program_id}`;
+      if ([...program.select.options].some((option) => option.value === source)) program.show(source);
+      for (const field of fields.slice(1)) field.show(request[field.spec.name]);
     },
     fit() {},
     enable() {},

@@ -10,7 +10,8 @@ import { Rows } from "/dashboard/control_series.js";
 const LEFT = 52, RIGHT = 10, FOOT = 20, RELOAD_MS = 4000;
 
 const PANELS = [
-  { id: "feed", title: "Feed rate", unit: "mm/min", lines: [
+  // Rapids leave the top: beside them no feed could be read.
+  { id: "feed", title: "Feed rate", unit: "mm/min", scale: ["programmed", "advised"], lines: [
     { name: "programmed", label: "programmed", colour: "curve-7", dash: [6, 4] },
     { name: "advised", label: "advised", colour: "curve-2" },
     { name: "actual", label: "actual", colour: "curve-1", width: 2.2 }] },
@@ -31,6 +32,9 @@ function stepOf(top, count) {
   const rough = top / count, power = 10 ** Math.floor(Math.log10(rough));
   return power * [1, 2, 2.5, 5, 10].find((each) => each * power >= rough * 0.999);
 }
+
+const isLevel = (point, value) => Math.abs(point.low - value) <= 2e-4 * Math.abs(value)
+  && Math.abs(point.high - value) <= 2e-4 * Math.abs(value);
 
 export class Plots {
   constructor() {
@@ -231,7 +235,9 @@ export class Plots {
     const foot = panel.isLast ? FOOT : 5, top = 5;
     const x = (time) => LEFT + ((time - begin) / (end - begin)) * (width - LEFT - RIGHT);
     const drawn = panel.lines.map((line) => this.columns(line.name, begin, end, x));
-    const most = Math.max(...drawn.map((each) => each.most), 0) || 1;
+    const scaling = drawn.filter((_, at) => panel.scale?.includes(panel.lines[at].name) ?? true);
+    const most = Math.max(...scaling.map((each) => each.most), 0)
+      || Math.max(...drawn.map((each) => each.most), 0) || 1;
     const step = stepOf(most * 1.04, 3), high = Math.ceil((most * 1.04) / step) * step;
     const y = (value) => height - foot - (Math.max(value, 0) / high) * (height - foot - top);
     pen.font = "11px system-ui, sans-serif";
@@ -262,6 +268,12 @@ export class Plots {
         return;
       }
       if (!run) runs.push(run = []);
+      // Level pieces are one stroke: dashes along many points are slow.
+      const before = run.at(-2);
+      if (before && low === high && isLevel(before, low) && isLevel(last, low)) {
+        Object.assign(last, { column, x: at });
+        return;
+      }
       run.push({ column, x: at, low, high });
     });
     return { runs, most };
@@ -270,7 +282,7 @@ export class Plots {
   line(pen, runs, y, line) {
     pen.strokeStyle = this.ink(line.colour);
     pen.lineWidth = line.width ?? 1.4;
-    pen.lineJoin = "round";
+    pen.lineJoin = "bevel";
     pen.setLineDash(line.dash ?? []);
     pen.beginPath();
     for (const run of runs) {

@@ -1,7 +1,7 @@
 // Jobs: all of them with how far they are; looked at again while the page is seen.
 
 import { announce, api, byId, duration, el, fill, tell } from "/dashboard/app.js";
-import { confirmed, framed, isOver, KINDS, programNames, programOf, shortMoment, stateBadge, STATES }
+import { bar, confirmed, framed, isOver, KINDS, programNames, programOf, saying, shortMoment, stateBadge, STATES }
   from "/dashboard/records.js";
 import { paceWord } from "/dashboard/machine_words.js";
 
@@ -124,11 +124,15 @@ const seconds = (job) => ((job.ended_at ? new Date(job.ended_at) : new Date()) -
 
 function how(job) {
   if (job.state === "failed") return el("span", { class: "bad small" }, job.problem?.detail ?? job.problem?.title ?? "");
-  if (job.state === "queued") return el("span", { class: "soft small" }, "waits for its turn");
-  if (job.state === "cancelled") return el("span", { class: "soft small" }, job.share ? `ended at ${Math.round(100 * job.share)} %` : "ended before it began");
+  if (job.state === "queued") return el("span", { class: "soft small" }, saying(job));
+  if (job.state === "cancelled") return el("span", { class: "soft small" }, ended(job));
   if (job.state === "succeeded") return el("span", { class: "soft small" }, gist(job));
-  return [el("progress", { max: "1", value: String(job.share), "aria-label": "how far it is" }),
-    el("div", { class: "soft small" }, job.message || "begins")];
+  return [bar(job), el("div", { class: "soft small" }, saying(job) || "begins")];
+}
+
+function ended(job) {
+  if (!job.started_at) return "before it began";
+  return job.share && !job.request.pace ? `at ${Math.round(100 * job.share)} %` : "before its time";
 }
 
 /** What was asked for, in some words. */

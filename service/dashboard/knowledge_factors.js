@@ -20,7 +20,7 @@ const standing = (each, inForce) => (each.standing === "accepted" && each !== in
     each.standing === "accepted" ? "in force" : each.standing));
 
 const before = (entry) => (entry.inForce ? `Until now: ${factorWords(entry.inForce)}, accepted by ${entry.inForce.decided_by}.`
-  : "Until now plans take the catalogue's k_c.");
+  : "Until now: the catalogue's k_c.");
 
 /** The section in a place; `told(count)` hears how many proposals wait. */
 export async function factors(place, { review, told }) {
@@ -113,8 +113,8 @@ export async function factors(place, { review, told }) {
     if (inForce) decide.push(act("withdraw", "Withdraw", `withdraw what is in force for ${name}`, () => withdraw(entry, inForce)));
     return el("tr", { id: `factor-${latest.id}` },
       el("th", { scope: "row" }, latest.tool, el("div", { class: "soft small thin" }, `${latest.material} on ${latest.machine}`)),
-      el("td", { "data-label": HEAD[1] }, `× ${fixed(latest.factor, 2)} ± ${fixed(half(latest), 2)} `, standing(latest, inForce),
-        el("div", { class: "soft small" }, `${fixed(latest.factor_low, 2)} to ${fixed(latest.factor_high, 2)} of ${latest.outcomes} outcomes`)),
+      el("td", { class: "proposal", "data-label": HEAD[1] }, `× ${fixed(latest.factor, 2)} ± ${fixed(half(latest), 2)} `, standing(latest, inForce),
+        el("div", { class: "soft small" }, `next run ${fixed(latest.factor_low, 2)} to ${fixed(latest.factor_high, 2)}; ${latest.outcomes} outcomes`)),
       el("td", { class: "n", "data-label": HEAD[2] }, percent(latest.confidence)),
       el("td", { "data-label": HEAD[3] }, inForce ? [`× ${fixed(inForce.factor, 2)} ± ${fixed(half(inForce), 2)}`,
         el("div", { class: "soft small" }, `${inForce.decided_by}, ${moment(inForce.decided_at)}`)] : el("span", { class: "soft" }, "the catalogue's")),

@@ -107,7 +107,7 @@ export function evaluationTable(found) {
         el("tr", {}, groups.flatMap(([title, list]) => list.map((column, at) => el("th", { scope: "col",
           class: `${column.isFigure ? "n" : ""} ${title && !at ? "first" : ""} ${column.isHead ? "kept" : ""}`,
           "aria-sort": sorted?.column === column ? (sorted.isFalling ? "descending" : "ascending") : undefined },
-        el("button", { type: "button", onclick: () => sort(column) }, column.label,
+        el("button", { type: "button", "aria-label": `${title} ${column.label}`.trim(), onclick: () => sort(column) }, column.label,
           el("span", { class: "order", "aria-hidden": "true" }, sorted?.column !== column ? "" : sorted.isFalling ? "▾" : "▴"))))))),
       shown.map((row) => el("tbody", {}, lines(row), remarks(row))));
   }

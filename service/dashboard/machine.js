@@ -49,7 +49,11 @@ function open(job) {
   leave?.();
   choice.value = job.id;
   history.replaceState(null, "", `?id=${job.id}`);
-  leave = showRun(place, job, (now) => { know(now); fill(badge, stateBadge(now)); });
+  leave = showRun(place, job, (now, isAgain) => {
+    know(now);
+    fill(badge, stateBadge(now));
+    if (isAgain) open(now);
+  });
 }
 
 function started(job) {
@@ -74,7 +78,8 @@ async function begin() {
   else if (!isStart || !known.size) fill(place, el("p", { class: "card empty", id: "no-runs" }, "No run yet: start one above."));
   if (!first) {
     starting.open = true;
-    choice.selectedIndex = -1;
+    choice.prepend(el("option", { value: "", disabled: true }, known.size ? "choose a run" : "none yet"));
+    choice.value = "";
   }
   choice.disabled = !known.size;
   await startForm(byId("start-place"), names, wish, (job) => { choice.disabled = false; started(job); });

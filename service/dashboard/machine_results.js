@@ -26,7 +26,7 @@ export async function results(place, job, goTo) {
         `${duration(total.overload_time_s)} above the continuous power of the spindle drive, or the permitted force.`) : null,
       found.findings.length ? el("details", {}, el("summary", {}, `Remarks on the run: ${found.findings.length}`),
         el("ul", {}, found.findings.map((each) => el("li", { class: each.severity === "error" ? "bad" : "" }, each.message)))) : null),
-    el("section", { class: "card", style: "grid-column: span 5" }, el("h2", {}, "Energy by component"),
+    el("section", { class: "card", style: "grid-column: span 5" }, el("h2", { id: "energy-title" }, "Energy by component"),
       framed("energy by component", energy(total.energy_j)),
       el("p", { class: "soft small" }, `CO₂ by ${number(found.carbon.factor_g_kwh, 3)} g/kWh: ${found.carbon.source}`)),
     el("section", { class: "card", style: "grid-column: 1 / -1" }, el("h2", { id: "steps-title" }, "Workingsteps"),
@@ -53,7 +53,7 @@ function energy(joules) {
   const parts = COMPONENTS.map(({ energy: name, label, colour }) => ({ label, colour, value: joules[name] }))
     .sort((one, other) => other.value - one.value);
   const most = Math.max(...parts.map(({ value }) => value), 1e-9);
-  return el("table", { id: "energy" },
+  return el("table", { id: "energy", "aria-labelledby": "energy-title" },
     el("thead", {}, el("tr", {}, ["Component", "kJ", "Share"].map((text, at) =>
       el("th", { scope: "col", class: at === 1 ? "n" : "" }, text)))),
     el("tbody", {}, parts.map(({ label, colour, value }) => el("tr", {},

@@ -3,7 +3,7 @@
 import { announce, api, byId, duration, el, fill, fixed, number, tell, watch }
   from "/dashboard/app.js";
 import { timePanels } from "/dashboard/charts.js";
-import { isOver } from "/dashboard/records.js";
+import { bar, isOver, saying } from "/dashboard/records.js";
 import { COMPONENTS, CONDITION, EXECUTION, LAMPS, PANELS, PATH_MODE, paceWord }
   from "/dashboard/machine_words.js";
 import { results } from "/dashboard/machine_results.js";
@@ -26,7 +26,10 @@ const READINGS = [
   ["now-energy", "Energy so far", "kJ", () => "–"],
 ];
 
-/** Show the run of a job in a place; returns a function that lets go of it. */
+/**
+ * Show the run of a job in a place; `told(job, isAgain)` hears how the job is, and whether it has
+ * begun anew: then nothing of what is shown holds. Returns a function that lets go of it.
+ */
 export function showRun(place, first, told = () => {}) {
   let job = first, status = null, row = null, chart = null, energy = 0, energyAt = 0;
   let waiting = [], heard = Date.now(), isLost = false, isShut = false, isHeld = false, at = null, asked = 0;
@@ -36,12 +39,12 @@ export function showRun(place, first, told = () => {}) {
   const mode = el("span", { class: "badge", id: "now-mode" }, "–");
   const step = el("span", { id: "now-workingstep" }, "–");
   const stale = el("div", { id: "stale" }), trouble = el("div", { id: "run-problem" });
-  const bar = el("progress", { max: "1", id: "run-progress", "aria-label": "how far the run is" });
+  const line = bar(job, { id: "run-progress" });
   const message = el("span", { class: "soft small", id: "run-message" });
   const cancel = el("button", { id: "run-cancel", onclick: () =>
     api(`/v1/jobs/${job.id}/cancel`, { method: "POST" }).then(hear, (error) => tell(trouble, error)) },
   "End the run");
-  const progress = el("div", { class: "row", id: "run-line" }, bar, message, cancel);
+  const progress = el("div", { class: "row", id: "run-line" }, line, message, cancel);
   const values = new Map();
   const readings = READINGS.map(([id, name, unit, , kind = ""]) => {
     const value = el("span", { class: "value", id }, "–");
@@ -67,7 +70,8 @@ export function showRun(place, first, told = () => {}) {
         el("span", { class: "soft small", id: "run-facts" }, facts(job))),
       stale, trouble, progress,
       el("div", { class: "row", id: "now" }, lamp, mode, step),
-      el("p", {}), el("div", { class: "figures" }, readings), atLine),
+      el("div", { class: "figures" }, readings.filter((each) => each.classList.contains("big"))),
+      el("div", { class: "readings" }, readings.filter((each) => !each.classList.contains("big"))), atLine),
     el("section", { class: "card", "aria-labelledby": "chart-title" },
       el("h2", { id: "chart-title" }, "Signals"), keys(), drawn,
       el("p", { class: "soft small" }, "Drag across a range to read it again in full detail; a double click shows the whole run. A click shows the state at that time.")),
@@ -160,10 +164,12 @@ export function showRun(place, first, told = () => {}) {
   }
 
   function lost() {
+    if (!isLost) {
+      fill(stale, el("div", { class: "banner warn", role: "alert" }, "The connection is lost; it is tried again each second. ",
+        el("span", { id: "stale-age", "aria-live": "off" })));
+    }
     isLost = true;
-    const seconds = Math.round((Date.now() - heard) / 1000);
-    fill(stale, el("div", { class: "banner warn", role: "alert" },
-      `The connection is lost: what is shown is ${seconds} s old. It is tried again each second.`));
+    byId("stale-age").textContent = `What is shown is ${Math.round((Date.now() - heard) / 1000)} s old.`;
   }
 
   function back() {
@@ -174,11 +180,13 @@ export function showRun(place, first, told = () => {}) {
   }
 
   function hear(now) {
+    const isAgain = job.attempt > 0 && now.attempt > job.attempt;
     job = now;
-    told(job);
+    told(job, isAgain);
+    if (isShut) return;
     progress.hidden = isOver(job);
-    bar.value = job.share;
-    message.textContent = job.state === "queued" ? "waits for its turn" : row ? "" : job.message || "begins";
+    if (job.request.pace === 0 && job.state === "running") line.value = job.share;
+    message.textContent = row ? "" : saying(job) || "begins";
     cancel.disabled = job.is_cancelling;
     if (!row) lamp.textContent = job.state.toUpperCase();
   }

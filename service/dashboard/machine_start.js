@@ -20,7 +20,7 @@ export async function startForm(place, names, wanted, started) {
   const problem = el("div", { id: "start-problem" });
   const form = el("form", { id: "start", onsubmit: submit },
     el("div", { class: "fields" },
-      el("label", { class: "wide" }, "What to run", el("select", { id: "start-what", required: true },
+      el("label", { class: "wide" }, "What to run", el("select", { id: "start-what", required: true, onchange: follow },
         el("optgroup", { label: "programs as they came" }, [...names].map(([id, name]) => choice(`program:${id}`, name))),
         el("optgroup", { label: "as advised" }, advice.items.filter((job) => names.has(job.program_id)).map((job) =>
           choice(`advice:${job.id}`, `${programOf({ ...job, advice_id: job.id }, names)}, ${job.request.mode}, ${shortMoment(job.created_at)}`))))),
@@ -41,8 +41,19 @@ export async function startForm(place, names, wanted, started) {
     problem,
     el("p", {}, el("button", { class: "main", id: "start-run" }, "Run")));
   fill(place, form);
+  follow();
   const words = await noiseWords();
   fill(byId("start-noise"), words.map((each) => el("option", { value: each }, each)));
+
+  /** What was advised for a machine and a material is run on them. */
+  function follow() {
+    const [kind, id] = byId("start-what").value.split(":");
+    const source = kind === "advice" ? advice.items.find((job) => job.id === id) : null;
+    for (const name of ["machine", "material"]) {
+      byId(`start-${name}`).value = source?.request[name] ?? "";
+      if (byId(`start-${name}`).selectedIndex < 0) byId(`start-${name}`).value = "";
+    }
+  }
 
   async function submit(event) {
     event.preventDefault();

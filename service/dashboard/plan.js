@@ -87,8 +87,10 @@ async function optimise() {
     history.replaceState(null, "", `?advice=${asked.id}`);
     await follow(asked);
   } catch (error) {
-    tell(problem, error);
-    announce(error.message);
+    const isCancelled = error.message === "the job is cancelled";
+    if (isCancelled) fill(problem, el("p", { class: "soft" }, "Cancelled."));
+    else tell(problem, error);
+    announce(isCancelled ? "cancelled" : error.message);
   }
 }
 

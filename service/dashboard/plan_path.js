@@ -1,7 +1,8 @@
 // The tool path in 2D and 3D, coloured by feed, force or active limit.
 
-import { byId, el, fill, fixed, number } from "/dashboard/app.js";
-import { colour, layout, plot, plotly } from "/dashboard/charts.js";
+import { byId, duration, el, fill, number } from "/dashboard/app.js";
+import { colour, layout, plot } from "/dashboard/charts.js";
+import { FlatView } from "/dashboard/plan_flat.js";
 import { isTurning, limitWords } from "/dashboard/plan_table.js";
 
 const LEVELS = 18;
@@ -18,7 +19,7 @@ const SCALES = {
 const FLAT = { xy: ["x_mm", "y_mm", "x, mm", "y, mm"], zx: ["z_mm", "x_mm", "z, mm", "x, mm"] };
 
 const state = { runs: {}, steps: [], which: "after", view: "3d", colour: "feed", step: "",
-  hasRapids: true, plane: "xy", isBound: false, range: {}, kind: null };
+  hasRapids: true, plane: "xy", flat: null, range: {} };
 
 let webgl = null;
 function hasWebGl() {
@@ -43,7 +44,7 @@ export async function showPath(runs, result) {
   fill(byId("path-step"), el("option", { value: "" }, "all"),
     steps.map((id, at) => el("option", { value: String(at + 1) }, id)));
   byId("path-flat").hidden = hasWebGl();
-  if (!state.isBound) bind();
+  if (!state.flat) bind();
   byId("path-card").hidden = false;
   await draw();
 }
@@ -56,7 +57,7 @@ function greatest(path, name) {
 }
 
 function bind() {
-  state.isBound = true;
+  state.flat = new FlatView(byId("path-flat-plot"));
   const press = (id, name) => byId(id).addEventListener("click", (event) => {
     const value = event.target.closest("button")?.dataset.value;
     if (value && value !== state[name]) { state[name] = value; draw(); }
@@ -82,25 +83,30 @@ function numberOf(step) {
 }
 
 async function draw() {
-  const place = byId("path-plot"), path = state.runs[state.which].path, is3d = state.view === "3d";
+  const path = state.runs[state.which].path, is3d = state.view === "3d";
   press("path-which", state.which);
   press("path-view", state.view);
   for (const button of byId("path-which").children) button.disabled = !state.runs[button.dataset.value];
   byId("path-view").lastElementChild.disabled = !hasWebGl();
   byId("path-colour").value = state.colour;
-  const Plotly = await plotly();
-  if (state.kind !== null && state.kind !== state.view) Plotly.purge(place);
-  state.kind = state.view;
-  const begun = performance.now();
-  await plot(place, () => ({ data: traces(path, is3d), layout: is3d ? solid() : flat() }));
+  const solidPlace = byId("path-plot"), begun = performance.now();
+  solidPlace.hidden = !is3d;
+  byId("path-flat-plot").hidden = is3d;
+  const label = `tool path ${state.which === "after" ? "as advised" : "as programmed"}, `
+    + `${state.view.toUpperCase()}, coloured by ${byId("path-colour").selectedOptions[0].textContent}`;
+  if (is3d) {
+    await plot(solidPlace, () => ({ data: traces(path), layout: solid() }));
+    solidPlace.setAttribute("aria-label", label);
+  } else {
+    solidPlace.redraw = null;
+    drawFlat(path, label);
+  }
   performance.measure("path drawn", { start: begun, detail: { points: path.time_s.length, view: state.view } });
   const count = path.time_s.length, last = path.time_s.at(-1);
   byId("path-note").textContent = `${count.toLocaleString("en-GB")} of ${path.rows.toLocaleString("en-GB")} samples are drawn; `
     + `those left out lie within ${number(Math.max(path.deviation_mm, 1e-3), 2)} mm, `
     + `${number(path.deviation_mm_min, 2)} mm/min and ${number(path.deviation_n, 2)} N of the line. `
-    + `${fixed(last, 0)} s in all.${state.colour === "limit" ? " Limits are those of the advice, also before." : ""}`;
-  place.setAttribute("aria-label", `tool path ${state.which === "after" ? "as advised" : "as programmed"}, `
-    + `${state.view.toUpperCase()}, coloured by ${byId("path-colour").selectedOptions[0].textContent}`);
+    + `${duration(last)} in all.${state.colour === "limit" ? " Limits are those of the advice, also before." : ""}`;
 }
 
 function press(id, value) {
@@ -108,7 +114,7 @@ function press(id, value) {
     button.setAttribute("aria-pressed", String(button.dataset.value === value));
 }
 
-// -- traces -----------------------------------------------------------------------------------
+// -- strands ----------------------------------------------------------------------------------
 
 /** Points of a curve; a gap between strands. */
 class Strand {
@@ -125,38 +131,37 @@ class Strand {
   }
 }
 
-function traces(path, is3d) {
+/** Moves sorted into rapids, those of other workingsteps, and those shown, by key. */
+function sorted(path, keyOf) {
   const chosen = Number(state.step), rapids = new Strand(), others = new Strand(), shown = new Map();
-  const into = (key) => { if (!shown.has(key)) shown.set(key, new Strand()); return shown.get(key); };
-  const key = keyOf(path, is3d);
   for (let to = 1; to < path.time_s.length; to += 1) {
-    if (path.is_rapid[to]) { if (!chosen || path.workingstep[to] === chosen) rapids.add(to - 1, to); }
-    else if (chosen && path.workingstep[to] !== chosen) others.add(to - 1, to);
-    else into(key(to)).add(to - 1, to);
+    const isMeant = !chosen || path.workingstep[to] === chosen;
+    if (path.is_rapid[to]) { if (isMeant) rapids.add(to - 1, to); continue; }
+    if (!isMeant) { others.add(to - 1, to); continue; }
+    const key = keyOf(to);
+    if (!shown.has(key)) shown.set(key, new Strand());
+    shown.get(key).add(to - 1, to);
   }
-  const data = [];
-  if (others.at.length) data.push(line(path, others, is3d, { color: colour("rule"), width: is3d ? 2 : 1 }, { hoverinfo: "skip" }));
-  if (state.hasRapids && rapids.at.length)
-    data.push(line(path, rapids, is3d, { color: colour("curve-7"), width: is3d ? 2 : 1, dash: "dash" },
-      { name: "rapid", hoverinfo: "skip", opacity: 0.6, showlegend: state.colour === "limit" }));
-  if (state.colour === "limit") {
-    const names = [...shown.keys()].sort();
-    names.forEach((name, at) => data.push(line(path, shown.get(name), is3d,
-      { color: colour(name === "not advised" ? "curve-7" : CURVES[at % CURVES.length]), width: is3d ? 4 : 2 },
-      { name, showlegend: true, ...hover(path, shown.get(name)) })));
-  } else if (is3d) data.push(...coloured3d(path, shown.get("all")));
-  else data.push(...coloured2d(path, shown));
-  return data;
+  return { rapids: state.hasRapids ? rapids : new Strand(), others, shown };
 }
 
-/** What a move is put together by: its limit, its level of colour, or nothing. */
-function keyOf(path, is3d) {
-  if (state.colour === "limit") {
-    const names = new Map(state.steps.map((step) => [numberOf(step),
-      step.active_limit ? limitWords(step.active_limit, step) : "not advised"]));
-    return (to) => names.get(path.workingstep[to]) ?? "not advised";
-  }
-  if (is3d) return () => "all";
+/** The limit that holds a move. */
+function limitOf(path) {
+  const names = new Map(state.steps.map((step) => [numberOf(step),
+    step.active_limit ? limitWords(step.active_limit, step) : "not advised"]));
+  return (to) => names.get(path.workingstep[to]) ?? "not advised";
+}
+
+/** A colour for each limit of the advice, the same in all views. */
+function limitColours() {
+  const names = [...new Set(state.steps.filter((step) => step.active_limit)
+    .map((step) => limitWords(step.active_limit, step)))].sort();
+  return new Map([...names.map((name, at) => [name, colour(CURVES[at % CURVES.length])]),
+    ["not advised", colour("soft")]]);
+}
+
+/** The level of a move's colour. */
+function levelOf(path) {
   const values = path[VALUES[state.colour].name], [, most] = state.range[state.colour];
   return (to) => {
     const value = path.is_rapid[to - 1] ? values[to] : (values[to - 1] + values[to]) / 2;
@@ -164,28 +169,52 @@ function keyOf(path, is3d) {
   };
 }
 
-function coordinates(path, strand, names) {
-  return names.map((name) => strand.at.map((at) => (at < 0 ? null : path[name][at])));
+// -- 2D ---------------------------------------------------------------------------------------
+
+function drawFlat(path, label) {
+  const isLimit = state.colour === "limit", [xName, yName, ...titles] = FLAT[state.plane];
+  const { rapids, others, shown } = sorted(path, isLimit ? limitOf(path) : levelOf(path));
+  const limits = limitColours(), levels = [...Array(LEVELS).keys()].map((level) => between((level + 0.5) / LEVELS));
+  const lines = [{ at: others.at, colour: colour("rule"), width: 1, isQuiet: true },
+    { at: rapids.at, colour: colour("curve-7"), width: 1, dash: [5, 4], isQuiet: true },
+    ...[...shown.keys()].sort((a, b) => a - b).map((key) => ({ at: shown.get(key).at, width: 2,
+      colour: isLimit ? limits.get(key) : levels[key] }))];
+  state.flat.show({ lines, x: path[xName], y: path[yName], titles, label, key: `${state.plane} ${Object.values(state.runs)[0].id}`,
+    bar: isLimit ? null : { title: VALUES[state.colour].title, high: state.range[state.colour][1], colours: levels },
+    tell: (at) => told(path, at), again: () => drawFlat(path, label) });
+  const keys = isLimit ? [...limits].filter(([name]) => shown.has(name)) : [];
+  fill(byId("path-keys"), keys.map(([name, tint]) =>
+    el("span", { class: "nowrap" }, el("span", { class: "key", style: `background:${tint}` }), ` ${name}`)));
 }
 
-function line(path, strand, is3d, look, more = {}) {
-  if (is3d) {
-    const [x, y, z] = coordinates(path, strand, ["x_mm", "y_mm", "z_mm"]);
-    return { type: "scatter3d", mode: "lines", x, y, z, line: look, connectgaps: false, showlegend: false, ...more };
-  }
-  const [x, y] = coordinates(path, strand, FLAT[state.plane].slice(0, 2));
-  return { type: hasWebGl() ? "scattergl" : "scatter", mode: "lines", x, y, line: look, connectgaps: false,
-    showlegend: false, ...more };
+function told(path, at) {
+  return [path.workingsteps[path.workingstep[at] - 1] ?? "–", `${number(path.feed_actual_mm_min[at], 4)} mm/min`,
+    `${number(path.cutting_force_n[at], 4)} N`, `${number(path.time_s[at], 4)} s`];
+}
+
+// -- 3D ---------------------------------------------------------------------------------------
+
+function traces(path) {
+  const isLimit = state.colour === "limit", { rapids, others, shown } = sorted(path, isLimit ? limitOf(path) : () => "all");
+  const data = [], limits = limitColours();
+  if (others.at.length) data.push(line(path, others, { color: colour("rule"), width: 2 }, { hoverinfo: "skip" }));
+  if (rapids.at.length) data.push(line(path, rapids, { color: colour("curve-7"), width: 2, dash: "dash" },
+    { name: "rapid", hoverinfo: "skip", opacity: 0.6, showlegend: isLimit }));
+  if (isLimit) {
+    for (const [name, tint] of limits) if (shown.has(name))
+      data.push(line(path, shown.get(name), { color: tint, width: 4 }, { name, showlegend: true, ...hover(path, shown.get(name)) }));
+  } else if (shown.has("all")) data.push(coloured(path, shown.get("all")));
+  fill(byId("path-keys"));
+  return data;
+}
+
+function line(path, strand, look, more = {}) {
+  const [x, y, z] = ["x_mm", "y_mm", "z_mm"].map((name) => strand.at.map((at) => (at < 0 ? null : path[name][at])));
+  return { type: "scatter3d", mode: "lines", x, y, z, line: look, connectgaps: false, showlegend: false, ...more };
 }
 
 function hover(path, strand) {
-  const ids = path.workingsteps;
-  return {
-    customdata: strand.at.map((at) => (at < 0 ? null : [path.feed_actual_mm_min[at], path.cutting_force_n[at],
-      ids[path.workingstep[at] - 1] ?? "–", path.time_s[at]])),
-    hovertemplate: "%{customdata[2]}<br>%{customdata[0]:.4~r} mm/min<br>%{customdata[1]:.4~r} N<br>"
-      + "%{customdata[3]:.1f} s<extra></extra>",
-  };
+  return { text: strand.at.map((at) => (at < 0 ? "" : told(path, at).join("<br>"))), hovertemplate: "%{text}<extra></extra>" };
 }
 
 const scale = () => SCALES[document.documentElement.dataset.theme] ?? SCALES.light;
@@ -193,23 +222,13 @@ const scalePoints = () => scale().map((name, at, all) => [at / (all.length - 1),
 const bar = () => ({ title: { text: VALUES[state.colour].title, side: "right" }, thickness: 12, len: 0.9,
   outlinewidth: 0, x: 1.02, xpad: 4, nticks: 6 });
 
-function coloured3d(path, strand) {
-  if (!strand) return [];
+function coloured(path, strand) {
   const values = path[VALUES[state.colour].name], [low, high] = state.range[state.colour];
   // A strand begins in the end of a rapid move: with the feed of its cut, not with that one.
   const colours = strand.at.map((at, place) => (at < 0 ? low
     : values[path.is_rapid[at] && strand.at[place + 1] > 0 ? strand.at[place + 1] : at]));
-  return [line(path, strand, true, { color: colours, colorscale: scalePoints(), cmin: low, cmax: high, width: 4,
-    showscale: true, colorbar: bar() }, hover(path, strand))];
-}
-
-function coloured2d(path, shown) {
-  const [low, high] = state.range[state.colour];
-  const data = [...shown.keys()].sort((a, b) => a - b).map((level) => line(path, shown.get(level), false,
-    { color: between((level + 0.5) / LEVELS), width: 2 }, hover(path, shown.get(level))));
-  data.push({ type: "scatter", mode: "markers", x: [null], y: [null], hoverinfo: "skip", showlegend: false,
-    marker: { color: [low], colorscale: scalePoints(), cmin: low, cmax: high, showscale: true, colorbar: bar(), size: 1 } });
-  return data;
+  return line(path, strand, { color: colours, colorscale: scalePoints(), cmin: low, cmax: high, width: 4,
+    showscale: true, colorbar: bar() }, hover(path, strand));
 }
 
 /** A colour of the scale, 0 to 1. */
@@ -224,20 +243,37 @@ function between(share) {
 const isNarrow = () => matchMedia("(max-width: 700px)").matches;
 const legend = () => ({ orientation: "h", y: -0.12, x: 0, font: { size: 12 } });
 
-function flat() {
-  const [, , across, up] = FLAT[state.plane];
-  return layout({ hovermode: "closest", showlegend: state.colour === "limit", legend: legend(),
-    height: byId("path-plot").clientHeight || 480, margin: { l: 48, r: 8, t: 8, b: 44 }, uirevision: state.plane,
-    xaxis: { title: { text: across, standoff: 4 }, zeroline: false, constrain: "domain" },
-    yaxis: { title: { text: up, standoff: 4 }, zeroline: false, scaleanchor: "x", scaleratio: 1, constrain: "domain" } });
+/** Sides of the scene as the path has them; one that has none gets a little. */
+function sides() {
+  const found = Object.values(state.runs).map((run) => run.path);
+  const all = ["x_mm", "y_mm", "z_mm"].map((name) => {
+    let low = Infinity, high = -Infinity;
+    for (const path of found) for (const value of path[name]) { low = Math.min(low, value); high = Math.max(high, value); }
+    return [low, high];
+  });
+  const most = Math.max(...all.map(([low, high]) => high - low), 1e-3);
+  const ranges = all.map(([low, high]) => {
+    const half = Math.max((high - low) * 0.52, most * 0.03);
+    return [(low + high) / 2 - half, (low + high) / 2 + half];
+  });
+  return { ranges, ratio: ranges.map(([low, high]) => 1.5 * (high - low) / most) };
+}
+
+/** From the front and above; a lathe with its axis across. */
+function camera() {
+  if (state.plane === "zx")
+    return { eye: isNarrow() ? { x: 0.6, y: 2.9, z: 0.4 } : { x: 0.35, y: 1.5, z: 0.25 }, up: { x: 1, y: 0, z: 0 }, center: { x: 0, y: 0, z: 0 } };
+  return { eye: isNarrow() ? { x: 1.9, y: -2.2, z: 1.7 } : { x: 1, y: -1.4, z: 1 }, center: { x: 0, y: 0, z: -0.12 } };
 }
 
 function solid() {
-  const axis = (text) => ({ title: { text }, gridcolor: colour("rule"), zerolinecolor: colour("rule"), color: colour("ink"),
+  const { ranges, ratio: [rx, ry, rz] } = sides();
+  const axis = (text, range) => ({ title: { text }, range, autorange: false, gridcolor: colour("rule"), zerolinecolor: colour("rule"), color: colour("ink"),
     showbackground: false, nticks: 5, showspikes: false });
   return layout({ hovermode: "closest", showlegend: state.colour === "limit", legend: { ...legend(), y: 0 },
     height: byId("path-plot").clientHeight || 480, margin: { l: 0, r: 0, t: isNarrow() ? 30 : 0, b: 0 }, uirevision: "solid",
     dragmode: "orbit",
-    scene: { aspectmode: "data", xaxis: axis("x, mm"), yaxis: axis("y, mm"), zaxis: axis("z, mm"), dragmode: "orbit",
-      uirevision: "solid", camera: { eye: isNarrow() ? { x: 1.6, y: -1.8, z: 1.4 } : { x: 1, y: -1.4, z: 1 }, center: { x: 0, y: 0, z: -0.12 } } } });
+    scene: { aspectmode: "manual", aspectratio: { x: rx, y: ry, z: rz }, xaxis: axis("x, mm", ranges[0]),
+      yaxis: axis("y, mm", ranges[1]), zaxis: axis("z, mm", ranges[2]), dragmode: "orbit",
+      uirevision: state.plane, camera: camera() } });
 }

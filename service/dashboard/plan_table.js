@@ -134,7 +134,7 @@ function detail(step, at) {
 function limits(step) {
   if (!step.limits.length) return el("p", { class: "soft" }, "No limits were evaluated.");
   const used = ({ value, bound, sense }) => (sense === "at least" ? bound / value : value / bound);
-  const sorted = [...step.limits].sort((a, b) => a.margin - b.margin);
+  const sorted = [...step.limits].sort((a, b) => used(b) - used(a));
   const told = step.advised ? "as advised" : "as programmed";
   return el("table", {}, el("caption", {}, `Limits ${told}, nearest first`),
     el("thead", {}, el("tr", {}, ["Limit", "Value and bound", "Use", "Margin"].map((title, at) =>
@@ -150,7 +150,7 @@ function limits(step) {
           role: "img", "aria-label": `${percent(share)} of ${name} used` },
         el("div", { style: `width:${(100 * Math.min(Math.max(share, 0), 1)).toFixed(1)}%` }))),
         el("td", { class: `n ${isOver ? "bad" : isNear ? "warn" : ""}` },
-          limit.sense === "at least" && limit.margin > 9.99 ? "> 999 %" : percent(limit.margin, isNear && !isOver ? 0 : 1)));
+          limit.margin > 9.99 ? "> 999 %" : limit.margin < -9.99 ? "< −999 %" : percent(limit.margin, isNear && !isOver ? 0 : 1)));
     })));
 }
 
@@ -164,6 +164,8 @@ function facts(step) {
     ["Cutting force, N", number(step.cutting_force_n)],
     step.roughness_ra_um ? ["Roughness Ra, µm", number(step.roughness_ra_um)] : null,
     ["Energy, kJ", step.energy_j === null ? "–" : number(step.energy_j / 1000, 4)],
+    ["Operation", words(step.operation)],
+    ["Tool", step.tool],
     ["Instance", step.instance],
   ];
   return [el("h3", {}, step.advised ? "As advised" : "As programmed"),
@@ -177,7 +179,7 @@ function sentences(step) {
   if (sensitivity) {
     const { one_more: more, unit, saves_s: saves } = sensitivity, name = limitWords(sensitivity.limit, step);
     found.push(saves > 0.005 ? `${number(more)} ${unit} more of ${name} saves ${number(saves)} s.`
-      : `More ${name} alone saves nothing: other limits are as near, or the feed is held twice.`);
+      : `More ${name} alone saves nothing: another limit is as near.`);
   }
   for (const [name, price] of Object.entries(prices ?? {}))
     found.push(`1 % more ${limitWords(name, step)} lowers the cost by ${number(price, 2)} %.`);

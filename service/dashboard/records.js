@@ -24,6 +24,15 @@ export function stateBadge(job) {
   return el("span", { class: `badge ${TONES[job.state]}` }, word);
 }
 
+/** How far a job is, as a bar: its share tells of planning only when the run has a pace. */
+export function bar(job, more = {}) {
+  const value = job.request.pace > 0 || job.state === "queued" ? undefined : String(job.share);
+  return el("progress", { max: "1", value, "aria-label": "how far it is", ...more });
+}
+
+/** What a job says of itself; the bar tells the share. */
+export const saying = (job) => (job.state === "queued" ? "waits for its turn" : job.message.replace(/^\d+ ?%\s*/, ""));
+
 /** All programs by id; `name` is what people call it, also when it is gone. */
 export async function programNames() {
   const names = new Map();

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Mapping
+from dataclasses import replace
 from datetime import datetime
 from typing import Any
 
@@ -19,6 +20,8 @@ from service.knowledge.wire import review_json
 TABLE = "table"
 """stem of the files for other programs"""
 
+PLACE = "knowledge base of this service"
+
 
 def run_evaluation(task: Task) -> None:
     """Make the evaluation table in all its forms.
@@ -35,12 +38,13 @@ def run_evaluation(task: Task) -> None:
         keep=RowFilter(asked["only"]),
         by=SortKey(asked["sort"]),
     )
-    found = table(task.depot.knowledge, request, tell=task.tell)
+    # Where it lies is nobody's business.
+    found = replace(table(task.depot.knowledge, request, tell=task.tell), place=PLACE)
     for form in (Format.CSV, Format.PARQUET):
         file = task.folder / f"{TABLE}.{form.value}"
         write_rows(file, FIELDS, table_rows(found.rows), form=form)
     write_atomically(task.folder / REPORT, evaluation_page(found).encode())
-    task.keep({**json.loads(table_json(found)), "place": "knowledge base of this service"})
+    task.keep(json.loads(table_json(found)))
 
 
 def run_review(task: Task) -> None:

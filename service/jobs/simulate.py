@@ -4,9 +4,11 @@ import json
 from math import inf
 
 from service.depot.library import machine_word, material_word
+from service.files import write_atomically
 from service.jobs.task import REPORT, SAMPLES, Task
 from service.live.pace import Pace
 from service.simulation.live import LiveSamples
+from service.simulation.report import simulation_page
 from service.simulation.run import SimulationRequest, simulate
 from service.simulation.wire import simulation_json
 
@@ -47,5 +49,8 @@ def run(task: Task) -> None:
             tell=task.tell,
             watchers=(live,),
         )
+    if simulation.trace is not None:
+        page = simulation_page(simulation, simulation.trace, material=simulation.material)
+        write_atomically(task.folder / REPORT, page.encode(errors="replace"))
     # What is written and shown is kept under the program's name, not under that of its file.
     task.keep(json.loads(simulation_json(simulation)))

@@ -105,6 +105,8 @@ ShopMaker = Callable[[], Shop]
 
 def made_shop(folder: Path) -> Shop:
     shop = Shop(depot=open_depot(folder / "data", knowledge=str(folder / "knowledge.db")))
+    with open_store(shop.depot.knowledge):
+        """made when it is new"""
     sample = SAMPLE.read_bytes()
     shop.program = programs.add(shop.depot, sample, name=SAMPLE.name, owner="anna").id
     return shop

@@ -36,14 +36,22 @@ def upload(shop: Shop, data: bytes) -> str:
     return programs.add(shop.depot, data, name="bad.stpnc", owner="anna").id
 
 
-def test_a_bad_line_is_named(idle: Shop) -> None:
-    lines = SAMPLE.read_bytes().splitlines(keepends=True)
-    bad = upload(idle, b"".join([*lines[:20], b"#17=BROKEN((;\n", *lines[20:]]))
-    job = ran(idle, idle.order(Kind.ADVICE, bad))
+def test_a_line_that_cannot_be_read_is_named(idle: Shop) -> None:
+    job = ran(idle, idle.order(Kind.ADVICE, upload(idle, b"ISO-10303-21;\nHEADER;\nno((;\n")))
     assert job.state is State.FAILED
     assert job.problem is not None
-    assert job.problem["status"] == 422
-    assert job.problem["line"] == 21 or "#" in job.problem["entity"]
+    assert job.problem["type"] == "urn:stepnc:problem:part21-error"
+    assert (job.problem["status"], job.problem["line"]) == (422, 4)
+
+
+def test_an_entity_that_is_missing_is_named(idle: Shop) -> None:
+    lines = SAMPLE.read_bytes().splitlines(keepends=True)
+    toolless = b"".join(line for line in lines if b"=MILLING_CUTTING_TOOL(" not in line)
+    job = ran(idle, idle.order(Kind.ADVICE, upload(idle, toolless)))
+    assert job.state is State.FAILED
+    assert job.problem is not None
+    assert job.problem["type"] == "urn:stepnc:problem:schema-error"
+    assert job.problem["entity"] == "#50"
 
 
 def test_a_workingstep_that_is_not_there_is_named(idle: Shop) -> None:

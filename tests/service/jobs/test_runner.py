@@ -95,7 +95,7 @@ def test_a_killed_runner_leaves_nobody_and_the_next_one_finishes_its_job(
     own_shop: Shop,
 ) -> None:
     killed = own_shop.start()
-    id, trial = own_shop.order(Kind.SIMULATION, pace=1.0).id, own_shop.order(Kind.TRIAL).id
+    id, trial = own_shop.order(Kind.SIMULATION, pace=40.0).id, own_shop.order(Kind.TRIAL).id
     own_shop.runs(id)
     own_shop.runs(trial)
     below = children(killed.pid)
@@ -115,7 +115,7 @@ def test_a_killed_runner_leaves_nobody_and_the_next_one_finishes_its_job(
 
 def test_a_runner_that_is_told_to_stop_ends_its_jobs_for_the_next_one(own_shop: Shop) -> None:
     first = own_shop.start()
-    id = own_shop.order(Kind.SIMULATION, pace=1.0).id
+    id = own_shop.order(Kind.SIMULATION, pace=40.0).id
     own_shop.runs(id)
     below = children(first.pid)
     first.send_signal(signal.SIGINT)

@@ -26,7 +26,7 @@ def test_a_simulation_leaves_rows_samples_a_result_and_a_report(shop: Shop) -> N
 
 
 def test_the_same_seed_gives_the_same_run(shop: Shop) -> None:
-    ids = [shop.order(Kind.SIMULATION, noise="usual", seed=7).id for _ in range(2)]
+    ids = [shop.order(Kind.SIMULATION, noise="normal", seed=7).id for _ in range(2)]
     found = []
     for id in ids:
         job = shop.over(id)

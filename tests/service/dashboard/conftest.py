@@ -1,0 +1,119 @@
+"""The dashboard in a real browser, on a service of its own. Screenshots go to build/screenshots."""
+
+import fcntl
+import os
+import shutil
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, Page, ViewportSize, sync_playwright
+
+from kbe.store import open_store
+from tests.service.rest.server import Server
+from tests.service.shop import outcomes
+from tests.service.waiting import ROOT
+
+FLAGS = [
+    "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-sync",
+    "--disable-background-networking", "--disable-component-update",
+    "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
+]  # fmt: skip
+
+SCREENSHOTS = ROOT / "build" / "screenshots"
+
+WIDE: ViewportSize = {"width": 1280, "height": 800}
+TABLET: ViewportSize = {"width": 820, "height": 1180}
+PHONE: ViewportSize = {"width": 390, "height": 844}
+
+
+@pytest.fixture(scope="session")
+def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    server = Server(tmp_path_factory.mktemp("dashboard"), "--jobs", "2")
+    server.data.mkdir(parents=True)
+    with open_store(str(server.data / "knowledge.db")) as store:
+        store.add(list(outcomes(60)))
+    with server:
+        yield server
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Browser]:
+    program = installed_chromium()
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=program, args=FLAGS)
+        yield browser
+        browser.close()
+
+
+def installed_chromium() -> str:
+    """Debian's chromium, installed where one may; else the test is skipped, and says why."""
+    found = shutil.which("chromium")
+    if found is not None:
+        return found
+    if os.geteuid() != 0 or shutil.which("apt-get") is None:
+        pytest.skip("chromium is not installed, and may not be (apt-get install chromium)")
+    # Several processes of tests may come here at once.
+    with Path("/tmp/stepnc-chromium.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        for words in (["update"], ["install", "-y", "--no-install-recommends", "chromium"]):
+            done = subprocess.run(["apt-get", "-qq", *words], capture_output=True, timeout=900)
+            if done.returncode:
+                pytest.skip(f"apt-get {words[0]}: {done.stderr.decode()[-200:]}")
+    found = shutil.which("chromium")
+    if found is None:
+        pytest.skip("chromium is not installed after apt-get install chromium")
+    return found
+
+
+@pytest.fixture
+def page(browser: Browser, served: Server) -> Iterator[Page]:
+    """A page that must say nothing wrong: no error, nothing that the policy refuses."""
+    context = browser.new_context(
+        base_url=served.url, viewport=WIDE, accept_downloads=True, reduced_motion="reduce"
+    )
+    page = context.new_page()
+    page.set_default_timeout(30_000)
+    said: list[str] = []
+    page.on("pageerror", lambda error: said.append(f"error: {error}"))
+    page.on(
+        "console",
+        lambda message: said.append(message.text) if message.type == "error" else None,
+    )
+    foreign: list[str] = []
+    page.on(
+        "request",
+        lambda request: (
+            None
+            if request.url.startswith((served.url, "blob:", "data:"))
+            else foreign.append(request.url)
+        ),
+    )
+    yield page
+    context.close()
+    assert said == []
+    assert foreign == []
+
+
+def keep(page: Page, name: str) -> None:
+    """Screenshots of a page: on a wide screen light and dark, on a tablet, on a phone."""
+    SCREENSHOTS.mkdir(parents=True, exist_ok=True)
+    for kind, size in (("wide", WIDE), ("tablet", TABLET), ("phone", PHONE)):
+        page.set_viewport_size(size)
+        assert overflow(page) <= 0, f"{name} is wider than a {kind} screen"
+        page.screenshot(path=SCREENSHOTS / f"{name}-{kind}.png", full_page=kind != "wide")
+    page.set_viewport_size(WIDE)
+    page.evaluate("localStorage.setItem('stepnc.theme', 'dark')")
+    page.get_by_role("button", name="light or dark").click()
+    page.get_by_role("button", name="light or dark").click()
+    page.screenshot(path=SCREENSHOTS / f"{name}-dark.png")
+    page.get_by_role("button", name="light or dark").click()
+
+
+def overflow(page: Page) -> int:
+    """Pixels by which the page is wider than the screen."""
+    found: int = page.evaluate(
+        "document.documentElement.scrollWidth - document.documentElement.clientWidth"
+    )
+    return found

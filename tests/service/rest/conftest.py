@@ -1,0 +1,70 @@
+"""A real server that all tests of this folder share; nobody may end it or fill it up."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import httpx
+import pytest
+
+from kbe.store import open_store
+from tests.service.rest.samples import SAMPLE
+from tests.service.rest.server import Server, made, over
+from tests.service.shop import outcomes
+
+
+@pytest.fixture(scope="session")
+def service(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
+    """With some outcomes in its knowledge base."""
+    server = Server(tmp_path_factory.mktemp("service"), "--upload-mb", "4", "--jobs", "2")
+    server.data.mkdir(parents=True)
+    with open_store(str(server.data / "knowledge.db")) as store:
+        store.add(list(outcomes(300)))
+    with server:
+        yield server
+        assert server.faults() == []
+
+
+@pytest.fixture
+def client(service: Server) -> Iterator[httpx.Client]:
+    with service.client() as found:
+        yield found
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Done:
+    """Ids of what was made once, and is only looked at."""
+
+    program: str
+    advice: str
+    simulation: str
+    control: str
+    trial: str
+    evaluation: str
+    review: str
+
+
+@pytest.fixture(scope="session")
+def done(service: Server) -> Done:
+    """One job of each kind that has succeeded."""
+    with service.client() as client:
+        program = made(
+            client.post("/v1/programs?name=part.stpnc", content=SAMPLE.read_bytes()), 201
+        )
+        asked = {
+            "advice": (
+                f"/v1/programs/{program}/advice",
+                {"nc_control": "linuxcnc", "machine": "vmc15"},
+            ),
+            "simulation": ("/v1/simulations", {"program_id": program}),
+            "control": ("/v1/control-runs", {"program_id": program, "pace": 0.0}),
+            "trial": ("/v1/trials", {"pace": 100.0}),
+            "evaluation": ("/v1/evaluations", {}),
+            "review": ("/v1/reviews", {}),
+        }
+        ids = {name: made(client.post(path, json=body)) for name, (path, body) in asked.items()}
+        made_end = client.post(f"/v1/trials/{ids['trial']}/changes", json={"end": True})
+        assert made_end.status_code == 202
+        for id in ids.values():
+            job = over(client, id, within=120.0)
+            assert job["state"] == "succeeded", job
+    return Done(program=program, **ids)

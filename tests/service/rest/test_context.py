@@ -1,0 +1,52 @@
+"""What tells one request from another."""
+
+import pytest
+from fastapi import Request
+
+from service.errors import Unreadable
+from service.rest.context import PROBLEMS, once_of, place_of
+
+
+def request(path: str = "/v1/programs", query: str = "", owner: str = "anna") -> Request:
+    return Request({
+        "type": "http", "method": "POST", "path": path, "query_string": query.encode(),
+        "headers": [(b"host", b"x")], "state": {"owner": owner}, "server": ("x", 80),
+        "scheme": "http",
+    })  # fmt: skip
+
+
+def test_a_request_without_a_key_may_be_repeated() -> None:
+    assert once_of(request(), None, b"") is None
+
+
+def test_an_empty_key_is_refused() -> None:
+    for key in ("", " ", "\t"):
+        with pytest.raises(Unreadable, match="Idempotency-Key"):
+            once_of(request(), key, b"")
+
+
+def test_path_query_and_body_make_another_request() -> None:
+    prints = [
+        once_of(one, "k", body)
+        for one, body in (
+            (request(), b""), (request(), b"x"), (request(query="name=a"), b""),
+            (request("/v1/simulations"), b""),
+        )
+    ]  # fmt: skip
+    assert len({each.fingerprint for each in prints if each}) == 4
+    assert once_of(request(), "k", b"x") == once_of(request(), "k", b"x")
+    other = once_of(request(owner="bert"), "k", b"")
+    assert other is not None
+    assert other.owner == "bert"
+
+
+def test_problems_are_documented_by_their_content_type() -> None:
+    assert {401, 403, 404, 409, 413, 422, 429, 503} <= set(PROBLEMS)
+    for each in PROBLEMS.values():
+        assert "application/problem+json" in each["content"]
+
+
+def test_a_place_is_the_first_page_without_a_cursor() -> None:
+    assert place_of(limit=3, cursor=None).limit == 3
+    with pytest.raises(Unreadable):
+        place_of(limit=3, cursor="/etc/passwd")
