@@ -36,6 +36,7 @@ function refused(name, text) {
   const field = fields().find((each) => each.spec.name === name);
   const bounds = field?.spec.low === undefined ? "" : ` (${boundsOf(field.spec)})`;
   const isAlso = state.refused === text;
+  if (!isAlso) for (const each of fields()) each.refuse(null);
   state.refused = text;
   setTimeout(() => { state.refused = ""; }, 300);
   if (field) field.refuse(text.includes(" must be ") ? text : `${text}${bounds}`, isAlso);

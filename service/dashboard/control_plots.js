@@ -261,19 +261,18 @@ export class Plots {
       if (low === null || high === null) { run = null; return; }
       const at = x(time), column = Math.round(at);
       if (time >= begin && time <= end) most = Math.max(most, high);
-      const last = run?.at(-1);
-      if (last && last.column === column) {
+      const last = run?.at(-1), before = run?.at(-2);
+      // Level pieces are one stroke: dashes along many points are slow. Their ends stay level.
+      if (before && low === high && isLevel(before, low) && isLevel(last, low)) {
+        Object.assign(last, { column, x: at, isEnd: true });
+        return;
+      }
+      if (last?.column === column && !last.isEnd) {
         last.low = Math.min(last.low, low);
         last.high = Math.max(last.high, high);
         return;
       }
       if (!run) runs.push(run = []);
-      // Level pieces are one stroke: dashes along many points are slow.
-      const before = run.at(-2);
-      if (before && low === high && isLevel(before, low) && isLevel(last, low)) {
-        Object.assign(last, { column, x: at });
-        return;
-      }
       run.push({ column, x: at, low, high });
     });
     return { runs, most };

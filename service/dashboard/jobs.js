@@ -131,8 +131,8 @@ function how(job) {
 }
 
 function ended(job) {
-  if (!job.started_at) return "before it began";
-  return job.share && !job.request.pace ? `at ${Math.round(100 * job.share)} %` : "before its time";
+  if (!job.started_at) return "ended before it began";
+  return job.share && !job.request.pace ? `ended at ${Math.round(100 * job.share)} %` : "ended before its time";
 }
 
 /** What was asked for, in some words. */

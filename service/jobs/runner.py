@@ -56,6 +56,11 @@ class Running:
     """when it was asked to end"""
     is_overdue: bool = False
 
+    @property
+    def is_bounded(self) -> bool:
+        """Whether it must be over after some time: nobody watches it at the machine's pace."""
+        return not self.job.kind.is_live and not self.job.request.get("pace")
+
 
 @dataclass(kw_only=True)
 class Runner:
@@ -118,7 +123,7 @@ class Runner:
                 del self.running[id]
             elif id in cancelling:
                 _ask_to_end(each)
-            elif not each.job.kind.is_live and time.monotonic() - each.began_at > self.longest:
+            elif each.is_bounded and time.monotonic() - each.began_at > self.longest:
                 each.is_overdue = True
                 each.process.kill()
 

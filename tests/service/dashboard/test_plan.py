@@ -1,0 +1,88 @@
+"""Plan: from a file to feeds with reasons, and back to a file."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Page, expect
+
+from stepnc_model.program import Program
+from tests.service.dashboard.conftest import ROOT, keep
+
+BRACKET = ROOT / "examples" / "parts" / "bracket.stpnc"
+
+
+def optimised(page: Page, sample: str) -> None:
+    """An advice for a sample, as a user asks for it."""
+    page.goto("/dashboard/plan.html")
+    page.locator("#program-example").select_option(sample)
+    expect(page.locator("#program-shown")).to_contain_text(f"{sample}.stpnc")
+    page.locator("#machine").select_option("vmc15")
+    page.locator("#optimise").click()
+    expect(page.locator("#steps tr.step").first).to_be_visible(timeout=60_000)
+
+
+def test_a_file_is_uploaded_optimised_and_downloaded(page: Page, tmp_path: Path) -> None:
+    page.goto("/dashboard/plan.html")
+    expect(page.locator("#optimise")).to_be_disabled()
+    page.locator("#program-file").set_input_files(BRACKET)
+    expect(page.locator("#program-shown")).to_contain_text("bracket.stpnc")
+    page.locator("#machine").select_option("vmc15")
+    page.locator("#nc-control").select_option("linuxcnc")
+    page.locator("#optimise").click()
+    rows = page.locator("#steps tr.step")
+    expect(rows.first).to_be_visible(timeout=60_000)
+    assert rows.count() == 16
+    expect(page.locator("#steps")).to_contain_text("feed per tooth 0.35 mm reaches its bound")
+    with page.expect_download() as download:
+        page.locator("#download-program").click()
+    assert download.value.suggested_filename == "bracket.optimised.stpnc"
+    download.value.save_as(tmp_path / "part.stpnc")
+    program = Program.load(tmp_path / "part.stpnc")
+    assert len(program.workingsteps) == 16
+    with page.expect_download() as code:
+        page.locator("#download-nc").click()
+    code.value.save_as(tmp_path / "part.ngc")
+    assert "G1" in (tmp_path / "part.ngc").read_text(encoding="utf-8")
+    with page.expect_download() as table:
+        page.locator("#download-json").click()
+    table.value.save_as(tmp_path / "plan.json")
+    plan = json.loads((tmp_path / "plan.json").read_text(encoding="utf-8"))
+    assert plan["total_time_s"]["after"] < plan["total_time_s"]["before"]
+    expect(page.locator("#path-card")).to_be_visible(timeout=90_000)
+    for view, drawn in (("2d", "#path-flat-plot canvas"), ("3d", "#path-plot")):
+        page.locator(f"#path-view [data-value='{view}']").click()
+        for colour in page.locator("#path-colour option").all():
+            page.locator("#path-colour").select_option(colour.get_attribute("value"))
+        expect(page.locator(drawn)).to_be_visible()
+    keep(page, "plan")
+
+
+def test_a_workingstep_opens_by_keyboard_and_headings_sort(page: Page) -> None:
+    optimised(page, "paper002")
+    opener = page.locator("#steps tr.step .opener").first
+    opener.focus()
+    page.keyboard.press("Enter")
+    detail = page.locator("#detail-0")
+    expect(detail).to_contain_text("feed per tooth0.5 ≤ 0.5 mm")
+    page.locator("#sort-feed").focus()
+    page.keyboard.press("Enter")
+    expect(page.locator("#steps th[aria-sort]").first).to_be_visible()
+
+
+@pytest.mark.parametrize("text", ["no program at all", "ISO-10303-21;"])
+def test_a_bad_file_is_refused_in_words(page: Page, text: str, tmp_path: Path) -> None:
+    bad = tmp_path / "bad.stpnc"
+    bad.write_text(text, encoding="utf-8")
+    page.goto("/dashboard/plan.html")
+    page.locator("#program-file").set_input_files(bad)
+    expect(page.locator("#program-problem [role=alert]")).to_contain_text("line 1")
+    expect(page.locator("#optimise")).to_be_disabled()
+
+
+def test_an_advice_can_be_opened_again(page: Page) -> None:
+    optimised(page, "paper002")
+    expect(page).to_have_url(re.compile("advice="))
+    page.reload()
+    expect(page.locator("#steps tr.step").first).to_be_visible()

@@ -1,0 +1,85 @@
+"""``/v1/advice``: feeds with their reasons, quick to look up."""
+
+from pathlib import Path
+
+import httpx
+import pytest
+
+from service.depot import jobs
+from service.depot.folder import open_depot
+from service.depot.ids import new_id
+from service.errors import NotFound
+from service.rest import advice
+from service.rest.advice import Shelf
+from service.jobs.task import RESULT
+from tests.service.rest.conftest import Done
+from tests.service.rest.server import is_problem
+
+
+def test_the_whole_and_one_workingstep_say_the_same(client: httpx.Client, done: Done) -> None:
+    whole = client.get(f"/v1/advice/{done.advice}").json()
+    [step] = whole["workingsteps"]
+    assert (whole["program"], whole["nc_control"]) == ("part.stpnc", "linuxcnc")
+    assert step["advised"]["feed_mm_min"] > step["programmed"]["feed_mm_min"] > 0.0
+    assert step["reason"]
+    for name in (step["id"], step["instance"].removeprefix("#"), "ROUGH%20THE%20FACE"):
+        assert client.get(f"/v1/advice/{done.advice}/workingsteps/{name}").json() == step
+    is_problem(client.get(f"/v1/advice/{done.advice}/workingsteps/none"), 404)
+
+
+def test_answers_are_tagged(client: httpx.Client, done: Done) -> None:
+    for path in ("", "/workingsteps/ROUGH THE FACE"):
+        answer = client.get(f"/v1/advice/{done.advice}{path}")
+        tag = answer.headers["etag"]
+        for condition in (tag, f"W/{tag}", f'"x", {tag}', "*"):
+            again = client.get(
+                f"/v1/advice/{done.advice}{path}", headers={"if-none-match": condition}
+            )
+            assert (again.status_code, again.content) == (304, b"")
+            assert again.headers["etag"] == tag
+        other = client.get(
+            f"/v1/advice/{done.advice}{path}", headers={"if-none-match": '"x"'}
+        )
+        assert other.status_code == 200
+
+
+def test_program_nc_code_and_report_are_files(client: httpx.Client, done: Done) -> None:
+    file = client.get(f"/v1/advice/{done.advice}/file")
+    assert file.content.startswith(b"ISO-10303-21;")
+    assert "part.optimised.stpnc" in file.headers["content-disposition"]
+    code = client.get(f"/v1/advice/{done.advice}/nc")
+    assert code.headers["content-type"] == "text/plain; charset=utf-8"
+    assert "part.optimised.ngc" in code.headers["content-disposition"]
+    report = client.get(f"/v1/advice/{done.advice}/report")
+    assert report.text.startswith("<!DOCTYPE html>")
+    assert "sandbox" in report.headers["content-security-policy"]
+
+
+def test_another_jobs_id_is_no_advice(client: httpx.Client, done: Done) -> None:
+    for path in ("", "/file", "/nc", "/report", "/workingsteps/x"):
+        is_problem(client.get(f"/v1/advice/{done.simulation}{path}"), 404)
+        is_problem(client.get(f"/v1/advice/{'0' * 26}{path}"), 404)
+    listed = client.get("/v1/advice").json()["items"]
+    assert {job["kind"] for job in listed} == {"advice"}
+
+
+def test_the_shelf_keeps_few_and_forgets_what_was_deleted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(advice, "MOST_READY", 3)
+    depot, shelf = open_depot(tmp_path, knowledge="none.db"), Shelf()
+    ids = []
+    for _ in range(6):
+        order = jobs.Order(kind=jobs.Kind.ADVICE, request={}, owner="a")
+        ids.append(jobs.add(depot, order).id)
+        depot.job_folder(ids[-1]).mkdir()
+        (depot.job_folder(ids[-1]) / RESULT).write_text('{"workingsteps": []}')
+        shelf.get(depot, ids[-1])
+    assert len(shelf._ready) == 3
+    assert shelf.get(depot, ids[-1]) is shelf.get(depot, ids[-1])
+    jobs.cancel(depot, ids[-1])
+    jobs.remove(depot, ids[-1])
+    with pytest.raises(NotFound):
+        shelf.get(depot, ids[-1])
+    with pytest.raises(NotFound):
+        shelf.get(depot, new_id())

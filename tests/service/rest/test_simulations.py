@@ -1,0 +1,53 @@
+"""``/v1/simulations``: a program on the virtual machine."""
+
+import io
+
+import httpx
+import pyarrow.parquet as parquet
+
+from tests.service.rest.conftest import Done
+from tests.service.rest.server import is_problem, made, over
+
+
+def test_result_samples_and_report(client: httpx.Client, done: Done) -> None:
+    path = f"/v1/simulations/{done.simulation}"
+    result = client.get(path).json()
+    assert result["total"]["time_s"] > 100.0
+    samples = client.get(f"{path}/samples")
+    assert samples.headers["content-type"] == "application/vnd.apache.parquet"
+    assert parquet.read_table(io.BytesIO(samples.content)).num_rows == result["samples"]
+    report = client.get(f"{path}/report")
+    assert report.text.startswith("<!DOCTYPE html>")
+    assert "sandbox" in report.headers["content-security-policy"]
+    assert done.simulation in {job["id"] for job in client.get("/v1/simulations").json()["items"]}
+
+
+def test_what_an_advice_made_is_simulated_under_its_name(
+    client: httpx.Client, done: Done
+) -> None:
+    id = made(client.post("/v1/simulations", json={"advice_id": done.advice}))
+    job = over(client, id)
+    assert (job["state"], job["program_id"], job["advice_id"]) == (
+        "succeeded", done.program, done.advice,
+    )  # fmt: skip
+    result = client.get(f"/v1/simulations/{id}").json()
+    assert result["program"] == "part.optimised.stpnc"
+    before = client.get(f"/v1/simulations/{done.simulation}").json()
+    assert result["total"]["time_s"] < before["total"]["time_s"]
+
+
+def test_one_of_program_and_advice_is_named(client: httpx.Client, done: Done) -> None:
+    both = {"program_id": done.program, "advice_id": done.advice}
+    for body in ({}, both):
+        is_problem(client.post("/v1/simulations", json=body), 400, "unreadable")
+        is_problem(client.post("/v1/control-runs", json=body), 400)
+    for body in ({"program_id": "0" * 26}, {"advice_id": done.simulation}):
+        is_problem(client.post("/v1/simulations", json=body), 404, "not-found")
+    is_problem(client.post("/v1/simulations", json={"program_id": "../x"}), 422)
+
+
+def test_the_path_of_the_tool_is_bounded(client: httpx.Client, done: Done) -> None:
+    answer = client.get(f"/v1/simulations/{done.simulation}/path?points=100")
+    assert answer.status_code == 200
+    is_problem(client.get(f"/v1/simulations/{done.simulation}/path?points=1"), 422)
+    is_problem(client.get(f"/v1/simulations/{'0' * 26}/path"), 404)
