@@ -1,12 +1,9 @@
 // What happened in a run, newest first; told in words, not each row.
 
 import { announce, api, el, fixed } from "/dashboard/app.js";
+import { TONES } from "/dashboard/control_pen.js";
 
 const MOST = 300, APART_MS = 4000;
-const TONES = { over: "bad", stop: "bad", breakage: "bad", lost: "bad", refused: "bad", hold: "warn",
-  warning: "warn", wear: "warn", hardness: "warn", unreachable: "warn", silence: "warn",
-  safe: "good", resume: "good" };
-
 const nameOf = (event) => `${event.time_s}|${event.kind}|${event.text}`;
 
 export class Log {

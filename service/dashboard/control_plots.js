@@ -5,9 +5,10 @@
 
 import { el, fixed, number } from "/dashboard/app.js";
 import { colour } from "/dashboard/charts.js";
+import { LEFT, RIGHT, drawGrid, drawLine, drawMarkers, stepOf } from "/dashboard/control_pen.js";
 import { Rows } from "/dashboard/control_series.js";
 
-const LEFT = 52, RIGHT = 10, FOOT = 20, RELOAD_MS = 4000;
+const FOOT = 20, RELOAD_MS = 4000;
 
 const PANELS = [
   // Rapids leave the top: beside them no feed could be read.
@@ -23,15 +24,6 @@ const PANELS = [
     { name: "removal", label: "removed", colour: "curve-1", width: 2.2 }] },
 ];
 const WINDOWS = [["10", 10, "10 s"], ["60", 60, "60 s"], ["all", null, "all"]];
-const TONES = { over: "bad", stop: "bad", breakage: "bad", lost: "bad", refused: "bad", hold: "warn",
-  warning: "warn", wear: "warn", hardness: "warn", unreachable: "warn", silence: "warn",
-  safe: "good", resume: "good" };
-
-/** A round step so that `top` has about so many. */
-function stepOf(top, count) {
-  const rough = top / count, power = 10 ** Math.floor(Math.log10(rough));
-  return power * [1, 2, 2.5, 5, 10].find((each) => each * power >= rough * 0.999);
-}
 
 const isLevel = (point, value) => Math.abs(point.low - value) <= 2e-4 * Math.abs(value)
   && Math.abs(point.high - value) <= 2e-4 * Math.abs(value);
@@ -229,7 +221,7 @@ export class Plots {
       canvas.width = Math.round(width * ratio);
       canvas.height = Math.round(height * ratio);
     }
-    const pen = canvas.getContext("2d");
+    const pen = canvas.getContext("2d"), ink = (name) => this.ink(name);
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     pen.clearRect(0, 0, width, height);
     const foot = panel.isLast ? FOOT : 5, top = 5;
@@ -241,14 +233,14 @@ export class Plots {
     const step = stepOf(most * 1.04, 3), high = Math.ceil((most * 1.04) / step) * step;
     const y = (value) => height - foot - (Math.max(value, 0) / high) * (height - foot - top);
     pen.font = "11px system-ui, sans-serif";
-    this.grid(pen, { x, y, begin, end, step, high, width, height, foot, top, isLast: panel.isLast,
+    drawGrid(pen, ink, { x, y, begin, end, step, high, width, height, foot, top, isLast: panel.isLast,
       hasData: drawn.some((each) => each.runs.length) });
     pen.save();
     pen.beginPath();
     pen.rect(LEFT, 0, width - LEFT - RIGHT, height - foot + 1);
     pen.clip();
-    this.markers(pen, { x, begin, end, height, foot, hasWords: panel === this.panels[0] });
-    panel.lines.forEach((line, at) => this.line(pen, drawn[at].runs, y, line));
+    drawMarkers(pen, ink, this.events, { x, begin, end, height, foot, hasWords: panel === this.panels[0] });
+    panel.lines.forEach((line, at) => drawLine(pen, ink(line.colour), drawn[at].runs, y, line));
     this.hands(pen, x, height, foot);
     pen.restore();
   }
@@ -276,73 +268,6 @@ export class Plots {
       run.push({ column, x: at, low, high });
     });
     return { runs, most };
-  }
-
-  line(pen, runs, y, line) {
-    pen.strokeStyle = this.ink(line.colour);
-    pen.lineWidth = line.width ?? 1.4;
-    pen.lineJoin = "bevel";
-    pen.setLineDash(line.dash ?? []);
-    pen.beginPath();
-    for (const run of runs) {
-      run.forEach((point, at) => {
-        if (at === 0) pen.moveTo(point.x, y(point.low)); else pen.lineTo(point.x, y(point.low));
-        if (point.high > point.low) pen.lineTo(point.x, y(point.high));
-      });
-    }
-    pen.stroke();
-    pen.setLineDash([]);
-  }
-
-  grid(pen, { x, y, begin, end, step, high, width, height, foot, top, isLast, hasData }) {
-    pen.strokeStyle = this.ink("rule");
-    pen.fillStyle = this.ink("soft");
-    pen.lineWidth = 1;
-    pen.textBaseline = "middle";
-    pen.textAlign = "right";
-    pen.beginPath();
-    for (let value = 0; value <= high * 1.001; value += step) {
-      const at = Math.round(y(value)) + 0.5;
-      pen.moveTo(LEFT, at);
-      pen.lineTo(width - RIGHT, at);
-      if (hasData || value === 0) pen.fillText(number(value, 3), LEFT - 6, Math.max(at, top + 2));
-    }
-    const apart = stepOf(end - begin, Math.max(2, Math.floor(width / 110)));
-    pen.textAlign = "center";
-    for (let time = Math.ceil(begin / apart) * apart; time <= end + 1e-9; time += apart) {
-      const at = Math.round(x(time)) + 0.5;
-      pen.moveTo(at, top);
-      pen.lineTo(at, height - foot);
-      if (!isLast || at > width - 26) continue;
-      pen.fillText(number(time, time < 100 ? 3 : 5), at, height - foot + 11);
-    }
-    pen.stroke();
-    if (!isLast) return;
-    pen.textAlign = "right";
-    pen.fillText("s", width - RIGHT, height - foot + 11);
-  }
-
-  markers(pen, { x, begin, end, height, foot, hasWords }) {
-    let free = LEFT;
-    pen.textAlign = "left";
-    pen.textBaseline = "top";
-    for (const event of this.events) {
-      if (event.time_s < begin || event.time_s > end || event.kind === "workingstep") continue;
-      const at = Math.round(x(event.time_s)) + 0.5;
-      pen.strokeStyle = pen.fillStyle = this.ink(TONES[event.kind] ?? "accent");
-      pen.globalAlpha = 0.75;
-      pen.lineWidth = 1;
-      pen.setLineDash([2, 3]);
-      pen.beginPath();
-      pen.moveTo(at, 0);
-      pen.lineTo(at, height - foot);
-      pen.stroke();
-      pen.setLineDash([]);
-      pen.globalAlpha = 1;
-      if (!hasWords || at < free) continue;
-      pen.fillText(event.kind, at + 3, 1);
-      free = at + 8 + pen.measureText(event.kind).width;
-    }
   }
 
   hands(pen, x, height, foot) {

@@ -152,6 +152,9 @@ async def _http(request: Request, error: Exception) -> Response:
     """What the framework refuses: an unknown path, a method that is not there."""
     if not isinstance(error, HTTPException):
         raise error
+    if isinstance(error.__cause__, StepNcError):
+        # Met while the body was read: the framework tells it as a body that cannot be parsed.
+        return await _project(request, error.__cause__)
     title = {404: "Not found", 405: "Method not allowed"}.get(error.status_code, "Refused")
     problem = plain_problem(
         error.status_code, title, str(error.detail), instance=request.state.id

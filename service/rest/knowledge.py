@@ -164,7 +164,11 @@ def _require_moments(**times: datetime | None) -> None:
 
 
 async def _corrections(request: Request, work: Callable[[], Sequence[Entry]]) -> Response:
-    entries = await run_in_threadpool(work)
+    try:
+        entries = await run_in_threadpool(work)
+    except ValueError as error:
+        # A name that is none, or cannot be stored.
+        raise Unreadable(str(error)) from error
     return json_reply(request, corrections_json(entries).encode())
 
 

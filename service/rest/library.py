@@ -3,6 +3,7 @@
 import json
 from typing import Annotated
 
+import orjson
 from fastapi import APIRouter, Path, Request, Response
 from starlette.concurrency import run_in_threadpool
 
@@ -11,7 +12,7 @@ from service.depot.folder import Depot
 from service.depot.library import NAME, Held, Shelf
 from service.errors import Conflict, Unreadable
 from service.rest.context import InDepot
-from service.rest.replies import json_reply, matches, tag_of
+from service.rest.replies import json_reply, matches, tag_of, tagged
 from service.rest.views import EntryView
 from service.wire import entry_json
 
@@ -92,7 +93,12 @@ async def _all(request: Request, depot: Depot, shelf: Shelf) -> Response:
 async def _one(request: Request, depot: Depot, shelf: Shelf, name: str) -> Response:
     held = await run_in_threadpool(library.one, depot, shelf, name)
     entry = json.loads(entry_json(held.entry))
-    return json_reply(request, {**entry, "name": name, "is_own": held.is_own})
+    shown = orjson.dumps({**entry, "name": name, "is_own": held.is_own})
+    if not held.is_own:
+        return json_reply(request, shown)
+    # The tag of the file, so that who has looked may change it with If-Match.
+    text = await run_in_threadpool(library.text_of, depot, shelf, name)
+    return tagged(request, shown, tag_of(text))
 
 
 async def _put(request: Request, depot: Depot, shelf: Shelf, name: str) -> Response:

@@ -190,6 +190,9 @@ async def _body(request: Request) -> bytes:
 def _unpacked(unpack: "zlib._Decompress", chunk: bytes, most: int) -> bytes:
     """What a chunk holds, but no more than a bound."""
     try:
-        return unpack.decompress(chunk, most)
+        part = unpack.decompress(chunk, most)
     except zlib.error as error:
         raise Unreadable(f"the body is no gzip: {error}") from error
+    if unpack.unused_data:
+        raise Unreadable("there is more behind the end of the gzip body: send one file")
+    return part

@@ -105,6 +105,7 @@ def is_fault(message: ConsoleMessage) -> bool:
 def keep(page: Page, name: str) -> None:
     """Screenshots of a page: on a wide screen light and dark, on a tablet, on a phone."""
     SCREENSHOTS.mkdir(parents=True, exist_ok=True)
+    page.evaluate("scrollTo(0, 0)")
     for kind, size in (("wide", WIDE), ("tablet", TABLET), ("phone", PHONE)):
         page.set_viewport_size(size)
         # Plots follow the window a moment later.

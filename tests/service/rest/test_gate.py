@@ -152,7 +152,8 @@ def asked(app: Any, *, path: str, chunks: list[bytes], method: str = "POST") -> 
     scope = {
         "type": "http", "asgi": {"version": "3.0"}, "http_version": "1.1", "method": method,
         "path": path, "raw_path": path.encode(), "query_string": b"", "scheme": "http",
-        "headers": [(b"host", b"localhost"), (b"content-type", b"application/json")],
+        "headers": [(b"host", b"localhost"), (b"content-type", b"application/json"),
+                    (b"transfer-encoding", b"chunked")],
         "client": ("127.0.0.1", 1), "server": ("127.0.0.1", 80), "root_path": "",
     }  # fmt: skip
     asyncio.run(asyncio.wait_for(app(scope, receive, send), 20.0))

@@ -54,9 +54,9 @@ def test_a_decision_that_cannot_be_is_refused(client: httpx.Client, verb: str) -
 def test_outcomes_are_found_by_what_they_are_of(client: httpx.Client, done: Done) -> None:
     found = client.get("/v1/outcomes?limit=5").json()
     assert len(found["outcomes"]) == 5
-    machine = found["outcomes"][0]["context"]["machine"]
+    machine = found["outcomes"][0]["machine"]
     of_machine = client.get("/v1/outcomes", params={"machine": machine, "limit": 2000}).json()
-    assert {each["context"]["machine"] for each in of_machine["outcomes"]} == {machine}
+    assert {each["machine"] for each in of_machine["outcomes"]} == {machine}
     run = found["outcomes"][0]["run"]
     assert client.get(f"/v1/outcomes/runs/{run}").status_code == 200
     is_problem(client.get("/v1/outcomes/runs/none"), 404)

@@ -39,7 +39,7 @@ def test_plotly_comes_from_the_installed_package(client: httpx.Client) -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["..", "../settings.py", "%2e%2e%2fsettings.py", "none.html", "plan.html%00", "app.py"]
+    "name", ["../settings.py", "%2e%2e%2fsettings.py", "none.html", "plan.html%00", "app.py"]
 )
 def test_nothing_else_is_a_page(client: httpx.Client, name: str) -> None:
     is_problem(client.get(f"/dashboard/{name}"), 404)

@@ -1,0 +1,223 @@
+"""The service as it is run: several processes, restarts, crashes, certificates, bounds."""
+
+import os
+import shutil
+import signal
+import ssl
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+from subprocess import DEVNULL, run
+
+import httpx
+import pytest
+from prometheus_client.parser import text_string_to_metric_families as parsed
+
+from service.errors import Forbidden
+from service.jobs.runner import locked
+from service.rest.serve import Start, serve
+from service.rest.settings import Settings
+from stepnc_model.errors import StepNcError
+from tests.service.rest.samples import SAMPLE
+from tests.service.rest.server import Server, create_key, is_problem, made, over
+from tests.service.waiting import children, is_alive, until
+
+DATA = SAMPLE.read_bytes()
+
+
+def runner_of(server: Server) -> int:
+    """The process that runs jobs."""
+    from service.depot.folder import open_depot  # noqa: PLC0415
+
+    with open_depot(server.data).database.reading() as connection:
+        return int(connection.execute("SELECT pid FROM runner").fetchone()["pid"])
+
+
+def test_two_web_processes_and_a_restart_lose_nothing(tmp_path: Path) -> None:
+    server = Server(tmp_path, "--workers", "2")
+    headers = {"idempotency-key": "once"}
+    with server:
+        word = create_key(server, "Anna", "planner")
+        with server.client() as client:
+            programs = {
+                made(client.post("/v1/programs", content=DATA, headers=headers), 201)
+                for _ in range(6)
+            }
+            assert len(programs) == 1
+            [program] = programs
+            advice = made(client.post(f"/v1/programs/{program}/advice", json={}))
+            result = client.get(over(client, advice)["result"]).content
+            path = {"program_id": program, "pace": 30.0}
+            running = made(client.post("/v1/simulations", json=path))
+            until(lambda: client.get(f"/v1/jobs/{running}").json()["state"] == "running")
+            waiting = made(client.post("/v1/evaluations", json={}))
+            samples = [
+                sample
+                for family in parsed(client.get("/metrics").text)
+                for sample in family.samples
+                if sample.name == "stepnc_requests_total"
+                and sample.labels.get("route") == "/v1/programs"
+            ]
+            assert sum(sample.value for sample in samples) == 6
+        server.stop()
+        server.start()
+        with server.client(word) as client:
+            assert made(client.post("/v1/programs", content=DATA, headers=headers), 201) == (
+                program
+            )
+            assert client.get(f"/v1/programs/{program}/file").content == DATA
+            assert client.get(f"/v1/advice/{advice}").content == result
+            again = over(client, running)
+            assert (again["state"], again["attempt"]) == ("succeeded", 2)
+            assert over(client, waiting)["state"] == "succeeded"
+        assert create_key(server, "Bert")
+    assert server.faults() == []
+
+
+def test_a_killed_web_process_or_runner_is_replaced(tmp_path: Path) -> None:
+    with Server(tmp_path) as server, server.client() as client:
+        first = runner_of(server)
+        program = made(client.post("/v1/programs", content=DATA), 201)
+        id = made(client.post("/v1/simulations", json={"program_id": program, "pace": 40.0}))
+        until(lambda: client.get(f"/v1/jobs/{id}").json()["state"] == "running")
+        os.kill(first, signal.SIGKILL)
+        until(lambda: runner_of(server) != first, within=30.0)
+        job = over(client, id)
+        assert (job["state"], job["attempt"]) == ("succeeded", 2)
+        assert client.get("/readyz").status_code == 200
+
+
+def test_a_stop_is_an_orderly_one_and_the_folder_is_free_at_once(tmp_path: Path) -> None:
+    server = Server(tmp_path)
+    with server:
+        with pytest.raises(StepNcError, match="another server works with this folder"):
+            serve(Start(settings=Settings(data=str(server.data)), workers=1, jobs=1, level="info"))
+        below = children(server.pid)
+        assert server.stop() in {0, -signal.SIGTERM}
+        with locked(server.data):
+            """free"""
+        assert not any(map(is_alive, below))
+
+
+def test_everything_ends_when_the_server_is_killed(tmp_path: Path) -> None:
+    server = Server(tmp_path, "--workers", "2")
+    with server:
+        below = children(server.pid)
+        os.kill(server.pid, signal.SIGKILL)
+        assert server._process is not None
+        server._process.wait(10.0)
+        until(lambda: not any(map(is_alive, below)), within=20.0)
+        server._process = None
+        server.start()
+
+
+@pytest.fixture
+def certificate(tmp_path: Path) -> tuple[Path, Path]:
+    """Of 127.0.0.1, signed by itself."""
+    openssl = shutil.which("openssl")
+    if openssl is None:
+        pytest.skip("openssl is not installed: no certificate can be made")
+    certificate, key = tmp_path / "shop.crt", tmp_path / "shop.key"
+    words = [
+        openssl, "req", "-x509", "-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256",
+        "-nodes", "-days", "2", "-subj", "/CN=localhost",
+        "-addext", "subjectAltName=IP:127.0.0.1,DNS:localhost",
+        "-keyout", str(key), "-out", str(certificate),
+    ]  # fmt: skip
+    run(words, check=True, stdout=DEVNULL, stderr=DEVNULL)
+    return certificate, key
+
+
+def test_https_is_served_with_a_certificate(
+    tmp_path: Path, certificate: tuple[Path, Path]
+) -> None:
+    trusted = ssl.create_default_context(cafile=str(certificate[0]))
+    words = ("--tls-cert", str(certificate[0]), "--tls-key", str(certificate[1]))
+    server = Server(tmp_path / "tls", *words, scheme="https", verify=trusted)
+    with server, server.client() as client:
+        assert client.get("/v1/about").status_code == 200
+        with pytest.raises(httpx.TransportError):
+            httpx.get(f"http://127.0.0.1:{server.port}/healthz", trust_env=False)
+        with pytest.raises(httpx.ConnectError):
+            httpx.get(f"{server.url}/healthz", trust_env=False)
+
+
+@pytest.fixture
+def limited(tmp_path: Path) -> Iterator[Server]:
+    with Server(tmp_path, "--rate", "5") as server:
+        yield server
+
+
+def test_too_many_requests_are_told_when_to_come_again(limited: Server) -> None:
+    with limited.client() as client:
+        answers = [client.get("/v1/about") for _ in range(200)]
+        refused = [answer for answer in answers if answer.status_code == 429]
+        assert 20 < len(refused) < 150
+        for answer in refused:
+            found = is_problem(answer, 429, "too-many")
+            assert found["wait"] > 0.0
+            assert int(answer.headers["retry-after"]) >= found["wait"]
+            assert answer.headers["x-content-type-options"] == "nosniff"
+        until(lambda: client.get("/v1/about").status_code == 200)
+
+
+def test_a_host_that_others_reach_needs_a_key_before_it_starts(tmp_path: Path) -> None:
+    settings = Settings(data=str(tmp_path), host="0.0.0.0", needs_keys=True)
+    with pytest.raises(Forbidden, match="stepnc keys create"):
+        serve(Start(settings=settings, workers=1, jobs=1, level="info"))
+    missing = Start(
+        settings=Settings(data=str(tmp_path)), workers=1, jobs=1, level="info",
+        certificate=tmp_path / "none.crt", key=tmp_path / "none.key",
+    )  # fmt: skip
+    with pytest.raises(StepNcError, match="no such file"):
+        serve(missing)
+
+
+def test_no_decision_that_was_answered_is_lost_when_all_is_killed(tmp_path: Path) -> None:
+    from kbe.store import open_store  # noqa: PLC0415
+    from tests.service.shop import outcomes  # noqa: PLC0415
+
+    server = Server(tmp_path)
+    server.data.mkdir(parents=True)
+    with open_store(str(server.data / "knowledge.db")) as store:
+        store.add(list(outcomes(300)))
+    with server:
+        with server.client() as client:
+            over(client, made(client.post("/v1/reviews", json={})))
+            numbers = [each["id"] for each in client.get("/v1/corrections").json()["corrections"]]
+            program = made(client.post("/v1/programs", content=DATA), 201)
+        said: dict[int, str] = {}
+        asked: tuple[int, str] = (0, "")
+        programs: list[str] = []
+        for round_ in range(2):
+            with server.client() as client, suppress(httpx.TransportError):
+                body = {"program_id": program, "pace": 40.0}
+                running = made(client.post("/v1/simulations", json=body))
+                until(lambda: client.get(f"/v1/jobs/{running}").json()["state"] == "running")
+                killed = 0
+                for count in range(1000):
+                    number, verb = numbers[count % len(numbers)], ("accept", "withdraw")[count % 2]
+                    asked = (number, f"{verb} {round_} {count}")
+                    answer = client.post(
+                        f"/v1/corrections/{number}/{verb}", json={"by": asked[1]}
+                    )
+                    assert answer.status_code == 200
+                    said[number] = asked[1]
+                    programs.append(made(client.post("/v1/programs", content=DATA), 201))
+                    if count == 25 and not killed:
+                        # In flight: the answer to the next request never comes.
+                        killed = os.fork()
+                        if killed == 0:
+                            os.kill(server.pid, signal.SIGKILL)
+                            os._exit(0)
+                        os.waitpid(killed, 0)
+            server.kill()
+            server.start()
+            with server.client() as client:
+                corrections = client.get("/v1/corrections").json()["corrections"]
+                by = {each["id"]: each["decided_by"] for each in corrections}
+                for number, words in said.items():
+                    assert by[number] == words or (number, by[number]) == asked
+                for id in programs:
+                    assert client.get(f"/v1/programs/{id}/file").content == DATA
+                assert over(client, running)["state"] == "succeeded"
