@@ -88,9 +88,10 @@ async def change_trial(
     if inputs:
         now = await run_in_threadpool(_inputs, depot, job)
         await run_in_threadpool(changed, now, **inputs)
-    words = {name: True for name in ("restart", "end") if getattr(body, name)} or inputs
     pace = {} if body.pace is None else {"pace": body.pace}
-    return await _ordered(request, depot, job, {**words, **pace})
+    # Inputs first: a new cutter enters the work with them.
+    acts = [{name: True} for name in ("restart", "end") if getattr(body, name)]
+    return await _ordered(request, depot, job, *filter(None, ({**inputs, **pace}, *acts)))
 
 
 def _inputs(depot: Depot, job: Job) -> Inputs:
@@ -101,19 +102,20 @@ def _inputs(depot: Depot, job: Job) -> Inputs:
 
 
 async def _ordered(
-    request: Request, depot: Depot, job: Job, words: Mapping[str, Any]
+    request: Request, depot: Depot, job: Job, *orders: Mapping[str, Any]
 ) -> Response:
-    """Hand an order on to the process that runs."""
+    """Hand orders on to the process that runs."""
     if job.state.is_over:
         raise Conflict(f"{job.kind.value} '{job.id}' is {job.state.value}: it changes no more")
     folder = LiveFolder(path=depot.job_folder(job.id))
 
     def hand_on() -> None:
         folder.path.mkdir(mode=0o700, exist_ok=True)
-        append(folder.orders, words)
+        for order in orders:
+            append(folder.orders, order)
 
     await run_in_threadpool(hand_on)
-    return json_reply(request, {"asked": words}, status=202)
+    return json_reply(request, {"asked": orders}, status=202)
 
 
 def _add_common(routes: APIRouter, kind: Kind) -> None:

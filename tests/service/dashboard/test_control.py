@@ -1,0 +1,104 @@
+"""Control: the simulator of paper 002, Fig. 9, with the real loop: change it while it runs."""
+
+import re
+
+import pytest
+from playwright.sync_api import Locator, Page, expect
+
+from tests.service.dashboard.conftest import keep
+from tests.service.waiting import until
+
+
+def begun(page: Page) -> None:
+    """A trial cut that has reached its steady state."""
+    page.goto("/dashboard/control.html?source=trial")
+    page.locator("#start").click()
+    expect(page.locator("#run-state")).to_have_text("Running", timeout=30_000)
+    until(lambda: figure(page, "feed_actual_mm_min") > 1000.0, within=30.0)
+    expect(page.locator("#lamp")).to_contain_text("SAFE")
+
+
+def figure(page: Page, name: str) -> float:
+    """A number of the output; 0 while there is none."""
+    text = page.locator(f"#out-{name}").inner_text().replace(",", "")
+    found = re.search(r"-?\d+(\.\d+)?", text)
+    return float(found[0]) if found else 0.0
+
+
+def set_input(page: Page, name: str, value: str) -> Locator:
+    """A new value, as a user types it."""
+    field = page.locator(f"#in-{name}")
+    field.fill(value)
+    field.press("Enter")
+    return field
+
+
+@pytest.fixture(autouse=True)
+def ended(page: Page) -> None:
+    """No trial of another test goes on."""
+    for job in page.request.get("/v1/jobs?state=running&kind=trial").json()["items"]:
+        page.request.post(f"/v1/trials/{job['id']}/cancel")
+
+
+def test_a_deeper_cut_raises_the_force_and_lowers_the_feed(page: Page) -> None:
+    begun(page)
+    force, feed = figure(page, "force"), figure(page, "feed_actual_mm_min")
+    rate = figure(page, "removal_rate_cm3_min")
+    set_input(page, "axial_depth_mm", "4")
+    expect(page.locator("#lamp")).to_contain_text("OVER")
+    expect(page.locator("#depth-warning")).to_contain_text("exceeds allowed 3 mm")
+    expect(page.locator("#lamp")).to_contain_text("SAFE", timeout=15_000)
+    until(lambda: figure(page, "feed_actual_mm_min") < 0.8 * feed)
+    assert figure(page, "force") > 1.3 * force
+    assert figure(page, "removal_rate_cm3_min") > rate
+    expect(page.locator("#out-holding")).to_contain_text("motor power")
+    expect(page.locator("#log")).to_contain_text("depth 2 -> 4 mm")
+    keep(page, "control")
+
+
+def test_tc_and_qc_on_and_off_are_switched_while_it_runs(page: Page) -> None:
+    begun(page)
+    page.locator("#switch-qc").click()
+    expect(page.locator("#switch-qc")).to_have_attribute("aria-pressed", "true")
+    expect(page.locator("#out-holding")).to_contain_text("QC")
+    page.locator("#switch-tc").click()
+    expect(page.locator("#switch-tc")).to_have_attribute("aria-pressed", "true")
+    page.locator("#switch-off").click()
+    expect(page.locator("#switch-off")).to_have_attribute("aria-pressed", "true")
+    set_input(page, "axial_depth_mm", "5")
+    # Nobody holds the force: the drive stays over its limit.
+    expect(page.locator("#lamp")).to_contain_text("OVER")
+    page.locator("#switch-on").click()
+    expect(page.locator("#lamp")).to_contain_text("SAFE", timeout=15_000)
+
+
+def test_a_value_beyond_its_bounds_is_refused_at_its_field(page: Page) -> None:
+    begun(page)
+    field = set_input(page, "axial_depth_mm", "99")
+    expect(page.locator("#in-axial_depth_mm-note")).to_contain_text("20")
+    expect(field).to_have_value("2")
+
+
+def test_a_reload_keeps_the_run_and_its_history(page: Page) -> None:
+    begun(page)
+    set_input(page, "axial_depth_mm", "3")
+    expect(page.locator("#log")).to_contain_text("depth 2 -> 3 mm")
+    page.reload()
+    expect(page.locator("#run-state")).to_have_text("Running")
+    expect(page.locator("#in-axial_depth_mm")).to_have_value("3")
+    expect(page.locator("#log")).to_contain_text("depth 2 -> 3 mm")
+    page.locator("#end").click()
+    expect(page.locator("#run-state")).to_contain_text("Ended")
+
+
+def test_a_program_runs_under_control(page: Page) -> None:
+    program = page.request.post("/v1/programs?example=paper002").json()["id"]
+    asked = {"program_id": program, "machine": "vmc15", "material": "c45", "pace": 20.0}
+    run = page.request.post("/v1/control-runs", data=asked).json()["id"]
+    page.goto(f"/dashboard/control.html?id={run}")
+    expect(page.locator("#told-workingstep")).to_contain_text("ROUGH", timeout=30_000)
+    set_input(page, "motor_power_percent", "50")
+    expect(page.locator("#log")).to_contain_text("motor power 50 %")
+    expect(page.locator("#run-state")).to_contain_text("Program through", timeout=60_000)
+    outcomes = page.request.get("/v1/outcomes?program=paper002.stpnc").json()
+    assert outcomes["total"] > 0
