@@ -60,9 +60,7 @@ def main(arguments: list[str] | None = None) -> None:
             for number in range(options.pairs + 1):
                 if not options.quiet:
                     _simulate(service)
-                pair = tuple(
-                    _load(base + path, options.seconds) for base in (service, peer)
-                )
+                pair = tuple(_load(base + path, options.seconds) for base in (service, peer))
                 if number:  # the first warms both up
                     pairs.append(pair)
     print(f"{'server':28}{'requests/s':>12}{'p50 ms':>10}{'p99 ms':>10}")
@@ -84,7 +82,9 @@ def _service(folder: Path) -> Iterator[str]:
         str(Path(sys.executable).with_name("stepnc")), "serve", "--data", str(folder / "data"),
         "--port", str(port),
     ]  # fmt: skip
-    with _running(command, folder / "service.log", f"http://127.0.0.1:{port}", "/readyz") as base:
+    with _running(
+        command, folder / "service.log", f"http://127.0.0.1:{port}", "/readyz"
+    ) as base:
         yield base
 
 

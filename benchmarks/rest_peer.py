@@ -1,4 +1,4 @@
-"""A bare FastAPI application that answers with the same bytes: what the framework itself costs."""
+"""A bare FastAPI application that answers with the same bytes: what the framework costs."""
 
 import os
 from pathlib import Path

@@ -176,7 +176,7 @@ def _choice(kind: type[StrEnum], column: int) -> Callable[[Sequence[Any]], objec
     return lambda row: None if row[column] is None else kind(row[column])
 
 
-def _text(name: str, value: Any) -> str:
+def storable_text(name: str, value: Any) -> str:
     """Text that every database takes."""
     text = str(value)
     if "\0" in text or (not text.isascii() and _has_surrogate(text)):
@@ -230,7 +230,7 @@ def utc(name: str, time: datetime) -> datetime:
 
 
 CHECKS: Mapping[type, Callable[[str, Any], Value]] = {
-    str: _text,
+    str: storable_text,
     float: _number,
     int: _whole,
     bool: _truth,

@@ -24,7 +24,7 @@ from kbe.groups import Group, group, grouped
 from kbe.ledger import Entry, Standing, entries, entry, in_force
 from kbe.migrate import migrate
 from kbe.place import Place, parsed_place, require_openable
-from kbe.rows import CORRECTION, OUTCOME, outcome_row, utc
+from kbe.rows import CORRECTION, OUTCOME, outcome_row, storable_text, utc
 from kbe.schema import DECIDED, TABLES, correction, decision, outcome
 from kbe.selection import EVERYTHING, Selection, conditions
 from stepnc_model.outcome import Context, Correction, ProcessOutcome
@@ -146,7 +146,7 @@ class Store:
         row = {
             "correction_id": id_,
             "kind": standing.value,
-            "decided_by": by,
+            "decided_by": storable_text("by", by),
             "decided_at": utc("at", at),
         }
         known = select(correction.c.id).where(correction.c.id == id_)

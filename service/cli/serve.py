@@ -46,7 +46,7 @@ def add_service_commands(commands: Commands) -> None:
         type=text,
         default="",
         metavar="PLACE",
-        help="knowledge base, a file or postgresql://… (default: $STEPNC_KB, else in the folder)",
+        help="knowledge base, a file or postgresql://… (default: $STEPNC_KB, else there)",
     )
     add("--workers", type=int, default=1, metavar="N", help="web processes (default: 1)")
     add("--jobs", type=int, default=1, metavar="N", help="long jobs at once (default: 1)")
@@ -90,7 +90,7 @@ def _add_keys(commands: Commands) -> None:
         action="append",
         choices=ROLES,
         default=[],
-        help="viewer looks, planner plans, operator runs machines; repeatable (default: viewer)",
+        help="viewer looks, planner plans, operator runs; repeatable (default: viewer)",
     )
     listing = verbs.add_parser("list", help="all keys, without their secrets")
     revoke = verbs.add_parser("revoke", help="make a key useless")

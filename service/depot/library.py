@@ -32,7 +32,7 @@ LONGEST = 200
 """letters of any name of a material"""
 
 LARGEST = 1 << 16
-"""bytes of a file, ten times those of the library's: a parser's time may grow with the square"""
+"""bytes of a file, ten times the library's: a parser's time may grow with the square"""
 
 
 class Shelf(StrEnum):

@@ -15,9 +15,9 @@ from service.control.wire import control_json
 from service.depot.library import machine_word, material_word
 from service.files import write_atomically
 from service.jobs.task import REPORT, SAMPLES, Task
-from service.live.status import status_words
-from service.live.steering import Helm
 from service.simulation.run import SimulationRequest
+from service.steering.helm import Helm
+from service.steering.status import status_words
 from service.trial.inputs import Inputs, changed
 from service.trial.run import TrialRun
 
@@ -46,13 +46,13 @@ class SteeredTrial:
         return self.trial.status().is_stopped and not self.is_ended
 
     def advance(self, until: float) -> bool:
-        """See :class:`service.live.steering.Steered`."""
+        """See :class:`service.steering.helm.Steered`."""
         if self.is_ended or self.time > LONGEST:
             return False
         return self.trial.advance(until)
 
     def taken(self) -> Taken:
-        """See :class:`service.live.steering.Steered`."""
+        """See :class:`service.steering.helm.Steered`."""
         return self.trial.taken()
 
     def obey(self, order: Mapping[str, Any]) -> None:
@@ -88,11 +88,11 @@ class SteeredControl:
         return False
 
     def advance(self, until: float) -> bool:
-        """See :class:`service.live.steering.Steered`."""
+        """See :class:`service.steering.helm.Steered`."""
         return self.control.advance(until)
 
     def taken(self) -> Taken:
-        """See :class:`service.live.steering.Steered`."""
+        """See :class:`service.steering.helm.Steered`."""
         return self.control.taken()
 
     def obey(self, order: Mapping[str, Any]) -> None:

@@ -11,6 +11,7 @@ from starlette.exceptions import HTTPException
 
 from kbe.store import open_store
 from service.depot.folder import open_depot
+from service.errors import TooMany
 from service.lifeline import end_with_parent
 from service.problem import plain_problem, problem_of
 from service.rest import (
@@ -33,8 +34,8 @@ from service.rest.streams import Hub
 from stepnc_model.errors import StepNcError
 
 TITLE = "stepnc-optimiser"
-ABOUT = """Feeds of STEP-NC programs, optimal within the limits of machine, tool and part; runs on
-a virtual machine; runs under a force loop; and what was learned from them.
+ABOUT = """Feeds of STEP-NC programs, optimal within the limits of machine, tool and part; runs
+on a virtual machine; runs under a force loop; and what was learned from them.
 
 Names of fields carry their units. Long work is a job: the answer is 202 with its place; look
 at it, watch its events, cancel it. Problems are told as in RFC 9457. Lists come in pages with a
@@ -128,7 +129,7 @@ async def _project(request: Request, error: Exception) -> Response:
         raise error
     root = str(request.app.state.depot.root)
     reply = problem_reply({**problem_of(error, hidden=root), "instance": request.state.id})
-    if hasattr(error, "wait"):
+    if isinstance(error, TooMany):
         reply.headers["retry-after"] = str(int(error.wait) + 1)
     return reply
 

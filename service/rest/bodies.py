@@ -27,6 +27,8 @@ Name = Annotated[str, Field(max_length=200)]
 Percent = Annotated[float, Field(gt=0.0, le=MOST_PERCENT)]
 Pace = Annotated[float, Field(ge=0.01, le=MOST)]
 Units = StrEnum("Units", {name.replace("-", "_"): name for name in PROFILES})  # type: ignore[misc]
+ISO = Units("iso")
+"""as the standard says"""
 
 
 class Sensor(StrEnum):
@@ -55,7 +57,7 @@ class AdviceBody(Body):
     )
     machine: Name = Field("", description="empty: one that suits", examples=["vmc15"])
     material: Name = Field("", description="empty: the one the program names", examples=["c45"])
-    units: Units = Field(Units.iso, description="of feeds and speeds in the file")
+    units: Units = Field(ISO, description="of feeds and speeds in the file")
     roughness_um: float | None = Field(
         None, gt=0.0, le=1000.0, description="Ra that finished surfaces must keep, µm"
     )
@@ -94,7 +96,7 @@ class RunBody(Body):
     advice_id: Id | None = Field(None, description="or what an advice made of one")
     machine: Name = Field("", description="empty: one that suits", examples=["vmc15"])
     material: Name = Field("", description="empty: the one the program names", examples=["c45"])
-    units: Units = Field(Units.iso, description="of feeds and speeds in the file")
+    units: Units = Field(ISO, description="of feeds and speeds in the file")
     seed: int = Field(0, ge=0, le=2**31, description="of noise and scatter")
     pace: float = Field(
         0.0, ge=0.0, le=1000.0,
@@ -180,7 +182,7 @@ TrialInputs = create_model(
 class TrialBody(Body):
     """A trial cut."""
 
-    inputs: TrialInputs = TrialInputs()  # type: ignore[valid-type]
+    inputs: TrialInputs = TrialInputs()
     seed: int = Field(0, ge=0, le=2**31, description="of the sensors' noise")
     pace: Pace = Field(1.0, description="s of the machine in one of ours")
 
@@ -188,7 +190,7 @@ class TrialBody(Body):
 class TrialChanges(Body):
     """What is to be otherwise in a trial; ``restart`` goes on with a new cutter."""
 
-    inputs: TrialInputs = TrialInputs()  # type: ignore[valid-type]
+    inputs: TrialInputs = TrialInputs()
     pace: Pace | None = Field(None, description="s of the machine in one of ours")
     restart: bool = Field(False, description="a new cutter, after the loop has stopped")
     end: bool = Field(False, description="end the trial")

@@ -17,13 +17,14 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from service.depot import keys
 from service.depot.folder import Depot
 from service.depot.keys import Key, Role
-from service.errors import Forbidden, StepNcError, TooLarge, Unauthorised, Unreadable
+from service.errors import Forbidden, TooLarge, TooMany, Unauthorised, Unreadable
 from service.problem import plain_problem, problem_of
 from service.rest.logs import RequestLog
 from service.rest.metrics import count
 from service.rest.rate import RateLimit
 from service.rest.rights import LOOKING, is_protected, role_for
 from service.rest.settings import LOOPBACK, Settings
+from stepnc_model.errors import StepNcError
 
 LOG = structlog.get_logger("rest")
 
@@ -236,7 +237,7 @@ async def _refuse(send: Send, problem: dict[str, Any], error: StepNcError | None
     headers = [(b"content-type", b"application/problem+json")]
     if isinstance(error, Unauthorised):
         headers.append((b"www-authenticate", b"Bearer"))
-    if hasattr(error, "wait"):
+    if isinstance(error, TooMany):
         headers.append((b"retry-after", str(int(error.wait) + 1).encode()))
     await send({"type": "http.response.start", "status": problem["status"], "headers": headers})
     await send({"type": "http.response.body", "body": orjson.dumps(problem)})

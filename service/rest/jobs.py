@@ -1,6 +1,6 @@
 """``/v1/jobs``: long work, how far it is, its end; what happens in it as it happens."""
 
-from typing import Annotated
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
@@ -15,7 +15,9 @@ from service.rest.views import JobView, PageView, job_view
 
 ROUTES = APIRouter(prefix="/v1/jobs", tags=["jobs"])
 
-EVENTS = {200: {"content": {"text/event-stream": {}}, "description": "server-sent events"}}
+EVENTS: dict[int | str, dict[str, Any]] = {
+    200: {"content": {"text/event-stream": {}}, "description": "server-sent events"}
+}
 
 
 @ROUTES.get("", response_model=PageView[JobView], summary="List jobs, newest first")

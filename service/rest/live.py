@@ -121,7 +121,7 @@ async def _ordered(
 def _add_common(routes: APIRouter, kind: Kind) -> None:
     """What is looked at in the same way."""
 
-    @routes.get("", response_model=PageView[JobView], summary=f"List {kind.value}s, newest first",
+    @routes.get("", response_model=PageView[JobView], summary=f"{kind.value}s, newest first",
                 operation_id=f"list_{kind.name.lower()}")  # fmt: skip
     async def listed(request: Request, depot: InDepot, place: AtPlace) -> Response:
         """A page of their jobs."""

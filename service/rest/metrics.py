@@ -1,4 +1,4 @@
-"""Counts and times of requests for Prometheus; of several processes together where there are."""
+"""Counts and times of requests for Prometheus; of several processes together."""
 
 import os
 from functools import lru_cache
@@ -52,5 +52,5 @@ def exposition() -> bytes:
     if SHARED not in os.environ:
         return generate_latest(REGISTRY)
     registry = CollectorRegistry()
-    MultiProcessCollector(registry)
+    MultiProcessCollector(registry)  # type: ignore[no-untyped-call]
     return generate_latest(registry)

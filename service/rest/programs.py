@@ -16,7 +16,7 @@ from service.depot.pages import Page
 from service.depot.programs import StoredProgram
 from service.errors import TooLarge, Unreadable
 from service.files import read_bytes
-from service.rest.bodies import AdviceBody, Id, Name, Units
+from service.rest.bodies import ISO, AdviceBody, Id, Name, Units
 from service.rest.context import (
     AtPlace,
     ByOwner,
@@ -72,7 +72,7 @@ async def upload(
     ] = "",
     key: OnceKey = None,
 ) -> Response:
-    """Keep the bytes as they are. They need to be a Part 21 file; its findings are another call."""
+    """Keep the bytes as they are. They must be a Part 21 file; findings are another call."""
     if example:
         data = await run_in_threadpool(_sample, example)
         name = name or f"{example}.stpnc"
@@ -114,9 +114,7 @@ async def program_bytes(depot: InDepot, id: Id) -> Response:
 
 
 @ROUTES.get("/{id}/findings", response_model=ContentsView, summary="What is wrong with it")
-async def findings(
-    request: Request, depot: InDepot, id: Id, units: Units = Units.iso
-) -> Response:
+async def findings(request: Request, depot: InDepot, id: Id, units: Units = ISO) -> Response:
     """Workingsteps and findings, as ``stepnc check`` tells them."""
     stored = programs.get(depot, id)
     tag = f'"{stored.sha256[:24]}-{units.value}"'

@@ -13,11 +13,12 @@ import uvicorn
 
 from service.depot import keys
 from service.depot.folder import open_depot
-from service.errors import Forbidden, StepNcError
+from service.errors import Forbidden
 from service.jobs import runner
 from service.rest import logs
 from service.rest.metrics import SHARED
 from service.rest.settings import Settings
+from stepnc_model.errors import StepNcError
 
 LOG = structlog.get_logger("serve")
 
@@ -136,7 +137,8 @@ def run_jobs(data: str, knowledge: str, workers: int, parent: int, level: str) -
     try:
         runner.main(data, knowledge, workers, parent)
     except StepNcError as error:
-        LOG.error("jobs cannot be run", reason=str(error))
+        # What is wrong stands in its text.
+        LOG.error("jobs cannot be run", reason=str(error))  # noqa: TRY400
 
 
 def _share_metrics(root: Path) -> None:

@@ -58,4 +58,4 @@ def test_the_example_client_shows_a_feed_and_a_run(served: Server) -> None:
     feed, size, run = done.stdout.splitlines()
     assert re.fullmatch(r"ROUGH THE FACE: 324\.4 mm/min, tool deflection .*", feed)
     assert size.startswith("optimised program: ")
-    assert re.fullmatch(r"simulated: 130\.\d s, 315\.\d kJ", run)
+    assert re.fullmatch(r"simulated: 130\.\d s, 315\.\d kJ, told in \d+ events", run)

@@ -100,6 +100,9 @@ def test_decision_needs_a_correction_a_person_and_a_zone(
     assert caught.value.id == id_ + 1
     with pytest.raises(ValueError, match="name who decides"):
         store.withdraw(id_, by=" ", at=LATER)
+    # Once stored it could never be read again, nor taken away.
+    with pytest.raises(ValueError, match="cannot be stored as text"):
+        store.accept(id_, by="A\0nn", at=LATER)
     with pytest.raises(ValueError, match="no zone"):
         store.accept(id_, by="Ann", at=datetime(2026, 1, 1))
     assert store.corrections()[0].standing is Standing.PROPOSED

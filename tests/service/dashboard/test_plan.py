@@ -8,7 +8,8 @@ import pytest
 from playwright.sync_api import Page, expect
 
 from stepnc_model.program import Program
-from tests.service.dashboard.conftest import ROOT, keep
+from tests.service.dashboard.conftest import keep
+from tests.service.waiting import ROOT
 
 BRACKET = ROOT / "examples" / "parts" / "bracket.stpnc"
 

@@ -42,7 +42,15 @@ def test_no_other_text_is_an_id(word: str) -> None:
 
 @pytest.mark.parametrize(
     "word",
-    ["", "../../etc/passwd", f"{'0' * 26}\n", f"{'0' * 25}/", f"{'0' * 25}\0", "0" * 27, "İ" * 26],
+    [
+        "",
+        "../../etc/passwd",
+        f"{'0' * 26}\n",
+        f"{'0' * 25}/",
+        f"{'0' * 25}\0",
+        "0" * 27,
+        "İ" * 26,
+    ],
 )
 def test_what_looks_like_one_is_none(word: str) -> None:
     assert not is_id(word)

@@ -40,9 +40,7 @@ def test_pages_go_on_where_they_ended_while_programs_are_added(depot: Depot) -> 
 
 def test_a_program_that_is_worked_on_stays(depot: Depot) -> None:
     made = programs.add(depot, b"x", name="x", owner="anna")
-    job = jobs.add(
-        depot, Order(kind=Kind.ADVICE, request={}, program=made.id, owner="anna")
-    )
+    job = jobs.add(depot, Order(kind=Kind.ADVICE, request={}, program=made.id, owner="anna"))
     with pytest.raises(Conflict, match=job.id):
         programs.remove(depot, made.id)
     jobs.cancel(depot, job.id)

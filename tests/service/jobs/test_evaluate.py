@@ -3,7 +3,7 @@
 import csv
 import json
 
-import pyarrow.parquet as parquet
+from pyarrow import parquet
 
 from service.depot import jobs
 from service.depot.jobs import Job, Kind, Order, State

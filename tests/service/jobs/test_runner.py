@@ -2,6 +2,7 @@
 
 import os
 import signal
+import sys
 from pathlib import Path
 
 import pytest
@@ -87,8 +88,9 @@ def test_a_sign_of_life_grows_old(tmp_path: Path) -> None:
     assert not runner.is_alive(depot)
 
 
-def test_what_is_preloaded_loads() -> None:
-    assert preloaded.__doc__
+def test_what_is_preloaded_is_loaded() -> None:
+    assert preloaded.__doc__ is not None
+    assert "service.simulation.report" in sys.modules
 
 
 def test_a_killed_runner_leaves_nobody_and_the_next_one_finishes_its_job(

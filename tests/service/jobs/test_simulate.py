@@ -2,7 +2,7 @@
 
 import json
 
-import pyarrow.parquet as parquet
+from pyarrow import parquet
 
 from service.depot.jobs import Kind, State
 from service.jobs.task import REPORT, RESULT, SAMPLES

@@ -9,9 +9,9 @@ from service.depot import jobs
 from service.depot.folder import open_depot
 from service.depot.ids import new_id
 from service.errors import NotFound
+from service.jobs.task import RESULT
 from service.rest import advice
 from service.rest.advice import Shelf
-from service.jobs.task import RESULT
 from tests.service.rest.conftest import Done
 from tests.service.rest.server import is_problem
 
@@ -37,9 +37,7 @@ def test_answers_are_tagged(client: httpx.Client, done: Done) -> None:
             )
             assert (again.status_code, again.content) == (304, b"")
             assert again.headers["etag"] == tag
-        other = client.get(
-            f"/v1/advice/{done.advice}{path}", headers={"if-none-match": '"x"'}
-        )
+        other = client.get(f"/v1/advice/{done.advice}{path}", headers={"if-none-match": '"x"'})
         assert other.status_code == 200
 
 

@@ -135,7 +135,9 @@ def test_a_length_that_is_a_lie_or_none_harms_nobody(
     assert client.get("/healthz").status_code == 200
 
 
-def asked(app: Any, *, path: str, chunks: list[bytes], method: str = "POST") -> tuple[int, bytes]:
+def asked(
+    app: Any, *, path: str, chunks: list[bytes], method: str = "POST"
+) -> tuple[int, bytes]:
     """An answer of an application to a body of which nothing more comes."""
     left = list(chunks)
     told: list[dict[str, Any]] = []

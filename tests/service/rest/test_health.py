@@ -31,7 +31,9 @@ def test_without_a_runner_or_a_database_nothing_is_ready(
     def ready() -> tuple[int, dict[str, bool]]:
         async def ask() -> httpx.Response:
             transport = httpx.ASGITransport(app)
-            async with httpx.AsyncClient(transport=transport, base_url="http://localhost") as to:
+            async with httpx.AsyncClient(
+                transport=transport, base_url="http://localhost"
+            ) as to:
                 return await to.get("/readyz")
 
         found = asyncio.run(ask())

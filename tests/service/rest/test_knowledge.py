@@ -4,8 +4,8 @@ import csv
 import io
 
 import httpx
-import pyarrow.parquet as parquet
 import pytest
+from pyarrow import parquet
 
 from tests.service.rest.conftest import Done
 from tests.service.rest.server import is_problem

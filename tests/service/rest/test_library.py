@@ -14,7 +14,9 @@ MATERIAL = (DATA / "materials" / "c45.toml").read_bytes()
 
 
 @pytest.fixture(params=[("machines", MACHINE, "vmc15"), ("materials", MATERIAL, "c45")])
-def shelf(request: pytest.FixtureRequest, client: httpx.Client) -> Iterator[tuple[str, bytes, str]]:
+def shelf(
+    request: pytest.FixtureRequest, client: httpx.Client
+) -> Iterator[tuple[str, bytes, str]]:
     path, data, name = request.param
     yield f"/v1/{path}", data, name
     client.delete(f"/v1/{path}/ours-1")
@@ -52,9 +54,7 @@ def test_who_has_seen_it_may_change_it_and_nobody_else(
     assert again.status_code == 304
 
 
-def test_those_of_the_library_stay(
-    client: httpx.Client, shelf: tuple[str, bytes, str]
-) -> None:
+def test_those_of_the_library_stay(client: httpx.Client, shelf: tuple[str, bytes, str]) -> None:
     path, data, name = shelf
     is_problem(client.put(f"{path}/{name}", content=data), 409)
     is_problem(client.delete(f"{path}/{name}"), 409)

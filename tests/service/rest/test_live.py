@@ -22,7 +22,9 @@ def trial(client: httpx.Client) -> Iterator[str]:
 
 def test_inputs_change_while_it_runs(client: httpx.Client, trial: str) -> None:
     path = f"/v1/trials/{trial}"
-    answer = client.post(f"{path}/changes", json={"inputs": {"axial_depth_mm": 4.0}, "pace": 50})
+    answer = client.post(
+        f"{path}/changes", json={"inputs": {"axial_depth_mm": 4.0}, "pace": 50}
+    )
     assert (answer.status_code, answer.json()["asked"][0]["axial_depth_mm"]) == (202, 4.0)
 
     def is_changed() -> bool:

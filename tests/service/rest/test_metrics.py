@@ -31,7 +31,5 @@ def test_requests_are_counted_by_route_and_not_by_path(client: httpx.Client) -> 
     ]
     assert len(found) == 1
     assert found[0] >= 3
-    states = {
-        sample.labels["state"] for sample in samples if sample.name == "stepnc_jobs"
-    }
+    states = {sample.labels["state"] for sample in samples if sample.name == "stepnc_jobs"}
     assert states == {"queued", "running", "succeeded", "failed", "cancelled"}

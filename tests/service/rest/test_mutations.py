@@ -53,7 +53,9 @@ NUMBERS = (
 
 def numbered(data: bytes, chance: random.Random) -> bytes:
     found = list(NUMBER.finditer(data))
-    for match in sorted(chance.sample(found, min(8, len(found))), key=lambda each: -each.start()):
+    for match in sorted(
+        chance.sample(found, min(8, len(found))), key=lambda each: -each.start()
+    ):
         data = data[: match.start()] + chance.choice(NUMBERS) + data[match.end() :]
     return data
 

@@ -16,6 +16,7 @@ from schemathesis.specs.openapi.checks import (
     status_code_conformance,
 )
 
+from simulator.library import DATA
 from tests.service.rest.conftest import Done
 from tests.service.rest.server import Server
 
@@ -27,7 +28,7 @@ CHECKS = [
     response_schema_conformance,
 ]
 
-EXAMPLES = 10
+EXAMPLES = 15
 """requests to each operation"""
 
 OF = {
@@ -36,6 +37,19 @@ OF = {
     "reviews": "review", "jobs": "simulation",
 }  # fmt: skip
 """what of the things that were made is at a path"""
+
+
+MACHINE = (DATA / "machines" / "vmc15.toml").read_text(encoding="utf-8")
+
+schemathesis.openapi.media_type(
+    "application/toml", st.one_of(st.text(), st.just(MACHINE)).map(str.encode)
+)
+
+
+@schemathesis.serializer("application/toml")
+def toml(_: object, value: Any) -> bytes:
+    """A TOML file goes as it is."""
+    return value if isinstance(value, bytes) else str(value).encode(errors="replace")
 
 
 def operations(document: dict[str, Any]) -> Iterator[Any]:
@@ -74,7 +88,7 @@ def faults_of(operation: Any, service: Server, done: Done) -> str:
 
     try:
         asked()
-    except Exception as error:  # noqa: BLE001 (told with all others)
+    except Exception as error:
         inner = getattr(error, "exceptions", [error])
         return f"{operation.label}: " + "; ".join(str(each) for each in inner)
     return ""

@@ -65,9 +65,7 @@ def test_what_is_no_program_is_refused(
 
 def test_a_packed_program_is_unpacked(client: httpx.Client) -> None:
     packed = gzip.compress(DATA)
-    answer = client.post(
-        "/v1/programs", content=packed, headers={"content-encoding": "gzip"}
-    )
+    answer = client.post("/v1/programs", content=packed, headers={"content-encoding": "gzip"})
     id = made(answer, 201)
     assert client.get(f"/v1/programs/{id}/file").content == DATA
 
@@ -157,7 +155,9 @@ def test_an_upload_with_a_key_is_made_once(client: httpx.Client) -> None:
     }
     assert len(ids) == 1
     is_problem(
-        client.post("/v1/programs?name=a", content=DATA + b"\n", headers=headers), 409, "conflict"
+        client.post("/v1/programs?name=a", content=DATA + b"\n", headers=headers),
+        409,
+        "conflict",
     )
     is_problem(client.post("/v1/programs?name=b", content=DATA, headers=headers), 409)
     for bad in ("", "x" * 129):

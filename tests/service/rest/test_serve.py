@@ -91,7 +91,9 @@ def test_a_stop_is_an_orderly_one_and_the_folder_is_free_at_once(tmp_path: Path)
     server = Server(tmp_path)
     with server:
         with pytest.raises(StepNcError, match="another server works with this folder"):
-            serve(Start(settings=Settings(data=str(server.data)), workers=1, jobs=1, level="info"))
+            serve(
+                Start(settings=Settings(data=str(server.data)), workers=1, jobs=1, level="info")
+            )
         below = children(server.pid)
         assert server.stop() in {0, -signal.SIGTERM}
         with locked(server.data):
@@ -184,7 +186,9 @@ def test_no_decision_that_was_answered_is_lost_when_all_is_killed(tmp_path: Path
     with server:
         with server.client() as client:
             over(client, made(client.post("/v1/reviews", json={})))
-            numbers = [each["id"] for each in client.get("/v1/corrections").json()["corrections"]]
+            numbers = [
+                each["id"] for each in client.get("/v1/corrections").json()["corrections"]
+            ]
             program = made(client.post("/v1/programs", content=DATA), 201)
         said: dict[int, str] = {}
         asked: tuple[int, str] = (0, "")
@@ -196,7 +200,10 @@ def test_no_decision_that_was_answered_is_lost_when_all_is_killed(tmp_path: Path
                 until(lambda: client.get(f"/v1/jobs/{running}").json()["state"] == "running")
                 killed = 0
                 for count in range(1000):
-                    number, verb = numbers[count % len(numbers)], ("accept", "withdraw")[count % 2]
+                    number, verb = (
+                        numbers[count % len(numbers)],
+                        ("accept", "withdraw")[count % 2],
+                    )
                     asked = (number, f"{verb} {round_} {count}")
                     answer = client.post(
                         f"/v1/corrections/{number}/{verb}", json={"by": asked[1]}

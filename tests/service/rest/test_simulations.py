@@ -3,7 +3,7 @@
 import io
 
 import httpx
-import pyarrow.parquet as parquet
+from pyarrow import parquet
 
 from tests.service.rest.conftest import Done
 from tests.service.rest.server import is_problem, made, over
@@ -19,7 +19,9 @@ def test_result_samples_and_report(client: httpx.Client, done: Done) -> None:
     report = client.get(f"{path}/report")
     assert report.text.startswith("<!DOCTYPE html>")
     assert "sandbox" in report.headers["content-security-policy"]
-    assert done.simulation in {job["id"] for job in client.get("/v1/simulations").json()["items"]}
+    assert done.simulation in {
+        job["id"] for job in client.get("/v1/simulations").json()["items"]
+    }
 
 
 def test_what_an_advice_made_is_simulated_under_its_name(

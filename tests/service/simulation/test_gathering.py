@@ -64,5 +64,7 @@ def test_what_a_looker_raises_ends_the_run() -> None:
 def test_a_run_without_an_end_is_refused_at_the_line_that_has_none(tmp_path: Path) -> None:
     code = tmp_path / "dwell.ngc"
     code.write_text(f"G21 G90\nG4 P{2.0 * MOST_SECONDS:.0f}\nM30\n", encoding="ascii")
-    with pytest.raises(SimulationError, match=r"line 2: 2e\+07 s of machining: 1e\+07 s at most"):
+    with pytest.raises(
+        SimulationError, match=r"line 2: 2e\+07 s of machining: 1e\+07 s at most"
+    ):
         simulate(SimulationRequest(code=CodeRequest(code=code), machine="vmc15"))

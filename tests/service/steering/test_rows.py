@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from service.control.trace import Moment
-from service.live.rows import COLUMNS, rows_of
+from service.steering.rows import COLUMNS, rows_of
 
 NUMBERS = {name: float(place + 1) for place, name in enumerate(Moment._fields)}
 MOMENT = Moment(**{**NUMBERS, "workingstep": "", "level": "", "holding": "", "event": None})  # type: ignore[arg-type]

@@ -14,8 +14,8 @@ from service.control.live_run import Taken
 from service.live.folder import LiveFolder
 from service.live.journal import append, read_on
 from service.live.pace import TICK
-from service.live.rows import COLUMNS, rows_of
 from service.live.series import SeriesWriter
+from service.steering.rows import COLUMNS, rows_of
 from stepnc_model.errors import StepNcError
 
 AT_ONCE = 2.0

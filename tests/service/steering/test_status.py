@@ -2,7 +2,7 @@
 
 import json
 
-from service.live.status import UNITS, status_words
+from service.steering.status import UNITS, status_words
 from service.trial.inputs import Inputs
 from service.trial.run import TrialRun
 

@@ -34,7 +34,7 @@ COLUMNS: Mapping[str, tuple[str, float]] = {
     "axial_depth_mm": ("axial_depth", 1.0),
     "flank_wear_mm": ("flank_wear", 1.0),
 }
-"""name of each column, what of a moment it shows, and how many of its unit are in one of ours"""
+"""name of each column, what of a moment it shows, how many of its unit are in one of ours"""
 
 _PLACES = [Moment._fields.index(name) for name, _ in COLUMNS.values()]
 _SCALES = np.array([scale for _, scale in COLUMNS.values()])

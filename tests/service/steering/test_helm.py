@@ -12,10 +12,10 @@ from service.live.folder import LiveFolder
 from service.live.journal import append, read_on
 from service.live.pace import TICK
 from service.live.series import open_series
-from service.live.steering import AT_ONCE, REFUSED, Helm
+from service.steering.helm import AT_ONCE, REFUSED, Helm
 from stepnc_model.errors import StepNcError
 from tests.service.live.test_pace import Clock
-from tests.service.live.test_rows import MOMENT
+from tests.service.steering.test_rows import MOMENT
 
 
 class Run:

@@ -1,0 +1,1 @@
+"""Runs that people steer: they go on in wall time, tell how they are, and obey."""
