@@ -84,6 +84,7 @@ def _routed() -> FastAPI:
         knowledge.OUTCOMES, library.MACHINES, library.MATERIALS, health.ROUTES, pages.ROUTES,
     ):  # fmt: skip
         app.include_router(routes)
+    app.router.routes.insert(0, advice.LookUp())
     app.add_exception_handler(StepNcError, _project)
     app.add_exception_handler(RequestValidationError, _invalid)
     app.add_exception_handler(HTTPException, _http)

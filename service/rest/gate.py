@@ -41,9 +41,13 @@ REQUEST_ID = re.compile(rb"^[A-Za-z0-9._-]{1,64}$")
 
 HEADERS = (
     (b"x-content-type-options", b"nosniff"),
+    (b"cross-origin-resource-policy", b"same-origin"),
+)
+"""of all answers"""
+
+OF_PAGES = (
     (b"referrer-policy", b"no-referrer"),
     (b"x-frame-options", b"DENY"),
-    (b"cross-origin-resource-policy", b"same-origin"),
     (b"cross-origin-opener-policy", b"same-origin"),
     (
         b"permissions-policy",
@@ -68,6 +72,20 @@ REPORT_POLICY = (
 
 ANYBODY = Key(id="", name="local", roles=frozenset(Role), created=0.0, revoked=None)
 """who comes where no keys are asked for"""
+
+
+NOTHING = (b"content-security-policy", b"default-src 'none'; frame-ancestors 'none'")
+"""for what is no page: if a browser took it for one, it could do nothing"""
+
+
+def _with_common(own: list[tuple[bytes, bytes]]) -> list[tuple[bytes, bytes]]:
+    """Headers of an answer with those that keep browsers from mischief."""
+    is_page = False
+    for name, value in own:
+        if name == POLICY[0]:
+            return [*own, *HEADERS, *OF_PAGES]
+        is_page = is_page or (name == b"content-type" and value.startswith(b"text/html"))
+    return [*own, *HEADERS, *OF_PAGES, POLICY] if is_page else [*own, *HEADERS, NOTHING]
 
 
 class Gate:
@@ -103,10 +121,7 @@ class Gate:
             nonlocal status
             if message["type"] == "http.response.start":
                 status = message["status"]
-                own = message["headers"]
-                has_policy = any(name == POLICY[0] for name, _ in own)
-                common = HEADERS if has_policy else (*HEADERS, POLICY)
-                message["headers"] = [*own, *common, (b"x-request-id", id)]
+                message["headers"] = [*_with_common(message["headers"]), (b"x-request-id", id)]
             await send(message)
 
         key = ANYBODY

@@ -23,7 +23,7 @@ TOGETHER = {
     "controller/law.py": "the interface of tests/controller/laws",
     "controller/ports.py": "Protocols; plugged in tests/controller/test_loop.py",
     "service/jobs/preloaded.py": "loads what it names; tests/service/jobs/test_runner.py",
-    "service/rest/views.py": "shapes; held against answers in tests/service/rest/test_openapi.py",
+    "service/rest/views.py": "shapes; answers are held against them in rest/test_openapi.py",
     "simulator/reading.py": "made and read in tests/simulator/plant",
     "stepnc_model/part21/values.py": "written and read in tests/stepnc_model/part21",
     "stepnc_model/express/datatypes.py": "parsed in tests/stepnc_model/express/test_reader.py",

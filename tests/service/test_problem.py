@@ -32,7 +32,7 @@ def kinds() -> Iterator[type[StepNcError]]:
                 yield kind
 
 
-@pytest.mark.parametrize("kind", sorted(set(kinds()), key=lambda kind: kind.__name__))
+@pytest.mark.parametrize("kind", sorted(set(kinds()), key=str))
 def test_every_error_has_a_status_and_a_type(kind: type[StepNcError]) -> None:
     error = kind.__new__(kind, "why")
     assert 400 <= status_of(error) < 600

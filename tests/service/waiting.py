@@ -13,7 +13,7 @@ LOOK = 0.02
 """s between two looks"""
 
 
-def until(look: Callable[[], T], *, within: float = 30.0) -> T:
+def until(look: Callable[[], T | None], *, within: float = 30.0) -> T:
     """What a look finds, as soon as it finds something."""
     deadline = time.monotonic() + within
     while not (found := look()):

@@ -1,4 +1,4 @@
-"""``stepnc serve`` and ``stepnc keys``: options that cannot be are refused before anything starts."""
+"""``stepnc serve`` and ``stepnc keys``: what cannot be is refused before anything starts."""
 
 from pathlib import Path
 
@@ -54,7 +54,7 @@ def test_a_key_is_created_listed_and_revoked(
     depot = open_depot(tmp_path / "data")
     key = keys.known(depot, word)
     assert key is not None
-    assert (key.name, key.roles) == ("Anna", {Role.OPERATOR, Role.VIEWER})
+    assert (key.name, key.roles) == ("Anna", frozenset({Role.OPERATOR, Role.VIEWER}))
     assert run("keys", "list") == 0
     shown = capsys.readouterr().out
     assert key.id in shown

@@ -90,9 +90,14 @@ def test_a_transaction_is_kept_whole_or_not_at_all(tmp_path: Path) -> None:
     with pytest.raises(KeyboardInterrupt):
         half()
     assert count(database) == 0
-    with pytest.raises(Unavailable, match="UNIQUE"), database.writing() as connection:
-        connection.execute(INSERT, ("anna", "1"))
-        connection.execute(INSERT, ("anna", "1"))
+
+    def twice() -> None:
+        with database.writing() as connection:
+            connection.execute(INSERT, ("anna", "1"))
+            connection.execute(INSERT, ("anna", "1"))
+
+    with pytest.raises(Unavailable, match="UNIQUE"):
+        twice()
     assert count(database) == 0
     with database.writing() as connection:
         connection.execute(INSERT, ("anna", "1"))

@@ -1,4 +1,4 @@
-"""Machines and materials of the shop: names are looked up, never followed; bad files refused."""
+"""Machines and materials of the shop: names are looked up, not followed; bad files refused."""
 
 import re
 from pathlib import Path

@@ -23,7 +23,8 @@ def test_walking_shows_each_once_though_newer_ones_are_added(
     first: set[str], added: set[str], limit: int
 ) -> None:
     known, newer = [f"0{id[1:]}" for id in first], [f"z{id[1:]}" for id in added]
-    wanted, shown, cursor = sorted(set(known), reverse=True), [], None
+    wanted, cursor = sorted(set(known), reverse=True), None
+    shown: list[str] = []
     known = list(set(known))
     while True:
         found = page(known, Place(limit=limit, cursor=cursor))

@@ -62,12 +62,12 @@ class Shop:
 
     def order(self, kind: Kind, program: str | None = None, **words: object) -> Job:
         """A job with the usual request, but for some words."""
-        usual = {
-            Kind.ADVICE: AdviceBody().words,
-            Kind.SIMULATION: SimulationBody().words,
-            Kind.CONTROL: ControlBody().words,
-            Kind.TRIAL: lambda: {"inputs": {}, "seed": 0, "pace": 1.0},
-        }[kind]()
+        usual: dict[str, object] = {
+            Kind.ADVICE: AdviceBody().words(),
+            Kind.SIMULATION: SimulationBody().words(),
+            Kind.CONTROL: ControlBody().words(),
+            Kind.TRIAL: {"inputs": {}, "seed": 0, "pace": 1.0},
+        }[kind]
         named = "" if kind is Kind.TRIAL else (program or self.program)
         request = {**usual, **words}
         return jobs.add(

@@ -7,6 +7,7 @@ import pytest
 
 from service.depot import jobs, programs
 from service.depot.jobs import Job, Kind, State
+from service.errors import NotFound
 from service.jobs import child
 from tests.service.jobs.conftest import Shop, made_shop
 from tests.service.rest.samples import SAMPLE
@@ -74,7 +75,7 @@ def test_a_fault_of_the_program_is_no_fault_of_the_client(idle: Shop) -> None:
     job = idle.order(Kind.ADVICE, mode=None)
     with pytest.raises(Exception, match=r".") as fault:
         ran(idle, job)
-    assert not isinstance(fault.value, jobs.NotFound)
+    assert not isinstance(fault.value, NotFound)
     found = idle.job(job.id)
     assert found.state is State.FAILED
     assert found.problem is not None

@@ -30,8 +30,8 @@ def test_an_evaluation_is_a_table_in_all_forms(shop: Shop) -> None:
     assert len(lines) == parquet.read_table(folder / f"{TABLE}.parquet").num_rows
     assert len(lines) >= len(result["rows"]) > 0
     assert (folder / REPORT).stat().st_size > 1000
-    for file in folder.iterdir():
-        assert str(shop.depot.root.parent).encode() not in file.read_bytes(), file.name
+    for left in folder.iterdir():
+        assert str(shop.depot.root.parent).encode() not in left.read_bytes(), left.name
 
 
 def test_an_evaluation_of_nothing_is_empty(shop: Shop) -> None:

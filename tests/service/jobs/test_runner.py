@@ -1,4 +1,4 @@
-"""The runner: what is killed is not forgotten, what is cancelled ends, nobody is left behind."""
+"""The runner: what is killed is not forgotten, what is cancelled ends, nobody stays."""
 
 import os
 import signal

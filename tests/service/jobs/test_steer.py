@@ -2,6 +2,7 @@
 
 import json
 
+from kbe.selection import EVERYTHING
 from service.depot.jobs import Kind, State
 from service.jobs.task import REPORT, RESULT, SAMPLES
 from service.knowledge import verbs
@@ -44,13 +45,13 @@ def test_an_input_beyond_its_bounds_is_a_problem(shop: Shop) -> None:
 
 
 def test_a_control_run_keeps_its_outcomes_its_samples_and_a_report(shop: Shop) -> None:
-    before = verbs.newest(shop.depot.knowledge, verbs.EVERYTHING, limit=2000)
+    before = verbs.newest(shop.depot.knowledge, EVERYTHING, limit=2000)
     id = shop.order(Kind.CONTROL, machine="vmc15", pace=0.0, disturbances=["kc:1.2"]).id
     job = shop.over(id)
     assert (job.state, job.problem) == (State.SUCCEEDED, None)
     folder = shop.depot.job_folder(id)
     assert {RESULT, REPORT, SAMPLES, "series.bin"} <= {each.name for each in folder.iterdir()}
-    found = verbs.newest(shop.depot.knowledge, verbs.EVERYTHING, limit=2000)
+    found = verbs.newest(shop.depot.knowledge, EVERYTHING, limit=2000)
     fresh = [each for each in found.outcomes if each not in before.outcomes]
     assert fresh
     assert {each.trace for each in fresh} == {f"/v1/control-runs/{id}/samples"}
@@ -61,7 +62,7 @@ def test_a_control_run_keeps_its_outcomes_its_samples_and_a_report(shop: Shop) -
 
 
 def test_a_run_that_is_not_to_be_recorded_is_not(shop: Shop) -> None:
-    before = verbs.newest(shop.depot.knowledge, verbs.EVERYTHING, limit=2000)
+    before = verbs.newest(shop.depot.knowledge, EVERYTHING, limit=2000)
     job = shop.over(shop.order(Kind.CONTROL, pace=0.0, is_recorded=False).id)
     assert job.state is State.SUCCEEDED, job.problem
-    assert verbs.newest(shop.depot.knowledge, verbs.EVERYTHING, limit=2000) == before
+    assert verbs.newest(shop.depot.knowledge, EVERYTHING, limit=2000) == before

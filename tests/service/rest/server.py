@@ -12,6 +12,9 @@ from typing import Any
 
 import httpx
 
+from service.depot import keys
+from service.depot.folder import open_depot
+from service.depot.keys import Role
 from tests.service.waiting import children, environment, is_alive, until
 
 STEPNC = Path(sys.executable).with_name("stepnc")
@@ -150,9 +153,5 @@ def is_problem(answer: httpx.Response, status: int, kind: str = "") -> dict[str,
 
 def create_key(server: Server, name: str, *roles: str) -> str:
     """A key, as the command line gives it."""
-    from service.depot import keys  # noqa: PLC0415
-    from service.depot.folder import open_depot  # noqa: PLC0415
-    from service.depot.keys import Role  # noqa: PLC0415
-
     depot = open_depot(server.data)
     return keys.create(depot, name=name, roles=frozenset(map(Role, roles)))

@@ -1,6 +1,7 @@
 """``/v1/trials`` and ``/v1/control-runs``: changed while they go on."""
 
 from collections.abc import Iterator
+from typing import Any
 
 import httpx
 import pytest
@@ -88,8 +89,9 @@ def test_what_a_run_under_control_has_left(client: httpx.Client, done: Done) -> 
 
 
 def test_a_trial_is_asked_for_within_its_bounds(client: httpx.Client) -> None:
-    for body in (
+    bodies: tuple[dict[str, Any], ...] = (
         {"inputs": {"teeth": 0}}, {"inputs": {"material": "unobtainium"}}, {"pace": 0},
         {"seed": -1}, {"seed": 2**40}, {"inputs": None}, {"inputs": []},
-    ):  # fmt: skip
+    )  # fmt: skip
+    for body in bodies:
         is_problem(client.post("/v1/trials", json=body), 422)

@@ -1,4 +1,4 @@
-"""A thousand files that are nearly programs: each is taken or refused, and nothing else happens."""
+"""A thousand files that are nearly programs: each is taken or refused, nothing else."""
 
 import random
 import re

@@ -4,15 +4,19 @@ import os
 import shutil
 import signal
 import ssl
-from collections.abc import Iterator
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from subprocess import DEVNULL, run
+from threading import Timer
 
 import httpx
 import pytest
 from prometheus_client.parser import text_string_to_metric_families as parsed
 
+from kbe.store import open_store
+from service.depot.folder import open_depot
 from service.errors import Forbidden
 from service.jobs.runner import locked
 from service.rest.serve import Start, serve
@@ -20,15 +24,19 @@ from service.rest.settings import Settings
 from stepnc_model.errors import StepNcError
 from tests.service.rest.samples import SAMPLE
 from tests.service.rest.server import Server, create_key, is_problem, made, over
+from tests.service.shop import outcomes
 from tests.service.waiting import children, is_alive, until
 
 DATA = SAMPLE.read_bytes()
 
 
+def runs(client: httpx.Client, id: str) -> bool:
+    """Whether a job runs."""
+    return bool(client.get(f"/v1/jobs/{id}").json()["state"] == "running")
+
+
 def runner_of(server: Server) -> int:
     """The process that runs jobs."""
-    from service.depot.folder import open_depot  # noqa: PLC0415
-
     with open_depot(server.data).database.reading() as connection:
         return int(connection.execute("SELECT pid FROM runner").fetchone()["pid"])
 
@@ -49,7 +57,7 @@ def test_two_web_processes_and_a_restart_lose_nothing(tmp_path: Path) -> None:
             result = client.get(over(client, advice)["result"]).content
             path = {"program_id": program, "pace": 30.0}
             running = made(client.post("/v1/simulations", json=path))
-            until(lambda: client.get(f"/v1/jobs/{running}").json()["state"] == "running")
+            until(partial(runs, client, running))
             waiting = made(client.post("/v1/evaluations", json={}))
             samples = [
                 sample
@@ -175,56 +183,62 @@ def test_a_host_that_others_reach_needs_a_key_before_it_starts(tmp_path: Path) -
         serve(missing)
 
 
-def test_no_decision_that_was_answered_is_lost_when_all_is_killed(tmp_path: Path) -> None:
-    from kbe.store import open_store  # noqa: PLC0415
-    from tests.service.shop import outcomes  # noqa: PLC0415
+@dataclass(kw_only=True)
+class Said:
+    """What the server has answered. Running state."""
 
-    server = Server(tmp_path)
+    decisions: dict[int, str] = field(default_factory=dict)
+    """who decided last, by the number of the correction"""
+    programs: list[str] = field(default_factory=list)
+    asked: tuple[int, str] = (0, "")
+    """the decision whose answer may never have come"""
+
+
+def decide_until_it_breaks(
+    client: httpx.Client, said: Said, *, numbers: list[int], when: Callable[[], None]
+) -> None:
+    """Accept, withdraw and upload; something is done after some of it."""
+    for count in range(10_000):
+        number = numbers[count % len(numbers)]
+        verb = ("accept", "withdraw")[count % 2]
+        said.asked = number, f"{verb} {len(said.programs)}"
+        path, body = f"/v1/corrections/{number}/{verb}", {"by": said.asked[1]}
+        try:
+            assert client.post(path, json=body).status_code == 200
+            said.decisions[number] = said.asked[1]
+            said.programs.append(made(client.post("/v1/programs", content=DATA), 201))
+        except httpx.TransportError:
+            return
+        if count == 10:
+            when()
+    raise AssertionError("it never broke")
+
+
+def test_nothing_that_was_answered_is_lost_when_all_is_killed(tmp_path: Path) -> None:
+    server, said = Server(tmp_path), Said()
     server.data.mkdir(parents=True)
     with open_store(str(server.data / "knowledge.db")) as store:
         store.add(list(outcomes(300)))
     with server:
         with server.client() as client:
             over(client, made(client.post("/v1/reviews", json={})))
-            numbers = [
-                each["id"] for each in client.get("/v1/corrections").json()["corrections"]
-            ]
+            found = client.get("/v1/corrections").json()["corrections"]
             program = made(client.post("/v1/programs", content=DATA), 201)
-        said: dict[int, str] = {}
-        asked: tuple[int, str] = (0, "")
-        programs: list[str] = []
-        for round_ in range(2):
-            with server.client() as client, suppress(httpx.TransportError):
-                body = {"program_id": program, "pace": 40.0}
-                running = made(client.post("/v1/simulations", json=body))
-                until(lambda: client.get(f"/v1/jobs/{running}").json()["state"] == "running")
-                killed = 0
-                for count in range(1000):
-                    number, verb = (
-                        numbers[count % len(numbers)],
-                        ("accept", "withdraw")[count % 2],
-                    )
-                    asked = (number, f"{verb} {round_} {count}")
-                    answer = client.post(
-                        f"/v1/corrections/{number}/{verb}", json={"by": asked[1]}
-                    )
-                    assert answer.status_code == 200
-                    said[number] = asked[1]
-                    programs.append(made(client.post("/v1/programs", content=DATA), 201))
-                    if count == 25 and not killed:
-                        # In flight: the answer to the next request never comes.
-                        killed = os.fork()
-                        if killed == 0:
-                            os.kill(server.pid, signal.SIGKILL)
-                            os._exit(0)
-                        os.waitpid(killed, 0)
-            server.kill()
+        for _ in range(2):
+            killer = Timer(0.2, server.kill)
+            with server.client() as client:
+                asked = {"program_id": program, "pace": 40.0}
+                running = made(client.post("/v1/simulations", json=asked))
+                until(partial(runs, client, running))
+                numbers = [each["id"] for each in found]
+                decide_until_it_breaks(client, said, numbers=numbers, when=killer.start)
+            killer.join(30.0)
             server.start()
             with server.client() as client:
-                corrections = client.get("/v1/corrections").json()["corrections"]
-                by = {each["id"]: each["decided_by"] for each in corrections}
-                for number, words in said.items():
-                    assert by[number] == words or (number, by[number]) == asked
-                for id in programs:
+                found = client.get("/v1/corrections").json()["corrections"]
+                by = {each["id"]: each["decided_by"] for each in found}
+                for number, words in said.decisions.items():
+                    assert by[number] == words or (number, by[number]) == said.asked
+                for id in said.programs:
                     assert client.get(f"/v1/programs/{id}/file").content == DATA
                 assert over(client, running)["state"] == "succeeded"

@@ -4,7 +4,8 @@ import asyncio
 import json
 import socket
 import time
-from contextlib import suppress
+from collections.abc import AsyncGenerator
+from contextlib import aclosing, suppress
 from pathlib import Path
 from typing import Any
 
@@ -55,12 +56,12 @@ async def heard(hub: Hub, id: str, *, at_least: str) -> list[bytes]:
     """Messages until one of a kind has come."""
     found: list[bytes] = []
     watching = hub.watch(id)
-    async with asyncio.timeout(10.0):
+    assert isinstance(watching, AsyncGenerator)
+    async with asyncio.timeout(10.0), aclosing(watching):
         async for message in watching:
             found.append(message)
             if message.startswith(f"event: {at_least}\n".encode()):
                 break
-    await watching.aclose()
     return found
 
 
@@ -91,8 +92,8 @@ def test_rows_events_and_the_end_are_told(depot: Depot, job: Job) -> None:
     assert kinds[-1] == "job"
     assert told[-1][1]["state"] == "succeeded"
     rows = [content["columns"] for kind, content in told if kind == "rows"]
-    assert sum((each["time_s"] for each in rows), []) == [0.0, 1.0]
-    assert sum((each["a"] for each in rows), []) == [None, 2.0]
+    assert [time for each in rows for time in each["time_s"]] == [0.0, 1.0]
+    assert [value for each in rows for value in each["a"]] == [None, 2.0]
     assert ("event", {"kind": "order", "text": "x"}) in told
     assert ("status", {"time_s": 1.0}) in told
 
