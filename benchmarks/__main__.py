@@ -9,6 +9,7 @@ from benchmarks import (
     post,
     process,
     removal,
+    rest,
     simulation,
     umich,
     workingsteps,
@@ -26,6 +27,7 @@ for title, bench in (
     ("Closed loop", closed_loop),
     ("A control step", control_step),
     ("The knowledge base", knowledge),
+    ("REST", rest),
 ):
     print(f"\n== {title}: {(bench.__doc__ or '').splitlines()[0]}")
     bench.main([])

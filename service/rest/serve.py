@@ -3,10 +3,12 @@
 import multiprocessing
 import os
 import shutil
+import signal
 import threading
 from dataclasses import dataclass
 from multiprocessing.context import SpawnProcess
 from pathlib import Path
+from types import FrameType
 
 import structlog
 import uvicorn
@@ -72,6 +74,9 @@ def serve(start: Start) -> None:
         _share_metrics(depot.root)
     keeper = RunnerKeeper(start, knowledge=depot.knowledge)
     keeper.start()
+    # uvicorn raises the signal once more when all requests are answered: without this the
+    # process would end there, before the one that runs jobs has freed the folder.
+    signal.signal(signal.SIGTERM, _end)
     LOG.info("serving", host=settings.host, port=settings.port, data=str(depot.root))
     try:
         uvicorn.run(
@@ -92,6 +97,10 @@ def serve(start: Start) -> None:
         )
     finally:
         keeper.stop()
+
+
+def _end(_signal: int, _frame: FrameType | None) -> None:
+    raise SystemExit(0)
 
 
 class RunnerKeeper:

@@ -5,7 +5,7 @@ Not run, and why:
 - ``make`` targets and activation of ``.venv``: they make the environment in which tests run;
 - ``python -m benchmarks…``: minutes, and their figures are of one machine;
 - ``python examples/…``: run, or its parts, in ``tests/examples``;
-- ``curl`` and commands that serve: their pages have tests of their own;
+- ``curl`` and what stands in its blocks: run by ``test_service_page.py``;
 - commands in the text, ``like this``: fragments, with ``part.stpnc`` for any program.
 """
 
@@ -42,7 +42,7 @@ def lines_of(page: Path) -> list[str]:
     """Commands of ``sh`` blocks."""
     found: list[str] = []
     for block in blocks(page.read_text(encoding="utf-8")):
-        if block.language == "sh":
+        if block.language == "sh" and "curl" not in block.text:
             text = block.text.replace("\\\n", " ")
             found += [line for line in text.splitlines() if line.strip(" #")]
     return [line for line in found if not line.lstrip().startswith("#")]

@@ -1,4 +1,4 @@
-"""The helm of a run: paced by a clock that the test turns, deaf to nothing, stopped by nothing."""
+"""The helm of a run: paced by a clock that the test turns, deaf to nothing, never stopped."""
 
 from collections.abc import Mapping
 from pathlib import Path
