@@ -5,10 +5,10 @@
     ServiceError
     ├── NotFound(thing, id)       there is none, or no more
     ├── Conflict                  it is not in the state for that
-    ├── TooLarge(size, bound)     more bytes than are taken
+    ├── TooLarge(bound)           more bytes than are taken
     ├── Unreadable                the body, or a part of it, is no such thing
     ├── Unauthorised              no key, or none that is known
-    ├── Forbidden(role)           the key does not open this
+    ├── Forbidden                 the key does not open this
     ├── TooMany(wait)             more requests than are taken in a while
     └── Unavailable               something the service stands on is missing
 """

@@ -17,9 +17,12 @@
     │   └── SolverFailed(status)
     ├── ControlError                       controller.errors
     │   └── MachineLost
-    └── KnowledgeError(place)              kbe.errors
-        ├── StoreDamaged, StoreUnavailable, StoreFull, StoreBusy, StoreReadOnly, StoreTooNew
-        └── UnknownCorrection(id)
+    ├── KnowledgeError(place)              kbe.errors
+    │   ├── StoreDamaged, StoreUnavailable, StoreFull, StoreBusy, StoreReadOnly, StoreTooNew
+    │   └── UnknownCorrection(id)
+    └── ServiceError                       service.errors
+        ├── NotFound(thing, id), Conflict, TooLarge(bound), Unreadable
+        └── Unauthorised, Forbidden, TooMany(wait), Unavailable
 
 A caller's mistake is a ``ValueError`` or ``TypeError``; a bad file or an impossible cut is in
 this tree. What is no failure (a deviation from the schema, a guess) is a :class:`Finding`.

@@ -19,6 +19,7 @@ from service.errors import Forbidden
 from service.jobs import runner
 from service.rest import logs
 from service.rest.metrics import SHARED
+from service.rest.protocol import Prompt
 from service.rest.settings import Settings
 from stepnc_model.errors import StepNcError
 
@@ -82,6 +83,8 @@ def serve(start: Start) -> None:
         uvicorn.run(
             "service.rest.app:from_environment",
             factory=True,
+            http=Prompt,
+            ws="none",
             host=settings.host,
             port=settings.port,
             workers=start.workers,
