@@ -6,7 +6,6 @@ the standard library only: any language with HTTP and JSON does it the same way.
 
 import json
 import sys
-import time
 import urllib.request
 import uuid
 from collections.abc import Iterator
@@ -47,8 +46,7 @@ def events(path: str) -> Iterator[tuple[str, Any]]:
 
 program = json.load(ask("POST", f"/v1/programs?name={PART.name}", PART.read_bytes()))
 job = post(f"/v1/programs/{program['id']}/advice", mode="TC", machine="vmc15", material="c45")
-while get(f"/v1/jobs/{job['id']}")["state"] in {"queued", "running"}:
-    time.sleep(0.1)
+list(events(f"/v1/jobs/{job['id']}/events"))  # until it is over
 step = get(f"/v1/advice/{job['id']}")["workingsteps"][0]
 advised = get(f"/v1/advice/{job['id']}/workingsteps/{step['instance'].removeprefix('#')}")
 print(f"{advised['id']}: {advised['advised']['feed_mm_min']:.1f} mm/min, {advised['reason']}")

@@ -49,7 +49,21 @@ def test_one_of_program_and_advice_is_named(client: httpx.Client, done: Done) ->
 
 
 def test_the_path_of_the_tool_is_bounded(client: httpx.Client, done: Done) -> None:
-    answer = client.get(f"/v1/simulations/{done.simulation}/path?points=100")
-    assert answer.status_code == 200
+    found = client.get(f"/v1/simulations/{done.simulation}/path?points=100").json()
+    assert 2 < len(found["time_s"]) <= 100 < found["rows"]
+    columns = {name: column for name, column in found.items() if isinstance(column, list)}
+    names = columns.pop("workingsteps")
+    assert {len(column) for column in columns.values()} == {len(found["time_s"])}
+    assert set(found["workingstep"]) <= set(range(len(names) + 1))
+    assert not found["is_growing"]
     is_problem(client.get(f"/v1/simulations/{done.simulation}/path?points=1"), 422)
     is_problem(client.get(f"/v1/simulations/{'0' * 26}/path"), 404)
+
+
+def test_what_did_not_run_has_no_path(client: httpx.Client, done: Done) -> None:
+    body = {"program_id": done.program, "machine": "no-such"}
+    id = made(client.post("/v1/simulations", json=body))
+    assert over(client, id)["state"] == "failed"
+    found = is_problem(client.get(f"/v1/simulations/{id}/path"), 409, "conflict")
+    assert "failed" in found["detail"]
+    assert client.get(f"/v1/simulations/{id}/series").json()["rows"] == 0
