@@ -86,13 +86,14 @@ export async function timePanels(place, source, panels,
   { points = 1500, height = 150, shapes = () => [] } = {}) {
   const Plotly = await plotly();
   const names = panels.flatMap((panel) => panel.signals);
-  let series = null, range = null;
+  let series = null, range = null, drawn = 0;
   const live = new Map(names.map((signal) => [signal.name, { x: [], y: [] }]));
 
   const greatest = (name) => [series?.signals[name].high ?? [], live.get(name).y].flat()
     .reduce((most, value) => Math.max(most, value ?? 0), 0);
 
   const make = () => {
+    drawn += 1;  // the range of time is ours to keep: plotly would keep the last window of a live run
     const data = [], laid = layout({ height: height * panels.length + 40, hovermode: "x unified",
       margin: { l: 62, r: 12, t: 22, b: 36 }, uirevision: "keep",
       grid: { rows: panels.length, columns: 1, pattern: "independent" } });
@@ -106,7 +107,7 @@ export async function timePanels(place, source, panels,
       const end = panel.top?.(greatest);
       if (end) laid[`yaxis${number}`].range = [0, end];
       laid[`xaxis${number}`] = { ...laid.xaxis, anchor: `y${number}`, matches: row ? "x" : undefined,
-        showticklabels: row === panels.length - 1, range: range ?? undefined,
+        showticklabels: row === panels.length - 1, range: range ?? undefined, uirevision: drawn,
         title: row === panels.length - 1 ? { text: "time, s", standoff: 4 } : undefined };
       laid.annotations.push({ text: panel.title, x: 0, xref: "paper", xanchor: "left", y: top,
         yref: "paper", yanchor: "bottom", showarrow: false, font: { size: 12 } });

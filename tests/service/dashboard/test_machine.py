@@ -25,6 +25,8 @@ def test_a_run_is_watched_and_its_samples_are_downloaded(page: Page, tmp_path: P
     expect(page.locator("#now-feed-actual")).to_contain_text(re.compile(r"[1-9]"))
     expect(page.locator("#now-workingstep")).to_contain_text("ROUGH THE FACE")
     expect(page.locator("#totals")).to_be_visible(timeout=60_000)
+    # 168 s of the machine: all of them, and no more.
+    page.wait_for_function("document.querySelector('#run-chart').layout.xaxis.range[1] < 200")
     with page.expect_download() as download:
         page.locator("#get-samples").click()
     download.value.save_as(tmp_path / "run.parquet")
