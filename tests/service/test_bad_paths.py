@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from service.cli.main import main, optimise_main
+from service.progress import share_in
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 BRACKET = (PARTS / "bracket.stpnc").read_text(encoding="ascii")
@@ -310,6 +311,11 @@ def test_an_interrupt_ends_a_long_program_without_a_file(part: Path) -> None:
     assert inventory(part.parent) == before
 
 
+def without_progress(said: bytes) -> list[bytes]:
+    """A slow machine also says how far it is."""
+    return [line for line in said.splitlines() if share_in(line.decode()) is None]
+
+
 def test_a_reader_that_leaves_is_no_failure(part: Path) -> None:
     main_text = [*STEPNC, "toolpath", str(part), "--json"]
     with subprocess.Popen(main_text, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as running:
@@ -317,7 +323,7 @@ def test_a_reader_that_leaves_is_no_failure(part: Path) -> None:
         assert running.stderr is not None
         running.stdout.read(1)
         running.stdout.close()
-        assert running.stderr.read() == b""
+        assert without_progress(running.stderr.read()) == []
         assert running.wait(20) == 0
 
 
@@ -331,4 +337,4 @@ def test_a_full_disk_behind_stdout_is_said(part: Path) -> None:
             check=False,
         )
     assert done.returncode == BAD_INPUT
-    assert done.stderr == b"error: stdout: No space left on device\n"
+    assert without_progress(done.stderr) == [b"error: stdout: No space left on device"]

@@ -80,7 +80,8 @@ def test_limits_that_conflict_are_exit_code_4_and_the_rest_is_written(
     text = VMC.replace("max_cutting_force_n = 8_000", "max_cutting_force_n = 30")
     weak.write_text(text, encoding="utf-8")
     output = tmp_path / "out.stpnc"
-    code = optimise(PARTS / "bracket.stpnc", "--machine", weak, "-o", output)
+    some = ("--workingstep", "DRILL HOLE 1", "--workingstep", "CENTRE HOLE 1")
+    code = optimise(PARTS / "bracket.stpnc", "--machine", weak, *some, "-o", output)
     assert code == INFEASIBLE
     assert output.is_file()
     shown = capsys.readouterr().out
