@@ -5,8 +5,8 @@ import os
 import pytest
 from hypothesis import HealthCheck, settings
 
-# How long an example takes says nothing on a machine that others use as well. Drawn anew, a rare
-# one would turn a run of CI red that has nothing to do with the change.
+# How long an example takes says nothing on a machine that others use as well. Drawn anew, a
+# rare one would turn a run of CI red that has nothing to do with the change.
 settings.register_profile(
     "project",
     derandomize=bool(os.environ.get("CI")),
