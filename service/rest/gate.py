@@ -73,19 +73,31 @@ REPORT_POLICY = (
 ANYBODY = Key(id="", name="local", roles=frozenset(Role), created=0.0, revoked=None)
 """who comes where no keys are asked for"""
 
+NOBODY = Key(id="", name="nobody", roles=frozenset(), created=0.0, revoked=None)
+"""who has shown no key where one is asked for"""
+
 
 NOTHING = (b"content-security-policy", b"default-src 'none'; frame-ancestors 'none'")
 """for what is no page: if a browser took it for one, it could do nothing"""
 
 
-def _with_common(own: list[tuple[bytes, bytes]]) -> list[tuple[bytes, bytes]]:
-    """Headers of an answer with those that keep browsers from mischief."""
+def _with_common(status: int, own: list[tuple[bytes, bytes]]) -> list[tuple[bytes, bytes]]:
+    """Headers of an answer with those that keep browsers from mischief.
+
+    A 304 has no kind: its headers replace those that the browser has kept, so it brings none.
+    """
+    if status == 304:
+        return own
     is_page = False
     for name, value in own:
         if name == POLICY[0]:
             return [*own, *HEADERS, *OF_PAGES]
         is_page = is_page or (name == b"content-type" and value.startswith(b"text/html"))
     return [*own, *HEADERS, *OF_PAGES, POLICY] if is_page else [*own, *HEADERS, NOTHING]
+
+
+class _Revoked(Exception):
+    """The key of an answer that has begun; none of the errors that an answer is made of."""
 
 
 class Gate:
@@ -121,15 +133,20 @@ class Gate:
             nonlocal status
             if message["type"] == "http.response.start":
                 status = message["status"]
-                message["headers"] = [*_with_common(message["headers"]), (b"x-request-id", id)]
+                own = _with_common(status, message["headers"])
+                message["headers"] = [*own, (b"x-request-id", id)]
+            elif message.get("more_body"):
+                self._require_still_known(key, headers)
             await send(message)
 
-        key = ANYBODY
+        key = NOBODY
         try:
             self._require_known_host(scope, headers)
             key = self._key(scope, headers)
             scope["state"] = {**scope.get("state", {}), "owner": key.name, "id": id.decode()}
             await self._app(scope, self._bounded(scope, receive, headers), answer)
+        except _Revoked:
+            await send({"type": "http.response.body", "body": b""})
         except StepNcError as error:
             if status:
                 raise
@@ -164,11 +181,9 @@ class Gate:
         path = scope["path"]
         if not is_protected(path):
             self._rate.take(client)
-            return ANYBODY
-        word = headers.get(b"authorization", b"").decode("latin-1")
-        scheme, _, word = word.partition(" ")
+            return NOBODY
         try:
-            key = self._known(word.strip()) if scheme.lower() == "bearer" else None
+            key = self._known(headers)
         except StepNcError:
             self._rate.take(client)
             raise
@@ -182,7 +197,16 @@ class Gate:
             raise Forbidden(f"this needs the role {role.value}; the key has {has}")
         return key
 
-    def _known(self, word: str) -> Key | None:
+    def _require_still_known(self, key: Key, headers: dict[bytes, bytes]) -> None:
+        """What takes long is not given to the end when its key was revoked meanwhile."""
+        if key.id and self._known(headers) is None:
+            raise _Revoked
+
+    def _known(self, headers: dict[bytes, bytes]) -> Key | None:
+        scheme, _, word = headers.get(b"authorization", b"").decode("latin-1").partition(" ")
+        if scheme.lower() != "bearer":
+            return None
+        word = word.strip()
         now = time.monotonic()
         at, key = self._good.get(word, (0.0, None))
         if key is not None and now - at < PATIENT:

@@ -10,8 +10,11 @@ SEEN = ("/v1/evaluations",)
 
 LOOKING = frozenset({"GET", "HEAD", "OPTIONS"})
 
-OPEN = ("/v1/",)
+KEPT = ("/v1/", "/metrics")
 """what keys protect; the dashboard's files and the signs of life are everybody's"""
+
+DOCUMENT = "/v1/openapi.json"
+"""tells how to ask, and nothing else"""
 
 
 def role_for(method: str, path: str) -> Role:
@@ -23,4 +26,4 @@ def role_for(method: str, path: str) -> Role:
 
 def is_protected(path: str) -> bool:
     """Whether a key is asked for, where keys are asked for at all."""
-    return path.startswith(OPEN) or path == "/metrics"
+    return path.startswith(KEPT) and path != DOCUMENT

@@ -2,6 +2,7 @@
 
 import asyncio
 import socket
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -12,9 +13,10 @@ import pytest
 from service.depot import keys
 from service.depot.folder import open_depot
 from service.rest.app import application
+from service.rest.rights import is_protected
 from service.rest.settings import Settings
 from tests.service.rest.conftest import Done
-from tests.service.rest.server import Server, create_key, is_problem
+from tests.service.rest.server import Server, create_key, is_problem, made
 
 WANTED = {
     "x-content-type-options": "nosniff",
@@ -55,6 +57,19 @@ def test_every_answer_protects_the_browser(
     assert answer.headers["x-request-id"]
     assert "server" not in answer.headers
     assert "access-control-allow-origin" not in answer.headers
+
+
+@pytest.mark.parametrize("path", ["/dashboard/plan.html", "/dashboard/app.js", "/v1/machines"])
+def test_what_the_browser_has_already_keeps_its_policy(
+    client: httpx.Client, path: str
+) -> None:
+    """Headers of a 304 replace those that were kept: a page would lose its scripts."""
+    first = client.get(path)
+    again = client.get(path, headers={"if-none-match": first.headers["etag"]})
+    assert again.status_code == 304
+    policy = "content-security-policy"
+    assert {**first.headers, **again.headers}[policy] == first.headers[policy]
+    assert again.headers["x-request-id"]
 
 
 def test_a_stream_protects_the_browser_too(client: httpx.Client, done: Done) -> None:
@@ -206,7 +221,7 @@ def test_every_route_needs_a_key_and_the_role_of_the_table(locked: Server) -> No
         (method.upper(), path, operation)
         for path, methods in document["paths"].items()
         for method, operation in methods.items()
-        if path.startswith("/v1/")
+        if is_protected(path)
     ]
     assert len(routes) > 50
     opened = {"viewer": {"viewer"}, "planner": {"viewer", "planner"},
@@ -246,6 +261,21 @@ def test_a_revoked_key_opens_nothing(locked: Server) -> None:
     keys.revoke(open_depot(locked.data), word.split("_")[1])
     with locked.client(word) as client:
         is_problem(client.get("/v1/programs"), 401)
+
+
+def test_a_revoked_key_ends_what_it_watches(locked: Server) -> None:
+    operator = create_key(locked, "Bert", "operator")
+    viewer = create_key(locked, "Carl")
+    with locked.client(operator) as client, locked.client(viewer) as watching:
+        id = made(client.post("/v1/trials", json={}))
+        with watching.stream("GET", f"/v1/trials/{id}/events") as answer:
+            lines = answer.iter_lines()
+            next(line for line in lines if line == "event: rows")
+            keys.revoke(open_depot(locked.data), viewer.split("_")[1])
+            until = time.monotonic() + 20.0
+            for _ in lines:
+                assert time.monotonic() < until
+        assert client.post(f"/v1/trials/{id}/cancel").status_code == 200
 
 
 def test_the_owner_is_who_has_the_key(locked: Server) -> None:

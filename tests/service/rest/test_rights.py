@@ -29,7 +29,7 @@ def test_looking_is_for_all_and_machines_are_for_operators(
 
 
 def test_pages_and_signs_of_life_are_everybodys() -> None:
-    for path in ("/", "/dashboard/plan.html", "/healthz", "/readyz"):
+    for path in ("/", "/dashboard/plan.html", "/healthz", "/readyz", "/v1/openapi.json"):
         assert not is_protected(path)
-    for path in ("/v1/about", "/v1/openapi.json", "/v1/jobs", "/metrics"):
+    for path in ("/v1/about", "/v1/jobs", "/v1/openapi.json/", "/metrics"):
         assert is_protected(path)
