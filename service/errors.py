@@ -5,11 +5,13 @@
     ServiceError
     ├── NotFound(thing, id)       there is none, or no more
     ├── Conflict                  it is not in the state for that
+    │   └── PreconditionFailed    it is not any more what the client has seen
     ├── TooLarge(bound)           more bytes than are taken
     ├── Unreadable                the body, or a part of it, is no such thing
     ├── Unauthorised              no key, or none that is known
     ├── Forbidden                 the key does not open this
     ├── TooMany(wait)             more requests than are taken in a while
+    ├── StorageFull               the disk has no room
     └── Unavailable               something the service stands on is missing
 """
 
@@ -38,6 +40,10 @@ class NotFound(ServiceError):
 
 class Conflict(ServiceError):
     """What is asked does not go with the state that something is in."""
+
+
+class PreconditionFailed(Conflict):
+    """It is not any more what the client has seen, and may be changed only if it were."""
 
 
 class TooLarge(ServiceError):
@@ -79,6 +85,10 @@ class TooMany(ServiceError):
     def __init__(self, wait: float) -> None:
         super().__init__(f"too many requests: the next is taken in {wait:.1f} s")
         self.wait = wait
+
+
+class StorageFull(ServiceError):
+    """The disk has no room."""
 
 
 class Unavailable(ServiceError):

@@ -4,12 +4,14 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from kbe.errors import KnowledgeError, StoreBusy, StoreUnavailable, UnknownCorrection
+from kbe.errors import KnowledgeError, StoreBusy, StoreFull, StoreUnavailable, UnknownCorrection
 from optimiser.errors import SolverFailed
 from service.errors import (
     Conflict,
     Forbidden,
     NotFound,
+    PreconditionFailed,
+    StorageFull,
     TooLarge,
     TooMany,
     Unauthorised,
@@ -26,12 +28,15 @@ STANDARD = frozenset({"type", "title", "status", "detail", "instance"})
 STATUS: tuple[tuple[type[StepNcError], int], ...] = (
     (NotFound, 404),
     (UnknownCorrection, 404),
+    (PreconditionFailed, 412),
     (Conflict, 409),
     (TooLarge, 413),
     (Unreadable, 400),
     (Unauthorised, 401),
     (Forbidden, 403),
     (TooMany, 429),
+    (StorageFull, 507),
+    (StoreFull, 507),
     (Unavailable, 503),
     (StoreBusy, 503),
     (StoreUnavailable, 503),

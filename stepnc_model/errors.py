@@ -21,8 +21,8 @@
     │   ├── StoreDamaged, StoreUnavailable, StoreFull, StoreBusy, StoreReadOnly, StoreTooNew
     │   └── UnknownCorrection(id)
     └── ServiceError                       service.errors
-        ├── NotFound(thing, id), Conflict, TooLarge(bound), Unreadable
-        └── Unauthorised, Forbidden, TooMany(wait), Unavailable
+        ├── NotFound(thing, id), Conflict, PreconditionFailed, TooLarge(bound), Unreadable
+        └── Unauthorised, Forbidden, TooMany(wait), StorageFull, Unavailable
 
 A caller's mistake is a ``ValueError`` or ``TypeError``; a bad file or an impossible cut is in
 this tree. What is no failure (a deviation from the schema, a guess) is a :class:`Finding`.

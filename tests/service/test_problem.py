@@ -8,9 +8,24 @@ from math import inf, nan
 import pytest
 
 import service.errors
-from kbe.errors import StoreBusy, StoreDamaged, UnknownCorrection
+from kbe.errors import (
+    StoreBusy,
+    StoreDamaged,
+    StoreFull,
+    StoreUnavailable,
+    UnknownCorrection,
+)
 from optimiser.errors import Infeasible, SolverFailed
-from service.errors import Conflict, NotFound, TooLarge, TooMany, Unauthorised, Unavailable
+from service.errors import (
+    Conflict,
+    NotFound,
+    PreconditionFailed,
+    StorageFull,
+    TooLarge,
+    TooMany,
+    Unauthorised,
+    Unavailable,
+)
 from service.problem import plain_problem, problem_of, status_of, title_and_detail, type_of
 from simulator.errors import LibraryError, OutOfTravel, UnknownMachine
 from stepnc_model.errors import Part21Error, SchemaError, StepNcError, WriteError
@@ -45,11 +60,15 @@ def test_every_error_has_a_status_and_a_type(kind: type[StepNcError]) -> None:
         (NotFound("program", "x"), 404, "not-found"),
         (UnknownCorrection("kb", id=3), 404, "unknown-correction"),
         (Conflict("busy"), 409, "conflict"),
+        (PreconditionFailed("changed"), 412, "precondition-failed"),
+        (StorageFull("no room"), 507, "storage-full"),
         (TooLarge("it", bound=3), 413, "too-large"),
         (Unauthorised("who"), 401, "unauthorised"),
         (TooMany(2.0), 429, "too-many"),
         (Unavailable("gone"), 503, "unavailable"),
         (StoreBusy("kb"), 503, "store-busy"),
+        (StoreUnavailable("kb", reason="r"), 503, "store-unavailable"),
+        (StoreFull("kb"), 507, "store-full"),
         (StoreDamaged("kb", reason="r"), 500, "store-damaged"),
         (WriteError("no room", path="x"), 507, "write-error"),
         (Part21Error("what", line=3, column=4), 422, "part21-error"),
