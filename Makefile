@@ -19,7 +19,7 @@ PYTHON ?= $(shell for p in python3.11 python3.12 python3.13 python3; do \
 
 help:
 	@echo "make demo   optimise a sample part, simulate it, run it under control, and learn from it"
-	@echo "make serve  the dashboard and REST at http://127.0.0.1:8000"
+	@echo "make serve  the dashboard and REST at http://127.0.0.1:8000 (PORT=8000)"
 	@echo "make test   run the tests"
 	@echo "make check  formatting, lint, types, layers"
 	@echo "make bench  speed, side by side with peers"
@@ -79,8 +79,10 @@ check: $(READY)
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
+PORT ?= 8000
+
 serve: $(READY) $(KERNELS)
-	$(BIN)/stepnc serve
+	$(BIN)/stepnc serve --port $(PORT)
 
 bench: $(READY) $(KERNELS)
 	$(BIN)/python -m benchmarks

@@ -229,7 +229,10 @@ class Program:
         workpiece = self.workpiece()
         if workpiece is None or workpiece.its_material is None:
             return None
-        return self.get(workpiece.its_material)
+        material = self.get(workpiece.its_material)
+        if not isinstance(material, Material):
+            raise self.error("stands where a material belongs", workpiece.its_material)
+        return material
 
     def _all(self, cls: type[T]) -> Iterator[T]:
         """All instances of one entity, without their references."""

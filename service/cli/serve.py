@@ -166,19 +166,27 @@ def _data(options: argparse.Namespace) -> Path:
     return Path(named) if named else usual_file().with_name("service")
 
 
-def _depot(options: argparse.Namespace) -> "Depot":
+def _depot(options: argparse.Namespace, *, is_made: bool = False) -> "Depot":
+    """The data folder; but for the first key it is there already."""
     from service.depot.folder import open_depot
+    from stepnc_model.errors import StepNcError
 
-    return open_depot(_data(options))
+    folder = _data(options)
+    if not is_made and not (folder / "service.db").is_file():
+        raise StepNcError(f"{folder}: no data folder of a service; --data names another")
+    return open_depot(folder)
 
 
 def _create(options: argparse.Namespace) -> int:
     from service.depot import keys
     from service.depot.keys import Role
     from service.terminal import tell, write_out
+    from stepnc_model.errors import StepNcError
 
+    if not options.who.strip():
+        raise StepNcError("--for is empty: say whose key it is")
     roles = frozenset(Role(word) for word in options.role)
-    write_out(keys.create(_depot(options), name=options.who, roles=roles))
+    write_out(keys.create(_depot(options, is_made=True), name=options.who, roles=roles))
     tell("keep it: it is not shown again. Send it as  Authorization: Bearer …")
     return OK
 

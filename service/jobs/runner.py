@@ -177,15 +177,15 @@ def is_alive(depot: Depot) -> bool:
     return row is not None and time.time() - float(row["seen"]) < 5.0 * BEAT
 
 
-def locked(root: Path) -> IO[bytes]:
-    """The lock of the folder's only runner; it is free again when the process ends.
+def locked(root: Path, name: str = "runner") -> IO[bytes]:
+    """The lock of the folder's only runner, or server; free again when the process ends.
 
     Raises
     ------
     Conflict
         When another has it.
     """
-    file = (root / "runner.lock").open("wb")
+    file = (root / f"{name}.lock").open("wb")
     try:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except OSError as error:

@@ -9,6 +9,7 @@ from starlette.concurrency import run_in_threadpool
 from service.depot import jobs
 from service.depot.folder import Depot
 from service.depot.jobs import Job, Order
+from service.depot.keys import Key
 from service.depot.once import Once
 from service.depot.pages import MOST, USUAL, Page, Place
 from service.errors import Unreadable
@@ -58,9 +59,15 @@ def hub_of(request: Request) -> Hub:
     return found
 
 
+def key_of(request: Request) -> Key:
+    """What the client has shown."""
+    found: Key = request.state.key
+    return found
+
+
 def owner_of(request: Request) -> str:
     """Who asks."""
-    return str(request.state.owner)
+    return key_of(request).name
 
 
 def place_of(

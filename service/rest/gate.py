@@ -12,6 +12,7 @@ from typing import Any
 
 import orjson
 import structlog
+from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from service.depot import keys
@@ -22,7 +23,7 @@ from service.problem import plain_problem, problem_of
 from service.rest.logs import RequestLog
 from service.rest.metrics import count
 from service.rest.rate import RateLimit
-from service.rest.rights import LOOKING, is_protected, role_for
+from service.rest.rights import LOOKING, is_protected, require, role_for
 from service.rest.settings import LOOPBACK, Settings
 from stepnc_model.errors import StepNcError
 
@@ -36,6 +37,12 @@ UPLOADS = frozenset({"/v1/programs"})
 
 PATIENT = 5.0
 """s for which a key that was found good need not be looked up again"""
+
+PLACE = re.compile(r"(?:\[([0-9a-f:.]+)\]|([^:@/\[\]]*))(?::\d*)?")
+"""a host and perhaps a port, RFC 9110 §4.2.3"""
+
+GONE = 499
+"""in metrics and log: the client left before it was answered"""
 
 REQUEST_ID = re.compile(rb"^[A-Za-z0-9._-]{1,64}$")
 
@@ -140,11 +147,15 @@ class Gate:
             await send(message)
 
         key = NOBODY
+        # What may be read may be asked about; the server leaves the body out.
+        asked_as = {**scope, "method": "GET"} if scope["method"] == "HEAD" else scope
         try:
             self._require_known_host(scope, headers)
             key = self._key(scope, headers)
-            scope["state"] = {**scope.get("state", {}), "owner": key.name, "id": id.decode()}
-            await self._app(scope, self._bounded(scope, receive, headers), answer)
+            asked_as["state"] = {**scope.get("state", {}), "key": key, "id": id.decode()}
+            await self._app(asked_as, self._bounded(scope, receive, headers), answer)
+        except ClientDisconnect:
+            status = status or GONE
         except _Revoked:
             await send({"type": "http.response.body", "body": b""})
         except StepNcError as error:
@@ -158,18 +169,18 @@ class Gate:
             problem = plain_problem(500, "Fault", "the program is at fault; its log says more")
             await _refuse(answer, {**problem, "instance": id.decode()}, None)
         finally:
-            self._count(scope, status, time.perf_counter() - begin, id=id, who=key.name)
+            self._count(asked_as, status, time.perf_counter() - begin, id=id, who=key.name)
 
     def _require_known_host(self, scope: Scope, headers: dict[bytes, bytes]) -> None:
         """Pages of other hosts may not reach a service on this one through a browser."""
-        name = _host(headers.get(b"host", b"").decode("latin-1")).lower()
-        if name not in self._names:
-            raise Forbidden(f"host '{name}': not a name of this service; see --name")
+        place = headers.get(b"host", b"").decode("latin-1").lower()
+        if _host(place) not in self._names:
+            raise Forbidden(f"host '{place}': not a name of this service; see --name")
         if scope["method"] in LOOKING:
             return
         site = headers.get(b"sec-fetch-site", b"same-origin")
         origin = headers.get(b"origin", b"").decode("latin-1")
-        is_own = not origin or _host(origin.partition("://")[2]).lower() == name
+        is_own = not origin or origin.partition("://")[2].lower() == place
         if site not in {b"same-origin", b"none"} or not is_own:
             raise Forbidden(f"a page of '{origin or 'another site'}' may change nothing here")
 
@@ -191,10 +202,7 @@ class Gate:
         self._rate.take(client if key is None else key.id)
         if key is None:
             raise Unauthorised("a key is needed: Authorization: Bearer stepnc_…; `stepnc keys`")
-        role = role_for(scope["method"], path)
-        if not key.opens(role):
-            has = ", ".join(sorted(key.roles))
-            raise Forbidden(f"this needs the role {role.value}; the key has {has}")
+        require(key, role_for(scope["method"], path))
         return key
 
     def _require_still_known(self, key: Key, headers: dict[bytes, bytes]) -> None:
@@ -265,11 +273,10 @@ class Gate:
             })  # fmt: skip
 
 
-def _host(name: str) -> str:
-    """A name without its port."""
-    if name.startswith("["):
-        return name[1:].partition("]")[0]
-    return name.partition(":")[0]
+def _host(place: str) -> str:
+    """A name without its port; empty: there is none."""
+    found = PLACE.fullmatch(place)
+    return "" if found is None else found[1] or found[2]
 
 
 async def _refuse(send: Send, problem: dict[str, Any], error: StepNcError | None) -> None:

@@ -8,7 +8,7 @@ from service.depot.folder import Depot
 from service.depot.jobs import State
 from service.errors import ServiceError
 from service.jobs.runner import is_alive
-from service.rest.context import depot_of, settings_of
+from service.rest.context import depot_of, owner_of, settings_of
 from service.rest.metrics import JOBS, TYPE, exposition
 from service.rest.programs import samples
 from service.rest.replies import json_reply
@@ -52,7 +52,7 @@ async def about(request: Request) -> Response:
             "version": version("stepnc-optimiser"),
             "needs_keys": settings_of(request).needs_keys,
             "samples": samples(),
-            "owner": request.state.owner,
+            "owner": owner_of(request),
         },
     )
 

@@ -8,9 +8,10 @@ from starlette.concurrency import run_in_threadpool
 from service.depot import jobs
 from service.depot.jobs import Kind, State
 from service.rest.bodies import Id
-from service.rest.context import AtPlace, InDepot, page_reply
+from service.rest.context import AtPlace, InDepot, key_of, page_reply
 from service.rest.replies import json_reply
 from service.rest.results import stream_reply
+from service.rest.rights import require, role_to_end
 from service.rest.views import JobView, PageView, job_view
 
 ROUTES = APIRouter(prefix="/v1/jobs", tags=["jobs"])
@@ -50,11 +51,13 @@ async def job_events(request: Request, depot: InDepot, id: Id) -> Response:
 @ROUTES.post("/{id}/cancel", response_model=JobView, summary="Ask for its end")
 async def cancel(request: Request, depot: InDepot, id: Id) -> Response:
     """One that waits is cancelled at once, one that runs within seconds."""
+    require(key_of(request), role_to_end(jobs.get(depot, id).kind))
     return json_reply(request, job_view(await run_in_threadpool(jobs.cancel, depot, id)))
 
 
 @ROUTES.delete("/{id}", status_code=204, summary="Delete a job that is over, with its results")
-async def delete(depot: InDepot, id: Id) -> Response:
+async def delete(request: Request, depot: InDepot, id: Id) -> Response:
     """What was recorded in the knowledge base stays there."""
+    require(key_of(request), role_to_end(jobs.get(depot, id).kind))
     await run_in_threadpool(jobs.remove, depot, id)
     return Response(status_code=204)

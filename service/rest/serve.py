@@ -4,6 +4,7 @@ import multiprocessing
 import os
 import shutil
 import signal
+import socket
 import threading
 from dataclasses import dataclass
 from multiprocessing.context import SpawnProcess
@@ -14,7 +15,7 @@ import structlog
 import uvicorn
 
 from service.depot import keys
-from service.depot.folder import open_depot
+from service.depot.folder import Depot, open_depot
 from service.errors import Forbidden
 from service.jobs import runner
 from service.rest import logs
@@ -62,13 +63,20 @@ def serve(start: Start) -> None:
     settings = start.settings
     depot = open_depot(settings.root, knowledge=settings.knowledge)
     if settings.needs_keys and not any(each.revoked is None for each in keys.listed(depot)):
-        command = f"stepnc keys create --role planner --data {settings.data}"
+        command = f"stepnc keys create --for NAME --role planner --data {settings.data}"
         raise Forbidden(f"host {settings.host}: keys are needed, and there is none: {command}")
     for file in (start.certificate, start.key):
         if file is not None and not file.is_file():
             raise StepNcError(f"{file}: no such file")
-    with runner.locked(depot.root):
-        """another server's folder is refused at once"""
+    _require_port(settings)
+    with runner.locked(depot.root, "server"):
+        with runner.locked(depot.root):
+            """what is left of an earlier one is refused at once"""
+        _serve(start, depot)
+
+
+def _serve(start: Start, depot: Depot) -> None:
+    settings = start.settings
     settings.hand_on()
     logs.configure(start.level)
     if start.workers > 1:
@@ -100,6 +108,16 @@ def serve(start: Start) -> None:
         )
     finally:
         keeper.stop()
+
+
+def _require_port(settings: Settings) -> None:
+    """Refuse a port that another has, or that one may not have."""
+    family = socket.AF_INET6 if ":" in settings.host else socket.AF_INET
+    try:
+        socket.create_server((settings.host, settings.port), family=family).close()
+    except OSError as error:
+        where = f"{settings.host}, port {settings.port}"
+        raise StepNcError(f"{where}: {error.strerror or error}; --port names another") from None
 
 
 def _end(_signal: int, _frame: FrameType | None) -> None:

@@ -292,6 +292,11 @@ class TestWorkpiece:
         assert material is not None
         assert material.standard_identifier == "B"
 
+    def test_what_is_no_material_is_refused(self) -> None:
+        program = program_of(PROJECT, plan(2), "#30=WORKPIECE('MINE',#2,$,$,$,$,());")
+        with pytest.raises(SchemaError, match=r"#2 WORKPLAN: stands where a material belongs"):
+            program.material()
+
     def test_a_file_without_workpiece_has_no_material(self) -> None:
         program = program_of(PROJECT, plan(2))
         assert program.workpiece() is None

@@ -12,11 +12,11 @@ import pytest
 
 from service.depot import keys
 from service.depot.folder import open_depot
-from service.rest.app import application
+from service.rest.app import BY_KIND, application
 from service.rest.rights import is_protected
 from service.rest.settings import Settings
 from tests.service.rest.conftest import Done
-from tests.service.rest.server import Server, create_key, is_problem, made
+from tests.service.rest.server import Server, create_key, is_problem, made, over
 
 WANTED = {
     "x-content-type-options": "nosniff",
@@ -60,9 +60,7 @@ def test_every_answer_protects_the_browser(
 
 
 @pytest.mark.parametrize("path", ["/dashboard/plan.html", "/dashboard/app.js", "/v1/machines"])
-def test_what_the_browser_has_already_keeps_its_policy(
-    client: httpx.Client, path: str
-) -> None:
+def test_what_the_browser_has_already_keeps_its_policy(client: httpx.Client, path: str) -> None:
     """Headers of a 304 replace those that were kept: a page would lose its scripts."""
     first = client.get(path)
     again = client.get(path, headers={"if-none-match": first.headers["etag"]})
@@ -93,7 +91,18 @@ def test_a_request_keeps_its_id_unless_it_is_none(client: httpx.Client) -> None:
 
 
 @pytest.mark.parametrize(
-    "host", ["evil.example", "127.0.0.1.evil.example", "", "[::2]:80", "a@127.0.0.1", "0.0.0.0"]
+    "host",
+    [
+        "evil.example",
+        "[::1]evil",
+        "localhost:80:80",
+        "localhost/",
+        "127.0.0.1.evil.example",
+        "",
+        "[::2]:80",
+        "a@127.0.0.1",
+        "0.0.0.0",
+    ],
 )
 def test_a_name_that_is_not_ours_is_refused(client: httpx.Client, host: str) -> None:
     for method in ("GET", "POST"):
@@ -113,6 +122,7 @@ def test_names_of_this_computer_are_ours(client: httpx.Client, host: str) -> Non
         {"origin": "https://evil.example"},
         {"origin": "null"},
         {"origin": "http://localhost.evil.example"},
+        {"origin": "http://127.0.0.1:1"},
         {"sec-fetch-site": "cross-site"},
         {"sec-fetch-site": "same-site"},
         {"sec-fetch-site": "cross-site", "origin": "http://127.0.0.1"},
@@ -131,6 +141,28 @@ def test_a_page_of_another_site_changes_nothing(
 def test_a_page_of_ours_may(client: httpx.Client, service: Server) -> None:
     headers = {"origin": service.url, "sec-fetch-site": "same-origin"}
     is_problem(client.delete(f"/v1/jobs/{ID}", headers=headers), 404)
+
+
+def test_what_may_be_read_may_be_asked_about(client: httpx.Client) -> None:
+    for path in ("/v1/machines", "/healthz", "/dashboard/plan.html", "/v1/openapi.json"):
+        whole, head = client.get(path), client.head(path)
+        assert (head.status_code, head.content) == (200, b"")
+        for name in ("content-type", "content-length"):
+            assert head.headers[name] == whole.headers[name]
+    assert client.head("/v1/jobs/x").status_code == 422
+
+
+def test_who_leaves_before_the_end_is_no_fault(service: Server, client: httpx.Client) -> None:
+    for head in (
+        b"PUT /v1/machines/gone HTTP/1.1\r\nContent-Type: application/toml\r\n",
+        b"POST /v1/programs HTTP/1.1\r\n",
+        b"POST /v1/trials HTTP/1.1\r\nContent-Type: application/json\r\n",
+    ):
+        with socket.create_connection(("127.0.0.1", service.port), timeout=10.0) as line:
+            line.sendall(head + b"Host: localhost\r\nContent-Length: 100\r\n\r\nhello")
+    assert client.get("/healthz").status_code == 200
+    assert service.faults() == []
+    assert 'status="500"' not in client.get("/metrics").text
 
 
 def test_a_body_of_json_has_a_bound_told_or_not(client: httpx.Client) -> None:
@@ -240,11 +272,26 @@ def test_every_route_needs_a_key_and_the_role_of_the_table(locked: Server) -> No
                 answer = client.request(
                     method, filled, headers={"authorization": f"Bearer {key}"}
                 )
-                if role in opened[who]:
+                if role in {BY_KIND, *opened[who]}:
                     assert answer.status_code not in {401, 403}, (method, path, who)
                 else:
                     found = is_problem(answer, 403, "forbidden")
                     assert role in found["detail"]
+
+
+def test_a_run_with_people_is_ended_by_operators_alone(locked: Server) -> None:
+    words = {role: create_key(locked, role, role) for role in ("planner", "operator")}
+    with locked.client(words["planner"]) as planner, locked.client(words["operator"]) as other:
+        trial = made(other.post("/v1/trials", json={}))
+        table = made(planner.post("/v1/evaluations", json={}))
+        for path in (f"/v1/jobs/{trial}/cancel", f"/v1/trials/{trial}/cancel"):
+            is_problem(planner.post(path), 403, "forbidden")
+        is_problem(other.post(f"/v1/jobs/{table}/cancel"), 403, "forbidden")
+        is_problem(other.delete(f"/v1/jobs/{table}"), 403, "forbidden")
+        assert other.post(f"/v1/jobs/{trial}/cancel").status_code == 200
+        over(other, trial)
+        is_problem(planner.delete(f"/v1/jobs/{trial}"), 403, "forbidden")
+        assert other.delete(f"/v1/jobs/{trial}").status_code == 204
 
 
 @pytest.mark.parametrize(

@@ -2,8 +2,10 @@
 
 import pytest
 
-from service.depot.keys import Role
-from service.rest.rights import is_protected, role_for
+from service.depot.jobs import Kind
+from service.depot.keys import Key, Role
+from service.errors import Forbidden
+from service.rest.rights import is_protected, require, role_for, role_to_end
 
 
 @pytest.mark.parametrize(
@@ -13,7 +15,9 @@ from service.rest.rights import is_protected, role_for
         ("HEAD", "/v1/programs", Role.VIEWER),
         ("POST", "/v1/evaluations", Role.VIEWER),
         ("POST", "/v1/programs", Role.PLANNER),
-        ("DELETE", "/v1/jobs/x", Role.PLANNER),
+        ("DELETE", "/v1/jobs/x", None),
+        ("POST", "/v1/jobs/x/cancel", None),
+        ("GET", "/v1/jobs/x", Role.VIEWER),
         ("PUT", "/v1/machines/x", Role.PLANNER),
         ("POST", "/v1/corrections/1/accept", Role.PLANNER),
         ("POST", "/v1/trials", Role.OPERATOR),
@@ -23,9 +27,24 @@ from service.rest.rights import is_protected, role_for
     ],
 )
 def test_looking_is_for_all_and_machines_are_for_operators(
-    method: str, path: str, role: Role
+    method: str, path: str, role: Role | None
 ) -> None:
     assert role_for(method, path) is role
+
+
+@pytest.mark.parametrize("kind", list(Kind))
+def test_who_may_begin_a_job_may_end_it(kind: Kind) -> None:
+    path = {"control-run": "/v1/control-runs", "trial": "/v1/trials"}.get(kind, "/v1/programs")
+    assert role_to_end(kind) is role_for("POST", path)
+
+
+def test_a_key_that_does_not_open_is_told_what_it_lacks() -> None:
+    key = Key(id="x", name="Anna", roles=frozenset({Role.PLANNER}), created=0.0, revoked=None)
+    require(key, Role.PLANNER)
+    require(key, Role.VIEWER)
+    require(key, None)
+    with pytest.raises(Forbidden, match="needs the role operator; the key has planner"):
+        require(key, Role.OPERATOR)
 
 
 def test_pages_and_signs_of_life_are_everybodys() -> None:
