@@ -5,6 +5,10 @@ const PAGES = [
   ["knowledge", "Knowledge"], ["jobs", "Jobs"],
 ];
 const KEY = "stepnc.key", THEME = "stepnc.theme";
+/** HTTP states of a service that starts or ends */
+const AWAY = [502, 503, 504];
+/** what to say while it is away */
+export const AWAY_WORDS = "The connection is lost; it is tried again each second.";
 
 // -- elements ---------------------------------------------------------------------------------
 
@@ -52,19 +56,23 @@ export function fixed(value, places) {
     { minimumFractionDigits: places, maximumFractionDigits: places, useGrouping: Math.abs(value) >= 1e4 });
 }
 
-/** Seconds as people say them. */
-export function duration(seconds) {
+const two = (count) => String(count).padStart(2, "0");
+
+/** Seconds as people say them; in the form that `like` s take, so that two can be compared. */
+export function duration(seconds, like = seconds) {
   if (seconds === null || seconds === undefined) return "–";
-  if (seconds < 120) return `${fixed(seconds, 1)} s`;
-  const minutes = Math.floor(seconds / 60), rest = Math.round(seconds % 60);
-  if (minutes < 60) return `${minutes} min ${String(rest).padStart(2, "0")} s`;
-  return `${Math.floor(minutes / 60)} h ${String(minutes % 60).padStart(2, "0")} min`;
+  if (like < 120) return `${fixed(seconds, 1)} s`;
+  const whole = Math.round(seconds), minutes = Math.floor(whole / 60);
+  if (like < 3600) return `${minutes} min ${two(whole % 60)} s`;
+  return `${Math.floor(minutes / 60)} h ${two(minutes % 60)} min`;
 }
 
 export const percent = (share, places = 0) =>
   share === null || share === undefined ? "–" : `${fixed(100 * share, places)} %`;
 
-export const moment = (text) => (text ? new Date(text).toLocaleString("en-GB") : "–");
+/** Day and time, the same on all pages. */
+export const moment = (text) => (text ? new Date(text).toLocaleString("en-GB", { day: "numeric",
+  month: "short", year: "numeric", hour: "2-digit", minute: "2-digit", second: "2-digit" }) : "–");
 
 /** EXPRESS and limit names as words. */
 export const words = (name) => (name ?? "").replaceAll("_", " ");
@@ -79,18 +87,18 @@ export class Problem extends Error {
   }
 }
 
-function withKey(headers) {
-  const key = sessionStorage.getItem(KEY);
-  return key ? { ...headers, authorization: `Bearer ${key}` } : headers;
-}
+const keptKey = () => sessionStorage.getItem(KEY);
 
 async function ask(path, options = {}) {
   const { json, headers = {}, ...rest } = options;
   const sent = json === undefined ? headers : { "content-type": "application/json", ...headers };
   const body = json === undefined ? rest.body : JSON.stringify(json);
-  const answer = await fetch(path, { ...rest, body, headers: withKey(sent) });
+  const key = keptKey();
+  const answer = await fetch(path, { ...rest, body,
+    headers: key ? { ...sent, authorization: `Bearer ${key}` } : sent });
   if (answer.status === 401) {
-    await askForKey();
+    // Another request may have brought a key meanwhile.
+    if (key === keptKey()) await askForKey(key ? "This key was refused" : "A key is needed");
     return ask(path, options);
   }
   if (answer.ok) return answer;
@@ -118,32 +126,43 @@ export async function save(path) {
 /** Show a report in a window of its own. */
 export async function show(path) {
   const opened = window.open("about:blank", "_blank");
-  const key = sessionStorage.getItem(KEY);
-  if (!key && opened) { opened.location = path; return; }
+  if (!keptKey() && opened) { opened.location = path; return; }
   opened?.close();
   await save(path);
 }
 
+// -- the key ----------------------------------------------------------------------------------
+
 let asking = null;
-/** A dialog for the key; all requests that need one wait for the same. */
-function askForKey() {
+/** A dialog for the key; all requests that need one wait for the same. `others`: more buttons. */
+function askForKey(title, others = []) {
   asking ??= new Promise((done) => {
-    const field = el("input", { type: "password", autocomplete: "off", required: true,
-      "aria-label": "key" });
-    const dialog = el("dialog", { "aria-labelledby": "key-title" },
-      el("h2", { id: "key-title" }, "A key is needed"),
+    const field = el("input", { type: "password", autocomplete: "off", required: true, id: "key-field" });
+    const dialog = el("dialog", { id: "key-dialog", "aria-labelledby": "key-title" },
+      el("h2", { id: "key-title" }, title),
       el("p", { class: "soft" }, "Keys are made with “stepnc keys create”. It is kept until this window is closed."),
-      el("form", { method: "dialog", onsubmit: () => {
-        sessionStorage.setItem(KEY, field.value.trim());
-        dialog.remove();
-        asking = null;
-        done();
-      } }, el("label", {}, "Key", field), el("p", {}, el("button", { class: "main" }, "Use it"))));
-    dialog.addEventListener("cancel", (event) => event.preventDefault());
+      el("form", { method: "dialog", onsubmit: () => sessionStorage.setItem(KEY, field.value.trim()) },
+        el("label", {}, "Key", field),
+        el("p", { class: "row" }, el("button", { class: "main", id: "key-use" }, "Use it"), others)));
+    dialog.addEventListener("close", () => {
+      dialog.remove();
+      asking = null;
+      byId("key").hidden = !keptKey();
+      done();
+    });
     document.body.append(dialog);
     dialog.showModal();
   });
   return asking;
+}
+
+/** Another key, or none, because the user wants it. */
+function changeKey() {
+  const forget = () => { sessionStorage.removeItem(KEY); location.reload(); };
+  return askForKey("The key of this window", [
+    el("button", { type: "button", id: "key-forget", onclick: forget }, "Forget it"),
+    el("button", { type: "button", id: "key-leave",
+      onclick: (event) => event.target.closest("dialog").close() }, "Leave it")]);
 }
 
 // -- streams ----------------------------------------------------------------------------------
@@ -194,6 +213,21 @@ async function* messages(body) {
   }
 }
 
+/** JSON of a path, once the service answers again if it is away; `lost` and `back` hear of it. */
+export async function patiently(path, { lost, back }) {
+  for (let isLost = false; ; isLost = true) {
+    try {
+      const found = await api(path);
+      if (isLost) back();
+      return found;
+    } catch (error) {
+      if (error instanceof Problem && !AWAY.includes(error.status)) throw error;
+      lost();
+      await new Promise((again) => setTimeout(again, 1000));
+    }
+  }
+}
+
 /** Ask for a job and wait for its end; `tell` hears how far it is. Throws its problem. */
 export async function done(path, json, tell = () => {}) {
   const asked = await api(path, { method: "POST", json,
@@ -202,11 +236,12 @@ export async function done(path, json, tell = () => {}) {
   return followed(asked, tell);
 }
 
-/** Wait for the end of a job. */
-export function followed(asked, tell = () => {}) {
+/** Wait for the end of a job; `lost` and `back` hear when the service is away. */
+export function followed(asked, tell = () => {}, { lost, back } = {}) {
   return new Promise((resolve, reject) => {
     let last = asked;
     watch(asked.id, {
+      lost, back,
       job: (job) => { last = job; tell(job); },
       end: async () => {
         last = await api(`/v1/jobs/${asked.id}`).catch(() => last);
@@ -229,7 +264,9 @@ export function announce(text) {
 export function tell(place, error) {
   if (!error) { fill(place); return; }
   const detail = error instanceof Problem ? error.message : `the service does not answer (${error.message})`;
-  fill(place, el("div", { class: "banner bad", role: "alert" }, detail));
+  const other = error.status === 403 && keptKey()
+    ? el("button", { onclick: () => changeKey().then(() => fill(place)) }, "Use another key") : null;
+  fill(place, el("div", { class: "banner bad", role: "alert" }, detail, other));
 }
 
 function theme() {
@@ -254,7 +291,9 @@ function frame() {
     el("a", { class: "brand", href: "/dashboard/plan.html" },
       el("img", { src: "/dashboard/icon.svg", alt: "", width: "24", height: "24" }), "stepnc"),
     el("nav", { "aria-label": "pages" }, links),
-    el("div", { class: "right" }, el("a", { class: "small", href: "/v1/openapi.json" }, "API"), toggle));
+    el("div", { class: "right" },
+      el("button", { class: "plain small", id: "key", hidden: !keptKey(), onclick: changeKey }, "Key"),
+      el("a", { class: "small", href: "/v1/openapi.json" }, "API"), toggle));
   document.body.prepend(el("a", { class: "skip", href: "#main" }, "to the content"), bar);
   document.body.append(el("div", { id: "said", class: "unseen", role: "status", "aria-live": "polite" }));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {

@@ -1,12 +1,13 @@
 // The control page: the simulator of a force loop as a panel of the shop floor.
 
-import { announce, api, byId, duration, el, fill, fixed, tell } from "/dashboard/app.js";
+import { announce, api, byId, duration, el, fill, fixed, moment, tell } from "/dashboard/app.js";
 import { boundsOf } from "/dashboard/control_fields.js";
 import { Log } from "/dashboard/control_log.js";
 import { Freshness, Output } from "/dashboard/control_output.js";
 import { bookOf, paceField, programPanes, startPanes, trialPanes } from "/dashboard/control_panes.js";
 import { Plots } from "/dashboard/control_plots.js";
 import { PLACES, Run, newest, refusals } from "/dashboard/control_run.js";
+import { programTitle } from "/dashboard/records.js";
 
 const SOURCES = [["trial", "Trial cut"], ["control-run", "Program"]];
 
@@ -150,6 +151,7 @@ const HEAR = {
   event: (event) => { log.add(event); noteStop(event); },
   again: () => { plots.reload(); log.reload(); },
   refused,
+  forbidden: (error) => tell(byId("trouble"), error),
   fresh: (age) => {
     const hasChanged = (age === null) !== (state.fresh === null);
     state.fresh = age;
@@ -190,8 +192,8 @@ async function programsAndAdvices() {
     api("/v1/jobs?kind=advice&state=succeeded&limit=100")]);
   const names = new Map(programs.items.map((each) => [each.id, each.name]));
   const advices = jobs.items.filter((job) => names.has(job.program_id)).map((job) => ({ id: job.id,
-    name: `${names.get(job.program_id)}, ${job.request.mode}, ${new Date(job.created_at).toLocaleString("en-GB")}` }));
-  return { programs: programs.items, advices };
+    title: `${names.get(job.program_id)}, ${job.request.mode}, ${moment(job.created_at)}` }));
+  return { programs: programs.items.map((each) => ({ id: each.id, title: programTitle(each) })), advices };
 }
 
 function usual(kind) {

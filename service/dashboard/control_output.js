@@ -24,13 +24,17 @@ const SMALL = {
   "control-run": [
     ["power_kw", "Drive power", "kW", 2],
     ["motor_power_kw", "Motor gives", "kW", 2],
-    ["force_expected_n", "Expected force", "N", 0],
+    ["force_expected_n", "Force by the plan", "N", 0],
     ["force_measured_n", "Measured force", "N", 0],
     ["removal_rate_cm3_min", "Removal rate", "cm³/min", 1],
     ["axial_depth_mm", "Depth cut now", "mm", 2],
   ],
 };
 const BAR_TOP = 1.5;
+/** of a machine at rest, whatever its last sample says */
+const AT_REST = { feed_actual_mm_min: 0, feed_per_tooth_mm: 0, removal_rate_cm3_min: 0, force_measured_n: 0 };
+/** while the loop is off there is no advice */
+const OFF = { feed_advised_mm_min: null };
 
 /** A number without the sign of a zero. */
 const shown = (value, places) => fixed(Number.isFinite(value) && Math.abs(value) < 0.5 * 10 ** -places ? 0 : value, places);
@@ -85,14 +89,16 @@ export class Output {
   }
 
   /** How the run is; null: there is none. `isOver`: these are its last figures. */
-  show(status, isOver) {
+  show(last, isOver) {
+    const isAtRest = isOver || Boolean(last?.is_stopped);
+    const status = last && { ...last, ...(isAtRest ? AT_REST : {}), ...(last.is_on === false ? OFF : {}) };
     this.node.classList.toggle("over-now", isOver || !status);
     const feeds = FEEDS.map(([name]) => status?.[name]);
     this.feeds.forEach((each, at) => each.put(fixed(feeds[at], Math.abs(feeds[at]) < 100 && at < 3 ? 1 : 0)));
     for (const each of this.smalls) each.put(shown(status?.[each.name], each.places));
     this.showForce(status);
     this.put(this.holding, !status ? "–" : (status.holding || "nothing"));
-    this.showLamp(status, isOver);
+    this.showLamp(status, isAtRest);
     this.glance.hidden = !status || isOver;
     this.glance.className = `glance ${this.lamp.classList[1]}`;
     this.put(this.glance, `${this.lampWord.textContent} · ${fixed(feeds[2], 0)} mm/min · `
@@ -118,8 +124,8 @@ export class Output {
     this.bar.setAttribute("aria-valuenow", number(100 * (share ?? 0), 3));
   }
 
-  showLamp(status, isOver) {
-    const [tone, word] = !status ? ["idle", "NO RUN"] : isOver || status.is_stopped ? ["idle", "AT REST"]
+  showLamp(status, isAtRest) {
+    const [tone, word] = !status ? ["idle", "NO RUN"] : isAtRest ? ["idle", "AT REST"]
       : status.is_over ? ["over", "OVER"] : ["safe", "SAFE"];
     if (this.lampWord.textContent === word) return;
     if (tone === "over" || this.lamp.classList.contains("over")) announce(`power limit: ${word}`);

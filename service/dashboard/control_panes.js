@@ -64,6 +64,7 @@ export function trialPanes(book, materials, ask) {
     fit(values) {
       const isFull = values.milling_type === "full";
       width.enable(!isFull && width.isFree);
+      if (isFull) width.show(values.tool_diameter_mm, false);
       width.node.title = isFull ? "in full milling the width is the tool's diameter" : "";
     },
     enable(isFree) {
@@ -103,9 +104,9 @@ export function startPanes(book, { programs, advices, machines, materials }) {
   const program = choice("program", "program", []);
   fill(program.select,
     programs.length ? el("optgroup", { label: "as they came" }, programs.map((each) =>
-      el("option", { value: `program:${each.id}` }, each.name))) : null,
+      el("option", { value: `program:${each.id}` }, each.title))) : null,
     advices.length ? el("optgroup", { label: "with advised feeds" }, advices.map((each) =>
-      el("option", { value: `advice:${each.id}` }, each.name))) : null);
+      el("option", { value: `advice:${each.id}` }, each.title))) : null);
   const machine = choice("machine", "machine", [["", "one that suits"],
     ...machines.map(({ name, title }) => [name, `${name} · ${title}`])]);
   const material = choice("material", "workpiece material",

@@ -18,7 +18,7 @@ const PANELS = [
     { name: "actual", label: "actual", colour: "curve-1", width: 2.2 }] },
   { id: "force", title: "Cutting force", unit: "N", lines: [
     { name: "set_point", label: "set point", colour: "curve-2", dash: [6, 4] },
-    { name: "expected", label: "expected", colour: "curve-3" },
+    { name: "expected", label: "expected by the plan", colour: "curve-3" },
     { name: "measured", label: "measured", colour: "curve-1", width: 2.2 }] },
   { id: "removal", title: "Removal rate", unit: "cm³/min", lines: [
     { name: "removal", label: "removed", colour: "curve-1", width: 2.2 }] },

@@ -30,8 +30,9 @@ export function refusals(error, names) {
 }
 
 /**
- * One run that is watched. `hear`: {status, rows, event, job, again, refused(name, text), fresh(age)}:
- * `again` when something was missed, `fresh` with the age of the data in s, null while they are new.
+ * One run that is watched. `hear`: {status, rows, event, job, again, refused(name, text),
+ * forbidden(error), fresh(age)}: `again` when something was missed, `forbidden` when the key does not
+ * do, `fresh` with the age of the data in s, null while they are new.
  */
 export class Run {
   constructor(job, hear) {
@@ -100,6 +101,7 @@ export class Run {
       await this.order(json);
       for (const [, order] of orders) order.sentAt = performance.now();
     } catch (error) {
+      if (error.status === 403) this.hear.forbidden(error);
       const told = refusals(error, Object.keys(values));
       // The body is refused as a whole: what is right in it goes again without what is not.
       for (const [name, order] of orders) {

@@ -1,14 +1,14 @@
 // Jobs: all of them with how far they are; looked at again while the page is seen.
 
-import { announce, api, byId, duration, el, fill, tell } from "/dashboard/app.js";
-import { bar, confirmed, framed, isOver, KINDS, programNames, programOf, saying, shortMoment, stateBadge, STATES }
+import { announce, api, byId, duration, el, fill, moment, tell } from "/dashboard/app.js";
+import { allPrograms, bar, confirmed, framed, hasShare, isOver, KINDS, programOf, saying, stateBadge, STATES }
   from "/dashboard/records.js";
 import { paceWord } from "/dashboard/machine_words.js";
 
 const APART = 1500, PAGE = 50;
 const asked = new URLSearchParams(location.search);
 
-let names = new Map(), cursors = [null], timer = null, drawn = "", reading = 0;
+let programs = new Map(), cursors = [null], timer = null, drawn = "", reading = 0;
 const lines = new Map(), states = new Map();
 
 const option = (value, text, chosen) => el("option", { value, selected: value === chosen }, text);
@@ -48,7 +48,7 @@ async function look() {
   try {
     const page = await api(`/v1/jobs?${query}`);
     if (mine !== reading) return;
-    if (page.items.some((job) => job.program_id && !names.has(job.program_id) && !lines.has(job.id))) names = await programNames();
+    if (page.items.some((job) => job.program_id && !programs.has(job.program_id) && !lines.has(job.id))) programs = await allPrograms();
     if (mine !== reading) return;
     draw(page);
     tell(trouble, null);
@@ -91,7 +91,7 @@ function draw(page) {
 /** Say how a job has ended that was seen to run. */
 function tellChange(job) {
   const before = states.get(job.id);
-  if (before && before !== job.state && isOver(job)) announce(`${KINDS[job.kind][0]} ${programOf(job, names)} ${job.state}`);
+  if (before && before !== job.state && isOver(job)) announce(`${KINDS[job.kind][0]} ${programOf(job, programs)} ${job.state}`);
   states.set(job.id, job.state);
 }
 
@@ -102,8 +102,8 @@ function made(first) {
   const cells = { state: el("td", {}), how: el("td", { class: "jobs-how" }), took: el("td", { class: "n" }), acts: el("td", { class: "jobs-acts" }) };
   const row = el("tr", { id: `job-${first.id}`, "data-kind": first.kind },
     el("th", { scope: "row", class: "nowrap", title: first.id }, KINDS[first.kind][0]), cells.state,
-    el("td", { class: "jobs-program" }, programOf(first, names) || "–"), cells.how, el("td", {}, first.owner),
-    el("td", { class: "nowrap" }, el("time", { datetime: first.created_at }, shortMoment(first.created_at))), cells.took, cells.acts);
+    el("td", { class: "jobs-program" }, programOf(first, programs) || "–"), cells.how, el("td", {}, first.owner),
+    el("td", { class: "nowrap" }, el("time", { datetime: first.created_at }, moment(first.created_at))), cells.took, cells.acts);
   let told = "";
   const line = { row, update(job) {
     cells.took.textContent = job.started_at ? duration(seconds(job)) : "–";
@@ -127,6 +127,7 @@ function how(job) {
   if (job.state === "queued") return el("span", { class: "soft small" }, saying(job));
   if (job.state === "cancelled") return el("span", { class: "soft small" }, ended(job));
   if (job.state === "succeeded") return el("span", { class: "soft small" }, gist(job));
+  if (!hasShare(job)) return el("span", { class: "soft small" }, saying(job) || "runs at its pace");
   return [bar(job), el("div", { class: "soft small" }, saying(job) || "begins")];
 }
 
@@ -145,7 +146,7 @@ function gist({ request, kind }) {
 }
 
 function acts(job) {
-  const [word, place] = KINDS[job.kind], label = `${word} ${programOf(job, names)}`.trim();
+  const [word, place] = KINDS[job.kind], label = `${word} ${programOf(job, programs)}`.trim();
   const isShown = job.state === "succeeded" || ["simulation", "control-run", "trial"].includes(job.kind);
   const found = [];
   if (isShown && job.state !== "queued") found.push(el("a", { class: "button small", href: place(job.id), "aria-label": `open ${label}` }, "Open"));
@@ -159,7 +160,7 @@ function acts(job) {
 }
 
 async function remove(job, label) {
-  const texts = [`${label}, ${shortMoment(job.created_at)}: its results, samples and reports are deleted.`,
+  const texts = [`${label}, ${moment(job.created_at)}: its results, samples and reports are deleted.`,
     ["control-run", "evaluation", "review"].includes(job.kind) ? "What the knowledge base holds stays." : "This cannot be undone."];
   if (await confirmed("Delete a job", texts, "Delete")) {
     await doing(() => api(`/v1/jobs/${job.id}`, { method: "DELETE" }), `${label} is deleted`);

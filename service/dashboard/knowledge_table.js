@@ -33,7 +33,10 @@ const deviating = (name, label) => ({ label, order: (side) => Math.abs(side.devi
 const ofRow = (label, text, more = {}) => ({ label, isOfRow: true, text: (side, row) => text(row), ...more });
 const figures = (label, text, order) => ({ label, isFigure: true, text, order });
 
-/** Columns by the upper level of the header; `order` is by what a column sorts, of a side. */
+/**
+ * Columns by the upper level of the header: what came out first, then what it was made with; `order` is by what a
+ * column sorts, of a side.
+ */
 function columns(rows) {
   const programs = new Set(rows.map((row) => row.program));
   return [
@@ -42,6 +45,12 @@ function columns(rows) {
       ofRow("Feature_ID", (row) => words(row.feature), { isHead: true }),
       { label: "Side", text: (side) => (isFinishing(side) ? "finish" : "rough") },
       { label: "Grade", text: (side) => side.grade, isBadge: true, order: (side) => GRADES.length - GRADES.indexOf(side.grade) }]],
+    ["Deviation from plan, %", [figures("runs", (side) => String(side.runs), (side) => side.runs),
+      deviating("roughness", "surface"), deviating("time", "time"), deviating("force", "force"), deviating("feed", "feed")]],
+    ["Learned", [
+      figures("k_c factor", (side) => (side.kc_factor === null ? "–"
+        : `${fixed(side.kc_factor, 2)} (${fixed(side.kc_factor_low, 2)}–${fixed(side.kc_factor_high, 2)})${side.kc_factor_is_pending ? "*" : ""}`),
+      (side) => side.kc_factor ?? -1)]],
     ["Geometrical data", [
       ofRow("L/X mm", (row) => (row.length_mm === null && row.width_mm === null ? "–" : `${number(row.length_mm, 4)}/${number(row.width_mm, 4)}`),
         { isFigure: true, order: (side, row) => row.length_mm ?? -1 }),
@@ -60,12 +69,6 @@ function columns(rows) {
       figures("a_s", (side) => (isFinishing(side) ? depth(side) : ""), (side) => (isFinishing(side) ? side.step_depth_predicted_mm ?? 0 : -1))]],
     ["Cutting", [{ label: "Type", text: (side) => side.immersion_type || "–" },
       { label: "Strategy", text: (side) => words(side.strategy) || "–", isWrapped: true }]],
-    ["Deviation from plan, %", [figures("runs", (side) => String(side.runs), (side) => side.runs),
-      deviating("roughness", "surface"), deviating("time", "time"), deviating("force", "force"), deviating("feed", "feed")]],
-    ["Learned", [
-      figures("k_c factor", (side) => (side.kc_factor === null ? "–"
-        : `${fixed(side.kc_factor, 2)} (${fixed(side.kc_factor_low, 2)}–${fixed(side.kc_factor_high, 2)})${side.kc_factor_is_pending ? "*" : ""}`),
-      (side) => side.kc_factor ?? -1)]],
   ].map(([title, list]) => [title, list.filter(Boolean)]);
 }
 

@@ -1,14 +1,14 @@
 // Machine: a run of the virtual machine, live or recorded.
 
-import { api, byId, el, fill, tell } from "/dashboard/app.js";
-import { isOver, programNames, programOf, shortMoment, stateBadge } from "/dashboard/records.js";
+import { api, byId, el, fill, moment, tell } from "/dashboard/app.js";
+import { allPrograms, isOver, programOf, stateBadge } from "/dashboard/records.js";
 import { paceWord } from "/dashboard/machine_words.js";
 import { showRun } from "/dashboard/machine_run.js";
 import { startForm } from "/dashboard/machine_start.js";
 
 const asked = new URLSearchParams(location.search);
 const known = new Map();
-let names = new Map(), leave = null, cursor = null;
+let programs = new Map(), leave = null, cursor = null;
 
 const choice = el("select", { id: "run", onchange: () => open(known.get(choice.value)) });
 const older = el("button", { id: "runs-older", hidden: true, onclick: () => list() }, "Older");
@@ -25,8 +25,8 @@ fill(byId("main"),
     el("div", { class: "row" }, el("label", { class: "grow" }, "Run", choice), older, badge), starting),
   place);
 
-const label = (job) => [programOf(job, names), job.request.machine || "a machine that suits",
-  paceWord(job.request.pace), shortMoment(job.created_at), isOver(job) ? "" : job.state,
+const label = (job) => [programOf(job, programs), job.request.machine || "a machine that suits",
+  paceWord(job.request.pace), moment(job.created_at), isOver(job) ? "" : job.state,
   ["failed", "cancelled"].includes(job.state) ? job.state : ""].filter(Boolean).join(" · ");
 
 function know(job, isFirst = false) {
@@ -64,7 +64,7 @@ function started(job) {
 }
 
 async function begin() {
-  names = await programNames();
+  programs = await allPrograms();
   await list();
   const wanted = asked.get("id");
   if (wanted && !known.has(wanted)) {
@@ -82,7 +82,7 @@ async function begin() {
     choice.value = "";
   }
   choice.disabled = !known.size;
-  await startForm(byId("start-place"), names, wish, (job) => { choice.disabled = false; started(job); });
+  await startForm(byId("start-place"), programs, wish, (job) => { choice.disabled = false; started(job); });
 }
 
 begin().catch((error) => tell(trouble, error));

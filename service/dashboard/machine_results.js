@@ -19,7 +19,7 @@ export async function results(place, job, goTo) {
         figure("Time", duration(total.time_s)), figure("Cutting", percent(cutting), "of the time"),
         figure("Energy", number(total.energy_j.total / 1000, 4), "kJ"),
         figure("Removed", number(total.volume_mm3 / 1000, 3), "cm³"),
-        figure("Peak spindle power", fixed(total.peak_spindle_power.value_w / 1000, 2), "kW"),
+        figure("Peak spindle power, from the mains", fixed(total.peak_spindle_power.value_w / 1000, 2), "kW"),
         figure("Peak cutting force", number(total.peak_cutting_force.value_n, 3), "N"),
         figure("CO₂ equivalent", number(found.carbon.total_g, 3), "g")),
       total.overload_time_s > 0 ? el("div", { class: "banner warn", id: "overload" },
@@ -38,7 +38,7 @@ function steps(rows, goTo) {
   const head = ["Workingstep", "Time s", "Cutting s", "Air s", "Rapid s", "Waiting s", "Energy kJ",
     "Spindle kW", "Force N", "Removed cm³"];
   return el("table", { id: "steps", "aria-labelledby": "steps-title" },
-    el("caption", {}, "Spindle and force are the greatest; a name shows the state where the workingstep begins."),
+    el("caption", {}, "Spindle (its power from the mains) and force are the greatest; a name shows the state where the workingstep begins."),
     el("thead", {}, el("tr", {}, head.map((text, at) => el("th", { scope: "col", class: at ? "n" : "" }, text)))),
     el("tbody", {}, rows.map((row) => el("tr", {},
       el("th", { scope: "row", class: "nowrap" }, el("button", { class: "link", onclick: () => goTo(row.begin_s),

@@ -1,20 +1,25 @@
 // One run of the virtual machine, live or recorded: how it is now, its signals against time.
 
-import { announce, api, byId, duration, el, fill, fixed, number, tell, watch }
+import { AWAY_WORDS, announce, api, byId, duration, el, fill, fixed, number, tell, watch }
   from "/dashboard/app.js";
 import { timePanels } from "/dashboard/charts.js";
-import { bar, isOver, saying } from "/dashboard/records.js";
+import { bar, hasShare, isOver, saying } from "/dashboard/records.js";
 import { COMPONENTS, CONDITION, EXECUTION, LAMPS, PANELS, PATH_MODE, paceWord }
   from "/dashboard/machine_words.js";
 import { results } from "/dashboard/machine_results.js";
 
 const FLUSH = 250, STALE = 5000;
 
+/** of a machine whose program is over, whatever its last sample says */
+const AT_REST = { feed_actual_mm_min: 0, spindle_speed_rpm: 0, cutting_force_n: 0, path_mode: 0 };
+const END_WORDS = { succeeded: "State at the end of the run", failed: "State when the run failed",
+  cancelled: "State when the run was ended" };
+
 /** Readings: id, name, unit, how the value of a row is told; large ones first. */
 const READINGS = [
   ["now-feed-commanded", "Feed commanded", "mm/min", (row) => number(row.feed_programmed_mm_min, 4), "big"],
   ["now-feed-actual", "Feed actual", "mm/min", (row) => number(row.feed_actual_mm_min, 4), "big"],
-  ["now-power", "Power", "kW", (row) => fixed(row.total_power_w / 1000, 2), "big"],
+  ["now-power", "Power from the mains", "kW", (row) => fixed(row.total_power_w / 1000, 2), "big"],
   ["now-time", "Time of the machine", "", (row) => duration(row.time_s)],
   ["now-x", "X", "mm", (row) => fixed(row.x_mm, 2)],
   ["now-y", "Y", "mm", (row) => fixed(row.y_mm, 2)],
@@ -33,13 +38,14 @@ const READINGS = [
 export function showRun(place, first, told = () => {}) {
   let job = first, status = null, row = null, chart = null, energy = 0, energyAt = 0;
   let waiting = [], heard = Date.now(), isLost = false, isShut = false, isHeld = false, at = null, asked = 0;
+  let end = Infinity, energyAtEnd = null;
   const path = `/v1/simulations/${job.id}`;
 
   const lamp = el("span", { class: "lamp idle", id: "now-execution" }, "–");
   const mode = el("span", { class: "badge", id: "now-mode" }, "–");
   const step = el("span", { id: "now-workingstep" }, "–");
   const stale = el("div", { id: "stale" }), trouble = el("div", { id: "run-problem" });
-  const line = bar(job, { id: "run-progress" });
+  const line = hasShare(job) ? bar(job, { id: "run-progress" }) : null;
   const message = el("span", { class: "soft small", id: "run-message" });
   const cancel = el("button", { id: "run-cancel", onclick: () =>
     api(`/v1/jobs/${job.id}/cancel`, { method: "POST" }).then(hear, (error) => tell(trouble, error)) },
@@ -81,6 +87,7 @@ export function showRun(place, first, told = () => {}) {
 
   function show(now) {
     row = now;
+    message.textContent = "";
     showLamp(row.execution);
     mode.textContent = PATH_MODE[row.path_mode] ?? "–";
     step.textContent = stepName(row.workingstep);
@@ -93,8 +100,14 @@ export function showRun(place, first, told = () => {}) {
     lamp.className = `lamp ${LAMPS[execution] ?? "idle"}`;
   }
 
+  /** The last sample is of the moment before the end. */
   function showEnd() {
-    if (job.state === "succeeded") { showLamp(EXECUTION.indexOf("PROGRAM COMPLETED")); return; }
+    byId("at-words").textContent = `${END_WORDS[job.state]}; move the slider to look back`;
+    if (job.state === "succeeded") {
+      show({ ...row, ...AT_REST, execution: EXECUTION.indexOf("PROGRAM COMPLETED") });
+      if (energyAtEnd !== null) tellEnergy(energyAtEnd);
+      return;
+    }
     lamp.textContent = job.state.toUpperCase();
     lamp.className = `lamp ${job.state === "failed" ? "over" : "idle"}`;
   }
@@ -129,6 +142,7 @@ export function showRun(place, first, told = () => {}) {
     tellEnergy(joules);
     byId("at-words").textContent = `State at ${duration(time)}`;
     slider.setAttribute("aria-valuetext", duration(time));
+    if (time >= end) showEnd();
     mark();
   }
 
@@ -165,7 +179,7 @@ export function showRun(place, first, told = () => {}) {
 
   function lost() {
     if (!isLost) {
-      fill(stale, el("div", { class: "banner warn", role: "alert" }, "The connection is lost; it is tried again each second. ",
+      fill(stale, el("div", { class: "banner warn", role: "alert" }, `${AWAY_WORDS} `,
         el("span", { id: "stale-age", "aria-live": "off" })));
     }
     isLost = true;
@@ -185,7 +199,7 @@ export function showRun(place, first, told = () => {}) {
     told(job, isAgain);
     if (isShut) return;
     progress.hidden = isOver(job);
-    if (job.request.pace === 0 && job.state === "running") line.value = job.share;
+    if (line && job.state === "running") line.value = job.share;
     message.textContent = row ? "" : saying(job) || "begins";
     cancel.disabled = job.is_cancelling;
     if (!row) lamp.textContent = job.state.toUpperCase();
@@ -210,19 +224,18 @@ export function showRun(place, first, told = () => {}) {
     await recount();
     const found = await api(`${path}/series?points=1&signals=tool`).catch(() => null);
     if (!found?.rows || isShut) return;
-    slider.max = String(found.end_s[0]);
-    slider.value = slider.max;
+    [end] = found.end_s;
+    slider.max = slider.value = String(end);
     atLine.hidden = false;
-    await goTo(found.end_s[0]);
-    // The last sample is of the moment before the end.
-    if (at === found.end_s[0]) showEnd();
-    byId("at-words").textContent = "State at the end of the run; move the slider to look back";
     if (job.state === "succeeded") {
       const result = await results(outcome, job, (time) => { slider.value = String(time); goTo(time); })
         .catch((error) => tell(outcome, error));
+      if (isShut) return;
       if (result) byId("run-facts").textContent = facts(job, result.machine);
+      energyAtEnd = result?.total.energy_j.total ?? null;
       announce("the run has ended");
     }
+    if (at === null) await goTo(end);
   }
 
   const leave = watch(job.id, {

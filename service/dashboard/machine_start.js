@@ -1,15 +1,15 @@
 // The form that starts a run of the virtual machine.
 
-import { announce, api, byId, el, fill, tell } from "/dashboard/app.js";
-import { KINDS, programOf, shortMoment } from "/dashboard/records.js";
+import { announce, api, byId, el, fill, moment, tell } from "/dashboard/app.js";
+import { KINDS, programOf, programTitle } from "/dashboard/records.js";
 import { PACES } from "/dashboard/machine_words.js";
 
 /** A form; `started(job)` hears of the run. `wanted` may name what to run at first. */
-export async function startForm(place, names, wanted, started) {
+export async function startForm(place, programs, wanted, started) {
   const [machines, materials, advice] = await Promise.all([
     api("/v1/machines"), api("/v1/materials"), api("/v1/jobs?kind=advice&state=succeeded&limit=50"),
   ]);
-  if (!names.size) {
+  if (!programs.size) {
     fill(place, el("p", { class: "empty", id: "no-programs" }, "There is no program yet. ",
       el("a", { href: "/dashboard/plan.html" }, "Upload one on the page Plan"), ", or take a sample there."));
     return;
@@ -21,9 +21,9 @@ export async function startForm(place, names, wanted, started) {
   const form = el("form", { id: "start", onsubmit: submit },
     el("div", { class: "fields" },
       el("label", { class: "wide" }, "What to run", el("select", { id: "start-what", required: true, onchange: follow },
-        el("optgroup", { label: "programs as they came" }, [...names].map(([id, name]) => choice(`program:${id}`, name))),
-        el("optgroup", { label: "as advised" }, advice.items.filter((job) => names.has(job.program_id)).map((job) =>
-          choice(`advice:${job.id}`, `${programOf({ ...job, advice_id: job.id }, names)}, ${job.request.mode}, ${shortMoment(job.created_at)}`))))),
+        el("optgroup", { label: "programs as they came" }, [...programs].map(([id, program]) => choice(`program:${id}`, programTitle(program)))),
+        el("optgroup", { label: "as advised" }, advice.items.filter((job) => programs.has(job.program_id)).map((job) =>
+          choice(`advice:${job.id}`, `${programOf({ ...job, advice_id: job.id }, programs)}, ${job.request.mode}, ${moment(job.created_at)}`))))),
       el("label", {}, "Machine", el("select", { id: "start-machine" },
         el("option", { value: "" }, "one that suits"), options(machines))),
       el("label", {}, "Material", el("select", { id: "start-material" },

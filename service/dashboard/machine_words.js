@@ -21,7 +21,7 @@ export const COMPONENTS = [
 
 /** Panels of the chart, see timePanels in charts.js. */
 export const PANELS = [
-  { title: "Power by component, W", unit: "W", isStacked: true,
+  { title: "Power from the mains by component, W", unit: "W", isStacked: true,
     signals: COMPONENTS.map(({ signal, label, colour }) => ({ name: signal, label, colour })) },
   { title: "Feed, mm/min (rapids leave the top)", unit: "mm/min",
     top: (greatest) => 1.35 * greatest("feed_programmed_mm_min"),

@@ -1,6 +1,6 @@
 // The plan page: choose a program, say what is wanted, see what is advised and why.
 
-import { Problem, announce, api, byId, duration, el, fill, followed, tell } from "/dashboard/app.js";
+import { AWAY_WORDS, Problem, announce, api, byId, duration, el, fill, followed, patiently, tell } from "/dashboard/app.js";
 import { programChoice } from "/dashboard/plan_program.js";
 import { showResult } from "/dashboard/plan_result.js";
 import { beginRuns, endRuns } from "/dashboard/plan_runs.js";
@@ -108,16 +108,19 @@ async function follow(asked) {
   working = asked;
   ready();
   const begun = performance.now();
+  const news = (job) => {
+    if (job.share) bar.value = job.share;
+    if (!cancel.disabled) words.textContent = job.state === "queued" ? "waiting for its turn …"
+      : job.message || "optimising …";
+  };
+  const line = { lost: () => { words.textContent = AWAY_WORDS; }, back: () => { words.textContent = "…"; } };
   try {
-    const job = await followed(asked, (news) => {
-      if (news.share) bar.value = news.share;
-      if (!cancel.disabled) words.textContent = news.state === "queued" ? "waiting for its turn …"
-        : news.message || "optimising …";
-    });
-    const result = await api(`/v1/advice/${job.id}`);
+    const job = await followed(asked, news, line);
+    const result = await patiently(`/v1/advice/${job.id}`, line);
     byId("result").hidden = false;
     showResult(job, result);
-    announce(`Optimised: ${duration(result.total_time_s.before)} becomes ${duration(result.total_time_s.after)}`);
+    const { before, after } = result.total_time_s, longer = Math.max(before, after);
+    announce(`Optimised: ${duration(before, longer)} becomes ${duration(after, longer)}`);
     performance.measure("optimise to table", { start: begun });
     if (!matchMedia("(prefers-reduced-motion: reduce)").matches && begun)
       byId("result").scrollIntoView({ behavior: "smooth", block: "start" });

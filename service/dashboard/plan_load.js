@@ -4,8 +4,8 @@ import { api, byId } from "/dashboard/app.js";
 import { colour, envelope, layout, plot } from "/dashboard/charts.js";
 
 const PANELS = [
-  { title: "Total power, kW", unit: "kW", name: "total_power_w", scale: 0.001 },
-  { title: "Spindle power, kW", unit: "kW", name: "spindle_power_w", scale: 0.001 },
+  { title: "Total power from the mains, kW", unit: "kW", name: "total_power_w", scale: 0.001 },
+  { title: "Spindle power from the mains, kW", unit: "kW", name: "spindle_power_w", scale: 0.001 },
   { title: "Cutting force, N", unit: "N", name: "cutting_force_n", scale: 1 },
 ];
 const RUNS = { before: ["curve-7", "before"], after: ["curve-1", "after"] };

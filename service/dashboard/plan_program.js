@@ -1,6 +1,7 @@
 // The program of the plan page: upload, example or one uploaded before; what was found in it.
 
 import { announce, api, byId, el, fill, tell } from "/dashboard/app.js";
+import { programTitle } from "/dashboard/records.js";
 
 const RANK = ["error", "warning", "note"];
 const KIND = { error: "bad", warning: "warn", note: "soft" };
@@ -23,6 +24,18 @@ function place({ entity, attribute, line }) {
   const at = [[entity, attribute].filter(Boolean).join(" "), line ? `line ${line}` : ""];
   const told = at.filter(Boolean).join(", ");
   return told ? ` (${told})` : "";
+}
+
+/** An example: the copy that was made of it before, as long as the service remembers the request. */
+async function sample(name) {
+  const path = `/v1/programs?example=${encodeURIComponent(name)}`;
+  try {
+    return await api(path, { method: "POST", headers: { "idempotency-key": `example ${name}` } });
+  } catch (error) {
+    // The copy was deleted, or the example is another since.
+    if (error.status === 404 || error.status === 409) return api(path, { method: "POST" });
+    throw error;
+  }
 }
 
 /** Ways to a program; `chosen(program, contents)` hears of it, `chosen(null)` when there is none. */
@@ -65,7 +78,7 @@ export function programChoice(chosen) {
   examples.addEventListener("change", () => {
     if (!examples.value) return;
     const name = examples.value;
-    use(api(`/v1/programs?example=${encodeURIComponent(name)}`, { method: "POST" }), `reading ${name} …`);
+    use(sample(name), `reading ${name} …`);
   });
   known.addEventListener("change", () => {
     if (!known.value) return;
@@ -87,9 +100,7 @@ export function programChoice(chosen) {
   async function list(selected = "") {
     const { items } = await api("/v1/programs?limit=200");
     fill(known, el("option", { value: "" }, items.length ? "choose …" : "none yet"),
-      items.map((each) => el("option", { value: each.id },
-        `${each.name}, ${new Date(each.created_at).toLocaleString("en-GB",
-          { day: "numeric", month: "short", hour: "2-digit", minute: "2-digit" })}`)));
+      items.map((each) => el("option", { value: each.id }, programTitle(each))));
     known.value = selected;
   }
 

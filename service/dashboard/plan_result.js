@@ -14,6 +14,12 @@ function pair(name, before, after, unit, kind = "") {
       el("span", { class: "value" }, after), unit ? el("span", { class: "unit" }, unit) : null));
 }
 
+/** Two times in the same form. */
+function times(name, before, after, kind = "") {
+  const longer = Math.max(before, after);
+  return pair(name, duration(before, longer), duration(after, longer), "", kind);
+}
+
 /** A saving as a figure; a rise says so. */
 function saving(name, before, after) {
   const share = before ? (before - after) / before : null;
@@ -33,7 +39,7 @@ export function showResult(asked, found) {
   byId("result-of").textContent = [found.program, found.machine, found.material,
     `${found.mode}, ${MODES[found.mode]}`].join(" · ");
   const infeasible = count("infeasible");
-  fill(byId("figures"), pair("Machining time", duration(before), duration(after), "", "big"),
+  fill(byId("figures"), times("Machining time", before, after, "big"),
     saving("Time", before, after),
     el("div", { class: "figure" }, el("div", { class: "name" }, "Workingsteps advised"),
       el("div", {}, el("span", { class: "value" }, `${count("advised")} of ${steps.length}`),
@@ -52,7 +58,7 @@ export function showResult(asked, found) {
   byId("download-nc").title = found.nc_control ? `for ${found.nc_control}` : "choose a control and optimise again";
   byId("download-nc").textContent = found.nc_control ? `NC code, ${found.nc_control}` : "NC code";
   stepsTable(byId("steps"), steps);
-  times(steps);
+  bars(steps);
 }
 
 /** What the simulations add: time with all moves, energy. */
@@ -61,10 +67,11 @@ export function showSimulated(before, after) {
   if (!before || !after || !place) return;
   const kj = (run) => number(run.total.energy_j.total / 1000, 4);
   fill(place, pair("Energy, simulated", kj(before), kj(after), "kJ"),
-    pair("Time, simulated with all moves", duration(before.total.time_s), duration(after.total.time_s)));
+    times("Time, simulated with all moves", before.total.time_s, after.total.time_s));
 }
 
-function times(steps) {
+/** Time of each workingstep as bars. */
+function bars(steps) {
   const known = steps.filter((step) => step.time_s.before || step.time_s.after);
   const most = Math.max(...known.flatMap((step) => [step.time_s.before ?? 0, step.time_s.after ?? 0]), 1e-9);
   const bar = (kind, value) => el("div", { class: kind, style: `width:${(100 * (value ?? 0) / most).toFixed(2)}%` });

@@ -1,6 +1,6 @@
 // Simulations of the program as it came and as advised: found, or made, then shown.
 
-import { Problem, announce, api, byId, el, fill, save, show, tell } from "/dashboard/app.js";
+import { AWAY_WORDS, Problem, announce, api, byId, el, fill, patiently, save, show, tell } from "/dashboard/app.js";
 import { showLoad } from "/dashboard/plan_load.js";
 import { showPath } from "/dashboard/plan_path.js";
 import { showSimulated } from "/dashboard/plan_result.js";
@@ -39,6 +39,7 @@ async function simulate(job, result, rate, mine) {
     cancel.disabled = true;
     for (const run of asked.values()) api(`/v1/jobs/${run.id}/cancel`, { method: "POST" }).catch(() => {});
   } }, "Cancel");
+  const away = el("span", { class: "soft small", role: "status" });
   const wanted = Object.keys(NAMES).filter((which) => which === "before" || result.is_written);
   const lines = Object.fromEntries(wanted.map((which) => {
     const bar = el("progress", { max: 1, value: 0, "aria-label": NAMES[which] });
@@ -46,7 +47,7 @@ async function simulate(job, result, rate, mine) {
     return [which, { bar, words, line: el("div", { class: "row" }, words, bar) }];
   }));
   fill(byId("runs-work"), wanted.map((which) => el("div", { class: "work" }, lines[which].line)),
-    el("div", { class: "row work" }, cancel));
+    el("div", { class: "row work" }, cancel, away));
 
   const earlier = await api("/v1/simulations?limit=200").then((page) => page.items).catch(() => []);
   const one = async (which) => {
@@ -56,10 +57,11 @@ async function simulate(job, result, rate, mine) {
     const run = earlier.find((each) => isSame(each, body, job))
       ?? await api("/v1/simulations", { method: "POST", json: body });
     asked.set(which, run);
-    await ended(run, (news) => { lines[which].bar.value = news.state === "succeeded" ? 1 : news.share; });
-    return { id: run.id, ...(await Promise.all([
-      api(`/v1/simulations/${run.id}`), api(`/v1/simulations/${run.id}/path`),
-    ]).then(([summary, path]) => ({ summary, path }))) };
+    const ask = (path) => patiently(path, { lost: () => { away.textContent = AWAY_WORDS; },
+      back: () => { away.textContent = ""; } });
+    await ended(run, ask, (news) => { lines[which].bar.value = news.state === "succeeded" ? 1 : news.share; });
+    const [summary, path] = await Promise.all([ask(`/v1/simulations/${run.id}`), ask(`/v1/simulations/${run.id}/path`)]);
+    return { id: run.id, summary, path };
   };
   const ends = await Promise.allSettled(wanted.map(one));
   if (mine !== turn) return;
@@ -81,11 +83,11 @@ async function simulate(job, result, rate, mine) {
 }
 
 /** Wait for the end of a job by looking at it: its stream would bring rows that are not needed. */
-async function ended(run, heard) {
+async function ended(run, ask, heard) {
   let job = run;
   while (["queued", "running"].includes(job.state)) {
     await new Promise((again) => setTimeout(again, 400));
-    job = await api(`/v1/jobs/${run.id}`);
+    job = await ask(`/v1/jobs/${run.id}`);
     heard(job);
   }
   heard(job);

@@ -76,7 +76,7 @@ export function stepsTable(table, steps) {
       el("div", { class: "under soft small" }, `${words(step.operation)} · ${step.tool}`)),
     el("td", { class: "n" }, change(step.programmed?.feed_mm_min, step.advised?.feed_mm_min)),
     el("td", { class: "n" }, change(step.programmed?.spindle_rpm, step.advised?.spindle_rpm)),
-    el("td", { class: "n" }, depths(step)),
+    el("td", { class: "n" }, change(cuts(step.programmed), cuts(step.advised), (text) => text ?? "–")),
     el("td", { class: "n" }, change(step.time_s.before, step.time_s.after, (value) => fixed(value, 1))),
     el("td", {}, mark(step)),
     el("td", { class: "why" }, step.reason));
@@ -106,15 +106,9 @@ function change(before, after, form = four) {
     el("span", { class: "arrow", "aria-label": "becomes" }, "→"), el("b", {}, is));
 }
 
-function depths(step) {
-  const { programmed, advised } = step, one = (value) => (value ? number(value, 3) : "–");
-  const was = one(programmed?.axial_depth_mm);
-  if (!advised) return el("span", { class: "change" }, was);
-  const passes = advised.passes > 1 ? ` × ${advised.passes}` : "", is = one(advised.axial_depth_mm);
-  if (was === is) return el("span", { class: "change" }, `${is}${passes}`);
-  return el("span", { class: "change" }, el("span", { class: "was" }, was),
-    el("span", { class: "arrow", "aria-label": "becomes" }, "→"), el("b", {}, `${is}${passes}`));
-}
+/** Depth and passes, where these are known; null: no depth. */
+const cuts = (setting) => (!setting?.axial_depth_mm ? null
+  : number(setting.axial_depth_mm, 3) + (setting.passes ? ` × ${setting.passes}` : ""));
 
 /** The active limit, or why there is none. */
 function mark(step) {
@@ -210,7 +204,8 @@ export function stepsCsv(steps) {
     spindle_programmed_rpm: (step) => step.programmed?.spindle_rpm,
     spindle_advised_rpm: (step) => step.advised?.spindle_rpm,
     depth_programmed_mm: (step) => step.programmed?.axial_depth_mm,
-    depth_advised_mm: (step) => step.advised?.axial_depth_mm, passes: (step) => step.advised?.passes,
+    depth_advised_mm: (step) => step.advised?.axial_depth_mm,
+    passes_programmed: (step) => step.programmed?.passes, passes_advised: (step) => step.advised?.passes,
     time_before_s: (step) => step.time_s.before, time_after_s: (step) => step.time_s.after,
     active_limit: (step) => step.active_limit, reason: (step) => step.reason,
   };

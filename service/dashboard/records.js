@@ -24,40 +24,38 @@ export function stateBadge(job) {
   return el("span", { class: `badge ${TONES[job.state]}` }, word);
 }
 
-/** How far a job is, as a bar: its share tells of planning only when the run has a pace. */
+/** Whether the share of a job tells how far it is: that of a run with a pace tells of its plan. */
+export const hasShare = (job) => !(job.request.pace > 0);
+
+/** How far a job is, as a bar. */
 export function bar(job, more = {}) {
-  const value = job.request.pace > 0 || job.state === "queued" ? undefined : String(job.share);
+  const value = job.state === "queued" ? undefined : String(job.share);
   return el("progress", { max: "1", value, "aria-label": "how far it is", ...more });
 }
 
 /** What a job says of itself; the bar tells the share. */
 export const saying = (job) => (job.state === "queued" ? "waits for its turn" : job.message.replace(/^\d+ ?%\s*/, ""));
 
-/** All programs by id; `name` is what people call it, also when it is gone. */
-export async function programNames() {
-  const names = new Map();
+/** All programs by id, newest first. */
+export async function allPrograms() {
+  const programs = new Map();
   for (let cursor = null, pages = 0; pages < 4; pages += 1) {
     const page = await api(`/v1/programs?limit=500${cursor ? `&cursor=${cursor}` : ""}`);
-    for (const program of page.items) names.set(program.id, program.name);
+    for (const program of page.items) programs.set(program.id, program);
     cursor = page.next_cursor;
     if (!cursor) break;
   }
-  return names;
+  return programs;
 }
+
+/** A program among others of its name. */
+export const programTitle = ({ name, created_at: at }) => `${name}, ${moment(at)}`;
 
 /** What a job works on. */
-export function programOf(job, names) {
+export function programOf(job, programs) {
   if (!job.program_id) return "";
-  const name = names.get(job.program_id) ?? "deleted program";
+  const name = programs.get(job.program_id)?.name ?? "deleted program";
   return job.advice_id ? `${name}, optimised` : name;
-}
-
-/** Today's times without their day. */
-export function shortMoment(text) {
-  if (!text) return "–";
-  const at = new Date(text);
-  if (at.toDateString() !== new Date().toDateString()) return moment(text);
-  return at.toLocaleTimeString("en-GB");
 }
 
 /** A table in a frame that scrolls by itself, also with the keyboard. */

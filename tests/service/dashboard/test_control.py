@@ -9,6 +9,9 @@ from tests.service.dashboard.conftest import keep
 from tests.service.waiting import until
 
 
+DAY = re.compile(r"paper002\.stpnc, \d+ \w+ \d{4}, \d\d:\d\d:\d\d")
+
+
 def begun(page: Page) -> None:
     """A trial cut that has reached its steady state."""
     page.goto("/dashboard/control.html?source=trial")
@@ -58,6 +61,8 @@ def test_a_deeper_cut_raises_the_force_and_lowers_the_feed(page: Page) -> None:
 
 def test_tc_and_qc_on_and_off_are_switched_while_it_runs(page: Page) -> None:
     begun(page)
+    # In a slot the width of cut is the tool's.
+    expect(page.locator("#in-radial_width_mm")).to_have_value("50")
     page.locator("#switch-qc").click()
     expect(page.locator("#switch-qc")).to_have_attribute("aria-pressed", "true")
     expect(page.locator("#out-holding")).to_contain_text("QC")
@@ -65,6 +70,7 @@ def test_tc_and_qc_on_and_off_are_switched_while_it_runs(page: Page) -> None:
     expect(page.locator("#switch-tc")).to_have_attribute("aria-pressed", "true")
     page.locator("#switch-off").click()
     expect(page.locator("#switch-off")).to_have_attribute("aria-pressed", "true")
+    expect(page.locator("#out-feed_advised_mm_min")).to_have_text("–")
     set_input(page, "axial_depth_mm", "5")
     # Nobody holds the force: the drive stays over its limit.
     expect(page.locator("#lamp")).to_contain_text("OVER")
@@ -100,5 +106,9 @@ def test_a_program_runs_under_control(page: Page) -> None:
     set_input(page, "motor_power_percent", "50")
     expect(page.locator("#log")).to_contain_text("motor power 50 %")
     expect(page.locator("#run-state")).to_contain_text("Program through", timeout=60_000)
+    expect(page.locator("#lamp")).to_contain_text("AT REST")
+    expect(page.locator("#out-feed_actual_mm_min")).to_have_text("0.0")
+    # The next start tells programs of the same name apart.
+    expect(page.locator("#in-program option").first).to_contain_text(DAY)
     outcomes = page.request.get("/v1/outcomes?program=paper002.stpnc").json()
     assert outcomes["total"] > 0

@@ -24,7 +24,13 @@ def test_a_run_is_watched_and_its_samples_are_downloaded(page: Page, tmp_path: P
     expect(page.locator("#now-execution")).to_contain_text("ACTIVE", timeout=30_000)
     expect(page.locator("#now-feed-actual")).to_contain_text(re.compile(r"[1-9]"))
     expect(page.locator("#now-workingstep")).to_contain_text("ROUGH THE FACE")
+    expect(page.locator("#run-message")).to_have_text("")
+    expect(page.locator("#run-line progress")).to_have_count(0)
     expect(page.locator("#totals")).to_be_visible(timeout=60_000)
+    expect(page.locator("#now-execution")).to_contain_text("PROGRAM COMPLETED")
+    expect(page.locator("#now-spindle")).to_have_text("0")
+    energy = page.locator("#totals .figure", has_text="Energy").locator(".value").inner_text()
+    expect(page.locator("#now-energy")).to_have_text(energy)
     # 168 s of the machine: all of them, and no more.
     page.wait_for_function("document.querySelector('#run-chart').layout.xaxis.range[1] < 200")
     with page.expect_download() as download:
@@ -44,3 +50,11 @@ def test_a_recorded_run_shows_how_it_was_at_a_time(page: Page) -> None:
     expect(
         page.locator("#run-chart .js-plotly-plot, #run-chart.js-plotly-plot")
     ).to_be_visible()
+
+
+def test_a_cancelled_run_shows_how_it_was_when_it_was_ended(page: Page) -> None:
+    start(page, pace="10")
+    expect(page.locator("#now-execution")).to_contain_text("ACTIVE", timeout=30_000)
+    page.locator("#run-cancel").click()
+    expect(page.locator("#at-words")).to_contain_text("State when the run was ended")
+    expect(page.locator("#now-execution")).to_have_text("CANCELLED")

@@ -87,3 +87,13 @@ def test_an_advice_can_be_opened_again(page: Page) -> None:
     expect(page).to_have_url(re.compile("advice="))
     page.reload()
     expect(page.locator("#steps tr.step").first).to_be_visible()
+
+
+def test_an_example_is_kept_once(page: Page) -> None:
+    found = []
+    for _ in range(2):
+        page.goto("/dashboard/plan.html")
+        page.locator("#program-example").select_option("paper002")
+        expect(page.locator("#program-known")).not_to_have_value("")
+        found.append(page.locator("#program-known").input_value())
+    assert found[0] == found[1]
