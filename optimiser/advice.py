@@ -139,7 +139,7 @@ class Plan:
         unknown = sum(advice.before is None for advice in self.advices)
         rest = "tool changes and moves between workingsteps"
         return (
-            f"{unknown} of the workingsteps (the feed is a pitch), {rest}" if unknown else rest
+            f"{unknown} of the workingsteps (no feed is chosen), {rest}" if unknown else rest
         )
 
     @property

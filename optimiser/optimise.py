@@ -29,6 +29,8 @@ from simulator.edge_material import edge_material
 from simulator.errors import LibraryError
 from simulator.library import find_grade
 from simulator.spec import CuttingMaterial, Grade, Machine, MachineKind, MaterialMatch
+from stepnc_model.entities.milling import MillingTypeOperation
+from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import Finding, Severity
 from stepnc_model.program import Program, Workingstep
 from stepnc_model.technology import programmed
@@ -121,6 +123,10 @@ def advise(
         cuts.leave_out(step)
         reason = "the feed is bound to the pitch of the thread"
         return replace(untouched, reason=reason), []
+    elsewhere = _why_elsewhere(step, machine)
+    if elsewhere:
+        cuts.leave_out(step)
+        return replace(untouched, status=Status.INFEASIBLE, reason=elsewhere), []
     cut, findings = cuts.cut(step)
     at, found = _conditions(program, step, cut, machine=machine, material=material, task=task)
     findings += found
@@ -150,6 +156,16 @@ def advise(
         except OptimisationError as error:
             raise OptimisationError(f"{program.label(step.operation_ref)}: {error}") from error
     return advice, findings + _passed_limits(program, advice)
+
+
+def _why_elsewhere(step: Workingstep, machine: Machine) -> str:
+    """Why this machine cannot do it at all; empty where it can."""
+    is_lathe = machine.kind is MachineKind.LATHE
+    if isinstance(step.operation, TurningMachiningOperation) and not is_lathe:
+        return f"{step.operation_type} needs a lathe, and '{machine.name}' is a mill"
+    if isinstance(step.operation, MillingTypeOperation) and is_lathe:
+        return f"{step.operation_type} needs a mill, and '{machine.name}' is a lathe"
+    return ""
 
 
 def _why_idle(cut: Cut) -> str:

@@ -135,7 +135,7 @@ def test_what_the_advice_leaves_out_of_range_is_said(bracket: Plan) -> None:
 
 def test_totals_say_what_they_leave_out(bracket: Plan, shaft: Plan) -> None:
     assert bracket.left_out == "tool changes and moves between workingsteps"
-    assert shaft.left_out.startswith("1 of the workingsteps (the feed is a pitch), ")
+    assert shaft.left_out.startswith("1 of the workingsteps (no feed is chosen), ")
     assert bracket.energy_after < bracket.energy_before
 
 
@@ -262,10 +262,22 @@ def test_tool_without_teeth_is_taken_with_one_and_said() -> None:
     assert any("one tooth assumed" in text for text in texts)
 
 
-def test_turning_on_a_mill_is_said() -> None:
-    plan = plan_of("shaft", Task(), machine="vmc15")
-    texts = [str(finding) for finding in plan.findings]
-    assert any("facing_rough on machine 'vmc15', a mill" in text for text in texts)
+@pytest.mark.parametrize(
+    ("part", "machine", "reason"),
+    [
+        ("shaft", "vmc15", "facing_rough needs a lathe, and 'vmc15' is a mill"),
+        ("paper002", "lathe22", "plane_rough_milling needs a mill, and 'lathe22' is a lathe"),
+        ("bracket", "lathe22", "plane_rough_milling needs a mill, and 'lathe22' is a lathe"),
+    ],
+)
+def test_nothing_is_advised_for_another_kind_of_machine(
+    part: str, machine: str, reason: str
+) -> None:
+    plan = plan_of(part, Task(), machine=machine)
+    assert plan.is_infeasible
+    assert plan.advices[0].status is Status.INFEASIBLE
+    assert plan.advices[0].reason == reason
+    assert plan.advices[0].after is None
 
 
 def test_only_selected_workingsteps_are_advised() -> None:
