@@ -12,10 +12,11 @@ References
 from collections.abc import Callable
 from math import inf, isnan
 
-from controller.orders import Event
+from controller.orders import Event, EventKind
 from controller.record import OVER
 from service.control.live_run import Taken
 from service.control.trace import Moment
+from stepnc_model.units import kw_from_watts
 
 LIT = 1.0
 """s for which the lamp is lit at least: what is shorter nobody sees"""
@@ -40,13 +41,20 @@ class Tape:
         self._moments: list[Moment] = []
         self._events: list[Event] = []
         self._lit_until = -inf
+        self._is_lit = False
 
     def __call__(self, moment: Moment) -> None:
         """One more row."""
         self._moments.append(moment)
         self.last = moment
-        if moment.spindle_power_true > OVER * self._motor_power():
+        power, motor = moment.spindle_power_true, self._motor_power()
+        if power > OVER * motor:
             self._lit_until = moment.time + LIT
+        if self.is_over(moment.time) is not self._is_lit:
+            self._is_lit = not self._is_lit
+            kind = EventKind.OVER if self._is_lit else EventKind.SAFE
+            drawn = f"{kw_from_watts(power):.3g} kW of {kw_from_watts(motor):.3g} kW"
+            self.note(Event(time=moment.time, kind=kind, text=f"power limit: {drawn}"))
 
     def note(self, event: Event) -> None:
         """One more event."""

@@ -49,6 +49,17 @@ def test_the_lamp_is_lit_for_a_while() -> None:
     assert not tape.is_over(1.0 + 1.1 * LIT)
 
 
+def test_each_change_of_the_lamp_is_an_event() -> None:
+    tape = Tape(lambda: 1000.0)
+    for time, power in ((0.0, 900.0), (0.5, 2000.0), (1.0, 2000.0), (2.5, 900.0), (3.0, 900.0)):
+        tape(row(time, power=power))
+    told = [(event.time, event.kind, event.text) for event in tape.taken().events]
+    assert told == [
+        (0.5, EventKind.OVER, "power limit: 2 kW of 1 kW"),
+        (2.5, EventKind.SAFE, "power limit: 0.9 kW of 1 kW"),
+    ]
+
+
 def test_a_weaker_motor_is_over_sooner() -> None:
     powers = [1000.0]
     tape = Tape(lambda: powers[0])
