@@ -266,7 +266,7 @@ export function tell(place, error) {
   const detail = error instanceof Problem ? error.message : `the service does not answer (${error.message})`;
   const other = error.status === 403 && keptKey()
     ? el("button", { onclick: () => changeKey().then(() => fill(place)) }, "Use another key") : null;
-  fill(place, el("div", { class: "banner bad", role: "alert" }, detail, other));
+  fill(place, el("div", { class: `banner bad ${other ? "row" : ""}`, role: "alert" }, detail, other));
 }
 
 function theme() {

@@ -225,7 +225,8 @@ export function showRun(place, first, told = () => {}) {
     const found = await api(`${path}/series?points=1&signals=tool`).catch(() => null);
     if (!found?.rows || isShut) return;
     [end] = found.end_s;
-    slider.max = slider.value = String(end);
+    slider.max = String(end);
+    slider.value = slider.max;
     atLine.hidden = false;
     if (job.state === "succeeded") {
       const result = await results(outcome, job, (time) => { slider.value = String(time); goTo(time); })

@@ -76,7 +76,7 @@ export function stepsTable(table, steps) {
       el("div", { class: "under soft small" }, `${words(step.operation)} · ${step.tool}`)),
     el("td", { class: "n" }, change(step.programmed?.feed_mm_min, step.advised?.feed_mm_min)),
     el("td", { class: "n" }, change(step.programmed?.spindle_rpm, step.advised?.spindle_rpm)),
-    el("td", { class: "n" }, change(cuts(step.programmed), cuts(step.advised), (text) => text ?? "–")),
+    el("td", { class: "n" }, depths(step)),
     el("td", { class: "n" }, change(step.time_s.before, step.time_s.after, (value) => fixed(value, 1))),
     el("td", {}, mark(step)),
     el("td", { class: "why" }, step.reason));
@@ -106,9 +106,13 @@ function change(before, after, form = four) {
     el("span", { class: "arrow", "aria-label": "becomes" }, "→"), el("b", {}, is));
 }
 
-/** Depth and passes, where these are known; null: no depth. */
-const cuts = (setting) => (!setting?.axial_depth_mm ? null
-  : number(setting.axial_depth_mm, 3) + (setting.passes ? ` × ${setting.passes}` : ""));
+/** Depth and passes; where those of the program are not known, the same depth is no change. */
+function depths({ programmed, advised }) {
+  const cuts = (setting) => (!setting?.axial_depth_mm ? null
+    : number(setting.axial_depth_mm, 3) + (setting.passes ? ` × ${setting.passes}` : ""));
+  const isSame = !programmed?.passes && programmed?.axial_depth_mm === advised?.axial_depth_mm;
+  return change(cuts(isSame ? advised : programmed), cuts(advised), (text) => text ?? "–");
+}
 
 /** The active limit, or why there is none. */
 function mark(step) {

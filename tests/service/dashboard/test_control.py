@@ -8,7 +8,6 @@ from playwright.sync_api import Locator, Page, expect
 from tests.service.dashboard.conftest import keep
 from tests.service.waiting import until
 
-
 DAY = re.compile(r"paper002\.stpnc, \d+ \w+ \d{4}, \d\d:\d\d:\d\d")
 
 

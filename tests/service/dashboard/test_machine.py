@@ -29,6 +29,8 @@ def test_a_run_is_watched_and_its_samples_are_downloaded(page: Page, tmp_path: P
     expect(page.locator("#totals")).to_be_visible(timeout=60_000)
     expect(page.locator("#now-execution")).to_contain_text("PROGRAM COMPLETED")
     expect(page.locator("#now-spindle")).to_have_text("0")
+    at_end = "(slider) => slider.value === slider.max && Number(slider.max) > 100"
+    assert page.locator("#at-time").evaluate(at_end)
     energy = page.locator("#totals .figure", has_text="Energy").locator(".value").inner_text()
     expect(page.locator("#now-energy")).to_have_text(energy)
     # 168 s of the machine: all of them, and no more.
