@@ -90,7 +90,7 @@ bench: $(READY) $(KERNELS)
 # Whatever mkdocs would warn of is an error. The variable stills an advertisement of its theme.
 docs: $(READY)
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict --quiet
-	@echo "open: build/site/index.html"
+	@echo "open: build/site/index.html (its search needs a server: python3 -m http.server -d build/site)"
 
 # Needs uv. Universal (every platform, Python 3.11 and later), hashes, no index addresses.
 lock:

@@ -85,8 +85,8 @@ def _advice(advice: Advice) -> dict[str, Any]:
         "tool": advice.tool.id,
         "status": advice.status.value,
         "reason": advice.reason,
-        "programmed": _setting(before, passes=False),
-        "advised": _setting(after, passes=True),
+        "programmed": _setting(before),
+        "advised": _setting(after),
         "active_limit": advice.active.value if advice.active else None,
         "limits": [_load(load) for load in tightest(shown.loads)] if shown else [],
         "motor_power_kw": kw_from_watts(shown.motor_power) if shown else None,
@@ -114,18 +114,18 @@ def _advice(advice: Advice) -> dict[str, Any]:
     }
 
 
-def _setting(state: State | None, *, passes: bool) -> dict[str, Any] | None:
+def _setting(state: State | None) -> dict[str, Any] | None:
     """Feed, speed and depth in shop units."""
     if state is None:
         return None
     setting = state.setting
-    shown: dict[str, Any] = {
+    return {
         "feed_mm_min": mm_min_from_speed(state.feed),
         "spindle_rpm": rpm_from_rev_s(setting.speed),
         "feed_per_tooth_mm": setting.feed,
         "axial_depth_mm": setting.depth,
+        "passes": setting.passes,
     }
-    return {**shown, "passes": setting.passes} if passes else shown
 
 
 def _load(load: Load) -> dict[str, Any]:
