@@ -38,7 +38,7 @@ function steps(rows, goTo) {
   const head = ["Workingstep", "Time s", "Cutting s", "Air s", "Rapid s", "Waiting s", "Energy kJ",
     "Spindle kW", "Force N", "Removed cm³"];
   return el("table", { id: "steps", "aria-labelledby": "steps-title" },
-    el("caption", {}, "Spindle (its power from the mains) and force are the greatest; a name shows the state where the workingstep begins."),
+    el("caption", {}, "Greatest spindle power (from the mains) and force; a name shows the state where the workingstep begins."),
     el("thead", {}, el("tr", {}, head.map((text, at) => el("th", { scope: "col", class: at ? "n" : "" }, text)))),
     el("tbody", {}, rows.map((row) => el("tr", {},
       el("th", { scope: "row", class: "nowrap" }, el("button", { class: "link", onclick: () => goTo(row.begin_s),

@@ -1,5 +1,6 @@
 """Plan: from a file to feeds with reasons, and back to a file."""
 
+import csv
 import json
 import re
 from pathlib import Path
@@ -36,6 +37,15 @@ def test_a_file_is_uploaded_optimised_and_downloaded(page: Page, tmp_path: Path)
     expect(rows.first).to_be_visible(timeout=60_000)
     assert rows.count() == 16
     expect(page.locator("#steps")).to_contain_text("feed per tooth 0.35 mm reaches its bound")
+    contour = page.locator("#steps tr.step", has_text="ROUGH CONTOUR")
+    expect(contour).to_contain_text("10 × 2→6.67 × 3")
+    with page.expect_download() as cells:
+        page.locator("#download-csv").click()
+    cells.value.save_as(tmp_path / "table.csv")
+    with (tmp_path / "table.csv").open(encoding="utf-8", newline="") as file:
+        lines = {line["workingstep"]: line for line in csv.DictReader(file)}
+    found = lines["ROUGH CONTOUR"]
+    assert (found["passes_programmed"], found["passes_advised"]) == ("2", "3")
     with page.expect_download() as download:
         page.locator("#download-program").click()
     assert download.value.suggested_filename == "bracket.optimised.stpnc"
