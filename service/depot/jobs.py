@@ -23,6 +23,12 @@ from service.errors import Conflict, NotFound, TooMany
 MOST_WAITING = 1000
 """jobs in the queue"""
 
+LOCAL = "local"
+"""owner of what is asked where no keys are in use: the whole queue is theirs"""
+
+OWNERS = 4
+"""of keys that fill the queue, at least: none keeps the others out"""
+
 MOST_ATTEMPTS = 3
 """of a job whose runner was lost each time"""
 
@@ -109,7 +115,7 @@ def add(depot: Depot, order: Order, *, once: Once | None = None) -> Job:
     with depot.database.writing() as connection:
         kept = made_before(connection, once)
         if kept is None:
-            _require_room(connection)
+            _require_room(connection, order.owner)
             _require_program(connection, order.program)
             connection.execute(
                 "INSERT INTO jobs (id, kind, state, request, program, source, owner, created) "
@@ -276,9 +282,13 @@ def _update(depot: Depot, job: Job, columns: str, values: Sequence[object]) -> N
         )
 
 
-def _require_room(connection: sqlite3.Connection) -> None:
-    count = connection.execute("SELECT count(*) FROM jobs WHERE state = 'queued'").fetchone()
-    if count[0] >= MOST_WAITING:
+def _require_room(connection: sqlite3.Connection, owner: str) -> None:
+    """Room in the queue, and in the share of it that one owner may fill."""
+    waiting, own = connection.execute(
+        "SELECT count(*), total(owner = ?) FROM jobs WHERE state = 'queued'", (owner,)
+    ).fetchone()
+    share = MOST_WAITING if owner == LOCAL else max(MOST_WAITING // OWNERS, 1)
+    if waiting >= MOST_WAITING or own >= share:
         raise TooMany(60.0)
 
 

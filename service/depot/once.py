@@ -30,25 +30,36 @@ def made_before(connection: sqlite3.Connection, once: Once | None) -> str | None
     Raises
     ------
     Conflict
-        When the key came with another request.
+        When the key came with another request, or what it made was deleted.
     """
     if once is None:
         return None
-    connection.execute("DELETE FROM requests WHERE created < ?", (time.time() - KEPT,))
     row = connection.execute(
-        "SELECT fingerprint, made FROM requests WHERE owner = ? AND key = ?",
-        (once.owner, once.key),
+        "SELECT fingerprint, made FROM requests WHERE owner = ? AND key = ? AND created >= ?",
+        (once.owner, once.key, time.time() - KEPT),
     ).fetchone()
     if row is None:
         return None
     if row["fingerprint"] != once.fingerprint:
         raise Conflict(f"Idempotency-Key '{once.key}' came with another request before")
-    return str(row["made"])
+    made = str(row["made"])
+    if not _is_there(connection, made):
+        raise Conflict(f"Idempotency-Key '{once.key}': what this request made was deleted")
+    return made
+
+
+def _is_there(connection: sqlite3.Connection, made: str) -> bool:
+    query = (
+        "SELECT EXISTS (SELECT 1 FROM programs WHERE id = ?1) "
+        "OR EXISTS (SELECT 1 FROM jobs WHERE id = ?1)"
+    )
+    return bool(connection.execute(query, (made,)).fetchone()[0])
 
 
 def remember(connection: sqlite3.Connection, once: Once | None, made: str) -> None:
     """Keep what a request made, within the transaction that made it."""
     if once is not None:
+        connection.execute("DELETE FROM requests WHERE created < ?", (time.time() - KEPT,))
         connection.execute(
             "INSERT INTO requests VALUES (?, ?, ?, ?, ?)",
             (once.owner, once.key, once.fingerprint, made, time.time()),

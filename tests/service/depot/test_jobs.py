@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from service.depot import jobs
 from service.depot.folder import Depot
-from service.depot.jobs import MOST_ATTEMPTS, Job, Kind, Order, State
+from service.depot.jobs import LOCAL, MOST_ATTEMPTS, Job, Kind, Order, State
 from service.depot.pages import Place
 from service.errors import Conflict, NotFound, TooMany
 
@@ -17,8 +17,8 @@ ALL = tuple(Kind)
 REVIEW = Order(kind=Kind.REVIEW, request={"a": [1, None, "é"]}, owner="anna")
 
 
-def queued(depot: Depot, kind: Kind = Kind.REVIEW) -> Job:
-    return jobs.add(depot, Order(kind=kind, request={}, owner="anna"))
+def queued(depot: Depot, kind: Kind = Kind.REVIEW, *, owner: str = "anna") -> Job:
+    return jobs.add(depot, Order(kind=kind, request={}, owner=owner))
 
 
 def claimed(depot: Depot, kind: Kind = Kind.REVIEW) -> Job:
@@ -200,12 +200,25 @@ def test_recovery_leaves_what_waits_and_what_is_over(depot: Depot) -> None:
 
 def test_the_queue_has_an_end(depot: Depot, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(jobs, "MOST_WAITING", 2)
-    queued(depot)
-    queued(depot)
+    queued(depot, owner=LOCAL)
+    queued(depot, owner=LOCAL)
     with pytest.raises(TooMany):
-        queued(depot)
+        queued(depot, owner=LOCAL)
     jobs.claim(depot, kinds=ALL)
-    queued(depot)
+    queued(depot, owner=LOCAL)
+
+
+def test_one_owner_leaves_room_in_the_queue_for_others(
+    depot: Depot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(jobs, "MOST_WAITING", 8)
+    for _ in range(2):
+        queued(depot, owner="anna")
+    with pytest.raises(TooMany):
+        queued(depot, owner="anna")
+    assert queued(depot, owner="bert").owner == "bert"
+    jobs.claim(depot, kinds=ALL)
+    assert queued(depot, owner="anna").owner == "anna"
 
 
 def test_lists_are_by_kind_state_and_program(depot: Depot) -> None:

@@ -8,7 +8,7 @@ import pytest
 from service.depot import jobs, programs
 from service.depot.folder import Depot
 from service.depot.jobs import Kind, Order
-from service.depot.once import KEPT, Once
+from service.depot.once import KEPT, Once, made_before
 from service.depot.pages import Place
 from service.errors import Conflict
 
@@ -52,6 +52,29 @@ def test_a_key_is_free_again_after_a_day(depot: Depot) -> None:
     with depot.database.writing() as connection:
         connection.execute("UPDATE requests SET created = created - ?", (KEPT + 1.0,))
     assert jobs.add(depot, ORDER, once=once()).id != first.id
+
+
+def test_what_was_deleted_is_not_made_again_and_said(depot: Depot) -> None:
+    program = programs.add(depot, b"bytes", name="a.stpnc", owner="anna", once=once())
+    programs.remove(depot, program.id)
+    with pytest.raises(Conflict, match="what this request made was deleted"):
+        programs.add(depot, b"bytes", name="a.stpnc", owner="anna", once=once())
+    assert list((depot.root / "programs").iterdir()) == []
+    job = jobs.add(depot, ORDER, once=once("j"))
+    jobs.cancel(depot, job.id)
+    jobs.remove(depot, job.id)
+    with pytest.raises(Conflict, match="what this request made was deleted"):
+        jobs.add(depot, ORDER, once=once("j"))
+    with pytest.raises(Conflict, match="came with another request"):
+        jobs.add(depot, ORDER, once=once("j", fingerprint="g"))
+
+
+def test_a_key_is_looked_up_without_a_turn_to_write(depot: Depot) -> None:
+    first = jobs.add(depot, ORDER, once=once())
+    with depot.database.reading() as connection:
+        assert made_before(connection, once()) == first.id
+        assert made_before(connection, once("other")) is None
+        assert made_before(connection, None) is None
 
 
 def test_a_job_that_could_not_be_queued_keeps_no_key(
