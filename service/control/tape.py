@@ -52,9 +52,7 @@ class Tape:
             self._lit_until = moment.time + LIT
         if self.is_over(moment.time) is not self._is_lit:
             self._is_lit = not self._is_lit
-            kind = EventKind.OVER if self._is_lit else EventKind.SAFE
-            drawn = f"{kw_from_watts(power):.3g} kW of {kw_from_watts(motor):.3g} kW"
-            self.note(Event(time=moment.time, kind=kind, text=f"power limit: {drawn}"))
+            self.note(_change(moment.time, power, motor, is_lit=self._is_lit))
 
     def note(self, event: Event) -> None:
         """One more event."""
@@ -70,6 +68,16 @@ class Tape:
         self._moments.clear()
         self._events.clear()
         return taken
+
+
+def _change(time: float, power: float, motor: float, *, is_lit: bool) -> Event:
+    """What is said when the lamp changes."""
+    has = f"{kw_from_watts(motor):.3g} kW"
+    if is_lit:
+        text = f"power limit: the drive draws {kw_from_watts(power):.3g} kW, the motor has {has}"
+        return Event(time=time, kind=EventKind.OVER, text=text)
+    text = f"power limit: for {LIT:g} s at most {OVER - 1.0:.0%} above {has}"
+    return Event(time=time, kind=EventKind.SAFE, text=text)
 
 
 def known(value: float) -> float | None:

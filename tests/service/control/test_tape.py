@@ -55,8 +55,8 @@ def test_each_change_of_the_lamp_is_an_event() -> None:
         tape(row(time, power=power))
     told = [(event.time, event.kind, event.text) for event in tape.taken().events]
     assert told == [
-        (0.5, EventKind.OVER, "power limit: 2 kW of 1 kW"),
-        (2.5, EventKind.SAFE, "power limit: 0.9 kW of 1 kW"),
+        (0.5, EventKind.OVER, "power limit: the drive draws 2 kW, the motor has 1 kW"),
+        (2.5, EventKind.SAFE, "power limit: for 1 s at most 5% above 1 kW"),
     ]
 
 
