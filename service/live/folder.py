@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from service.live.storage import storing
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LiveFolder:
@@ -35,10 +37,17 @@ class LiveFolder:
         return self.path / "status.json"
 
     def write_status(self, status: Mapping[str, Any]) -> None:
-        """Replace the status; readers see the old or the new. It need not outlive a crash."""
+        """Replace the status; readers see the old or the new. It need not outlive a crash.
+
+        Raises
+        ------
+        StorageFull, Unavailable
+            When it cannot be written; the old one stays.
+        """
         partial = self.path / ".status.json"
-        partial.write_text(json.dumps(status, ensure_ascii=False), encoding="utf-8")
-        os.replace(partial, self.status)
+        with storing(self.status.name):
+            partial.write_text(json.dumps(status, ensure_ascii=False), encoding="utf-8")
+            os.replace(partial, self.status)
 
     def read_status(self) -> dict[str, Any] | None:
         """How it is now; None: nothing was said yet."""

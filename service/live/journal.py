@@ -1,16 +1,20 @@
 """Lines of JSON that one process appends and others read while it goes on.
 
-A line is written at once, so that a reader meets whole lines only; what stands behind the last
-line break is still being written, or was cut off when its writer died or the disk was full. A
-line that was cut off and went on as another is none: it is passed over.
+A line is written at once, by one process after another, so that a reader meets whole lines
+only; what stands behind the last line break is still being written, or was cut off when its
+writer died. A line that was cut off is none: it is passed over, and the next begins anew. One
+for which the disk has no room is taken back.
 """
 
+import fcntl
 import json
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+from service.live.storage import storing, write_whole
 
 LONGEST = 1 << 20
 """bytes that are read at once"""
@@ -26,13 +30,33 @@ class Read:
 
 
 def append(file: Path, entry: Mapping[str, Any]) -> None:
-    """Add a line; several processes may."""
+    """Add a line; several processes may.
+
+    Raises
+    ------
+    StorageFull, Unavailable
+        When it cannot be written; the file is as it was then.
+    """
     line = json.dumps(entry, ensure_ascii=False, allow_nan=False).encode() + b"\n"
-    descriptor = os.open(file, os.O_WRONLY | os.O_APPEND | os.O_CREAT, 0o600)
+    with storing(file.name):
+        descriptor = os.open(file, os.O_RDWR | os.O_APPEND | os.O_CREAT, 0o600)
+        try:
+            # Free again when it is closed.
+            fcntl.flock(descriptor, fcntl.LOCK_EX)
+            _add(descriptor, line)
+        finally:
+            os.close(descriptor)
+
+
+def _add(descriptor: int, line: bytes) -> None:
+    """A line at the end, or nothing."""
+    begin = os.fstat(descriptor).st_size
+    is_cut = begin > 0 and os.pread(descriptor, 1, begin - 1) != b"\n"
     try:
-        os.write(descriptor, line)
-    finally:
-        os.close(descriptor)
+        write_whole(descriptor, b"\n" + line if is_cut else line)
+    except OSError:
+        os.ftruncate(descriptor, begin)
+        raise
 
 
 def read_on(file: Path, offset: int) -> Read:

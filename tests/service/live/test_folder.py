@@ -2,6 +2,9 @@
 
 from pathlib import Path
 
+import pytest
+
+from service.errors import StorageFull
 from service.live.folder import LiveFolder
 
 
@@ -31,3 +34,14 @@ def test_who_has_the_old_status_open_reads_it_to_its_end(tmp_path: Path) -> None
     with folder.status.open(encoding="utf-8") as opened:
         folder.write_status({"number": 2, "longer": "x" * 1000})
         assert opened.read() == '{"number": 1}'
+
+
+def test_a_status_for_which_there_is_no_room_is_refused_and_the_old_one_stays(
+    tmp_path: Path,
+) -> None:
+    folder = LiveFolder(path=tmp_path)
+    folder.write_status({"number": 1})
+    (tmp_path / ".status.json").symlink_to("/dev/full")
+    with pytest.raises(StorageFull, match=r"^status\.json: "):
+        folder.write_status({"number": 2})
+    assert folder.read_status() == {"number": 1}

@@ -8,7 +8,9 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from service.errors import Unavailable
 from service.live.journal import LONGEST, append, read_on
+from tests.service.live.room import within_room
 
 Entries = st.lists(
     st.dictionaries(st.text(max_size=5), st.one_of(st.text(max_size=9), st.integers())),
@@ -60,8 +62,37 @@ def test_a_line_that_was_cut_off_does_not_take_the_later_ones_with_it(tmp_path: 
     append(file, {"c": 3})
     append(file, {"d": 4})
     read = read_on(file, 0)
-    assert read.lines == ({"a": 1}, {"d": 4})
+    assert read.lines == ({"a": 1}, {"c": 3}, {"d": 4})
     assert read.offset == file.stat().st_size
+
+
+ON_FULL_DISK = """
+from pathlib import Path
+from service.errors import StorageFull
+from service.live.journal import append
+for number in range(5):
+    try:
+        append(Path(sys.argv[1]), {"number": number, "more": "x" * 300})
+    except StorageFull as error:
+        print(error)
+append(Path(sys.argv[1]), {"small": 1})
+"""
+
+
+def test_a_line_for_which_there_is_no_room_is_refused_and_leaves_nothing(
+    tmp_path: Path,
+) -> None:
+    file = tmp_path / "orders.jsonl"
+    told = within_room(ON_FULL_DISK, file, room=1100)
+    assert told.splitlines() == ["orders.jsonl: File too large"] * 2
+    read = read_on(file, 0)
+    assert [line.get("number") for line in read.lines] == [0, 1, 2, None]
+    assert read.offset == file.stat().st_size
+
+
+def test_a_journal_whose_folder_is_gone_is_told(tmp_path: Path) -> None:
+    with pytest.raises(Unavailable, match=r"^journal: No such file"):
+        append(tmp_path / "gone" / "journal", {"a": 1})
 
 
 @pytest.mark.parametrize("line", [b"[1]", b"1", b"null", b"\xff\xfe", b"", b"{" * 2000, b'"x"'])
