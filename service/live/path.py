@@ -4,8 +4,9 @@ The path is a curve over time: position, feed and force together. Points are ran
 and Peucker [1]_ do it: between two points that stay, the one that lies farthest from the
 straight line *at the same moment* comes next, so that corners and changes of feed or force stay
 and straight cuts at an even feed need their ends only. All stretches are cut in the same round,
-so that a long run takes some dozens of passes over arrays. How far the thinned path is off is
-not promised but measured, and told with it.
+so that a long run takes some dozens of passes over arrays. A very long one is thinned piece by
+piece, and then once more as a whole, so that memory stays bounded. How far the thinned path is
+off is not promised but measured, and told with it.
 
 References
 ----------
@@ -16,6 +17,7 @@ References
    less than those to the line.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -45,6 +47,9 @@ FEWEST = 20
 MOST_ROUNDS = 40
 """in which the farthest point is looked for; later stretches are cut in their middle, so that
 no shape of path takes long"""
+
+PIECE = 250_000
+"""rows that are thinned at once: some hundred MB on the way"""
 
 Flags = NDArray[np.bool_]
 
@@ -93,15 +98,49 @@ class Deviation:
     """N"""
 
 
-def path_of(series: Series) -> ToolPath:
-    """The path in the rows of a run.
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Shown:
+    """A thinned path, and how true it is."""
+
+    path: ToolPath
+    deviation: Deviation
+    rows: int
+    """that it stands for"""
+
+
+def shown_path(series: Series, points: int) -> Shown:
+    """The path in the rows of a run, at most so many points of it.
+
+    Raises
+    ------
+    NotFound
+        When the rows have no such columns.
+    ValueError
+        When ``points`` is too small.
+    """
+    pieces = [
+        (first, min(first + PIECE, len(series))) for first in range(0, len(series), PIECE)
+    ]
+    if len(pieces) < 2:
+        whole = path_of(series)
+        path = whole.at(thinned(whole, points))
+        return Shown(path=path, deviation=_deviation(whole, path), rows=len(series))
+    parts = (path_of(series, begin=begin, end=end) for begin, end in pieces)
+    rough = _joined([part.at(thinned(part, points)) for part in parts])
+    path = rough.at(thinned(rough, points))
+    off = [_deviation(path_of(series, begin=begin, end=end), path) for begin, end in pieces]
+    return Shown(path=path, deviation=_greatest(off), rows=len(series))
+
+
+def path_of(series: Series, *, begin: int = 0, end: int | None = None) -> ToolPath:
+    """The path in rows of a run, from one on and up to another.
 
     Raises
     ------
     NotFound
         When the rows have no such columns.
     """
-    rows = np.asarray(series.values[:, series.places(COLUMNS)], dtype=np.float64)
+    rows = np.asarray(series.values[begin:end, series.places(COLUMNS)], dtype=np.float64)
     return ToolPath(
         time=rows[:, 0],
         position=rows[:, 1:4],
@@ -149,18 +188,43 @@ def thinned(path: ToolPath, points: int) -> Ints:
 
 def deviation(path: ToolPath, kept: Ints) -> Deviation:
     """How far the points between those that were kept are off."""
-    if len(kept) < 2:
+    return _deviation(path, path.at(kept))
+
+
+def _deviation(path: ToolPath, shown: ToolPath) -> Deviation:
+    """How far the points of a path are off one that stands for it."""
+    if len(shown) < 2:
         return Deviation(length=0.0, feed=0.0, force=0.0)
-    values = np.nan_to_num(np.column_stack([path.position, path.feed, path.force]))
-    between = np.column_stack([
-        np.interp(path.time, path.time[kept], column) for column in values[kept].T
-    ])
+    values, kept = _values(path), _values(shown)
+    between = np.column_stack([np.interp(path.time, shown.time, column) for column in kept.T])
     off = np.abs(values - between)
     cuts = ~path.is_rapid
     return Deviation(
         length=float(np.linalg.norm(off[:, :3], axis=1).max()),
         feed=float(off[cuts, 3].max(initial=0.0)),
         force=float(off[:, 4].max()),
+    )
+
+
+def _values(path: ToolPath) -> Floats:
+    """(N, 5) position, feed and force; 0 where they are missing."""
+    return np.nan_to_num(np.column_stack([path.position, path.feed, path.force]))
+
+
+def _joined(parts: Sequence[ToolPath]) -> ToolPath:
+    """One path of those that follow each other."""
+    return ToolPath(**{
+        name: np.concatenate([getattr(part, name) for part in parts])
+        for name in ToolPath.__slots__
+    })
+
+
+def _greatest(found: Sequence[Deviation]) -> Deviation:
+    """The greatest of each."""
+    return Deviation(
+        length=max(each.length for each in found),
+        feed=max(each.feed for each in found),
+        force=max(each.force for each in found),
     )
 
 

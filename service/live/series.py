@@ -7,7 +7,7 @@ that it brings together, so that no peak is lost.
 """
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
@@ -15,7 +15,11 @@ from types import TracebackType
 import numpy as np
 
 from service.errors import NotFound
-from simulator.motion.segments import Floats
+from service.live.storage import storing, write_whole
+from simulator.motion.segments import Floats, Ints
+
+BLOCK = 16 << 20
+"""bytes of rows in memory at once; what is worked out of them takes some times as much"""
 
 TIME = "time_s"
 
@@ -23,6 +27,9 @@ MOST_POINTS = 5000
 """of a window: more than a screen has"""
 
 BYTES = 8
+
+MOST_BYTES = 512 << 20
+"""of a file: some million rows, which a window of them all reads in seconds"""
 
 
 class SeriesWriter:
@@ -33,15 +40,25 @@ class SeriesWriter:
     file : Path
     columns : sequence of str
         The first is the time.
+
+    Raises
+    ------
+    StorageFull, Unavailable
+        When it cannot be written.
     """
 
     def __init__(self, file: Path, columns: Sequence[str]) -> None:
         self.rows = 0
-        # Not cut short in place: whoever has mapped the rows of an earlier attempt keeps them.
-        file.unlink(missing_ok=True)
-        self._file = file.open("wb")
-        self._file.write(json.dumps(list(columns)).encode() + b"\n")
-        self._file.flush()
+        """that are in the file"""
+        self.is_full = False
+        """whether rows were left out, as the file has as many as it may have"""
+        self._name = file.name
+        self._most = MOST_BYTES // (BYTES * len(columns))
+        with storing(self._name):
+            # Not cut short in place: who has mapped the rows of an earlier attempt keeps them.
+            file.unlink(missing_ok=True)
+            self._file = file.open("wb", buffering=0)
+            write_whole(self._file.fileno(), json.dumps(list(columns)).encode() + b"\n")
 
     def __enter__(self) -> "SeriesWriter":
         return self
@@ -55,10 +72,20 @@ class SeriesWriter:
         self._file.close()
 
     def add(self, rows: Floats) -> None:
-        """More rows (M, C), later than those before; NaN is a missing value."""
-        self._file.write(np.ascontiguousarray(rows, dtype="<f8").tobytes())
-        self._file.flush()
-        self.rows += len(rows)
+        """More rows (M, C), later than those before; NaN is a missing value.
+
+        A file that has as many as it may have takes no more, and says so.
+
+        Raises
+        ------
+        StorageFull, Unavailable
+            When they cannot be written.
+        """
+        taken = rows[: self._most - self.rows]
+        self.is_full = self.is_full or len(taken) < len(rows)
+        with storing(self._name):
+            write_whole(self._file.fileno(), np.ascontiguousarray(taken, dtype="<f8").tobytes())
+        self.rows += len(taken)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -155,25 +182,51 @@ def window(
     places = series.places(names)
     first = first_at(series, begin)
     last = first_at(series, float(np.nextafter(end, np.inf)))
-    rows = np.asarray(series.values[first:last, [0, *places]], dtype=np.float64)
-    count = len(rows)
+    count = max(last - first, 0)
     shown = min(count, max(points, 1))
-    starts = np.arange(shown) * count // max(shown, 1)
-    ends = np.append(starts[1:], count)[:shown] - 1
-    time, values = rows[:, 0], rows[:, 1:]
+    starts = first + np.arange(shown) * count // max(shown, 1)
+    ends = np.append(starts[1:], last)[:shown] - 1
+    time = series.values[:, 0]
     if shown == count:
-        low = mean = high = values
+        low = mean = high = np.asarray(series.values[first:last, places], dtype=np.float64)
     else:
-        low = np.fmin.reduceat(values, starts, axis=0)
-        high = np.fmax.reduceat(values, starts, axis=0)
-        known = ~np.isnan(values)
-        sums = np.add.reduceat(np.where(known, values, 0.0), starts, axis=0)
-        counts = np.add.reduceat(known.astype(np.float64), starts, axis=0)
-        mean = np.divide(sums, counts, out=np.full_like(sums, np.nan), where=counts > 0.0)
+        low, mean, high = _reduced(series, places, starts, end=last)
     return Window(
-        names=tuple(names), time=time[starts], end=time[ends], low=low, mean=mean, high=high,
-        rows=count,
+        names=tuple(names), time=np.asarray(time[starts]), end=np.asarray(time[ends]),
+        low=low, mean=mean, high=high, rows=count,
     )  # fmt: skip
+
+
+def _reduced(
+    series: Series, places: Sequence[int], starts: Ints, *, end: int
+) -> tuple[Floats, Floats, Floats]:
+    """Least, mean and greatest (B, S) of the rows from each start to the next."""
+    shape = (len(starts), len(places))
+    low, high = np.full(shape, np.nan), np.full(shape, np.nan)
+    sums, counts = np.zeros(shape), np.zeros(shape)
+    for begin, stop in blocks(int(starts[0]), end, width=len(places)):
+        values = np.asarray(series.values[begin:stop, places], dtype=np.float64)
+        known = ~np.isnan(values)
+        # The first of them may have begun in the block before.
+        at = slice(
+            int(np.searchsorted(starts, begin, side="right")) - 1,
+            int(np.searchsorted(starts, stop)),
+        )
+        cuts = np.maximum(starts[at], begin) - begin
+        low[at] = np.fmin(low[at], np.fmin.reduceat(values, cuts, axis=0))
+        high[at] = np.fmax(high[at], np.fmax.reduceat(values, cuts, axis=0))
+        counts[at] += np.add.reduceat(known, cuts, axis=0, dtype=np.float64)
+        values[~known] = 0.0
+        sums[at] += np.add.reduceat(values, cuts, axis=0)
+    mean = np.divide(sums, counts, out=np.full(shape, np.nan), where=counts > 0.0)
+    return low, mean, high
+
+
+def blocks(begin: int, end: int, *, width: int) -> Iterator[tuple[int, int]]:
+    """Pieces of a range of rows of so many numbers, each of which takes little memory."""
+    step = max(BLOCK // (BYTES * max(width, 1)), 1)
+    for first in range(begin, end, step):
+        yield first, min(first + step, end)
 
 
 def first_at(series: Series, time: float) -> int:

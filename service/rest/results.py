@@ -1,11 +1,13 @@
 """What all kinds of jobs offer: their result, the rows of their run, what happens in it."""
 
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
+from functools import partial
 from math import inf
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, ParamSpec, TypeVar
 
 import numpy as np
+from anyio import CapacityLimiter, to_thread
 from fastapi import Query, Request, Response
 from fastapi.responses import StreamingResponse
 from starlette.concurrency import run_in_threadpool
@@ -28,6 +30,18 @@ Points = Annotated[int, Query(ge=1, le=5000, description="at most, in each signa
 Signals = Annotated[
     str, Query(max_length=1000, description="names with commas between; empty: all")
 ]
+
+
+READERS = CapacityLimiter(2)
+"""of all rows of a run at once: each takes a processor, and some hundred MB"""
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+
+async def read_in_turn(read: Callable[P, T], *args: P.args, **words: P.kwargs) -> T:
+    """Read rows in a thread, when not too many do: memory and processors are for all."""
+    return await to_thread.run_sync(partial(read, *args, **words), limiter=READERS)
 
 
 async def result_reply(request: Request, id: str, kind: Kind) -> Response:
@@ -76,7 +90,7 @@ async def series_reply(
     if series is None:
         raise Conflict(f"{job.kind.value} '{job.id}' is {job.state.value}: it has no rows yet")
     names = [name for name in signals.split(",") if name] or list(series.columns[1:])
-    found = await run_in_threadpool(window, series, names, begin=first, end=last, points=points)
+    found = await read_in_turn(window, series, names, begin=first, end=last, points=points)
     return json_reply(request, _window(found, series, job))
 
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from service.live.folder import LiveFolder
 from service.live.series import SeriesWriter
+from simulator.errors import SimulationError
 from simulator.machine.samples import Samples
 from simulator.motion.segments import Floats
 from stepnc_model.units import mm_min_from_speed, rpm_from_rev_s
@@ -46,6 +47,10 @@ COLUMNS: Mapping[str, Callable[[Samples], Floats]] = {
 """what a row holds; words of the last are those of :mod:`simulator.machine.samples`"""
 
 
+MOST_SAMPLES = 20_000_000
+"""of a run: its file then takes some gigabytes"""
+
+
 class LiveSamples:
     """Looks at the samples of a run. Running state; use the writer with ``with``.
 
@@ -64,15 +69,28 @@ class LiveSamples:
         self.writer = SeriesWriter(folder.series, list(COLUMNS))
         self._folder, self._paced, self._apart = folder, paced, apart
         self._workingsteps: Sequence[str] = ()
+        self._count = 0
 
     def begin(self, workingsteps: Sequence[str]) -> None:
         """See :class:`service.simulation.gathering.Watcher`."""
         self._workingsteps = workingsteps
 
     def add(self, samples: Samples) -> None:
-        """See :class:`service.simulation.gathering.Watcher`."""
+        """See :class:`service.simulation.gathering.Watcher`.
+
+        Raises
+        ------
+        SimulationError
+            When there are more samples than can be kept.
+        StorageFull, Unavailable
+            When they cannot be written.
+        """
         if not len(samples):
             return
+        self._count += len(samples)
+        if self._count > MOST_SAMPLES:
+            text = f"more than {MOST_SAMPLES} samples until {samples.time[0]:.0f} s"
+            raise SimulationError(f"{text}: ask for fewer a second")
         rows = np.column_stack([of(samples) for of in COLUMNS.values()])
         ends = np.flatnonzero(np.diff(samples.time // self._apart)) + 1
         first = 0
@@ -88,4 +106,5 @@ class LiveSamples:
             "time_s": float(samples.time[at]),
             "workingstep": self._workingsteps[number - 1] if number else None,
             "workingsteps": list(self._workingsteps),
+            "is_series_full": self.writer.is_full,
         }

@@ -1,7 +1,8 @@
 """A run that goes on in wall time, tells how it is, and does what it is asked. Running state.
 
 Each tick: what was asked of it is done, it goes on as far as it is time for, what came of it is
-written where others read it.
+written where others read it. A run that stands, and of which nobody asks anything for long, has
+been forgotten: it ends.
 """
 
 import time
@@ -16,13 +17,26 @@ from service.live.journal import append, read_on
 from service.live.pace import TICK
 from service.live.series import SeriesWriter
 from service.steering.rows import COLUMNS, rows_of
+from simulator.motion.segments import Floats
 from stepnc_model.errors import StepNcError
 
 AT_ONCE = 2.0
 """s of the machine in one tick when nobody waits for the clock"""
 
+FORGOTTEN_AFTER = 3600.0
+"""s of ours that a run stands and waits for somebody"""
+
+MOST_ROWS = 20_000_000
+"""that come of a run: what is kept of them then takes some gigabytes"""
+
 REFUSED = "refused"
 """kind of the event that tells of an order that could not be done"""
+
+FORGOTTEN = "forgotten"
+"""kind of the event that tells of the end of a run for which nobody came"""
+
+FULL = "full"
+"""kind of the event that tells that no more rows are kept to be looked at"""
 
 
 class Steered(Protocol):
@@ -76,10 +90,23 @@ class Helm:
     stands"""
     tell: Callable[[dict[str, Any]], None] = lambda _: None
     """hears the status of each tick"""
+    patience: float = FORGOTTEN_AFTER
     _offset: int = 0
+    _touched_at: float = 0.0
+    """s of ours, when it went on or something was asked of it last"""
+    _rows: int = 0
 
     def go(self) -> None:
-        """To the end of the run."""
+        """To the end of the run.
+
+        Raises
+        ------
+        StepNcError
+            When more comes of it than can be kept.
+        StorageFull, Unavailable
+            When what came of it cannot be written.
+        """
+        self._touched_at = self.now()
         with SeriesWriter(self.folder.series, list(COLUMNS)) as series:
             goes_on, due = True, self.run.time
             while goes_on:
@@ -89,14 +116,25 @@ class Helm:
                 if self.run.is_waiting or not self.pace:
                     due = self.run.time
                 due += TICK * self.pace or AT_ONCE
-                goes_on = self.run.advance(due) or self.run.is_waiting
+                goes_on = self.run.advance(due) or self._is_awaited()
                 self._publish(series)
                 if self.pace or self.run.is_waiting:
                     self.wait(max(TICK - (self.now() - begin), 0.0))
 
+    def _is_awaited(self) -> bool:
+        """Whether it stands, and somebody may still come for it."""
+        if not self.run.is_waiting:
+            return False
+        if self.now() - self._touched_at < self.patience:
+            return True
+        self._say(FORGOTTEN, f"it stood for {self.patience:g} s, and nobody came: it has ended")
+        return False
+
     def _obey(self) -> None:
         """All that was asked since the last tick."""
         read = read_on(self.folder.orders, self._offset)
+        if read.lines or not self.run.is_waiting:
+            self._touched_at = self.now()
         self._offset = read.offset
         for order in read.lines:
             try:
@@ -109,13 +147,29 @@ class Helm:
     def _publish(self, series: SeriesWriter) -> None:
         taken = self.run.taken()
         if taken.moments:
-            series.add(rows_of(taken.moments))
+            self._keep(series, rows_of(taken.moments))
         for event in taken.events:
             self._say(event.kind.value, event.text, at=event.time)
         told_at = self.clock().isoformat(timespec="milliseconds")
-        status = {**self.run.status(), "pace": self.pace, "told_at": told_at}
+        status = {
+            **self.run.status(),
+            "pace": self.pace,
+            "told_at": told_at,
+            "is_series_full": series.is_full,
+        }
         self.folder.write_status(status)
         self.tell(status)
+
+    def _keep(self, series: SeriesWriter, rows: Floats) -> None:
+        was_full = series.is_full
+        series.add(rows)
+        if series.is_full and not was_full:
+            self._say(
+                FULL, "the series has as many rows as it may have: later ones are not shown"
+            )
+        self._rows += len(rows)
+        if self._rows > MOST_ROWS:
+            raise StepNcError(f"the run has more than {MOST_ROWS} rows, which is the most")
 
     def _say(self, kind: str, text: str, *, at: float | None = None) -> None:
         moment = self.run.time if at is None else at

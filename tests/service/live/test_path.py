@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from service.errors import NotFound
+from service.live import path as module
 from service.live.path import (
     COLUMNS,
     FEWEST,
@@ -17,9 +18,10 @@ from service.live.path import (
     ToolPath,
     deviation,
     path_of,
+    shown_path,
     thinned,
 )
-from service.live.series import SeriesWriter, open_series
+from service.live.series import Series, SeriesWriter, open_series
 from simulator.motion.segments import Floats
 
 
@@ -175,6 +177,34 @@ def test_a_missing_force_is_no_obstacle() -> None:
     run, still = np.linspace(0.0, 100.0, 50), np.zeros(50)
     path = path_through(np.column_stack([run, still, still]), still + 300.0, still + np.nan)
     assert list(thinned(path, FEWEST)) == [0, 49]
+
+
+@given(st.integers(0, 3), st.integers(60, 400), st.integers(FEWEST, 50))
+def test_a_path_in_pieces_is_as_true_as_it_says(seed: int, rows: int, points: int) -> None:
+    numbers = np.random.default_rng(seed).normal(size=(rows, len(COLUMNS))).cumsum(axis=0)
+    numbers[:, 0] = 0.1 * np.arange(rows)
+    numbers[:, 6:] = 2.0, 1.0
+    series = Series(columns=COLUMNS, values=numbers)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(module, "PIECE", 50)
+        shown = shown_path(series, points)
+    whole = path_of(series)
+    kept = np.searchsorted(whole.time, shown.path.time)
+    assert len(kept) <= points
+    assert shown.rows == rows
+    assert shown.deviation == deviation(whole, kept)
+    for axis in range(3):
+        assert np.ptp(shown.path.position[:, axis]) == np.ptp(whole.position[:, axis])
+
+
+def test_a_path_in_one_piece_is_thinned_once() -> None:
+    numbers = np.random.default_rng(1).normal(size=(300, len(COLUMNS)))
+    numbers[:, 0] = np.arange(300)
+    series = Series(columns=COLUMNS, values=numbers)
+    shown, whole = shown_path(series, 40), path_of(series)
+    kept = thinned(whole, 40)
+    assert np.array_equal(shown.path.time, whole.time[kept])
+    assert shown.deviation == deviation(whole, kept)
 
 
 def test_too_few_points_are_refused() -> None:

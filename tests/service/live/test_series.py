@@ -12,8 +12,10 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from service.errors import NotFound
+from service.live import series
 from service.live.series import Series, SeriesWriter, first_at, open_series, window
 from simulator.motion.segments import Floats
+from tests.service.live.room import within_room
 
 COLUMNS = ("time_s", "a", "b")
 
@@ -119,8 +121,7 @@ def test_a_window_keeps_least_and_greatest(values: Floats, points: int) -> None:
 
 @given(Values, st.integers(1, 70))
 def test_a_point_stands_for_its_rows_and_every_row_has_one(values: Floats, points: int) -> None:
-    series = series_of(values)
-    found = window(series, ["a"], points=points)
+    found = window(series_of(values), ["a"], points=points)
     assert found.time[0] == 0.0
     assert found.end[-1] == len(values) - 1
     assert np.array_equal(found.time[1:], found.end[:-1] + 1.0)
@@ -142,6 +143,55 @@ def test_a_range_holds_both_its_ends(values: Floats, one: float, other: float) -
     found = window(series_of(values), ["a"], begin=begin, end=end, points=1000)
     wanted = [time for time in range(len(values)) if begin <= time <= end]
     assert found.time.tolist() == wanted
+
+
+@given(Values, st.integers(1, 70), st.integers(1, 9))
+def test_a_window_is_the_same_however_few_rows_are_read_at_once(
+    values: Floats, points: int, rows: int
+) -> None:
+    whole = window(series_of(values), ["b", "a"], points=points)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(series, "BLOCK", rows * 2 * series.BYTES)
+        pieces = window(series_of(values), ["b", "a"], points=points)
+    for name in ("time", "end", "low", "high"):
+        assert np.array_equal(getattr(pieces, name), getattr(whole, name), equal_nan=True)
+    assert pieces.mean == pytest.approx(whole.mean, rel=1e-9, abs=1e-6, nan_ok=True)
+    assert pieces.rows == whole.rows
+
+
+def test_a_file_has_so_many_rows_at_most_and_says_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(series, "MOST_BYTES", 5 * 3 * series.BYTES)
+    file = tmp_path / "series.bin"
+    with SeriesWriter(file, COLUMNS) as writer:
+        writer.add(np.ones((3, 3)))
+        writer.add(np.ones((2, 3)))
+        assert not writer.is_full
+        for _ in range(2):
+            writer.add(np.ones((2, 3)))
+            assert writer.is_full
+        assert writer.rows == len(opened(file)) == 5
+
+
+ON_FULL_DISK = """
+from pathlib import Path
+import numpy as np
+from service.errors import StorageFull
+from service.live.series import SeriesWriter, open_series
+file = Path(sys.argv[1])
+with SeriesWriter(file, ["time_s", "a"]) as writer:
+    writer.add(np.ones((60, 2)))
+    try:
+        writer.add(np.ones((60, 2)))
+    except StorageFull as error:
+        print(error, len(open_series(file)))
+"""
+
+
+def test_rows_for_which_there_is_no_room_are_refused(tmp_path: Path) -> None:
+    told = within_room(ON_FULL_DISK, tmp_path / "series.bin", room=1500)
+    assert told == "series.bin: File too large 92\n"
 
 
 def test_a_range_of_nothing_is_empty() -> None:

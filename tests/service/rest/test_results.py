@@ -1,8 +1,12 @@
 """Rows of runs in as many points as are wanted."""
 
+import asyncio
+from threading import Barrier, Lock
+
 import httpx
 import pytest
 
+from service.rest.results import READERS, read_in_turn
 from tests.service.rest.conftest import Done
 from tests.service.rest.server import is_problem
 
@@ -54,3 +58,24 @@ def test_a_range_that_ends_before_it_begins_is_refused(
 def test_a_series_is_of_its_own_kind(client: httpx.Client, done: Done) -> None:
     is_problem(client.get(f"/v1/trials/{done.control}/series"), 404)
     is_problem(client.get(f"/v1/control-runs/{done.simulation}/series"), 404)
+
+
+def test_few_read_all_rows_of_a_run_at_once() -> None:
+    most = int(READERS.total_tokens)
+    together, lock, counts = Barrier(most), Lock(), [0, 0]
+
+    def read(number: int) -> int:
+        with lock:
+            counts[0] += 1
+            counts[1] = max(counts)
+        together.wait(30.0)
+        with lock:
+            counts[0] -= 1
+        together.wait(30.0)
+        return number
+
+    async def ask() -> list[int]:
+        return await asyncio.gather(*(read_in_turn(read, number) for number in range(6)))
+
+    assert asyncio.run(ask()) == list(range(6))
+    assert counts == [0, most]

@@ -7,18 +7,20 @@ import pytest
 
 from service.live.folder import LiveFolder
 from service.live.series import open_series
+from service.simulation import live
 from service.simulation.live import COLUMNS, LiveSamples
+from simulator.errors import SimulationError
 from tests.service.conftest import SampleMaker
 
 
 def test_rows_are_in_the_units_of_their_names(tmp_path: Path, samples_at: SampleMaker) -> None:
     folder, paced = LiveFolder(path=tmp_path), list[float]()
-    live = LiveSamples(folder, paced.append)
-    with live.writer:
-        live.begin(["MILL <SLOT>"])
-        live.add(samples_at(np.array([0.0, 0.5]), np.array([100.0, 950.0])))
-        live.add(samples_at(np.array([]), np.array([])))
-        live.add(samples_at(np.array([1.0]), np.array([0.0])))
+    watcher = LiveSamples(folder, paced.append)
+    with watcher.writer:
+        watcher.begin(["MILL <SLOT>"])
+        watcher.add(samples_at(np.array([0.0, 0.5]), np.array([100.0, 950.0])))
+        watcher.add(samples_at(np.array([]), np.array([])))
+        watcher.add(samples_at(np.array([1.0]), np.array([0.0])))
     series = open_series(folder.series)
     assert series is not None
     assert series.columns == tuple(COLUMNS)
@@ -37,14 +39,28 @@ def test_rows_are_in_the_units_of_their_names(tmp_path: Path, samples_at: Sample
 
 def test_the_status_names_the_workingstep(tmp_path: Path, samples_at: SampleMaker) -> None:
     folder, names = LiveFolder(path=tmp_path), ["FIRST"]
-    live = LiveSamples(folder, lambda _: None)
-    with live.writer:
-        live.begin(names)
+    watcher = LiveSamples(folder, lambda _: None)
+    with watcher.writer:
+        watcher.begin(names)
         names.append("SECOND")
         assert folder.read_status() is None
-        live.add(samples_at(np.array([2.0]), np.array([1.0])))
+        watcher.add(samples_at(np.array([2.0]), np.array([1.0])))
     assert folder.read_status() == {
         "time_s": 2.0,
         "workingstep": "FIRST",
         "workingsteps": ["FIRST", "SECOND"],
+        "is_series_full": False,
     }
+
+
+def test_samples_that_no_disk_bears_are_refused(
+    tmp_path: Path, samples_at: SampleMaker, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(live, "MOST_SAMPLES", 3)
+    watcher = LiveSamples(LiveFolder(path=tmp_path), lambda _: None)
+    two = samples_at(np.array([5.0, 6.0]), np.array([1.0, 1.0]))
+    with watcher.writer:
+        watcher.begin(["FIRST"])
+        watcher.add(two)
+        with pytest.raises(SimulationError, match="more than 3 samples until 5 s"):
+            watcher.add(two)

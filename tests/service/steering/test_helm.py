@@ -8,11 +8,15 @@ import pytest
 
 from controller.orders import Event, EventKind
 from service.control.live_run import Taken
+from service.errors import StorageFull
+from service.live import series
 from service.live.folder import LiveFolder
 from service.live.journal import append, read_on
 from service.live.pace import TICK
 from service.live.series import open_series
-from service.steering.helm import AT_ONCE, REFUSED, Helm
+from service.steering import helm
+from service.steering.helm import AT_ONCE, FORGOTTEN, FULL, REFUSED, Helm
+from service.steering.rows import COLUMNS
 from stepnc_model.errors import StepNcError
 from tests.service.live.test_pace import Clock
 from tests.service.steering.test_rows import MOMENT
@@ -58,8 +62,7 @@ def folder(tmp_path: Path) -> LiveFolder:
 
 def go(folder: LiveFolder, run: Run, *, pace: float, **more: Any) -> Clock:
     clock = Clock()
-    helm = Helm(run=run, folder=folder, pace=pace, now=clock.now, wait=clock.wait, **more)
-    helm.go()
+    Helm(run=run, folder=folder, pace=pace, now=clock.now, wait=clock.wait, **more).go()
     return clock
 
 
@@ -82,9 +85,9 @@ def test_rows_and_the_status_are_there_for_others(folder: LiveFolder) -> None:
     heard: list[dict[str, Any]] = []
     run = Run(seconds=1.0)
     go(folder, run, pace=1.0, tell=heard.append)
-    series = open_series(folder.series)
-    assert series is not None
-    assert len(series) == len(heard)
+    rows = open_series(folder.series)
+    assert rows is not None
+    assert len(rows) == len(heard)
     status = folder.read_status()
     assert status is not None
     assert (status["time_s"], status["pace"]) == (run.time, 1.0)
@@ -136,3 +139,58 @@ def test_a_run_that_waits_is_waited_for_until_somebody_ends_it(folder: LiveFolde
     assert ticks == 21
     # Without a pace too: it stands, and nobody turns in circles.
     assert len(clock.waits) == 20
+
+
+def test_a_run_that_waits_and_for_which_nobody_comes_ends_and_says_so(
+    folder: LiveFolder,
+) -> None:
+    run = Run(seconds=0.0)
+    run.is_waiting = True
+    ticks = 0
+
+    def tell(_: dict[str, Any]) -> None:
+        nonlocal ticks
+        ticks += 1
+        if ticks == 10:
+            append(folder.orders, {"bad": 1})
+
+    clock = go(folder, run, pace=1.0, tell=tell, patience=1.0)
+    # Who asks for something is there, also when it cannot be done.
+    assert clock.time - 100.0 == pytest.approx(10 * TICK + 1.0, abs=2.0 * TICK)
+    kinds = [line["kind"] for line in read_on(folder.events, 0).lines]
+    assert kinds == [REFUSED, FORGOTTEN]
+
+
+def test_a_run_that_goes_on_is_not_forgotten(folder: LiveFolder) -> None:
+    run = Run(seconds=10.0)
+    go(folder, run, pace=1.0, patience=0.5)
+    assert run.time == pytest.approx(10.0, abs=2.0 * TICK)
+    assert not folder.events.exists()
+
+
+def test_a_series_that_is_full_is_told_once_and_the_run_goes_on(
+    folder: LiveFolder, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(series, "MOST_BYTES", 5 * len(COLUMNS) * series.BYTES)
+    run = Run(seconds=1.0)
+    go(folder, run, pace=1.0)
+    assert run.time == pytest.approx(1.0, abs=2.0 * TICK)
+    kept, status = open_series(folder.series), folder.read_status()
+    assert kept is not None
+    assert status is not None
+    assert (len(kept), status["is_series_full"]) == (5, True)
+    assert [line["kind"] for line in read_on(folder.events, 0).lines] == [FULL]
+
+
+def test_a_run_of_more_rows_than_can_be_kept_is_refused(
+    folder: LiveFolder, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(helm, "MOST_ROWS", 5)
+    with pytest.raises(StepNcError, match="more than 5 rows"):
+        go(folder, Run(seconds=1.0), pace=1.0)
+
+
+def test_a_run_that_cannot_tell_how_it_is_ends_with_the_reason(folder: LiveFolder) -> None:
+    (folder.path / ".status.json").symlink_to("/dev/full")
+    with pytest.raises(StorageFull):
+        go(folder, Run(seconds=1.0), pace=1.0)
