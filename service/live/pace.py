@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 from stepnc_model.errors import StepNcError
 
-MOST = 1000.0
+LEAST, MOST = 0.01, 1000.0
 """times as fast as the machine; 0: as fast as can be"""
 
 TICK = 0.05
@@ -37,8 +37,9 @@ class Pace:
         now: Callable[[], float] = time.monotonic,
         wait: Callable[[float], None] = time.sleep,
     ) -> None:
-        if not 0.0 <= factor <= MOST:
-            raise StepNcError(f"pace {factor:g}: it must be 0 to {MOST:g}, 0 without waiting")
+        if factor != 0.0 and not LEAST <= factor <= MOST:
+            bound = f"{LEAST:g} to {MOST:g}, or 0 without waiting"
+            raise StepNcError(f"pace {factor:g}: it must be {bound}")
         self._factor, self._now, self._wait = factor, now, wait
         self._begin = now()
 

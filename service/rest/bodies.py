@@ -4,7 +4,7 @@ from datetime import datetime
 from enum import StrEnum
 from typing import Annotated, Any
 
-from pydantic import BaseModel, ConfigDict, Field, create_model
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, create_model
 
 from controller.laws.choice import LawName
 from controller.orders import Criterion
@@ -14,7 +14,7 @@ from optimiser.modes import Free, Mode
 from service.control.live import MOST_PERCENT
 from service.depot.ids import PATTERN
 from service.knowledge.corrected import SAFETY
-from service.live.pace import MOST
+from service.live.pace import LEAST, MOST
 from service.trial.inputs import FIELDS, MillingType
 from simulator.machine.disturbance import NoiseKind
 from simulator.motion.control import Control as MotionControl
@@ -25,10 +25,27 @@ from stepnc_model.writeback import Profile
 Id = Annotated[str, Field(pattern=PATTERN, examples=["01jd3m8y7q2v4x6z8b0c1d2e3f"])]
 Name = Annotated[str, Field(max_length=200)]
 Percent = Annotated[float, Field(gt=0.0, le=MOST_PERCENT)]
-Pace = Annotated[float, Field(ge=0.01, le=MOST)]
+Pace = Annotated[float, Field(ge=LEAST, le=MOST)]
 Units = StrEnum("Units", {name.replace("-", "_"): name for name in PROFILES})  # type: ignore[misc]
 ISO = Units("iso")
 """as the standard says"""
+
+
+def _not_between(pace: float) -> float:
+    """A pace, or none: what is nearly none never ends."""
+    if 0.0 < pace < LEAST:
+        raise ValueError(f"{pace:g}: it must be 0 or at least {LEAST:g}")
+    return pace
+
+
+PaceOrNone = Annotated[
+    float,
+    Field(
+        ge=0.0, le=MOST, json_schema_extra={"anyOf": [{"const": 0.0}, {"minimum": LEAST}]}
+    ),
+    AfterValidator(_not_between),
+]  # fmt: skip
+PACE_WORDS = "s of the machine in one of ours; 0: as fast as can be"
 
 
 class Sensor(StrEnum):
@@ -98,10 +115,7 @@ class RunBody(Body):
     material: Name = Field("", description="empty: the one the program names", examples=["c45"])
     units: Units = Field(ISO, description="of feeds and speeds in the file")
     seed: int = Field(0, ge=0, le=2**31, description="of noise and scatter")
-    pace: float = Field(
-        0.0, ge=0.0, le=1000.0,
-        description="s of the machine in one of ours; 0: as fast as can be",
-    )  # fmt: skip
+    pace: PaceOrNone = Field(0.0, description=PACE_WORDS)
 
 
 class SimulationBody(RunBody):
@@ -135,10 +149,7 @@ class ControlBody(RunBody):
     sensor: Sensor = Field(Sensor.DYNAMOMETER, description="what the loop measures")
     has_corrections: bool = Field(True, description="expect what was learned and accepted")
     is_recorded: bool = Field(True, description="keep the outcomes in the knowledge base")
-    pace: float = Field(
-        10.0, ge=0.0, le=1000.0,
-        description="s of the machine in one of ours; 0: as fast as can be",
-    )  # fmt: skip
+    pace: PaceOrNone = Field(10.0, description=PACE_WORDS)
 
 
 class ControlChanges(Body):

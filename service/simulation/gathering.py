@@ -41,6 +41,10 @@ class Gathering:
         self.totals = [Total()]
         self.file: TimelineFile | None = None
         self.trace: TraceKeeper | None = None
+        self.block = 0.0
+        """number of the block that runs, with the share of it that is behind"""
+        self.share = 0.0
+        """of the program that is behind, as it was told last"""
         self._watchers = watchers
         for watcher in watchers:
             watcher.begin(virtual.workingsteps)
@@ -56,6 +60,7 @@ class Gathering:
         at = episode.state.workingstep
         self.totals += [Total() for _ in range(len(self.totals), at + 1)]
         self.totals[at] = added(self.totals[at], episode, self._machine)
+        self.block = block_at(episode, episode.begin)
         ticked()
         takers = [
             taker for taker in (self.file, self.trace, *self._watchers) if taker is not None
@@ -66,7 +71,17 @@ class Gathering:
             shown = self._disturbed.shown(samples)
             for taker in takers:
                 taker.add(shown)
+            self.block = block_at(episode, float(samples.time[-1]))
             ticked()
+
+
+def block_at(episode: Episode, time: float) -> float:
+    """Number of the block that runs at a time, s; those of a stretch count as equally long."""
+    if episode.course is None:
+        return float(episode.state.line)
+    blocks = episode.course.segments.block
+    share = (time - episode.begin) / (episode.end - episode.begin)
+    return float(blocks[0] + share * (blocks[-1] - blocks[0]))
 
 
 def require_sense(episode: Episode) -> None:

@@ -144,7 +144,9 @@ def simulate(
         with run.file or nullcontext(), Patience(tell, COMPILES) as patience:
             for episode in virtual.run(interpret(prepared.blocks, virtual.machine)):
                 patience.end()
-                run.add(episode, ticked=lambda: ticker(lambda: _progress(prepared, virtual)))
+                run.add(
+                    episode, ticked=lambda: ticker(lambda: _progress(prepared, virtual, run))
+                )
     except SimulationError as error:
         raise SimulationError(f"{place_in(prepared, virtual)}: {error}") from error
     finally:
@@ -178,9 +180,13 @@ def waiting_machine(
     return prepared, _machine(request, prepared, teeth=teeth)
 
 
-def _progress(prepared: Prepared, virtual: VirtualMachine) -> str:
+def _progress(prepared: Prepared, virtual: VirtualMachine, run: Gathering) -> str:
+    """Of what was read the part that has run: a whole stretch is read before it runs."""
     at = virtual.workingsteps[-1:]
-    return ", ".join((f"{bar(prepared.done())}  {virtual.now:.0f} s of machining", *at))
+    share = prepared.done() * min(run.block / max(prepared.read(), 1), 1.0)
+    # How much there is to read is an estimate: no way back when there is more.
+    run.share = max(run.share, share)
+    return ", ".join((f"{bar(run.share)}  {virtual.now:.0f} s of machining", *at))
 
 
 def place_in(prepared: Prepared, virtual: VirtualMachine) -> str:

@@ -30,6 +30,9 @@ from stepnc_model.toolpath.path import FARTHEST
 
 T = TypeVar("T")
 
+AROUND_PATH, AROUND_PROGRAM = 4, 7
+"""blocks that are no steps: tool, spindle and coolant before a path, begin and end at last"""
+
 LEAST_SIZE = 0.01
 """mm, of a stock along an axis"""
 
@@ -48,6 +51,8 @@ class Prepared:
     """the first workingstep's stock as it was bought"""
     done: Callable[[], float]
     """share of the program that has been read, 0 to 1"""
+    read: Callable[[], int]
+    """number of the last block that was read"""
     program: Program | None = None
     """None: NC code alone"""
     findings: tuple[Finding, ...] = ()
@@ -110,8 +115,9 @@ def from_program(
         tools=_tools(program, numbers, match),
         stock=_Clamped(program, chosen).stock,
         raw=paths.stock,
-        # Most steps become one block, and few blocks are more than a step.
-        done=lambda: blocks.share(steps),
+        # Most steps become one block; what is around them is as in the examples.
+        done=lambda: blocks.share(steps + AROUND_PATH * len(paths.paths) + AROUND_PROGRAM),
+        read=lambda: blocks.count,
         program=program,
         findings=paths.findings,
     )
@@ -156,6 +162,7 @@ def from_code(
         stock=lambda _: clamped,
         raw=raw,
         done=lambda: lines.share(size),
+        read=lambda: lines.count,
         findings=findings,
     )
 
@@ -182,6 +189,7 @@ def _code_of_program(
         stock=_Clamped(program, machine).stock,
         raw=stock_of(program, setup),
         done=lambda: lines.share(size),
+        read=lambda: lines.count,
         program=program,
     )
 

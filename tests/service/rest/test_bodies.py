@@ -17,6 +17,7 @@ from service.rest.bodies import (
     ControlChanges,
     DecisionBody,
     EvaluationBody,
+    RunBody,
     SimulationBody,
     TrialBody,
     TrialChanges,
@@ -56,6 +57,15 @@ NUMBERS: list[tuple[type[Body], str]] = [
 def test_no_number_is_beyond_its_bounds(kind: type[Body], name: str, value: str) -> None:
     with pytest.raises(ValidationError):
         kind.model_validate(json.loads(f'{{"{name}": {value}}}'))
+
+
+@pytest.mark.parametrize("kind", [SimulationBody, ControlBody])
+def test_a_run_has_a_pace_that_ends_or_none(kind: type[RunBody]) -> None:
+    for pace in (0.0, 0.01, 1000.0):
+        assert kind.model_validate({"pace": pace}).pace == pace
+    for pace in (1e-300, 5e-324, 0.0099):
+        with pytest.raises(ValidationError, match=r"0 or at least 0\.01"):
+            kind.model_validate({"pace": pace})
 
 
 @pytest.mark.parametrize("field", FIELDS, ids=lambda field: field.name)

@@ -247,6 +247,8 @@ def test_progress_names_share_time_and_workingstep(
     assert "of machining" in bars[0]
     shares = [int(line.split("]")[1].split("%")[0]) for line in bars]
     assert shares == sorted(shares)
+    # All of a single workingstep is read before it runs.
+    assert shares[0] < 50
     assert shares[-1] > 90
 
 
