@@ -29,7 +29,7 @@ class Changes:
     Raises
     ------
     StepNcError
-        When a percentage is beyond its bounds.
+        When a percentage is beyond its bounds, or the material unknown.
     """
 
     mode: str | None = None
@@ -54,6 +54,9 @@ class Changes:
             if value is not None and not 0.0 < value <= MOST_PERCENT:
                 bound = f"above 0 to {MOST_PERCENT:g} %"
                 raise StepNcError(f"{words} {value:g} %: it must be {bound}")
+        if self.material is not None and self.material not in material_names():
+            known = ", ".join(material_names())
+            raise StepNcError(f"unknown material '{self.material}'; known: {known}")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -145,10 +148,11 @@ class LiveControl:
         Raises
         ------
         StepNcError
-            When the mode or the material is unknown; nothing has changed then.
+            When the mode is unknown; nothing has changed then.
         """
         mode = None if changes.mode is None else one_of(Criterion, changes.mode.upper(), "mode")
-        material = None if changes.material is None else self._against(changes.material)
+        hardness = hardness_against(self.session.plan.material)
+        material = None if changes.material is None else hardness(changes.material)
         loop = self.session.loop
         if mode is not None:
             loop.order(CriterionTo(criterion=mode))
@@ -210,13 +214,6 @@ class LiveControl:
         """
         self._trace.close(is_whole=self._is_done)
         return self.session.result(self._trace)
-
-    def _against(self, material: str) -> float:
-        """k_c of another material of the library over the workpiece's."""
-        if material not in material_names():
-            known = ", ".join(material_names())
-            raise StepNcError(f"unknown material '{material}'; known: {known}")
-        return hardness_against(self.session.plan.material)(material)
 
     def _hide(self, what: Changed, factor: float) -> None:
         """Change the machine, and tell the loop nothing."""

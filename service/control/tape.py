@@ -72,9 +72,9 @@ class Tape:
 
 def _change(time: float, power: float, motor: float, *, is_lit: bool) -> Event:
     """What is said when the lamp changes."""
-    has = f"{kw_from_watts(motor):.3g} kW"
+    draws, has = f"{kw_from_watts(power):.3g} kW", f"{kw_from_watts(motor):.3g} kW"
     if is_lit:
-        text = f"power limit: the drive draws {kw_from_watts(power):.3g} kW, the motor has {has}"
+        text = f"power limit: the drive draws {draws}, the motor has {has}"
         return Event(time=time, kind=EventKind.OVER, text=text)
     text = f"power limit: for {LIT:g} s at most {OVER - 1.0:.0%} above {has}"
     return Event(time=time, kind=EventKind.SAFE, text=text)
