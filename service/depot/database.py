@@ -1,9 +1,11 @@
 """The service's own database: one file of SQLite that several processes share.
 
 Readers never wait for a writer (write-ahead log); what a call has returned from is on the disk
-(``synchronous=FULL``). Each thread has a connection of its own. Running state.
+(``synchronous=FULL``). Each thread has a connection of its own. A file that was moved away or
+replaced is not written any more: what went there nobody would find. Running state.
 """
 
+import os
 import sqlite3
 import threading
 from collections.abc import Iterator
@@ -64,8 +66,10 @@ class Database:
     def __init__(self, file: Path) -> None:
         self.file = file
         self._local = threading.local()
+        self._inode: tuple[int, int] | None = None
         with self.writing() as connection:
             _migrate(connection, file)
+        self._inode = self._found()
 
     @contextmanager
     def reading(self) -> Iterator[sqlite3.Connection]:
@@ -81,19 +85,23 @@ class Database:
             connection.execute("BEGIN IMMEDIATE")
             try:
                 yield connection
+                connection.commit()
             except BaseException:
                 connection.rollback()
                 raise
-            connection.commit()
 
     def _connection(self) -> sqlite3.Connection:
         known: sqlite3.Connection | None = getattr(self._local, "connection", None)
         if known is None:
             # Transactions are begun by hand.
             known = sqlite3.connect(self.file, timeout=WAIT, isolation_level=None)
-            known.row_factory = sqlite3.Row
-            known.execute("PRAGMA journal_mode=WAL")
-            known.execute("PRAGMA synchronous=FULL")
+            try:
+                known.row_factory = sqlite3.Row
+                known.execute("PRAGMA journal_mode=WAL")
+                known.execute("PRAGMA synchronous=FULL")
+            except sqlite3.Error:
+                known.close()
+                raise
             self._local.connection = known
         return known
 
@@ -104,8 +112,18 @@ class Database:
             known.close()
             self._local.connection = None
 
+    def _found(self) -> tuple[int, int]:
+        """What tells the file that lies there now from others."""
+        try:
+            found = os.stat(self.file)
+        except OSError as error:
+            raise Unavailable(f"{self.file.name}: {error.strerror or error}") from error
+        return found.st_dev, found.st_ino
+
     @contextmanager
     def _answering(self) -> Iterator[None]:
+        if self._inode is not None and self._found() != self._inode:
+            raise Unavailable(f"{self.file.name}: it is another file than before")
         try:
             yield
         except sqlite3.Error as error:

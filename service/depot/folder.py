@@ -10,6 +10,8 @@ from service.knowledge.place import named_place
 
 PRIVATE = 0o700
 
+DATABASE = "service.db"
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Depot:
@@ -57,10 +59,26 @@ def open_depot(root: Path, *, knowledge: str = "") -> Depot:
             (root / name).mkdir(mode=PRIVATE, exist_ok=True)
     except OSError as error:
         raise Unavailable(f"{root}: {error.strerror or error}") from error
-    root = root.resolve()
+    return _depot(root.resolve(), knowledge)
+
+
+def known_depot(root: Path, *, knowledge: str) -> Depot:
+    """A data folder that exists: one that was moved away is not made anew, and empty.
+
+    Raises
+    ------
+    Unavailable
+        When there is none, or its database cannot be opened.
+    """
+    if not (root / DATABASE).is_file():
+        raise Unavailable(f"{DATABASE}: there is none in the data folder")
+    return _depot(root.resolve(), knowledge)
+
+
+def _depot(root: Path, knowledge: str) -> Depot:
     return Depot(
         root=root,
-        database=Database(root / "service.db"),
+        database=Database(root / DATABASE),
         knowledge=named_place(knowledge) or str(root / "knowledge.db"),
     )
 

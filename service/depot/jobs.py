@@ -64,6 +64,13 @@ class Kind(StrEnum):
         return self in {Kind.CONTROL, Kind.TRIAL}
 
 
+PACED = (
+    f"(kind IN ('{Kind.CONTROL.value}', '{Kind.TRIAL.value}') OR (kind = "
+    f"'{Kind.SIMULATION.value}' AND coalesce(json_extract(request, '$.pace'), 0) > 0))"
+)
+"""as :attr:`Job.is_paced`; requests of other kinds have no pace, and may be long"""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Job:
     """One job."""
@@ -88,6 +95,11 @@ class Job:
     """why it failed, as in RFC 9457"""
     attempt: int
     is_cancelling: bool
+
+    @property
+    def is_paced(self) -> bool:
+        """Whether it mostly waits for people, or for the clock."""
+        return self.kind.is_live or bool(self.request.get("pace"))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -206,12 +218,24 @@ def remove(depot: Depot, id: str) -> None:
     shutil.rmtree(depot.job_folder(id), ignore_errors=True)
 
 
-def claim(depot: Depot, *, kinds: Sequence[Kind]) -> Job | None:
-    """Take the oldest job of some kinds that waits; None: there is none."""
+def claim(
+    depot: Depot, *, kinds: Sequence[Kind] = tuple(Kind), is_paced: bool | None = None
+) -> Job | None:
+    """Take the oldest job of some kinds that waits; None: there is none.
+
+    Parameters
+    ----------
+    depot : Depot
+    kinds : sequence of Kind
+    is_paced : bool, optional
+        Only those that wait for people or the clock, or only others; None: either.
+    """
     if not kinds:
         return None
     marks = ", ".join("?" for _ in kinds)
     where = f"state = 'queued' AND kind IN ({marks})"
+    if is_paced is not None:
+        where += f" AND {PACED if is_paced else f'NOT {PACED}'}"
     names = tuple(kind.value for kind in kinds)
     # Most looks find nothing, and need no turn to write.
     with depot.database.reading() as connection:

@@ -1,17 +1,32 @@
 """What runs in the process of one job. It ends with the runner that started it."""
 
 import signal
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from time import monotonic, sleep
 from types import FrameType
+from typing import Any, TypeVar
 
+from kbe.errors import StoreFull
 from service.depot import jobs
-from service.depot.folder import open_depot
+from service.depot.folder import known_depot
 from service.depot.jobs import Job, Kind, State
-from service.jobs.task import Task
+from service.errors import StorageFull, Unavailable
+from service.jobs.task import LARGE, UNFINISHED, Task, clear
 from service.lifeline import end_with_parent
 from service.problem import plain_problem, problem_of
-from stepnc_model.errors import StepNcError
+from stepnc_model.errors import StepNcError, WriteError
+
+T = TypeVar("T")
+
+WITHOUT_ROOM = (StorageFull, StoreFull, WriteError)
+"""errors of a job that found no room on the disk"""
+
+PATIENCE = 60.0
+"""s for which a database that does not answer is asked again"""
+
+AGAIN = 1.0
+"""s between two such questions"""
 
 
 class Cancelled(BaseException):
@@ -22,28 +37,49 @@ def main(root: str, knowledge: str, id: str) -> None:
     """Run a job that was claimed, and say how it ended."""
     end_with_parent()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    depot = open_depot(Path(root), knowledge=knowledge)
-    job = jobs.get(depot, id)
+    depot = _insisting(lambda: known_depot(Path(root), knowledge=knowledge))
+    job = _insisting(lambda: jobs.get(depot, id))
     task = Task(depot=depot, job=job)
     state, problem = State.SUCCEEDED, None
     try:
         signal.signal(signal.SIGTERM, _cancel)
-        task.folder.mkdir(mode=0o700, exist_ok=True)
+        task.make_folder()
         _work(job)(task)
     except Cancelled:
         state = State.CANCELLED
     except StepNcError as error:
         state, problem = State.FAILED, problem_of(error, hidden=str(depot.root))
+        if isinstance(error, WITHOUT_ROOM):
+            clear(task.folder, LARGE)
     except MemoryError:
         detail = "the job needed more memory than there is"
         state, problem = State.FAILED, plain_problem(507, "Out of memory", detail)
     except BaseException:
         # Told to the log of the server; a client hears that it is not its fault.
         detail = f"job '{id}' met a fault of the program; the server's log says more"
-        jobs.finish(depot, job, State.FAILED, problem=plain_problem(500, "Fault", detail))
+        _finish(task, State.FAILED, plain_problem(500, "Fault", detail))
         raise
     signal.signal(signal.SIGTERM, signal.SIG_IGN)
-    jobs.finish(depot, job, state, problem=problem)
+    _finish(task, state, problem)
+
+
+def _finish(task: Task, state: State, problem: Mapping[str, Any] | None) -> None:
+    """Say how it ended."""
+    if state is not State.SUCCEEDED:
+        clear(task.folder, UNFINISHED)
+    _insisting(lambda: jobs.finish(task.depot, task.job, state, problem=problem))
+
+
+def _insisting(ask: Callable[[], T]) -> T:
+    """What the database answers; when it does not, it is asked again for a while."""
+    begin = monotonic()
+    while True:
+        try:
+            return ask()
+        except Unavailable:
+            if monotonic() - begin > PATIENCE:
+                raise
+            sleep(AGAIN)
 
 
 def _work(job: Job) -> Callable[[Task], None]:

@@ -2,7 +2,9 @@
 
 One runner works for a data folder: a lock on a file of it says so. Processes are forked from
 one that has loaded everything, so that a job starts in some hundredths of a second; a job that
-crashes, or takes all memory, takes nothing else with it. Running state.
+crashes, or takes all memory, takes nothing else with it. A database that does not answer for a
+while (it is locked, the disk is full, the folder was moved away) ends nobody: what is to be
+said is said later. Running state.
 """
 
 import fcntl
@@ -10,22 +12,25 @@ import multiprocessing
 import os
 import signal
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from multiprocessing import forkserver
 from multiprocessing.context import ForkServerProcess
 from pathlib import Path
 from types import FrameType
-from typing import IO
+from typing import IO, Any
 
 import structlog
 
 from kbe.store import open_store
 from service.depot import jobs
-from service.depot.folder import Depot, open_depot
-from service.depot.jobs import Job, Kind, State
-from service.errors import Conflict
+from service.depot.folder import Depot, known_depot
+from service.depot.jobs import Job, State
+from service.errors import Conflict, Unavailable
 from service.jobs import child
+from service.jobs.task import UNFINISHED, clear
+from service.problem import plain_problem
 
 LOOK = 0.05
 """s between two looks at the queue"""
@@ -37,10 +42,13 @@ GRACE = 5.0
 """s that a cancelled job has to end by itself"""
 
 LONGEST = 2 * 3600.0
-"""s of a job with which nobody talks: a program that takes longer is a slip, or an attack"""
+"""s of a job that waits for nobody: a program that takes longer is a slip, or an attack"""
 
-MOST_LIVE = 16
-"""runs that somebody may steer, at once: they mostly wait"""
+LONGEST_PACED = 12 * 3600.0
+"""s of a job that waits for people or the clock: longer than a shift it was forgotten"""
+
+MOST_PACED = 16
+"""runs that wait for people or the clock, at once"""
 
 LOG = structlog.get_logger("runner")
 
@@ -56,10 +64,14 @@ class Running:
     """when it was asked to end"""
     is_overdue: bool = False
 
-    @property
-    def is_bounded(self) -> bool:
-        """Whether it must be over after some time: nobody watches it at the machine's pace."""
-        return not self.job.kind.is_live and not self.job.request.get("pace")
+
+@dataclass(frozen=True, kw_only=True)
+class End:
+    """What a job came to whose process said nothing."""
+
+    job: Job
+    state: State
+    problem: Mapping[str, Any] | None
 
 
 @dataclass(kw_only=True)
@@ -68,81 +80,123 @@ class Runner:
 
     depot: Depot
     workers: int
-    """jobs at once, live runs aside"""
-    longest: float = LONGEST
-    """s of a job that is no live run"""
+    """jobs at once, paced ones aside"""
     is_stopping: bool = False
     running: dict[str, Running] = field(default_factory=dict)
+    _ends: list[End] = field(default_factory=list)
+    """that are not in the database yet"""
+    _has_recovered: bool = False
+    _is_answered: bool = True
+    _beaten_at: float = -BEAT
 
     def run(self, *, is_wanted: Callable[[], bool] = lambda: True) -> None:
         """Work until the end; jobs that run then are queued again by the next runner."""
         context = multiprocessing.get_context("forkserver")
         context.set_forkserver_preload(["service.jobs.preloaded"])
         forkserver.ensure_running()
-        jobs.recover(self.depot)
-        beaten = 0.0
         try:
             while is_wanted() and not self.is_stopping:
-                if time.monotonic() - beaten > BEAT:
-                    beaten = time.monotonic()
-                    beat(self.depot)
                 self._look()
-                for kinds in self._free():
-                    job = jobs.claim(self.depot, kinds=kinds)
-                    if job is not None:
-                        self._start(context, job)
+                try:
+                    self._turn(context)
+                    self._is_answered = True
+                except Unavailable as error:
+                    self._tell(error)
                 time.sleep(LOOK)
         finally:
             self._end_all()
 
-    def _free(self) -> list[list[Kind]]:
-        """Kinds of jobs for which there is room."""
-        live = sum(each.job.kind.is_live for each in self.running.values())
-        free = []
-        if len(self.running) - live < self.workers:
-            free.append([kind for kind in Kind if not kind.is_live])
-        if live < MOST_LIVE:
-            free.append([kind for kind in Kind if kind.is_live])
-        return free
+    def _tell(self, error: Unavailable) -> None:
+        """Once, until it answers again."""
+        if self._is_answered:
+            LOG.warning("the database does not answer", reason=str(error))
+        self._is_answered = False
+
+    def _turn(self, context: multiprocessing.context.ForkServerContext) -> None:
+        """All that needs the database: what could not be done now is done in the next turn."""
+        if not self._has_recovered:
+            jobs.recover(self.depot)
+            self._has_recovered = True
+        if time.monotonic() - self._beaten_at > BEAT:
+            beat(self.depot)
+            self._beaten_at = time.monotonic()
+        while self._ends:
+            end = self._ends[0]
+            jobs.finish(self.depot, end.job, end.state, problem=end.problem)
+            del self._ends[0]
+        if self.running:
+            for job in jobs.running(self.depot):
+                if job.is_cancelling and job.id in self.running:
+                    _ask_to_end(self.running[job.id])
+        for is_paced in (False, True):
+            if self._has_room(is_paced=is_paced):
+                claimed = jobs.claim(self.depot, is_paced=is_paced)
+                if claimed is not None:
+                    self._start(context, claimed)
+
+    def _has_room(self, *, is_paced: bool) -> bool:
+        """For one more job that is paced, or is not."""
+        count = sum(each.job.is_paced == is_paced for each in self.running.values())
+        return count < (MOST_PACED if is_paced else self.workers)
 
     def _start(self, context: multiprocessing.context.ForkServerContext, job: Job) -> None:
         LOG.info("job started", job=job.id, kind=job.kind.value, attempt=job.attempt)
         arguments = (str(self.depot.root), self.depot.knowledge, job.id)
         process = context.Process(target=child.main, args=arguments, daemon=False)
-        process.start()
+        try:
+            process.start()
+        except (OSError, EOFError) as error:
+            problem = jobs.lost(f"it could not be started: {error}")
+            self._ends.append(End(job=job, state=State.FAILED, problem=problem))
+            return
         self.running[job.id] = Running(job=job, process=process)
 
     def _look(self) -> None:
         """See who has ended, and who should."""
-        if not self.running:
-            return
-        cancelling = {job.id for job in jobs.running(self.depot) if job.is_cancelling}
         for id, each in list(self.running.items()):
             if not each.process.is_alive():
-                self._ended(each)
                 del self.running[id]
-            elif id in cancelling:
-                _ask_to_end(each)
-            elif each.is_bounded and time.monotonic() - each.began_at > self.longest:
+                self._ended(each)
+            elif time.monotonic() - each.began_at > _longest(each.job):
                 each.is_overdue = True
                 each.process.kill()
 
     def _ended(self, each: Running) -> None:
         """A process has ended; one that said nothing of its job was lost."""
-        code = each.process.exitcode
+        job, code = each.job, each.process.exitcode
         each.process.close()
-        state = State.CANCELLED if each.asked_at is not None else State.FAILED
-        why = f"after {self.longest:g} s, the most" if each.is_overdue else _why(code)
-        problem = None if state is State.CANCELLED else jobs.lost(why)
-        jobs.finish(self.depot, each.job, state, problem=problem)
-        LOG.info("job ended", job=each.job.id, kind=each.job.kind.value, exit_code=code)
+        clear(self.depot.job_folder(job.id), UNFINISHED)
+        if each.asked_at is not None:
+            end = End(job=job, state=State.CANCELLED, problem=None)
+        elif each.is_overdue:
+            end = End(job=job, state=State.FAILED, problem=_too_long(job))
+        else:
+            end = End(job=job, state=State.FAILED, problem=jobs.lost(_why(code)))
+        self._ends.append(end)
+        LOG.info("job ended", job=job.id, kind=job.kind.value, exit_code=code)
 
     def _end_all(self) -> None:
         """Nothing goes on without a runner."""
         for each in self.running.values():
-            each.process.kill()
+            # Whatever is wrong with one, the others end.
+            with suppress(OSError, ValueError):
+                each.process.kill()
         for each in self.running.values():
-            each.process.join()
+            with suppress(OSError, ValueError):
+                each.process.join()
+
+
+def _longest(job: Job) -> float:
+    """S that a job may take."""
+    return LONGEST_PACED if job.is_paced else LONGEST
+
+
+def _too_long(job: Job) -> dict[str, Any]:
+    """The problem of a job that did not come to an end."""
+    detail = (
+        f"it was not over after {_longest(job) / 3600.0:g} h, which is the most for such a job"
+    )
+    return plain_problem(422, "Too long", detail)
 
 
 def _ask_to_end(each: Running) -> None:
@@ -202,7 +256,7 @@ def main(root: str, knowledge: str, workers: int, parent: int) -> None:
     ServiceError
         When the folder cannot be used.
     """
-    depot = open_depot(Path(root), knowledge=knowledge)
+    depot = known_depot(Path(root), knowledge=knowledge)
     with locked(depot.root):
         with open_store(depot.knowledge):
             """made when it is new"""

@@ -1,6 +1,8 @@
 """What a job is given to work with: its request, its folder, and whom to tell."""
 
 import time
+from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -10,9 +12,10 @@ import orjson
 from service.depot import jobs
 from service.depot.folder import Depot
 from service.depot.jobs import Job, Kind
-from service.errors import NotFound
+from service.errors import NotFound, Unavailable
 from service.files import write_atomically
 from service.live.folder import LiveFolder
+from service.live.storage import storing
 from service.progress import share_in
 
 RESULT = "result.json"
@@ -20,6 +23,12 @@ OPTIMISED = "optimised.stpnc"
 REPORT = "report.html"
 SAMPLES = "samples.parquet"
 NC_CODE = "program.nc"
+
+UNFINISHED = (".*", "*.partial.*")
+"""names of files that were being written, and that nobody can ask for"""
+
+LARGE = (*UNFINISHED, "series.bin", SAMPLES)
+"""names of files that grow with a run: a full disk recovers without them"""
 
 APART = 0.5
 """s between two words about how far it is"""
@@ -55,16 +64,23 @@ class Task:
             self.progress(share, message.split("]", 1)[-1].strip())
 
     def progress(self, share: float, message: str) -> None:
-        """How far it is."""
+        """How far it is; the next word does when the database does not answer."""
         now = time.monotonic()
         if now - self._said >= APART:
             self._said = now
-            jobs.tell(self.depot, self.job, share=min(share, 1.0), message=message)
+            with suppress(Unavailable):
+                jobs.tell(self.depot, self.job, share=min(share, 1.0), message=message)
 
     def keep(self, result: Any) -> None:
         """Write the result; numpy's arrays become lists, NaN becomes null."""
         option = orjson.OPT_SERIALIZE_NUMPY | orjson.OPT_NON_STR_KEYS
         write_atomically(self.folder / RESULT, orjson.dumps(result, option=option))
+
+    def make_folder(self) -> None:
+        """Where results go, without what another attempt has left half done."""
+        with storing("folder of the job"):
+            self.folder.mkdir(mode=0o700, exist_ok=True)
+            clear(self.folder, UNFINISHED)
 
     def program_file(self) -> tuple[Path, str]:
         """The program that is worked on, and what it is called: an upload, or an advice's.
@@ -75,6 +91,14 @@ class Task:
             When it was deleted.
         """
         return program_file(self.depot, program=self.job.program, source=self.job.source)
+
+
+def clear(folder: Path, patterns: Sequence[str]) -> None:
+    """Remove files of a job; one that cannot be removed stays."""
+    for pattern in patterns:
+        for file in folder.glob(pattern):
+            with suppress(OSError):
+                file.unlink()
 
 
 def program_file(depot: Depot, *, program: str, source: str) -> tuple[Path, str]:

@@ -1,5 +1,6 @@
 """One file that several processes share: whole transactions, and no newer file is touched."""
 
+import shutil
 import sqlite3
 import sys
 from contextlib import closing
@@ -117,6 +118,46 @@ def test_a_connection_is_made_anew_after_it_was_closed(tmp_path: Path) -> None:
     database.close()
     database.close()
     assert count(database) == 0
+
+
+def test_a_file_that_was_moved_away_is_not_written_and_not_made_anew(tmp_path: Path) -> None:
+    folder = tmp_path / "data"
+    folder.mkdir()
+    database = Database(folder / "service.db")
+    folder.rename(tmp_path / "moved")
+    for ask in (database.reading, database.writing):
+        with pytest.raises(Unavailable, match=r"^service\.db: No such file"), ask():
+            """not met"""
+    folder.mkdir()
+    Database(folder / "service.db")
+    with pytest.raises(Unavailable, match="another file than before"):
+        count(database)
+    shutil.rmtree(folder)
+    (tmp_path / "moved").rename(folder)
+    assert count(database) == 0
+
+
+def test_a_transaction_that_cannot_be_closed_leaves_the_connection_usable(
+    tmp_path: Path,
+) -> None:
+    database = Database(tmp_path / "service.db")
+    with database.writing() as connection:
+        connection.execute("PRAGMA foreign_keys = ON")
+        connection.execute("CREATE TABLE a (id PRIMARY KEY)")
+        late = "REFERENCES a (id) DEFERRABLE INITIALLY DEFERRED"
+        connection.execute(f"CREATE TABLE b (a {late})")
+    with database.reading() as connection:
+        connection.execute("PRAGMA foreign_keys = ON")
+
+    def refused() -> None:
+        with database.writing() as connection:
+            connection.execute("INSERT INTO b VALUES (1)")
+
+    with pytest.raises(Unavailable, match="FOREIGN KEY"):
+        refused()
+    with database.writing() as connection:
+        connection.execute(INSERT, ("anna", "1"))
+    assert count(database) == 1
 
 
 WRITER = """

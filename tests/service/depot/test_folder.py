@@ -7,7 +7,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from service.depot.folder import Depot, open_depot
+from service.depot.folder import Depot, known_depot, open_depot
 from service.depot.ids import is_id, new_id
 from service.errors import NotFound, Unavailable
 
@@ -44,6 +44,20 @@ def test_a_folder_that_cannot_be_made_is_refused(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("in the way")
     with pytest.raises(Unavailable, match="file"):
         open_depot(tmp_path / "file" / "data")
+
+
+def test_a_folder_that_is_gone_is_not_made_anew(tmp_path: Path) -> None:
+    root = tmp_path / "data"
+    made = open_depot(root)
+    assert known_depot(root, knowledge=made.knowledge).root == made.root
+    root.rename(tmp_path / "moved")
+    with pytest.raises(Unavailable, match=r"service\.db"):
+        known_depot(root, knowledge="")
+    assert not root.exists()
+    root.mkdir()
+    with pytest.raises(Unavailable, match=r"service\.db"):
+        known_depot(root, knowledge="")
+    assert not list(root.iterdir())
 
 
 def test_the_knowledge_base_is_what_is_named_else_the_environments_else_the_folders(

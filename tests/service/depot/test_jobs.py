@@ -53,6 +53,24 @@ def test_the_oldest_of_the_wanted_kinds_comes_first(depot: Depot) -> None:
     assert [each and each.id for each in found] == [*made, None]
 
 
+def test_jobs_that_wait_for_the_clock_are_told_from_those_that_work(depot: Depot) -> None:
+    def add(kind: Kind, **request: object) -> str:
+        return jobs.add(depot, Order(kind=kind, request=request, owner="anna")).id
+
+    paced = {
+        add(Kind.SIMULATION, pace=0.5), add(Kind.TRIAL, pace=1), add(Kind.CONTROL, pace=0.0)
+    }  # fmt: skip
+    plain = {
+        add(Kind.SIMULATION, pace=0.0), add(Kind.SIMULATION), add(Kind.ADVICE),
+        add(Kind.REVIEW),
+    }  # fmt: skip
+    for wanted, is_paced in ((plain, False), (paced, True)):
+        found = [jobs.claim(depot, is_paced=is_paced) for _ in range(len(wanted) + 1)]
+        assert found[-1] is None
+        assert {job.id for job in found if job} == wanted
+        assert {job.is_paced for job in found if job} == {is_paced}
+
+
 def test_a_kind_is_told_from_another(depot: Depot) -> None:
     job = queued(depot, Kind.TRIAL)
     with pytest.raises(NotFound, match="there is no control-run"):

@@ -25,6 +25,12 @@ from service.jobs.runner import main
 main(sys.argv[1], sys.argv[2], 1, int(sys.argv[3]))
 """
 
+IMPATIENT = f"""
+from service.depot import database
+database.WAIT = 0.05
+{MAIN}"""
+"""waits for a locked database hardly at all"""
+
 
 @dataclass(kw_only=True)
 class Shop:
@@ -34,17 +40,23 @@ class Shop:
     program: str = ""
     runners: list[Popen[bytes]] = field(default_factory=list)
 
-    def start(self) -> Popen[bytes]:
+    @property
+    def log(self) -> Path:
+        """What runners say."""
+        return self.depot.root.parent / "runner.log"
+
+    def start(self, main: str = MAIN) -> Popen[bytes]:
         """A runner, once it looks at the queue."""
         with self.depot.database.writing() as connection:
             connection.execute("DELETE FROM runner")
         words = [str(self.depot.root), self.depot.knowledge, str(os.getpid())]
-        runner = Popen(
-            [sys.executable, "-c", MAIN, *words],
-            env=environment(self.depot.root.parent),
-            stdin=DEVNULL,
-            stdout=DEVNULL,
-        )
+        with self.log.open("ab") as log:
+            runner = Popen(
+                [sys.executable, "-c", main, *words],
+                env={**environment(self.depot.root.parent), "PYTHONUNBUFFERED": "1"},
+                stdin=DEVNULL,
+                stdout=log,
+            )
         self.runners.append(runner)
         until(self._has_beaten, within=90.0)
         return runner

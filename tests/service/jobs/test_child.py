@@ -1,15 +1,19 @@
 """The process of one job, here in ours: however it ends, the job says how."""
 
 import signal
+import sqlite3
 from collections.abc import Iterator
 
 import pytest
 
-from service.depot import jobs, programs
+from service.depot import database, jobs, programs
+from service.depot.folder import open_depot
 from service.depot.jobs import Job, Kind, State
 from service.errors import NotFound
 from service.jobs import child
+from service.jobs.task import Task
 from tests.service.jobs.conftest import Shop, made_shop
+from tests.service.live.room import within_room
 from tests.service.rest.samples import SAMPLE
 
 
@@ -82,6 +86,65 @@ def test_a_fault_of_the_program_is_no_fault_of_the_client(idle: Shop) -> None:
     assert (found.problem["status"], found.problem["title"]) == (500, "Fault")
     assert "Traceback" not in str(found.problem)
     assert str(fault.value) not in found.problem["detail"]
+
+
+def test_an_end_is_said_once_the_database_answers_again(
+    idle: Shop, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    job = idle.order(Kind.SIMULATION)
+    claimed = jobs.claim(idle.depot)
+    assert claimed is not None
+    monkeypatch.setattr(database, "WAIT", 0.01)
+    depot = open_depot(idle.depot.root, knowledge=idle.depot.knowledge)
+    other = sqlite3.connect(idle.depot.database.file, isolation_level=None)
+    other.execute("BEGIN IMMEDIATE")
+    waits: list[float] = []
+
+    def wait(seconds: float) -> None:
+        waits.append(seconds)
+        if len(waits) == 3:
+            other.execute("ROLLBACK")
+
+    monkeypatch.setattr(child, "sleep", wait)
+    task = Task(depot=depot, job=claimed)
+    # A word of progress is no reason to fail.
+    task.progress(0.5, "half")
+    child._finish(task, State.SUCCEEDED, None)
+    other.close()
+    found = idle.job(job.id)
+    assert (found.state, found.message, len(waits)) == (State.SUCCEEDED, "", 3)
+
+
+ON_FULL_DISK = """
+from service.jobs import child
+child.main(sys.argv[1], "none.db", sys.argv[2])
+"""
+
+
+def test_a_job_without_room_says_so_and_frees_what_it_took(idle: Shop) -> None:
+    root = idle.depot.root
+    job = idle.order(Kind.SIMULATION, rate_hz=1000.0)
+    assert jobs.claim(idle.depot) is not None
+    within_room(ON_FULL_DISK, root, job.id, room=2_000_000)
+    found = idle.job(job.id)
+    assert found.state is State.FAILED
+    assert found.problem is not None
+    assert found.problem["status"] == 507
+    assert str(root) not in str(found.problem)
+    left = {each.name for each in idle.depot.job_folder(job.id).iterdir()}
+    assert left <= {"status.json"}
+
+
+def test_what_another_attempt_left_half_done_is_cleared_away(idle: Shop) -> None:
+    job = idle.order(Kind.ADVICE)
+    folder = idle.depot.job_folder(job.id)
+    folder.mkdir()
+    for name in (".samples.parquet.abc", "samples.partial.parquet"):
+        (folder / name).write_bytes(b"half")
+    assert ran(idle, job).state is State.SUCCEEDED
+    names = {each.name for each in folder.iterdir()}
+    assert "result.json" in names
+    assert not [name for name in names if name.startswith(".") or "partial" in name]
 
 
 def test_a_job_that_was_asked_to_end_is_cancelled(idle: Shop) -> None:

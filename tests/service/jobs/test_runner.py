@@ -1,8 +1,11 @@
 """The runner: what is killed is not forgotten, what is cancelled ends, nobody stays."""
 
+import multiprocessing
 import os
 import signal
+import sqlite3
 import sys
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -12,7 +15,7 @@ from service.depot.folder import open_depot
 from service.depot.jobs import Kind, State
 from service.errors import Conflict
 from service.jobs import preloaded, runner
-from tests.service.jobs.conftest import Shop
+from tests.service.jobs.conftest import IMPATIENT, MAIN, Shop
 from tests.service.waiting import children, is_alive, until
 
 
@@ -54,15 +57,14 @@ def test_a_job_whose_process_was_killed_says_so_and_the_next_one_runs(shop: Shop
 
 
 def test_live_runs_do_not_wait_for_other_jobs(shop: Shop) -> None:
-    long = shop.order(Kind.SIMULATION, pace=0.1).id
-    waits = shop.order(Kind.SIMULATION).id
+    paced = [shop.order(Kind.SIMULATION, pace=0.1).id for _ in range(2)]
     trials = [shop.order(Kind.TRIAL).id for _ in range(2)]
-    for id in (long, *trials):
+    for id in (*paced, *trials):
         shop.runs(id)
-    assert shop.job(waits).state is State.QUEUED
-    for id in (waits, long, *trials):
+    assert shop.over(shop.order(Kind.SIMULATION).id).state is State.SUCCEEDED
+    for id in (*paced, *trials):
         jobs.cancel(shop.depot, id)
-    assert {shop.over(id).state for id in (waits, long, *trials)} == {State.CANCELLED}
+    assert {shop.over(id).state for id in (*paced, *trials)} == {State.CANCELLED}
 
 
 def test_one_runner_works_for_a_folder(shop: Shop) -> None:
@@ -86,6 +88,76 @@ def test_a_sign_of_life_grows_old(tmp_path: Path) -> None:
     with depot.database.writing() as connection:
         connection.execute("UPDATE runner SET seen = seen - ?", (5.0 * runner.BEAT,))
     assert not runner.is_alive(depot)
+
+
+def test_a_locked_database_ends_nobody_and_what_happened_is_told_later(
+    own_shop: Shop,
+) -> None:
+    server = own_shop.start(IMPATIENT)
+    trial, killed = own_shop.order(Kind.TRIAL).id, own_shop.order(Kind.TRIAL).id
+    own_shop.runs(trial)
+    own_shop.runs(killed)
+    with closing(sqlite3.connect(own_shop.depot.database.file)) as other:
+        other.isolation_level = None
+        other.execute("BEGIN IMMEDIATE")
+        pid = process_of(own_shop, killed)
+        os.kill(pid, signal.SIGKILL)
+        until(lambda: "does not answer" in own_shop.log.read_text(encoding="utf-8"))
+        until(lambda: "job ended" in own_shop.log.read_text(encoding="utf-8"))
+        assert own_shop.job(killed).state is State.RUNNING
+        other.execute("ROLLBACK")
+    lost = own_shop.over(killed, within=30.0)
+    assert lost.problem is not None
+    assert "SIGKILL" in lost.problem["detail"]
+    assert own_shop.over(own_shop.order(Kind.SIMULATION).id).state is State.SUCCEEDED
+    assert (server.poll(), own_shop.job(trial).state) == (None, State.RUNNING)
+    assert own_shop.log.read_text(encoding="utf-8").count("does not answer") == 1
+
+
+def test_a_folder_that_was_moved_away_is_not_made_anew_and_may_come_back(
+    own_shop: Shop, tmp_path: Path
+) -> None:
+    server = own_shop.start()
+    root = own_shop.depot.root
+    root.rename(tmp_path / "moved")
+    until(lambda: "does not answer" in own_shop.log.read_text(encoding="utf-8"))
+    assert not root.exists()
+    (tmp_path / "moved").rename(root)
+    assert own_shop.over(own_shop.order(Kind.SIMULATION).id).state is State.SUCCEEDED
+    assert server.poll() is None
+
+
+HASTY = f"""
+from service.jobs import runner
+runner.LONGEST_PACED = 0.5
+{MAIN}"""
+
+
+def test_a_run_for_which_nobody_comes_has_an_end_that_says_why(own_shop: Shop) -> None:
+    own_shop.start(HASTY)
+    job = own_shop.over(own_shop.order(Kind.TRIAL).id)
+    assert job.state is State.FAILED
+    assert job.problem is not None
+    assert job.problem["type"] == "urn:stepnc:problem:too-long"
+    assert "h, which is the most" in job.problem["detail"]
+
+
+def test_all_are_ended_though_one_of_them_is_gone_already(own_shop: Shop) -> None:
+    context = multiprocessing.get_context("forkserver")
+    gone, stays = (context.Process(target=signal.pause) for _ in range(2))
+    for each in (gone, stays):
+        each.start()
+    gone.kill()
+    gone.join()
+    gone.close()
+    made = runner.Runner(depot=own_shop.depot, workers=1)
+    for each in (gone, stays):
+        own_shop.order(Kind.TRIAL)
+        job = jobs.claim(own_shop.depot)
+        assert job is not None
+        made.running[job.id] = runner.Running(job=job, process=each)
+    made._end_all()
+    assert not stays.is_alive()
 
 
 def test_what_is_preloaded_is_loaded() -> None:

@@ -6,13 +6,14 @@ from subprocess import run
 
 LIMITED = """
 import resource, sys
-resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv[2]), resource.RLIM_INFINITY))
+resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv[1]), resource.RLIM_INFINITY))
+del sys.argv[1]
 """
 
 
-def within_room(code: str, file: Path, *, room: int) -> str:
-    """What a piece of code says that works on a file, ``sys.argv[1]``, within some bytes."""
-    words = [sys.executable, "-c", LIMITED + code, str(file), str(room)]
+def within_room(code: str, *words: Path | str, room: int) -> str:
+    """What a piece of code says that has some words, and so many bytes for each file."""
+    words = (sys.executable, "-c", LIMITED + code, str(room), *map(str, words))
     found = run(words, capture_output=True, text=True, timeout=120.0, check=False)
     assert found.returncode == 0, found.stderr
     return found.stdout

@@ -25,7 +25,7 @@ def test_without_a_runner_or_a_database_nothing_is_ready(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.delenv("STEPNC_KB", raising=False)
-    app = application(Settings(data=str(tmp_path)))
+    app = application(Settings(data=str(tmp_path / "data")))
     depot = app.state.depot
 
     def ready() -> tuple[int, dict[str, bool]]:
@@ -46,6 +46,12 @@ def test_without_a_runner_or_a_database_nothing_is_ready(
         old = time.time() - 6.0 * BEAT
         connection.execute("UPDATE runner SET seen = ?", (old,))
     assert ready() == (503, {"database": True, "runner": False})
+    beat(depot)
+    depot.root.rename(tmp_path / "moved")
+    assert ready() == (503, {"database": False, "runner": False})
+    assert not depot.root.exists()
+    (tmp_path / "moved").rename(depot.root)
+    assert ready() == (200, {"database": True, "runner": True})
     with depot.database.writing() as connection:
         connection.execute("DROP TABLE runner")
     assert ready() == (503, {"database": False, "runner": False})
