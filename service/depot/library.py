@@ -4,7 +4,7 @@ A name that comes from outside is looked up; it is never taken for a path.
 """
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
@@ -12,8 +12,10 @@ from tempfile import TemporaryDirectory
 
 from service.chosen import load_material_named
 from service.depot.folder import Depot
-from service.errors import Conflict, NotFound, TooLarge, Unreadable
-from service.files import read_bytes, write_atomically
+from service.depot.turn import turn
+from service.errors import Conflict, NotFound, PreconditionFailed, TooLarge, Unreadable
+from service.files import write_atomically
+from service.live.storage import storing
 from simulator.errors import LibraryError, UnknownMachine
 from simulator.library import (
     load_machine,
@@ -22,6 +24,7 @@ from simulator.library import (
     material_names,
 )
 from simulator.spec import Machine, Material
+from stepnc_model.errors import StepNcError
 
 NAME = "^[a-z0-9][a-z0-9_-]{0,63}$"
 """regular expression of the name of a file of the shop"""
@@ -46,6 +49,11 @@ class Shelf(StrEnum):
         """A single one."""
         return self.value.removesuffix("s")
 
+    @property
+    def suffixes(self) -> tuple[str, ...]:
+        """Endings of files, the one that counts first: one name has one file."""
+        return (".toml", ".xml") if self is Shelf.MACHINES else (".toml",)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Held:
@@ -55,6 +63,28 @@ class Held:
     is_own: bool
     """of the shop, not of the library"""
     entry: Machine | Material
+    text: bytes
+    """the file that it was read from; empty: it is of the library"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Listed:
+    """A machine or material as lists tell it."""
+
+    name: str
+    is_own: bool
+    title: str
+    problem: str
+    """why it cannot be read; empty: it can"""
+
+
+Condition = Callable[[bytes | None], bool]
+"""whether a file may be changed, by what is in it now; None: there is none"""
+
+
+def always(_text: bytes | None) -> bool:
+    """Whatever is in it."""
+    return True
 
 
 def machine_word(depot: Depot, name: str) -> str:
@@ -91,9 +121,38 @@ def material_word(depot: Depot, name: str) -> str:
     return name
 
 
-def held(depot: Depot, shelf: Shelf) -> tuple[Held, ...]:
-    """All of them, those of the shop last."""
-    return tuple(one(depot, shelf, name) for name in _names(depot, shelf))
+def require(depot: Depot, *, machine: str, material: str) -> None:
+    """Refuse a machine or a material that a job could not take; empty: one that suits.
+
+    Raises
+    ------
+    UnknownMachine, UnknownMaterial, Unreadable, LibraryError
+        As the job would.
+    """
+    if machine:
+        machine_word(depot, machine)
+        one(depot, Shelf.MACHINES, machine)
+    if _own_file(depot, Shelf.MATERIALS, material) is not None:
+        one(depot, Shelf.MATERIALS, material)
+    elif material:
+        material_of(depot, material)
+
+
+def held(depot: Depot, shelf: Shelf) -> tuple[Listed, ...]:
+    """All of them, those of the shop last; one that cannot be read says why."""
+    found = (_listed(depot, shelf, name) for name in _names(depot, shelf))
+    return tuple(each for each in found if each is not None)
+
+
+def _listed(depot: Depot, shelf: Shelf, name: str) -> Listed | None:
+    """One of them; None: it was deleted meanwhile."""
+    try:
+        found = one(depot, shelf, name)
+    except NotFound:
+        return None
+    except StepNcError as error:
+        return Listed(name=name, is_own=True, title=name, problem=str(error))
+    return Listed(name=name, is_own=found.is_own, title=found.entry.title, problem="")
 
 
 def one(depot: Depot, shelf: Shelf, name: str) -> Held:
@@ -101,25 +160,38 @@ def one(depot: Depot, shelf: Shelf, name: str) -> Held:
 
     Raises
     ------
-    NotFound
-        When neither the shop nor the library has it.
+    NotFound, LibraryError
+        When neither the shop nor the library has it, or the shop's cannot be read.
     """
-    load = _LOADERS[shelf]
     if name in _library(shelf):
-        return Held(name=name, is_own=False, entry=load(name))
-    file = _own_file(depot, shelf, name)
-    if file is None:
-        raise NotFound(shelf.one, name)
-    return Held(name=name, is_own=True, entry=load(str(file)))
+        return Held(name=name, is_own=False, entry=_LOADERS[shelf](name), text=b"")
+    while (file := _own_file(depot, shelf, name)) is not None:
+        # Entry and text are of one file: it is read again when it was replaced meanwhile.
+        text = _text(file)
+        try:
+            entry = _load(shelf, file)
+        except StepNcError:
+            if text is not None and _text(file) == text:
+                raise
+            continue
+        if text is not None and _text(file) == text:
+            return Held(name=name, is_own=True, entry=entry, text=text)
+    raise NotFound(shelf.one, name)
 
 
-def put(depot: Depot, shelf: Shelf, name: str, data: bytes) -> Held:
+def put(
+    depot: Depot, shelf: Shelf, name: str, data: bytes, *, condition: Condition = always
+) -> Held:
     """Keep one, once it has been read without an error.
 
     Raises
     ------
     Unreadable, Conflict, TooLarge, LibraryError
         When the name cannot be one, is the library's, or the file is no good.
+    PreconditionFailed
+        When the condition is not met.
+    StorageFull, Unavailable
+        When the disk refuses.
     """
     if not _NAME.fullmatch(name):
         raise Unreadable(f"'{name[:LONGEST]}': a name is small letters, digits, '-' and '_'")
@@ -127,56 +199,66 @@ def put(depot: Depot, shelf: Shelf, name: str, data: bytes) -> Held:
         raise Conflict(f"{shelf.one} '{name}' is of the library: take another name")
     if len(data) > LARGEST:
         raise TooLarge(f"the file of a {shelf.one}", bound=LARGEST)
-    suffix = _suffix(shelf, data)
-    _try_out(shelf, f"{name}{suffix}", data)
-    before = _own_file(depot, shelf, name)
-    file = depot.root / shelf.value / f"{name}{suffix}"
-    write_atomically(file, data)
-    if before is not None and before != file:
-        before.unlink(missing_ok=True)
-    return one(depot, shelf, name)
+    folder = depot.root / shelf.value
+    file = folder / f"{name}{_suffix(shelf, data)}"
+    with storing(shelf.value):
+        entry = _try_out(shelf, file.name, data)
+        with turn(folder):
+            before = _changeable(depot, shelf, name, condition)
+            write_atomically(file, data)
+            for other in before:
+                if other != file:
+                    other.unlink(missing_ok=True)
+    return Held(name=name, is_own=True, entry=entry, text=data)
 
 
-def _try_out(shelf: Shelf, name: str, data: bytes) -> None:
-    """Read a file before it is kept; what is wrong is told by its name alone."""
+def _changeable(depot: Depot, shelf: Shelf, name: str, condition: Condition) -> list[Path]:
+    """Files of a name that may be changed; within the turn."""
+    files = _own_files(depot, shelf, name)
+    if not condition(_text(files[0]) if files else None):
+        what = "was changed meanwhile: read it again" if files else "is not there"
+        raise PreconditionFailed(f"{shelf.one} '{name}' {what}")
+    return files
+
+
+def _try_out(shelf: Shelf, name: str, data: bytes) -> Machine | Material:
+    """Read a file before it is kept."""
     with TemporaryDirectory() as folder:
         trial = Path(folder) / name
         trial.write_bytes(data)
-        try:
-            _LOADERS[shelf](str(trial))
-        except LibraryError as error:
-            told = str(error).removeprefix(f"{error.path}: ").removeprefix(f"{error.key}: ")
-            raise LibraryError(told, path=name, key=error.key) from error
+        return _load(shelf, trial)
 
 
-def text_of(depot: Depot, shelf: Shelf, name: str) -> bytes:
-    """The file of one of the shop's.
-
-    Raises
-    ------
-    NotFound
-        When the shop has none of that name.
-    """
-    file = _own_file(depot, shelf, name)
-    if file is None:
-        raise NotFound(shelf.one, name)
-    return read_bytes(file)
+def _load(shelf: Shelf, file: Path) -> Machine | Material:
+    """A file of the shop; what is wrong is told by its name alone."""
+    try:
+        return _LOADERS[shelf](str(file))
+    except LibraryError as error:
+        told = str(error).removeprefix(f"{error.path}: ").removeprefix(f"{error.key}: ")
+        raise LibraryError(told, path=file.name, key=error.key) from error
 
 
-def remove(depot: Depot, shelf: Shelf, name: str) -> None:
+def remove(depot: Depot, shelf: Shelf, name: str, *, condition: Condition = always) -> None:
     """Delete one of the shop.
 
     Raises
     ------
     NotFound, Conflict
         When there is none, or it is of the library.
+    PreconditionFailed
+        When the condition is not met.
     """
     if name in _library(shelf):
         raise Conflict(f"{shelf.one} '{name}' is of the library: it stays")
-    file = _own_file(depot, shelf, name)
-    if file is None:
+    if not _NAME.fullmatch(name):
         raise NotFound(shelf.one, name)
-    file.unlink(missing_ok=True)
+    with storing(shelf.value), turn(depot.root / shelf.value):
+        files = _changeable(depot, shelf, name, condition)
+        if not files:
+            raise NotFound(shelf.one, name)
+        # The one that counts last: none comes to light on the way.
+        for file in reversed(files):
+            file.unlink(missing_ok=True)
 
 
 def _suffix(shelf: Shelf, data: bytes) -> str:
@@ -185,22 +267,35 @@ def _suffix(shelf: Shelf, data: bytes) -> str:
 
 
 def _own_file(depot: Depot, shelf: Shelf, name: str) -> Path | None:
+    return next(iter(_own_files(depot, shelf, name)), None)
+
+
+def _own_files(depot: Depot, shelf: Shelf, name: str) -> list[Path]:
+    """The one that counts first; a second one is left when the power failed in between."""
     if not _NAME.fullmatch(name):
-        return None
-    for suffix in (".toml", ".xml"):
-        file = depot.root / shelf.value / f"{name}{suffix}"
-        if file.is_file():
-            return file
-    return None
+        return []
+    files = (depot.root / shelf.value / f"{name}{suffix}" for suffix in shelf.suffixes)
+    return [file for file in files if file.is_file()]
+
+
+def _text(file: Path) -> bytes | None:
+    """What is in a file; None: it is gone."""
+    with storing(file.name):
+        try:
+            return file.read_bytes()
+        except FileNotFoundError:
+            return None
 
 
 def _names(depot: Depot, shelf: Shelf) -> list[str]:
-    own = sorted(path.stem for path in _files(depot.root / shelf.value))
-    return [*_library(shelf), *own]
-
-
-def _files(folder: Path) -> Iterable[Path]:
-    return (path for path in folder.iterdir() if _NAME.fullmatch(path.stem))
+    of_library = _library(shelf)
+    with storing(shelf.value):
+        files = [
+            path for path in (depot.root / shelf.value).iterdir()
+            if path.suffix in shelf.suffixes and path.is_file()
+        ]  # fmt: skip
+    own = {path.stem for path in files if _NAME.fullmatch(path.stem)}
+    return [*of_library, *sorted(own - set(of_library))]
 
 
 def _library(shelf: Shelf) -> tuple[str, ...]:

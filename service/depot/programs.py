@@ -14,6 +14,9 @@ from service.files import write_atomically
 
 LONGEST_NAME = 120
 
+FILE = "file of program"
+"""what is not found when the bytes of a program are gone"""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StoredProgram:
@@ -77,6 +80,19 @@ def get(depot: Depot, id: str) -> StoredProgram:
     if row is None:
         raise NotFound("program", id)
     return _program(row)
+
+
+def require_file(depot: Depot, id: str) -> None:
+    """Refuse a program whose bytes are gone.
+
+    Raises
+    ------
+    NotFound
+        Also when there is no such program.
+    """
+    get(depot, id)
+    if not depot.program_file(id).is_file():
+        raise NotFound(FILE, id)
 
 
 def listed(depot: Depot, place: Place) -> Page[StoredProgram]:

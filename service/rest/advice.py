@@ -92,7 +92,10 @@ class Shelf:
             raise _missing(depot, id) from None
         if known is None or known.stamp != stamp:
             jobs.get(depot, id, Kind.ADVICE)
-            known = self._ready[id] = _ready(file, stamp)
+            try:
+                known = self._ready[id] = _ready(file, stamp)
+            except FileNotFoundError:
+                raise _missing(depot, id) from None
             while len(self._ready) > MOST_READY:
                 self._ready.popitem(last=False)
         else:
@@ -127,6 +130,8 @@ def _missing(depot: Depot, id: str) -> Exception:
     job = jobs.get(depot, id, Kind.ADVICE)
     if job.state in {State.QUEUED, State.RUNNING}:
         return Conflict(f"advice '{id}' is {job.state.value}: look again, or at its job")
+    if job.state is State.SUCCEEDED:
+        return Conflict(f"advice '{id}' had no result yet, or has lost it: look again")
     return Conflict(f"advice '{id}' has {job.state.value}: its job says why")
 
 
@@ -191,7 +196,9 @@ async def optimised(request: Request, depot: InDepot, id: Id) -> Response:
     """The program as it came, with the advised feeds; nothing else is changed."""
     name = await run_in_threadpool(_name, request, depot, id)
     file = depot.job_folder(id) / OPTIMISED
-    return file_reply(file, name=name, kind="application/step", thing="optimised program")
+    return file_reply(
+        request, file, name=name, kind="application/step", thing="optimised program"
+    )
 
 
 @ROUTES.get(
@@ -208,15 +215,17 @@ async def nc_code(request: Request, depot: InDepot, id: Id) -> Response:
         raise NotFound("NC code (ask for advice with nc_control)", id)
     name = f"{Path(name).stem}{SUFFIXES[Control(control)]}"
     file = depot.job_folder(id) / NC_CODE
-    return file_reply(file, name=name, kind="text/plain; charset=utf-8", thing="NC code")
+    return file_reply(
+        request, file, name=name, kind="text/plain; charset=utf-8", thing="NC code"
+    )
 
 
 @ROUTES.get("/{id}/report", summary="The report as a page", response_class=Response,
             responses={200: {"content": {"text/html": {}}}})  # fmt: skip
-async def report(depot: InDepot, id: Id) -> Response:
+async def report(request: Request, depot: InDepot, id: Id) -> Response:
     """A page that stands for itself: save it, print it, send it."""
     jobs.get(depot, id, Kind.ADVICE)
-    return report_reply(depot.job_folder(id) / REPORT, id=id)
+    return report_reply(request, depot.job_folder(id) / REPORT, id=id)
 
 
 def _name(request: Request, depot: Depot, id: str) -> str:

@@ -1,16 +1,17 @@
 """What the routes share: the data folder, pages, keys that make a request once."""
 
 import hashlib
+from collections.abc import Callable
 from typing import Annotated, Any
 
 from fastapi import Depends, Header, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
 
-from service.depot import jobs
+from service.depot import jobs, library, programs
 from service.depot.folder import Depot
 from service.depot.jobs import Job, Order
 from service.depot.keys import Key
-from service.depot.once import Once
+from service.depot.once import Once, made_before
 from service.depot.pages import MOST, USUAL, Page, Place
 from service.errors import Unreadable
 from service.rest.replies import json_reply
@@ -32,10 +33,12 @@ PROBLEMS: dict[int | str, dict[str, Any]] = {
         (403, "The key, or the page it comes from, does not open this"),
         (404, "There is none"),
         (409, "It is not in the state for that"),
+        (412, "It is not any more what If-Match names"),
         (413, "The body is too large"),
         (422, "What is asked is not possible; the detail names value, bound and unit"),
         (429, "Too many requests; Retry-After says when"),
         (503, "Something the service stands on does not answer"),
+        (507, "The disk has no room"),
     )
 }
 """that any route may answer with"""
@@ -108,14 +111,59 @@ def once_of(request: Request, key: str | None, body: bytes) -> Once | None:
     return Once(owner=owner_of(request), key=key, fingerprint=digest)
 
 
+Require = Callable[[Depot, Order], None]
+"""refuses an order that could not be done"""
+
+
+def nothing(_depot: Depot, _order: Order) -> None:
+    """Whatever is asked can be done."""
+
+
+def runnable(depot: Depot, order: Order) -> None:
+    """What it works on is there, and so are machine and material.
+
+    Raises
+    ------
+    NotFound
+        When the program or its file was deleted.
+    UnknownMachine, UnknownMaterial, Unreadable, LibraryError
+        As the job would.
+    """
+    if not order.source:
+        programs.require_file(depot, order.program)
+    words = order.request
+    library.require(depot, machine=words["machine"], material=words["material"])
+
+
 def page_reply(request: Request, page: Page[Any], items: list[Any]) -> Response:
     """A page of a list."""
     return json_reply(request, {"items": items, "next_cursor": page.cursor})
 
 
-async def queued(request: Request, order: Order, key: str | None) -> Response:
-    """Queue a job: 202, and where to look."""
-    once = once_of(request, key, repr(sorted(order.request.items())).encode())
-    job: Job = await run_in_threadpool(jobs.add, depot_of(request), order, once=once)
+async def queued(
+    request: Request, order: Order, key: str | None, *, require: Require = nothing
+) -> Response:
+    """Queue a job: 202, and where to look.
+
+    Raises
+    ------
+    StepNcError
+        When the job could not begin; one that was asked for before is told as it is.
+    """
+    depot, once = depot_of(request), once_of(request, key, _words(order))
+
+    def add() -> Job:
+        with depot.database.reading() as connection:
+            is_new = made_before(connection, once) is None
+        if is_new:
+            require(depot, order)
+        return jobs.add(depot, order, once=once)
+
+    job = await run_in_threadpool(add)
     headers = {"location": f"/v1/jobs/{job.id}", "retry-after": "1"}
     return json_reply(request, job_view(job), status=202, headers=headers)
+
+
+def _words(order: Order) -> bytes:
+    """What tells an order from others."""
+    return repr(sorted(order.request.items())).encode()

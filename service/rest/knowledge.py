@@ -88,23 +88,23 @@ async def evaluation(request: Request, id: Id) -> Response:
     responses={200: {"content": {kind: {} for kind in KINDS.values()}}},
 )
 async def evaluation_file(
-    depot: InDepot, id: Id, form: Annotated[Form, Query(description="of the file")] = Form.CSV
+    request: Request,
+    depot: InDepot,
+    id: Id,
+    form: Annotated[Form, Query(description="of the file")] = Form.CSV,
 ) -> Response:
     """A line for each side of a row."""
     jobs.get(depot, id, Kind.EVALUATION)
-    name = f"{TABLE}.{form.value}"
-    file = depot.job_folder(id) / name
-    return file_reply(
-        file, name=f"evaluation-{id}.{form.value}", kind=KINDS[form], thing="table"
-    )
+    file, name = depot.job_folder(id) / f"{TABLE}.{form.value}", f"evaluation-{id}.{form.value}"
+    return file_reply(request, file, name=name, kind=KINDS[form], thing="table")
 
 
 @EVALUATIONS.get("/{id}/report", summary="A table as a page", response_class=Response,
                  responses={200: {"content": {"text/html": {}}}})  # fmt: skip
-async def evaluation_report(depot: InDepot, id: Id) -> Response:
+async def evaluation_report(request: Request, depot: InDepot, id: Id) -> Response:
     """A page that stands for itself."""
     jobs.get(depot, id, Kind.EVALUATION)
-    return report_reply(depot.job_folder(id) / REPORT, id=id)
+    return report_reply(request, depot.job_folder(id) / REPORT, id=id)
 
 
 @REVIEWS.post("", status_code=202, response_model=JobView, summary="Learn from outcomes")

@@ -9,8 +9,8 @@ from starlette.concurrency import run_in_threadpool
 
 from service.depot import library
 from service.depot.folder import Depot
-from service.depot.library import NAME, Held, Shelf
-from service.errors import Conflict, Unreadable
+from service.depot.library import NAME, Condition, Held, Listed, Shelf
+from service.errors import Unreadable
 from service.rest.context import InDepot
 from service.rest.replies import json_reply, matches, tag_of, tagged
 from service.rest.views import EntryView
@@ -33,7 +33,7 @@ TOML = {
 
 @MACHINES.get("", response_model=list[EntryView], summary="All machines")
 async def machines(request: Request, depot: InDepot) -> Response:
-    """By name."""
+    """By name; one of the shop's that cannot be read tells its problem."""
     return await _all(request, depot, Shelf.MACHINES)
 
 
@@ -51,9 +51,9 @@ async def put_machine(request: Request, depot: InDepot, name: Own) -> Response:
 
 
 @MACHINES.delete("/{name}", status_code=204, summary="Delete a machine of the shop")
-async def delete_machine(depot: InDepot, name: Own) -> Response:
-    """Those of the library stay."""
-    return await _delete(depot, Shelf.MACHINES, name)
+async def delete_machine(request: Request, depot: InDepot, name: Own) -> Response:
+    """Those of the library stay; If-Match as when it is kept."""
+    return await _delete(request, depot, Shelf.MACHINES, name)
 
 
 @MATERIALS.get("", response_model=list[EntryView], summary="All materials")
@@ -76,13 +76,22 @@ async def put_material(request: Request, depot: InDepot, name: Own) -> Response:
 
 
 @MATERIALS.delete("/{name}", status_code=204, summary="Delete a material of the shop")
-async def delete_material(depot: InDepot, name: Own) -> Response:
-    """Those of the library stay."""
-    return await _delete(depot, Shelf.MATERIALS, name)
+async def delete_material(request: Request, depot: InDepot, name: Own) -> Response:
+    """As for machines."""
+    return await _delete(request, depot, Shelf.MATERIALS, name)
 
 
-def _view(held: Held) -> dict[str, object]:
-    return {"name": held.name, "title": held.entry.title, "is_own": held.is_own}
+def _view(found: Held | Listed) -> dict[str, object]:
+    if isinstance(found, Held):
+        title, problem = found.entry.title, ""
+    else:
+        title, problem = found.title, found.problem
+    return {
+        "name": found.name,
+        "title": title,
+        "is_own": found.is_own,
+        "problem": problem or None,
+    }
 
 
 async def _all(request: Request, depot: Depot, shelf: Shelf) -> Response:
@@ -97,23 +106,29 @@ async def _one(request: Request, depot: Depot, shelf: Shelf, name: str) -> Respo
     if not held.is_own:
         return json_reply(request, shown)
     # The tag of the file, so that who has looked may change it with If-Match.
-    text = await run_in_threadpool(library.text_of, depot, shelf, name)
-    return tagged(request, shown, tag_of(text))
+    return tagged(request, shown, tag_of(held.text))
 
 
 async def _put(request: Request, depot: Depot, shelf: Shelf, name: str) -> Response:
     data = await request.body()
     if not data:
         raise Unreadable("the body is empty: send the file")
-    condition = request.headers.get("if-match")
-    if condition is not None:
-        held = await run_in_threadpool(library.text_of, depot, shelf, name)
-        if not matches(condition, tag_of(held)):
-            raise Conflict(f"{shelf.one} '{name}' was changed meanwhile: read it again")
-    kept = await run_in_threadpool(library.put, depot, shelf, name, data)
+    kept = await run_in_threadpool(
+        library.put, depot, shelf, name, data, condition=_condition(request)
+    )
     return json_reply(request, _view(kept), headers={"etag": tag_of(data)})
 
 
-async def _delete(depot: Depot, shelf: Shelf, name: str) -> Response:
-    await run_in_threadpool(library.remove, depot, shelf, name)
+async def _delete(request: Request, depot: Depot, shelf: Shelf, name: str) -> Response:
+    await run_in_threadpool(library.remove, depot, shelf, name, condition=_condition(request))
     return Response(status_code=204)
+
+
+def _condition(request: Request) -> Condition:
+    """If-Match, RFC 9110 §13.1.1."""
+    asked = request.headers.get("if-match")
+
+    def is_met(text: bytes | None) -> bool:
+        return asked is None or (text is not None and matches(asked, tag_of(text)))
+
+    return is_met

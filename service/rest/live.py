@@ -16,7 +16,15 @@ from service.jobs.task import REPORT, SAMPLES
 from service.live.folder import LiveFolder
 from service.live.journal import append, read_on
 from service.rest.bodies import ControlBody, ControlChanges, Id, TrialBody, TrialChanges
-from service.rest.context import AtPlace, ByOwner, InDepot, OnceKey, page_reply, queued
+from service.rest.context import (
+    AtPlace,
+    ByOwner,
+    InDepot,
+    OnceKey,
+    page_reply,
+    queued,
+    runnable,
+)
 from service.rest.jobs import EVENTS
 from service.rest.replies import file_reply, json_reply, report_reply
 from service.rest.results import (
@@ -53,7 +61,9 @@ async def ask_control(
     request: Request, depot: InDepot, body: ControlBody, owner: ByOwner, key: OnceKey = None
 ) -> Response:
     """A job on the virtual machine, under the force loop."""
-    return await queued(request, run_order(depot, Kind.CONTROL, body, owner), key)
+    return await queued(
+        request, run_order(depot, Kind.CONTROL, body, owner), key, require=runnable
+    )
 
 
 @TRIALS.post("", status_code=202, response_model=JobView, summary="Begin a trial cut",
@@ -184,18 +194,20 @@ _add_common(TRIALS, Kind.TRIAL)
 
 @CONTROL.get("/{id}/samples", summary="The run as a Parquet file", response_class=Response,
              responses={200: {"content": {PARQUET: {}}}})  # fmt: skip
-async def samples(depot: InDepot, id: Id) -> Response:
+async def samples(request: Request, depot: InDepot, id: Id) -> Response:
     """Revolution by revolution."""
     file = file_of(depot, jobs.get(depot, id, Kind.CONTROL), SAMPLES, thing="samples")
-    return file_reply(file, name=f"control-run-{id}.parquet", kind=PARQUET, thing="samples")
+    return file_reply(
+        request, file, name=f"control-run-{id}.parquet", kind=PARQUET, thing="samples"
+    )
 
 
 @CONTROL.get("/{id}/report", summary="The report as a page", response_class=Response,
              responses={200: {"content": {"text/html": {}}}})  # fmt: skip
-async def report(depot: InDepot, id: Id) -> Response:
+async def report(request: Request, depot: InDepot, id: Id) -> Response:
     """A page that stands for itself."""
     jobs.get(depot, id, Kind.CONTROL)
-    return report_reply(depot.job_folder(id) / REPORT, id=id)
+    return report_reply(request, depot.job_folder(id) / REPORT, id=id)
 
 
 def _events(folder: LiveFolder) -> list[dict[str, Any]]:

@@ -2,6 +2,7 @@
 
 import asyncio
 import zlib
+from functools import partial
 from pathlib import Path as FilePath
 from typing import Annotated
 
@@ -17,6 +18,7 @@ from service.depot.programs import StoredProgram
 from service.errors import TooLarge, Unreadable
 from service.files import read_bytes
 from service.rest.bodies import ISO, AdviceBody, Id, Name, Units
+from service.rest.checks import Answers, in_turn
 from service.rest.context import (
     AtPlace,
     ByOwner,
@@ -25,9 +27,10 @@ from service.rest.context import (
     once_of,
     page_reply,
     queued,
+    runnable,
     settings_of,
 )
-from service.rest.replies import file_reply, json_reply, tagged
+from service.rest.replies import file_reply, json_reply, matches, tagged
 from service.rest.views import (
     ContentsView,
     JobView,
@@ -37,6 +40,7 @@ from service.rest.views import (
     program_view,
 )
 from service.wire import contents_json
+from stepnc_model.errors import StepNcError
 from stepnc_model.part21.reader import Part21File
 
 ROUTES = APIRouter(prefix="/v1/programs", tags=["programs"])
@@ -80,7 +84,7 @@ async def upload(
         data = await _body(request)
         if not data:
             raise Unreadable("the body is empty: send the bytes of the file")
-    await run_in_threadpool(Part21File.from_bytes, data, name=programs.shown_name(name))
+    await in_turn(partial(_require_part21, data, programs.shown_name(name)))
     stored = await run_in_threadpool(
         programs.add, depot, data, name=name, owner=owner, once=once_of(request, key, data)
     )
@@ -107,18 +111,30 @@ async def program(request: Request, depot: InDepot, id: Id) -> Response:
     response_class=Response,
     responses={200: {"content": {STEP: {}}}},
 )
-async def program_bytes(depot: InDepot, id: Id) -> Response:
+async def program_bytes(request: Request, depot: InDepot, id: Id) -> Response:
     """Byte for byte."""
     stored = programs.get(depot, id)
-    return file_reply(depot.program_file(id), name=stored.name, kind=STEP, thing="program")
+    programs.require_file(depot, id)
+    return file_reply(
+        request,
+        depot.program_file(id),
+        name=stored.name,
+        kind=STEP,
+        thing=programs.FILE,
+        tag=f'"{stored.sha256}"',
+    )
 
 
 @ROUTES.get("/{id}/findings", response_model=ContentsView, summary="What is wrong with it")
 async def findings(request: Request, depot: InDepot, id: Id, units: Units = ISO) -> Response:
     """Workingsteps and findings, as ``stepnc check`` tells them."""
     stored = programs.get(depot, id)
+    programs.require_file(depot, id)
     tag = f'"{stored.sha256[:24]}-{units.value}"'
-    body = await run_in_threadpool(_contents, depot, stored, units.value)
+    if matches(request.headers.get("if-none-match"), tag):
+        return tagged(request, b"", tag)
+    name = f"{id} {units.value}"
+    body = await _answers(request).get(name, partial(_contents, depot, stored, units.value))
     return tagged(request, body, tag)
 
 
@@ -135,7 +151,7 @@ async def ask_advice(
 ) -> Response:
     """A job; its result is at ``/v1/advice/{job}``."""
     order = Order(kind=Kind.ADVICE, request=body.words(), program=id, owner=owner)
-    return await queued(request, order, key)
+    return await queued(request, order, key, require=runnable)
 
 
 @ROUTES.get(
@@ -159,8 +175,33 @@ def _sample(name: Name) -> bytes:
     return read_bytes(EXAMPLES / f"{name}.stpnc")
 
 
+def _require_part21(data: bytes, name: str) -> None:
+    """Refuse what is no Part 21 file; what it holds is not kept."""
+    Part21File.from_bytes(data, name=name)
+
+
+def _answers(request: Request) -> Answers:
+    """Findings that were asked for lately; the first who asks brings the shelf."""
+    state = request.app.state
+    if not hasattr(state, "findings"):
+        state.findings = Answers()
+    found: Answers = state.findings
+    return found
+
+
 def _contents(depot: Depot, stored: StoredProgram, units: str) -> bytes:
-    found = check(depot.program_file(stored.id), units=units, name=stored.name)
+    """Bytes of the answer.
+
+    Raises
+    ------
+    NotFound
+        When the program was deleted meanwhile.
+    """
+    try:
+        found = check(depot.program_file(stored.id), units=units, name=stored.name)
+    except StepNcError:
+        programs.require_file(depot, stored.id)
+        raise
     return contents_json(found).encode()
 
 

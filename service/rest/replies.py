@@ -1,21 +1,27 @@
 """Answers: JSON with an ETag, files, problems."""
 
 import hashlib
+import os
 from collections.abc import Mapping
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 from urllib.parse import quote
 
 import orjson
 from fastapi import Request
-from fastapi.responses import FileResponse, Response
+from fastapi.responses import Response
+from starlette.concurrency import run_in_threadpool
+from starlette.types import Receive, Scope, Send
 
 from service.errors import NotFound
 from service.rest.gate import REPORT_POLICY
 
 JSON = "application/json"
 PROBLEM = "application/problem+json"
+
+PART = 1 << 18
+"""bytes of a file that are read at once"""
 
 
 def json_reply(
@@ -69,24 +75,73 @@ def problem_reply(problem: Mapping[str, Any]) -> Response:
     return Response(orjson.dumps(problem), problem["status"], None, PROBLEM)
 
 
-def file_reply(file: Path, *, name: str, kind: str, thing: str) -> Response:
+class FileReply(Response):
+    """An opened file: who deletes it meanwhile does no harm. It is closed in every case.
+
+    Parameters
+    ----------
+    file : BinaryIO
+    size : int
+        Bytes of it.
+    kind : str
+        Media type.
+    headers : mapping
+    """
+
+    def __init__(
+        self, file: BinaryIO, *, size: int, kind: str, headers: Mapping[str, str]
+    ) -> None:
+        super().__init__(None, 200, {**headers, "content-length": str(size)}, kind)
+        self.file = file
+        self._left = size
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """See ASGI."""
+        start = {"status": self.status_code, "headers": self.raw_headers}
+        try:
+            await send({"type": "http.response.start", **start})
+            while self._left:
+                part = await run_in_threadpool(self.file.read, min(PART, self._left))
+                if not part:
+                    raise OSError(f"the file has lost {self._left} bytes while it was sent")
+                self._left -= len(part)
+                await send({"type": "http.response.body", "body": part, "more_body": True})
+            await send({"type": "http.response.body", "body": b""})
+        finally:
+            self.file.close()
+
+
+def file_reply(
+    request: Request, file: Path, *, name: str, kind: str, thing: str, tag: str = ""
+) -> Response:
     """A file to save, under a name of the user's.
+
+    Parameters
+    ----------
+    request : Request
+    file : Path
+    name : str
+        As its owner calls it.
+    kind : str
+        Media type.
+    thing : str
+        What is not found when there is no file.
+    tag : str
+        What changes with its content; empty: the moment at which it was written.
 
     Raises
     ------
     NotFound
         When it does not exist.
     """
-    if not file.is_file():
-        raise NotFound(thing, name)
     plain = "".join(each if (each.isascii() and each.isalnum()) or each in "._- " else "_"
                     for each in name)  # fmt: skip
     disposition = f"attachment; filename=\"{plain}\"; filename*=UTF-8''{quote(name, safe='')}"
-    headers = {"content-disposition": disposition, "cache-control": "no-cache"}
-    return FileResponse(file, media_type=kind, headers=headers)
+    headers = {"content-disposition": disposition, **({"etag": tag} if tag else {})}
+    return _opened(request, file, kind=kind, headers=headers, missing=NotFound(thing, name))
 
 
-def report_reply(file: Path, *, id: str) -> Response:
+def report_reply(request: Request, file: Path, *, id: str) -> Response:
     """A page that stands for itself, and may reach nothing.
 
     Raises
@@ -94,10 +149,26 @@ def report_reply(file: Path, *, id: str) -> Response:
     NotFound
         When it does not exist.
     """
-    if not file.is_file():
-        raise NotFound("report", id)
-    headers = {"content-security-policy": REPORT_POLICY, "cache-control": "no-cache"}
-    return FileResponse(file, media_type="text/html; charset=utf-8", headers=headers)
+    headers = {"content-security-policy": REPORT_POLICY}
+    kind, missing = "text/html; charset=utf-8", NotFound("report", id)
+    return _opened(request, file, kind=kind, headers=headers, missing=missing)
+
+
+def _opened(
+    request: Request, file: Path, *, kind: str, headers: Mapping[str, str], missing: NotFound
+) -> Response:
+    """The answer with a file, or that the client has it already."""
+    try:
+        opened = file.open("rb")
+    except (FileNotFoundError, NotADirectoryError, IsADirectoryError):
+        raise missing from None
+    found = os.fstat(opened.fileno())
+    written = tag_of(f"{found.st_mtime_ns} {found.st_ino} {found.st_size}".encode())
+    told = {"etag": written, "cache-control": "no-cache", **headers}
+    if matches(request.headers.get("if-none-match"), told["etag"]):
+        opened.close()
+        return Response(status_code=304, headers=told)
+    return FileReply(opened, size=found.st_size, kind=kind, headers=told)
 
 
 def moment(seconds: float | None) -> str | None:

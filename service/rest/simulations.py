@@ -4,7 +4,6 @@ from typing import Annotated, Any
 
 import numpy as np
 from fastapi import APIRouter, Query, Request, Response
-from starlette.concurrency import run_in_threadpool
 
 from service.depot import jobs
 from service.depot.folder import Depot
@@ -12,10 +11,18 @@ from service.depot.jobs import Job, Kind, Order
 from service.errors import Conflict, Unreadable
 from service.jobs.task import REPORT, SAMPLES
 from service.live.folder import LiveFolder
-from service.live.path import deviation, path_of, thinned
+from service.live.path import shown_path
 from service.live.series import open_series
 from service.rest.bodies import Id, RunBody, SimulationBody
-from service.rest.context import AtPlace, ByOwner, InDepot, OnceKey, page_reply, queued
+from service.rest.context import (
+    AtPlace,
+    ByOwner,
+    InDepot,
+    OnceKey,
+    page_reply,
+    queued,
+    runnable,
+)
 from service.rest.replies import file_reply, json_reply, report_reply
 from service.rest.results import (
     SERIES_POINTS,
@@ -24,6 +31,7 @@ from service.rest.results import (
     Points,
     Signals,
     file_of,
+    read_in_turn,
     result_reply,
     series_reply,
 )
@@ -50,7 +58,9 @@ async def ask(
     request: Request, depot: InDepot, body: SimulationBody, owner: ByOwner, key: OnceKey = None
 ) -> Response:
     """A job; watch it by its events, then read its result."""
-    return await queued(request, run_order(depot, Kind.SIMULATION, body, owner), key)
+    return await queued(
+        request, run_order(depot, Kind.SIMULATION, body, owner), key, require=runnable
+    )
 
 
 def run_order(depot: Depot, kind: Kind, body: RunBody, owner: str) -> Order:
@@ -105,7 +115,7 @@ async def path(
 ) -> Response:
     """Thinned so that corners and changes of feed and force stay; also while it runs."""
     job = jobs.get(depot, id, Kind.SIMULATION)
-    found = await run_in_threadpool(_path, depot, job, points)
+    found = await read_in_turn(_path, depot, job, points)
     return json_reply(request, found)
 
 
@@ -114,13 +124,12 @@ def _path(depot: Depot, job: Job, points: int) -> dict[str, Any]:
     series, status = open_series(folder.series), folder.read_status()
     if series is None or not len(series) or status is None:
         raise Conflict(f"{job.kind.value} '{job.id}' is {job.state.value}: it has no rows yet")
-    whole = path_of(series)
-    kept = thinned(whole, points)
-    off, shown = deviation(whole, kept), whole.at(kept)
+    found = shown_path(series, points)
+    off, shown = found.deviation, found.path
     x, y, z = np.ascontiguousarray(np.round(shown.position, 4).T)
     return {
         "workingsteps": status["workingsteps"],
-        "rows": len(whole),
+        "rows": found.rows,
         "deviation_mm": off.length,
         "deviation_mm_min": off.feed,
         "deviation_n": off.force,
@@ -138,15 +147,16 @@ def _path(depot: Depot, job: Job, points: int) -> dict[str, Any]:
 
 @ROUTES.get("/{id}/samples", summary="All samples as a Parquet file", response_class=Response,
             responses={200: {"content": {PARQUET: {}}}})  # fmt: skip
-async def samples(depot: InDepot, id: Id) -> Response:
+async def samples(request: Request, depot: InDepot, id: Id) -> Response:
     """As ``stepnc simulate -o run.parquet`` writes them."""
     file = file_of(depot, jobs.get(depot, id, Kind.SIMULATION), SAMPLES, thing="samples")
-    return file_reply(file, name=f"simulation-{id}.parquet", kind=PARQUET, thing="samples")
+    name = f"simulation-{id}.parquet"
+    return file_reply(request, file, name=name, kind=PARQUET, thing="samples")
 
 
 @ROUTES.get("/{id}/report", summary="The report as a page", response_class=Response,
             responses={200: {"content": {"text/html": {}}}})  # fmt: skip
-async def report(depot: InDepot, id: Id) -> Response:
+async def report(request: Request, depot: InDepot, id: Id) -> Response:
     """A page that stands for itself."""
     jobs.get(depot, id, Kind.SIMULATION)
-    return report_reply(depot.job_folder(id) / REPORT, id=id)
+    return report_reply(request, depot.job_folder(id) / REPORT, id=id)

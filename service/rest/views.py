@@ -245,6 +245,7 @@ class EntryView(View):
     name: str
     title: str
     is_own: bool = Field(description="of the shop, not of the library")
+    problem: str | None = Field(description="why it cannot be read; null: it can")
 
 
 def program_view(program: StoredProgram) -> dict[str, Any]:

@@ -53,6 +53,17 @@ def test_a_program_that_is_worked_on_stays(depot: Depot) -> None:
     assert jobs.get(depot, job.id).state is State.CANCELLED
 
 
+def test_bytes_that_are_gone_are_told(depot: Depot) -> None:
+    made = programs.add(depot, b"x", name="x", owner="anna")
+    programs.require_file(depot, made.id)
+    depot.program_file(made.id).unlink()
+    with pytest.raises(NotFound, match=f"no file of program '{made.id}'"):
+        programs.require_file(depot, made.id)
+    programs.remove(depot, made.id)
+    with pytest.raises(NotFound, match=f"no program '{made.id}'"):
+        programs.require_file(depot, made.id)
+
+
 def test_no_job_is_queued_for_a_program_that_is_gone(depot: Depot) -> None:
     order = Order(kind=Kind.ADVICE, request={}, program=new_id(), owner="anna")
     with pytest.raises(NotFound, match="program"):

@@ -8,10 +8,10 @@ import pytest
 from service.depot import jobs
 from service.depot.folder import open_depot
 from service.depot.ids import new_id
-from service.errors import NotFound
+from service.errors import Conflict, NotFound
 from service.jobs.task import RESULT
 from service.rest import advice
-from service.rest.advice import Shelf
+from service.rest.advice import Ready, Shelf
 from tests.service.rest.conftest import Done
 from tests.service.rest.server import is_problem
 
@@ -81,3 +81,29 @@ def test_the_shelf_keeps_few_and_forgets_what_was_deleted(
         shelf.get(depot, ids[-1])
     with pytest.raises(NotFound):
         shelf.get(depot, new_id())
+
+
+@pytest.mark.parametrize("is_deleted", [True, False])
+def test_a_result_that_goes_between_look_and_read_is_no_fault(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, is_deleted: bool
+) -> None:
+    depot, shelf = open_depot(tmp_path, knowledge="none.db"), Shelf()
+    order = jobs.Order(kind=jobs.Kind.ADVICE, request={}, owner="a")
+    id = jobs.add(depot, order).id
+    job = jobs.claim(depot, kinds=[jobs.Kind.ADVICE])
+    assert job is not None
+    jobs.finish(depot, job, jobs.State.SUCCEEDED)
+    file = depot.job_folder(id) / RESULT
+    file.parent.mkdir()
+    file.write_text('{"workingsteps": []}')
+    read = advice._ready
+
+    def late(name: str, stamp: int) -> Ready:
+        file.unlink()
+        if is_deleted:
+            jobs.remove(depot, id)
+        return read(name, stamp)
+
+    monkeypatch.setattr(advice, "_ready", late)
+    with pytest.raises(NotFound if is_deleted else Conflict):
+        shelf.get(depot, id)

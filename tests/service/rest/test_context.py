@@ -1,17 +1,21 @@
 """What tells one request from another."""
 
+from dataclasses import replace
+
 import pytest
 from fastapi import Request
 
+from service.depot.jobs import LOCAL
 from service.errors import Unreadable
 from service.rest.context import PROBLEMS, once_of, place_of
+from service.rest.gate import ANYBODY
 
 
 def request(path: str = "/v1/programs", query: str = "", owner: str = "anna") -> Request:
     return Request({
         "type": "http", "method": "POST", "path": path, "query_string": query.encode(),
-        "headers": [(b"host", b"x")], "state": {"owner": owner}, "server": ("x", 80),
-        "scheme": "http",
+        "headers": [(b"host", b"x")], "state": {"key": replace(ANYBODY, name=owner)},
+        "server": ("x", 80), "scheme": "http",
     })  # fmt: skip
 
 
@@ -41,7 +45,7 @@ def test_path_query_and_body_make_another_request() -> None:
 
 
 def test_problems_are_documented_by_their_content_type() -> None:
-    assert {401, 403, 404, 409, 413, 422, 429, 503} <= set(PROBLEMS)
+    assert {401, 403, 404, 409, 412, 413, 422, 429, 503, 507} <= set(PROBLEMS)
     for each in PROBLEMS.values():
         assert "application/problem+json" in each["content"]
 
@@ -50,3 +54,7 @@ def test_a_place_is_the_first_page_without_a_cursor() -> None:
     assert place_of(limit=3, cursor=None).limit == 3
     with pytest.raises(Unreadable):
         place_of(limit=3, cursor="/etc/passwd")
+
+
+def test_who_needs_no_key_has_the_whole_queue() -> None:
+    assert ANYBODY.name == LOCAL

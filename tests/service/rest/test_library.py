@@ -1,13 +1,15 @@
 """``/v1/machines`` and ``/v1/materials``: the library's stay, the shop's are the shop's."""
 
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from threading import Barrier
 
 import httpx
 import pytest
 
 from simulator.library import DATA
 from tests.service.depot.test_library import BAD
-from tests.service.rest.server import is_problem
+from tests.service.rest.server import Server, is_problem
 
 MACHINE = (DATA / "machines" / "vmc15.toml").read_bytes()
 MATERIAL = (DATA / "materials" / "c45.toml").read_bytes()
@@ -40,7 +42,9 @@ def test_who_has_seen_it_may_change_it_and_nobody_else(
     client: httpx.Client, shelf: tuple[str, bytes, str]
 ) -> None:
     path, data, _ = shelf
-    is_problem(client.put(f"{path}/ours-1", content=data, headers={"if-match": '"x"'}), 404)
+    for condition in ('"x"', "*"):
+        answer = client.put(f"{path}/ours-1", content=data, headers={"if-match": condition})
+        is_problem(answer, 412, "precondition-failed")
     put = client.put(f"{path}/ours-1", content=data)
     seen = client.get(f"{path}/ours-1").headers["etag"]
     assert seen == put.headers["etag"]
@@ -48,10 +52,42 @@ def test_who_has_seen_it_may_change_it_and_nobody_else(
     first = client.put(f"{path}/ours-1", content=changed, headers={"if-match": seen})
     assert first.status_code == 200
     late = client.put(f"{path}/ours-1", content=data, headers={"if-match": seen})
-    found = is_problem(late, 409, "conflict")
+    found = is_problem(late, 412, "precondition-failed")
     assert "changed meanwhile" in found["detail"]
+    is_problem(client.delete(f"{path}/ours-1", headers={"if-match": seen}), 412)
     again = client.get(f"{path}/ours-1", headers={"if-none-match": first.headers["etag"]})
     assert again.status_code == 304
+    tag = again.headers["etag"]
+    assert client.delete(f"{path}/ours-1", headers={"if-match": tag}).status_code == 204
+
+
+def test_of_many_who_saw_the_same_one_alone_changes_it(
+    client: httpx.Client, shelf: tuple[str, bytes, str]
+) -> None:
+    path, data, _ = shelf
+    seen = client.put(f"{path}/ours-1", content=data).headers["etag"]
+    begin = Barrier(6)
+
+    def put(number: int) -> int:
+        begin.wait(10.0)
+        text = data + f"\n# {number}".encode()
+        headers = {"if-match": seen}
+        return client.put(f"{path}/ours-1", content=text, headers=headers).status_code
+
+    with ThreadPoolExecutor(6) as pool:
+        assert sorted(pool.map(put, range(6))) == [200, *[412] * 5]
+
+
+def test_one_that_is_broken_hides_no_other(
+    service: Server, client: httpx.Client, shelf: tuple[str, bytes, str]
+) -> None:
+    path, _, of_library = shelf
+    folder = service.data / path.removeprefix("/v1/")
+    (folder / "ours-1.toml").write_text("[[[[", encoding="utf-8")
+    found = {each["name"]: each["problem"] for each in client.get(path).json()}
+    assert found[of_library] is None
+    assert found["ours-1"].startswith("ours-1.toml: ")
+    is_problem(client.get(f"{path}/ours-1"), 422)
 
 
 def test_those_of_the_library_stay(client: httpx.Client, shelf: tuple[str, bytes, str]) -> None:

@@ -65,7 +65,9 @@ def test_a_run_under_control_is_changed_and_ends(client: httpx.Client, done: Don
     changes = {"mode": "QC", "motor_power_percent": 50.0, "depth_percent": 120.0}
     assert client.post(f"{path}/changes", json=changes).status_code == 202
     until(lambda: client.get(f"{path}/status").json()["criterion"] == "QC")
-    for bad in ({"depth_percent": 0}, {"mode": "X"}, {"material": "x" * 201}):
+    for bad in (
+        {"depth_percent": 0}, {"mode": "X"}, {"material": "x" * 201}, {"material": "butter"},
+    ):  # fmt: skip
         is_problem(client.post(f"{path}/changes", json=bad), 422)
     assert client.post(f"{path}/cancel").status_code == 200
     job = over(client, id, within=15.0)

@@ -1,13 +1,20 @@
 """``/v1/programs``: bytes as they came, within their bounds, however they are packed."""
 
+import asyncio
 import gzip
+import hashlib
 import json
 import zlib
 from collections.abc import Iterator
+from pathlib import Path
 
 import httpx
 import pytest
 
+from service.contents import Contents, check
+from service.depot import programs
+from service.rest.app import application
+from service.rest.settings import Settings
 from tests.service.rest.conftest import Done
 from tests.service.rest.samples import SAMPLE
 from tests.service.rest.server import Server, is_problem, made
@@ -125,6 +132,76 @@ def test_findings_are_tagged_by_what_the_program_is(client: httpx.Client, done: 
     other = client.get(f"{path}?units=part21")
     assert other.status_code in {200, 422}
     assert other.headers.get("etag") != tag
+
+
+def test_the_bytes_are_tagged_by_what_they_are(client: httpx.Client, done: Done) -> None:
+    path = f"/v1/programs/{done.program}/file"
+    tag = client.get(path).headers["etag"]
+    assert tag == f'"{hashlib.sha256(DATA).hexdigest()}"'
+    again = client.get(path, headers={"if-none-match": tag})
+    assert (again.status_code, again.content) == (304, b"")
+
+
+def test_who_has_the_findings_needs_no_check(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    checks: list[str] = []
+
+    def counted(file: Path, *, units: str, name: str) -> Contents:
+        checks.append(units)
+        return check(file, units=units, name=name)
+
+    monkeypatch.setattr("service.rest.programs.check", counted)
+    app = application(Settings(data=str(tmp_path)))
+    id = programs.add(app.state.depot, DATA, name="a", owner="a").id
+    path = f"/v1/programs/{id}/findings"
+
+    async def asked() -> None:
+        transport = httpx.ASGITransport(app)
+        async with httpx.AsyncClient(
+            transport=transport, base_url="http://127.0.0.1"
+        ) as client:
+            tag = f'"{hashlib.sha256(DATA).hexdigest()[:24]}-iso"'
+            known = await client.get(path, headers={"if-none-match": tag})
+            assert (known.status_code, known.headers["etag"], checks) == (304, tag, [])
+            answers = await asyncio.gather(*(client.get(path) for _ in range(3)))
+            assert {each.content for each in answers} == {(await client.get(path)).content}
+            assert len(checks) <= 2
+            before = len(checks)
+            await client.get(path)
+            await client.get(f"{path}?units=rpm-mmin")
+            assert checks[before:] == ["rpm-mmin"]
+
+    asyncio.run(asked())
+
+
+def test_a_program_whose_bytes_are_gone_is_not_found_anywhere(
+    service: Server, client: httpx.Client
+) -> None:
+    id = made(client.post("/v1/programs", content=DATA), 201)
+    assert client.get(f"/v1/programs/{id}/findings").status_code == 200
+    (service.data / "programs" / f"{id}.stpnc").unlink()
+    run = {"program_id": id}
+    details = {
+        is_problem(answer, 404, "not-found")["detail"]
+        for answer in (
+            client.get(f"/v1/programs/{id}/file"),
+            client.get(f"/v1/programs/{id}/findings"),
+            client.post(f"/v1/programs/{id}/advice", json={}),
+            client.post("/v1/simulations", json=run),
+            client.post("/v1/control-runs", json=run),
+        )
+    }
+    assert details == {f"there is no file of program '{id}'"}
+    assert client.delete(f"/v1/programs/{id}").status_code == 204
+
+
+def test_an_upload_whose_program_was_deleted_is_not_made_again(client: httpx.Client) -> None:
+    headers = {"idempotency-key": "upload-2"}
+    id = made(client.post("/v1/programs", content=DATA, headers=headers), 201)
+    client.delete(f"/v1/programs/{id}")
+    answer = client.post("/v1/programs", content=DATA, headers=headers)
+    assert "was deleted" in is_problem(answer, 409, "conflict")["detail"]
 
 
 def test_pages_show_each_program_once(client: httpx.Client) -> None:

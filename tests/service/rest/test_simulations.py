@@ -5,7 +5,9 @@ import io
 import httpx
 from pyarrow import parquet
 
+from simulator.library import DATA
 from tests.service.rest.conftest import Done
+from tests.service.rest.samples import SAMPLE
 from tests.service.rest.server import is_problem, made, over
 
 
@@ -60,10 +62,49 @@ def test_the_path_of_the_tool_is_bounded(client: httpx.Client, done: Done) -> No
     is_problem(client.get(f"/v1/simulations/{'0' * 26}/path"), 404)
 
 
-def test_what_did_not_run_has_no_path(client: httpx.Client, done: Done) -> None:
-    body = {"program_id": done.program, "machine": "no-such"}
-    id = made(client.post("/v1/simulations", json=body))
+def test_what_did_not_run_has_no_path(client: httpx.Client) -> None:
+    unusable = SAMPLE.read_bytes().replace(b"WORKPLAN(", b"NO_WORKPLAN(")
+    program = made(client.post("/v1/programs", content=unusable), 201)
+    id = made(client.post("/v1/simulations", json={"program_id": program}))
     assert over(client, id)["state"] == "failed"
     found = is_problem(client.get(f"/v1/simulations/{id}/path"), 409, "conflict")
     assert "failed" in found["detail"]
     assert client.get(f"/v1/simulations/{id}/series").json()["rows"] == 0
+
+
+def test_unknown_machines_and_materials_are_refused_at_once(
+    client: httpx.Client, done: Done
+) -> None:
+    before = client.get("/v1/jobs").json()
+    run = {"program_id": done.program}
+    for path, body in (
+        (f"/v1/programs/{done.program}/advice", {}),
+        ("/v1/simulations", run),
+        ("/v1/control-runs", run),
+    ):
+        for words, kind in (
+            ({"machine": "no-such"}, "unknown-machine"),
+            ({"material": "unobtainium"}, "unknown-material"),
+        ):
+            answer = client.post(path, json={**body, **words})
+            found = is_problem(answer, 422, kind)
+            assert next(iter(words.values())) in found["detail"]
+        is_problem(client.post(path, json={**body, "material": "../../x.toml"}), 400)
+    assert client.get("/v1/jobs").json() == before
+
+
+def test_what_was_asked_for_before_is_told_though_it_could_not_begin_now(
+    client: httpx.Client, done: Done
+) -> None:
+    headers = {"idempotency-key": "simulation-of-ours"}
+    machine = (DATA / "machines" / "vmc15.toml").read_bytes()
+    client.put("/v1/machines/ours-2", content=machine)
+    body = {"program_id": done.program, "machine": "ours-2"}
+    id = made(client.post("/v1/simulations", json=body, headers=headers))
+    over(client, id)
+    client.delete("/v1/machines/ours-2")
+    assert made(client.post("/v1/simulations", json=body, headers=headers)) == id
+    is_problem(client.post("/v1/simulations", json=body), 422, "unknown-machine")
+    assert client.delete(f"/v1/jobs/{id}").status_code == 204
+    found = is_problem(client.post("/v1/simulations", json=body, headers=headers), 409)
+    assert "was deleted" in found["detail"]
