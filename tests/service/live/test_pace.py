@@ -1,10 +1,12 @@
 """Wall time for a run, by a clock that the test turns."""
 
 from math import inf, nan
+from threading import TIMEOUT_MAX
 
 import pytest
 
-from service.live.pace import MOST, Pace
+from service.live.pace import LEAST, MOST, Pace
+from service.simulation.gathering import MOST_SECONDS
 from stepnc_model.errors import StepNcError
 
 
@@ -41,6 +43,13 @@ def test_who_is_late_does_not_wait_and_catches_up() -> None:
     assert clock.waits == []
     pace.wait_for(4.0)
     assert clock.waits == pytest.approx([1.0])
+
+
+def test_the_longest_run_at_the_least_pace_is_within_what_a_clock_can_wait() -> None:
+    clock = Clock()
+    Pace(LEAST, now=clock.now, wait=clock.wait).wait_for(MOST_SECONDS)
+    assert clock.waits == [pytest.approx(MOST_SECONDS / LEAST)]
+    assert clock.waits[0] < TIMEOUT_MAX
 
 
 def test_nobody_waits_without_a_pace() -> None:
