@@ -126,14 +126,13 @@ def _serve(options: argparse.Namespace) -> int:
         needs_keys=options.keys or not is_loopback,
         upload_bytes=options.upload_mb * MIB,
         rate=rate,
-        has_request_log=options.log_level in {"debug", "info"},
+        level=options.log_level,
     )
     serve(
         Start(
             settings=settings,
             workers=options.workers,
             jobs=options.jobs,
-            level=options.log_level,
             certificate=options.tls_cert,
             key=options.tls_key,
         )

@@ -95,7 +95,7 @@ def revoke(depot: Depot, id: str) -> None:
 
 
 def _hash(secret: str) -> str:
-    return hashlib.sha256(secret.encode()).hexdigest()
+    return hashlib.sha256(secret.encode(errors="replace")).hexdigest()
 
 
 def _key(row: sqlite3.Row) -> Key:

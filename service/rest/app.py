@@ -21,6 +21,7 @@ from service.rest import (
     knowledge,
     library,
     live,
+    logs,
     pages,
     programs,
     simulations,
@@ -104,6 +105,7 @@ async def _living(app: FastAPI) -> AsyncIterator[None]:
 def from_environment() -> FastAPI:
     """The application of a process that was started by another."""
     settings = handed_on()
+    logs.configure(settings.level)
     end_with_parent()
     return application(settings)
 

@@ -22,7 +22,9 @@ class Prompt(HttpToolsProtocol):
     def __init__(self, *arguments: Any, **words: Any) -> None:
         super().__init__(*arguments, **words)
         self._begin: float | None = None
-        """when the head began that has not come to its end"""
+        """since when a whole head is waited for"""
+        self._is_head = False
+        """whether a part of it has come"""
         self._size = 0
         self._look_again: asyncio.TimerHandle | None = None
 
@@ -40,27 +42,27 @@ class Prompt(HttpToolsProtocol):
 
     def data_received(self, data: bytes) -> None:
         """See asyncio."""
-        before = self._begin
+        was_head, self._size = self._is_head, self._size + len(data)
         super().data_received(data)
-        if self._begin is not None and self._begin == before:
-            self._size += len(data)
-            if self._size > HEAD_BYTES:
-                self.send_400_response("The head is too large.")
-        elif self._begin is None and (self.cycle is None or self.cycle.response_complete):
+        if was_head and self._is_head and self._size > HEAD_BYTES:
+            self.send_400_response("The head is too large.")
+        elif self._begin is None and self.cycle is not None and self.cycle.response_complete:
+            # Not a head, or the rest of a body that was refused.
             self._expect()
 
     def on_message_begin(self) -> None:
         """See httptools."""
         super().on_message_begin()
+        self._is_head, self._size = True, 0
         self._expect()
 
     def on_headers_complete(self) -> None:
         """See httptools."""
-        self._begin = None
+        self._begin, self._is_head = None, False
         super().on_headers_complete()
 
     def _expect(self) -> None:
-        self._begin, self._size = self.loop.time(), 0
+        self._begin = self.loop.time()
 
     def _look(self) -> None:
         """One look in a while for each connection costs less than a timer for each request."""

@@ -47,7 +47,6 @@ class Start:
     """web processes"""
     jobs: int
     """jobs at once"""
-    level: str
     certificate: Path | None = None
     key: Path | None = None
 
@@ -78,7 +77,7 @@ def serve(start: Start) -> None:
 def _serve(start: Start, depot: Depot) -> None:
     settings = start.settings
     settings.hand_on()
-    logs.configure(start.level)
+    logs.configure(settings.level)
     if start.workers > 1:
         _share_metrics(depot.root)
     keeper = RunnerKeeper(start, knowledge=depot.knowledge)
@@ -128,7 +127,8 @@ class RunnerKeeper:
     """Keeps a runner alive. Running state."""
 
     def __init__(self, start: Start, *, knowledge: str) -> None:
-        self._arguments = (start.settings.data, knowledge, start.jobs, os.getpid(), start.level)
+        settings = start.settings
+        self._arguments = (settings.data, knowledge, start.jobs, os.getpid(), settings.level)
         self._is_stopping = threading.Event()
         self._process: SpawnProcess | None = None
         self._thread = threading.Thread(target=self._keep, daemon=True)

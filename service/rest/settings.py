@@ -36,8 +36,13 @@ class Settings:
     """requests at once"""
     body_s: float = 60.0
     """in which a body arrives"""
-    has_request_log: bool = True
-    """a line for each request"""
+    level: str = "info"
+    """of the log"""
+
+    @property
+    def has_request_log(self) -> bool:
+        """Whether each request is a line of the log."""
+        return self.level in {"debug", "info"}
 
     @property
     def is_loopback(self) -> bool:

@@ -119,3 +119,18 @@ def test_requests_behind_one_another_are_all_answered() -> None:
             assert await reader.readexactly(5) == b"hello"
 
     talked(talk)
+
+
+def test_the_rest_of_a_refused_body_is_no_head() -> None:
+    async def talk(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        size = 4 * HEAD_BYTES
+        writer.write(b"POST / HTTP/1.1\r\nHost: localhost\r\n")
+        writer.write(b"Content-Length: %d\r\n\r\n" % size)
+        await reader.readuntil(b"\r\n\r\n")
+        assert await reader.readexactly(5) == b"hello"
+        for _ in range(4):
+            writer.write(b"x" * HEAD_BYTES)
+            await writer.drain()
+        await greeted(reader, writer)
+
+    talked(talk)

@@ -80,6 +80,7 @@ def test_two_web_processes_and_a_restart_lose_nothing(tmp_path: Path) -> None:
             assert over(client, waiting)["state"] == "succeeded"
         assert create_key(server, "Bert")
     assert server.faults() == []
+    assert '"event":"request"' in server.log.read_text(encoding="utf-8")
 
 
 def test_a_killed_web_process_or_runner_is_replaced(tmp_path: Path) -> None:
@@ -100,7 +101,7 @@ def test_a_stop_is_an_orderly_one_and_the_folder_is_free_at_once(tmp_path: Path)
     with server:
         with pytest.raises(StepNcError, match="another server works with this folder"):
             serve(
-                Start(settings=Settings(data=str(server.data)), workers=1, jobs=1, level="info")
+                Start(settings=Settings(data=str(server.data)), workers=1, jobs=1)
             )
         os.kill(server.pid, signal.SIGTERM)
         assert server._process is not None
@@ -176,9 +177,9 @@ def test_too_many_requests_are_told_when_to_come_again(limited: Server) -> None:
 def test_a_host_that_others_reach_needs_a_key_before_it_starts(tmp_path: Path) -> None:
     settings = Settings(data=str(tmp_path), host="0.0.0.0", needs_keys=True)
     with pytest.raises(Forbidden, match="stepnc keys create"):
-        serve(Start(settings=settings, workers=1, jobs=1, level="info"))
+        serve(Start(settings=settings, workers=1, jobs=1))
     missing = Start(
-        settings=Settings(data=str(tmp_path)), workers=1, jobs=1, level="info",
+        settings=Settings(data=str(tmp_path)), workers=1, jobs=1,
         certificate=tmp_path / "none.crt", key=tmp_path / "none.key",
     )  # fmt: skip
     with pytest.raises(StepNcError, match="no such file"):
