@@ -1,5 +1,6 @@
 """What runs in the process of one job. It ends with the runner that started it."""
 
+import logging
 import signal
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -105,4 +106,6 @@ def _work(job: Job) -> Callable[[Task], None]:
 
 
 def _cancel(_signal: int, _frame: FrameType | None) -> None:
+    # Libraries that are left in the middle of something say so as if it were a fault.
+    logging.disable(logging.CRITICAL)
     raise Cancelled

@@ -7,8 +7,10 @@ that it brings together, so that no peak is lost.
 """
 
 import json
+import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from io import BufferedReader
 from pathlib import Path
 from types import TracebackType
 
@@ -140,20 +142,23 @@ class Window:
 def open_series(file: Path) -> Series | None:
     """What a file holds now; None: there is no file, or not even its head."""
     try:
+        # Once it is open it stays, whoever deletes it.
         with file.open("rb") as opened:
-            head = opened.readline()
-        size = file.stat().st_size
+            return _series_in(opened)
     except FileNotFoundError:
         return None
+
+
+def _series_in(opened: BufferedReader) -> Series | None:
+    head = opened.readline()
     if not head.endswith(b"\n"):
         return None
     columns = tuple(json.loads(head))
-    count = (size - len(head)) // (BYTES * len(columns))
+    count = (os.fstat(opened.fileno()).st_size - len(head)) // (BYTES * len(columns))
+    shape = (count, len(columns))
     if count == 0:
-        return Series(columns=columns, values=np.empty((0, len(columns))))
-    values = np.memmap(
-        file, dtype="<f8", mode="r", offset=len(head), shape=(count, len(columns))
-    )
+        return Series(columns=columns, values=np.empty(shape))
+    values = np.memmap(opened, dtype="<f8", mode="r", offset=len(head), shape=shape)
     return Series(columns=columns, values=values)
 
 

@@ -10,7 +10,7 @@ from fastapi.openapi.utils import get_openapi
 from starlette.exceptions import HTTPException
 
 from kbe.store import open_store
-from service.depot.folder import open_depot
+from service.depot.folder import Depot, known_depot, open_depot
 from service.errors import TooMany
 from service.lifeline import end_with_parent
 from service.problem import plain_problem, problem_of
@@ -53,7 +53,10 @@ def application(settings: Settings) -> FastAPI:
     ServiceError, KnowledgeError
         When folder or knowledge base cannot be used.
     """
-    depot = open_depot(settings.root, knowledge=settings.knowledge)
+    return _on(open_depot(settings.root, knowledge=settings.knowledge), settings)
+
+
+def _on(depot: Depot, settings: Settings) -> FastAPI:
     with open_store(depot.knowledge):
         """made when it is new"""
     app = _routed()
@@ -103,11 +106,11 @@ async def _living(app: FastAPI) -> AsyncIterator[None]:
 
 
 def from_environment() -> FastAPI:
-    """The application of a process that was started by another."""
+    """The application of a process that was started by another, which has made the folder."""
     settings = handed_on()
     logs.configure(settings.level)
     end_with_parent()
-    return application(settings)
+    return _on(known_depot(settings.root, knowledge=settings.knowledge), settings)
 
 
 def described(app: FastAPI) -> dict[str, Any]:

@@ -55,7 +55,10 @@ async def result_reply(request: Request, id: str, kind: Kind) -> Response:
     depot = depot_of(request)
     job = jobs.get(depot, id, kind)
     require_done(job)
-    body = await run_in_threadpool((depot.job_folder(id) / RESULT).read_bytes)
+    try:
+        body = await run_in_threadpool((depot.job_folder(id) / RESULT).read_bytes)
+    except FileNotFoundError:
+        raise NotFound("result of job", id) from None
     return tagged(request, body, tag_of(body))
 
 

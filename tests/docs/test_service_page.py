@@ -8,6 +8,14 @@ from pathlib import Path
 
 import pytest
 
+from service.cli.serve import USUAL_RATE
+from service.depot.jobs import MOST_WAITING, OWNERS
+from service.jobs.runner import LONGEST, LONGEST_PACED, MOST_PACED
+from service.live.series import MOST_BYTES
+from service.rest.protocol import HEAD_S
+from service.rest.settings import Settings
+from service.simulation.live import MOST_SAMPLES
+from service.steering.helm import FORGOTTEN_AFTER, MOST_ROWS
 from tests.docs.pages import DOCS, ROOT, blocks
 from tests.service.rest.server import Server
 
@@ -26,6 +34,21 @@ def script(url: str) -> str:
     text = "\n".join(part for part in parts if "curl" in part or "URL=" in part)
     assert text.count("curl ") > 12
     return text.replace("http://127.0.0.1:8000", url).replace("curl ", "curl --fail -m 60 ")
+
+
+def test_bounds_are_those_of_the_program() -> None:
+    settings = Settings(data="")
+    for words in (
+        f"{settings.upload_bytes >> 20} MB (`--upload-mb`)",
+        f"{USUAL_RATE:g} requests a second (`--rate`)",
+        f"a head within {HEAD_S:g} s, a body within {settings.body_s:g} s",
+        f"{MOST_WAITING} jobs",
+        f"{LONGEST / 3600:g} h; {LONGEST_PACED / 3600:g} h where",
+        f"{MOST_PACED} of these at once",
+        f"{MOST_SAMPLES // 1_000_000} million rows or samples; {MOST_BYTES >> 20} MB of rows",
+    ):
+        assert words in PAGE
+    assert (OWNERS, MOST_ROWS, FORGOTTEN_AFTER) == (4, MOST_SAMPLES, 3600.0)
 
 
 def test_the_commands_do_what_the_page_says(served: Server, tmp_path: Path) -> None:

@@ -5,7 +5,9 @@ from pathlib import Path
 import httpx
 import pytest
 
+from service.depot.folder import open_depot
 from service.errors import Unavailable
+from service.rest import logs
 from service.rest.app import application, from_environment
 from service.rest.settings import VARIABLE, Settings
 from tests.service.rest.conftest import Done
@@ -98,8 +100,15 @@ def test_a_folder_that_cannot_be_used_is_told(tmp_path: Path) -> None:
 def test_a_process_gets_its_settings_from_the_one_that_started_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    told: list[str] = []
     monkeypatch.setenv(VARIABLE, "{}")
+    monkeypatch.setattr(logs, "configure", told.append)
     monkeypatch.delenv("STEPNC_KB", raising=False)
-    settings = Settings(data=str(tmp_path / "data"), upload_bytes=7)
+    settings = Settings(data=str(tmp_path / "data"), upload_bytes=7, level="warning")
     settings.hand_on()
+    with pytest.raises(Unavailable, match="none in the data folder"):
+        from_environment()
+    assert not (tmp_path / "data").exists()
+    open_depot(settings.root)
+    assert told == ["warning"]
     assert from_environment().state.settings == settings
