@@ -138,9 +138,7 @@ class Plan:
         """What the totals do not count."""
         unknown = sum(advice.before is None for advice in self.advices)
         rest = "tool changes and moves between workingsteps"
-        return (
-            f"{unknown} of the workingsteps (no feed is chosen), {rest}" if unknown else rest
-        )
+        return f"{unknown} of the workingsteps (no feed is chosen), {rest}" if unknown else rest
 
     @property
     def _final(self) -> list[State]:

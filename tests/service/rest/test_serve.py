@@ -100,9 +100,7 @@ def test_a_stop_is_an_orderly_one_and_the_folder_is_free_at_once(tmp_path: Path)
     server = Server(tmp_path)
     with server:
         with pytest.raises(StepNcError, match="another server works with this folder"):
-            serve(
-                Start(settings=Settings(data=str(server.data)), workers=1, jobs=1)
-            )
+            serve(Start(settings=Settings(data=str(server.data)), workers=1, jobs=1))
         os.kill(server.pid, signal.SIGTERM)
         assert server._process is not None
         assert server._process.wait(20.0) == 0
