@@ -45,6 +45,8 @@ export function showRun(place, first, told = () => {}) {
   const mode = el("span", { class: "badge", id: "now-mode" }, "–");
   const step = el("span", { id: "now-workingstep" }, "–");
   const stale = el("div", { id: "stale" }), trouble = el("div", { id: "run-problem" });
+  const full = el("div", { class: "banner warn", id: "run-full", hidden: true },
+    "There are more rows than are kept to look at: the plots end here, the run goes on.");
   const line = hasShare(job) ? bar(job, { id: "run-progress" }) : null;
   const message = el("span", { class: "soft small", id: "run-message" });
   const cancel = el("button", { id: "run-cancel", onclick: () =>
@@ -74,7 +76,7 @@ export function showRun(place, first, told = () => {}) {
     el("section", { class: "card", "aria-labelledby": "state-title" },
       el("div", { class: "row spread" }, el("h2", { id: "state-title" }, "State"),
         el("span", { class: "soft small", id: "run-facts" }, facts(job))),
-      stale, trouble, progress,
+      stale, trouble, full, progress,
       el("div", { class: "row", id: "now" }, lamp, mode, step),
       el("div", { class: "figures" }, readings.filter((each) => each.classList.contains("big"))),
       el("div", { class: "readings" }, readings.filter((each) => !each.classList.contains("big"))), atLine),
@@ -241,7 +243,7 @@ export function showRun(place, first, told = () => {}) {
 
   const leave = watch(job.id, {
     job: hear,
-    status: (now) => { status = now; if (row) step.textContent = stepName(row.workingstep); },
+    status: (now) => { status = now; full.hidden = !now.is_series_full; if (row) step.textContent = stepName(row.workingstep); },
     rows: (rows) => { waiting.push(rows); begin(); },
     gap: () => { waiting = []; chart?.reload().then(recount); },
     any: () => { heard = Date.now(); },
