@@ -52,7 +52,9 @@ export function number(value, digits = 3) {
 
 export function fixed(value, places) {
   if (value === null || value === undefined || Number.isNaN(value)) return "–";
-  return value.toLocaleString("en-GB",
+  // A zero has no sign.
+  const told = Math.abs(value) < 0.5 * 10 ** -places ? 0 : value;
+  return told.toLocaleString("en-GB",
     { minimumFractionDigits: places, maximumFractionDigits: places, useGrouping: Math.abs(value) >= 1e4 });
 }
 

@@ -121,7 +121,7 @@ function showState() {
   runState.className = `badge ${tone}`;
   time.textContent = run?.status ? duration(run.status.time_s) : "–";
   begin.hidden = isLive;
-  begin.disabled = state.kind === "control-run" && Boolean(state.panes?.isEmpty);
+  begin.disabled = !state.isReady || state.kind === "control-run" && Boolean(state.panes?.isEmpty);
   finish.hidden = !isLive;
   cutter.hidden = !(isLive && run.kind === "trial" && run.status?.is_stopped);
   stopped.hidden = !more;
@@ -192,7 +192,8 @@ async function programsAndAdvices() {
     api("/v1/jobs?kind=advice&state=succeeded&limit=100")]);
   const names = new Map(programs.items.map((each) => [each.id, each.name]));
   const advices = jobs.items.filter((job) => names.has(job.program_id)).map((job) => ({ id: job.id,
-    title: `${names.get(job.program_id)}, ${job.request.mode}, ${moment(job.created_at)}` }));
+    title: [names.get(job.program_id), job.request.mode, job.request.machine, moment(job.created_at)]
+      .filter(Boolean).join(", ") }));
   return { programs: programs.items.map((each) => ({ id: each.id, title: programTitle(each) })), advices };
 }
 
@@ -264,7 +265,7 @@ const sources = Object.fromEntries(SOURCES.map(([kind, text]) => [kind, el("butt
 const runState = el("span", { class: "badge soft", id: "run-state" }, "…");
 const runName = el("span", { class: "soft small", id: "run-name" });
 const time = el("span", { id: "out-time_s", class: "value" }, "–");
-const begin = el("button", { class: "main", id: "start", type: "button", onclick: start }, "Start");
+const begin = el("button", { class: "main", id: "start", type: "button", disabled: true, onclick: start }, "Start");
 const finish = el("button", { id: "end", type: "button", hidden: true, onclick: end }, "End");
 const cutter = el("button", { class: "main", id: "new-cutter", type: "button", hidden: true,
   onclick: () => order({ restart: true }) }, "New cutter");
@@ -295,4 +296,6 @@ async function open() {
   await (going ? join(going) : idle(isProgram ? "control-run" : "trial"));
 }
 
-open().catch((error) => tell(byId("trouble"), error));
+// Who starts before it is known what runs would lose sight of it.
+open().then(() => { state.isReady = true; showState(); })
+  .catch((error) => tell(byId("trouble"), error));

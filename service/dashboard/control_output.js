@@ -32,12 +32,10 @@ const SMALL = {
 };
 const BAR_TOP = 1.5;
 /** of a machine at rest, whatever its last sample says */
-const AT_REST = { feed_actual_mm_min: 0, feed_per_tooth_mm: 0, removal_rate_cm3_min: 0, force_measured_n: 0 };
+const AT_REST = { feed_actual_mm_min: 0, feed_per_tooth_mm: 0, removal_rate_cm3_min: 0, force_measured_n: 0,
+  force_predicted_n: 0, power_kw: 0, power_predicted_kw: 0 };
 /** while the loop is off there is no advice */
 const OFF = { feed_advised_mm_min: null };
-
-/** A number without the sign of a zero. */
-const shown = (value, places) => fixed(Number.isFinite(value) && Math.abs(value) < 0.5 * 10 ** -places ? 0 : value, places);
 
 function named(name, words, unit, kind) {
   const node = figure(words, "–", unit, kind);
@@ -95,14 +93,14 @@ export class Output {
     this.node.classList.toggle("over-now", isOver || !status);
     const feeds = FEEDS.map(([name]) => status?.[name]);
     this.feeds.forEach((each, at) => each.put(fixed(feeds[at], Math.abs(feeds[at]) < 100 && at < 3 ? 1 : 0)));
-    for (const each of this.smalls) each.put(shown(status?.[each.name], each.places));
+    for (const each of this.smalls) each.put(fixed(status?.[each.name], each.places));
     this.showForce(status);
     this.put(this.holding, !status ? "–" : (status.holding || "nothing"));
     this.showLamp(status, isAtRest);
     this.glance.hidden = !status || isOver;
     this.glance.className = `glance ${this.lamp.classList[1]}`;
     this.put(this.glance, `${this.lampWord.textContent} · ${fixed(feeds[2], 0)} mm/min · `
-      + `${shown(status?.force_measured_n, 0)} N`);
+      + `${fixed(status?.force_measured_n, 0)} N`);
     const warning = status?.depth_warning ? `Warning: ${status.depth_warning}` : "";
     if (this.depth.textContent !== warning) {
       this.depth.textContent = warning;
@@ -117,7 +115,7 @@ export class Output {
     const share = Number.isFinite(force) && aim ? Math.max(force, 0) / aim : null;
     const of = aim ? `of ${fixed(aim, 0)} N set point` : "no set point";
     this.put(this.forceText, !Number.isFinite(force) ? "–"
-      : `${shown(force, 0)} N ${of}${share === null ? "" : `, ${fixed(100 * share, 0)} %`}`);
+      : `${fixed(force, 0)} N ${of}${share === null ? "" : `, ${fixed(100 * share, 0)} %`}`);
     this.fillBar.style.transform = `scaleX(${Math.min(share ?? 0, BAR_TOP) / BAR_TOP})`;
     const tone = share > 1.1 ? "over" : share > 1.02 ? "near" : "";
     this.bar.className = `meter ${tone}`;

@@ -53,7 +53,7 @@ export function drawGrid(pen, ink, { x, y, begin, end, step, high, width, height
     const at = Math.round(x(time)) + 0.5;
     pen.moveTo(at, top);
     pen.lineTo(at, height - foot);
-    if (!isLast || at > width - 26) continue;
+    if (!isLast || at > width - 40) continue;
     pen.fillText(number(time, time < 100 ? 3 : 5), at, height - foot + 11);
   }
   pen.stroke();

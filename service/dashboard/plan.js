@@ -123,7 +123,10 @@ async function follow(asked) {
     announce(`Optimised: ${duration(before, longer)} becomes ${duration(after, longer)}`);
     performance.measure("optimise to table", { start: begun });
     if (!matchMedia("(prefers-reduced-motion: reduce)").matches && begun)
+    {
+      place.hidden = true;  // before it is measured how far
       byId("result").scrollIntoView({ behavior: "smooth", block: "start" });
+    }
     beginRuns(job, result, { rate: byId("rate").valueAsNumber || 20,
       isWanted: byId("simulate-after").checked });
   } finally {

@@ -20,11 +20,11 @@ function times(name, before, after, kind = "") {
   return pair(name, duration(before, longer), duration(after, longer), "", kind);
 }
 
-/** A saving as a figure; a rise says so. */
-function saving(name, before, after) {
+/** A saving as a figure; a rise says so, and one of a part of the program does not boast. */
+function saving(name, before, after, isPart) {
   const share = before ? (before - after) / before : null;
   const [word, colour] = share === null || Math.abs(share) < 5e-4 ? ["no change", "soft"]
-    : share > 0 ? ["saved", "good"] : ["more", "warn"];
+    : share > 0 ? ["saved", isPart ? "soft" : "good"] : ["more", "warn"];
   return el("div", { class: "figure big" }, el("div", { class: "name" }, name),
     el("div", {}, el("span", { class: `value ${colour}` }, share === null ? "–" : `${fixed(100 * Math.abs(share), 1)} %`),
       el("span", { class: "unit" }, word)));
@@ -40,7 +40,7 @@ export function showResult(asked, found) {
     `${found.mode}, ${MODES[found.mode]}`].join(" · ");
   const infeasible = count("infeasible");
   fill(byId("figures"), times("Machining time", before, after, "big"),
-    saving("Time", before, after),
+    saving(infeasible ? "Time, where feasible" : "Time", before, after, infeasible > 0),
     el("div", { class: "figure" }, el("div", { class: "name" }, "Workingsteps advised"),
       el("div", {}, el("span", { class: "value" }, `${count("advised")} of ${steps.length}`),
         count("untouched") ? el("span", { class: "unit" }, `${count("untouched")} untouched`) : null)),
@@ -50,7 +50,7 @@ export function showResult(asked, found) {
   fill(byId("result-findings"), el("p", { class: "soft small" },
     "As planned: without tool changes and moves between workingsteps."),
   infeasible ? el("div", { class: "banner bad", role: "alert" },
-    `${infeasible} workingstep${infeasible > 1 ? "s have" : " has"} no feasible feed: the table says which limits conflict.`) : null,
+    `${infeasible} workingstep${infeasible > 1 ? "s have" : " has"} no feasible feed: the table says why. They stay as programmed, also in the NC code; times compare the others.`) : null,
   found.is_written ? null : el("div", { class: "banner warn" }, "No optimised program was written: nothing was changed in it."),
   findingsList(found.findings, "of the plan"));
   byId("download-program").disabled = !found.is_written;
