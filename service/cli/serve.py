@@ -167,11 +167,11 @@ def _data(options: argparse.Namespace) -> Path:
 
 def _depot(options: argparse.Namespace, *, is_made: bool = False) -> "Depot":
     """The data folder; but for the first key it is there already."""
-    from service.depot.folder import open_depot
+    from service.depot.folder import DATABASE, open_depot
     from stepnc_model.errors import StepNcError
 
     folder = _data(options)
-    if not is_made and not (folder / "service.db").is_file():
+    if not is_made and not (folder / DATABASE).is_file():
         raise StepNcError(f"{folder}: no data folder of a service; --data names another")
     return open_depot(folder)
 

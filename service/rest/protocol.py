@@ -28,6 +28,7 @@ class Prompt(HttpToolsProtocol):
         self._size = 0
         self._look_again: asyncio.TimerHandle | None = None
 
+    # The class underneath narrows what asyncio may hand it, and so must this one.
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         """See asyncio."""
         super().connection_made(transport)
