@@ -1,16 +1,14 @@
 """Whatever is wrong: an exit code, one line that says what and where, and nothing written."""
 
-import os
 import resource
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import pytest
 
 from service.cli.main import main, optimise_main
+from tests.rights import Capability, without
 
 ROOT = Path(__file__).parents[2]
 PARTS = ROOT / "examples" / "parts"
@@ -19,7 +17,6 @@ VMC = (ROOT / "simulator" / "data" / "machines" / "vmc15.toml").read_text(encodi
 CORPUS = ROOT.parent / "shared" / "corpus"
 
 USAGE, BAD_INPUT = 2, 3
-NOBODY = 65_534
 
 MEGABYTES = 20
 
@@ -47,30 +44,6 @@ def part(tmp_path: Path) -> Path:
     path = folder / "part.stpnc"
     path.write_text(PAPER, encoding="ascii")
     return path
-
-
-@pytest.fixture
-def public() -> Iterator[Path]:
-    """A folder with the paper's program that everybody may enter."""
-    with TemporaryDirectory() as name:
-        folder = Path(name)
-        folder.chmod(0o755)
-        (folder / "part.stpnc").write_text(PAPER, encoding="ascii")
-        yield folder
-        folder.chmod(0o755)
-
-
-@contextmanager
-def without_rights() -> Iterator[None]:
-    """What root may, is not allowed within."""
-    if os.geteuid() != 0:
-        yield
-        return
-    os.seteuid(NOBODY)
-    try:
-        yield
-    finally:
-        os.seteuid(0)
 
 
 @pytest.fixture
@@ -382,27 +355,31 @@ def test_an_input_that_is_a_folder_or_missing_is_refused(part: Path, refused: Op
 
 
 def test_an_input_that_may_not_be_read_is_refused(
-    public: Path, capsys: pytest.CaptureFixture[str]
+    part: Path, refused: Optimise, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    path = public / "part.stpnc"
-    path.chmod(0o000)
-    with without_rights(), pytest.raises(SystemExit) as stopped:
-        optimise_main([str(path)])
+    # Loads all that reads: a checkout that others keep closed is closed as well within.
+    refused(file=part.with_name("missing.stpnc"))
+    part.chmod(0o000)
+    with (
+        without(Capability.DAC_OVERRIDE, Capability.DAC_READ_SEARCH),
+        pytest.raises(SystemExit) as stopped,
+    ):
+        optimise_main([str(part)])
     assert stopped.value.code == BAD_INPUT
-    assert capsys.readouterr().err == f"error: {path}: Permission denied\n"
-    assert list(inventory(public)) == ["part.stpnc"]
+    assert capsys.readouterr().err == f"error: {part}: Permission denied\n"
+    assert list(inventory(part.parent)) == ["part.stpnc"]
 
 
 def test_an_output_in_a_folder_that_may_not_be_written_is_refused(
-    public: Path, capsys: pytest.CaptureFixture[str]
+    part: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    public.chmod(0o555)
-    with without_rights(), pytest.raises(SystemExit) as stopped:
-        optimise_main([str(public / "part.stpnc")])
+    part.parent.chmod(0o555)
+    with without(Capability.DAC_OVERRIDE), pytest.raises(SystemExit) as stopped:
+        optimise_main([str(part)])
     assert stopped.value.code == BAD_INPUT
     told = capsys.readouterr().err.splitlines()[-1]
-    assert told == f"error: {public / 'part.optimised.stpnc'}: Permission denied"
-    assert list(inventory(public)) == ["part.stpnc"]
+    assert told == f"error: {part.with_name('part.optimised.stpnc')}: Permission denied"
+    assert list(inventory(part.parent)) == ["part.stpnc"]
 
 
 @pytest.mark.parametrize("place", ["missing/new.stpnc", "part.stpnc/new.stpnc", "folder"])

@@ -1,19 +1,17 @@
 """What the commands ``stepnc kbe …`` refuse, and that nothing is lost by it."""
 
-import os
 import shutil
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
+from tests.rights import Capability, without
 from tests.service.cli.test_kbe_verbs import (  # fixtures are found by their names  # noqa: F401
     BAD_INPUT,
     _own_place,
     kbe,
     told,
 )
-from tests.service.test_bad_input import without_rights
 
 READ = (
     ("list",), ("show", "1"), ("table",), ("review",), ("accept", "1"), ("corrections",),
@@ -77,34 +75,28 @@ def test_an_address_that_is_none_keeps_its_password(
         assert "secret" not in error
 
 
-@pytest.fixture
-def public(shop_file: Path) -> Iterator[Path]:
-    """A folder with a knowledge base that others may read."""
-    folder = Path("/tmp") / f"stepnc-kbe-{os.getpid()}"
-    folder.mkdir(mode=0o755)
-    shutil.copy(shop_file, folder / "kb.db")
-    (folder / "kb.db").chmod(0o644)
-    yield folder
-    shutil.rmtree(folder)
-
-
 def test_a_folder_that_may_not_be_written_stays_as_it_is(
-    public: Path, capsys: pytest.CaptureFixture[str]
+    tmp_path: Path, shop_file: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    with without_rights():
+    folder = tmp_path / "shut"
+    folder.mkdir()
+    shutil.copy(shop_file, folder / "kb.db")
+    (folder / "kb.db").chmod(0o444)
+    folder.chmod(0o555)
+    with without(Capability.DAC_OVERRIDE):
         for words in (
-            ("review", "--kb", public / "kb.db"),
-            ("restore", public / "kb.db", "--kb", public / "new.db"),
-            ("backup", public / "copy.db", "--kb", public / "kb.db"),
-            ("export", "outcomes", "--kb", public / "kb.db", "-o", public / "o.parquet"),
-            ("export", "outcomes", "--kb", public / "kb.db", "-o", public / "o.csv"),
+            ("review", "--kb", folder / "kb.db"),
+            ("restore", folder / "kb.db", "--kb", folder / "new.db"),
+            ("backup", folder / "copy.db", "--kb", folder / "kb.db"),
+            ("export", "outcomes", "--kb", folder / "kb.db", "-o", folder / "o.parquet"),
+            ("export", "outcomes", "--kb", folder / "kb.db", "-o", folder / "o.csv"),
         ):
             assert kbe(*words) == BAD_INPUT, words
             out, error = told(capsys)
             assert not out
             assert error.startswith("error: ")
-            assert str(public) in error
-    assert [each.name for each in public.iterdir()] == ["kb.db"]
+            assert str(folder) in error
+    assert [each.name for each in folder.iterdir()] == ["kb.db"]
 
 
 def test_times_the_wrong_way_round_are_refused(

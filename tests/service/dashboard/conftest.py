@@ -1,11 +1,20 @@
-"""The dashboard in a real browser, on a service of its own; pictures in build/screenshots."""
+"""The dashboard in a real browser, on a service of its own; pictures in build/screenshots.
+
+Playwright keeps an event loop running in the thread that started it, between its calls too:
+there ``asyncio.run`` fails for everybody else. All that touches the browser, the tests of this
+folder included, therefore runs in a thread of its own.
+"""
 
 import fcntl
 import os
 import shutil
 import subprocess
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import AbstractContextManager, contextmanager
+from inspect import signature
 from pathlib import Path
+from typing import TypeVar
 
 import pytest
 from playwright.sync_api import Browser, ConsoleMessage, Page, ViewportSize, sync_playwright
@@ -27,6 +36,30 @@ WIDE: ViewportSize = {"width": 1280, "height": 800}
 TABLET: ViewportSize = {"width": 820, "height": 1180}
 PHONE: ViewportSize = {"width": 390, "height": 844}
 
+T = TypeVar("T")
+
+
+@pytest.fixture(scope="session", autouse=True)
+def browser_thread() -> Iterator[ThreadPoolExecutor]:
+    """The one thread that touches the browser."""
+    with ThreadPoolExecutor(max_workers=1, thread_name_prefix="browser") as thread:
+        yield thread
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> bool:
+    """Run the tests of this folder in the thread of the browser."""
+    wanted = {name: pyfuncitem.funcargs[name] for name in signature(pyfuncitem.obj).parameters}
+    pyfuncitem.funcargs["browser_thread"].submit(pyfuncitem.obj, **wanted).result()
+    return True
+
+
+@contextmanager
+def inside(thread: ThreadPoolExecutor, context: AbstractContextManager[T]) -> Iterator[T]:
+    """A context that is entered and left in another thread."""
+    yield thread.submit(context.__enter__).result()
+    thread.submit(context.__exit__, None, None, None).result()
+
 
 @pytest.fixture(scope="session")
 def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
@@ -39,8 +72,13 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
 
 
 @pytest.fixture(scope="session")
-def browser() -> Iterator[Browser]:
-    program = installed_chromium()
+def browser(browser_thread: ThreadPoolExecutor) -> Iterator[Browser]:
+    with inside(browser_thread, opened_browser(installed_chromium())) as browser:
+        yield browser
+
+
+@contextmanager
+def opened_browser(program: str) -> Iterator[Browser]:
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=program, args=FLAGS)
         yield browser
@@ -70,7 +108,15 @@ def installed_chromium() -> str:
 
 
 @pytest.fixture
-def page(browser: Browser, served: Server) -> Iterator[Page]:
+def page(
+    browser_thread: ThreadPoolExecutor, browser: Browser, served: Server
+) -> Iterator[Page]:
+    with inside(browser_thread, opened_page(browser, served)) as page:
+        yield page
+
+
+@contextmanager
+def opened_page(browser: Browser, served: Server) -> Iterator[Page]:
     """A page that must say nothing wrong: no error, nothing that the policy refuses."""
     context = browser.new_context(
         base_url=served.url, viewport=WIDE, accept_downloads=True, reduced_motion="reduce"
