@@ -6,6 +6,7 @@ import pytest
 from playwright.sync_api import Locator, Page, expect
 
 from tests.service.dashboard.conftest import keep
+from tests.service.rest.server import Server, over
 from tests.service.waiting import until
 
 DAY = re.compile(r"paper002\.stpnc, \d+ \w+ \d{4}, \d\d:\d\d:\d\d")
@@ -36,10 +37,12 @@ def set_input(page: Page, name: str, value: str) -> Locator:
 
 
 @pytest.fixture(autouse=True)
-def ended(page: Page) -> None:
+def ended(served: Server) -> None:
     """No trial of another test goes on."""
-    for job in page.request.get("/v1/jobs?state=running&kind=trial").json()["items"]:
-        page.request.post(f"/v1/trials/{job['id']}/cancel")
+    with served.client() as client:
+        for job in client.get("/v1/jobs?state=running&kind=trial").json()["items"]:
+            client.post(f"/v1/trials/{job['id']}/cancel")
+            over(client, job["id"])
 
 
 def test_a_deeper_cut_raises_the_force_and_lowers_the_feed(page: Page) -> None:
