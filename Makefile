@@ -15,12 +15,13 @@ PYTHON ?= $(shell for p in python3.11 python3.12 python3.13 python3; do \
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; \
 	done)
 
-.PHONY: help setup demo serve test check bench docs lock clean
+.PHONY: help setup demo serve test shuffled check bench docs lock clean
 
 help:
 	@echo "make demo   optimise a sample part, simulate it, run it under control, and learn from it"
 	@echo "make serve  the dashboard and REST at http://127.0.0.1:8000 (PORT=8000)"
 	@echo "make test   run the tests"
+	@echo "make shuffled  run the quick tests in another order, in a clone (SEED=1 repeats one)"
 	@echo "make check  formatting, lint, types, layers"
 	@echo "make bench  speed, side by side with peers"
 	@echo "make docs   the documentation as a site, in build/site"
@@ -72,6 +73,20 @@ demo: $(READY) $(KERNELS)
 
 test: $(READY) $(KERNELS)
 	$(BIN)/python -m pytest -n auto
+
+SEED := $(or $(SEED),$(shell date +%s))
+
+# No test may depend on its order, its worker or its folder: one process, all quick tests in one
+# of all orders, and a clone of what is committed that nobody else may enter (mktemp: mode 0700).
+# It borrows the environment; modules that are installed there come after those of the clone.
+shuffled: $(READY)
+	@echo "make shuffled SEED=$(SEED)"
+	@folder=$$(mktemp -d) && trap 'rm -rf "$$folder"' EXIT && trap 'exit 130' INT TERM && \
+	git clone --quiet . "$$folder/clone" && \
+	ln -s "$(abspath $(VENV))" "$$folder/clone/.venv" && \
+	if [ -d ../shared ]; then ln -s "$$(cd ../shared && pwd)" "$$folder/shared"; fi && \
+	cd "$$folder/clone" && \
+	PYTHONPATH="$$PWD" .venv/bin/python -m pytest -p no:xdist -m "not slow" --shuffle $(SEED)
 
 check: $(READY)
 	$(BIN)/ruff format --check .

@@ -1,9 +1,17 @@
-"""What all tests share: CI draws the same examples each time, a run ends with its skips."""
+"""What all tests share: CI draws the same examples each time, a run ends with its skips.
+
+``-m "not slow"`` runs the quick tests, ``--shuffle SEED`` whatever is run in one of all orders.
+"""
 
 import os
+from collections.abc import Iterator
+from pathlib import Path
+from random import Random
 
 import pytest
 from hypothesis import HealthCheck, settings
+
+from tests.slow import SLOW
 
 # How long an example takes says nothing on a machine that others use as well. Drawn anew, a
 # rare one would turn a run of CI red that has nothing to do with the change.
@@ -14,6 +22,34 @@ settings.register_profile(
     suppress_health_check=[HealthCheck.too_slow],
 )
 settings.load_profile("project")
+
+SLOW_PLACES = {Path(__file__).parent / place for place in SLOW}
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """How to shuffle."""
+    parser.addoption("--shuffle", type=int, metavar="SEED", help="shuffle the tests")
+
+
+def pytest_report_header(config: pytest.Config) -> list[str]:
+    """How to run the same order again; no line for each test, whose file is always another."""
+    if (seed := config.getoption("shuffle")) is None:
+        return []
+    config.pluginmanager.getplugin("terminalreporter").showfspath = False
+    return [f"order: --shuffle {seed}"]
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection_modifyitems(
+    config: pytest.Config, items: list[pytest.Item]
+) -> Iterator[None]:
+    """Mark what is slow before it is selected, and shuffle after pytest has grouped."""
+    for item in items:
+        if not SLOW_PLACES.isdisjoint((item.path, *item.path.parents)):
+            item.add_marker(pytest.mark.slow)
+    yield
+    if (seed := config.getoption("shuffle")) is not None:
+        Random(seed).shuffle(items)
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:

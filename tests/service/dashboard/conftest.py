@@ -50,7 +50,9 @@ def browser_thread() -> Iterator[ThreadPoolExecutor]:
 def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> bool:
     """Run the tests of this folder in the thread of the browser."""
     wanted = {name: pyfuncitem.funcargs[name] for name in signature(pyfuncitem.obj).parameters}
-    pyfuncitem.funcargs["browser_thread"].submit(pyfuncitem.obj, **wanted).result()
+    thread = pyfuncitem.funcargs["browser_thread"]
+    assert isinstance(thread, ThreadPoolExecutor)
+    thread.submit(pyfuncitem.obj, **wanted).result()
     return True
 
 
