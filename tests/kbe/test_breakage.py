@@ -214,16 +214,20 @@ def test_database_that_is_not_there(postgres_url: str) -> None:
         open_store(shown(make_url(postgres_url).set(database="nowhere")))
 
 
+GUEST = f"guest_{os.getpid()}"
+"""a role belongs to the whole server, which others may use as well"""
+
+
 @pytest.fixture
 def guest(postgres_url: str) -> Iterator[psycopg.Connection]:
     """Somebody who has no rights yet, and a connection that may grant them."""
     with psycopg.connect(postgres_url, autocommit=True) as connection:
-        connection.execute("CREATE ROLE guest LOGIN PASSWORD 'guest'")
+        connection.execute(f"CREATE ROLE {GUEST} LOGIN PASSWORD 'guest'")
         try:
             yield connection
         finally:
-            connection.execute("DROP OWNED BY guest")
-            connection.execute("DROP ROLE guest")
+            connection.execute(f"DROP OWNED BY {GUEST}")
+            connection.execute(f"DROP ROLE {GUEST}")
 
 
 def test_rights_that_were_not_granted(
@@ -232,14 +236,14 @@ def test_rights_that_were_not_granted(
     url = postgres_place()
     with open_store(url) as store:
         store.add(outcomes(2))
-    as_guest = shown(make_url(url).set(username="guest", password="guest"))
+    as_guest = shown(make_url(url).set(username=GUEST, password="guest"))
     with pytest.raises(StoreUnavailable, match="its rights"):
         open_store(as_guest)
     schema = url.rpartition("%3D")[2]
-    guest.execute(f"GRANT USAGE ON SCHEMA {schema} TO guest")
+    guest.execute(f"GRANT USAGE ON SCHEMA {schema} TO {GUEST}")
     with pytest.raises(StoreReadOnly, match="grant the rights"):
         open_store(as_guest)
-    guest.execute(f"GRANT SELECT ON ALL TABLES IN SCHEMA {schema} TO guest")
+    guest.execute(f"GRANT SELECT ON ALL TABLES IN SCHEMA {schema} TO {GUEST}")
     with open_store(as_guest) as store:
         assert list(store.outcomes()) == outcomes(2)
         with pytest.raises(StoreReadOnly, match="grant the rights"):

@@ -159,7 +159,7 @@ def keep(page: Page, name: str) -> None:
     for kind, size in (("wide", WIDE), ("tablet", TABLET), ("phone", PHONE)):
         page.set_viewport_size(size)
         # Plots follow the window a moment later.
-        until(lambda: overflow(page) <= 0, within=5.0)
+        until(lambda: overflow(page) <= 0)
         page.screenshot(path=SCREENSHOTS / f"{name}-{kind}.png", full_page=kind != "wide")
     page.set_viewport_size(WIDE)
     page.evaluate("localStorage.setItem('stepnc.theme', 'dark')")

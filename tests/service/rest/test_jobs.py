@@ -34,7 +34,7 @@ def test_a_running_simulation_is_cancelled_within_seconds_and_deleted(
     until(lambda: client.get(f"/v1/simulations/{id}/series").status_code == 200)
     assert client.get(f"/v1/simulations/{id}/series").json()["is_growing"]
     assert client.post(f"/v1/jobs/{id}/cancel").json()["is_cancelling"]
-    job = over(client, id, within=10.0)
+    job = over(client, id)
     assert (job["state"], job["problem"]) == ("cancelled", None)
     found = is_problem(client.get(f"/v1/simulations/{id}"), 409, "conflict")
     assert "cancelled" in found["detail"]
