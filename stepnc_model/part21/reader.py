@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Self
 
-from stepnc_model.errors import Finding
+from stepnc_model.errors import Finding, Severity
+from stepnc_model.finding_list import FindingList
 from stepnc_model.part21.grammar import closing, skip_blank
 from stepnc_model.part21.header import Header, HeaderReading, read_header
 from stepnc_model.part21.index import Index
@@ -46,7 +47,7 @@ class Part21File:
         ------
         Part21Error
             If the bytes are no exchange structure, break off within an instance, string or
-            comment, or give an id twice.
+            comment, give an id twice, or pass one of the bounds of the reader.
         """
         return cls(data=data, name=name, structure=read_structure(data))
 
@@ -152,22 +153,22 @@ class Part21File:
         """Deviations from the syntax, in the order of the file.
 
         Malformed parameters, which :meth:`parameters` refuses, are findings of severity
-        ``ERROR``. All instances are looked at when this is first asked for.
+        ``ERROR``. All instances are looked at when this is first asked for; of many findings
+        the first are told, and how many more there are.
         """
-        slips = [(slip, "") for slip in (*self.structure.slips, *self._header.slips)]
+        found = FindingList()
+        frame = sorted((*self.structure.slips, *self._header.slips), key=_offset)
+        found.add(self._finding(slip) for slip in frame)
         for id in self._untidy():
-            slips += [(slip, self.label(id)) for slip in self._slips_within(id)]
-        slips.sort(key=lambda item: item[0].offset)
-        return tuple(
-            Finding(
-                severity=slip.severity,
-                message=slip.message,
-                entity=label,
-                line=self._lines.line(slip.offset),
-                rule=_RULE,
-            )
-            for slip, label in slips
-        )
+            record, origin = self._read(id), self._body(id)
+            found.count(Severity.WARNING, record.unlisted)
+            for slip in (*record.slips, *filter(None, (record.error,))):
+                if found.has_room(slip.severity):
+                    place = replace(slip, offset=origin + slip.offset)
+                    found.add((self._finding(place, self.label(id)),))
+                else:
+                    found.count(slip.severity)
+        return found.all()
 
     @cached_property
     def _index(self) -> Index:
@@ -225,8 +226,16 @@ class Part21File:
         """Ids of the instances that need a second look."""
         return (id for id in self._index.ids if not is_tidy(self._text(id)))
 
-    def _slips_within(self, id: int) -> list[Slip]:
-        """Deviations in one instance, the error that ends its reading last."""
-        record, origin = self._read(id), self._body(id)
-        errors = () if record.error is None else (record.error,)
-        return [replace(slip, offset=origin + slip.offset) for slip in (*record.slips, *errors)]
+    def _finding(self, slip: Slip, label: str = "") -> Finding:
+        """What is told of a deviation."""
+        return Finding(
+            severity=slip.severity,
+            message=slip.message,
+            entity=label,
+            line=self._lines.line(slip.offset),
+            rule=_RULE,
+        )
+
+
+def _offset(slip: Slip) -> int:
+    return slip.offset
