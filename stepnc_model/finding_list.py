@@ -16,12 +16,16 @@ class FindingList:
         self._kept: list[Finding] = []
         self._counts: Counter[Severity] = Counter()
 
-    def add(self, findings: Iterable[Finding]) -> None:
-        """Take findings in their order."""
+    def add(self, finding: Finding) -> None:
+        """Take one."""
+        if self.has_room(finding.severity):
+            self._kept.append(finding)
+        self._counts[finding.severity] += 1
+
+    def extend(self, findings: Iterable[Finding]) -> None:
+        """Take several in their order."""
         for finding in findings:
-            self._counts[finding.severity] += 1
-            if self._counts[finding.severity] <= MOST_FINDINGS:
-                self._kept.append(finding)
+            self.add(finding)
 
     def has_room(self, severity: Severity) -> bool:
         """Whether one more of a severity would be listed."""

@@ -32,8 +32,8 @@ KEYWORD = re.compile(rb"!?[A-Za-z_][A-Za-z0-9_]*+")
 MAX_DEPTH = 500
 """Lists within lists; real files stay below ten. What comes deeper is an error, not a crash."""
 
-MAX_INSTANCE = 1 << 22
-"""Bytes of one instance: half a million references. Real files stay below 100 KB."""
+MAX_INSTANCE = 1 << 21
+"""Bytes of one instance: a quarter of a million references. Real files stay below 100 KB."""
 
 _SPACE = re.compile(rb"\s*+")
 _COMMENT = re.compile(COMMENT)

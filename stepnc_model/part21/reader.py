@@ -4,6 +4,7 @@ from array import array
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from heapq import merge
 from typing import Self
 
 from stepnc_model.errors import Finding, Severity
@@ -18,6 +19,9 @@ from stepnc_model.part21.tidy import is_tidy, tidy_values
 from stepnc_model.part21.values import Value
 
 _RULE = "ISO 10303-21"
+
+MAX_EXAMINED = 1 << 23
+"""Bytes of instances out of the plain form that a check reads, ten times slower than others."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -157,17 +161,14 @@ class Part21File:
         the first are told, and how many more there are.
         """
         found = FindingList()
-        frame = sorted((*self.structure.slips, *self._header.slips), key=_offset)
-        found.add(self._finding(slip) for slip in frame)
-        for id in self._untidy():
-            record, origin = self._read(id), self._body(id)
-            found.count(Severity.WARNING, record.unlisted)
-            for slip in (*record.slips, *filter(None, (record.error,))):
-                if found.has_room(slip.severity):
-                    place = replace(slip, offset=origin + slip.offset)
-                    found.add((self._finding(place, self.label(id)),))
-                else:
-                    found.count(slip.severity)
+        frame = ((slip, None) for slip in (*self.structure.slips, *self._header.slips))
+        for slip, id in merge(sorted(frame, key=_offset), self._within(found), key=_offset):
+            if found.has_room(slip.severity):
+                found.add(self._finding(slip, "" if id is None else self.label(id)))
+            else:
+                found.count(slip.severity)
+        if self._unexamined:
+            found.add(self._not_examined())
         return found.all()
 
     @cached_property
@@ -222,9 +223,53 @@ class Part21File:
             raise error_at(self.data, self.span(id)[0], message)
         return record
 
-    def _untidy(self) -> Iterator[int]:
-        """Ids of the instances that need a second look."""
-        return (id for id in self._index.ids if not is_tidy(self._text(id)))
+    def is_examined(self, id: int) -> bool:
+        """Whether a check of the whole file looks into an instance.
+
+        Those in the plain form of the standard all are; of the others, whose reading is slow,
+        as many as ``MAX_EXAMINED`` bytes hold. :meth:`parameters` reads every instance.
+        """
+        return id not in self._unexamined
+
+    @cached_property
+    def _untidy(self) -> "array[int]":
+        """Ids of the instances that need a second look, in the order of the file."""
+        return array("q", (id for id in self._index.ids if not is_tidy(self._text(id))))
+
+    @cached_property
+    def _unexamined(self) -> frozenset[int]:
+        """Ids of those of them for which no second look is left."""
+        left, found = MAX_EXAMINED, set()
+        for id in self._untidy:
+            start, end = self.span(id)
+            left -= end - start
+            if left < 0:
+                found.add(id)
+        return frozenset(found)
+
+    def _not_examined(self) -> Finding:
+        """What is told of these."""
+        first = min(self._unexamined, key=self.span)
+        return Finding(
+            severity=Severity.WARNING,
+            message=(
+                f"{len(self._unexamined)} instances from here on are not in the plain form of "
+                f"the standard and were not checked: more than {MAX_EXAMINED >> 20} MB of such"
+            ),
+            entity=self.label(first),
+            line=self.line(first),
+            rule=_RULE,
+        )
+
+    def _within(self, found: FindingList) -> "Iterator[tuple[Slip, int | None]]":
+        """Deviations within instances, the error that ends the reading of one last."""
+        for id in self._untidy:
+            if not self.is_examined(id):
+                continue
+            record, origin = self._read(id), self._body(id)
+            for slip in (*record.slips, *filter(None, (record.error,))):
+                yield replace(slip, offset=origin + slip.offset), id
+            found.count(Severity.WARNING, record.unlisted)
 
     def _finding(self, slip: Slip, label: str = "") -> Finding:
         """What is told of a deviation."""
@@ -237,5 +282,5 @@ class Part21File:
         )
 
 
-def _offset(slip: Slip) -> int:
-    return slip.offset
+def _offset(item: tuple[Slip, int | None]) -> int:
+    return item[0].offset
