@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from itertools import chain, islice
 from typing import Any, TypeVar, cast
 
+from stepnc_model.circles import circles
 from stepnc_model.entities.catalogue import BY_ARITY, class_of, classes
 from stepnc_model.entities.conversion import Remark, give, take, take_missing
 from stepnc_model.entities.entity import Entity, attributes
@@ -353,28 +354,9 @@ def _cycle_findings(
     file: Part21File, edges: Mapping[int, tuple[int, ...]]
 ) -> Iterator[Finding]:
     """Instances that contain themselves: ISO 14649 nests, it never goes in circles."""
-    for id, last in _circles(edges):
+    for id, last in circles(edges):
         remark = Remark(Severity.ERROR, f"contains itself: #{last} refers back to it")
         yield _finding(file, id, "", remark=remark, rule="ISO 14649-10")
-
-
-def _circles(edges: Mapping[int, tuple[int, ...]]) -> Iterator[tuple[int, int]]:
-    """First and last instance of each circle; no recursion, for files may nest deeply."""
-    done: set[int] = set()
-    for root in edges:
-        path: dict[int, Iterator[int]] = {}
-        current = None if root in done else root
-        while current is not None:
-            pending = path.setdefault(current, iter(edges.get(current, ())))
-            step = next((id for id in pending if id not in done), None)
-            if step is None:
-                path.pop(current)
-                done.add(current)
-                current = next(reversed(path), None)
-            elif step in path:
-                yield step, current
-            else:
-                current = step
 
 
 def _unknown_findings(file: Part21File) -> Iterator[Finding]:
