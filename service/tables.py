@@ -25,6 +25,10 @@ MOST_FINDINGS = 40
 """findings shown in a table; --json has all"""
 
 
+MOST_INDENTED = 20
+"""levels of executables that a table shows by indenting"""
+
+
 def print_plan(plan: Plan) -> None:
     """Advice for a program: a row for each workingstep, then totals and findings."""
     material = plan.material.material
@@ -66,7 +70,7 @@ def print_contents(contents: Contents) -> None:
             tool = getattr(program.get(step.tool_ref), "its_id", "") if step else ""
             rows.append((
                 str(each.ref),
-                "  " * each.level + each.keyword.lower(),
+                "  " * min(each.level, MOST_INDENTED) + each.keyword.lower(),
                 each.id,
                 step.operation_type if step else "",
                 tool,

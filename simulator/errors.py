@@ -126,12 +126,16 @@ class LibraryError(SimulationError):
         The file.
     key : str
         The key in it, ``spindle.max_speed_rpm`` for example.
+    line : int
+        Line of the file, counted from 1; 0 when the key says where.
     """
 
-    def __init__(self, message: str, *, path: str, key: str = "") -> None:
-        super().__init__(f"{path}: {key + ': ' if key else ''}{message}")
+    def __init__(self, message: str, *, path: str, key: str = "", line: int = 0) -> None:
+        place = (path, f"line {line}" if line else "", key, message)
+        super().__init__(": ".join(part for part in place if part))
         self.path = path
         self.key = key
+        self.line = line
 
 
 class CalibrationError(SimulationError):

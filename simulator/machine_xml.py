@@ -31,7 +31,7 @@ from simulator.machine_file import (
     VISCOUS,
 )
 from simulator.spec import Axis, AxisDrive, Machine, MachineKind, Spindle, SpindlePoint
-from simulator.toml_file import Range, Table
+from simulator.toml_file import Range, Table, read_bounded
 from stepnc_model.units import MM_PER_M, nmm_from_nm, speed_from_m_min, speed_from_m_s
 
 RAPID = Range(low=10, high=30_000, unit="1/100 m/min")
@@ -206,9 +206,7 @@ def _attributes(path: Path) -> Table:
         resolve_entities=False, no_network=True, huge_tree=False, load_dtd=False
     )
     try:
-        root = etree.fromstring(path.read_bytes(), parser)
-    except OSError as error:
-        raise LibraryError(f"cannot be read: {error.strerror}", path=str(path)) from error
+        root = etree.fromstring(read_bounded(path), parser)
     except etree.XMLSyntaxError as error:
         raise LibraryError(f"is no XML: {error.msg}", path=str(path)) from error
     machine = root if root.tag == "Machine" else root.find(".//Machine")

@@ -14,6 +14,10 @@ from pathlib import Path
 from typing import TypeVar
 
 from simulator.errors import LibraryError
+from simulator.toml_bounds import MOST_BYTES, require_bounded
+
+LONGEST_SHOWN = 80
+"""letters of a value or a key in a message"""
 
 Choice = TypeVar("Choice", bound=StrEnum)
 
@@ -71,13 +75,13 @@ class Table:
     def error(self, key: str, message: str) -> LibraryError:
         """The error that names this file and ``key``."""
         place = f"{self._name}.{key}" if self._name and key else self._name or key
-        return LibraryError(message, path=str(self.path), key=place)
+        return LibraryError(message, path=str(self.path), key=_cut(place))
 
     def text(self, key: str) -> str:
         """A text that must be there; it may be empty."""
         value = self._take(key, "a text")
         if not isinstance(value, str):
-            raise self.error(key, f"{value!r} is no text")
+            raise self.error(key, f"{_shown(value)} is no text")
         return value
 
     def texts(self, key: str) -> tuple[str, ...]:
@@ -86,7 +90,7 @@ class Table:
             return ()
         values = self._take(key, "a list of texts")
         if not isinstance(values, list) or not all(isinstance(value, str) for value in values):
-            raise self.error(key, f"{values!r} is no list of texts")
+            raise self.error(key, f"{_shown(values)} is no list of texts")
         return tuple(values)
 
     def choice(self, key: str, kind: type[Choice]) -> Choice:
@@ -96,16 +100,21 @@ class Table:
             return kind(value)
         except ValueError:
             known = ", ".join(kind)
-            raise self.error(key, f"'{value}' is none of {known}") from None
+            raise self.error(key, f"'{_cut(value)}' is none of {known}") from None
 
     def number(self, key: str, allowed: Range) -> float:
         """A number that must be there and in its range."""
         value = self._take(key, f"a number, {allowed}")
         if isinstance(value, bool) or not isinstance(value, int | float):
-            raise self.error(key, f"{value!r} is no number; expected {allowed}")
-        if complaint := allowed.complaint(value):
+            raise self.error(key, f"{_shown(value)} is no number; expected {allowed}")
+        try:
+            number = float(value)
+        except OverflowError:
+            what = f"{_shown(value)} is beyond the range of a number; expected {allowed}"
+            raise self.error(key, what) from None
+        if complaint := allowed.complaint(number):
             raise self.error(key, complaint)
-        return float(value)
+        return number
 
     def optional_number(self, key: str, allowed: Range) -> float | None:
         """A number in its range, or ``None`` when the key is absent."""
@@ -163,7 +172,7 @@ class Table:
     def _child(self, key: str, content: object, *, name: str) -> "Table":
         """A table below this one."""
         if not isinstance(content, dict):
-            raise self.error(key, f"{content!r} is no table")
+            raise self.error(key, f"{_shown(content)} is no table")
         child = Table(content, path=self.path, name=name)
         self._children.append(child)
         return child
@@ -187,21 +196,40 @@ def read_toml_head(path: Path) -> Table:
 def read_text(path: Path) -> str:
     """Text of a library file in UTF-8."""
     try:
-        if path.is_char_device():
-            raise LibraryError("is a device, no file", path=str(path))
-        return path.read_text(encoding="utf-8")
-    except OSError as error:
-        raise LibraryError(f"cannot be read: {error.strerror}", path=str(path)) from error
+        return read_bounded(path).decode("utf-8").replace("\r\n", "\n").replace("\r", "\n")
     except UnicodeDecodeError as error:
         raise LibraryError(f"is no UTF-8 text: {error.reason}", path=str(path)) from error
 
 
+def read_bounded(path: Path) -> bytes:
+    """Bytes of a library file, which is small."""
+    try:
+        if path.is_char_device():
+            raise LibraryError("is a device, no file", path=str(path))
+        with path.open("rb") as file:
+            data = file.read(MOST_BYTES + 1)
+    except OSError as error:
+        raise LibraryError(f"cannot be read: {error.strerror}", path=str(path)) from error
+    if len(data) > MOST_BYTES:
+        raise LibraryError(f"is larger than {MOST_BYTES} bytes, the most", path=str(path))
+    return data
+
+
 def _parsed(text: str, path: Path) -> dict[str, object]:
     """Content of a TOML text."""
+    require_bounded(text, path)
     try:
         return tomllib.loads(text)
-    except RecursionError as error:
-        raise LibraryError("is no TOML: too many brackets", path=str(path)) from error
     except ValueError as error:
-        # Also a number of more digits than Python reads, which is no TOMLDecodeError.
+        # Also a date that is in no calendar, which is no TOMLDecodeError.
         raise LibraryError(f"is no TOML: {error}", path=str(path)) from error
+
+
+def _shown(value: object) -> str:
+    """A value for a message."""
+    return _cut(repr(value))
+
+
+def _cut(text: str) -> str:
+    """A text that may be long, for a message."""
+    return text if len(text) <= LONGEST_SHOWN else f"{text[: LONGEST_SHOWN - 1]}…"

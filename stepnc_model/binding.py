@@ -7,14 +7,17 @@ they are asked for, and hold references, so a file of any size or shape costs wh
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from itertools import chain, islice
 from typing import Any, TypeVar, cast
 
+from stepnc_model.circles import circles
 from stepnc_model.entities.catalogue import BY_ARITY, class_of, classes
 from stepnc_model.entities.conversion import Remark, give, take, take_missing
 from stepnc_model.entities.entity import Entity, attributes
 from stepnc_model.entities.operations import MachiningOperation
 from stepnc_model.entities.slots import Slot, slots_of
 from stepnc_model.errors import Finding, Part21Error, SchemaError, Severity
+from stepnc_model.finding_list import MOST_FINDINGS, FindingList
 from stepnc_model.paper002 import PRINTED, Reading, read_printed
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref, Value
@@ -127,17 +130,20 @@ class Model:
         return index + 1 if surplus is not None and surplus <= index else index
 
     def findings(self) -> tuple[Finding, ...]:
-        """Everything that deviates from the schema, in file order; binds every instance."""
+        """What deviates from the schema, in file order; binds every instance.
+
+        Of many findings the first are told, and how many more there are.
+        """
         edges: dict[int, tuple[int, ...]] = {}
-        found: list[Finding] = []
-        for id in self.file.ids():
+        found = FindingList()
+        for id in filter(self.file.is_examined, self.file.ids()):
             inspection = _inspect(self.file, id)
             if inspection is not None:
-                found += inspection.findings
+                found.extend(inspection.findings)
                 edges[id] = inspection.references
-        found += _cycle_findings(self.file, edges)
-        found += _unknown_findings(self.file)
-        return tuple(sorted(found, key=lambda finding: finding.line))
+        found.extend(_cycle_findings(self.file, edges))
+        found.extend(_unknown_findings(self.file))
+        return found.all()
 
     def fault_near(self, *refs: Ref[Any]) -> Finding | None:
         """The nearest error among instances and what they refer to, else a warning, or None.
@@ -301,14 +307,19 @@ def _inspect(file: Part21File, id: int) -> Inspection | None:
     ]
     given, optimisation = _without_optimisation(file, cls, values)
     references = list(_references(cls, given))
-    for name, ref, slot in references:
-        findings += _reference_findings(file, id, name, ref=ref, slot=slot)
+    faults = (
+        _reference_findings(file, id, name, ref=ref, slot=slot)
+        for name, ref, slot in references
+    )
+    # A list may hold a quarter of a million references that lead nowhere.
+    findings += islice(chain.from_iterable(faults), MOST_FINDINGS)
     if optimisation is not None:
         findings += _reference_findings(
             file, id, OPTIMISATION, ref=optimisation, slot=Slot(references=(Entity,))
         )
     return Inspection(
-        findings=tuple(findings), references=tuple(int(ref) for _, ref, _ in references)
+        findings=tuple(findings),
+        references=tuple(dict.fromkeys(int(ref) for _, ref, _ in references)),
     )
 
 
@@ -343,28 +354,9 @@ def _cycle_findings(
     file: Part21File, edges: Mapping[int, tuple[int, ...]]
 ) -> Iterator[Finding]:
     """Instances that contain themselves: ISO 14649 nests, it never goes in circles."""
-    for id, last in _circles(edges):
+    for id, last in circles(edges):
         remark = Remark(Severity.ERROR, f"contains itself: #{last} refers back to it")
         yield _finding(file, id, "", remark=remark, rule="ISO 14649-10")
-
-
-def _circles(edges: Mapping[int, tuple[int, ...]]) -> Iterator[tuple[int, int]]:
-    """First and last instance of each circle; no recursion, for files may nest deeply."""
-    done: set[int] = set()
-    for root in edges:
-        path: dict[int, Iterator[int]] = {}
-        current = None if root in done else root
-        while current is not None:
-            pending = path.setdefault(current, iter(edges.get(current, ())))
-            step = next((id for id in pending if id not in done), None)
-            if step is None:
-                path.pop(current)
-                done.add(current)
-                current = next(reversed(path), None)
-            elif step in path:
-                yield step, current
-            else:
-                current = step
 
 
 def _unknown_findings(file: Part21File) -> Iterator[Finding]:

@@ -10,7 +10,7 @@
     ├── PostError(line)                    NC code that a control or a reader cannot take
     ├── SimulationError                    simulator.errors
     │   ├── UnknownMachine, UnknownMaterial
-    │   ├── LibraryError(path, key)
+    │   ├── LibraryError(path, key, line)
     │   └── CalibrationError(path, line, column)
     ├── OptimisationError                  optimiser.errors
     │   ├── Infeasible(workingstep, limits)

@@ -29,6 +29,7 @@ from stepnc_model.entities.setup import Setup
 from stepnc_model.entities.surfaces import MachinedSurface, SurfaceTextureParameter
 from stepnc_model.entities.workpiece import Material, Workpiece
 from stepnc_model.errors import Finding, SchemaError, Severity
+from stepnc_model.finding_list import FindingList
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
 from stepnc_model.unit_profiles import ISO, UnitProfile
@@ -179,7 +180,8 @@ class Program:
 
     def findings(self) -> tuple[Finding, ...]:
         """Everything noticed: syntax, schema, and the walk of the program."""
-        faults = tuple(
+        faults = FindingList()
+        faults.extend(
             Finding(
                 severity=Severity.ERROR,
                 message=str(fault),
@@ -189,7 +191,7 @@ class Program:
             )
             for fault in self._faults.values()
         )
-        return self.file.findings + self.model.findings() + faults
+        return self.file.findings + self.model.findings() + faults.all()
 
     def before(self, step: Workingstep) -> list[Workingstep]:
         """Workingsteps on the same features that run before this one, in order."""

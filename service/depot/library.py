@@ -234,8 +234,9 @@ def _load(shelf: Shelf, file: Path) -> Machine | Material:
     try:
         return _LOADERS[shelf](str(file))
     except LibraryError as error:
-        told = str(error).removeprefix(f"{error.path}: ").removeprefix(f"{error.key}: ")
-        raise LibraryError(told, path=file.name, key=error.key) from error
+        told = str(error).removeprefix(f"{error.path}: ").removeprefix(f"line {error.line}: ")
+        told = told.removeprefix(f"{error.key}: ")
+        raise LibraryError(told, path=file.name, key=error.key, line=error.line) from error
 
 
 def remove(depot: Depot, shelf: Shelf, name: str, *, condition: Condition = always) -> None:

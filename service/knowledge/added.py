@@ -17,7 +17,18 @@ from service.knowledge.verbs import record
 from stepnc_model.errors import StepNcError
 from stepnc_model.outcome import ProcessOutcome
 
-WORDS = {str: "a text", int: "a whole number", float: "a finite number", bool: "true or false"}
+LARGEST = 2**63 - 1
+"""of a whole number: what a column of the knowledge base holds"""
+
+LONGEST_SHOWN = 80
+"""letters of a value in a message"""
+
+WORDS = {
+    str: "a text",
+    int: f"a whole number of at most {LARGEST}",
+    float: "a finite number of at most 1.8e308",
+    bool: "true or false",
+}
 
 
 def add_outcomes(place: str, file: Path) -> int:
@@ -66,12 +77,31 @@ def _value(leaf: Leaf, value: Any, where: str) -> Any:
         raise StepNcError(f"{where}: '{leaf.name}' is missing")
     if leaf.kind is datetime:
         return _moment(leaf, value, where)
-    is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    if leaf.kind is float and is_number and isfinite(value):
-        return float(value)
-    if leaf.kind is not float and type(value) is leaf.kind:
+    if leaf.kind is float:
+        number = _number(value)
+        if number is not None:
+            return number
+    elif type(value) is leaf.kind and not _is_too_large(value):
         return value
-    raise StepNcError(f"{where}: '{leaf.name}' is {value!r} and must be {WORDS[leaf.kind]}")
+    shown = repr(value)
+    shown = shown if len(shown) <= LONGEST_SHOWN else f"{shown[: LONGEST_SHOWN - 1]}…"
+    raise StepNcError(f"{where}: '{leaf.name}' is {shown} and must be {WORDS[leaf.kind]}")
+
+
+def _is_too_large(value: object) -> bool:
+    """Whether it is an integer that no column holds."""
+    return isinstance(value, int) and abs(value) > LARGEST
+
+
+def _number(value: Any) -> float | None:
+    """A finite number, or None: an integer may be beyond the range of a float."""
+    if not isinstance(value, (int, float)) or isinstance(value, bool):
+        return None
+    try:
+        number = float(value)
+    except OverflowError:
+        return None
+    return number if isfinite(number) else None
 
 
 def _moment(leaf: Leaf, value: Any, where: str) -> datetime:

@@ -1,19 +1,24 @@
-"""Pieces of the ISO 10303-21 grammar over bytes, and the two scans made of them.
+"""Pieces of the ISO 10303-21 grammar over bytes, and the scans made of them.
 
 Every pattern is possessive: what it took it never gives back, so a scan is linear in the
-bytes it passes whatever they are. Repeated groups are atomic, ``(?>(?:…)*)``, and not
-``(?:…)*+``: CPython before 3.11.5 gets that wrong (gh-106052), and Debian 12 ships 3.11.2.
+bytes it passes whatever they are. Repeated groups are atomic, ``(?>(?:…){0,n})``, and not
+``(?:…){0,n}+``: CPython before 3.11.5 gets that wrong (gh-106052), and Debian 12 ships 3.11.2.
+They are counted, because the engine keeps about 120 bytes for each round of a group until the
+group is done: 32 MB of slashes would take 4 GB. What is longer is scanned in runs.
 """
 
 import re
 
 from stepnc_model.part21.places import Slip, error_at
+from stepnc_model.part21.slips import Slips
 
-COMMENT = rb"/\*(?>(?:[^*]++|\*(?!/))*)\*/"
+COMMENT = rb"(?>/\*(?s:.*?)\*/)"
 """A comment; within it ``/*`` is text."""
-TIDY_COMMENT = rb"/\*(?>(?:[^*/]++|\*(?!/)|/(?!\*))*)\*/"
+TIDY_COMMENT = rb"/\*(?>(?:[^*/]++|\*(?!/)|/(?!\*)){0,1000})\*/"
 """A comment in which no other is opened."""
-BLANK = rb"(?>(?:\s++|" + TIDY_COMMENT + rb")*)"
+BLANK = rb"(?>(?:\s++|" + TIDY_COMMENT + rb"){0,1000})"
+ROUNDS = rb"{0,10000}"
+"""Rounds of a group in one run."""
 STRING = rb"'[^']*+'"
 """A string, or the piece of one up to a doubled apostrophe."""
 BINARY = rb'"[^"\r\n;]*+"'
@@ -27,6 +32,9 @@ KEYWORD = re.compile(rb"!?[A-Za-z_][A-Za-z0-9_]*+")
 MAX_DEPTH = 500
 """Lists within lists; real files stay below ten. What comes deeper is an error, not a crash."""
 
+MAX_INSTANCE = 1 << 21
+"""Bytes of one instance: a quarter of a million references. Real files stay below 100 KB."""
+
 _SPACE = re.compile(rb"\s*+")
 _COMMENT = re.compile(COMMENT)
 _HEAD_IN_COMMENT = re.compile(rb"\#[0-9]++\s*+=")
@@ -36,7 +44,7 @@ _BRACKET = re.compile(
 )
 
 
-def skip_blank(data: bytes, position: int, *, slips: list[Slip]) -> int:
+def skip_blank(data: bytes, position: int, *, slips: Slips) -> int:
     """Offset of the first byte that is neither white space nor comment.
 
     A comment opened within a comment is noted in ``slips``.
@@ -47,7 +55,7 @@ def skip_blank(data: bytes, position: int, *, slips: list[Slip]) -> int:
         If a comment does not end.
     """
     while True:
-        position = _end(_SPACE, data, position)
+        position = run_end(_SPACE, data, position)
         if not data.startswith(b"/*", position):
             return position
         comment = _COMMENT.match(data, position)
@@ -65,10 +73,11 @@ def _nested(data: bytes, start: int, end: int) -> Slip:
     return Slip(offset=start, message=f"nested comment: '/*' within a comment{text}")
 
 
-def closing(data: bytes, position: int) -> int:
+def closing(data: bytes, position: int, *, stop: int | None = None) -> int:
     """Offset behind the bracket that closes the one at ``position``; -1 if none does.
 
-    The search ends at a ``;`` outside strings and comments.
+    The search ends at ``stop``, at a ``;`` outside strings and comments, or where no instance
+    can go on.
 
     Raises
     ------
@@ -76,7 +85,8 @@ def closing(data: bytes, position: int) -> int:
         If brackets nest deeper than ``MAX_DEPTH``.
     """
     depth = 0
-    for match in _BRACKET.finditer(data, position):
+    end = position + MAX_INSTANCE if stop is None else stop
+    for match in _BRACKET.finditer(data, position, end):
         kind = match.lastgroup
         if kind == "open":
             depth += 1
@@ -91,7 +101,8 @@ def closing(data: bytes, position: int) -> int:
     return -1
 
 
-def _end(pattern: re.Pattern[bytes], data: bytes, position: int) -> int:
-    """Where a pattern that may be empty ends."""
-    match = pattern.match(data, position)
-    return match.end() if match else position
+def run_end(pattern: re.Pattern[bytes], data: bytes, position: int) -> int:
+    """Where the last of the matches ends that follow each other from ``position`` on."""
+    while (match := pattern.match(data, position)) and match.end() > position:
+        position = match.end()
+    return position

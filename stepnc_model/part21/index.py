@@ -10,6 +10,7 @@ import re
 from array import array
 from collections import defaultdict
 from dataclasses import dataclass
+from operator import sub
 
 from stepnc_model.errors import Part21Error
 from stepnc_model.part21.grammar import (
@@ -17,34 +18,50 @@ from stepnc_model.part21.grammar import (
     COMMENT,
     INSTANCE_HEAD,
     KEYWORD,
+    MAX_INSTANCE,
+    ROUNDS,
     SECTION_END,
     STRING,
     TIDY_COMMENT,
     closing,
+    run_end,
     skip_blank,
 )
 from stepnc_model.part21.places import Slip, error_at, excerpt
 from stepnc_model.part21.record import parse_record
+from stepnc_model.part21.slips import Slips
+from stepnc_model.part21.tidy import is_tidy
 
 _ITEM = re.compile(
-    rb"\s*+\#([0-9]{1,18}+)\s*+=\s*+([!A-Za-z0-9_]*+)\s*+(?=\()"
-    rb"(?>(?:[^;'/\"=]++|'[^'#]*+'|" + BINARY + rb"|" + TIDY_COMMENT + rb")*)(?<=\));"
-    rb"|(?>(?:\s++|" + TIDY_COMMENT + rb")+)"
+    rb"\s*+\#([0-9]{1,18}+)\s*+=\s*+([!A-Za-z0-9_]{0,400}+)\s*+(?=\()"
+    rb"(?>(?:[^;'/\"=]++|'[^'#]*+'|"
+    + BINARY
+    + rb"|"
+    + TIDY_COMMENT
+    + rb")"
+    + ROUNDS
+    + rb")(?<=\));"
+    rb"|(?>(?:\s++|" + TIDY_COMMENT + rb"){1,1000})"
     rb"|(?s:.)"
 )
 _END_WORD = rb"[Ee](?!(?i:NDSEC\s*+(?:;|END-ISO|DATA)|ND-ISO-10303-21))"
 _BODY = re.compile(
     rb"(?>(?:[^;'\"/\#Ee]++|" + STRING + rb"|" + BINARY + rb"|\"|" + COMMENT + rb"|/(?!\*)"
-    rb"|\#(?![0-9]++\s*+=)|" + _END_WORD + rb")*)"
+    rb"|\#(?![0-9]++\s*+=)|" + _END_WORD + rb")" + ROUNDS + rb")"
 )
 _JUNK = re.compile(
     rb"(?>(?:[^\#/EeDd]++|\#(?![0-9]++\s*+=)|/(?!\*)|"
     + _END_WORD
-    + rb"|[Dd](?!(?i:ATA\s*+[;(])))+)"
+    + rb"|[Dd](?!(?i:ATA\s*+[;(])))"
+    + ROUNDS
+    + rb")"
 )
 _STRING_OR_COMMENT = re.compile(STRING + rb"|" + COMMENT)
 _SECTION_END = re.compile(SECTION_END)
 _MAX_ID_DIGITS = 18
+_MAX_KEYWORD = 400
+_MAX_KEYWORDS = 10_000
+"""entity names of one file; the largest schemas define 2000"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -67,8 +84,8 @@ class Index:
 class IndexBuilder:
     """Running state while the sections of one file are indexed."""
 
-    def __init__(self, data: bytes) -> None:
-        self.slips: list[Slip] = []
+    def __init__(self, data: bytes, slips: Slips) -> None:
+        self._slips = slips
         self._data = data
         self._ids = array("q")
         self._starts = array("q")
@@ -81,12 +98,12 @@ class IndexBuilder:
         """Index the instances from ``position`` on; the offset at which the section ends."""
         while True:
             position = self._ordinary(position)
-            position = skip_blank(self._data, position, slips=self.slips)
+            position = skip_blank(self._data, position, slips=self._slips)
             if position == len(self._data) or _SECTION_END.match(self._data, position):
                 return position
             head = INSTANCE_HEAD.match(self._data, position)
             if head is None:
-                position = skip_junk(self._data, position, slips=self.slips)
+                position = skip_junk(self._data, position, slips=self._slips)
             else:
                 position = self._unusual(head)
 
@@ -111,11 +128,10 @@ class IndexBuilder:
         data, start = self._data, head.start()
         if len(head[1]) > _MAX_ID_DIGITS:
             raise error_at(data, start, f"instance name too long: #{head[1][:20].decode()}…")
-        body = _BODY.match(data, head.end())
+        stop = run_end(_BODY, data, head.end())
         name = f"#{int(head[1])}"
-        stop = body.end() if body else head.end()
         if data.startswith(b";", stop):
-            _check_strings(data, head.end(), stop + 1)
+            _check_strings(data, head, stop + 1)
             end = stop + 1
         else:
             _check_unended(data, start, stop, name=name)
@@ -130,10 +146,10 @@ class IndexBuilder:
         """Where an instance ends whose ``;`` is missing before ``stop``."""
         data = self._data
         bracket = data.find(b"(", start, stop)
-        end = closing(data, bracket) if bracket >= 0 else -1
-        if not 0 <= end <= stop:
+        end = closing(data, bracket, stop=stop) if bracket >= 0 else -1
+        if end < 0:
             end = start + len(data[start:stop].rstrip())
-        self.slips.append(Slip(offset=end - 1, message=f"';' is missing after {name}"))
+        self._slips.append(Slip(offset=end - 1, message=f"';' is missing after {name}"))
         return end
 
     def finish(self) -> Index:
@@ -142,8 +158,17 @@ class IndexBuilder:
         Raises
         ------
         Part21Error
-            If two instances have the same id.
+            If two instances have the same id, an instance is longer than ``MAX_INSTANCE``,
+            or there are more names of entities than any schema has.
         """
+        sizes = list(map(sub, self._ends, self._starts))
+        if max(sizes, default=0) > MAX_INSTANCE:
+            raise self._too_long(sizes)
+        if len(self._code_of) > _MAX_KEYWORDS:
+            message = (
+                f"{len(self._code_of)} names of entities; at most {_MAX_KEYWORDS} are read"
+            )
+            raise error_at(self._data, 0, message)
         positions = dict(zip(self._ids, range(len(self._ids)), strict=True))
         if len(positions) != len(self._ids):
             raise self._duplicate()
@@ -155,6 +180,14 @@ class IndexBuilder:
             keywords=tuple(raw.decode("latin-1").upper() for raw in self._code_of),
             positions=positions,
         )
+
+    def _too_long(self, sizes: list[int]) -> Part21Error:
+        """Error that names the longest instance."""
+        longest = sizes.index(max(sizes))
+        message = (
+            f"#{self._ids[longest]} is {sizes[longest]} bytes long; at most {MAX_INSTANCE}"
+        )
+        return error_at(self._data, self._starts[longest], message)
 
     def _duplicate(self) -> Part21Error:
         """Error that names the first id given twice and both its lines."""
@@ -168,10 +201,9 @@ class IndexBuilder:
         return error_at(self._data, start, message)
 
 
-def skip_junk(data: bytes, position: int, *, slips: list[Slip]) -> int:
+def skip_junk(data: bytes, position: int, *, slips: Slips) -> int:
     """Note text that belongs nowhere; the offset at which something known may begin."""
-    match = _JUNK.match(data, position)
-    end = max(match.end() if match else 0, position + 1)
+    end = max(run_end(_JUNK, data, position), position + 1)
     last = position + len(data[position:end].rstrip())
     message = f"text that belongs to no instance: {excerpt(data, position, last)}"
     slips.append(Slip(offset=position, message=message))
@@ -189,12 +221,15 @@ def _check_unended(data: bytes, start: int, stop: int, *, name: str) -> None:
         raise error_at(data, stop, f"the comment that begins here in {name} does not end")
 
 
-def _check_strings(data: bytes, start: int, end: int) -> None:
+def _check_strings(data: bytes, head: re.Match[bytes], end: int) -> None:
     """Raise if a string swallows another instance because its apostrophe is missing.
 
     ``#5=`` within a string is no fault as long as the instance around it is in order.
     """
-    if INSTANCE_HEAD.search(data, start, end) is None:
+    start = head.end()
+    if end - start > MAX_INSTANCE or INSTANCE_HEAD.search(data, start, end) is None:
+        return
+    if is_tidy(data[head.start() : end].decode("latin-1")):
         return
     for piece in _STRING_OR_COMMENT.finditer(data, start, end):
         swallowed = INSTANCE_HEAD.search(data, piece.start(), piece.end())
@@ -209,5 +244,9 @@ def _check_strings(data: bytes, start: int, end: int) -> None:
 
 def _keyword(data: bytes, position: int) -> bytes:
     """Keyword at ``position`` behind blanks; empty for a complex instance."""
-    match = KEYWORD.match(data, skip_blank(data, position, slips=[]))
+    start = skip_blank(data, position, slips=[])
+    match = KEYWORD.match(data, start)
+    if match is not None and len(match[0]) > _MAX_KEYWORD:
+        message = f"an entity name of {len(match[0])} letters; at most {_MAX_KEYWORD}"
+        raise error_at(data, start, message)
     return match[0] if match else b""

@@ -4,9 +4,11 @@ from array import array
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from heapq import merge
 from typing import Self
 
-from stepnc_model.errors import Finding
+from stepnc_model.errors import Finding, Severity
+from stepnc_model.finding_list import FindingList
 from stepnc_model.part21.grammar import closing, skip_blank
 from stepnc_model.part21.header import Header, HeaderReading, read_header
 from stepnc_model.part21.index import Index
@@ -17,6 +19,9 @@ from stepnc_model.part21.tidy import is_tidy, tidy_values
 from stepnc_model.part21.values import Value
 
 _RULE = "ISO 10303-21"
+
+MAX_EXAMINED = 1 << 23
+"""Bytes of instances out of the plain form that a check reads, ten times slower than others."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -46,7 +51,7 @@ class Part21File:
         ------
         Part21Error
             If the bytes are no exchange structure, break off within an instance, string or
-            comment, or give an id twice.
+            comment, give an id twice, or pass one of the bounds of the reader.
         """
         return cls(data=data, name=name, structure=read_structure(data))
 
@@ -152,22 +157,19 @@ class Part21File:
         """Deviations from the syntax, in the order of the file.
 
         Malformed parameters, which :meth:`parameters` refuses, are findings of severity
-        ``ERROR``. All instances are looked at when this is first asked for.
+        ``ERROR``. All instances are looked at when this is first asked for; of many findings
+        the first are told, and how many more there are.
         """
-        slips = [(slip, "") for slip in (*self.structure.slips, *self._header.slips)]
-        for id in self._untidy():
-            slips += [(slip, self.label(id)) for slip in self._slips_within(id)]
-        slips.sort(key=lambda item: item[0].offset)
-        return tuple(
-            Finding(
-                severity=slip.severity,
-                message=slip.message,
-                entity=label,
-                line=self._lines.line(slip.offset),
-                rule=_RULE,
-            )
-            for slip, label in slips
-        )
+        found = FindingList()
+        frame = ((slip, None) for slip in (*self.structure.slips, *self._header.slips))
+        for slip, id in merge(sorted(frame, key=_offset), self._within(found), key=_offset):
+            if found.has_room(slip.severity):
+                found.add(self._finding(slip, "" if id is None else self.label(id)))
+            else:
+                found.count(slip.severity)
+        if self._unexamined:
+            found.add(self._not_examined())
+        return found.all()
 
     @cached_property
     def _index(self) -> Index:
@@ -221,12 +223,64 @@ class Part21File:
             raise error_at(self.data, self.span(id)[0], message)
         return record
 
-    def _untidy(self) -> Iterator[int]:
-        """Ids of the instances that need a second look."""
-        return (id for id in self._index.ids if not is_tidy(self._text(id)))
+    def is_examined(self, id: int) -> bool:
+        """Whether a check of the whole file looks into an instance.
 
-    def _slips_within(self, id: int) -> list[Slip]:
-        """Deviations in one instance, the error that ends its reading last."""
-        record, origin = self._read(id), self._body(id)
-        errors = () if record.error is None else (record.error,)
-        return [replace(slip, offset=origin + slip.offset) for slip in (*record.slips, *errors)]
+        Those in the plain form of the standard all are; of the others, whose reading is slow,
+        as many as ``MAX_EXAMINED`` bytes hold. :meth:`parameters` reads every instance.
+        """
+        return id not in self._unexamined
+
+    @cached_property
+    def _untidy(self) -> "array[int]":
+        """Ids of the instances that need a second look, in the order of the file."""
+        return array("q", (id for id in self._index.ids if not is_tidy(self._text(id))))
+
+    @cached_property
+    def _unexamined(self) -> frozenset[int]:
+        """Ids of those of them for which no second look is left."""
+        left, found = MAX_EXAMINED, set()
+        for id in self._untidy:
+            start, end = self.span(id)
+            left -= end - start
+            if left < 0:
+                found.add(id)
+        return frozenset(found)
+
+    def _not_examined(self) -> Finding:
+        """What is told of these."""
+        first = min(self._unexamined, key=self.span)
+        return Finding(
+            severity=Severity.WARNING,
+            message=(
+                f"{len(self._unexamined)} instances from here on are not in the plain form of "
+                f"the standard and were not checked: more than {MAX_EXAMINED >> 20} MB of such"
+            ),
+            entity=self.label(first),
+            line=self.line(first),
+            rule=_RULE,
+        )
+
+    def _within(self, found: FindingList) -> "Iterator[tuple[Slip, int | None]]":
+        """Deviations within instances, the error that ends the reading of one last."""
+        for id in self._untidy:
+            if not self.is_examined(id):
+                continue
+            record, origin = self._read(id), self._body(id)
+            for slip in (*record.slips, *filter(None, (record.error,))):
+                yield replace(slip, offset=origin + slip.offset), id
+            found.count(Severity.WARNING, record.unlisted)
+
+    def _finding(self, slip: Slip, label: str = "") -> Finding:
+        """What is told of a deviation."""
+        return Finding(
+            severity=slip.severity,
+            message=slip.message,
+            entity=label,
+            line=self._lines.line(slip.offset),
+            rule=_RULE,
+        )
+
+
+def _offset(item: tuple[Slip, int | None]) -> int:
+    return item[0].offset

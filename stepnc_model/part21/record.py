@@ -14,6 +14,7 @@ from typing import TypeAlias
 
 from stepnc_model.part21.grammar import MAX_DEPTH
 from stepnc_model.part21.places import Slip
+from stepnc_model.part21.slips import InstanceSlips
 from stepnc_model.part21.tokens import TOKEN, MalformedError, scalar, shown
 from stepnc_model.part21.values import Typed, Value
 
@@ -32,6 +33,9 @@ class Record:
     end: int
     """offset of the bracket that closes a simple instance"""
     slips: tuple[Slip, ...]
+    """the first deviations"""
+    unlisted: int
+    """deviations beyond those"""
     error: Slip | None
     """why the parameters cannot be used"""
 
@@ -57,7 +61,8 @@ def parse_record(text: str) -> Record:
         is_complex=parser.is_complex,
         spans=tuple(parser.spans),
         end=parser.end,
-        slips=tuple(parser.slips),
+        slips=tuple(parser.slips.noted),
+        unlisted=parser.slips.count - len(parser.slips.noted),
         error=error,
     )
 
@@ -81,7 +86,7 @@ class _Parser:
     def __init__(self) -> None:
         self.parts: list[Part] = []
         self.spans: list[tuple[int, int]] = []
-        self.slips: list[Slip] = []
+        self.slips = InstanceSlips()
         self.is_complex = False
         self.end = -1
         self._frames: list[_Frame] = []
@@ -96,7 +101,7 @@ class _Parser:
         if kind == "blank":
             return
         if self._is_ended or (self._is_done and kind != "semicolon"):
-            raise MalformedError(match.start(), f"{match[0]!r} after the closing bracket")
+            raise MalformedError(match.start(), f"{shown(match)!r} after the closing bracket")
         if kind == "open":
             self._open(match)
         elif kind == "close":
@@ -177,7 +182,7 @@ class _Parser:
 
     def _add(self, value: Value, match: re.Match[str]) -> None:
         if not self._frames or self._frames[-1].is_complex:
-            raise MalformedError(match.start(), f"an entity was expected, not {match[0]!r}")
+            raise MalformedError(match.start(), f"an entity was expected, not {shown(match)!r}")
         self._expect_value(match)
         self._note_start(match)
         self._put(value)

@@ -12,13 +12,16 @@ from stepnc_model.errors import Severity
 from stepnc_model.part21.grammar import (
     BLANK,
     INSTANCE_HEAD,
+    ROUNDS,
     STRING,
     TIDY_COMMENT,
     closing,
+    run_end,
     skip_blank,
 )
 from stepnc_model.part21.index import Index, IndexBuilder, skip_junk
 from stepnc_model.part21.places import Slip, error_at, excerpt
+from stepnc_model.part21.slips import FileSlips
 
 _BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 _OPENING = re.compile(rb"(?i:ISO-10303-21)" + BLANK + rb"(;?)")
@@ -36,8 +39,15 @@ _NO_LETTER = re.compile(rb"[^A-Za-z]")
 _STATEMENT = re.compile(rb"(!?[A-Za-z_][A-Za-z0-9_]*+)" + BLANK + rb"(?=\()")
 _FOREIGN = re.compile(
     rb"(?>(?:[^'/Ee]++|" + STRING + rb"|" + TIDY_COMMENT + rb"|'|/"
-    rb"|[Ee](?!(?i:NDSEC\s*+;|ND-ISO-10303-21)))*)"
+    rb"|[Ee](?!(?i:NDSEC\s*+;|ND-ISO-10303-21)))" + ROUNDS + rb")"
 )
+
+_MAX_STEPS = 100_000
+"""sections, header entities and stray texts of one file"""
+_MAX_STATEMENT = 1 << 20
+"""bytes of one header entity, or of the parameters of DATA"""
+_MAX_UNCLOSED = 10
+"""of these whose brackets do not close: each is scanned to where it might have ended"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,7 +81,7 @@ def read_structure(data: bytes) -> Structure:
     ------
     Part21Error
         If the text is no exchange structure, breaks off within an instance, string or
-        comment, or gives an id twice.
+        comment, gives an id twice, or passes a bound.
     """
     scan = _Scan(data)
     position = scan.opening()
@@ -85,7 +95,7 @@ def read_structure(data: bytes) -> Structure:
         statements=tuple(scan.statements),
         index=scan.index.finish(),
         data_end=scan.data_end,
-        slips=tuple(sorted(scan.slips + scan.index.slips, key=lambda slip: slip.offset)),
+        slips=tuple(sorted(scan.slips.noted, key=lambda slip: slip.offset)),
     )
 
 
@@ -93,13 +103,15 @@ class _Scan:
     """Running state of :func:`read_structure`."""
 
     def __init__(self, data: bytes) -> None:
-        self.slips: list[Slip] = []
+        self.slips = FileSlips(data)
         self.statements: list[Statement] = []
-        self.index = IndexBuilder(data)
+        self.index = IndexBuilder(data, self.slips)
         self.data_end = -1
         self.is_closed = False
         self._data = data
         self._open = ""
+        self._steps = 0
+        self._unclosed = 0
 
     def opening(self) -> int:
         """Offset behind ``ISO-10303-21;``."""
@@ -119,6 +131,10 @@ class _Scan:
 
     def step(self, position: int) -> int:
         """Take what begins at ``position``; the offset behind it."""
+        self._steps += 1
+        if self._steps > _MAX_STEPS:
+            message = f"more than {_MAX_STEPS} sections and header entities"
+            raise error_at(self._data, position, message)
         match = _SECTION.match(self._data, position)
         if match is not None:
             return self._section(match)
@@ -145,8 +161,7 @@ class _Scan:
         if match.lastgroup == "data":
             return self._instances(self._after_data(match.end()))
         if match.lastgroup == "other":
-            skipped = _FOREIGN.match(self._data, match.end())
-            return skipped.end() if skipped else match.end()
+            return run_end(_FOREIGN, self._data, match.end())
         return match.end()
 
     def _end_section(self, match: re.Match[bytes]) -> int:
@@ -159,7 +174,7 @@ class _Scan:
     def _after_data(self, position: int) -> int:
         """Offset behind the parameters and the ``;`` of DATA (edition 2)."""
         data = self._data
-        end = closing(data, position) if data.startswith(b"(", position) else position
+        end = self._closing(position) if data.startswith(b"(", position) else position
         if end < 0:
             self._note(position, "the parameters of DATA do not end")
             end = position
@@ -180,7 +195,7 @@ class _Scan:
         keyword = match[1].decode("ascii").upper()
         if self._open != "HEADER":
             self._note(match.start(), f"{keyword} outside the HEADER section")
-        end = closing(data, match.end())
+        end = self._closing(match.end())
         if end < 0:
             self._note(match.start(), f"the brackets of {keyword} do not close")
             return match.end() + 1
@@ -192,6 +207,16 @@ class _Scan:
             return after + 1
         self._note(end - 1, f"';' is missing after {keyword}")
         return after
+
+    def _closing(self, position: int) -> int:
+        """Offset behind the brackets that open at ``position``; -1 if they do not close."""
+        end = closing(self._data, position, stop=position + _MAX_STATEMENT)
+        if end < 0:
+            self._unclosed += 1
+            if self._unclosed > _MAX_UNCLOSED:
+                message = f"brackets of more than {_MAX_UNCLOSED} header entities do not close"
+                raise error_at(self._data, position, message)
+        return end
 
     def check_end(self, position: int) -> None:
         """Say what is missing or too much at the end of the file."""

@@ -9,6 +9,7 @@ import re
 
 from stepnc_model.errors import Severity
 from stepnc_model.part21.places import Slip
+from stepnc_model.part21.slips import Slips
 from stepnc_model.part21.strings import decode
 from stepnc_model.part21.values import DERIVED, Binary, Enumeration, Real, Ref, Value
 
@@ -16,12 +17,12 @@ KEYWORD = r"!?[A-Za-z_][A-Za-z0-9_]*+"
 STRING = r"'[^']*+(?>(?:''[^']*+)*)'"
 ENUMERATION = r"\.[A-Za-z_][A-Za-z0-9_]*+\."
 BINARY = r'"[0-3][0-9A-F]*+"'
-COMMENT = r"/\*(?>(?:[^*]++|\*(?!/))*)\*/"
+COMMENT = r"(?>/\*(?s:.*?)\*/)"
 
 _MAX_DIGITS = 4000
 TOKEN = re.compile(
     rf"(?P<blank>\s++|{COMMENT}|\\[NF]\\)"
-    rf"|(?P<keyword>{KEYWORD})(?=(?>(?:\s++|{COMMENT})*)\()"
+    rf"|(?P<keyword>{KEYWORD})(?=(?>(?:\s++|{COMMENT}){{0,1000}})\()"
     rf"|(?P<word>{KEYWORD})"
     r"|(?P<reference>#[0-9]++)"
     r"|(?P<number>[+-]?(?:[0-9]++\.?[0-9]*+|\.[0-9]++)(?>(?:[Ee][+-]?[0-9]++)?)(?![\w#\"']))"
@@ -49,7 +50,7 @@ class MalformedError(Exception):
         self.slip = Slip(offset=offset, message=message, severity=Severity.ERROR)
 
 
-def scalar(match: re.Match[str], *, slips: list[Slip]) -> Value:
+def scalar(match: re.Match[str], *, slips: Slips) -> Value:
     """Value of a token that is neither bracket, comma nor keyword."""
     token = match[0]
     match match.lastgroup:
@@ -84,7 +85,7 @@ def _reference(match: re.Match[str]) -> Ref[object]:
     return Ref(match[0][1:])
 
 
-def _number(match: re.Match[str], *, slips: list[Slip]) -> Value:
+def _number(match: re.Match[str], *, slips: Slips) -> Value:
     """Integer or real; a real in another notation is kept as it is, and noted."""
     token = match[0]
     if _INTEGER.fullmatch(token):
@@ -96,7 +97,7 @@ def _number(match: re.Match[str], *, slips: list[Slip]) -> Value:
     return Real(float(token), token)
 
 
-def _word(match: re.Match[str], *, slips: list[Slip]) -> Enumeration:
+def _word(match: re.Match[str], *, slips: Slips) -> Enumeration:
     """Word without dots, read as an enumeration."""
     word = match[0].upper()
     if word in _NO_NUMBER or word.startswith("!"):
@@ -105,7 +106,7 @@ def _word(match: re.Match[str], *, slips: list[Slip]) -> Enumeration:
     return Enumeration(word)
 
 
-def _quoted(match: re.Match[str], *, slips: list[Slip]) -> Value:
+def _quoted(match: re.Match[str], *, slips: Slips) -> Value:
     """Binary; text in double quotes is read as a string."""
     token = match[0]
     if _STANDARD_BINARY.fullmatch(token):

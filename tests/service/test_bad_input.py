@@ -321,6 +321,12 @@ def test_a_material_that_nobody_knows_is_refused_with_near_names(
         ("power_kw = 15\n", "power_kw = 1e400\n", "power_kw: inf is no finite number"),
         (
             "power_kw = 15\n",
+            f"power_kw = 1{'0' * 320}\n",
+            "spindle.curve[2].power_kw: 10000",
+        ),
+        ("[spindle]", f"a{'.a' * 30_000} = 1\n[spindle]", "a key of more than 20 dotted"),
+        (
+            "power_kw = 15\n",
             "power_kw = '15'\n",
             "spindle.curve[2].power_kw: '15' is no number",
         ),
@@ -433,3 +439,39 @@ def test_programs_of_ap238_are_refused(tmp_path: Path, refused: Optimise) -> Non
     for path in sorted((CORPUS / "ap238").iterdir()):
         refused("-o", tmp_path / "out.stpnc", file=path)
     assert not (tmp_path / "out.stpnc").exists()
+
+
+# ------------------------------------------------------------------ files made to cost dear
+
+
+@pytest.mark.parametrize("unit", ["#1=", "/*", "#1=A(/*", "ENDSEC;DATA;"])
+@pytest.mark.parametrize(
+    "words", [("check",), ("optimise", "--dry-run"), ("convert", "--profile", "standard")]
+)
+def test_a_program_of_endless_faults_is_refused_in_a_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], words: tuple[str, ...], unit: str
+) -> None:
+    path, output = tmp_path / "part.stpnc", tmp_path / "out.stpnc"
+    path.write_text(HEAD + unit * (2_000_000 // len(unit)), encoding="ascii")
+    command, *more = words
+    place = ("-o", str(output)) if command == "convert" else ()
+    with pytest.raises(SystemExit) as ended:
+        main([command, str(path), *more, *place])
+    assert ended.value.code == BAD_INPUT
+    told = capsys.readouterr().err.splitlines()[-1]
+    assert told.startswith("error: line ")
+    assert len(told) < 300
+    assert not output.exists()
+
+
+def test_a_chain_of_workplans_is_listed_with_few_blanks(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    count = 2000
+    plans = (f"#{n}=WORKPLAN('',(#{n + 1}),$,$,$);\n" for n in range(1, count))
+    path = tmp_path / "part.stpnc"
+    text = f"{HEAD}{''.join(plans)}#{count}=WORKPLAN('',(),$,$,$);\nENDSEC;\nEND-ISO-10303-21;"
+    path.write_text(text, encoding="ascii")
+    with pytest.raises(SystemExit):
+        main(["check", str(path)])
+    assert len(capsys.readouterr().out) < 200 * count

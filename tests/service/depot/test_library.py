@@ -63,6 +63,10 @@ BAD = {
     "deep tables": b"[" + b"a." * 20_000 + b"a]",
     "huge number": b"title = " + b"9" * 10_000,
     "huge float": MACHINE.replace(b"max_speed_rpm = ", b"max_speed_rpm = 1e999 #", 1),
+    "dotted key": b"a" + b".a" * 32_000 + b"=1",
+    "integer beyond a float": MACHINE.replace(
+        b"max_speed_rpm = ", b"max_speed_rpm = " + b"9" * 320 + b" #", 1
+    ),
     "five megabytes": b"# " + b"x" * 5_000_000,
     "one long word": b"a" * 5_000_000,
     "no XML": b"<Machine",

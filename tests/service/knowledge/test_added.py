@@ -70,6 +70,7 @@ def test_what_nobody_measured_may_be_left_out(tmp_path: Path) -> None:
         ([{**LEAST, "force_measured_n": "much"}], "'much' and must be a finite number"),
         ([{**LEAST, "force_measured_n": True}], "True and must be a finite number"),
         ([{**LEAST, "force_measured_n": float("nan")}], "nan and must be a finite number"),
+        ([{**LEAST, "force_measured_n": 10**400}], "'force_measured_n' is 1000"),
         ([{**LEAST, "recorded_at": "2026-03-02T08:00:00"}], "a time with its zone"),
         ([{**LEAST, "recorded_at": 5}], "a time with its zone"),
         ([{**LEAST, "immersion": "sideways"}], "outcome 1: 'sideways' is not a valid"),

@@ -111,6 +111,21 @@ def test_a_bomb_is_refused_in_little_memory(service: Server, client: httpx.Clien
     assert rss_mib(service.pid) < before + 60.0
 
 
+@pytest.mark.parametrize("unit", [b"#1=", b"/*", b"/", b"#1=A(/*"])
+def test_packed_faults_without_end_are_refused_in_little_memory(
+    service: Server, client: httpx.Client, unit: bytes
+) -> None:
+    text = b"ISO-10303-21;\nDATA;\n" + unit * (3 * MIB // len(unit))
+    before = rss_mib(service.pid)
+    headers = {"content-encoding": "gzip"}
+    answer = client.post("/v1/programs", content=gzip.compress(text), headers=headers)
+    if unit == b"/":
+        assert answer.status_code == 201
+    else:
+        assert is_problem(answer, 422, "part21-error")["line"] == 3
+    assert rss_mib(service.pid) < before + 100.0
+
+
 def test_a_program_has_a_bound_told_or_not(client: httpx.Client) -> None:
     large = DATA + b" " * (4 * MIB)
 

@@ -157,8 +157,10 @@ def test_millions_of_brackets_are_refused_without_recursion() -> None:
         Part21File.from_bytes(brackets)
     with pytest.raises(Part21Error, match="cut off within #1 A"):
         Part21File.from_bytes(HEADER.encode() + b"DATA;#1=A" + brackets)
+    with pytest.raises(Part21Error, match="#1 is 5000005 bytes long; at most 2097152"):
+        Part21File.from_bytes(HEADER.encode() + b"DATA;#1=A" + brackets + b";" + END.encode())
     file = Part21File.from_bytes(
-        HEADER.encode() + b"DATA;#1=A" + brackets + b";" + END.encode()
+        HEADER.encode() + b"DATA;#1=A" + brackets[:1_000_000] + b";" + END.encode()
     )
     with pytest.raises(Part21Error, match="nested deeper than 500"):
         file.parameters(1)
