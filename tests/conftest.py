@@ -5,6 +5,10 @@ import os
 import pytest
 from hypothesis import HealthCheck, settings
 
+# Workers of pytest-xdist share the cores already: threads of linear algebra would only wait for
+# each other, at full speed. Read when numpy is loaded, here and in what tests start.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 # How long an example takes says nothing on a machine that others use as well. Drawn anew, a
 # rare one would turn a run of CI red that has nothing to do with the change.
 settings.register_profile(
