@@ -1,6 +1,8 @@
 """What all tests share: CI draws the same examples each time, a run ends with its skips."""
 
 import os
+import sys
+from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -8,6 +10,13 @@ from hypothesis import HealthCheck, settings
 # Workers of pytest-xdist share the cores already: threads of linear algebra would only wait for
 # each other, at full speed. Read when numpy is loaded, here and in what tests start.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+# Where Python writes no bytecode, as in some containers, each process would compile all that it
+# loads, and each run of the tests all of them: it goes into the build folder then.
+if os.environ.pop("PYTHONDONTWRITEBYTECODE", None):
+    folder = str(Path(__file__).parents[1] / "build" / "bytecode")
+    sys.pycache_prefix = os.environ.setdefault("PYTHONPYCACHEPREFIX", folder)
+    sys.dont_write_bytecode = False
 
 # How long an example takes says nothing on a machine that others use as well. Drawn anew, a
 # rare one would turn a run of CI red that has nothing to do with the change.

@@ -67,12 +67,6 @@ ROOT = Path(__file__).parents[2]
 
 
 def environment(home: Path) -> dict[str, str]:
-    """For a process of the service: a home of its own, and nothing of ours.
-
-    Where Python writes no bytecode, as in some containers, each process would compile all
-    that it loads: it goes into the build folder then.
-    """
+    """For a process of the service: a home of its own, and nothing of ours."""
     found = {name: text for name, text in os.environ.items() if not name.startswith("STEPNC_")}
-    if found.pop("PYTHONDONTWRITEBYTECODE", None):
-        found.setdefault("PYTHONPYCACHEPREFIX", str(ROOT / "build" / "bytecode"))
     return {**found, "XDG_DATA_HOME": str(home), "HOME": str(home)}
