@@ -1,6 +1,5 @@
 """What is written for turning, and in either profile."""
 
-
 import pytest
 
 from stepnc_model import writeback
