@@ -72,7 +72,7 @@ demo: $(READY) $(KERNELS)
 	@echo "look at: $(DEMO)/bracket.html, bracket.run.html, bracket.control.html, knowledge.html, bracket.png"
 
 test: $(READY) $(KERNELS)
-	$(BIN)/python -m pytest -n auto
+	$(BIN)/python -m pytest -n auto --durations=20 --durations-min=1
 
 SEED := $(or $(SEED),$(shell date +%s))
 

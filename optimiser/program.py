@@ -22,8 +22,8 @@ from optimiser.modes import Mode
 from optimiser.problem import Problem, Setting
 from optimiser.workingstep import TIE, conflict, limits_at
 
-ROWS = 24
-"""limits that one program can hold"""
+ROWS = (8, 24)
+"""limits that a program can hold: the less it holds, the faster it is set and read"""
 
 ABSENT = 1e-12
 """weight of a term that is not there: a posynomial knows no zero"""
@@ -74,7 +74,7 @@ class _Unit:
 class GeometricProgram:
     """The compiled program; a solve sets its parameters (so it is not shared by threads)."""
 
-    def __init__(self) -> None:
+    def __init__(self, rows: int) -> None:
         self._feed = cp.Variable(pos=True)
         self._speed = cp.Variable(pos=True)
         self._least_speed = cp.Parameter(pos=True)
@@ -84,7 +84,7 @@ class GeometricProgram:
         ]
         self._rows = [
             _Row(cp.Parameter(pos=True), cp.Parameter(pos=True), cp.Parameter(), cp.Parameter())
-            for _ in range(ROWS)
+            for _ in range(rows)
         ]
         cost = sum(
             weight * self._feed**feed * self._speed**speed
@@ -131,11 +131,7 @@ class GeometricProgram:
         SolverFailed
             When the solver gives no optimum for another reason.
         """
-        limits = [
-            limit
-            for limit in problem.limits + problem.stretches[stretch]
-            if limit.load.feed_exponent > 0.0
-        ]
+        limits = _rows_of(problem, stretch)
         terms = _cost_terms(problem, mode, passes=passes, depth=depth)
         speeds = problem.speeds[stretch : stretch + 2]
         for unit_feed in UNIT_FEEDS:
@@ -178,8 +174,8 @@ class GeometricProgram:
 
     def _set_speeds(self, speeds: tuple[float, ...]) -> None:
         """Bounds of the speed over its unit; a fixed one needs an inside all the same."""
-        self._least_speed.value = 1.0
-        self._greatest_speed.value = speeds[-1] / speeds[0] if len(speeds) > 1 else 2.0
+        _put(self._least_speed, 1.0)
+        _put(self._greatest_speed, speeds[-1] / speeds[0] if len(speeds) > 1 else 2.0)
 
     def _set_rows(self, limits: list[Limit], *, depth: float, unit: _Unit) -> list[float]:
         """One row a limit; rows left over hold always.
@@ -189,8 +185,6 @@ class GeometricProgram:
         of each bound that is left, ``d ln(b − e) = d ln b / share``.
         """
         rests = []
-        if len(limits) > ROWS:
-            raise OptimisationError(f"{len(limits)} limits exceed the {ROWS} of the program")
         for row, limit in zip(self._rows, limits, strict=False):
             load, sign = limit.load, 1.0 if limit.sense is Sense.AT_MOST else -1.0
             exponent = load.speed_exponent - limit.bound_speed_exponent
@@ -202,13 +196,15 @@ class GeometricProgram:
             is_constant = (unit.is_fixed or exponent == 0.0) and offset < 1.0
             rest = 1.0 - offset if is_constant else 1.0
             rests.append(rest)
-            row.coefficient.value = (load.coefficient * scale * chip) ** sign / rest
-            row.offset.value = ABSENT if is_constant else max(offset, ABSENT)
-            row.feed_exponent.value = sign * load.feed_exponent
-            row.speed_exponent.value = 0.0 if unit.is_fixed else sign * exponent
+            _put(row.coefficient, (load.coefficient * scale * chip) ** sign / rest)
+            _put(row.offset, ABSENT if is_constant else max(offset, ABSENT))
+            _put(row.feed_exponent, sign * load.feed_exponent)
+            _put(row.speed_exponent, 0.0 if unit.is_fixed else sign * exponent)
         for row in self._rows[len(limits) :]:
-            row.coefficient.value = row.offset.value = ABSENT
-            row.feed_exponent.value = row.speed_exponent.value = 0.0
+            for weight in (row.coefficient, row.offset):
+                _put(weight, ABSENT)
+            for power in (row.feed_exponent, row.speed_exponent):
+                _put(power, 0.0)
         return rests
 
     def _set_terms(self, terms: list[tuple[float, float, float]], *, unit: _Unit) -> float:
@@ -224,14 +220,38 @@ class GeometricProgram:
         rows += [(ABSENT, 0.0, 0.0)] * (TERMS - len(rows))
         for parameters, values in zip(self._terms, rows, strict=True):
             for parameter, value in zip(parameters, values, strict=True):
-                parameter.value = value
+                _put(parameter, value)
         return worth
 
 
+def _put(parameter: cp.Parameter, value: float) -> None:
+    """Set what has changed: cvxpy looks at each value for longer than the solver needs."""
+    if parameter.value is None or float(parameter.value) != value:
+        parameter.value = value
+
+
 @cache
-def program() -> GeometricProgram:
-    """The one compiled program of this process."""
-    return GeometricProgram()
+def program(rows: int) -> GeometricProgram:
+    """The one compiled program of this process with so many rows."""
+    return GeometricProgram(rows)
+
+
+def program_for(problem: Problem, stretch: int) -> GeometricProgram:
+    """The smallest program that holds the limits of a stretch."""
+    count = len(_rows_of(problem, stretch))
+    for rows in ROWS:
+        if count <= rows:
+            return program(rows)
+    raise OptimisationError(f"{count} limits exceed the {ROWS[-1]} of the program")
+
+
+def _rows_of(problem: Problem, stretch: int) -> list[Limit]:
+    """Limits on the feed: each is a row of the program."""
+    return [
+        limit
+        for limit in problem.limits + problem.stretches[stretch]
+        if limit.load.feed_exponent > 0.0
+    ]
 
 
 def solve(problem: Problem, mode: Mode) -> Optimum:
@@ -286,7 +306,8 @@ def _best_stretch(problem: Problem, mode: Mode, *, passes: int, depth: float) ->
     best: Optimum | None = None
     for stretch in range(len(problem.stretches)):
         try:
-            found = program().solve(problem, mode, passes=passes, depth=depth, stretch=stretch)
+            compiled = program_for(problem, stretch)
+            found = compiled.solve(problem, mode, passes=passes, depth=depth, stretch=stretch)
         except Infeasible:
             continue
         if best is None or found.cost < best.cost:

@@ -4,14 +4,27 @@
 """
 
 import os
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from random import Random
+from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, settings
 
 from tests.slow import SLOW
+
+# Workers of pytest-xdist share the cores already: threads of linear algebra would only wait for
+# each other, at full speed. Read when numpy is loaded, here and in what tests start.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+# Where Python writes no bytecode, as in some containers, each process would compile all that it
+# loads, and each run of the tests all of them: it goes into the build folder then.
+if os.environ.pop("PYTHONDONTWRITEBYTECODE", None):
+    folder = str(Path(__file__).parents[1] / "build" / "bytecode")
+    sys.pycache_prefix = os.environ.setdefault("PYTHONPYCACHEPREFIX", folder)
+    sys.dont_write_bytecode = False
 
 # How long an example takes says nothing on a machine that others use as well. Drawn anew, a
 # rare one would turn a run of CI red that has nothing to do with the change.
@@ -50,6 +63,16 @@ def pytest_collection_modifyitems(
     yield
     if (seed := config.getoption("shuffle")) is not None:
         Random(seed).shuffle(items)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Keep together what shares something, unless ``--dist`` asks for another way."""
+    if config.getoption("dist") != "load":
+        return None
+    from tests.distribution import scheduler  # noqa: PLC0415 (there may be no xdist)
+
+    return scheduler(config, log)
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:

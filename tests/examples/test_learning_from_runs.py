@@ -1,13 +1,12 @@
 """The story of the knowledge base: what three runs teach a plan whose catalogue is wrong."""
 
-import subprocess
-import sys
+import runpy
 from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
+EXAMPLE = Path(__file__).parents[2] / "examples" / "03_learning_from_runs.py"
 
 
 @dataclass(frozen=True)
@@ -19,15 +18,21 @@ class Row:
     learned: float
 
 
-def told(truth: float) -> list[Row]:
-    done = subprocess.run(
-        [sys.executable, "examples/03_learning_from_runs.py", str(truth)],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    rows = [line.split() for line in done.stdout.splitlines()[2:]]
+@pytest.fixture(params=[1.35, 0.7])
+def truth(request: pytest.FixtureRequest) -> float:
+    """Factor on the catalogue's k_c."""
+    found: float = request.param
+    return found
+
+
+@pytest.fixture
+def told(
+    truth: float, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> list[Row]:
+    """What the example prints, run by run."""
+    monkeypatch.setattr("sys.argv", [str(EXAMPLE), str(truth)])
+    runpy.run_path(str(EXAMPLE), run_name="__main__")
+    rows = [line.split() for line in capsys.readouterr().out.splitlines()[2:]]
     return [
         Row(
             planned=float(row[1]),
@@ -40,9 +45,8 @@ def told(truth: float) -> list[Row]:
     ]
 
 
-@pytest.mark.parametrize("truth", [1.35, 0.7])
-def test_the_third_run_keeps_its_force_bound_and_uses_it(truth: float) -> None:
-    first, second, third = told(truth)
+def test_the_third_run_keeps_its_force_bound_and_uses_it(truth: float, told: list[Row]) -> None:
+    first, second, third = told
     assert first.planned == 1.0
     assert first.share == pytest.approx(truth, rel=0.03)
     assert 0.9 <= second.share <= 1.0

@@ -93,25 +93,45 @@ def check_swept(walls: list[Loop], passes: tuple[Pass, ...], radius: float) -> N
     area = solid_of(walls)
     trace = lines(passes)
     vertices_of = shapely.points(shapely.get_coordinates(trace))
-    gaps = shapely.distance(vertices_of, area.boundary)
-    assert gaps.min() >= radius - CLOSE
+    walls_of = area.boundary
+    shapely.prepare([area, trace, walls_of])
+    assert not shapely.dwithin(vertices_of, walls_of, radius - CLOSE).any()
     assert shapely.covers(area, vertices_of).all()
     rng = np.random.default_rng(1)
     x0, y0, x1, y1 = area.bounds
     centres = shapely.points(rng.uniform((x0, y0), (x1, y1), (SAMPLES, 2)))
     keeps = shapely.contains(area, centres)
-    keeps &= shapely.distance(centres, area.boundary) >= radius + CLOSE
+    keeps &= ~shapely.dwithin(centres, walls_of, radius + CLOSE)
     angles = rng.uniform(0.0, 2.0 * pi, keeps.sum())
     reach = radius * np.sqrt(rng.uniform(0.0, 1.0, keeps.sum()))
     at = shapely.get_coordinates(centres[keeps])
     at += np.stack([reach * np.cos(angles), reach * np.sin(angles)], axis=1)
-    if len(at):
-        assert shapely.distance(shapely.points(at), trace).max() <= radius + CLOSE
+    assert shapely.dwithin(shapely.points(at), trace, radius + CLOSE).all()
+
+
+def check_arcs(passes: tuple[Pass, ...]) -> None:
+    """At least nine tenths of the length along which a pass bends is made of arcs."""
+    curved = in_arcs = 0.0
+    for each in passes:
+        edges = list(each.chain)
+        for before, edge, after in zip(
+            [edges[-1], *edges[:-1]], edges, [*edges[1:], edges[0]], strict=True
+        ):
+            bends = [
+                abs(np.angle(edge.along(0.0) / before.along(1.0))),
+                abs(np.angle(after.along(0.0) / edge.along(1.0))),
+            ]
+            is_chord = edge.length < 2.0 and all(1e-6 < bend < 0.35 for bend in bends)
+            if edge.centre is not None:
+                in_arcs += edge.length
+            if edge.centre is not None or is_chord:
+                curved += edge.length
+    assert in_arcs >= 0.9 * curved
 
 
 @given(walls=pockets(), diameter=st.floats(2.0, 20.0), overlap=st.floats(0.05, 0.95))
 @settings(max_examples=300, deadline=None)
-def test_rings_sweep_all_that_the_cutter_can_reach(
+def test_rings_sweep_all_that_the_cutter_can_reach_and_stay_arcs(
     walls: list[Loop], diameter: float, overlap: float
 ) -> None:
     radius = 0.5 * diameter
@@ -119,6 +139,7 @@ def test_rings_sweep_all_that_the_cutter_can_reach(
     passes = rings(walls, distance=radius, radius=radius, step=step)
     assume(passes)
     check_swept(walls, passes, radius)
+    check_arcs(passes)
     # Slivers that points miss: what the outermost passes enclose, less what is swept.
     left = area_of(erode(walls, radius)).difference(swept(passes, radius))
     assert left.buffer(-0.005).is_empty
@@ -141,34 +162,6 @@ def test_strokes_with_a_pass_along_the_wall_sweep_it_too(
     strokes = zigzags(scan(loops, along=rect(1.0, angle), step=step), loops)
     walled = tuple(Pass(loop, is_closed=True) for loop in loops)
     check_swept(walls, (*strokes, *walled), radius)
-
-
-@given(walls=pockets(), diameter=st.floats(2.0, 20.0), overlap=st.floats(0.05, 0.95))
-@settings(max_examples=300, deadline=None)
-def test_what_is_curved_stays_an_arc(
-    walls: list[Loop], diameter: float, overlap: float
-) -> None:
-    """At least nine tenths of the length along which a pass bends is made of arcs."""
-    radius = 0.5 * diameter
-    step = max(diameter * (1.0 - overlap), 0.5)
-    passes = rings(walls, distance=radius, radius=radius, step=step)
-    assume(passes)
-    curved = in_arcs = 0.0
-    for each in passes:
-        edges = list(each.chain)
-        for before, edge, after in zip(
-            [edges[-1], *edges[:-1]], edges, [*edges[1:], edges[0]], strict=True
-        ):
-            bends = [
-                abs(np.angle(edge.along(0.0) / before.along(1.0))),
-                abs(np.angle(after.along(0.0) / edge.along(1.0))),
-            ]
-            is_chord = edge.length < 2.0 and all(1e-6 < bend < 0.35 for bend in bends)
-            if edge.centre is not None:
-                in_arcs += edge.length
-            if edge.centre is not None or is_chord:
-                curved += edge.length
-    assert in_arcs >= 0.9 * curved
 
 
 def test_rows_of_strokes_are_no_further_apart_than_the_step() -> None:

@@ -1,4 +1,4 @@
-"""Waiting for what other processes do: bounded, and no longer than it takes."""
+"""Waiting for what other processes do: bounded, and hardly longer than it takes."""
 
 import os
 import threading
@@ -10,15 +10,22 @@ from typing import TypeVar
 T = TypeVar("T")
 
 LOOK = 0.02
-"""s between two looks"""
+"""s between the first two looks"""
+
+SELDOM = 0.25
+"""s between two looks at most"""
+
+LATE = 0.1
+"""share of the time waited that may pass until the next look: a look costs both sides"""
 
 
 def until(look: Callable[[], T | None], *, within: float = 30.0) -> T:
     """What a look finds, as soon as it finds something."""
-    deadline = time.monotonic() + within
+    start = time.monotonic()
     while not (found := look()):
-        assert time.monotonic() < deadline, f"not within {within:g} s"
-        threading.Event().wait(LOOK)
+        waited = time.monotonic() - start
+        assert waited < within, f"not within {within:g} s"
+        threading.Event().wait(min(max(LOOK, LATE * waited), SELDOM))
     return found
 
 
@@ -60,12 +67,6 @@ ROOT = Path(__file__).parents[2]
 
 
 def environment(home: Path) -> dict[str, str]:
-    """For a process of the service: a home of its own, and nothing of ours.
-
-    Where Python writes no bytecode, as in some containers, each process would compile all
-    that it loads: it goes into the build folder then.
-    """
+    """For a process of the service: a home of its own, and nothing of ours."""
     found = {name: text for name, text in os.environ.items() if not name.startswith("STEPNC_")}
-    if found.pop("PYTHONDONTWRITEBYTECODE", None):
-        found.setdefault("PYTHONPYCACHEPREFIX", str(ROOT / "build" / "bytecode"))
     return {**found, "XDG_DATA_HOME": str(home), "HOME": str(home)}

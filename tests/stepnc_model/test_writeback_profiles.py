@@ -1,7 +1,5 @@
 """What is written for turning, and in either profile."""
 
-from pathlib import Path
-
 import pytest
 
 from stepnc_model import writeback
@@ -74,14 +72,12 @@ class TestTurning:
 
 class TestProfiles:
     @pytest.mark.parametrize("name", PARTS_NAMES)
-    def test_standard_has_no_entities_of_the_optimisation(
-        self, name: str, tmp_path: Path
-    ) -> None:
-        data = optimised(part(name), tmp_path, Profile.STANDARD)
+    def test_standard_has_no_entities_of_the_optimisation(self, name: str) -> None:
+        data = optimised(part(name), Profile.STANDARD)
         self.assert_standard(data, before=part(name))
 
-    def test_ex1_as_standard_has_none_either(self, tmp_path: Path) -> None:
-        self.assert_standard(optimised(ex1(), tmp_path, Profile.STANDARD), before=ex1())
+    def test_ex1_as_standard_has_none_either(self) -> None:
+        self.assert_standard(optimised(ex1(), Profile.STANDARD), before=ex1())
 
     @staticmethod
     def assert_standard(data: bytes, *, before: bytes) -> None:
@@ -93,35 +89,31 @@ class TestProfiles:
         assert writeback.records(program_of(data))
 
     @pytest.mark.parametrize("name", PARTS_NAMES)
-    def test_an_operation_has_no_surplus_parameter_in_the_standard(
-        self, name: str, tmp_path: Path
-    ) -> None:
-        data = optimised(part(name), tmp_path, Profile.STANDARD)
+    def test_an_operation_has_no_surplus_parameter_in_the_standard(self, name: str) -> None:
+        data = optimised(part(name), Profile.STANDARD)
         before = Part21File.from_bytes(part(name))
         after = Part21File.from_bytes(data)
         for id in before.ids():
             assert len(after.parameters(id)) == len(before.parameters(id))
 
     @pytest.mark.parametrize("name", PARTS_NAMES)
-    def test_standard_parameters_are_prefixed(self, name: str, tmp_path: Path) -> None:
+    def test_standard_parameters_are_prefixed(self, name: str) -> None:
         before = part(name)
-        new = added(before, optimised(before, tmp_path, Profile.STANDARD)).values()
+        new = added(before, optimised(before, Profile.STANDARD)).values()
         parameters = [text for text in new if b"_PARAMETER(" in text]
         assert parameters
         assert all(f"('{PREFIX}".encode() in text for text in parameters)
 
     @pytest.mark.parametrize("name", PARTS_NAMES)
-    def test_optimisation_names_its_schema_last(self, name: str, tmp_path: Path) -> None:
-        data = optimised(part(name), tmp_path, Profile.OPTIMISATION)
+    def test_optimisation_names_its_schema_last(self, name: str) -> None:
+        data = optimised(part(name), Profile.OPTIMISATION)
         old = Part21File.from_bytes(part(name)).schemas
         assert Part21File.from_bytes(data).schemas == (*old, SCHEMA)
 
     @pytest.mark.parametrize("profile", PROFILES)
     @pytest.mark.parametrize("name", PARTS_NAMES)
-    def test_what_is_written_has_no_new_warning(
-        self, name: str, profile: Profile, tmp_path: Path
-    ) -> None:
-        after = program_of(optimised(part(name), tmp_path, profile))
+    def test_what_is_written_has_no_new_warning(self, name: str, profile: Profile) -> None:
+        after = program_of(optimised(part(name), profile))
         before = program_of(part(name))
         assert [each.message for each in after.findings()] == [
             each.message for each in before.findings()

@@ -1,7 +1,9 @@
 """Programs before and after writing, and what differs between them."""
 
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import pytest
 
@@ -77,12 +79,14 @@ def program_of(data: bytes) -> Program:
     return Program(Part21File.from_bytes(data))
 
 
-def optimised(data: bytes, folder: Path, profile: Profile, **options: str) -> bytes:
-    """What ``optimise`` makes of a file."""
-    source, output = folder / "in.stpnc", folder / "out.stpnc"
-    source.write_bytes(data)
-    optimise(Request(file=source, output=output, profile=profile.value, **options))  # type: ignore[arg-type]
-    return output.read_bytes()
+@cache
+def optimised(data: bytes, profile: Profile, *, mode: str = "TC") -> bytes:
+    """What ``optimise`` makes of a file; many tests look at the same."""
+    with TemporaryDirectory() as folder:
+        source, output = Path(folder) / "in.stpnc", Path(folder) / "out.stpnc"
+        source.write_bytes(data)
+        optimise(Request(file=source, output=output, profile=profile.value, mode=mode))
+        return output.read_bytes()
 
 
 def converted(data: bytes, profile: Profile) -> bytes:

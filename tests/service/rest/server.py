@@ -4,6 +4,7 @@ import json
 import os
 import signal
 import socket
+import ssl
 import sys
 from contextlib import suppress
 from pathlib import Path
@@ -22,6 +23,9 @@ STEPNC = Path(sys.executable).with_name("stepnc")
 PATIENCE = 30.0
 """s for an answer"""
 
+TRUSTING_NOBODY = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
+"""for clients without TLS: httpx reads the certificates of the world for each otherwise"""
+
 
 def free_port() -> int:
     """A port that nobody has just now."""
@@ -33,7 +37,13 @@ def free_port() -> int:
 class Server:
     """One server on a folder of its own. Running state; use it with ``with``."""
 
-    def __init__(self, folder: Path, *words: str, scheme: str = "http", verify: Any = True):
+    def __init__(
+        self,
+        folder: Path,
+        *words: str,
+        scheme: str = "http",
+        verify: ssl.SSLContext = TRUSTING_NOBODY,
+    ):
         self.folder = folder
         self.data = folder / "data"
         self.port = free_port()
@@ -68,12 +78,13 @@ class Server:
                 stdout=DEVNULL,
                 stderr=log,
             )
-        until(self._is_ready, within=90.0)
+        with self.client() as client:
+            until(lambda: self._is_ready(client), within=90.0)
 
-    def _is_ready(self) -> bool:
+    def _is_ready(self, client: httpx.Client) -> bool:
         assert self._process is not None
         assert self._process.poll() is None, self.log.read_text()[-2000:]
-        with suppress(httpx.TransportError), self.client() as client:
+        with suppress(httpx.TransportError):
             return client.get("/readyz").status_code == 200
         return False
 

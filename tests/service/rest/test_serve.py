@@ -96,29 +96,27 @@ def test_a_killed_web_process_or_runner_is_replaced(tmp_path: Path) -> None:
         assert client.get("/readyz").status_code == 200
 
 
-def test_a_stop_is_an_orderly_one_and_the_folder_is_free_at_once(tmp_path: Path) -> None:
-    server = Server(tmp_path)
+def signalled(server: Server, number: signal.Signals) -> int:
+    """Exit code of the process that was started, which alone is told to end."""
+    os.kill(server.pid, number)
+    assert server._process is not None
+    code = server._process.wait(20.0)
+    server._process = None
+    return code
+
+
+def test_a_stop_frees_the_folder_at_once_and_a_kill_ends_everything(tmp_path: Path) -> None:
+    server = Server(tmp_path, "--workers", "2")
     with server:
         with pytest.raises(StepNcError, match="another server works with this folder"):
             serve(Start(settings=Settings(data=str(server.data)), workers=1, jobs=1))
-        os.kill(server.pid, signal.SIGTERM)
-        assert server._process is not None
-        assert server._process.wait(20.0) == 0
+        assert signalled(server, signal.SIGTERM) == 0
         with locked(server.data):
             """a service manager may start the next one"""
-        server._process = None
         server.start()
-
-
-def test_everything_ends_when_the_server_is_killed(tmp_path: Path) -> None:
-    server = Server(tmp_path, "--workers", "2")
-    with server:
         below = children(server.pid)
-        os.kill(server.pid, signal.SIGKILL)
-        assert server._process is not None
-        server._process.wait(10.0)
+        assert signalled(server, signal.SIGKILL) == -signal.SIGKILL
         until(lambda: not any(map(is_alive, below)), within=20.0)
-        server._process = None
         server.start()
 
 
