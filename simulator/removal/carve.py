@@ -13,7 +13,7 @@ from math import ceil, floor, hypot, inf, sqrt
 from typing import NamedTuple
 
 from simulator.motion.segments import Floats
-from simulator.removal.kernels import kernel
+from simulator.kernels.kernel import kernel
 from simulator.removal.profile import Profile, is_plain, rise, steepness
 from simulator.removal.way import (
     LEAST,

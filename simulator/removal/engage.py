@@ -43,6 +43,7 @@ from simulator.removal.march import (
     VOLUME,
     March,
     Task,
+    desk_for,
     march,
     rows_of,
 )
@@ -132,15 +133,15 @@ class MillingStock:
 
     def _chunk(self, segments: Segments, tool: Tool, how: March, first: int) -> list[Floats]:
         """March along some rows."""
-        task = Task(self.map.grid, self._past, tool, how)
+        task = Task(self.map.grid, self._past, tool, how, desk_for(tool))
         rows, lengths = rows_of(segments), segments.length
         out = np.empty((_LINES, COLUMNS))
         found = np.zeros((len(segments), FINDINGS))
         parts: list[NDArray[np.float64]] = []
-        row = 0
-        while row < len(segments):
-            row, count = march(task, rows, lengths, row, out, found)
-            parts.append(out[:count].copy())
+        reached = np.zeros(2, dtype=np.int64)
+        while reached[0] < len(segments):
+            march(task, rows, lengths, out, found, reached)
+            parts.append(out[: reached[1]].copy())
             parts[-1][:, ROW] += first
         self.volume += float(found[:, VOLUME].sum())
         self._note(segments, found, first)

@@ -10,7 +10,7 @@ from math import cos, inf, pi, sin, sqrt, tan
 from typing import NamedTuple
 
 from simulator.removal.cutter import Cutter
-from simulator.removal.kernels import kernel
+from simulator.kernels.kernel import kernel
 
 _STRAIGHT = 1e-9  # rad; a smaller taper is none
 

@@ -14,7 +14,7 @@ from simulator.removal.arcs import (
     Intervals,
     intervals,
 )
-from simulator.removal.kernels import kernel
+from simulator.kernels.kernel import kernel
 from simulator.removal.profile import Profile
 from simulator.removal.way import LEAST
 from simulator.removal.zmap import OUTSIDE, Grid
@@ -77,7 +77,6 @@ class Pose(NamedTuple):
     """rise per mm in the plane"""
 
 
-@kernel
 def room_for(samples: int) -> Room:
     """Room for the work of one station."""
     return Room(
