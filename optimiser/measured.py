@@ -44,6 +44,8 @@ class _Seen:
     """A path that was tried, and what it met."""
 
     path: ToolPath
+    run: Run
+    """as programmed"""
     cut: Cut
     """with the engagement as met"""
     passes: int
@@ -150,19 +152,24 @@ class MeasuredCuts:
         return workingstep_path(self.program, step)
 
     def _run(self, path: ToolPath, pace: Pace) -> Run:
-        """What the axes run; feeds are looked up once a path."""
+        """What the axes run; each feed is looked up once."""
         is_lathe = path.is_turning or self.machine.kind is MachineKind.LATHE
         kind = PostMachine.LATHE if is_lathe else PostMachine.MILL
         known: dict[Feed, Conditions] = {}
 
         def look_up(feed: Feed) -> Conditions:
+            with self.program.using(feed.technology):
+                return conditions(self.program, feed, path.tool_ref, kind)
+
+        at_pace = paced(look_up, pace)
+
+        def known_at_pace(feed: Feed) -> Conditions:
             if feed not in known:
-                with self.program.using(feed.technology):
-                    known[feed] = conditions(self.program, feed, path.tool_ref, kind)
+                known[feed] = at_pace(feed)
             return known[feed]
 
         with self.program.using(path.operation_ref):
-            return run_of(path, paced(look_up, pace), self.machine.spindle)
+            return run_of(path, known_at_pace, self.machine.spindle)
 
     def _see(self, step: Workingstep, path: ToolPath, cut: Cut, *, passes: int) -> _Seen:
         """Try a path in the stock that the workingstep finds."""
@@ -180,7 +187,14 @@ class MeasuredCuts:
             weighted /= section * ratio**-self.kienzle.m_c
             air = _air_share(run, met, follows(run, step.technology_ref))
         self._seen[passes] = seen = _Seen(
-            path=path, cut=cut, passes=passes, weighted=weighted, air=air, stock=stock, why=why
+            path=path,
+            run=run,
+            cut=cut,
+            passes=passes,
+            weighted=weighted,
+            air=air,
+            stock=stock,
+            why=why,
         )
         self.stocks.leave(step, stock)
         return seen
@@ -224,8 +238,10 @@ class MeasuredCuts:
     def _run_through(self, step: Workingstep, seen: _Seen, *, feed: float, speed: float) -> Cut:
         """The same, with the motion of the axes."""
         cut, given = seen.cut, seen.cut.programmed
-        pace = Pace(technology=step.technology_ref, feed=feed, speed=speed)
-        run = self._run(seen.path, pace)
+        run = seen.run
+        if (feed, speed) != (1.0, 1.0):
+            pace = Pace(technology=step.technology_ref, feed=feed, speed=speed)
+            run = self._run(seen.path, pace)
         seconds = run.segments.length / run.segments.speed
         fed = float(seconds[follows(run, step.technology_ref)].sum())
         rest = max(0.0, duration(run, self.control, self.limits) - fed)

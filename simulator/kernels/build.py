@@ -49,7 +49,7 @@ def object_code(
     machine = link.target_machine()
     passes = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(3))
     passes.getModulePassManager().run(module, passes)
-    _require_self_contained(module, symbol)
+    require_self_contained(module, symbol)
     code: bytes = machine.emit_object(module)
     return code
 
@@ -68,8 +68,8 @@ def _compiled(function: Any, known: dict[object, Any]) -> Any:
     return known[function]
 
 
-def _require_self_contained(module: Any, symbol: str) -> None:
-    """A kernel may call the functions of C's mathematics, and nothing else."""
+def require_self_contained(module: Any, symbol: str) -> None:
+    """Refuse what calls other functions than those of C's mathematics."""
     library = CDLL(None)
     for each in module.functions:
         if each.is_declaration and not each.name.startswith("llvm."):

@@ -54,6 +54,7 @@ def _write(path: Path, content: bytes) -> None:
         try:
             file.write(content)
             file.close()
+            os.chmod(file.name, 0o644)
             os.replace(file.name, path)
         except OSError:
             os.unlink(file.name)

@@ -1,14 +1,15 @@
 """Room around a pass: where the centre of the cutter may be on its way there and away."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 from math import inf
 
 import numpy as np
 import shapely
 
 from stepnc_model.toolpath.milling.arrays import Edges, distances
-from stepnc_model.toolpath.milling.contour import Chain, Edge, Loop
+from stepnc_model.toolpath.milling.contour import REMEMBERED, Chain, Edge, Loop
 from stepnc_model.toolpath.milling.cover import area_of
 
 CHORD = 1e-4
@@ -59,7 +60,8 @@ def nowhere(_point: complex) -> float:
     return -inf
 
 
-def within(loops: Sequence[Loop]) -> Clearance:
+@lru_cache(maxsize=REMEMBERED)
+def within(loops: tuple[Loop, ...]) -> Clearance:
     """Room that lies on the left of loops."""
     edges = Edges.of([edge for loop in loops for edge in loop])
     area = area_of(loops, tolerance=CHORD)
