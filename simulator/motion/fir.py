@@ -69,23 +69,14 @@ class FixedTimeFilter:
         rows = np.flatnonzero(segments.length > 0.0)
         if not len(rows):
             return swept(segments, rows, limits=bounds, corner=np.empty(0))
-        moving, speed = segments[rows], bounds.speed[rows]
+        moving, speed = segments, bounds.speed
+        if len(rows) < len(segments):
+            moving, speed = segments[rows], bounds.speed[rows]
         # The path rests for one window at its start, after each stop and at its end.
         rests = np.concatenate(([0], np.flatnonzero(is_stop(moving)) + 1, [len(rows)]))
         pieces = Pieces(segments=moving, speed=speed, rests=rests, window=self.window)
-        piece = np.arange(len(rows)) + np.searchsorted(rests, np.arange(len(rows)), "right")
-        delay = np.full(len(rows), 0.5 * self.window)
-        delay[rests[1:] - 1] = self.window
-        begin = np.zeros(len(segments))
-        begin[rows] = pieces.time[piece]
-        ends = pieces.time[piece + 1] + delay
         return FilteredMotion(
-            filter=self,
-            segments=segments,
-            speed=bounds.speed,
-            begin=begin,
-            ends=ends_of_all(len(segments), rows, ends),
-            pieces=pieces,
+            filter=self, segments=segments, speed=bounds.speed, rows=rows, pieces=pieces
         )
 
 
@@ -127,7 +118,7 @@ class Pieces:
         return self.time, start, velocity, rate, states_at_ends(self.time, velocity, rate)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class FilteredMotion:
     """N segments under a filter; a motion.
 
@@ -138,16 +129,36 @@ class FilteredMotion:
     segments: Segments
     speed: Floats
     """(N,) mm/s before the filter"""
-    begin: Floats
-    """(N,) s at which the path before the filter enters a segment that has length"""
-    ends: Floats
-    """(N,) s at which each segment ends: half a window later, or a whole one before a stop"""
+    rows: Ints
+    """those that have length"""
     pieces: Pieces
+
+    @cached_property
+    def _piece(self) -> Ints:
+        """Piece of each segment that has length."""
+        order = np.arange(len(self.rows))
+        return order + np.searchsorted(self.pieces.rests, order, "right")
+
+    @cached_property
+    def begin(self) -> Floats:
+        """(N,) s at which the path before the filter enters a segment that has length."""
+        begin = np.zeros(len(self.segments))
+        begin[self.rows] = self.pieces.time[self._piece]
+        return begin
+
+    @cached_property
+    def ends(self) -> Floats:
+        """(N,) s at which each segment ends: half a window later, or a whole before a stop."""
+        window = self.filter.window
+        delay = np.full(len(self.rows), 0.5 * window)
+        delay[self.pieces.rests[1:] - 1] = window
+        ends = self.pieces.time[self._piece + 1] + delay
+        return ends_of_all(len(self.segments), self.rows, ends)
 
     @property
     def duration(self) -> float:
-        """Time of the whole stretch, s."""
-        return float(self.ends[-1])
+        """Time of the whole stretch, s: up to the end of the last rest."""
+        return float(self.pieces.time[-2] + self.filter.window)
 
     @property
     def knots(self) -> Floats:
