@@ -7,10 +7,9 @@ length, in mm at the programmed feed, with ratios of it and a spindle that follo
 The rest counts as time: ramps, rapids, moves with a feed of their own, waits.
 """
 
-from copy import deepcopy
 from dataclasses import dataclass, field, replace
 
-from optimiser.clamped import ClampedStocks, StockMap, met_by
+from optimiser.clamped import ClampedStocks, Meeting, StockMap, met_by
 from optimiser.cut import Cut, CutKind
 from optimiser.estimated import GUESSES, estimated_cut
 from optimiser.hardest import Met, greatest_section, weighted_volume, with_hardest
@@ -53,10 +52,7 @@ class _Seen:
     """weighted volume over that of the hardest place, mm"""
     air: float
     """share of the length that removes nothing"""
-    stock: StockMap | None
-    """afterwards"""
-    why: str
-    """why nothing is known of what it meets"""
+    meeting: Meeting
     times: dict[tuple[float, float], Cut] = field(default_factory=dict)
     """the cut as timed already, by the ratios of feed and speed; filled when asked for"""
 
@@ -102,10 +98,10 @@ class MeasuredCuts:
             text = f"no tool path: length, time and engagement are estimated ({error})"
             return cut, [*findings, self._warning(step, text)]
         findings += [each for each in seen.path.findings if each.severity is not Severity.NOTE]
-        if not seen.why:
+        if not seen.meeting.why:
             findings = [each for each in findings if each.message not in GUESSES]
         else:
-            text = f"the engagement is estimated from the feature: {seen.why}"
+            text = f"the engagement is estimated from the feature: {seen.meeting.why}"
             findings.append(self._warning(step, text))
         return self._timed(step, seen, feed=1.0, speed=1.0), findings
 
@@ -126,7 +122,7 @@ class MeasuredCuts:
             except (SchemaError, PostError):
                 self._seen[setting.passes] = self._seen[given.passes]
         seen = self._seen[setting.passes]
-        self.stocks.leave(step, seen.stock)
+        self.stocks.leave(step, seen.meeting.change)
         feed, speed = setting.feed / given.feed, setting.speed / given.speed
         timed = self._timed(step, seen, feed=feed, speed=speed)
         passes, depth = estimate.programmed.passes, estimate.programmed.depth
@@ -140,7 +136,7 @@ class MeasuredCuts:
         except (SchemaError, PostError):
             self._leave_out(step)
             return
-        met_by(self.program, step, run, stock)
+        self.stocks.leave(step, met_by(self.program, step, run, stock).change)
 
     def _leave_out(self, step: Workingstep) -> None:
         """Without its path, what comes after it on its features would meet too much."""
@@ -174,8 +170,8 @@ class MeasuredCuts:
     def _see(self, step: Workingstep, path: ToolPath, cut: Cut, *, passes: int) -> _Seen:
         """Try a path in the stock that the workingstep finds."""
         run = self._run(path, Pace(technology=step.technology_ref))
-        stock = deepcopy(self._found)
-        met, why = met_by(self.program, step, run, stock)
+        meeting = met_by(self.program, step, run, self._found)
+        met = meeting.met
         weighted, air = 0.0, 0.0
         if met is not None:
             # Levels of a mill are equal, however deep they were asked to be.
@@ -193,10 +189,9 @@ class MeasuredCuts:
             passes=passes,
             weighted=weighted,
             air=air,
-            stock=stock,
-            why=why,
+            meeting=meeting,
         )
-        self.stocks.leave(step, stock)
+        self.stocks.leave(step, meeting.change)
         return seen
 
     def _engaged(self, step: Workingstep, cut: Cut, met: Met, run: Run, *, depth: float) -> Cut:
@@ -246,7 +241,7 @@ class MeasuredCuts:
         fed = float(seconds[follows(run, step.technology_ref)].sum())
         rest = max(0.0, duration(run, self.control, self.limits) - fed)
         length = fed * given.feed * feed * cut.tool.teeth * given.speed * speed
-        known = not seen.why and length > 0.0
+        known = not seen.meeting.why and length > 0.0
         return replace(
             cut,
             length=length / seen.passes,

@@ -51,6 +51,7 @@ from simulator.removal.profile import Profile, cylinder, profile_of
 from simulator.removal.rim import past
 from simulator.removal.ring import Tool
 from simulator.removal.stations import CutKind, Stations
+from simulator.removal.trial import Patch, box_of, moves_of, patch_of, put_back
 from simulator.removal.zmap import ZMap, cell_size, zmap_of
 from stepnc_model.toolpath.job import Stock
 
@@ -130,6 +131,27 @@ class MillingStock:
         lines = np.concatenate(parts) if parts else np.empty((0, COLUMNS))
         _windowed(lines, WINDOW * self.map.cell)
         return _stations(lines, cutter)
+
+    def tried(
+        self, segments: Segments, cutter: Cutter, *, is_clockwise: bool = True
+    ) -> tuple[Stations, Patch]:
+        """As :meth:`cut`, but on trial: the stock stays, and what it would become is told."""
+        radius = profile_of(cutter, reach=self.map.grid.top - self.map.grid.bottom).radius
+        where = box_of(self.map.grid, segments, radius), moves_of(self._past, segments)
+        before, volume = patch_of(self.map.grid, self._past, *where), self.volume
+        kept = [self.collisions, self.holder_collisions, self.shank_collisions]
+        counts = list(map(len, kept))
+        stations = self.cut(segments, cutter, is_clockwise=is_clockwise)
+        after = patch_of(self.map.grid, self._past, *where)
+        put_back(before, self.map.grid, self._past)
+        self.volume = volume
+        for each, count in zip(kept, counts, strict=True):
+            del each[count:]
+        return stations, after
+
+    def take(self, patch: Patch) -> None:
+        """Become what a trial made of this very stock."""
+        put_back(patch, self.map.grid, self._past)
 
     def _chunk(self, segments: Segments, tool: Tool, how: March, first: int) -> list[Floats]:
         """March along some rows."""
