@@ -101,6 +101,8 @@ def carve_part(
 @kernel
 def _range(low: float, high: float, origin: float, size: float, count: int) -> tuple[int, int]:
     """First cell and the one after the last whose middles lie between two coordinates."""
+    if low > high:
+        return 0, 0
     first = ceil((low - origin - _NUDGE) / size - 0.5)
     last = floor((high - origin - _NUDGE) / size - 0.5)
     return max(first, 0), min(last + 1, count)
