@@ -1,4 +1,4 @@
-"""STEP-NC programs of any length: plates with a grid of pockets with islands, roughed once each.
+"""STEP-NC programs of any length: plates with a grid of pockets with islands, roughed once.
 
 The pockets do not touch; every fourth has corners of another radius, so that no two neighbours
 are alike.
@@ -81,8 +81,8 @@ def _lines(pockets: int) -> Iterator[str]:
         at = 1000 + 10 * number
         yield (
             f"#{at}=MACHINING_WORKINGSTEP('POCKET {number}',#43,#{at + 1},#200,$);\n"
-            f"#{at + 1}=CLOSED_POCKET('POCKET {number}',#30,(#200),#{at + 2},#143,(#{at + 4}),$,"
-            f"#146,#138,#{corner},#148);\n"
+            f"#{at + 1}=CLOSED_POCKET('POCKET {number}',#30,(#200),#{at + 2},#143,(#{at + 4}),"
+            f"$,#146,#138,#{corner},#148);\n"
             f"#{at + 2}=AXIS2_PLACEMENT_3D('',#{at + 3},#501,#502);\n"
             f"#{at + 3}=CARTESIAN_POINT('',({x},{y},0.));\n"
             f"#{at + 4}=BOSS('ISLAND',#30,(),#{at + 2},#143,#192,$);\n"

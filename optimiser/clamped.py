@@ -10,7 +10,7 @@ from simulator.removal.cutter import Insert
 from simulator.removal.engage import MillingStock
 from simulator.removal.lathe import Bar, TurningStock
 from simulator.removal.tool_shape import shape_of
-from simulator.removal.trial import Patch
+from simulator.removal.trial import Patch, Trial
 from simulator.removal.zmap import MOST_CELLS
 from simulator.spec import Machine, MachineKind
 from stepnc_model.entities.setup import Setup
@@ -43,10 +43,12 @@ class Meeting:
     """it is not known"""
     change: Change | None = None
     """what the path makes of the stock; None: nothing"""
+    trial: Trial | None = None
+    """the same of a mill, with what it found"""
 
 
 @dataclass(frozen=True, slots=True)
-class _Place:
+class Place:
     """Where a workingstep finds its stock."""
 
     setup: Ref[Setup] | None
@@ -59,35 +61,36 @@ class ClampedStocks:
     def __init__(self, program: Program, machine: Machine) -> None:
         self.program = program
         self.machine = machine
-        self.stocks: dict[_Place, StockMap | None] = {}
-        self._changes: dict[_Place, Change] = {}
+        self.stocks: dict[Place, StockMap | None] = {}
+        self._changes: dict[Place, Change] = {}
         """not made yet: another path may be asked for"""
 
     def before(self, step: Workingstep) -> StockMap | None:
         """What a workingstep finds; None where no stock is known."""
-        place = self._place(step)
+        place = self.place(step)
         if place not in self.stocks:
             self.stocks[place] = self._raw(place)
         stock = self.stocks[place]
-        change = self._changes.pop(place, None)
-        if isinstance(stock, MillingStock) and isinstance(change, Patch):
-            stock.take(change)
-        elif isinstance(stock, TurningStock) and isinstance(change, Bar):
-            stock.take(change)
+        match stock, self._changes.pop(place, None):
+            case MillingStock() as box, Patch() as patch:
+                box.take(patch)
+            case TurningStock() as turned, Bar() as bar:
+                turned.take(bar)
         return stock
 
     def leave(self, step: Workingstep, change: Change | None) -> None:
         """Change the stock as one path of a workingstep does, instead of any other of it."""
-        place = self._place(step)
+        place = self.place(step)
         self._changes.pop(place, None)
         if change is not None:
             self._changes[place] = change
 
-    def _place(self, step: Workingstep) -> _Place:
+    def place(self, step: Workingstep) -> Place:
+        """Which stock a workingstep cuts."""
         is_turned = isinstance(step.operation, TurningMachiningOperation)
-        return _Place(step.setup, is_turned or self.machine.kind is MachineKind.LATHE)
+        return Place(step.setup, is_turned or self.machine.kind is MachineKind.LATHE)
 
-    def _raw(self, place: _Place) -> StockMap | None:
+    def _raw(self, place: Place) -> StockMap | None:
         """The stock as it was bought."""
         try:
             raw = stock_of(self.program, place.setup)
@@ -113,6 +116,7 @@ class ClampedStocks:
 def met_by(program: Program, step: Workingstep, run: Run, stock: StockMap | None) -> Meeting:
     """What a tool meets in a stock, and makes of it; else why that is not known."""
     change: Change
+    trial = None
     if stock is None:
         return Meeting(why="no stock is known")
     try:
@@ -125,14 +129,12 @@ def met_by(program: Program, step: Workingstep, run: Run, stock: StockMap | None
         elif isinstance(shape, Insert):
             return Meeting(why="an insert does not mill")
         else:
-            stations, change = stock.tried(
-                run.segments, shape, is_clockwise=run.is_clockwise
-            )
-            cell = stock.map.cell
+            stations, trial = stock.tried(run.segments, shape, is_clockwise=run.is_clockwise)
+            change, cell = trial.after, stock.map.cell
     except (SimulationError, SchemaError, ValueError) as error:
         return Meeting(why=str(error))
     met = Met(stations=stations, length=lengths(stations), cell=cell)
-    return Meeting(met=met, change=change)
+    return Meeting(met=met, change=change, trial=trial)
 
 
 def _cell(raw: Stock, diameters: list[float]) -> float:

@@ -13,8 +13,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import cos, pi, sin, sqrt
 
-import numpy as np
-
 from optimiser.cut import Cut, CutKind, Place
 from optimiser.loads import REFERENCE_FEED
 from simulator.motion.segments import Bools, Floats
@@ -164,16 +162,13 @@ def _at(cut: Cut, place: Place) -> milling.MillingCut:
     )
 
 
-def _places(
-    stations: Stations, rows: Bools, *, diameter: float, nominal: float
-) -> list[Place]:
+def _places(stations: Stations, rows: Bools, *, diameter: float, nominal: float) -> list[Place]:
     """Engagements that occur with their depths in mm, but none that is within another."""
-    columns = (
-        stations.section, stations.axial_depth, stations.entry_angle, stations.exit_angle,
-    )  # fmt: skip
-    met = np.column_stack([column[rows] for column in columns]).round(DIGITS)
-    met = np.unique(met[met[:, 0] > 0.0], axis=0)
-    return _outer([_place(row, diameter=diameter, nominal=nominal) for row in met.tolist()])
+    return _outer([
+        _place(row, diameter=diameter, nominal=nominal)
+        for row in stations.engagements(rows, digits=DIGITS)
+        if row[0] > 0.0
+    ])
 
 
 def _outer(places: Sequence[Place]) -> list[Place]:

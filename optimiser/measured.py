@@ -7,15 +7,17 @@ length, in mm at the programmed feed, with ratios of it and a spindle that follo
 The rest counts as time: ramps, rapids, moves with a feed of their own, waits.
 """
 
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
-from optimiser.clamped import ClampedStocks, Meeting, StockMap, met_by
+from optimiser.clamped import Change, ClampedStocks, Meeting, Place, StockMap, met_by
 from optimiser.cut import Cut, CutKind
 from optimiser.estimated import GUESSES, estimated_cut
 from optimiser.hardest import Met, greatest_section, weighted_volume, with_hardest
 from optimiser.other_depth import with_depth
 from optimiser.plunge import plunge_of
 from optimiser.problem import Setting
+from optimiser.side_by_side import Result, one_by_one, side_by_side
 from simulator.motion.segments import Bools
 from simulator.motion.tool_path import (
     Pace,
@@ -26,8 +28,10 @@ from simulator.motion.tool_path import (
     run_of,
     usual_motion,
 )
+from simulator.removal.engage import MillingStock
 from simulator.removal.lathe import TurningStock
 from simulator.removal.stations import CutKind as StationKind
+from simulator.removal.trial import Trial, do_overlap, is_remembered_alike, renumbered
 from simulator.spec import Kienzle, Machine, MachineKind
 from stepnc_model.errors import Finding, PostError, SchemaError, Severity
 from stepnc_model.post.blocks import Machine as PostMachine
@@ -57,6 +61,21 @@ class _Seen:
     """the cut as timed already, by the ratios of feed and speed; filled when asked for"""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Trace:
+    """What a workingstep looked at and changed."""
+
+    place: Place | None = None
+    """which stock"""
+    change: Change | None = None
+    trial: Trial | None = None
+    """that of the change; None: not of a mill"""
+    trials: tuple[Trial, ...] = ()
+    """of all paths that were tried"""
+    left_out: dict[int, str] = field(default_factory=dict)
+    """features whose path could not be made, with the workingstep"""
+
+
 class MeasuredCuts:
     """A source of cuts along real paths. Running state: what is left of each stock.
 
@@ -76,6 +95,9 @@ class MeasuredCuts:
         """what the workingstep finds"""
         self._seen: dict[int, _Seen] = {}
         """paths of the workingstep, by the number of passes"""
+        self._trace = Trace()
+        self._numbers: dict[Place, dict[int, int]] = {}
+        """new numbers of the first moves of workingsteps that are repeated, by the old ones"""
 
     def cut(self, step: Workingstep) -> tuple[Cut, list[Finding]]:
         """The cut of a workingstep as programmed, and what was assumed.
@@ -89,6 +111,7 @@ class MeasuredCuts:
             When the workingstep lacks what a cut needs.
         """
         self._seen = {}
+        self._trace = Trace(place=self.stocks.place(step))
         cut, findings = estimated_cut(self.program, step)
         self._estimate, self._found = cut, self.stocks.before(step)
         try:
@@ -122,7 +145,7 @@ class MeasuredCuts:
             except (SchemaError, PostError):
                 self._seen[setting.passes] = self._seen[given.passes]
         seen = self._seen[setting.passes]
-        self.stocks.leave(step, seen.meeting.change)
+        self._leave(step, seen.meeting)
         feed, speed = setting.feed / given.feed, setting.speed / given.speed
         timed = self._timed(step, seen, feed=feed, speed=speed)
         passes, depth = estimate.programmed.passes, estimate.programmed.depth
@@ -131,16 +154,71 @@ class MeasuredCuts:
     def leave_out(self, step: Workingstep) -> None:
         """Cut the stock as a workingstep does that is not advised but is run."""
         stock = self.stocks.before(step)
+        self._trace = Trace(place=self.stocks.place(step))
         try:
             run = self._run(self._path(step), Pace(technology=step.technology_ref))
         except (SchemaError, PostError):
             self._leave_out(step)
             return
-        self.stocks.leave(step, met_by(self.program, step, run, stock).change)
+        self._leave(step, met_by(self.program, step, run, stock))
+
+    def each(
+        self, steps: Sequence[Workingstep], do: Callable[[Workingstep], Result]
+    ) -> Iterator[Result]:
+        """Results of workingsteps in their order; of a mill on two cores."""
+        if self.machine.kind is MachineKind.LATHE:
+            return one_by_one(steps, do)
+        return side_by_side(steps, do, self)
+
+    def split(self) -> None:
+        """Prepare to repeat what a copy does from now on."""
+        self._numbers = {}
+
+    def trace(self) -> Trace:
+        """Where the last workingstep looked, and what it changed."""
+        return self._trace
+
+    def is_apart(self, step: Workingstep, trace: Trace, others: Sequence[Trace]) -> bool:
+        """Whether a workingstep would have met the same after others."""
+        features = {int(feature) for feature in step.features}
+        if any(features & other.left_out.keys() for other in others):
+            return False
+        others = [other for other in others if other.place == trace.place]
+        stock = self.stocks.before(step)
+        if not isinstance(stock, MillingStock):
+            return not others
+        boxes = [trial.box for other in others for trial in other.trials]
+        return all(
+            is_remembered_alike(trial, stock.next_move - trial.before.next)
+            and not any(do_overlap(trial.box, box) for box in boxes)
+            for trial in trace.trials
+        )
+
+    def repeat(self, step: Workingstep, trace: Trace) -> None:
+        """Change the stock as a workingstep has changed a copy of it."""
+        self._left_out |= trace.left_out
+        stock, change = self.stocks.before(step), trace.change
+        if trace.trial is not None and isinstance(stock, MillingStock):
+            numbers = self._numbers.setdefault(self.stocks.place(step), {})
+            numbers[trace.trial.before.next] = stock.next_move
+            change = renumbered(trace.trial, stock.next_move, numbers)
+        self.stocks.leave(step, change)
+
+    def _leave(self, step: Workingstep, meeting: Meeting) -> None:
+        """What the next workingstep finds, and what is told of it."""
+        self.stocks.leave(step, meeting.change)
+        trials = self._trace.trials
+        if meeting.trial is not None and meeting.trial not in trials:
+            trials = (*trials, meeting.trial)
+        self._trace = replace(
+            self._trace, change=meeting.change, trial=meeting.trial, trials=trials
+        )
 
     def _leave_out(self, step: Workingstep) -> None:
         """Without its path, what comes after it on its features would meet too much."""
-        self._left_out |= {int(feature): step.id for feature in step.features}
+        without = {int(feature): step.id for feature in step.features}
+        self._left_out |= without
+        self._trace = replace(self._trace, left_out=without)
 
     def _path(self, step: Workingstep) -> ToolPath:
         """Path of a workingstep as programmed."""
@@ -191,7 +269,7 @@ class MeasuredCuts:
             air=air,
             meeting=meeting,
         )
-        self.stocks.leave(step, meeting.change)
+        self._leave(step, meeting)
         return seen
 
     def _engaged(self, step: Workingstep, cut: Cut, met: Met, run: Run, *, depth: float) -> Cut:

@@ -55,7 +55,7 @@ def object_code(
 
 
 def _compiled(function: Any, known: dict[object, Any]) -> Any:
-    """numba's compiler of a kernel whose names of kernels mean their compilers."""
+    """Numba's compiler of a kernel whose names of kernels mean their compilers."""
     if function not in known:
         names = {
             name: _compiled(value, known) if is_kernel(value) else value
@@ -72,6 +72,7 @@ def require_self_contained(module: Any, symbol: str) -> None:
     """Refuse what calls other functions than those of C's mathematics."""
     library = CDLL(None)
     for each in module.functions:
-        if each.is_declaration and not each.name.startswith("llvm."):
-            if each.name.startswith(("NRT_", "numba_", "Py")) or not hasattr(library, each.name):
-                raise TypeError(f"kernel {symbol} needs {each.name}")
+        if not each.is_declaration or each.name.startswith("llvm."):
+            continue
+        if each.name.startswith(("NRT_", "numba_", "Py")) or not hasattr(library, each.name):
+            raise TypeError(f"kernel {symbol} needs {each.name}")

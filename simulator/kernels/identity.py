@@ -1,8 +1,8 @@
 """Identity of a kernel's machine code: everything that it depends on, as one digest.
 
 That is the bytecode of the kernel and of all kernels that it calls, with their constants; the
-types of the arguments; the versions of Python and of what compiles; and the processor. Files and
-line numbers do not count.
+types of the arguments; the versions of Python and of what compiles; and the processor. Files
+and line numbers do not count.
 """
 
 import sys

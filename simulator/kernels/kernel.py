@@ -3,9 +3,9 @@
 A kernel is a Python function of numbers, arrays and tuples of them that numba can compile and
 that allocates nothing. An entry is a kernel that Python calls; it writes into its arrays and
 returns nothing. At its first call with arguments of new types an entry takes its machine code
-from a file (:mod:`simulator.kernels.store`), or has numba make it (:mod:`simulator.kernels.build`).
-Only then numba is imported, which takes longer than most work that kernels do. Calls release
-the global interpreter lock.
+from a file (:mod:`simulator.kernels.store`), or has numba make it
+(:mod:`simulator.kernels.build`). Only then numba is imported, which takes longer than most work
+that kernels do. Calls release the global interpreter lock.
 
 Machine code is called by numba's own convention: status returned, two pointers for the result
 and an error, then all numbers in order; an array is two references of its owners (none here),

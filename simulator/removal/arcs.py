@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from simulator.motion.segments import Floats
 from simulator.kernels.kernel import kernel
+from simulator.motion.segments import Floats
 from simulator.removal.profile import Profile, is_plain, radius_at
 from simulator.removal.way import LEVEL, Way, arc_distance, way_between
 from simulator.removal.zmap import Grid

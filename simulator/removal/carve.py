@@ -12,8 +12,8 @@ ball, bull-nose, cone and taper on a helix) runs on chords that leave the arc by
 from math import ceil, floor, hypot, inf, sqrt
 from typing import NamedTuple
 
-from simulator.motion.segments import Floats
 from simulator.kernels.kernel import kernel
+from simulator.motion.segments import Floats
 from simulator.removal.profile import Profile, is_plain, rise, steepness
 from simulator.removal.way import (
     LEAST,

@@ -51,7 +51,7 @@ from simulator.removal.profile import Profile, cylinder, profile_of
 from simulator.removal.rim import past
 from simulator.removal.ring import Tool
 from simulator.removal.stations import CutKind, Stations
-from simulator.removal.trial import Patch, box_of, moves_of, patch_of, put_back
+from simulator.removal.trial import Patch, Trial, box_of, moves_of, patch_of, put_back
 from simulator.removal.zmap import ZMap, cell_size, zmap_of
 from stepnc_model.toolpath.job import Stock
 
@@ -134,7 +134,7 @@ class MillingStock:
 
     def tried(
         self, segments: Segments, cutter: Cutter, *, is_clockwise: bool = True
-    ) -> tuple[Stations, Patch]:
+    ) -> tuple[Stations, Trial]:
         """As :meth:`cut`, but on trial: the stock stays, and what it would become is told."""
         radius = profile_of(cutter, reach=self.map.grid.top - self.map.grid.bottom).radius
         where = box_of(self.map.grid, segments, radius), moves_of(self._past, segments)
@@ -147,7 +147,12 @@ class MillingStock:
         self.volume = volume
         for each, count in zip(kept, counts, strict=True):
             del each[count:]
-        return stations, after
+        return stations, Trial(before=before, after=after)
+
+    @property
+    def next_move(self) -> int:
+        """Number of the next move that cuts."""
+        return int(self._past.next[0])
 
     def take(self, patch: Patch) -> None:
         """Become what a trial made of this very stock."""

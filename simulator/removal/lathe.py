@@ -147,7 +147,10 @@ class TurningStock:
         self, segments: Segments, shape: Cutter | Insert, *, is_clockwise: bool = True
     ) -> tuple[Stations, Bar]:
         """As :meth:`cut`, but on trial: the bar stays, and what it would become is told."""
-        before, count = Bar(outer=self.outer.copy(), inner=self.inner.copy()), len(self.collisions)
+        before, count = (
+            Bar(outer=self.outer.copy(), inner=self.inner.copy()),
+            len(self.collisions),
+        )
         stations = self.cut(segments, shape, is_clockwise=is_clockwise)
         after = Bar(outer=self.outer.copy(), inner=self.inner.copy())
         self.take(before)

@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from simulator.kernels.kernel import entry, kernel
 from simulator.motion.segments import Floats, Ints, Segments
 from simulator.removal.carve import MEASURE, carve_part
-from simulator.kernels.kernel import entry, kernel
 from simulator.removal.profile import Profile, is_plain
 from simulator.removal.rim import AREA, ENGAGEMENT, FORGETTING, Past, lip, look
 from simulator.removal.rim import CONTACT as CONTACT_SEEN

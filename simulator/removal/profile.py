@@ -9,8 +9,8 @@ edge the shank is a cylinder as wide as the edge is there. Units mm.
 from math import cos, inf, pi, sin, sqrt, tan
 from typing import NamedTuple
 
-from simulator.removal.cutter import Cutter
 from simulator.kernels.kernel import kernel
+from simulator.removal.cutter import Cutter
 
 _STRAIGHT = 1e-9  # rad; a smaller taper is none
 

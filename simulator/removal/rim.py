@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from simulator.kernels.kernel import kernel
 from simulator.motion.segments import Floats, Ints
 from simulator.removal.arcs import (
     RECORD,
@@ -26,7 +27,6 @@ from simulator.removal.arcs import (
     free_by_move,
     free_by_outline,
 )
-from simulator.kernels.kernel import kernel
 from simulator.removal.profile import Profile, is_plain, radius_at, rise
 from simulator.removal.ring import (
     MOST_CANDIDATES,
@@ -80,9 +80,7 @@ def past() -> Past:
 
 
 @kernel
-def look(
-    grid: Grid, before: Past, tool: Tool, work: Room, pose: Pose, into: Floats
-) -> None:
+def look(grid: Grid, before: Past, tool: Tool, work: Room, pose: Pose, into: Floats) -> None:
     """Engagement of a tool at a place, before it cuts there.
 
     Parameters

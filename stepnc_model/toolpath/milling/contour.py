@@ -174,9 +174,14 @@ def vertices(chain: Chain, *, tolerance: float) -> list[complex]:
     return points
 
 
-@lru_cache(maxsize=REMEMBERED)
 def shape(loop: Loop, *, tolerance: float) -> Polygon:
-    """The area of a loop as a polygon; asked for again and again, level by level."""
+    """The area of a loop as a polygon."""
+    return _shape(tuple(loop), tolerance)
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _shape(loop: Loop, tolerance: float) -> Polygon:
+    """The same of a loop that can be remembered."""
     points = np.array(vertices(loop, tolerance=tolerance), dtype=complex)
     return shapely.polygons(np.column_stack((points.real, points.imag)))
 

@@ -1,6 +1,6 @@
 """Room around a pass: where the centre of the cutter may be on its way there and away."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from math import inf
@@ -60,9 +60,14 @@ def nowhere(_point: complex) -> float:
     return -inf
 
 
-@lru_cache(maxsize=REMEMBERED)
-def within(loops: tuple[Loop, ...]) -> Clearance:
+def within(loops: Sequence[Loop]) -> Clearance:
     """Room that lies on the left of loops."""
+    return _within(tuple(loops))
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _within(loops: tuple[Loop, ...]) -> Clearance:
+    """The same of loops that can be remembered."""
     edges = Edges.of([edge for loop in loops for edge in loop])
     area = area_of(loops, tolerance=CHORD)
     shapely.prepare(area)

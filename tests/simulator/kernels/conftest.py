@@ -27,9 +27,7 @@ def height(line: Line, x: float) -> float:
 
 
 @entry
-def heights(
-    line: Line, x: NDArray[np.float64], first: int, into: NDArray[np.float64]
-) -> None:
+def heights(line: Line, x: NDArray[np.float64], first: int, into: NDArray[np.float64]) -> None:
     """Write heights of a line from a row on."""
     for row in range(first, len(x)):
         into[row] = height(line, x[row])

@@ -1,6 +1,7 @@
 """A trial leaves no trace, and what it made can be taken as if it had been cut."""
 
 from math import pi
+from typing import Any
 
 import numpy as np
 import pytest
@@ -24,7 +25,7 @@ def path(x: float) -> Segments:
     ])
 
 
-def state(stock: MillingStock) -> list[list[float]]:
+def state(stock: MillingStock) -> list[Any]:
     grid, past = stock.map.grid, stock._past
     parts = (grid.heights, grid.owner, past.records, past.next)
     return [part.ravel().tolist() for part in parts]
@@ -43,8 +44,8 @@ def test_a_trial_leaves_no_trace() -> None:
 def test_what_a_trial_made_can_be_taken() -> None:
     tried, cut = MillingStock(BOX, cell=0.5), MillingStock(BOX, cell=0.5)
     for x in (10.0, 13.0, 40.0):
-        told, patch = tried.tried(path(x), MILL)
-        tried.take(patch)
+        told, trial = tried.tried(path(x), MILL)
+        tried.take(trial.after)
         met = cut.cut(path(x), MILL)
         assert (told.section == met.section).all()
         assert (told.entry_angle == met.entry_angle).all()

@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 from simulator.motion.segments import Floats
 from simulator.removal.way import Way, arc_distance, bounds, helix_height, place
 
-
 RADIUS = 20.0
 CENTRE = (3.0, -4.0, 7.0)
 
