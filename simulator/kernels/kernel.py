@@ -12,6 +12,7 @@ and an error, then all numbers in order; an array is two references of its owner
 its size, the size of an item, its address, its shape and its strides.
 """
 
+import logging
 from collections.abc import Callable, Iterator
 from ctypes import CFUNCTYPE, c_double, c_int32, c_int64, c_void_p, create_string_buffer
 from functools import update_wrapper
@@ -24,6 +25,9 @@ from simulator.kernels.identity import digest
 
 Parameters = ParamSpec("Parameters")
 Function = TypeVar("Function", bound=Callable[..., object])
+
+LOG = logging.getLogger(__name__)
+"""says why nothing happens, on stderr where nobody configures it"""
 
 NOTHING = create_string_buffer(64)
 """where a kernel would write a result or an error"""
@@ -71,6 +75,7 @@ class Entry(Generic[Parameters]):
         name, key = self.function.__name__, digest(self.function, types)
         found = store.load(name, key)
         if found is None:
+            LOG.warning("compiling %s for this machine, once: up to half a minute", name)
             from simulator.kernels.build import object_code  # noqa: PLC0415 (numba takes a second)
 
             found = object_code(self.function, arguments, symbol=f"{name}_{key}")
