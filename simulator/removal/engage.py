@@ -41,16 +41,13 @@ from simulator.removal.march import (
     SPOT_Z,
     STATION,
     VOLUME,
-    March,
-    Task,
-    desk_for,
     march,
-    rows_of,
 )
 from simulator.removal.profile import Profile, cylinder, profile_of
 from simulator.removal.rim import past
 from simulator.removal.ring import Tool
 from simulator.removal.stations import CutKind, Stations
+from simulator.removal.task import March, Task, desk_for, rows_of
 from simulator.removal.trial import Patch, Trial, box_of, moves_of, patch_of, put_back
 from simulator.removal.zmap import ZMap, cell_size, zmap_of
 from stepnc_model.toolpath.job import Stock

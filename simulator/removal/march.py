@@ -5,20 +5,18 @@ changes. Units mm and rad.
 """
 
 from math import ceil, hypot, inf, pi
-from typing import NamedTuple
 
 import numpy as np
 
 from simulator.kernels.kernel import entry, kernel
-from simulator.motion.segments import Floats, Ints, Segments
+from simulator.motion.segments import Floats, Ints
 from simulator.removal.carve import MEASURE, carve_part
-from simulator.removal.profile import Profile, is_plain
-from simulator.removal.rim import AREA, ENGAGEMENT, FORGETTING, Past, lip, look
+from simulator.removal.rim import AREA, FORGETTING, Past, lip, look
 from simulator.removal.rim import CONTACT as CONTACT_SEEN
-from simulator.removal.ring import ROUND_SAMPLES, SAMPLES, Pose, Room, Tool, room_for
+from simulator.removal.ring import Pose
 from simulator.removal.stations import CutKind
+from simulator.removal.task import DEEPEST, Task
 from simulator.removal.way import place
-from simulator.removal.zmap import Grid
 
 STEEP = 0.1
 """horizontal share of a move below which the tool sinks rather than mills"""
@@ -34,9 +32,6 @@ MOST_STRETCHES = 4000
 
 MOST_TURNS = 100.0
 """of one arc"""
-
-DEEPEST = 12
-"""halvings of a stretch"""
 
 INSET = 2e-5
 """mm from the ends of a part at which they are looked at: on a corner the tool's own circle
@@ -71,81 +66,11 @@ FINDINGS = 9
 _AIR, _MILLING, _DRILLING = int(CutKind.AIR), int(CutKind.MILLING), int(CutKind.DRILLING)
 
 
-class March(NamedTuple):
-    """How to march."""
-
-    step: float
-    """mm, longest stretch between two stations"""
-    least: float
-    """mm, shortest stretch"""
-    shank: float
-    """mm above the tip where the cutting edge ends; infinite: never"""
-    coarse: float
-    """mm over which the map's own rim tells more than noise"""
-    shape: Floats
-    """(7,) numbers of the tool's profile"""
-    neck: Profile
-    """of the shank above the edge"""
-    holder: Profile
-    overhang: float
-    """mm above the tip where the holder begins; infinite: there is none"""
-    tip_sine: float
-    """sine of half the point angle"""
-
-
-class Desk(NamedTuple):
-    """Room for the work along a part of a row."""
-
-    rim: Room
-    parts: Floats
-    """(DEEPEST,) shares of the row, of stretches that wait"""
-    seen: Floats
-    """(DEEPEST, ENGAGEMENT) engagement there"""
-    left: Floats
-    """(ENGAGEMENT,) engagement where the stretch begins"""
-    raised: Floats
-    """(13,) row of the shank or the holder"""
-
-
-class Task(NamedTuple):
-    """What cuts what, and how."""
-
-    grid: Grid
-    past: Past
-    tool: Tool
-    how: March
-    desk: Desk
-
-
 Segment = tuple[Floats, float, int]
 """row, length and index of a segment"""
 
 Span = tuple[float, float]
 """shares of its length"""
-
-
-def desk_for(tool: Tool) -> Desk:
-    """Room for the work of a tool."""
-    samples = SAMPLES if is_plain(tool.profile) else ROUND_SAMPLES
-    return Desk(
-        room_for(samples),
-        np.empty(DEEPEST),
-        np.empty((DEEPEST, ENGAGEMENT)),
-        np.empty(ENGAGEMENT),
-        np.empty(13),
-    )
-
-
-def rows_of(segments: Segments) -> Floats:
-    """(N, 13) start, end, centre, radius, angle of the first arm, turn, normal."""
-    rows = np.arange(len(segments))
-    first = (segments.normal + 1) % 3
-    second = (segments.normal + 2) % 3
-    arm = segments.start - segments.centre
-    angle = np.arctan2(arm[rows, second], arm[rows, first])
-    columns = (segments.start, segments.end, segments.centre)
-    numbers = (segments.radius, angle, segments.turn, segments.normal.astype(np.float64))
-    return np.ascontiguousarray(np.column_stack([*columns, *numbers]))
 
 
 @entry
