@@ -5,7 +5,8 @@ half as if the first one had changed nothing that matters, and tells afterwards 
 and what it changed. Where that lies apart from what the first half changed, its result is that
 of one workingstep after another and is kept; otherwise the workingstep is done again. Results
 come in the order of the program and are the same as on one core, errors too: the second process
-ends at its first one, and the first process meets it again in its turn.
+ends at its first one, and the first process meets it again in its turn. Results that are late,
+for something else runs on the other core, are not waited for.
 
 Programs whose workingsteps meet, a face before all pockets, are tried again ever more rarely.
 """
@@ -14,8 +15,11 @@ import os
 import pickle
 import signal
 import threading
+import time
 from collections.abc import Callable, Generator, Iterator, Sequence
-from typing import BinaryIO, Generic, Protocol, TypeVar
+from select import select
+from tempfile import TemporaryFile
+from typing import Generic, Protocol, TypeVar
 
 from stepnc_model.program import Workingstep
 
@@ -24,6 +28,11 @@ LEAST = 16
 
 MOST = 64
 """workingsteps for each process before both wait for one another"""
+
+SOON = 0.05
+"""s; nothing is late before"""
+
+_SIZE = 8  # bytes in which a size is told
 
 Result = TypeVar("Result")
 Trace = TypeVar("Trace")
@@ -109,23 +118,32 @@ def _halves(
     state.split()
     with _Second(second, do, state) as other:
         changed = []
+        begin = time.perf_counter()
         for step in first:
             yield do(step)
             changed.append(state.trace())
-        for step in second:
-            told = other.next()
+        patience = max((time.perf_counter() - begin) / len(first), SOON)
+        for index, step in enumerate(second):
+            told = other.result(index, patience)
             if told is not None and state.is_apart(step, told[1], changed):
                 state.repeat(step, told[1])
                 kept += 1
                 yield told[0]
-            else:
-                yield do(step)
-                changed.append(state.trace())
+                continue
+            if told is None:
+                # Its core is busy: what takes longer here than there is not waited for again.
+                patience = 0.0
+            yield do(step)
+            changed.append(state.trace())
     return kept
 
 
 class _Second(Generic[Result, Trace]):
-    """A second process, forked from this one; use it with ``with``. Running state."""
+    """A second process, forked from this one; use it with ``with``. Running state.
+
+    Results lie in a file without a name, their sizes come through a pipe: it never is full, so
+    that the second process never waits.
+    """
 
     def __init__(
         self,
@@ -133,44 +151,43 @@ class _Second(Generic[Result, Trace]):
         do: Callable[[Workingstep], Result],
         state: Traced[Trace],
     ) -> None:
-        read, write = os.pipe()
+        self._file = TemporaryFile(buffering=0)  # noqa: SIM115 (closed at the end of ``with``)
+        self._ends = [0]
+        """where results end in the file"""
+        self._pipe, write = os.pipe()
         self._pid = os.fork()
         if self._pid == 0:
             try:
-                os.close(read)
                 signal.signal(signal.SIGINT, signal.SIG_DFL)
-                with os.fdopen(write, "wb") as file:
-                    _tell_all(file, steps, do, state)
+                for step in steps:
+                    told = pickle.dumps((do(step), state.trace()))
+                    self._file.write(told)
+                    os.write(write, len(told).to_bytes(_SIZE))
             finally:
                 # An error comes again in the first process; nothing else is to be cleaned up.
                 os._exit(0)
         os.close(write)
-        self._file: BinaryIO = os.fdopen(read, "rb")
 
     def __enter__(self) -> "_Second[Result, Trace]":
         return self
 
     def __exit__(self, *_: object) -> None:
+        os.close(self._pipe)
         self._file.close()
         os.kill(self._pid, signal.SIGKILL)
         os.waitpid(self._pid, 0)
 
-    def next(self) -> tuple[Result, Trace] | None:
-        """The next result with its trace; None when there is no more."""
-        try:
-            told: tuple[Result, Trace] = pickle.load(self._file)
-        except (EOFError, pickle.UnpicklingError):
-            return None
+    def result(self, index: int, patience: float) -> tuple[Result, Trace] | None:
+        """A result with its trace; None when it does not come within some seconds."""
+        while index + 1 >= len(self._ends):
+            if not select([self._pipe], [], [], patience)[0]:
+                return None
+            size = os.read(self._pipe, _SIZE)
+            if not size:
+                return None
+            self._ends.append(self._ends[-1] + int.from_bytes(size))
+        begin, end = self._ends[index : index + 2]
+        told: tuple[Result, Trace] = pickle.loads(
+            os.pread(self._file.fileno(), end - begin, begin)
+        )
         return told
-
-
-def _tell_all(
-    file: BinaryIO,
-    steps: Sequence[Workingstep],
-    do: Callable[[Workingstep], Result],
-    state: Traced[Trace],
-) -> None:
-    """Do workingsteps one after another, and write each result with its trace."""
-    for step in steps:
-        pickle.dump((do(step), state.trace()), file, protocol=pickle.HIGHEST_PROTOCOL)
-        file.flush()

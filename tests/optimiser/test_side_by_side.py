@@ -27,6 +27,7 @@ pytestmark = pytest.mark.filterwarnings("ignore:.*fork:DeprecationWarning")
 def _two_cores(monkeypatch: pytest.MonkeyPatch) -> None:
     """Also where the runner of the tests has threads or one core."""
     monkeypatch.setattr(module, "_is_possible", lambda: True)
+    monkeypatch.setattr(module, "SOON", 30.0)
 
 
 @dataclass
@@ -88,6 +89,23 @@ def test_what_meets_is_done_again() -> None:
     places = {3: 7, LEAST + 5: 7, LEAST + 9: 7}
     shelf, _ = both(list(range(2 * LEAST)), places)
     assert shelf.done_here[LEAST:] == [LEAST + 5, LEAST + 9]
+
+
+def test_a_late_process_is_not_waited_for() -> None:
+    """The second process sleeps at each step, and only there."""
+    here = os.getpid()
+
+    def do(step: Any) -> int:
+        if os.getpid() != here:
+            time.sleep(5.0)
+        return int(step)
+
+    steps: Any = list(range(2 * LEAST))
+    begin = time.monotonic()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(module, "SOON", 0.01)
+        assert list(side_by_side(steps, do, Shelf({}))) == steps
+    assert time.monotonic() - begin < 4.0
 
 
 def test_where_all_meet_it_is_tried_ever_more_rarely() -> None:
