@@ -29,14 +29,6 @@ help:
 
 setup: $(READY)
 
-# numba keeps compiled kernels by the file that holds them, and does not see changes of what they
-# call in other files.
-KERNELS := build/.kernels
-
-$(KERNELS): $(wildcard simulator/removal/*.py simulator/motion/*.py)
-	@rm -f simulator/*/__pycache__/*.nb[ci]
-	@mkdir -p $(@D) && touch $@
-
 $(READY): requirements.lock pyproject.toml
 	@test -n "$(PYTHON)" || { echo "error: Python 3.11 or newer is needed: apt-get install python3 python3-venv" >&2; exit 1; }
 	@"$(PYTHON)" -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null || \
@@ -54,7 +46,7 @@ $(READY): requirements.lock pyproject.toml
 	fi
 	@touch $@
 
-demo: $(READY) $(KERNELS)
+demo: $(READY)
 	@mkdir -p $(DEMO)
 	$(BIN)/optimise examples/parts/paper002.stpnc --mode TC --machine paper002 \
 		-o $(DEMO)/paper002.optimised.stpnc
@@ -71,7 +63,7 @@ demo: $(READY) $(KERNELS)
 	$(BIN)/stepnc kbe table --kb $(DEMO)/knowledge.db -o $(DEMO)/knowledge.html
 	@echo "look at: $(DEMO)/bracket.html, bracket.run.html, bracket.control.html, knowledge.html, bracket.png"
 
-test: $(READY) $(KERNELS)
+test: $(READY)
 	$(BIN)/python -m pytest -n auto --durations=20 --durations-min=1
 
 SEED := $(or $(SEED),$(shell date +%s))
@@ -96,10 +88,10 @@ check: $(READY)
 
 PORT ?= 8000
 
-serve: $(READY) $(KERNELS)
+serve: $(READY)
 	$(BIN)/stepnc serve --port $(PORT)
 
-bench: $(READY) $(KERNELS)
+bench: $(READY)
 	$(BIN)/python -m benchmarks
 
 # Whatever mkdocs would warn of is an error. The variable stills an advertisement of its theme.

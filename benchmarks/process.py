@@ -1,41 +1,101 @@
-"""``optimise`` on the sample bracket as a whole process, beside importing numpy and lxml.
+"""``optimise`` as a whole process: the sample bracket, and plates of 10, 100 and 1000 pockets.
 
-The two run in turn, so that a machine that slows down slows both; ratios are pair by pair.
+The bracket and its peer, ``import numpy, lxml.etree``, run in turn, so that a machine that
+slows down slows both; their ratio is that of pairs. Plates run once, on the cores that are
+there. CPU seconds are those of all processes; those of each more pocket are against the plate
+before, and growth is their ratio: 1 is linear.
 """
 
 import argparse
+import os
 import subprocess
 import sys
 import tempfile
 import time
+from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
+
+from benchmarks.plates import plate
 
 BRACKET = Path(__file__).parents[1] / "examples" / "parts" / "bracket.stpnc"
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Usage:
+    """What one process took."""
+
+    cpu: float
+    """s, user and system"""
+    wall: float
+    """s"""
+    memory: float
+    """MB, greatest of one process"""
+
+
 def main(arguments: list[str] | None = None) -> None:
-    """Print the median wall seconds of both, and the median ratio."""
+    """Print CPU and wall seconds, memory and ratios."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--runs", type=int, default=11)
+    parser.add_argument("--runs", type=int, default=7)
+    parser.add_argument("--pockets", type=int, nargs="*", default=[10, 100, 1000])
     options = parser.parse_args(arguments)
-    command = Path(sys.executable).with_name("optimise")
+    command = str(Path(sys.executable).with_name("optimise"))
+    peer = [sys.executable, "-c", "import numpy, lxml.etree"]
     with tempfile.TemporaryDirectory() as folder:
-        ours = [str(command), str(BRACKET), "-o", str(Path(folder) / "bracket.stpnc")]
-        peer = [sys.executable, "-c", "import numpy, lxml.etree"]
-        _seconds(ours), _seconds(peer)  # warm the disk and the bytecode
-        pairs = [(_seconds(ours), _seconds(peer)) for _ in range(options.runs)]
-    print(f"{'process':34}{'median s':>10}")
-    print(f"{'optimise bracket.stpnc':34}{median(one for one, _ in pairs):10.3f}")
-    print(f"{'import numpy, lxml.etree':34}{median(two for _, two in pairs):10.3f}")
-    print(f"ratio, median of {len(pairs)} pairs: {median(one / two for one, two in pairs):.2f}")
+        ours = [command, str(BRACKET), "--machine", "vmc15"]
+        ours += ["-o", str(Path(folder) / "bracket.stpnc")]
+        _usage(ours), _usage(peer)  # warm the disk, the bytecode and the kernels
+        pairs = [(_usage(ours), _usage(peer)) for _ in range(options.runs)]
+        helps = [_usage([command, "--help"]) for _ in range(options.runs)]
+        print(f"{'process':30}{'CPU s':>9}{'wall s':>9}{'MB':>7}")
+        _print("import numpy, lxml.etree", [other for _, other in pairs])
+        _print("optimise --help", helps)
+        _print("optimise bracket.stpnc", [one for one, _ in pairs])
+        ratio = median(one.cpu / other.cpu for one, other in pairs)
+        print(f"ratio of CPU seconds, median of {len(pairs)} pairs: {ratio:.2f}")
+        _print_growth(command, options.pockets, Path(folder))
 
 
-def _seconds(command: list[str]) -> float:
-    """Wall seconds of one run."""
+def _print(name: str, usages: list[Usage]) -> None:
+    """One line of medians."""
+    cpu, wall = median(each.cpu for each in usages), median(each.wall for each in usages)
+    memory = median(each.memory for each in usages)
+    print(f"{name:30}{cpu:9.2f}{wall:9.2f}{memory:7.0f}")
+
+
+def _print_growth(command: str, counts: list[int], folder: Path) -> None:
+    """One line a plate."""
+    file = folder / "plate.stpnc"
+    ours = [command, str(file), "--machine", "vmc15", "-o", str(folder / "plate.out.stpnc")]
+    print(
+        f"\n{'pockets':>8}{'CPU s':>9}{'wall s':>9}{'MB':>7}{'ms more each':>14}{'growth':>8}"
+    )
+    before, first = None, 0.0
+    for count in counts:
+        file.write_text(plate(count), encoding="utf-8")
+        usage = _usage(ours)
+        line = f"{count:8}{usage.cpu:9.2f}{usage.wall:9.2f}{usage.memory:7.0f}"
+        if before is not None:
+            each = (usage.cpu - before[1]) / (count - before[0])
+            first = first or each
+            line += f"{each * 1e3:14.1f}{each / first:8.2f}"
+        print(line)
+        before = count, usage.cpu
+
+
+def _usage(command: list[str]) -> Usage:
+    """What one run takes."""
     start = time.perf_counter()
-    subprocess.run(command, check=True, capture_output=True)
-    return time.perf_counter() - start
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    _, status, used = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode:
+        raise subprocess.CalledProcessError(process.returncode, command)
+    return Usage(
+        cpu=used.ru_utime + used.ru_stime,
+        wall=time.perf_counter() - start,
+        memory=used.ru_maxrss / 1024.0,
+    )
 
 
 if __name__ == "__main__":

@@ -8,8 +8,9 @@ from simulator.errors import SimulationError
 from simulator.motion.tool_path import Run
 from simulator.removal.cutter import Insert
 from simulator.removal.engage import MillingStock
-from simulator.removal.lathe import TurningStock
+from simulator.removal.lathe import Bar, TurningStock
 from simulator.removal.tool_shape import shape_of
+from simulator.removal.trial import Patch, Trial
 from simulator.removal.zmap import MOST_CELLS
 from simulator.spec import Machine, MachineKind
 from stepnc_model.entities.setup import Setup
@@ -28,9 +29,26 @@ CELLS_PER_TOOL = 16.0
 
 StockMap = MillingStock | TurningStock
 
+Change = Patch | Bar
+"""what a path makes of a stock"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Meeting:
+    """What a path meets in a stock that stays as it is."""
+
+    met: Met | None = None
+    """None where it is not known"""
+    why: str = ""
+    """it is not known"""
+    change: Change | None = None
+    """what the path makes of the stock; None: nothing"""
+    trial: Trial | None = None
+    """the same of a mill, with what it found"""
+
 
 @dataclass(frozen=True, slots=True)
-class _Place:
+class Place:
     """Where a workingstep finds its stock."""
 
     setup: Ref[Setup] | None
@@ -43,24 +61,36 @@ class ClampedStocks:
     def __init__(self, program: Program, machine: Machine) -> None:
         self.program = program
         self.machine = machine
-        self.stocks: dict[_Place, StockMap | None] = {}
+        self.stocks: dict[Place, StockMap | None] = {}
+        self._changes: dict[Place, Change] = {}
+        """not made yet: another path may be asked for"""
 
     def before(self, step: Workingstep) -> StockMap | None:
         """What a workingstep finds; None where no stock is known."""
-        place = self._place(step)
+        place = self.place(step)
         if place not in self.stocks:
             self.stocks[place] = self._raw(place)
-        return self.stocks[place]
+        stock = self.stocks[place]
+        match stock, self._changes.pop(place, None):
+            case MillingStock() as box, Patch() as patch:
+                box.take(patch)
+            case TurningStock() as turned, Bar() as bar:
+                turned.take(bar)
+        return stock
 
-    def leave(self, step: Workingstep, stock: StockMap | None) -> None:
-        """What the next workingstep finds."""
-        self.stocks[self._place(step)] = stock
+    def leave(self, step: Workingstep, change: Change | None) -> None:
+        """Change the stock as one path of a workingstep does, instead of any other of it."""
+        place = self.place(step)
+        self._changes.pop(place, None)
+        if change is not None:
+            self._changes[place] = change
 
-    def _place(self, step: Workingstep) -> _Place:
+    def place(self, step: Workingstep) -> Place:
+        """Which stock a workingstep cuts."""
         is_turned = isinstance(step.operation, TurningMachiningOperation)
-        return _Place(step.setup, is_turned or self.machine.kind is MachineKind.LATHE)
+        return Place(step.setup, is_turned or self.machine.kind is MachineKind.LATHE)
 
-    def _raw(self, place: _Place) -> StockMap | None:
+    def _raw(self, place: Place) -> StockMap | None:
         """The stock as it was bought."""
         try:
             raw = stock_of(self.program, place.setup)
@@ -83,26 +113,28 @@ class ClampedStocks:
         return [diameter for diameter in found if diameter > 0.0]
 
 
-def met_by(
-    program: Program, step: Workingstep, run: Run, stock: StockMap | None
-) -> tuple[Met | None, str]:
-    """What a tool meets in a stock, which it cuts away; else why that is not known."""
+def met_by(program: Program, step: Workingstep, run: Run, stock: StockMap | None) -> Meeting:
+    """What a tool meets in a stock, and makes of it; else why that is not known."""
+    change: Change
+    trial = None
     if stock is None:
-        return None, "no stock is known"
+        return Meeting(why="no stock is known")
     try:
         shape = shape_of(program, step.tool_ref)
         if shape is None:
-            return None, "threads and knurls are not cut from the stock"
+            return Meeting(why="threads and knurls are not cut from the stock")
         if isinstance(stock, TurningStock):
-            stations, cell = stock.cut(run.segments, shape), stock.cell
+            stations, change = stock.tried(run.segments, shape)
+            cell = stock.cell
         elif isinstance(shape, Insert):
-            return None, "an insert does not mill"
+            return Meeting(why="an insert does not mill")
         else:
-            stations = stock.cut(run.segments, shape, is_clockwise=run.is_clockwise)
-            cell = stock.map.cell
+            stations, trial = stock.tried(run.segments, shape, is_clockwise=run.is_clockwise)
+            change, cell = trial.after, stock.map.cell
     except (SimulationError, SchemaError, ValueError) as error:
-        return None, str(error)
-    return Met(stations=stations, length=lengths(stations), cell=cell), ""
+        return Meeting(why=str(error))
+    met = Met(stations=stations, length=lengths(stations), cell=cell)
+    return Meeting(met=met, change=change, trial=trial)
 
 
 def _cell(raw: Stock, diameters: list[float]) -> float:

@@ -4,11 +4,14 @@ What no path tells is here too: which tool kind and texture, whether it finishes
 programmed.
 """
 
+from collections.abc import Callable, Iterator, Sequence
+
 from optimiser.cut import Cut
 from optimiser.estimate import FULL_LOAD, milling_cut
 from optimiser.estimate_hole import INTO_SOLID, hole_cut, is_hole_making
 from optimiser.estimate_turning import mean_diameter, turning_cut
 from optimiser.problem import Setting
+from optimiser.side_by_side import Result, one_by_one
 from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import Finding, Severity
 from stepnc_model.program import Program, Workingstep
@@ -35,6 +38,12 @@ class Estimates:
 
     def leave_out(self, step: Workingstep) -> None:
         """Nothing: no workingstep knows of another."""
+
+    def each(
+        self, steps: Sequence[Workingstep], do: Callable[[Workingstep], Result]
+    ) -> Iterator[Result]:
+        """Results of workingsteps in their order."""
+        return one_by_one(steps, do)
 
 
 def estimated_cut(program: Program, step: Workingstep) -> tuple[Cut, list[Finding]]:

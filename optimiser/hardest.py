@@ -3,11 +3,13 @@
 The section of the cut is the measure: it is right also where the arc of contact holds slivers
 of a floor, or the depth is that of a sliver on a wall. With the depth it gives the width, and
 the arc of contact is that of the width: at the angles found where these agree with it, else
-one-sided. Depth beyond that of the pass counts as far as the section fills it. Every arc is
-tried: loads are exact functions of depth and arc, and a place that is worst for the mean force
+one-sided. Depth beyond that of the pass counts as far as the section fills it. Loads are exact
+functions of depth and arc that rise with both, so every place is tried that is not within
+another, no deeper and its arc a part of the other's: a place that is worst for the mean force
 need not be worst for the shank. Units mm, rad.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import cos, pi, sin, sqrt
 
@@ -133,7 +135,7 @@ def _drilled(cut: Cut, section: float, cell: float) -> Cut:
     return replace(cut, previous_diameter=bored)
 
 
-def _milled(cut: Cut, places: set[Place], kienzle: Kienzle, *, nominal: float) -> Cut:
+def _milled(cut: Cut, places: Sequence[Place], kienzle: Kienzle, *, nominal: float) -> Cut:
     """A milling cut with the places of its greatest mean force and of its greatest peak."""
     mean = max(places, key=lambda place: milling.mean_force(kienzle, _at(cut, place)))
     bending = None
@@ -160,19 +162,35 @@ def _at(cut: Cut, place: Place) -> milling.MillingCut:
     )
 
 
-def _places(stations: Stations, rows: Bools, *, diameter: float, nominal: float) -> set[Place]:
-    """All engagements that occur, once each, with their depths in mm."""
-    columns = (
-        stations.section, stations.axial_depth, stations.entry_angle, stations.exit_angle,
-    )  # fmt: skip
-    met = {
-        tuple(round(value, DIGITS) for value in row)
-        for row in zip(*(column[rows].tolist() for column in columns), strict=True)
-    }
-    return {_place(row, diameter=diameter, nominal=nominal) for row in met if row[0] > 0.0}
+def _places(stations: Stations, rows: Bools, *, diameter: float, nominal: float) -> list[Place]:
+    """Engagements that occur with their depths in mm, but none that is within another."""
+    return _outer([
+        _place(row, diameter=diameter, nominal=nominal)
+        for row in stations.engagements(rows, digits=DIGITS)
+        if row[0] > 0.0
+    ])
 
 
-def _place(row: tuple[float, ...], *, diameter: float, nominal: float) -> Place:
+def _outer(places: Sequence[Place]) -> list[Place]:
+    """Places that are not within another one, each once, the deepest first."""
+    found: list[Place] = []
+    for place in sorted(places, key=lambda each: (-each.depth_share, -_arc(each))):
+        if not any(_is_within(place, other) for other in found):
+            found.append(place)
+    return found
+
+
+def _arc(place: Place) -> float:
+    return place.engagement.contact_angle
+
+
+def _is_within(place: Place, other: Place) -> bool:
+    """Whether the arc of a place that is no deeper is a part of another's."""
+    inner, outer = place.engagement, other.engagement
+    return outer.entry_angle <= inner.entry_angle and inner.exit_angle <= outer.exit_angle
+
+
+def _place(row: Sequence[float], *, diameter: float, nominal: float) -> Place:
     """One engagement; a section wider than the tool is deeper than it was seen to be."""
     section, depth, entry, exit = row
     by_angles = 0.5 * diameter * (cos(entry) - cos(exit))

@@ -7,16 +7,17 @@ length, in mm at the programmed feed, with ratios of it and a spindle that follo
 The rest counts as time: ramps, rapids, moves with a feed of their own, waits.
 """
 
-from copy import deepcopy
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
-from optimiser.clamped import ClampedStocks, StockMap, met_by
+from optimiser.clamped import Change, ClampedStocks, Meeting, Place, StockMap, met_by
 from optimiser.cut import Cut, CutKind
 from optimiser.estimated import GUESSES, estimated_cut
 from optimiser.hardest import Met, greatest_section, weighted_volume, with_hardest
 from optimiser.other_depth import with_depth
 from optimiser.plunge import plunge_of
 from optimiser.problem import Setting
+from optimiser.side_by_side import Result, one_by_one, side_by_side
 from simulator.motion.segments import Bools
 from simulator.motion.tool_path import (
     Pace,
@@ -27,8 +28,10 @@ from simulator.motion.tool_path import (
     run_of,
     usual_motion,
 )
+from simulator.removal.engage import MillingStock
 from simulator.removal.lathe import TurningStock
 from simulator.removal.stations import CutKind as StationKind
+from simulator.removal.trial import Trial, do_overlap, is_remembered_alike, renumbered
 from simulator.spec import Kienzle, Machine, MachineKind
 from stepnc_model.errors import Finding, PostError, SchemaError, Severity
 from stepnc_model.post.blocks import Machine as PostMachine
@@ -44,6 +47,8 @@ class _Seen:
     """A path that was tried, and what it met."""
 
     path: ToolPath
+    run: Run
+    """as programmed"""
     cut: Cut
     """with the engagement as met"""
     passes: int
@@ -51,12 +56,24 @@ class _Seen:
     """weighted volume over that of the hardest place, mm"""
     air: float
     """share of the length that removes nothing"""
-    stock: StockMap | None
-    """afterwards"""
-    why: str
-    """why nothing is known of what it meets"""
+    meeting: Meeting
     times: dict[tuple[float, float], Cut] = field(default_factory=dict)
     """the cut as timed already, by the ratios of feed and speed; filled when asked for"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Trace:
+    """What a workingstep looked at and changed."""
+
+    place: Place | None = None
+    """which stock"""
+    change: Change | None = None
+    trial: Trial | None = None
+    """that of the change; None: not of a mill"""
+    trials: tuple[Trial, ...] = ()
+    """of all paths that were tried"""
+    left_out: dict[int, str] = field(default_factory=dict)
+    """features whose path could not be made, with the workingstep"""
 
 
 class MeasuredCuts:
@@ -78,6 +95,9 @@ class MeasuredCuts:
         """what the workingstep finds"""
         self._seen: dict[int, _Seen] = {}
         """paths of the workingstep, by the number of passes"""
+        self._trace = Trace()
+        self._numbers: dict[Place, dict[int, int]] = {}
+        """new numbers of the first moves of workingsteps that are repeated, by the old ones"""
 
     def cut(self, step: Workingstep) -> tuple[Cut, list[Finding]]:
         """The cut of a workingstep as programmed, and what was assumed.
@@ -91,6 +111,7 @@ class MeasuredCuts:
             When the workingstep lacks what a cut needs.
         """
         self._seen = {}
+        self._trace = Trace(place=self.stocks.place(step))
         cut, findings = estimated_cut(self.program, step)
         self._estimate, self._found = cut, self.stocks.before(step)
         try:
@@ -100,10 +121,10 @@ class MeasuredCuts:
             text = f"no tool path: length, time and engagement are estimated ({error})"
             return cut, [*findings, self._warning(step, text)]
         findings += [each for each in seen.path.findings if each.severity is not Severity.NOTE]
-        if not seen.why:
+        if not seen.meeting.why:
             findings = [each for each in findings if each.message not in GUESSES]
         else:
-            text = f"the engagement is estimated from the feature: {seen.why}"
+            text = f"the engagement is estimated from the feature: {seen.meeting.why}"
             findings.append(self._warning(step, text))
         return self._timed(step, seen, feed=1.0, speed=1.0), findings
 
@@ -124,7 +145,7 @@ class MeasuredCuts:
             except (SchemaError, PostError):
                 self._seen[setting.passes] = self._seen[given.passes]
         seen = self._seen[setting.passes]
-        self.stocks.leave(step, seen.stock)
+        self._leave(step, seen.meeting)
         feed, speed = setting.feed / given.feed, setting.speed / given.speed
         timed = self._timed(step, seen, feed=feed, speed=speed)
         passes, depth = estimate.programmed.passes, estimate.programmed.depth
@@ -133,16 +154,71 @@ class MeasuredCuts:
     def leave_out(self, step: Workingstep) -> None:
         """Cut the stock as a workingstep does that is not advised but is run."""
         stock = self.stocks.before(step)
+        self._trace = Trace(place=self.stocks.place(step))
         try:
             run = self._run(self._path(step), Pace(technology=step.technology_ref))
         except (SchemaError, PostError):
             self._leave_out(step)
             return
-        met_by(self.program, step, run, stock)
+        self._leave(step, met_by(self.program, step, run, stock))
+
+    def each(
+        self, steps: Sequence[Workingstep], do: Callable[[Workingstep], Result]
+    ) -> Iterator[Result]:
+        """Results of workingsteps in their order; of a mill on two cores."""
+        if self.machine.kind is MachineKind.LATHE:
+            return one_by_one(steps, do)
+        return side_by_side(steps, do, self)
+
+    def split(self) -> None:
+        """Prepare to repeat what a copy does from now on."""
+        self._numbers = {}
+
+    def trace(self) -> Trace:
+        """Where the last workingstep looked, and what it changed."""
+        return self._trace
+
+    def is_apart(self, step: Workingstep, trace: Trace, others: Sequence[Trace]) -> bool:
+        """Whether a workingstep would have met the same after others."""
+        features = {int(feature) for feature in step.features}
+        if any(features & other.left_out.keys() for other in others):
+            return False
+        others = [other for other in others if other.place == trace.place]
+        stock = self.stocks.before(step)
+        if not isinstance(stock, MillingStock):
+            return not others
+        boxes = [trial.box for other in others for trial in other.trials]
+        return all(
+            is_remembered_alike(trial, stock.next_move - trial.before.next)
+            and not any(do_overlap(trial.box, box) for box in boxes)
+            for trial in trace.trials
+        )
+
+    def repeat(self, step: Workingstep, trace: Trace) -> None:
+        """Change the stock as a workingstep has changed a copy of it."""
+        self._left_out |= trace.left_out
+        stock, change = self.stocks.before(step), trace.change
+        if trace.trial is not None and isinstance(stock, MillingStock):
+            numbers = self._numbers.setdefault(self.stocks.place(step), {})
+            numbers[trace.trial.before.next] = stock.next_move
+            change = renumbered(trace.trial, stock.next_move, numbers)
+        self.stocks.leave(step, change)
+
+    def _leave(self, step: Workingstep, meeting: Meeting) -> None:
+        """What the next workingstep finds, and what is told of it."""
+        self.stocks.leave(step, meeting.change)
+        trials = self._trace.trials
+        if meeting.trial is not None and meeting.trial not in trials:
+            trials = (*trials, meeting.trial)
+        self._trace = replace(
+            self._trace, change=meeting.change, trial=meeting.trial, trials=trials
+        )
 
     def _leave_out(self, step: Workingstep) -> None:
         """Without its path, what comes after it on its features would meet too much."""
-        self._left_out |= {int(feature): step.id for feature in step.features}
+        without = {int(feature): step.id for feature in step.features}
+        self._left_out |= without
+        self._trace = replace(self._trace, left_out=without)
 
     def _path(self, step: Workingstep) -> ToolPath:
         """Path of a workingstep as programmed."""
@@ -150,25 +226,30 @@ class MeasuredCuts:
         return workingstep_path(self.program, step)
 
     def _run(self, path: ToolPath, pace: Pace) -> Run:
-        """What the axes run; feeds are looked up once a path."""
+        """What the axes run; each feed is looked up once."""
         is_lathe = path.is_turning or self.machine.kind is MachineKind.LATHE
         kind = PostMachine.LATHE if is_lathe else PostMachine.MILL
         known: dict[Feed, Conditions] = {}
 
         def look_up(feed: Feed) -> Conditions:
+            with self.program.using(feed.technology):
+                return conditions(self.program, feed, path.tool_ref, kind)
+
+        at_pace = paced(look_up, pace)
+
+        def known_at_pace(feed: Feed) -> Conditions:
             if feed not in known:
-                with self.program.using(feed.technology):
-                    known[feed] = conditions(self.program, feed, path.tool_ref, kind)
+                known[feed] = at_pace(feed)
             return known[feed]
 
         with self.program.using(path.operation_ref):
-            return run_of(path, paced(look_up, pace), self.machine.spindle)
+            return run_of(path, known_at_pace, self.machine.spindle)
 
     def _see(self, step: Workingstep, path: ToolPath, cut: Cut, *, passes: int) -> _Seen:
         """Try a path in the stock that the workingstep finds."""
         run = self._run(path, Pace(technology=step.technology_ref))
-        stock = deepcopy(self._found)
-        met, why = met_by(self.program, step, run, stock)
+        meeting = met_by(self.program, step, run, self._found)
+        met = meeting.met
         weighted, air = 0.0, 0.0
         if met is not None:
             # Levels of a mill are equal, however deep they were asked to be.
@@ -180,9 +261,15 @@ class MeasuredCuts:
             weighted /= section * ratio**-self.kienzle.m_c
             air = _air_share(run, met, follows(run, step.technology_ref))
         self._seen[passes] = seen = _Seen(
-            path=path, cut=cut, passes=passes, weighted=weighted, air=air, stock=stock, why=why
+            path=path,
+            run=run,
+            cut=cut,
+            passes=passes,
+            weighted=weighted,
+            air=air,
+            meeting=meeting,
         )
-        self.stocks.leave(step, stock)
+        self._leave(step, meeting)
         return seen
 
     def _engaged(self, step: Workingstep, cut: Cut, met: Met, run: Run, *, depth: float) -> Cut:
@@ -224,13 +311,15 @@ class MeasuredCuts:
     def _run_through(self, step: Workingstep, seen: _Seen, *, feed: float, speed: float) -> Cut:
         """The same, with the motion of the axes."""
         cut, given = seen.cut, seen.cut.programmed
-        pace = Pace(technology=step.technology_ref, feed=feed, speed=speed)
-        run = self._run(seen.path, pace)
+        run = seen.run
+        if (feed, speed) != (1.0, 1.0):
+            pace = Pace(technology=step.technology_ref, feed=feed, speed=speed)
+            run = self._run(seen.path, pace)
         seconds = run.segments.length / run.segments.speed
         fed = float(seconds[follows(run, step.technology_ref)].sum())
         rest = max(0.0, duration(run, self.control, self.limits) - fed)
         length = fed * given.feed * feed * cut.tool.teeth * given.speed * speed
-        known = not seen.why and length > 0.0
+        known = not seen.meeting.why and length > 0.0
         return replace(
             cut,
             length=length / seen.passes,

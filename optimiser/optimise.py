@@ -75,14 +75,17 @@ def optimise(
     advices = []
     cuts = task.source(program, machine, material.material)
     last = max((step.index for step in program.workingsteps if selected(step)), default=-1)
-    for step in program.workingsteps[: last + 1]:
+
+    def do(step: Workingstep) -> tuple[Advice | None, list[Finding]]:
         if not selected(step):
             cuts.leave_out(step)
-            continue
+            return None, []
         with program.using(step.operation_ref):
-            advice, found = advise(
-                program, step, cuts, machine=machine, material=material, task=task
-            )
+            return advise(program, step, cuts, machine=machine, material=material, task=task)
+
+    for advice, found in cuts.each(program.workingsteps[: last + 1], do):
+        if advice is None:
+            continue
         advices.append(advice)
         progress()
         # Workingsteps that share a tool are told the same of it.

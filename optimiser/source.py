@@ -1,11 +1,12 @@
 """Where the optimiser takes its cuts from: the real tool paths, or the features."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from typing import Protocol
 
 from optimiser.cut import Cut
 from optimiser.estimated import Estimates
 from optimiser.problem import Setting
+from optimiser.side_by_side import Result
 from simulator.spec import Machine, Material
 from stepnc_model.errors import Finding
 from stepnc_model.program import Program, Workingstep
@@ -26,6 +27,12 @@ class CutSource(Protocol):
         """Go past a workingstep that is not advised but is run."""
         ...
 
+    def each(
+        self, steps: Sequence[Workingstep], do: Callable[[Workingstep], Result]
+    ) -> Iterator[Result]:
+        """Results of workingsteps in their order, each of which asks for its cuts."""
+        ...
+
 
 Source = Callable[[Program, Machine, Material], CutSource]
 """what makes the source of a program's cuts"""
@@ -33,7 +40,7 @@ Source = Callable[[Program, Machine, Material], CutSource]
 
 def along_paths(program: Program, machine: Machine, material: Material) -> CutSource:
     """Cuts as the real tool path makes them in the stock that is left, timed by the machine."""
-    from optimiser.measured import MeasuredCuts  # noqa: PLC0415 (numba takes a second)
+    from optimiser.measured import MeasuredCuts  # noqa: PLC0415 (numpy)
 
     return MeasuredCuts(program, machine, material.kienzle)
 

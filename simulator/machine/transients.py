@@ -11,15 +11,14 @@ References
 .. [1] K. Ogata, "Modern Control Engineering", 5th ed., 2010, ch. 5: overshoot of a step,
    ``M = exp(−π·ζ/√(1 − ζ²))``.
 """
-# mypy: disable-error-code="untyped-decorator, no-any-return"
 
 from dataclasses import dataclass
 from math import e, log, pi, sqrt
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from simulator.kernels.kernel import entry
 from simulator.motion.segments import Floats
 from simulator.physics.domain import require_not_negative, require_positive, require_teeth
 
@@ -115,23 +114,22 @@ class Follower:
             self._last = float(load[0])
             # At rest a step leaves the state as it is.
             self._held = -self._last / self._pole
-        held = _recursion(load, self._weights, self._held, self._last)
+        held = np.empty(len(load) + 1, np.complex128)
+        held[0] = self._held
+        _follow(load, np.array(self._weights, np.complex128), self._last, held)
         self._held, self._last = complex(held[-1]), float(load[-1])
-        return np.asarray((self._gain * held).real)
+        return np.asarray((self._gain * held[1:]).real)
 
 
-@njit(cache=True)
-def _recursion(
-    load: Floats, weights: tuple[complex, complex, complex], held: complex, last: float
-) -> NDArray[np.complex128]:
-    """State at each sample, from the state and the load before."""
-    decay, before, now = weights
-    states = np.empty(len(load), np.complex128)
+@entry
+def _follow(
+    load: Floats, weights: NDArray[np.complex128], last: float, states: NDArray[np.complex128]
+) -> None:
+    """Write the state after each sample; the first one and the load before are given."""
+    decay, before, now = weights[0], weights[1], weights[2]
     for row in range(len(load)):
-        held = decay * held + before * last + now * load[row]
+        states[row + 1] = decay * states[row] + before * last + now * load[row]
         last = load[row]
-        states[row] = held
-    return states
 
 
 def _weights(step: complex, interval: float) -> tuple[complex, complex, complex]:

@@ -19,7 +19,7 @@ import numpy as np
 from simulator.motion.chain import Chain
 from simulator.motion.motion import AxisLimits, Kinematics, Motion
 from simulator.motion.moving_average import averaged, states_at_ends
-from simulator.motion.path_limits import is_stop, path_limits
+from simulator.motion.path_limits import PathLimits, is_stop, path_limits
 from simulator.motion.segments import Floats, Ints, Segments
 from simulator.motion.sweep import ends_of_all, swept
 
@@ -62,27 +62,21 @@ class FixedTimeFilter:
         ValueError
             When there is no segment, or a segment's speed has no bound at all.
         """
-        bounds = path_limits(segments, limits)
+        return self.plan_within(segments, path_limits(segments, limits))
+
+    def plan_within(self, segments: Segments, bounds: PathLimits) -> Motion:
+        """The same with the limits along the path, which are those of the axes."""
         rows = np.flatnonzero(segments.length > 0.0)
         if not len(rows):
             return swept(segments, rows, limits=bounds, corner=np.empty(0))
-        moving, speed = segments[rows], bounds.speed[rows]
+        moving, speed = segments, bounds.speed
+        if len(rows) < len(segments):
+            moving, speed = segments[rows], bounds.speed[rows]
         # The path rests for one window at its start, after each stop and at its end.
         rests = np.concatenate(([0], np.flatnonzero(is_stop(moving)) + 1, [len(rows)]))
-        pieces = _pieces(moving, speed, rests=rests, window=self.window)
-        piece = np.arange(len(rows)) + np.searchsorted(rests, np.arange(len(rows)), "right")
-        delay = np.full(len(rows), 0.5 * self.window)
-        delay[rests[1:] - 1] = self.window
-        begin = np.zeros(len(segments))
-        begin[rows] = pieces.time[piece]
-        ends = pieces.time[piece + 1] + delay
+        pieces = Pieces(segments=moving, speed=speed, rests=rests, window=self.window)
         return FilteredMotion(
-            filter=self,
-            segments=segments,
-            speed=bounds.speed,
-            begin=begin,
-            ends=ends_of_all(len(segments), rows, ends),
-            pieces=pieces,
+            filter=self, segments=segments, speed=bounds.speed, rows=rows, pieces=pieces
         )
 
 
@@ -90,23 +84,41 @@ class FixedTimeFilter:
 class Pieces:
     """K lines, arcs and rests of the path before the filter, each at constant speed."""
 
-    time: Floats
-    """(K+1,) s at which they begin and the last one ends"""
-    start: Floats
-    """(K, 3) mm"""
-    velocity: Floats
-    """(K, 3, 3) mm/s where they start, in rows as in :mod:`simulator.motion.moving_average`"""
-    rate: Floats
-    """(K,) rad/s at which the velocity turns"""
+    segments: Segments
+    """all with length"""
+    speed: Floats
+    """mm/s, of each segment"""
+    rests: Ints
+    """rows of segments before which the path rests, and their number"""
+    window: float
+    """s of a rest"""
+
+    @cached_property
+    def time(self) -> Floats:
+        """(K+1,) s at which pieces begin and the last one ends."""
+        times = np.insert(self.segments.length / self.speed, self.rests, self.window)
+        return np.append(0.0, np.cumsum(times)) - self.window
 
     @cached_property
     def columns(self) -> tuple[Floats, Floats, Floats, Floats, Floats]:
-        """What the averages need."""
-        ends = states_at_ends(self.time, self.velocity, self.rate)
-        return self.time, self.start, self.velocity, self.rate, ends
+        """What the averages need, as :func:`simulator.motion.moving_average.averaged` says."""
+        segments, speed, rests = self.segments, self.speed, self.rests
+        rows, zero = np.arange(len(segments)), np.zeros(len(segments))
+        turning = segments.turn * speed / segments.length
+        along = segments.direction(rows, zero) * speed[:, None]
+        spin = np.where(turning[:, None] == 0.0, 0.0, along)
+        spin[rows, segments.normal] = 0.0
+        # The change of direction per length, times v², is the cross part times the rate.
+        cross = segments.curvature(rows, zero) * (speed**2)[:, None]
+        np.divide(cross, turning[:, None], out=cross, where=turning[:, None] != 0.0)
+        moving = np.stack((along - spin, spin, cross), axis=1)
+        at_rest = np.concatenate((segments.start[:1], segments.end[rests[1:] - 1]))
+        start = np.insert(segments.start, rests, at_rest, axis=0)
+        velocity, rate = np.insert(moving, rests, 0.0, axis=0), np.insert(turning, rests, 0.0)
+        return self.time, start, velocity, rate, states_at_ends(self.time, velocity, rate)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class FilteredMotion:
     """N segments under a filter; a motion.
 
@@ -117,16 +129,36 @@ class FilteredMotion:
     segments: Segments
     speed: Floats
     """(N,) mm/s before the filter"""
-    begin: Floats
-    """(N,) s at which the path before the filter enters a segment that has length"""
-    ends: Floats
-    """(N,) s at which each segment ends: half a window later, or a whole one before a stop"""
+    rows: Ints
+    """those that have length"""
     pieces: Pieces
+
+    @cached_property
+    def _piece(self) -> Ints:
+        """Piece of each segment that has length."""
+        order = np.arange(len(self.rows))
+        return order + np.searchsorted(self.pieces.rests, order, "right")
+
+    @cached_property
+    def begin(self) -> Floats:
+        """(N,) s at which the path before the filter enters a segment that has length."""
+        begin = np.zeros(len(self.segments))
+        begin[self.rows] = self.pieces.time[self._piece]
+        return begin
+
+    @cached_property
+    def ends(self) -> Floats:
+        """(N,) s at which each segment ends: half a window later, or a whole before a stop."""
+        window = self.filter.window
+        delay = np.full(len(self.rows), 0.5 * window)
+        delay[self.pieces.rests[1:] - 1] = window
+        ends = self.pieces.time[self._piece + 1] + delay
+        return ends_of_all(len(self.segments), self.rows, ends)
 
     @property
     def duration(self) -> float:
-        """Time of the whole stretch, s."""
-        return float(self.ends[-1])
+        """Time of the whole stretch, s: up to the end of the last rest."""
+        return float(self.pieces.time[-2] + self.filter.window)
 
     @property
     def knots(self) -> Floats:
@@ -176,16 +208,17 @@ class FilterWithinLimits:
             When there is no segment, a segment's speed has no bound at all, or no axis limits
             acceleration.
         """
-        speed = path_limits(segments, limits).speed
+        bound = path_limits(segments, limits)
         moves = np.flatnonzero(np.diff(segments.is_rapid)) + 1
         bounds = [0, *moves.tolist(), len(segments)]
         motions = []
         for begin, end in pairwise(bounds):
             run = segments[begin:end]
-            most = float(speed[begin:end].max())
+            within = bound[begin:end]
+            most = float(within.speed.max())
             is_rapid = bool(run.is_rapid[0])
             change = limits.rapid if is_rapid else np.full(3, 2.0 * most)
-            motions.append(shortest_filter(limits, change).plan(run, limits))
+            motions.append(shortest_filter(limits, change).plan_within(run, within))
         return motions[0] if len(motions) == 1 else Chain(motions=motions)
 
 
@@ -215,24 +248,3 @@ def shortest_filter(limits: AxisLimits, change: Floats) -> FixedTimeFilter:
     first = float(np.maximum(ramps, np.sqrt(areas)).max())
     second = min(first, float(areas.max()) / first) or SECOND_SHARE * first
     return FixedTimeFilter(first=first, second=second)
-
-
-def _pieces(segments: Segments, speed: Floats, *, rests: Ints, window: float) -> Pieces:
-    """Pieces of segments with length, with rests before some rows."""
-    rows, zero = np.arange(len(segments)), np.zeros(len(segments))
-    rate = segments.turn * speed / segments.length
-    along = segments.direction(rows, zero) * speed[:, None]
-    spin = np.where(rate[:, None] == 0.0, 0.0, along)
-    spin[rows, segments.normal] = 0.0
-    # The change of direction per length, times v², is the cross part times the rate.
-    cross = segments.curvature(rows, zero) * (speed**2)[:, None]
-    np.divide(cross, rate[:, None], out=cross, where=rate[:, None] != 0.0)
-    velocity = np.stack((along - spin, spin, cross), axis=1)
-    at_rest = np.concatenate((segments.start[:1], segments.end[rests[1:] - 1]))
-    times = np.insert(segments.length / speed, rests, window)
-    return Pieces(
-        time=np.append(0.0, np.cumsum(times)) - window,
-        start=np.insert(segments.start, rests, at_rest, axis=0),
-        velocity=np.insert(velocity, rests, 0.0, axis=0),
-        rate=np.insert(rate, rests, 0.0),
-    )

@@ -10,13 +10,11 @@ The functions c_k are those of Stumpff: they integrate a turning velocity withou
 its rate, so that flat arcs and lines lose no digits.
 """
 
-# numba carries no types.
-
 from math import cos, sin
 
 import numpy as np
-from numba import njit
 
+from simulator.kernels.kernel import entry, kernel
 from simulator.motion.segments import Floats, Ints
 
 SERIES_BELOW = 0.5
@@ -32,7 +30,6 @@ WAY, ONCE, TWICE = 0, 1, 2
 """rows of a state: position from the origin, its integral, the integral of that"""
 
 
-@njit(cache=True)
 def states_at_ends(time: Floats, velocity: Floats, rate: Floats) -> Floats:
     """What each piece adds when all of it is passed.
 
@@ -47,12 +44,17 @@ def states_at_ends(time: Floats, velocity: Floats, rate: Floats) -> Floats:
         State at the end of each piece, with its start as origin, in rows as above.
     """
     ends = np.zeros((len(rate), 3, 3))
-    for now in range(len(rate)):
-        _advance(ends[now], velocity[now], rate[now], time[now + 1] - time[now], ends[now])
+    _find_ends(time, velocity, rate, ends)
     return ends
 
 
-@njit(cache=True)
+@entry
+def _find_ends(time: Floats, velocity: Floats, rate: Floats, ends: Floats) -> None:
+    """Write the states at the ends, which begin as zeros."""
+    for now in range(len(rate)):
+        _advance(ends[now], velocity[now], rate[now], time[now + 1] - time[now], ends[now])
+
+
 def averaged(
     begin: Floats,
     piece: Ints,
@@ -80,16 +82,30 @@ def averaged(
     (3, M, 3) array
         Acceleration, velocity and position in mm/s², mm/s and mm.
     """
-    time, start, velocity, rate, ends = pieces
     result = np.zeros((3, len(begin), 3))
-    state, there, leg = np.zeros((3, 3)), np.zeros((3, 3)), np.zeros((3, 3))
-    origin = np.zeros(3)
+    _average(begin, piece, pieces, (first, second), np.zeros((10, 3)), result)
+    return result
+
+
+@entry
+def _average(
+    begin: Floats,
+    piece: Ints,
+    pieces: tuple[Floats, Floats, Floats, Floats, Floats],
+    times: tuple[float, float],
+    room: Floats,
+    result: Floats,
+) -> None:
+    """The same, added to the last argument; room has (10, 3) numbers to work with."""
+    time, start, velocity, rate, ends = pieces
+    first, second = times
+    state, there, leg, origin = room[:3], room[3:6], room[6:9], room[9]
     taps = ((second, -1.0), (first, -1.0), (first + second, 1.0))
     scale = 1.0 / (first * second)
     for row in range(len(begin)):
         now = piece[row]
         passed = begin[row] - time[now]
-        state.fill(0.0)
+        state[:] = 0.0
         _enter(velocity, now, 0.0, leg)
         _advance(state, leg, rate[now], passed, there)
         for axis in range(3):
@@ -116,10 +132,9 @@ def averaged(
                     result[level, row, axis] += sign * scale * there[level, axis]
         for axis in range(3):
             result[TWICE, row, axis] += origin[axis]
-    return result
 
 
-@njit(cache=True)
+@kernel
 def _pass(state: Floats, ends: Floats, now: int, time: float) -> None:
     """Integrals after a whole piece, in place."""
     for axis in range(3):
@@ -128,7 +143,7 @@ def _pass(state: Floats, ends: Floats, now: int, time: float) -> None:
         state[ONCE, axis] += way * time + ends[now, ONCE, axis]
 
 
-@njit(cache=True)
+@kernel
 def _enter(velocity: Floats, now: int, angle: float, leg: Floats) -> None:
     """Velocity on a piece after its turning part has turned by an angle."""
     cosine, sine = cos(angle), sin(angle)
@@ -139,7 +154,7 @@ def _enter(velocity: Floats, now: int, angle: float, leg: Floats) -> None:
         leg[CROSS, axis] = cosine * cross - sine * spin
 
 
-@njit(cache=True)
+@kernel
 def _advance(state: Floats, leg: Floats, rate: float, time: float, there: Floats) -> None:
     """State after a time on a leg, written to the last argument, which may be the first."""
     angle = rate * time
@@ -160,7 +175,7 @@ def _advance(state: Floats, leg: Floats, rate: float, time: float, there: Floats
         there[WAY, axis] = way + time * (stay + c_1 * spin + angle * c_2 * cross)
 
 
-@njit(cache=True)
+@kernel
 def _stumpff(angle: float) -> tuple[float, float, float, float]:
     """c_1 to c_4 of the squared angle: ``c_k = 1/k! − x²/(k+2)! + x⁴/(k+4)! − …``."""
     square = angle * angle

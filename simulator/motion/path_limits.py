@@ -38,6 +38,10 @@ class PathLimits:
     acceleration: Floats
     """(N,) mm/s²; infinite where no axis limits it"""
 
+    def __getitem__(self, rows: slice) -> "PathLimits":
+        """Those of some of the segments."""
+        return PathLimits(speed=self.speed[rows], acceleration=self.acceleration[rows])
+
 
 def path_limits(segments: Segments, limits: AxisLimits) -> PathLimits:
     """Speed and acceleration along the path within those of the axes.
@@ -155,4 +159,5 @@ def goes_on(segments: Segments) -> Bools:
 
 def is_stop(segments: Segments) -> Bools:
     """(N−1,) whether a continuous control stops: before, after and between rapids."""
-    return (segments.is_rapid[1:] | segments.is_rapid[:-1]) & ~goes_on(segments)
+    rapid: Bools = segments.is_rapid[1:] | segments.is_rapid[:-1]
+    return rapid & ~goes_on(segments) if rapid.any() else rapid

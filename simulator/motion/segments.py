@@ -68,17 +68,10 @@ class Segments:
         return len(self.turn)
 
     def __getitem__(self, rows: slice | Ints | Bools) -> "Segments":
-        """Some of the rows."""
-        return Segments(
-            start=self.start[rows],
-            end=self.end[rows],
-            speed=self.speed[rows],
-            is_rapid=self.is_rapid[rows],
-            centre=self.centre[rows],
-            turn=self.turn[rows],
-            normal=self.normal[rows],
-            block=self.block[rows],
-        )
+        """Some of the rows, which need no check again, with what is known of them."""
+        part = object.__new__(Segments)
+        vars(part).update((name, column[rows]) for name, column in vars(self).items())
+        return part
 
     @cached_property
     def length(self) -> Floats:

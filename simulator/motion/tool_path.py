@@ -10,6 +10,7 @@ to the path are not part of it. Units mm, s, rev/s.
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from math import inf, pi
+from typing import NamedTuple
 
 import numpy as np
 
@@ -85,8 +86,7 @@ class Pace:
     """of the spindle speed"""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Row:
+class _Row(NamedTuple):
     """One move with what holds."""
 
     start: Point
@@ -188,6 +188,10 @@ class _Collector:
         self.ramp = spindle.acceleration or inf
         self.fastest = spindle.max_speed or inf
         self.at = path.start
+        self.feed: Feed | None = None
+        """of the last cut"""
+        self.found: Conditions | None = None
+        """that hold at this feed"""
         self.speed: float | None = None
         """rev/s that the spindle was told, signed; None: not yet, or it follows the radius"""
         self.asked: Spin | None = None
@@ -227,9 +231,12 @@ class _Collector:
     def _move(self, move: Move) -> None:
         found = None
         if move.feed is not None:
-            found = self.look_up(move.feed)
+            # Most moves have the very feed of the one before.
+            if move.feed is not self.feed or self.found is None:
+                self.feed, self.found = move.feed, self.look_up(move.feed)
+            found = self.found
             self._take(found)
-        self.rows.append(_Row(start=self.at, move=move, found=found))
+        self.rows.append(_Row(self.at, move, found))
         self.at = move.end
 
     def _take(self, found: Conditions) -> None:

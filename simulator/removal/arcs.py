@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from simulator.kernels.kernel import kernel
 from simulator.motion.segments import Floats
-from simulator.removal.kernels import kernel
 from simulator.removal.profile import Profile, is_plain, radius_at
 from simulator.removal.way import LEVEL, Way, arc_distance, way_between
 from simulator.removal.zmap import Grid
@@ -53,7 +53,6 @@ class Intervals(NamedTuple):
     """(MOST_INTERVALS, 2) rad"""
 
 
-@kernel
 def intervals() -> Intervals:
     """Room for the work on one circle."""
     return Intervals(np.empty(16), np.empty((MOST_INTERVALS, 2)), np.empty((MOST_INTERVALS, 2)))

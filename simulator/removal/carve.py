@@ -12,8 +12,8 @@ ball, bull-nose, cone and taper on a helix) runs on chords that leave the arc by
 from math import ceil, floor, hypot, inf, sqrt
 from typing import NamedTuple
 
+from simulator.kernels.kernel import kernel
 from simulator.motion.segments import Floats
-from simulator.removal.kernels import kernel
 from simulator.removal.profile import Profile, is_plain, rise, steepness
 from simulator.removal.way import (
     LEAST,
@@ -101,6 +101,8 @@ def carve_part(
 @kernel
 def _range(low: float, high: float, origin: float, size: float, count: int) -> tuple[int, int]:
     """First cell and the one after the last whose middles lie between two coordinates."""
+    if low > high:
+        return 0, 0
     first = ceil((low - origin - _NUDGE) / size - 0.5)
     last = floor((high - origin - _NUDGE) / size - 0.5)
     return max(first, 0), min(last + 1, count)

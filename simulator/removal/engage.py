@@ -41,15 +41,14 @@ from simulator.removal.march import (
     SPOT_Z,
     STATION,
     VOLUME,
-    March,
-    Task,
     march,
-    rows_of,
 )
 from simulator.removal.profile import Profile, cylinder, profile_of
 from simulator.removal.rim import past
 from simulator.removal.ring import Tool
 from simulator.removal.stations import CutKind, Stations
+from simulator.removal.task import March, Task, desk_for, rows_of
+from simulator.removal.trial import Patch, Trial, box_of, moves_of, patch_of, put_back
 from simulator.removal.zmap import ZMap, cell_size, zmap_of
 from stepnc_model.toolpath.job import Stock
 
@@ -130,17 +129,43 @@ class MillingStock:
         _windowed(lines, WINDOW * self.map.cell)
         return _stations(lines, cutter)
 
+    def tried(
+        self, segments: Segments, cutter: Cutter, *, is_clockwise: bool = True
+    ) -> tuple[Stations, Trial]:
+        """As :meth:`cut`, but on trial: the stock stays, and what it would become is told."""
+        radius = profile_of(cutter, reach=self.map.grid.top - self.map.grid.bottom).radius
+        where = box_of(self.map.grid, segments, radius), moves_of(self._past, segments)
+        before, volume = patch_of(self.map.grid, self._past, *where), self.volume
+        kept = [self.collisions, self.holder_collisions, self.shank_collisions]
+        counts = list(map(len, kept))
+        stations = self.cut(segments, cutter, is_clockwise=is_clockwise)
+        after = patch_of(self.map.grid, self._past, *where)
+        put_back(before, self.map.grid, self._past)
+        self.volume = volume
+        for each, count in zip(kept, counts, strict=True):
+            del each[count:]
+        return stations, Trial(before=before, after=after)
+
+    @property
+    def next_move(self) -> int:
+        """Number of the next move that cuts."""
+        return int(self._past.next[0])
+
+    def take(self, patch: Patch) -> None:
+        """Become what a trial made of this very stock."""
+        put_back(patch, self.map.grid, self._past)
+
     def _chunk(self, segments: Segments, tool: Tool, how: March, first: int) -> list[Floats]:
         """March along some rows."""
-        task = Task(self.map.grid, self._past, tool, how)
+        task = Task(self.map.grid, self._past, tool, how, desk_for(tool))
         rows, lengths = rows_of(segments), segments.length
         out = np.empty((_LINES, COLUMNS))
         found = np.zeros((len(segments), FINDINGS))
         parts: list[NDArray[np.float64]] = []
-        row = 0
-        while row < len(segments):
-            row, count = march(task, rows, lengths, row, out, found)
-            parts.append(out[:count].copy())
+        reached = np.zeros(2, dtype=np.int64)
+        while reached[0] < len(segments):
+            march(task, rows, lengths, out, found, reached)
+            parts.append(out[: reached[1]].copy())
             parts[-1][:, ROW] += first
         self.volume += float(found[:, VOLUME].sum())
         self._note(segments, found, first)

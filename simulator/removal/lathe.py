@@ -15,6 +15,7 @@ Units mm and rad. x is the radius, z the spindle axis, away from the chuck.
 """
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from math import ceil, hypot, inf, pi, sin, tan
 
 import numpy as np
@@ -38,6 +39,16 @@ MOST_CELLS = 1_000_000
 
 ON_AXIS = 1e-3
 """mm of radius at which a drill still stands on the axis"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Bar:
+    """Radii of a bar."""
+
+    outer: Floats
+    """(C,) mm"""
+    inner: Floats
+    """(C,) mm"""
 
 
 class TurningStock:
@@ -131,6 +142,24 @@ class TurningStock:
         removed = self._drilled(segments, windows, shape)
         ratio = np.full(len(removed.area), sin(0.5 * shape.point_angle))
         return _stations(removed, CutKind.DRILLING, ratio)
+
+    def tried(
+        self, segments: Segments, shape: Cutter | Insert, *, is_clockwise: bool = True
+    ) -> tuple[Stations, Bar]:
+        """As :meth:`cut`, but on trial: the bar stays, and what it would become is told."""
+        before, count = (
+            Bar(outer=self.outer.copy(), inner=self.inner.copy()),
+            len(self.collisions),
+        )
+        stations = self.cut(segments, shape, is_clockwise=is_clockwise)
+        after = Bar(outer=self.outer.copy(), inner=self.inner.copy())
+        self.take(before)
+        del self.collisions[count:]
+        return stations, after
+
+    def take(self, bar: Bar) -> None:
+        """Become what a trial made of this very bar."""
+        self.outer[:], self.inner[:] = bar.outer, bar.inner
 
     def _turned(self, segments: Segments, windows: Windows, insert: Insert) -> Removed:
         """What an insert removes."""

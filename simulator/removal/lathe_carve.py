@@ -16,8 +16,8 @@ from math import acos, atan2, ceil, cos, floor, inf, pi, sin, sqrt
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from simulator.kernels.kernel import entry, kernel
 from simulator.motion.segments import Floats
 
 LEAST = 1e-9
@@ -70,7 +70,15 @@ class Way(NamedTuple):
     """angle between them"""
 
 
-@njit(cache=True)
+class Taken(NamedTuple):
+    """What each of M ways removes."""
+
+    areas: Floats
+    """(M,) mm²"""
+    volumes: Floats
+    """(M,) mm³"""
+
+
 def carve(
     surface: Floats, bed: Floats, grid: Grid, body: Body, ways: Floats
 ) -> tuple[Floats, Floats]:
@@ -95,8 +103,22 @@ def carve(
         Volume that it removes.
     """
     areas, volumes = np.zeros(len(ways)), np.zeros(len(ways))
-    tops = _tops(surface)
-    tallest = tops.max()
+    tops = np.empty(ceil(len(surface) / BLOCK))
+    _carve((surface, bed), grid, body, ways, tops, Taken(areas, volumes))
+    return areas, volumes
+
+
+@entry
+def _carve(
+    bar: tuple[Floats, Floats], grid: Grid, body: Body, ways: Floats, tops: Floats, taken: Taken
+) -> None:
+    """The same, added to the last argument; tops has room for one number a block."""
+    (surface, bed), areas, volumes = bar, taken.areas, taken.volumes
+    for block in range(len(tops)):
+        tops[block] = _top(surface, block)
+    tallest = -inf
+    for top in tops:
+        tallest = max(tallest, top)
     for row in range(len(ways)):
         w = ways[row]
         way = Way(w[0], w[1], w[2], w[3], w[4], w[5], w[6], w[7], w[8])
@@ -120,11 +142,9 @@ def carve(
                     surface[index] = reached
                     areas[row] += (old - reached) * grid.cell
                     volumes[row] += pi * abs(old * old - reached * reached) * grid.cell
-            tops[block] = surface[block * BLOCK : (block + 1) * BLOCK].max()
-    return areas, volumes
+            tops[block] = _top(surface, block)
 
 
-@njit(cache=True)
 def bore(
     surface: Floats, bed: Floats, grid: Grid, profile: Floats, tips: Floats
 ) -> tuple[Floats, Floats]:
@@ -147,6 +167,16 @@ def bore(
         As of :func:`carve`.
     """
     areas, volumes = np.zeros(len(tips)), np.zeros(len(tips))
+    _bore(surface, bed, grid, profile, tips, Taken(areas, volumes))
+    return areas, volumes
+
+
+@entry
+def _bore(
+    surface: Floats, bed: Floats, grid: Grid, profile: Floats, tips: Floats, taken: Taken
+) -> None:
+    """The same, added to the last argument."""
+    areas, volumes = taken.areas, taken.volumes
     for row in range(len(tips)):
         for index in range(_cell(grid, tips[row], len(surface)), len(surface)):
             above = _middle(grid, index) - tips[row]
@@ -158,10 +188,9 @@ def bore(
                 surface[index] = reached
                 areas[row] += (old - reached) * grid.cell
                 volumes[row] += pi * abs(old * old - reached * reached) * grid.cell
-    return areas, volumes
 
 
-@njit(cache=True)
+@kernel
 def _radius(profile: Floats, above: float) -> float:
     """Radius of a rotating tool at a height above its tip."""
     radius, cotangent, corner = profile[0], profile[1], profile[2]
@@ -172,35 +201,34 @@ def _radius(profile: Floats, above: float) -> float:
     return radius
 
 
-@njit(cache=True)
-def _tops(surface: Floats) -> Floats:
-    """Greatest height of each block."""
-    count = ceil(len(surface) / BLOCK)
-    tops = np.empty(count)
-    for block in range(count):
-        tops[block] = surface[block * BLOCK : (block + 1) * BLOCK].max()
-    return tops
+@kernel
+def _top(surface: Floats, block: int) -> float:
+    """Greatest height of a block."""
+    top = -inf
+    for index in range(block * BLOCK, min((block + 1) * BLOCK, len(surface))):
+        top = max(top, surface[index])
+    return top
 
 
-@njit(cache=True)
+@kernel
 def _middle(grid: Grid, index: int) -> float:
     """Middle of a cell."""
     return grid.start + (index + 0.5) * grid.cell
 
 
-@njit(cache=True)
+@kernel
 def _cell(grid: Grid, z: float, count: int) -> int:
     """Cell at z, or the nearest one."""
     return int(min(max(floor((z - grid.start) / grid.cell), 0.0), count - 1.0))
 
 
-@njit(cache=True)
+@kernel
 def _reach(height: float, slope: float) -> float:
     """How far an edge goes until it has risen by a height."""
     return height / slope if slope > 0.0 else inf
 
 
-@njit(cache=True)
+@kernel
 def _extent(way: Way) -> tuple[float, float, float]:
     """Least and greatest z and least x of a way."""
     low, high = min(way.start_z, way.end_z), max(way.start_z, way.end_z)
@@ -215,13 +243,13 @@ def _extent(way: Way) -> tuple[float, float, float]:
     return low, high, least
 
 
-@njit(cache=True)
+@kernel
 def _is_passed(way: Way, angle: float) -> bool:
     """Whether an arc has a point at an angle."""
     return bool((angle - way.low) % (2.0 * pi) <= way.span)
 
 
-@njit(cache=True)
+@kernel
 def _height(body: Body, way: Way, z: float) -> float:
     """Least height that the insert reaches over a place."""
     if way.radius > 0.0:
@@ -229,7 +257,7 @@ def _height(body: Body, way: Way, z: float) -> float:
     return _height_of_line(body, way, z)
 
 
-@njit(cache=True)
+@kernel
 def _curve(body: Body, t: float) -> float:
     """Height of the insert's curve over the centre of its nose; t along the axis from there."""
     if t < -body.back_foot - LEAST:
@@ -243,7 +271,7 @@ def _curve(body: Body, t: float) -> float:
     return -sqrt(max(0.0, body.nose**2 - beside**2))
 
 
-@njit(cache=True)
+@kernel
 def _height_of_line(body: Body, way: Way, z: float) -> float:
     """Least height over a place of a line."""
     run, rise = way.end_z - way.start_z, way.end_x - way.start_x
@@ -267,7 +295,7 @@ def _height_of_line(body: Body, way: Way, z: float) -> float:
     return way.end_x + _curve(body, z - way.end_z)
 
 
-@njit(cache=True)
+@kernel
 def _height_of_arc(body: Body, way: Way, z: float) -> float:
     """Least height over a place of an arc: of all stationary points and both ends."""
     least = min(
@@ -286,7 +314,7 @@ def _height_of_arc(body: Body, way: Way, z: float) -> float:
     return least
 
 
-@njit(cache=True)
+@kernel
 def _at(body: Body, way: Way, angle: float, z: float) -> float:
     """Height over a place with the nose at an angle of an arc; none beside the arc."""
     if not _is_passed(way, angle):

@@ -9,9 +9,8 @@ are never lost by this: section times length adds up to what left the map. Units
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
-from numpy.typing import NDArray
 
+from simulator.kernels.kernel import entry, kernel
 from simulator.motion.segments import Floats, Ints, Segments
 
 WINDOW = 50
@@ -101,7 +100,9 @@ def grouped(removed: Removed, cell: float) -> Removed:
     windows, length = removed.windows, removed.windows.length
     if len(length) == 0:
         return removed
-    group = _groups(removed.area, removed.volume, length, WINDOW * cell * (1.0 - _ROUNDING))
+    group = np.zeros(len(length), dtype=np.int64)
+    least = WINDOW * cell * (1.0 - _ROUNDING)
+    _number_groups(removed.area, removed.volume, length, least, group)
     first = np.flatnonzero(np.diff(group, prepend=-1))
     whole = np.add.reduceat(length, first)
     whole = np.where(whole > 0.0, whole, 1.0)
@@ -120,10 +121,11 @@ def grouped(removed: Removed, cell: float) -> Removed:
     )
 
 
-@njit(cache=True)
-def _groups(area: Floats, volume: Floats, length: Floats, least: float) -> NDArray[np.int64]:
-    """Number of the group of each stretch, from 0 up."""
-    group = np.zeros(len(area), np.int64)
+@entry
+def _number_groups(
+    area: Floats, volume: Floats, length: Floats, least: float, group: Ints
+) -> None:
+    """Write the number of the group of each stretch, from 0 up; group begins as zeros."""
     total, depth, section = length[0], area[0], volume[0]
     for row in range(1, len(area)):
         is_air = volume[row] == 0.0
@@ -145,10 +147,9 @@ def _groups(area: Floats, volume: Floats, length: Floats, least: float) -> NDArr
         else:
             total, depth, section = length[row], area[row], volume[row]
             group[row] = group[row - 1] + 1
-    return group
 
 
-@njit(cache=True)
+@kernel
 def _alike(one: float, other: float) -> bool:
     """Whether two values are one within the tolerance."""
     return bool(abs(one - other) <= ALIKE * abs(one))

@@ -5,20 +5,18 @@ changes. Units mm and rad.
 """
 
 from math import ceil, hypot, inf, pi
-from typing import NamedTuple
 
 import numpy as np
 
-from simulator.motion.segments import Floats, Segments
+from simulator.kernels.kernel import entry, kernel
+from simulator.motion.segments import Floats, Ints
 from simulator.removal.carve import MEASURE, carve_part
-from simulator.removal.kernels import entry, inlined, kernel
-from simulator.removal.profile import Profile
-from simulator.removal.rim import AREA, ENGAGEMENT, FORGETTING, Past, lip, look
+from simulator.removal.rim import AREA, FORGETTING, Past, lip, look
 from simulator.removal.rim import CONTACT as CONTACT_SEEN
-from simulator.removal.ring import Pose, Tool
+from simulator.removal.ring import Pose
 from simulator.removal.stations import CutKind
+from simulator.removal.task import DEEPEST, Task
 from simulator.removal.way import place
-from simulator.removal.zmap import Grid
 
 STEEP = 0.1
 """horizontal share of a move below which the tool sinks rather than mills"""
@@ -34,9 +32,6 @@ MOST_STRETCHES = 4000
 
 MOST_TURNS = 100.0
 """of one arc"""
-
-DEEPEST = 12
-"""halvings of a stretch"""
 
 INSET = 2e-5
 """mm from the ends of a part at which they are looked at: on a corner the tool's own circle
@@ -71,37 +66,6 @@ FINDINGS = 9
 _AIR, _MILLING, _DRILLING = int(CutKind.AIR), int(CutKind.MILLING), int(CutKind.DRILLING)
 
 
-class March(NamedTuple):
-    """How to march."""
-
-    step: float
-    """mm, longest stretch between two stations"""
-    least: float
-    """mm, shortest stretch"""
-    shank: float
-    """mm above the tip where the cutting edge ends; infinite: never"""
-    coarse: float
-    """mm over which the map's own rim tells more than noise"""
-    shape: Floats
-    """(7,) numbers of the tool's profile"""
-    neck: Profile
-    """of the shank above the edge"""
-    holder: Profile
-    overhang: float
-    """mm above the tip where the holder begins; infinite: there is none"""
-    tip_sine: float
-    """sine of half the point angle"""
-
-
-class Task(NamedTuple):
-    """What cuts what, and how."""
-
-    grid: Grid
-    past: Past
-    tool: Tool
-    how: March
-
-
 Segment = tuple[Floats, float, int]
 """row, length and index of a segment"""
 
@@ -109,22 +73,10 @@ Span = tuple[float, float]
 """shares of its length"""
 
 
-def rows_of(segments: Segments) -> Floats:
-    """(N, 13) start, end, centre, radius, angle of the first arm, turn, normal."""
-    rows = np.arange(len(segments))
-    first = (segments.normal + 1) % 3
-    second = (segments.normal + 2) % 3
-    arm = segments.start - segments.centre
-    angle = np.arctan2(arm[rows, second], arm[rows, first])
-    columns = (segments.start, segments.end, segments.centre)
-    numbers = (segments.radius, angle, segments.turn, segments.normal.astype(np.float64))
-    return np.ascontiguousarray(np.column_stack([*columns, *numbers]))
-
-
 @entry
 def march(
-    task: Task, rows: Floats, lengths: Floats, first: int, out: Floats, found: Floats
-) -> tuple[int, int]:
+    task: Task, rows: Floats, lengths: Floats, out: Floats, found: Floats, reached: Ints
+) -> None:
     """Cut row after row until there is no room for more stations.
 
     Parameters
@@ -133,28 +85,21 @@ def march(
     rows : (N, 13) array
         Of :func:`rows_of`.
     lengths : (N,) array, mm
-    first : int
-        Row to begin with.
     out : (L, COLUMNS) array
         Written from its beginning; L at least ``ROOM_FOR_ROW``.
     found : (N, FINDINGS) array
         Added to.
-
-    Returns
-    -------
-    row : int
-        The next row.
-    count : int
-        Number of stations written.
+    reached : (2,) array of int
+        Row to begin with; becomes the next row, and the number of stations written.
     """
-    count, row = int(np.int64(0)), first
+    count, row = int(np.int64(0)), reached[0]
     while row < len(rows) and count + ROOM_FOR_ROW <= len(out):
         count = _row(task, (rows[row], lengths[row], row), out, count, found[row])
         row += 1
-    return row, count
+    reached[0], reached[1] = row, count
 
 
-@inlined
+@kernel
 def _row(task: Task, segment: Segment, out: Floats, count: int, found: Floats) -> int:
     """Cut one row; gives the number of stations so far."""
     row, length, index = segment
@@ -184,7 +129,7 @@ def _air(out: Floats, count: int, index: int, station: float, length: float) -> 
     return count + 1
 
 
-@inlined
+@kernel
 def _sink(task: Task, segment: Segment, out: Floats, count: int, found: Floats) -> int:
     """Cut a plunge by stretches, or what a tool meets on its way up."""
     row, length, index = segment
@@ -216,7 +161,7 @@ def _sink(task: Task, segment: Segment, out: Floats, count: int, found: Floats) 
     return count
 
 
-@inlined
+@kernel
 def _mill(
     task: Task, segment: Segment, span: Span, out: Floats, count: int, found: Floats
 ) -> int:
@@ -231,7 +176,7 @@ def _mill(
     return _shared(task, out, begin, count, volume)
 
 
-@inlined
+@kernel
 def _leave(past: Past) -> None:
     """Forget where the tool cut last."""
     past.last[0] = np.nan
@@ -251,8 +196,8 @@ def _stations(task: Task, segment: Segment, span: Span, out: Floats, count: int)
     stretches = min(max(1, ceil(whole / task.how.step - 1e-9)), most)
     limit = count + most
     inset = min(INSET / whole, 0.25) * (span[1] - span[0])
-    parts, seen = np.empty(DEEPEST), np.empty((DEEPEST, ENGAGEMENT))
-    last, left = span[0], np.empty(ENGAGEMENT)
+    parts, seen, left = task.desk.parts, task.desk.seen, task.desk.left
+    last = span[0]
     _look(task, row, last + inset, left)
     for stretch in range(stretches):
         parts[0] = span[0] + (span[1] - span[0]) * (stretch + 1) / stretches
@@ -270,12 +215,13 @@ def _stations(task: Task, segment: Segment, span: Span, out: Floats, count: int)
             line = out[count]
             line[ROW], line[STATION], line[KIND] = index, part * length, _MILLING
             line[SECTION] = 0.5 * (left[AREA] + right[AREA])
-            line[AXIAL : DIAMETER + 1] = fuller[1:7]
+            for column in range(1, 7):
+                line[AXIAL - 1 + column] = fuller[column]
             line[LENGTH] = long
             line[EXACT] = left[7] * right[7]
             count += 1
             last = part
-            left[:] = right
+            _copy(right, left, 0)
             top -= 1
     return count
 
@@ -295,10 +241,10 @@ def _look(task: Task, row: Floats, part: float, into: Floats) -> None:
         ahead_x, ahead_y, climb = other[0] - one[0], other[1] - one[1], other[2] - one[2]
     flat = max(hypot(ahead_x, ahead_y), 1e-12)
     pose = Pose(x, y, z, ahead_x / flat, ahead_y / flat, climb / flat)
-    look(task.grid, task.past, task.tool, pose, into)
+    look(task.grid, task.past, task.tool, task.desk.rim, pose, into)
 
 
-@inlined
+@kernel
 def _differs(task: Task, left: Floats, right: Floats, long: float) -> bool:
     """Whether there should be a station between two; what the map says is noise when near."""
     if left[7] * right[7] == 0.0:
@@ -321,7 +267,7 @@ def _cut(task: Task, row: Floats, span: Span, found: Floats) -> float:
         lost = carve_part(
             grid,
             task.how.neck,
-            _raised(row, task.how.shank),
+            _raised(row, task.how.shank, task.desk.raised),
             span,
             int(np.int64(MEASURE)),
             start[0] > inf,
@@ -333,12 +279,12 @@ def _cut(task: Task, row: Floats, span: Span, found: Floats) -> float:
     last[0], last[1], last[2] = end
     if volume > 0.0:
         record = past.records[past.next[0] % FORGETTING]
-        record[:13] = row
+        _copy(row, record, 0)
         record[0], record[1], record[2] = start
         record[3], record[4], record[5] = end
         record[10] = row[10] + span[0] * row[11]
         record[11] = (span[1] - span[0]) * row[11]
-        record[13:] = task.how.shape
+        _copy(task.how.shape, record, 13)
         past.next[0] += 1
         found[VOLUME] += volume
         if depth > found[DEPTH]:
@@ -350,7 +296,7 @@ def _cut(task: Task, row: Floats, span: Span, found: Floats) -> float:
         lost = carve_part(
             grid,
             task.how.holder,
-            _raised(row, task.how.overhang),
+            _raised(row, task.how.overhang, task.desk.raised),
             span,
             int(np.int64(MEASURE)),
             start[0] > inf,
@@ -361,9 +307,16 @@ def _cut(task: Task, row: Floats, span: Span, found: Floats) -> float:
 
 
 @kernel
-def _raised(row: Floats, lift: float) -> Floats:
+def _copy(source: Floats, into: Floats, first: int) -> None:
+    """Copy numbers to a place in other numbers."""
+    for index in range(len(source)):
+        into[first + index] = source[index]
+
+
+@kernel
+def _raised(row: Floats, lift: float, raised: Floats) -> Floats:
     """A row farther up."""
-    raised = row.copy()
+    _copy(row, raised, 0)
     raised[2] += lift
     raised[5] += lift
     raised[8] += lift
@@ -394,6 +347,6 @@ def _shared(task: Task, out: Floats, begin: int, count: int, volume: float) -> i
             line[CHIP] = 2.0 / pi * task.how.tip_sine
             line[DIAMETER] = 2.0 * task.tool.profile.radius
         if kept != index:
-            out[kept] = line
+            _copy(line, out[kept], 0)
         kept += 1
     return kept

@@ -9,8 +9,8 @@ edge the shank is a cylinder as wide as the edge is there. Units mm.
 from math import cos, inf, pi, sin, sqrt, tan
 from typing import NamedTuple
 
+from simulator.kernels.kernel import kernel
 from simulator.removal.cutter import Cutter
-from simulator.removal.kernels import kernel
 
 _STRAIGHT = 1e-9  # rad; a smaller taper is none
 

@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from simulator.kernels.kernel import kernel
 from simulator.motion.segments import Floats, Ints
 from simulator.removal.arcs import (
     RECORD,
@@ -26,13 +27,11 @@ from simulator.removal.arcs import (
     free_by_move,
     free_by_outline,
 )
-from simulator.removal.kernels import kernel
 from simulator.removal.profile import Profile, is_plain, radius_at, rise
 from simulator.removal.ring import (
     MOST_CANDIDATES,
     NEAR,
     ROUND_SAMPLES,
-    SAMPLES,
     Pose,
     Room,
     Tool,
@@ -40,7 +39,6 @@ from simulator.removal.ring import (
     height_at,
     levels,
     read_ring,
-    room_for,
 )
 from simulator.removal.way import LEAST, LEVEL
 from simulator.removal.zmap import OUTSIDE, Grid
@@ -82,7 +80,7 @@ def past() -> Past:
 
 
 @kernel
-def look(grid: Grid, before: Past, tool: Tool, pose: Pose, into: Floats) -> None:
+def look(grid: Grid, before: Past, tool: Tool, work: Room, pose: Pose, into: Floats) -> None:
     """Engagement of a tool at a place, before it cuts there.
 
     Parameters
@@ -90,6 +88,7 @@ def look(grid: Grid, before: Past, tool: Tool, pose: Pose, into: Floats) -> None
     grid : Grid
     before : Past
     tool : Tool
+    work : Room
     pose : Pose
     into : (ENGAGEMENT,) array
         Where the engagement is written.
@@ -97,7 +96,6 @@ def look(grid: Grid, before: Past, tool: Tool, pose: Pose, into: Floats) -> None
     into[:] = 0.0
     into[EXACT] = 1.0
     profile = tool.profile
-    work = room_for(SAMPLES if is_plain(profile) else ROUND_SAMPLES)
     plain, is_known = is_plain(profile), True
     gap = max(grid.dx, grid.dy)
     base = max(pose.z, grid.bottom)

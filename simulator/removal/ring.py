@@ -8,13 +8,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from simulator.kernels.kernel import kernel
 from simulator.motion.segments import Floats, Ints
 from simulator.removal.arcs import (
     Circle,
     Intervals,
     intervals,
 )
-from simulator.removal.kernels import kernel
 from simulator.removal.profile import Profile
 from simulator.removal.way import LEAST
 from simulator.removal.zmap import OUTSIDE, Grid
@@ -77,7 +77,6 @@ class Pose(NamedTuple):
     """rise per mm in the plane"""
 
 
-@kernel
 def room_for(samples: int) -> Room:
     """Room for the work of one station."""
     return Room(

@@ -10,7 +10,7 @@ from enum import IntEnum
 
 import numpy as np
 
-from simulator.motion.segments import Floats, Ints
+from simulator.motion.segments import Bools, Floats, Ints
 
 
 class CutKind(IntEnum):
@@ -63,6 +63,13 @@ class Stations:
 
     def __len__(self) -> int:
         return len(self.segment)
+
+    def engagements(self, rows: Bools, *, digits: int) -> list[list[float]]:
+        """Sections, depths, entry and exit angles of some rows, rounded, each once."""
+        columns = (self.section, self.axial_depth, self.entry_angle, self.exit_angle)
+        met = np.column_stack([column[rows] for column in columns]).round(digits)
+        different: list[list[float]] = np.unique(met, axis=0).tolist()
+        return different
 
 
 def air(segments: Ints, length: Floats) -> Stations:

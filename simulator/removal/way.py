@@ -3,8 +3,8 @@
 from math import acos, atan2, cos, hypot, inf, pi, sin
 from typing import NamedTuple
 
+from simulator.kernels.kernel import kernel
 from simulator.motion.segments import Floats
-from simulator.removal.kernels import kernel
 
 LEAST = 1e-9
 """mm; what is thinner is rounding, and stays"""

@@ -115,4 +115,8 @@ class Course:
 
 
 def _is_same(one: Point, other: Point) -> bool:
-    return all(abs(a - b) < SAME for a, b in zip(one, other, strict=True))
+    return (
+        abs(one[0] - other[0]) < SAME
+        and abs(one[1] - other[1]) < SAME
+        and abs(one[2] - other[2]) < SAME
+    )

@@ -177,7 +177,8 @@ class ToolPath:
 
     def __post_init__(self) -> None:
         for point in (self.start, *(move.end for move in self.moves)):
-            if not all(abs(coordinate) <= FARTHEST for coordinate in point):
+            x, y, z = point
+            if not (abs(x) <= FARTHEST and abs(y) <= FARTHEST and abs(z) <= FARTHEST):
                 shown = ", ".join(f"{coordinate:g}" for coordinate in point)
                 message = f"is not finite, or lies beyond {FARTHEST:g} mm"
                 raise ValueError(f"'{self.id}': position ({shown}) mm {message}")

@@ -47,18 +47,29 @@ def test_what_is_cut_is_gone_for_the_next() -> None:
     step = part.workingsteps[0]
     stocks = ClampedStocks(part, load_machine("paper002"))
     for expected in (18.0 * 300.0 * 3.0, 0.0):
-        met, why = met_by(part, step, straight(*ALONG), stocks.before(step))
-        assert why == ""
-        assert met is not None
-        assert met.volume == pytest.approx(expected, rel=1e-3)
+        found = met_by(part, step, straight(*ALONG), stocks.before(step))
+        assert found.why == ""
+        assert found.met is not None
+        assert found.met.volume == pytest.approx(expected, rel=1e-3)
+        stocks.leave(step, found.change)
 
 
-def test_another_stock_may_be_left() -> None:
-    part = program("paper002")
-    step = part.workingsteps[0]
-    stocks = ClampedStocks(part, load_machine("paper002"))
+@pytest.mark.parametrize("part", ["paper002", "shaft"])
+def test_only_the_path_that_was_left_last_counts(part: str) -> None:
+    mill = part == "paper002"
+    read = program(part)
+    step = read.workingsteps[0]
+    stocks = ClampedStocks(read, load_machine("paper002" if mill else "lathe22"))
+    along = ALONG if mill else ((40.0, 0.0, 9.0), (15.0, 0.0, 0.0), (15.0, 0.0, -60.0))
+    found = met_by(read, step, straight(*along), stocks.before(step))
+    stocks.leave(step, found.change)
     stocks.leave(step, None)
-    assert stocks.before(step) is None
+    again = met_by(read, step, straight(*along), stocks.before(step))
+    stocks.leave(step, again.change)
+    last = met_by(read, step, straight(*along), stocks.before(step))
+    volumes = [each.met.volume for each in (found, again, last) if each.met is not None]
+    assert volumes[0] == volumes[1] > 1.0
+    assert volumes[2] < 1e-6
 
 
 def test_cells_suit_the_smallest_tool_within_reason() -> None:
@@ -80,7 +91,7 @@ def test_a_file_without_a_stock_has_none() -> None:
     part = program("paper002", "0.1,$,$,#13,());", "0.1,$,$,$,());")
     step = part.workingsteps[0]
     stock = ClampedStocks(part, load_machine("paper002")).before(step)
-    assert met_by(part, step, straight(*ALONG), stock) == (None, "no stock is known")
+    assert met_by(part, step, straight(*ALONG), stock).why == "no stock is known"
 
 
 def test_a_stock_without_volume_is_none() -> None:
@@ -95,11 +106,11 @@ def test_what_is_not_modelled_is_said() -> None:
     bar = ClampedStocks(part, lathe).before(thread)
     box = ClampedStocks(mill, load_machine("vmc15")).before(mill.workingsteps[0])
     assert (
-        met_by(part, thread, straight(*ALONG), bar)[1]
+        met_by(part, thread, straight(*ALONG), bar).why
         == "threads and knurls are not cut from the stock"
     )
     roughing = part.workingsteps[0]
-    assert met_by(part, roughing, straight(*ALONG), box)[1] == "an insert does not mill"
+    assert met_by(part, roughing, straight(*ALONG), box).why == "an insert does not mill"
     # A rotating tool beside the axis of a bar.
-    _, why = met_by(mill, mill.workingsteps[0], straight((9, 0, 0), (9, 0, -50)), bar)
+    why = met_by(mill, mill.workingsteps[0], straight((9, 0, 0), (9, 0, -50)), bar).why
     assert "beside its axis" in why

@@ -62,7 +62,7 @@ def test_what_the_workingsteps_remove_is_what_the_stock_lost(
     bracket: tuple[MeasuredCuts, dict[str, Cut]],
 ) -> None:
     source, cuts = bracket
-    (stock,) = source.stocks.stocks.values()
+    stock = source.stocks.before(source.program.workingsteps[-1])
     assert isinstance(stock, MillingStock)
     lost = 156.0 * 96.0 * 42.0 - stock.map.volume
     assert sum(cut.volume or 0.0 for cut in cuts.values()) == pytest.approx(lost, rel=2e-3)
@@ -72,7 +72,7 @@ def test_what_turning_removes_is_what_the_bar_lost(
     shaft: tuple[MeasuredCuts, dict[str, Cut]],
 ) -> None:
     source, cuts = shaft
-    (bar,) = source.stocks.stocks.values()
+    bar = source.stocks.before(source.program.workingsteps[-1])
     assert isinstance(bar, TurningStock)
     lost = pi * 30.0**2 * 152.0 - bar.volume
     assert sum(cut.volume or 0.0 for cut in cuts.values()) == pytest.approx(lost, rel=2e-3)

@@ -1,5 +1,6 @@
 """The best number of passes where a path in other passes is not what the closed form takes."""
 
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 import pytest
@@ -11,6 +12,7 @@ from optimiser.limits import Conditions
 from optimiser.modes import Free
 from optimiser.passes import Asked, Told, best_of
 from optimiser.problem import Setting
+from optimiser.side_by_side import Result
 from optimiser.source import CutSource
 from simulator.library import load_machine, load_material
 from simulator.physics.engagement import full_immersion
@@ -55,6 +57,11 @@ class Ways:
         return replace(cut, length=300.0 * self.factors.get(setting.passes, 1.0))
 
     def leave_out(self, step: Workingstep) -> None:
+        raise NotImplementedError
+
+    def each(
+        self, steps: Sequence[Workingstep], do: Callable[[Workingstep], Result]
+    ) -> Iterator[Result]:
         raise NotImplementedError
 
 

@@ -6,10 +6,12 @@ islands clockwise. Arcs turn through π at most; longer ones are halved on the w
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from itertools import pairwise
 from math import ceil, pi, sqrt
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 from shapely import Polygon
 
@@ -18,6 +20,9 @@ Points = NDArray[np.complex128]
 
 TINY = 1e-9
 """mm; two points nearer than this are one"""
+
+REMEMBERED = 256
+"""results of a function of contours that are kept: levels of a pocket are alike"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,8 +176,14 @@ def vertices(chain: Chain, *, tolerance: float) -> list[complex]:
 
 def shape(loop: Loop, *, tolerance: float) -> Polygon:
     """The area of a loop as a polygon."""
-    points = vertices(loop, tolerance=tolerance)
-    return Polygon([(point.real, point.imag) for point in points])
+    return _shape(tuple(loop), tolerance)
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _shape(loop: Loop, tolerance: float) -> Polygon:
+    """The same of a loop that can be remembered."""
+    points = np.array(vertices(loop, tolerance=tolerance), dtype=complex)
+    return shapely.polygons(np.column_stack((points.real, points.imag)))
 
 
 def moved(chain: Chain, *, by: complex = 0j, turned: complex = 1 + 0j) -> Chain:

@@ -7,6 +7,7 @@ the area is swept whatever the overlap is.
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 from itertools import pairwise
 from math import inf
 
@@ -15,6 +16,7 @@ from shapely import LineString, MultiPolygon, Polygon
 from shapely.geometry.base import BaseGeometry
 
 from stepnc_model.toolpath.milling.contour import (
+    REMEMBERED,
     TINY,
     Chain,
     Loop,
@@ -90,6 +92,14 @@ def rings(
         Outer passes counter-clockwise, passes around islands clockwise. Empty when the cutter
         does not fit in.
     """
+    return _rings(tuple(walls), distance, radius, step)
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _rings(
+    walls: tuple[Loop, ...], distance: float, radius: float, step: float
+) -> tuple[Pass, ...]:
+    """The same of walls that can be remembered."""
     levels = list(_levels(walls, distance, step))
     if not levels:
         return ()

@@ -14,6 +14,7 @@ References
 """
 
 from collections.abc import Iterable, Iterator, Sequence
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -21,6 +22,7 @@ import shapely
 
 from stepnc_model.toolpath.milling.arrays import Edges, crossings, distances
 from stepnc_model.toolpath.milling.contour import (
+    REMEMBERED,
     TINY,
     Chain,
     Edge,
@@ -64,6 +66,12 @@ def erode(loops: Sequence[Loop], distance: float) -> tuple[Loop, ...]:
         The region lies on their left: outer rings counter-clockwise, rings around islands
         clockwise. Empty when the disc is too large.
     """
+    return _eroded(tuple(loops), distance)
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _eroded(loops: tuple[Loop, ...], distance: float) -> tuple[Loop, ...]:
+    """The same of loops that can be remembered."""
     sources = [edge for loop in loops for edge in halved(loop)]
     candidates = [
         edge for loop in loops for edge in _parallels(halved(loop), distance, is_closed=True)

@@ -2,13 +2,14 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from math import inf
 
 import numpy as np
 import shapely
 
 from stepnc_model.toolpath.milling.arrays import Edges, distances
-from stepnc_model.toolpath.milling.contour import Chain, Edge, Loop
+from stepnc_model.toolpath.milling.contour import REMEMBERED, Chain, Edge, Loop
 from stepnc_model.toolpath.milling.cover import area_of
 
 CHORD = 1e-4
@@ -61,6 +62,12 @@ def nowhere(_point: complex) -> float:
 
 def within(loops: Sequence[Loop]) -> Clearance:
     """Room that lies on the left of loops."""
+    return _within(tuple(loops))
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _within(loops: tuple[Loop, ...]) -> Clearance:
+    """The same of loops that can be remembered."""
     edges = Edges.of([edge for loop in loops for edge in loop])
     area = area_of(loops, tolerance=CHORD)
     shapely.prepare(area)

@@ -6,7 +6,7 @@ import pytest
 from simulator.motion.fir import FixedTimeFilter
 from simulator.motion.motion import AxisLimits
 from simulator.motion.moving_average import averaged, states_at_ends
-from simulator.motion.segments import arc, lines
+from simulator.motion.segments import Floats, arc, lines
 
 FIRST, SECOND = 0.08, 0.03
 DELAY = 0.5 * (FIRST + SECOND)
@@ -70,7 +70,7 @@ def test_cutting_an_arc_into_pieces_changes_nothing() -> None:
     velocity = np.zeros((count, 3, 3))
     velocity[:, 1, 0], velocity[:, 1, 1] = -speed * np.sin(angle), speed * np.cos(angle)
     velocity[:, 2, 0], velocity[:, 2, 1] = -speed * np.cos(angle), -speed * np.sin(angle)
-    time = np.arange(count + 1) * step / rate
+    time: Floats = (np.arange(count + 1) * step / rate).astype(np.float64)
     begin = np.linspace(0.0, time[-1] - FIRST - SECOND, 60)
     piece = np.searchsorted(time[1:-1], begin, side="right")
     rates = np.full(count, rate)

@@ -6,8 +6,8 @@ import pytest
 from simulator.motion.segments import lines
 from simulator.removal.cutter import Cutter
 from simulator.removal.engage import MillingStock
-from simulator.removal.march import rows_of
 from simulator.removal.stations import CutKind
+from simulator.removal.task import rows_of
 from stepnc_model.toolpath.job import Stock
 
 BOX = Stock(low=(0.0, 0.0, -12.0), high=(60.0, 40.0, 0.0))

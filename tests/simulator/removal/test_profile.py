@@ -18,14 +18,13 @@ CUTTERS = [
 
 def test_heights_of_each_form() -> None:
     flat, ball, bull, taper, drill = (profile_of(each, reach=30.0) for each in CUTTERS)
-    high = rise.py_func  # type: ignore[attr-defined]
-    assert high(flat, 4.9) == 0.0
-    assert high(ball, 3.0) == pytest.approx(1.0)
-    assert high(bull, 3.0 + 2.0 * sin(0.5)) == pytest.approx(2.0 * (1.0 - cos(0.5)))
+    assert rise(flat, 4.9) == 0.0
+    assert rise(ball, 3.0) == pytest.approx(1.0)
+    assert rise(bull, 3.0 + 2.0 * sin(0.5)) == pytest.approx(2.0 * (1.0 - cos(0.5)))
     assert taper.tangent == pytest.approx(2.0 * cos(0.1))
     assert taper.shoulder == pytest.approx(2.0 * (1.0 - sin(0.1)))
     assert taper.radius == pytest.approx(taper.tangent + (30.0 - taper.shoulder) * tan(0.1))
-    assert high(drill, 2.0) == pytest.approx(2.0 / tan(1.0))
+    assert rise(drill, 2.0) == pytest.approx(2.0 / tan(1.0))
     assert cylinder(5.0) == flat
 
 
@@ -33,9 +32,9 @@ def test_heights_of_each_form() -> None:
 def test_radius_and_height_are_inverse(cutter: Cutter) -> None:
     profile = profile_of(cutter, reach=30.0)
     for height in (0.1, 0.7, 1.9):
-        radius = radius_at.py_func(profile, height)  # type: ignore[attr-defined]
-        high = rise.py_func(profile, radius)  # type: ignore[attr-defined]
-        assert high == pytest.approx(height)
+        radius = radius_at(profile, height)
+        again = rise(profile, radius)
+        assert again == pytest.approx(height)
 
 
 @pytest.mark.parametrize(

@@ -6,18 +6,21 @@ from typing import Any
 import numpy as np
 import pytest
 
-from simulator.removal import ring as kernels
 from simulator.removal.arcs import Circle
-from simulator.removal.ring import MOST_LEVELS, SAMPLES, Pose, Room
+from simulator.removal.ring import (
+    MOST_LEVELS,
+    SAMPLES,
+    Pose,
+    Room,
+    circle_of,
+    height_at,
+    levels,
+    read_ring,
+)
 from simulator.removal.zmap import OUTSIDE, UNCUT, Grid
 
 BOTTOM, LOW, HIGH = -9.0, -5.0, -1.0
 RADIUS, GAP = 4.0, 0.01
-
-
-def interpreted(name: str) -> Any:
-    """A kernel as Python runs it; it is compiled without a wrapper."""
-    return getattr(kernels, name).py_func
 
 
 def step() -> Grid:
@@ -49,7 +52,7 @@ def test_the_ring_begins_on_the_side_that_the_spindle_turns_from(
     """Ahead is +Y, so the left is −X: the low half."""
     work = room()
     circle = Circle(0.0, 0.0, RADIUS, 0.0, 1.0, side)
-    interpreted("read_ring")(step(), work, circle, GAP)
+    read_ring(step(), work, circle, GAP)
     half = SAMPLES // 2
     assert (work.heights[:half] == first).all()
     assert (work.heights[half:] == LOW + HIGH - first).all()
@@ -61,7 +64,7 @@ def test_the_step_shares_the_ring_by_its_angle(distance: float) -> None:
     """A chord at a distance from the axis, across the feed: acos(d/r) of either side."""
     work = room()
     circle = Circle(-distance, 0.0, RADIUS, 1.0, 0.0, 1.0)
-    interpreted("read_ring")(step(), work, circle, GAP)
+    read_ring(step(), work, circle, GAP)
     angle = pi * float((work.heights == HIGH).mean())
     beyond = max(0.0, distance) / (RADIUS + GAP)
     # Only the front half counts: a step behind the axis leaves all of it high.
@@ -71,14 +74,13 @@ def test_the_step_shares_the_ring_by_its_angle(distance: float) -> None:
 
 def test_beside_the_stock_the_ring_is_at_the_bottom_and_nobodys() -> None:
     work = room()
-    interpreted("read_ring")(step(), work, Circle(100.0, 0.0, RADIUS, 1.0, 0.0, 1.0), GAP)
+    read_ring(step(), work, Circle(100.0, 0.0, RADIUS, 1.0, 0.0, 1.0), GAP)
     assert (work.heights == BOTTOM).all()
     assert (work.owner == OUTSIDE).all()
 
 
 def test_the_height_at_an_angle_is_that_of_its_cell() -> None:
     """0 is left of the feed, half π ahead."""
-    height_at = interpreted("height_at")
     circle = Circle(0.0, 0.0, RADIUS, 0.0, 1.0, 1.0)
     assert height_at(step(), circle, 3.0, 0.2) == LOW
     assert height_at(step(), circle, 3.0, pi - 0.2) == HIGH
@@ -88,18 +90,18 @@ def test_the_height_at_an_angle_is_that_of_its_cell() -> None:
 def test_slices_lie_between_the_heights_in_order() -> None:
     work = room()
     work.heights[:] = np.resize([-2.0, -6.0, -4.0, -8.0], SAMPLES)
-    assert interpreted("levels")(work, -7.0) == 3
+    assert levels(work, -7.0) == 3
     assert work.bounds[:4] == pytest.approx([-7.0, -6.0, -4.0, -2.0])
 
 
 def test_many_heights_are_blurred_into_equal_slices() -> None:
     work = room()
     work.heights[:] = np.linspace(-4.0, 0.0, SAMPLES)
-    count = interpreted("levels")(work, -4.0)
+    count = levels(work, -4.0)
     assert count < 0
     assert work.bounds[: 1 - count] == pytest.approx(np.linspace(-4.0, 0.0, 1 - count))
 
 
 def test_a_section_is_where_the_tool_is() -> None:
     pose = Pose(1.0, 2.0, 3.0, 0.6, 0.8, 0.0)
-    assert interpreted("circle_of")(pose, RADIUS, -1.0) == (1.0, 2.0, RADIUS, 0.6, 0.8, -1.0)
+    assert circle_of(pose, RADIUS, -1.0) == (1.0, 2.0, RADIUS, 0.6, 0.8, -1.0)

@@ -1,6 +1,5 @@
 """Places, boxes and distances of lines, arcs and helices against closed forms."""
 
-from collections.abc import Callable
 from math import cos, hypot, inf, isinf, pi, sin
 
 import numpy as np
@@ -9,14 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from simulator.motion.segments import Floats
-from simulator.removal import way as kernels
-from simulator.removal.way import Way
-
-# The kernels are compiled without a wrapper: Python runs what they were compiled of.
-place: Callable[..., tuple[float, float, float]] = kernels.place.py_func  # type: ignore[attr-defined]
-bounds: Callable[..., tuple[float, ...]] = kernels.bounds.py_func  # type: ignore[attr-defined]
-arc_distance: Callable[..., float] = kernels.arc_distance.py_func  # type: ignore[attr-defined]
-helix_height: Callable[..., float] = kernels.helix_height.py_func  # type: ignore[attr-defined]
+from simulator.removal.way import Way, arc_distance, bounds, helix_height, place
 
 RADIUS = 20.0
 CENTRE = (3.0, -4.0, 7.0)

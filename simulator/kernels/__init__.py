@@ -1,0 +1,1 @@
+"""Kernels: inner loops in Python that run as machine code."""

@@ -1,0 +1,38 @@
+"""Machine code of object files in this process, linked by LLVM without numba."""
+
+from functools import cache
+from typing import Any
+
+import llvmlite.binding as llvm
+
+
+def address_of(code: bytes, symbol: str) -> int:
+    """Address of a function of an object file, which stays loaded."""
+    engine = _engine()
+    engine.add_object_file(llvm.ObjectFileRef.from_data(code))
+    engine.finalize_object()
+    return int(engine.get_function_address(symbol))
+
+
+@cache
+def processor() -> tuple[str, str, str]:
+    """Platform, name and features of the processor that machine code is made for."""
+    features = llvm.get_host_cpu_features()
+    return llvm.get_process_triple(), llvm.get_host_cpu_name(), features.flatten()
+
+
+@cache
+def target_machine() -> Any:
+    """What machine code is made for."""
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+    platform, name, features = processor()
+    return llvm.Target.from_triple(platform).create_target_machine(
+        cpu=name, features=features, opt=3, reloc="static", jit=True
+    )
+
+
+@cache
+def _engine() -> Any:
+    """LLVM's linker of this process; what it has loaded lives as long as it does."""
+    return llvm.create_mcjit_compiler(llvm.parse_assembly(""), target_machine())
