@@ -144,16 +144,19 @@ def test_spindle_ramp_has_the_energy_of_the_reference() -> None:
 
 
 def drawn(machine: Machine, course: SpindleCourse, begin: float, end: float) -> float:
-    """Energy of the spindle by adaptive quadrature between the knots of its course, J."""
+    """Energy of the spindle by midpoints between the knots of its course, J.
+
+    A piece of 12 s errs by 0.03 J at most at a corner of the power (3000 W/s), and by as much
+    where it is curved; an adaptive rule does not get to its end at some corners.
+    """
     inside = course.times[(course.times > begin) & (course.times < end)]
-    edges = [begin, *inside.tolist(), end]
-
-    def power(time: float) -> float:
-        at = np.array([time])
-        speed, rise = float(course.speed(at)[0]), float(course.acceleration(at)[0])
-        return float(spindle_power(machine.spindle, speed, rise))
-
-    return float(sum(quad(power, a, b, limit=400)[0] for a, b in pairwise(edges)))
+    whole = 0.0
+    for start, stop in pairwise([begin, *inside.tolist(), end]):
+        step = (stop - start) / 4096
+        times = start + step * (np.arange(4096) + 0.5)
+        power = spindle_power(machine.spindle, course.speed(times), course.acceleration(times))
+        whole += step * float(np.sum(power))
+    return whole
 
 
 @settings(max_examples=25, deadline=None)
