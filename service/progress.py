@@ -1,16 +1,11 @@
 """Progress of what takes longer than a person likes to wait."""
 
 import re
-import threading
 import time
 from collections.abc import Callable
 
 INTERVAL = 2.0
 """s between two messages, and before the first"""
-
-
-PATIENCE = 4.0
-"""s without a word"""
 
 WIDTH = 20
 """characters of a bar"""
@@ -44,25 +39,6 @@ class Ticker:
         if now - self._last >= INTERVAL:
             self._last = now
             self._tell(words())
-
-
-class Patience:
-    """Says once why nothing happens, if nothing does for a while; use it with ``with``."""
-
-    def __init__(self, tell: Callable[[str], None], why: str) -> None:
-        self._timer = threading.Timer(PATIENCE, tell, [why])
-        self._timer.daemon = True
-
-    def __enter__(self) -> "Patience":
-        self._timer.start()
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.end()
-
-    def end(self) -> None:
-        """Something happens."""
-        self._timer.cancel()
 
 
 class Progress:

@@ -16,10 +16,10 @@ from optimiser.source import from_features
 from service.chosen import load_material_named
 from service.control.planned import Planned
 from service.knowledge.corrected import factors_for
-from service.progress import Patience, Ticker, bar
+from service.progress import Ticker, bar
 from service.reading import Tell
 from service.simulation.gathering import require_sense
-from service.simulation.run import COMPILES, place_in
+from service.simulation.run import place_in
 from service.simulation.setup import Prepared
 from simulator.errors import ProgramFault, SimulationError
 from simulator.machine.episode import Episode
@@ -42,9 +42,8 @@ def planned_course(prepared: Prepared, virtual: VirtualMachine, tell: Tell) -> N
     """What the program does at an override of 1."""
     ticker = Ticker(tell)
 
-    def episodes(patience: Patience) -> Iterator[Episode]:
+    def episodes() -> Iterator[Episode]:
         for episode in virtual.run(interpret(prepared.blocks, virtual.machine)):
-            patience.end()
             require_sense(episode)
             if episode.end > MOST_SECONDS:
                 text = f"{episode.end:.3g} s of machining: {MOST_SECONDS:g} s under control"
@@ -53,8 +52,7 @@ def planned_course(prepared: Prepared, virtual: VirtualMachine, tell: Tell) -> N
             yield episode
 
     try:
-        with Patience(tell, COMPILES) as patience:
-            return course_of(episodes(patience), virtual.machine)
+        return course_of(episodes(), virtual.machine)
     except SimulationError as error:
         raise SimulationError(f"{place_in(prepared, virtual)}: {error}") from error
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from service.buckets import Trace
 from service.files import require_place
-from service.progress import Patience, Ticker, bar
+from service.progress import Ticker, bar
 from service.reading import Tell, one_of, silent
 from service.run_file import require_suffix
 from service.simulation.gathering import Gathering, Watcher
@@ -35,8 +35,6 @@ from simulator.motion.motion import ControlModel, axis_limits
 from simulator.spec import Machine, MachineKind, MaterialMatch
 from stepnc_model.errors import Finding, StepNcError, WriteError
 from stepnc_model.units import mm_from_um
-
-COMPILES = "removal is compiled for this machine, once: about half a minute"
 
 MOST_FACTOR = 100.0
 """on k_c; more is a slip"""
@@ -141,9 +139,8 @@ def simulate(
         run.file = TimelineFile(request.output, virtual.workingsteps, program=prepared.name)
     ticker = Ticker(tell)
     try:
-        with run.file or nullcontext(), Patience(tell, COMPILES) as patience:
+        with run.file or nullcontext():
             for episode in virtual.run(interpret(prepared.blocks, virtual.machine)):
-                patience.end()
                 run.add(
                     episode, ticked=lambda: ticker(lambda: _progress(prepared, virtual, run))
                 )
