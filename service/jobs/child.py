@@ -30,6 +30,22 @@ AGAIN = 1.0
 """s between two such questions"""
 
 
+COMPILERS = "simulator.kernels"
+"""logger that says why a first run waits"""
+
+
+class Words(logging.Handler):
+    """What a library says while a job runs, as its progress: the server's log is JSON."""
+
+    def __init__(self, task: Task) -> None:
+        super().__init__()
+        self._task = task
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Tell whoever watches the job."""
+        self._task.progress(0.0, record.getMessage())
+
+
 class Cancelled(BaseException):
     """The runner has asked for the end; what is half done is cleaned away on the way out."""
 
@@ -41,6 +57,7 @@ def main(root: str, knowledge: str, id: str) -> None:
     depot = _insisting(lambda: known_depot(Path(root), knowledge=knowledge))
     job = _insisting(lambda: jobs.get(depot, id))
     task = Task(depot=depot, job=job)
+    _say_as_progress(task)
     state, problem = State.SUCCEEDED, None
     try:
         signal.signal(signal.SIGTERM, _cancel)
@@ -62,6 +79,13 @@ def main(root: str, knowledge: str, id: str) -> None:
         raise
     signal.signal(signal.SIGTERM, signal.SIG_IGN)
     _finish(task, state, problem)
+
+
+def _say_as_progress(task: Task) -> None:
+    """Let compilers of kernels say in the job why it waits."""
+    compilers = logging.getLogger(COMPILERS)
+    compilers.addHandler(Words(task))
+    compilers.propagate = False
 
 
 def _finish(task: Task, state: State, problem: Mapping[str, Any] | None) -> None:

@@ -1,6 +1,7 @@
 """What a job is given: its folder, whom to tell, the program it works on."""
 
 import json
+import logging
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from service.depot.folder import Depot
 from service.depot.ids import new_id
 from service.depot.jobs import Kind, Order
 from service.errors import NotFound
+from service.jobs.child import COMPILERS, Words
 from service.jobs.task import OPTIMISED, RESULT, Task, optimised_name, program_file
 from tests.service.depot.conftest import depot  # noqa: F401 (a fixture)
 
@@ -44,6 +46,19 @@ def test_progress_is_told_now_and_then_and_words_without_a_share_never(
     task._said = 0.0
     task.progress(7.0, "too much")
     assert jobs.get(depot, task.job.id).share == 1.0
+
+
+def test_what_a_library_says_is_progress_and_no_line_of_the_log(
+    depot: Depot,  # noqa: F811
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    task = running(depot)
+    logger = logging.getLogger(f"{COMPILERS}.of_this_test")
+    logger.addHandler(Words(task))
+    logger.propagate = False
+    logger.warning("compiling %s for this machine", "march")
+    assert jobs.get(depot, task.job.id).message == "compiling march for this machine"
+    assert capfd.readouterr().err == ""
 
 
 def test_the_request_is_a_copy(depot: Depot) -> None:  # noqa: F811
