@@ -63,7 +63,10 @@ demo: $(READY)
 	$(BIN)/stepnc kbe table --kb $(DEMO)/knowledge.db -o $(DEMO)/knowledge.html
 	@echo "look at: $(DEMO)/bracket.html, bracket.run.html, bracket.control.html, knowledge.html, bracket.png"
 
+# Kernels are compiled before: workers that make the same ones at once would wait for each other.
 test: $(READY)
+	@$(BIN)/stepnc simulate examples/parts/bracket.stpnc --machine vmc15 --lag >/dev/null
+	@$(BIN)/stepnc simulate examples/parts/shaft.stpnc --machine lathe22 >/dev/null
 	$(BIN)/python -m pytest -n auto --durations=20 --durations-min=1
 
 SEED := $(or $(SEED),$(shell date +%s))

@@ -1,5 +1,6 @@
 """The process of one job, here in ours: however it ends, the job says how."""
 
+import logging
 import signal
 import sqlite3
 from collections.abc import Iterator
@@ -18,11 +19,16 @@ from tests.service.rest.samples import SAMPLE
 
 
 @pytest.fixture(autouse=True)
-def _own_signals() -> Iterator[None]:
+def _as_before() -> Iterator[None]:
+    """What the process of a job sets for itself, and other tests must not meet."""
     before = {each: signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM)}
+    compilers = logging.getLogger(child.COMPILERS)
     yield
     for each, handler in before.items():
         signal.signal(each, handler)
+    logging.disable(logging.NOTSET)
+    compilers.handlers.clear()
+    compilers.propagate = True
 
 
 @pytest.fixture

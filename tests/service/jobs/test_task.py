@@ -11,7 +11,7 @@ from service.depot.folder import Depot
 from service.depot.ids import new_id
 from service.depot.jobs import Kind, Order
 from service.errors import NotFound
-from service.jobs.child import COMPILERS, Words
+from service.jobs.child import Words
 from service.jobs.task import OPTIMISED, RESULT, Task, optimised_name, program_file
 from tests.service.depot.conftest import depot  # noqa: F401 (a fixture)
 
@@ -53,10 +53,8 @@ def test_what_a_library_says_is_progress_and_no_line_of_the_log(
     capfd: pytest.CaptureFixture[str],
 ) -> None:
     task = running(depot)
-    logger = logging.getLogger(f"{COMPILERS}.of_this_test")
-    logger.addHandler(Words(task))
-    logger.propagate = False
-    logger.warning("compiling %s for this machine", "march")
+    words = {"msg": "compiling march for this machine", "levelno": logging.WARNING}
+    Words(task).handle(logging.makeLogRecord(words))
     assert jobs.get(depot, task.job.id).message == "compiling march for this machine"
     assert capfd.readouterr().err == ""
 
