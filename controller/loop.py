@@ -88,6 +88,8 @@ class Loop:
         """N, load of a tooth since the last decision"""
         self._silence = HEARD
         self._expected = 0.0
+        self._land_share = 0.0
+        """1/mm, what flank wear adds to the ratio of the last revolution"""
         self._time = -inf
         self._orders: list[Order] = []
         self._events: list[Event] = []
@@ -142,6 +144,7 @@ class Loop:
             known = expected if expected > weight * self.aims.chips else 0.0
             ratio = log_ratio(revolution, known, expected_before=self._expected)
             self._expected = known
+            self._land_share = self._steering.land_share(revolution, expected)
         force = overload.mean(reading.force) if is_new else nan
         force = nan if is_implausible(force, self.aims.chips) else force
         self._act(reading, revolution, ratio, force=force)
@@ -330,7 +333,9 @@ class Loop:
                 self._steering.leave()
                 self._monitor.out_of_cut()
             return
-        self._events += self._monitor.seen(revolution, self._keep, ratio=ratio)
+        self._events += self._monitor.seen(
+            revolution, self._keep, ratio=ratio, land_share=self._land_share
+        )
         if self._monitor.is_broken:
             self._stop("a tooth is broken")
 

@@ -80,7 +80,12 @@ class Monitor:
         self._breakage = replace(self._breakage, force=0.0, suspect=None)
 
     def seen(
-        self, revolution: Revolution, keep: Keeping, *, ratio: float | None
+        self,
+        revolution: Revolution,
+        keep: Keeping,
+        *,
+        ratio: float | None,
+        land_share: float = 0.0,
     ) -> Iterator[Event]:
         """What one more revolution with chips tells.
 
@@ -91,6 +96,8 @@ class Monitor:
             What holds in the workingstep.
         ratio : float, optional
             ln(measured / expected); None: not to be compared.
+        land_share : float, 1/mm
+            What 1 mm of flank wear adds to measured over expected; 0: not known.
         """
         if not self._has_chips:
             self._watch = Watch()
@@ -101,7 +108,7 @@ class Monitor:
             yield from self._reached(revolution, keep)
         yield from self._inspected(revolution, keep.exponent)
         if ratio is not None:
-            yield from self._lived(revolution, ratio)
+            yield from self._lived(revolution, ratio, land_share)
 
     def _warned(
         self, revolution: Revolution, set_point: float, *, is_steady: bool
@@ -141,10 +148,12 @@ class Monitor:
             text = f"tooth {self._breakage.broken + 1} of {revolution.teeth} takes no chip"
             yield Event(time=revolution.time, kind=EventKind.BREAKAGE, text=text)
 
-    def _lived(self, revolution: Revolution, ratio: float) -> Iterator[Event]:
+    def _lived(
+        self, revolution: Revolution, ratio: float, land_share: float
+    ) -> Iterator[Event]:
         """A sudden change of the work, or the end of a tool's life."""
         before = self.lives[self._tool]
-        life = self.lives[self._tool] = lived(before, ratio)
+        life = self.lives[self._tool] = lived(before, ratio, land_share=land_share)
         is_new = len(life.changes) > len(before.changes)
         is_due = revolution.time - self._changed > PAUSE
         if is_new and is_due and abs(life.changes[-1]) > NOTABLE:

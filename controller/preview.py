@@ -31,11 +31,15 @@ class Preview:
     force: Values
     """(N,) N at override 1 with the catalogue's k_c; 0 in air"""
     peak: Values | None = None
-    """(N,) greatest force of a revolution over its mean; None: 1"""
+    """(N,) greatest force across the axis over the mean force; None: 1"""
+    wall: Values | None = None
+    """(N,) force normal to the wall that an edge makes, over the mean; None: 0"""
     workingstep: NDArray[np.int64] | None = None
     """(N,) counted from 1; None: 1"""
     weight: NDArray[np.float64] | None = None
     """(N,) by which forces were multiplied already, :mod:`controller.equivalent`; None: 1"""
+    land_force: Values | None = None
+    """(N,) N that 1 mm of flank wear adds, at any override; None: not known"""
 
     def __post_init__(self) -> None:
         if self.until.shape != self.force.shape or self.until.ndim != 1 or not len(self.until):
@@ -49,6 +53,13 @@ class Preview:
         """Expected force between two times of the program, N: mean over what they touch."""
         first, beyond = self._rows(begin, end)
         return float(self.force[first:beyond].mean())
+
+    def mean_land(self, begin: float, end: float) -> float:
+        """Force that 1 mm of flank wear adds between two times, N; 0: not known."""
+        if self.land_force is None:
+            return 0.0
+        first, beyond = self._rows(begin, end)
+        return float(self.land_force[first:beyond].mean())
 
     def is_air(self, progress: float, *, revolution: float) -> bool:
         """Whether no chip is expected within a revolution before and after a time."""

@@ -75,6 +75,13 @@ class Steering:
         mean = self.preview.mean(revolution.progress_before, revolution.progress)
         return float(mean * max(revolution.override, 0.0) ** exponent)
 
+    def land_share(self, revolution: Revolution, expected: float) -> float:
+        """What 1 mm of flank wear adds to measured over expected force, 1/mm; 0: not known."""
+        if not expected > 0.0:
+            return 0.0
+        land = self.preview.mean_land(revolution.progress_before, revolution.progress)
+        return land / expected
+
     def _entered(
         self, revolution: Revolution, keep: Keeping, aims: Aims, override: float
     ) -> tuple[Law[Any], Any]:

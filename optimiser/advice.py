@@ -8,6 +8,7 @@ from optimiser.cut import Cut
 from optimiser.limit import Limit, LimitName, Sense
 from optimiser.modes import Mode
 from optimiser.problem import Setting
+from optimiser.stability import Stability
 from simulator.spec import Machine, MaterialMatch
 from stepnc_model.errors import Finding
 from stepnc_model.program import Workingstep
@@ -55,7 +56,9 @@ class State:
     motor_power: float
     """W"""
     cutting_force: float
-    """N"""
+    """N, mean of a revolution; of a mill without its plunges"""
+    thrust: float
+    """N, along the axis, of a drill or of a mill that goes straight down; 0: of none"""
     roughness: float | None
     """Ra in mm; ``None`` where the feed does not describe it"""
     loads: tuple[Load, ...]
@@ -95,6 +98,8 @@ class Advice:
     prices: tuple[tuple[LimitName, float], ...] = ()
     """relative fall of the cost for a relative rise of the bound"""
     front: tuple[Point, ...] = ()
+    stability: Stability | None = None
+    """what is known of it; None: chatter is no matter of this cut's depth"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from optimiser.problem import Setting
-from simulator.physics.engagement import Engagement
+from simulator.physics.engagement import Engagement, mean_chip_ratio
+from simulator.physics.flutes import CuttingEdges
 from simulator.spec import ToolKind
 from stepnc_model.tool import Tool
 
@@ -44,6 +45,8 @@ class Place:
     engagement: Engagement
     depth_share: float = 1.0
     """real depth over that of a pass"""
+    fill: float = 1.0
+    """section of the cut over that of the engagement"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,8 +71,16 @@ class Cut:
     """a_e of a milling cutter, width of a grooving insert"""
     depth_share: float = 1.0
     """greatest real depth over that of a pass: more where stock is left above"""
-    bending: Place | None = None
-    """where an end mill is bent most; None: where it is engaged most"""
+    fill: float = 1.0
+    """section of the cut over that of the engagement"""
+    chip_ratio: float | None = None
+    """mean chip over feed per tooth; None: by the engagement"""
+    shank: Place | None = None
+    """where the force across an end mill's axis is greatest; None: where it is engaged most"""
+    wall: Place | None = None
+    """where the force normal to the wall that it makes is; None: where it is engaged most"""
+    helix_angle: float = 0.0
+    """rad, of a milling cutter's edges"""
     load_share: float = 1.0
     """mean load over the length at cutting feed, air included, over the greatest"""
     previous_diameter: float = 0.0
@@ -101,7 +112,34 @@ class Cut:
         """Where a milling cutter is engaged most."""
         if self.engagement is None:
             return None
-        return Place(engagement=self.engagement, depth_share=self.depth_share)
+        return Place(engagement=self.engagement, depth_share=self.depth_share, fill=self.fill)
+
+    @property
+    def mean_chip_ratio(self) -> float:
+        """Mean chip over the feed per tooth of a milling cutter where it is engaged most."""
+        if self.chip_ratio is not None:
+            return self.chip_ratio
+        if self.engagement is None:
+            return 1.0
+        return mean_chip_ratio(self.engagement, cutting_edge_angle=self.tool.cutting_edge_angle)
+
+    @property
+    def edges(self) -> CuttingEdges:
+        """Edges of a milling cutter."""
+        return CuttingEdges(
+            teeth=self.tool.teeth,
+            diameter=self.tool.diameter,
+            helix_angle=self.helix_angle,
+            corner_radius=min(self.tool.corner_radius or 0.0, 0.5 * self.tool.diameter),
+            cutting_edge_angle=self.tool.cutting_edge_angle,
+        )
+
+    @property
+    def force_diameter(self) -> float:
+        """Diameter on which the cutting force acts, mm; of a drill the middle of its lips."""
+        if self.kind is CutKind.DRILLING:
+            return 0.5 * (self.diameter + self.previous_diameter)
+        return self.diameter
 
     @property
     def is_air(self) -> bool:

@@ -5,13 +5,17 @@ programmed.
 """
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 
-from optimiser.cut import Cut
+from optimiser.cut import Cut, CutKind
 from optimiser.estimate import FULL_LOAD, milling_cut
 from optimiser.estimate_hole import INTO_SOLID, hole_cut, is_hole_making
 from optimiser.estimate_turning import mean_diameter, turning_cut
 from optimiser.problem import Setting
 from optimiser.side_by_side import Result, one_by_one
+from simulator.edge_material import edge_material
+from simulator.library import grade_for
+from simulator.spec import CuttingMaterial, Material
 from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import Finding, Severity
 from stepnc_model.program import Program, Workingstep
@@ -25,12 +29,13 @@ GUESSES = frozenset({FULL_LOAD, INTO_SOLID})
 class Estimates:
     """A source of cuts that looks at features only."""
 
-    def __init__(self, program: Program) -> None:
+    def __init__(self, program: Program, material: Material) -> None:
         self.program = program
+        self.material = material
 
     def cut(self, step: Workingstep) -> tuple[Cut, list[Finding]]:
         """The cut of a workingstep as programmed, and what was assumed."""
-        return estimated_cut(self.program, step)
+        return estimated_cut(self.program, step, self.material)
 
     def at(self, _step: Workingstep, cut: Cut, _setting: Setting) -> Cut:
         """The same cut: an estimate knows one length of pass."""
@@ -46,8 +51,17 @@ class Estimates:
         return one_by_one(steps, do)
 
 
-def estimated_cut(program: Program, step: Workingstep) -> tuple[Cut, list[Finding]]:
+def estimated_cut(
+    program: Program, step: Workingstep, material: Material
+) -> tuple[Cut, list[Finding]]:
     """The cut of a workingstep as estimated from its feature, and what was assumed.
+
+    Parameters
+    ----------
+    program : Program
+    step : Workingstep
+    material : Material
+        Of the workpiece: the helix of a cutter is that of its grade.
 
     Raises
     ------
@@ -78,4 +92,8 @@ def estimated_cut(program: Program, step: Workingstep) -> tuple[Cut, list[Findin
     elif is_hole_making(operation, tool):
         make = hole_cut
     cut, found = make(program, step, tool, speed=speed, feed=feed)
+    if cut.kind is CutKind.MILLING:
+        cutting_material = edge_material(tool.edge_material) or CuttingMaterial.CARBIDE
+        grade = grade_for(cut.tool_kind, cutting_material, material)
+        cut = replace(cut, helix_angle=0.0 if grade is None else grade.helix_angle)
     return cut, findings + list(found)

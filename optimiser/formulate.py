@@ -1,16 +1,18 @@
 """From a cut and its conditions to a problem, and from a setting to what it does."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import inf, isfinite, pi
 from types import MappingProxyType
 
 from optimiser import workingstep as exact
 from optimiser.advice import Load, State
-from optimiser.cut import Cut
+from optimiser.cut import Cut, CutKind
 from optimiser.limit import Limit, LimitName, Monomial, Sense
 from optimiser.limits import (
     Conditions,
+    drill_point,
+    force_factor,
     force_load,
     limits_of,
     power_load,
@@ -19,10 +21,11 @@ from optimiser.limits import (
     speed_range,
     spindle_limits,
 )
-from optimiser.loads import scaled
+from optimiser.loads import scaled, thrust
 from optimiser.modes import Free, Mode
 from optimiser.problem import Cost, Problem, Setting
 from optimiser.source import Source, along_paths
+from optimiser.stability import stability_limits
 from simulator.library import find_window
 from simulator.physics.spindle import curve_segments
 from simulator.physics.tool_life import tool_life
@@ -65,7 +68,7 @@ class Task:
 
 def problem_of(cut: Cut, at: Conditions, task: Task) -> Problem:
     """The mathematical problem of a cut."""
-    limits = limits_of(cut, at)
+    limits = limits_of(cut, at) + stability_limits(cut, at)
     given = cut.programmed
     if Free.FEED not in task.free:
         limits += tuple(_held_feed(given.feed, sense) for sense in Sense)
@@ -157,7 +160,8 @@ def state_of(cut: Cut, problem: Problem, at: Conditions, setting: Setting) -> St
         time=problem.cost.time(setting),
         energy=problem.cost.energy(setting),
         motor_power=_greater(power_load, cut, at, setting),
-        cutting_force=_greater(force_load, cut, at, setting),
+        cutting_force=_greater(force_load, replace(cut, plunge=None), at, setting),
+        thrust=_thrust(cut, at, setting),
         roughness=max(roughness, default=None),
         loads=tuple(
             Load(
@@ -168,6 +172,15 @@ def state_of(cut: Cut, problem: Problem, at: Conditions, setting: Setting) -> St
             for limit in exact.limits_at(problem, setting.speed)
         ),
     )
+
+
+def _thrust(cut: Cut, at: Conditions, setting: Setting) -> float:
+    """Force along the axis, N: of a drill, or of a mill's plunge."""
+    sinking = cut if cut.kind is CutKind.DRILLING else cut.plunge
+    if sinking is None:
+        return 0.0
+    load = thrust(sinking, at.material.kienzle, force_factor(at), drill_point(at))
+    return load.value(setting.feed, setting.depth, setting.speed)
 
 
 def _greater(

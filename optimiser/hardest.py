@@ -1,37 +1,25 @@
 """From what the tool meets along its path to the places where it cuts hardest.
 
-The section of the cut is the measure: it is right also where the arc of contact holds slivers
-of a floor, or the depth is that of a sliver on a wall. With the depth it gives the width, and
-the arc of contact is that of the width: at the angles found where these agree with it, else
-one-sided. Depth beyond that of the pass counts as far as the section fills it. Loads are exact
-functions of depth and arc that rise with both, so every place is tried that is not within
-another, no deeper and its arc a part of the other's: a place that is worst for the mean force
-need not be worst for the shank. Units mm, rad.
+Loads are those of the virtual machine: the mean force follows from the section of the cut and
+the mean chip, forces along the helix from the arc of contact, and from the depth that the
+section fills there. Every station is tried: a place that is worst for the mean force need not
+be worst for the shank. Units mm, rad.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import cos, pi, sin, sqrt
+from math import pi, sin, sqrt
+
+import numpy as np
 
 from optimiser.cut import Cut, CutKind, Place
-from optimiser.loads import REFERENCE_FEED
-from simulator.motion.segments import Bools, Floats
-from simulator.physics import drilling, milling
-from simulator.physics.engagement import (
-    Engagement,
-    full_immersion,
-    mean_chip_ratio,
-    unidirectional,
-)
+from simulator.motion.segments import Bools, Floats, Ints
+from simulator.physics import drilling
+from simulator.physics.engagement import Engagement
+from simulator.physics.flutes import Law
+from simulator.physics.tooth_forces import Places, peak_resultant, wall_force
 from simulator.removal.stations import CutKind as StationKind
-from simulator.removal.stations import Stations
+from simulator.removal.stations import Stations, single_arcs
 from simulator.spec import Kienzle, ToolKind
-
-NEARLY = 1e-3
-"""relative difference of widths that are equal: what an arc of 1/1000 rad makes"""
-
-AGREES = 0.02
-"""of the diameter: width by the angles against width by the section"""
 
 LEAST_RATIO = 0.01
 """mean chip over the feed; the power of what is thinner is not to be told"""
@@ -76,14 +64,14 @@ def lengths(stations: Stations) -> Floats:
 
 def with_hardest(cut: Cut, met: Met, kienzle: Kienzle, *, depth: float) -> Cut:
     """A cut with its engagement as met in passes of a nominal depth, where anything was met."""
-    is_judged = met.stations.kind == KINDS[cut.kind]
-    is_long = is_judged & (met.length >= met.cell)
-    rows = is_long if is_long.any() else is_judged
+    rows = met.stations.kind == KINDS[cut.kind]
+    if cut.kind is not CutKind.MILLING:
+        is_long = rows & (met.length >= met.cell)
+        rows = is_long if is_long.any() else rows
     if not rows.any():
         return cut
     if cut.kind is CutKind.MILLING:
-        places = _places(met.stations, rows, diameter=cut.diameter, nominal=depth)
-        return _milled(cut, places, kienzle, nominal=depth)
+        return _milled(cut, met, rows, kienzle, nominal=depth)
     if cut.kind is CutKind.DRILLING:
         return _drilled(cut, float(met.stations.section[rows].max()), met.cell)
     deepest = float(met.stations.axial_depth[rows].max())
@@ -106,9 +94,8 @@ def greatest_section(cut: Cut, *, depth: float) -> tuple[float, float]:
     if cut.kind is CutKind.MILLING:
         if cut.engagement is None:
             raise ValueError("a milling cut needs its engagement")
-        width = 0.5 * cut.diameter * cut.engagement.cosine_difference
-        ratio = mean_chip_ratio(cut.engagement, cutting_edge_angle=tool.cutting_edge_angle)
-        return depth * cut.depth_share * width, ratio
+        width = 0.5 * cut.diameter * cut.engagement.cosine_difference * cut.fill
+        return depth * cut.depth_share * width, cut.mean_chip_ratio
     if cut.kind is CutKind.DRILLING:
         point = 0.5 * tool.point_angle if tool.point_angle else drilling.CUSTOMARY_EDGE_ANGLE
         return 0.25 * pi * (cut.diameter**2 - cut.previous_diameter**2), sin(point)
@@ -135,73 +122,52 @@ def _drilled(cut: Cut, section: float, cell: float) -> Cut:
     return replace(cut, previous_diameter=bored)
 
 
-def _milled(cut: Cut, places: Sequence[Place], kienzle: Kienzle, *, nominal: float) -> Cut:
-    """A milling cut with the places of its greatest mean force and of its greatest peak."""
-    mean = max(places, key=lambda place: milling.mean_force(kienzle, _at(cut, place)))
-    bending = None
+def _milled(cut: Cut, met: Met, rows: Bools, kienzle: Kienzle, *, nominal: float) -> Cut:
+    """A milling cut with the places of its greatest forces: mean, across it, at the wall."""
+    stations = met.stations
+    at = np.flatnonzero(rows & (stations.exit_angle > stations.entry_angle))
+    if not len(at):
+        return cut
+    arcs = single_arcs(stations)
+    mean = stations.section[at] * stations.chip_ratio[at].clip(LEAST_RATIO) ** -kienzle.m_c
+    hardest = at[(mean / stations.diameter[at]).argmax()]
+
+    def place(row: np.int64) -> Place:
+        return Place(
+            engagement=Engagement(
+                entry_angle=max(float(arcs.entry_angle[row]), 0.0),
+                exit_angle=min(float(arcs.exit_angle[row]), pi),
+            ),
+            depth_share=_share(cut, float(arcs.depth[row]) / nominal),
+            fill=float(arcs.fill[row]),
+        )
+
+    shank = wall = None
     if cut.tool_kind is ToolKind.ENDMILL:
-        bending = max(places, key=lambda place: milling.peak_force(kienzle, _at(cut, place)))
-        bending = replace(bending, depth_share=_share(cut, bending.depth_share / nominal))
+        shank, wall = map(place, _bent_most(cut, stations, at, kienzle))
+    greatest = place(hardest)
     return replace(
         cut,
-        engagement=mean.engagement,
-        depth_share=_share(cut, mean.depth_share / nominal),
-        bending=bending,
-        radial_width=0.5 * cut.diameter * mean.engagement.cosine_difference,
+        engagement=greatest.engagement,
+        depth_share=greatest.depth_share,
+        fill=greatest.fill,
+        chip_ratio=max(float(stations.chip_ratio[hardest]), LEAST_RATIO),
+        shank=shank,
+        wall=wall,
+        radial_width=0.5 * cut.diameter * greatest.engagement.cosine_difference * greatest.fill,
     )
 
 
-def _at(cut: Cut, place: Place) -> milling.MillingCut:
-    """The cut at a place whose depth is in mm."""
-    return milling.MillingCut(
-        feed_per_tooth=REFERENCE_FEED,
-        teeth=cut.tool.teeth,
-        axial_depth=place.depth_share,
-        engagement=place.engagement,
-        cutting_edge_angle=cut.tool.cutting_edge_angle,
-    )
-
-
-def _places(stations: Stations, rows: Bools, *, diameter: float, nominal: float) -> list[Place]:
-    """Engagements that occur with their depths in mm, but none that is within another."""
-    return _outer([
-        _place(row, diameter=diameter, nominal=nominal)
-        for row in stations.engagements(rows, digits=DIGITS)
-        if row[0] > 0.0
-    ])
-
-
-def _outer(places: Sequence[Place]) -> list[Place]:
-    """Places that are not within another one, each once, the deepest first."""
-    found: list[Place] = []
-    for place in sorted(places, key=lambda each: (-each.depth_share, -_arc(each))):
-        if not any(_is_within(place, other) for other in found):
-            found.append(place)
-    return found
-
-
-def _arc(place: Place) -> float:
-    return place.engagement.contact_angle
-
-
-def _is_within(place: Place, other: Place) -> bool:
-    """Whether the arc of a place that is no deeper is a part of another's."""
-    inner, outer = place.engagement, other.engagement
-    return outer.entry_angle <= inner.entry_angle and inner.exit_angle <= outer.exit_angle
-
-
-def _place(row: Sequence[float], *, diameter: float, nominal: float) -> Place:
-    """One engagement; a section wider than the tool is deeper than it was seen to be."""
-    section, depth, entry, exit = row
-    by_angles = 0.5 * diameter * (cos(entry) - cos(exit))
-    if depth > nominal and by_angles > 0.0:
-        depth = min(depth, max(nominal, section / by_angles))
-    depth = max(depth, section / diameter)
-    width = section / depth
-    if width >= diameter * (1.0 - NEARLY):
-        engagement = full_immersion()
-    elif abs(by_angles - width) <= AGREES * diameter and 0.0 <= entry < exit <= pi:
-        engagement = Engagement(entry_angle=entry, exit_angle=exit)
-    else:
-        engagement = unidirectional(width, diameter)
-    return Place(engagement=engagement, depth_share=depth)
+def _bent_most(
+    cut: Cut, stations: Stations, at: Ints, kienzle: Kienzle
+) -> tuple[np.int64, np.int64]:
+    """Stations at which an end mill is bent most, and most while it makes a wall."""
+    arcs = single_arcs(stations)
+    columns = (arcs.entry_angle, arcs.exit_angle, arcs.depth, arcs.fill)
+    keys = np.round(np.stack([column[at] for column in columns]), DIGITS)
+    told, first = np.unique(keys, axis=1, return_index=True)
+    places = Places(entry_angle=told[0], exit_angle=told[1], axial_depth=told[2])
+    law = Law(exponent=1.0 - kienzle.m_c)
+    shank = told[3] * peak_resultant(cut.edges, places, law)
+    wall = told[3] * wall_force(cut.edges, places, law)
+    return at[first[shank.argmax()]], at[first[wall.argmax()]]

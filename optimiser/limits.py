@@ -13,17 +13,15 @@ from optimiser.cut import Cut, CutKind, Texture
 from optimiser.limit import Limit, LimitName, Monomial, Sense
 from simulator.edge_material import correction_of
 from simulator.library import find_window
-from simulator.physics.engagement import mean_chip_ratio
+from simulator.physics.drilling import LIPS_ONLY
 from simulator.physics.spindle import CurveSegment, curve_segments
-from simulator.physics.strength import deflection, equivalent_diameter, force_for_stress
+from simulator.physics.strength import end_mill
 from simulator.physics.surface import RA_FLOOR, RZ_PER_RA
-from simulator.spec import CuttingMaterial, Grade, Machine, Material, ToolKind
+from simulator.spec import CuttingMaterial, DrillPoint, Grade, Machine, Material, ToolKind
 
-ROUGHING_DEFLECTION = 0.1
-"""mm at the tip of an end mill while roughing: a fifth of a customary 0.5 mm allowance"""
-
-FINISHING_DEFLECTION = 0.05
-"""mm at the tip of an end mill that finishes a wall: half of a customary ±0.1 mm tolerance"""
+GREATEST_DEFLECTION = 0.1
+"""mm at the tip of an end mill, whatever it leaves: beyond it teeth share the work unevenly;
+customary"""
 
 NOSE_FEED_RATIO = 0.8
 """greatest feed per revolution over the nose radius of an insert, customary"""
@@ -33,11 +31,21 @@ PLUNGE_FEED_RATIO = 0.5
 edges hardly move; Fanar, general catalogue 2021, p. 329, takes 25 to 50 % of the table on the
 way into the material"""
 
-STICK_OUT = 3.0
-"""least overhang over diameter of an end mill, customary; the file names no overhang"""
+STRAIGHT_DOWN = "straight down"
+"""how limits of a plunge are told from those along the pass"""
 
 KW, NM, UM, MM_MIN, M_MIN, RPM = 1e-3, 1e-3, 1e3, 60.0, 0.06, 60.0
 """user's number per canonical unit"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PermittedDeflection:
+    """How far an end mill may bend."""
+
+    value: float = GREATEST_DEFLECTION
+    """mm at its tip"""
+    origin: str = ""
+    """where the value comes from, as a sentence goes on; empty: custom"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,6 +59,8 @@ class Conditions:
     """``None``: the material carries no tool limits"""
     roughness: float | None
     """Ra in mm that this surface must keep"""
+    deflection: PermittedDeflection = PermittedDeflection()
+    """what tolerance or allowance of its wall leaves to an end mill"""
     force_factor: float = 1.0
     """accepted correction of k_c from measurements"""
 
@@ -63,7 +73,12 @@ def force_factor(at: Conditions) -> float:
 
 def force_load(cut: Cut, at: Conditions) -> Monomial:
     """Tangential force of this cut, N."""
-    return loads.cutting_force(cut, at.material.kienzle, force_factor(at))
+    return loads.cutting_force(cut, at.material.kienzle, force_factor(at), drill_point(at))
+
+
+def drill_point(at: Conditions) -> DrillPoint:
+    """Point of the tool where it cuts on its end."""
+    return (at.grade.point if at.grade is not None else None) or LIPS_ONLY
 
 
 def power_load(cut: Cut, at: Conditions) -> Monomial:
@@ -88,7 +103,9 @@ def _load_limits(cut: Cut, at: Conditions) -> Iterator[Limit]:
     yield from _tool_limits(cut, at)
     if cut.floor is not None:
         floor = cut.floor
-        for limit in (*_machine_limits(floor, at), *_tool_limits(floor, at)):
+        # Its sweep stays off the walls, and a tool that bends leaves the depth alone.
+        swept = replace(at, deflection=PermittedDeflection())
+        for limit in (*_machine_limits(floor, swept), *_tool_limits(floor, swept)):
             yield limit.at_depth(floor.total_depth)
     if cut.plunge is not None:
         yield from map(_straight_down, _plunge_limits(cut, cut.plunge, at))
@@ -115,7 +132,7 @@ def _plunge_limits(cut: Cut, plunge: Cut, at: Conditions) -> Iterator[Limit]:
     if at.machine.max_cutting_force is not None:
         yield Limit(
             name=LimitName.CUTTING_FORCE,
-            load=loads.thrust(plunge, at.material.kienzle, force_factor(at)),
+            load=loads.thrust(plunge, at.material.kienzle, force_factor(at), drill_point(at)),
             bound=at.machine.max_cutting_force,
             unit="N",
             step=100.0,
@@ -124,7 +141,7 @@ def _plunge_limits(cut: Cut, plunge: Cut, at: Conditions) -> Iterator[Limit]:
 
 def _straight_down(limit: Limit) -> Limit:
     """A limit of a plunge, told as one."""
-    return replace(limit, label=f"{limit.words} straight down")
+    return replace(limit, label=f"{limit.words} {STRAIGHT_DOWN}")
 
 
 def spindle_limits(cut: Cut, at: Conditions, segment: CurveSegment) -> tuple[Limit, ...]:
@@ -188,7 +205,7 @@ def _machine_limits(cut: Cut, at: Conditions) -> Iterator[Limit]:
         is_drill = cut.kind is CutKind.DRILLING
         yield Limit(
             name=LimitName.CUTTING_FORCE,
-            load=loads.thrust(cut, at.material.kienzle, force_factor(at))
+            load=loads.thrust(cut, at.material.kienzle, force_factor(at), drill_point(at))
             if is_drill
             else force_load(cut, at),
             bound=machine.max_cutting_force,
@@ -228,38 +245,40 @@ def _tool_limits(cut: Cut, at: Conditions) -> Iterator[Limit]:
         sense=Sense.AT_LEAST,
         step=0.001,
     )
-    if cut.kind is CutKind.MILLING and cut.tool_kind is ToolKind.ENDMILL:
+    if is_bent(cut):
         yield from _bending_limits(cut, at, at.grade)
 
 
 def _bending_limits(cut: Cut, at: Conditions, grade: Grade) -> Iterator[Limit]:
     """Deflection and bending stress of an end mill clamped at one end."""
-    bending = loads.bending_force(cut, at.material.kienzle, force_factor(at))
-    diameter = equivalent_diameter(cut.tool.diameter)
-    overhang = max(STICK_OUT * cut.tool.diameter, cut.tool.cutting_edge_length or 0.0)
-    compliance = deflection(
-        1.0, overhang=overhang, diameter=diameter, youngs_modulus=grade.youngs_modulus
+    shank = end_mill(
+        cut.tool.diameter,
+        cutting_edge_length=cut.tool.cutting_edge_length,
+        youngs_modulus=grade.youngs_modulus,
     )
-    yield Limit(
-        name=LimitName.TOOL_DEFLECTION,
-        load=loads.scaled(bending, compliance),
-        bound=FINISHING_DEFLECTION if _is_finished_wall(cut) else ROUGHING_DEFLECTION,
-        unit="mm",
-        step=0.01,
-    )
-    stress = 1.0 / force_for_stress(1.0, overhang=overhang, diameter=diameter)
+    normal = loads.wall_force(cut, at.material.kienzle, force_factor(at))
+    if normal is not None:
+        yield Limit(
+            name=LimitName.TOOL_DEFLECTION,
+            load=loads.scaled(normal, shank.compliance),
+            bound=at.deflection.value,
+            origin=at.deflection.origin,
+            unit="mm",
+            step=0.01,
+        )
+    across = loads.shank_force(cut, at.material.kienzle, force_factor(at))
     yield Limit(
         name=LimitName.SHANK_STRENGTH,
-        load=loads.scaled(bending, stress),
+        load=loads.scaled(across, shank.stress(1.0)),
         bound=grade.bending_strength,
         unit="N/mm²",
         step=100.0,
     )
 
 
-def _is_finished_wall(cut: Cut) -> bool:
-    """Whether the tool's deflection stays in the part."""
-    return cut.is_finish_operation and cut.texture is Texture.WALL
+def is_bent(cut: Cut) -> bool:
+    """Whether the tool is slender: face mills are not."""
+    return cut.kind is CutKind.MILLING and cut.tool_kind is ToolKind.ENDMILL
 
 
 def _depth_limits(cut: Cut, at: Conditions) -> Iterator[Limit]:
@@ -375,5 +394,5 @@ def _greatest_feed(cut: Cut, at: Conditions) -> float | None:
 def _chip_ratio(cut: Cut) -> float:
     """Mean chip thickness over feed per tooth."""
     if cut.kind is CutKind.MILLING and cut.engagement is not None:
-        return mean_chip_ratio(cut.engagement, cutting_edge_angle=cut.tool.cutting_edge_angle)
+        return cut.mean_chip_ratio
     return 1.0

@@ -32,7 +32,7 @@ from simulator.removal.engage import MillingStock
 from simulator.removal.lathe import TurningStock
 from simulator.removal.stations import CutKind as StationKind
 from simulator.removal.trial import Trial, do_overlap, is_remembered_alike, renumbered
-from simulator.spec import Kienzle, Machine, MachineKind
+from simulator.spec import Machine, MachineKind, Material
 from stepnc_model.errors import Finding, PostError, SchemaError, Severity
 from stepnc_model.post.blocks import Machine as PostMachine
 from stepnc_model.post.conditions import Conditions, conditions
@@ -82,10 +82,11 @@ class MeasuredCuts:
     The stock goes on to the next workingstep as the path that was asked for last leaves it.
     """
 
-    def __init__(self, program: Program, machine: Machine, kienzle: Kienzle) -> None:
+    def __init__(self, program: Program, machine: Machine, material: Material) -> None:
         self.program = program
         self.machine = machine
-        self.kienzle = kienzle
+        self.material = material
+        self.kienzle = material.kienzle
         self.control, self.limits = usual_motion(machine)
         self.stocks = ClampedStocks(program, machine)
         self._left_out: dict[int, str] = {}
@@ -112,7 +113,7 @@ class MeasuredCuts:
         """
         self._seen = {}
         self._trace = Trace(place=self.stocks.place(step))
-        cut, findings = estimated_cut(self.program, step)
+        cut, findings = estimated_cut(self.program, step, self.material)
         self._estimate, self._found = cut, self.stocks.before(step)
         try:
             seen = self._see(step, self._path(step), cut, passes=cut.programmed.passes)

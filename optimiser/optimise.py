@@ -8,7 +8,7 @@ the advice stays, so that its time is that of the path that the file will give.
 Same inputs, same result: corrections of the cutting force come as an argument, by tool.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from math import isfinite
 
@@ -19,12 +19,14 @@ from optimiser.errors import Infeasible, OptimisationError
 from optimiser.formulate import Task, problem_of, state_of
 from optimiser.front import front_of
 from optimiser.limit import Limit
-from optimiser.limits import Conditions, roughness_load
+from optimiser.limits import Conditions, PermittedDeflection, is_bent, roughness_load
 from optimiser.modes import Mode
 from optimiser.passes import Asked, best_of
 from optimiser.problem import Problem
 from optimiser.requirement import required_roughness
 from optimiser.source import CutSource
+from optimiser.stability import estimate_texts, stability_of
+from optimiser.tolerance import permitted_deflection
 from simulator.edge_material import edge_material
 from simulator.errors import LibraryError
 from simulator.library import find_grade
@@ -90,6 +92,7 @@ def optimise(
         progress()
         # Workingsteps that share a tool are told the same of it.
         findings += [finding for finding in found if finding not in findings]
+    findings += _estimates(program, advices)
     return Plan(
         program=program.name,
         mode=task.mode,
@@ -138,7 +141,12 @@ def advise(
     if not isfinite(before.time) or not isfinite(before.energy):
         raise ValueError(f"a time of {before.time:g} s: its numbers are beyond all machines")
     untouched = replace(
-        untouched, force_factor=at.force_factor, cut=cut, before=before, after=before
+        untouched,
+        force_factor=at.force_factor,
+        cut=cut,
+        before=before,
+        after=before,
+        stability=stability_of(cut, at),
     )
     idle = _why_idle(cut)
     if idle:
@@ -159,6 +167,19 @@ def advise(
         except OptimisationError as error:
             raise OptimisationError(f"{program.label(step.operation_ref)}: {error}") from error
     return advice, findings + _passed_limits(program, advice)
+
+
+def _estimates(program: Program, advices: Sequence[Advice]) -> list[Finding]:
+    """What is estimated of the stability of tools without measured modes, once a tool."""
+    told = [
+        (advice.tool, advice.stability, state.setting.depth)
+        for advice in advices
+        if advice.stability is not None and (state := advice.after or advice.before) is not None
+    ]
+    refs = {advice.tool.id: advice.workingstep.tool_ref for advice in advices}
+    return [
+        program.finding(Severity.NOTE, text, refs[tool]) for tool, text in estimate_texts(told)
+    ]
 
 
 def _why_elsewhere(step: Workingstep, machine: Machine) -> str:
@@ -197,6 +218,7 @@ def _solved(untouched: Advice, cut: Cut, problem: Problem, asked: Asked) -> Advi
     return replace(
         untouched,
         cut=told.cut,
+        stability=stability_of(told.cut, at),
         status=Status.ADVISED,
         reason=reason_of(after, solution.holding),
         after=after,
@@ -212,9 +234,10 @@ def _solved(untouched: Advice, cut: Cut, problem: Problem, asked: Asked) -> Advi
 def reason_of(state: State, limit: Limit) -> str:
     """Sentence that names the limit that holds the feed."""
     load = next(load for load in state.loads if load.limit is limit)
+    origin = f", {limit.origin}" if limit.origin else ""
     return (
         f"{limit.words} {load.value * limit.scale:.4g} {limit.unit} reaches its bound of "
-        f"{load.bound * limit.scale:.4g} {limit.unit}"
+        f"{load.bound * limit.scale:.4g} {limit.unit}{origin}"
     )
 
 
@@ -232,7 +255,7 @@ def _conditions(
     material: MaterialMatch,
     task: Task,
 ) -> tuple[Conditions, list[Finding]]:
-    """Grade, cutting material and roughness of a cut."""
+    """Grade, cutting material, roughness and permitted deflection of a cut."""
     findings: list[Finding] = []
     cutting_material = edge_material(cut.tool.edge_material)
     if cutting_material is None:
@@ -251,6 +274,10 @@ def _conditions(
         text = f"{step.operation_type} on machine '{machine.name}', a {machine.kind.value}"
         findings.append(program.finding(Severity.WARNING, text, step.operation_ref))
     asked = _roughness(program, step, cut, task, findings)
+    deflection = PermittedDeflection()
+    if grade is not None and is_bent(cut):
+        deflection, found = permitted_deflection(program, step)
+        findings += found
     factor = task.force_factor(cut.tool.id)
     if factor != 1.0:
         text = f"k_c × {factor:.4g} for tool '{cut.tool.id}'"
@@ -262,6 +289,7 @@ def _conditions(
             cutting_material=cutting_material,
             grade=grade,
             roughness=asked,
+            deflection=deflection,
             force_factor=factor,
         ),
         findings,

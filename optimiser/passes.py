@@ -20,6 +20,9 @@ from stepnc_model.program import Workingstep
 ROUNDS = 4
 """greatest number of paths tried for the depth of one workingstep"""
 
+UNTIL_FEASIBLE = 10
+"""the same while none keeps its limits: stock that is left above makes passes deeper"""
+
 MANY = 100
 """passes; where more are programmed, so many more: the first number beyond that keeps the
 limits stands, for a path of hundreds of levels takes seconds and nobody asked for one"""
@@ -63,14 +66,16 @@ def best_of(cut: Cut, problem: Problem, asked: Asked) -> Told:
     tried: set[int] = set()
     given = problem.programmed.passes
     passes = given
-    while passes not in tried and len(tried) < ROUNDS:
+    last: Infeasible | None = None
+    while passes not in tried and len(tried) < (ROUNDS if told else UNTIL_FEASIBLE):
         tried.add(passes)
         try:
             told[passes] = _told(cut, problem, passes, asked)
             problem = told[passes].problem
-        except Infeasible:
+        except Infeasible as conflict:
             if problem.passes[0] == problem.passes[1]:
                 raise
+            last = conflict
         if told and passes > max(MANY, given):
             break
         try:
@@ -85,7 +90,7 @@ def best_of(cut: Cut, problem: Problem, asked: Asked) -> Told:
         passes = proposal.passes
     best = min(told.values(), key=lambda each: _cost(each, asked.task), default=None)
     if best is None:
-        raise exact.conflict(problem)
+        raise last or exact.conflict(problem)
     # What comes next finds the stock as this path leaves it.
     asked.cuts.at(asked.step, best.cut, best.optimum.solution.setting)
     return best
@@ -119,7 +124,9 @@ def _with_passes(problem: Problem, passes: int, task: Task) -> Optimum:
         return free
     if passes != given.passes:
         given = replace(given, passes=passes, depth=problem.depth_at(passes))
-    return _optimum(replace(problem, passes=(passes, passes), programmed=given), task)
+    why = f"these are {passes} passes along their path"
+    held = replace(problem, passes=(passes, passes), programmed=given, why_held=why)
+    return _optimum(held, task)
 
 
 def _optimum(problem: Problem, task: Task) -> Optimum:

@@ -42,9 +42,9 @@ def along_paths(program: Program, machine: Machine, material: Material) -> CutSo
     """Cuts as the real tool path makes them in the stock that is left, timed by the machine."""
     from optimiser.measured import MeasuredCuts  # noqa: PLC0415 (numpy)
 
-    return MeasuredCuts(program, machine, material.kienzle)
+    return MeasuredCuts(program, machine, material)
 
 
-def from_features(program: Program, _machine: Machine, _material: Material) -> CutSource:
+def from_features(program: Program, _machine: Machine, material: Material) -> CutSource:
     """Cuts estimated from features: quick, and blind to what the path really does."""
-    return Estimates(program)
+    return Estimates(program, material)

@@ -3,8 +3,11 @@
 import os
 import sys
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
-from optimiser.advice import Advice, Plan, Status
+from optimiser.advice import Advice, Plan, State, Status
+from optimiser.limit import LimitName
+from optimiser.stability import Basis
 from service.contents import Contents
 from service.terminal import clean
 from simulator.spec import Machine, Material
@@ -13,8 +16,12 @@ from stepnc_model.units import (
     kw_from_watts,
     m_min_from_speed,
     mm_min_from_speed,
+    n_um_from_n_mm,
     rpm_from_rev_s,
 )
+
+if TYPE_CHECKING:
+    from service.confirmation import Confirmation, Figure
 
 Row = Sequence[str]
 
@@ -29,7 +36,7 @@ MOST_INDENTED = 20
 """levels of executables that a table shows by indenting"""
 
 
-def print_plan(plan: Plan) -> None:
+def print_plan(plan: Plan, confirmation: "Confirmation | None" = None) -> None:
     """Advice for a program: a row for each workingstep, then totals and findings."""
     material = plan.material.material
     print_line(
@@ -52,7 +59,27 @@ def print_plan(plan: Plan) -> None:
     for advice in plan.advices:
         if advice.front:
             _print_front(advice)
+    if confirmation is not None:
+        _print_confirmation(confirmation)
     print_findings(plan.findings)
+
+
+def _print_confirmation(confirmation: "Confirmation") -> None:
+    """What was promised beside what the run found, and their ratio."""
+    print_line("promised -> found on the virtual machine (found / promised)")
+    headings = [figure.heading for figure in confirmation.steps[0].figures]
+    rows = [
+        (step.id, *(_figure(figure) for figure in step.figures)) for step in confirmation.steps
+    ]
+    print_table(("workingstep", *headings), rows)
+    for text in confirmation.passed:
+        print_line(f"bound passed: {text}", COLOURS[Severity.ERROR])
+
+
+def _figure(figure: "Figure") -> str:
+    if figure.ratio is None:
+        return "" if figure.found == 0.0 else f"0 -> {figure.found:.4g}"
+    return f"{figure.promised:.4g} -> {figure.found:.4g} ({figure.ratio:.3f})"
 
 
 def print_contents(contents: Contents) -> None:
@@ -134,6 +161,13 @@ def _machine_facts(machine: Machine) -> list[Row]:
         ("base power kW", kw_from_watts(machine.base_power)),
     ):
         facts.append((name, "not limited" if value is None else f"{value:g}"))
+    for mode in machine.modes:
+        of = mode.tool or (f"{mode.tool_diameter:g} mm" if mode.tool_diameter else "")
+        facts.append((
+            f"mode of {mode.part.value} {of}".rstrip() + f" along {mode.direction.value}",
+            f"{mode.natural_frequency:g} Hz, damping {mode.damping_ratio:g}, "
+            f"{n_um_from_n_mm(mode.stiffness):g} N/µm",
+        ))
     return facts
 
 
@@ -201,7 +235,21 @@ def _reason(advice: Advice) -> str:
     deepest = advice.deepest_first_time
     if deepest is not None and deepest > advice.after.time * 1.001:
         text += f"; the deepest passes would have taken {deepest:.1f} s"
-    return text
+    return text + _stability(advice, advice.after)
+
+
+def _stability(advice: Advice, state: State) -> str:
+    """The depth that measured modes allow, or why they are not asked."""
+    found = advice.stability
+    if found is None or found.basis is Basis.ESTIMATED:
+        return ""
+    load = next((load for load in state.loads if load.limit.name is LimitName.STABILITY), None)
+    if load is None:
+        return f"; stability not bounded: {found.reason or 'damped at this speed'}"
+    text = f"; stable to {load.bound:.3g} mm at this speed"
+    if found.least is not None:
+        text += f", {found.least:.3g} mm at any"
+    return text + f" ({found.reason})"
 
 
 def _print_front(advice: Advice) -> None:

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from optimiser.advice import Plan, Status
 from optimiser.formulate import Task
@@ -29,6 +30,9 @@ from stepnc_model.plausibility import refusal
 from stepnc_model.program import Program, Workingstep
 from stepnc_model.units import mm_from_um
 from stepnc_model.writeback import Profile
+
+if TYPE_CHECKING:
+    from service.confirmation import Confirmation
 
 NOTHING_WRITTEN = "nothing was written: no workingstep was advised"
 
@@ -58,6 +62,8 @@ class Request:
     """for which NC code is written too; none when empty"""
     knowledge: str = ""
     """knowledge base with accepted corrections; that of the environment when empty"""
+    confirm: bool = False
+    """whether the virtual machine runs the advised program"""
     safety: float = SAFETY
     """quantile of the factor on k_c that the plan takes from a correction"""
 
@@ -69,6 +75,8 @@ class Outcome:
     plan: Plan
     written: Path | None
     """the STEP-NC file, or None when nothing was written"""
+    confirmation: "Confirmation | None" = None
+    """None: not asked for"""
 
 
 def optimise(request: Request, *, tell: Tell = silent) -> Outcome:
@@ -112,6 +120,11 @@ def optimise(request: Request, *, tell: Tell = silent) -> Outcome:
     data = writeback.write(program, changes, profile) if changes else program.file.data
     if changes and factors and profile is Profile.OPTIMISATION:
         data = with_corrections(_read_again(program, data), factors)
+    confirmation = None
+    if request.confirm:
+        from service.confirm import confirm  # noqa: PLC0415 (numba takes a second)
+
+        confirmation = confirm(plan, _read_again(program, data), tell=tell)
     if nc_place is not None:
         # NC code first: where it cannot be made, nothing is written.
         code = _nc_code(program, data, request.control, tell)
@@ -129,7 +142,7 @@ def optimise(request: Request, *, tell: Tell = silent) -> Outcome:
         write_atomically(request.report, report_page(plan).encode())
         tell(f"report: {request.report}")
     _tell_conflicts(plan, tell)
-    return Outcome(plan=plan, written=written)
+    return Outcome(plan=plan, written=written, confirmation=confirmation)
 
 
 def _tell_conflicts(plan: Plan, tell: Tell) -> None:

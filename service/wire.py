@@ -7,6 +7,7 @@ from math import isfinite
 from typing import Any
 
 from optimiser.advice import Advice, Load, Plan, State, tightest
+from service.confirmation import Confirmation
 from service.contents import Contents
 from simulator.spec import Machine, Material
 from stepnc_model.errors import Finding
@@ -18,8 +19,9 @@ from stepnc_model.units import (
 )
 
 
-def plan_json(plan: Plan) -> str:
-    """A plan as JSON."""
+def plan_json(plan: Plan, confirmation: Confirmation | None = None) -> str:
+    """A plan as JSON, and what its run found where one was asked for."""
+    found = {} if confirmation is None else {"confirmation": _confirmation(confirmation)}
     return dump({
         "program": plan.program,
         "mode": plan.mode.value,
@@ -28,7 +30,30 @@ def plan_json(plan: Plan) -> str:
         "workingsteps": [_advice(advice) for advice in plan.advices],
         "total_time_s": {"before": plan.time_before, "after": plan.time_after},
         "findings": [finding_json(finding) for finding in plan.findings],
+        **found,
     })
+
+
+def _confirmation(confirmation: Confirmation) -> dict[str, Any]:
+    """What was promised and found."""
+    return {
+        "workingsteps": [
+            {
+                "id": step.id,
+                **{
+                    figure.key: {
+                        "promised": figure.promised,
+                        "found": figure.found,
+                        "ratio": figure.ratio,
+                        "bound": figure.bound if isfinite(figure.bound) else None,
+                    }
+                    for figure in step.figures
+                },
+            }
+            for step in confirmation.steps
+        ],
+        "passed": list(confirmation.passed),
+    }
 
 
 def contents_json(contents: Contents) -> str:
@@ -99,6 +124,7 @@ def _advice(advice: Advice) -> dict[str, Any]:
         },
         "sensitivity": _sensitivity(advice),
         "deepest_pass_first_time_s": advice.deepest_first_time,
+        "stability": _stability(advice),
         "prices": {name.value: price for name, price in advice.prices},
         "pareto": [
             {
@@ -111,6 +137,19 @@ def _advice(advice: Advice) -> dict[str, Any]:
             }
             for point in advice.front
         ],
+    }
+
+
+def _stability(advice: Advice) -> dict[str, Any] | None:
+    """What is known of it; the bound itself is one of the limits."""
+    found = advice.stability
+    if found is None:
+        return None
+    return {
+        "basis": found.basis.value,
+        "reason": found.reason,
+        "stable_at_any_speed_mm": found.least,
+        "band_mm": found.band,
     }
 
 

@@ -165,6 +165,18 @@ def find_grade(tool_kind: ToolKind, cutting_material: CuttingMaterial, iso_group
     )
 
 
+def grade_for(
+    tool_kind: ToolKind, cutting_material: CuttingMaterial, material: Material
+) -> Grade | None:
+    """Grade of a kind of tool for a material; None where there is none."""
+    if not material.iso_group:
+        return None
+    try:
+        return find_grade(tool_kind, cutting_material, material.iso_group)
+    except LibraryError:
+        return None
+
+
 @cache
 def _grades(kind: ToolKind) -> tuple[Grade, ...]:
     """Grades of one kind; kept, since every workingstep asks and the files do not change."""

@@ -1,17 +1,20 @@
 """A machine as the text of a library file, in which it reads back equal.
 
 Each number stands in the unit of its key and as short as it can be without changing the
-canonical value. Only the machine's own source is known, so it stands in every table.
+canonical value. Only the sources of the machine and of its modes are known; the machine's
+stands in all other tables.
 """
 
 import json
 from collections.abc import Callable, Sequence
 from math import inf, isinf, nextafter
 
-from simulator.spec import Axis, AxisDrive, Machine, Spindle, SpindlePoint
+from simulator.spec import Axis, AxisDrive, Machine, Spindle, SpindlePoint, VibrationMode
 from stepnc_model.units import (
     kw_from_watts,
     mm_min_from_speed,
+    n_mm_from_n_um,
+    n_um_from_n_mm,
     nm_from_nmm,
     nmm_from_nm,
     rev_s_from_rpm,
@@ -48,7 +51,12 @@ def machine_toml(machine: Machine, *, notes: Sequence[str] = ()) -> str:
     lines += _spindle(machine.spindle, machine.source)
     for axis in machine.axes:
         lines += _axis(axis, machine.source)
-    return "\n".join(lines) + "\n"
+    return "\n".join(lines) + "\n" + modes_toml(machine.modes)
+
+
+def modes_toml(modes: Sequence[VibrationMode]) -> str:
+    """TOML text of measured modes, a ``[[mode]]`` table each; ends a machine file."""
+    return "".join("\n".join(_mode(mode)) + "\n" for mode in modes)
 
 
 def _comment(line: str) -> str:
@@ -146,6 +154,22 @@ def _drive(drive: AxisDrive, source: str) -> list[str]:
         *_number("efficiency", drive.efficiency),
         *_number("regeneration", drive.regeneration),
         f"source = {_text(source)}",
+    ]
+
+
+def _mode(mode: VibrationMode) -> list[str]:
+    """One ``[[mode]]`` row."""
+    return [
+        "",
+        "[[mode]]",
+        f"part = {_text(mode.part.value)}",
+        *([f"tool = {_text(mode.tool)}"] if mode.tool else []),
+        *_number("tool_diameter_mm", mode.tool_diameter),
+        f"direction = {_text(mode.direction.value)}",
+        *_number("frequency_hz", mode.natural_frequency),
+        *_number("damping_ratio", mode.damping_ratio),
+        *_number("stiffness_n_um", mode.stiffness, shown=n_um_from_n_mm, read=n_mm_from_n_um),
+        f"source = {_text(mode.source)}",
     ]
 
 

@@ -118,6 +118,45 @@ class Axis:
     """``None``: unknown; the axis draws no power of its own"""
 
 
+class Direction(StrEnum):
+    """Axis of the machine along which a structure gives."""
+
+    X = "x"
+    Y = "y"
+    Z = "z"
+    XY = "xy"
+    """x and y alike: a round tool in a spindle, measured once"""
+
+
+class VibratingPart(StrEnum):
+    """What was hit in the tap test."""
+
+    TOOL = "tool"
+    WORKPIECE = "workpiece"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VibrationMode:
+    """One mode of a structure as a tap test shows it at the tool point or the workpiece.
+
+    A tool's mode holds for the tool in its holder in this spindle, at this overhang.
+    """
+
+    part: VibratingPart
+    direction: Direction
+    natural_frequency: float
+    """Hz"""
+    damping_ratio: float
+    """ζ, share of the critical damping, 0 < ζ < 1"""
+    stiffness: float
+    """modal stiffness k, N/mm"""
+    source: str
+    tool: str = ""
+    """id of the tool as programs name it; empty: any tool of the diameter"""
+    tool_diameter: float | None = None
+    """mm; ``None``: whatever the tool's diameter is"""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Machine:
     """One machine tool."""
@@ -145,6 +184,8 @@ class Machine:
     """s, chip to chip"""
     source: str
     remarks: tuple[str, ...] = ()
+    modes: tuple[VibrationMode, ...] = ()
+    """measured ones; without them stability sets no bound"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -239,6 +280,10 @@ class Material:
     """mm, absolute, where the source gives one"""
     source: str
     remarks: tuple[str, ...] = ()
+    feed_force: Kienzle | None = None
+    """(k_f1.1, m_f) of turning, m_f may exceed 1; ``None``: the usual share of F_c"""
+    back_force: Kienzle | None = None
+    """(k_p1.1, m_p) of turning, likewise"""
 
 
 class ToolKind(StrEnum):
@@ -255,6 +300,16 @@ class ToolKind(StrEnum):
     TURNING = "turning"
     GROOVING = "grooving"
     THREADING = "threading"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DrillPoint:
+    """Point of a tool that cuts on its end."""
+
+    thrust_share: float
+    """thrust of the lips over their tangential force times sin κ"""
+    chisel_ratio: float
+    """c/D, length of the chisel edge over the diameter; 0: it has none"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -293,6 +348,10 @@ class Grade:
     rake_angle: float | None
     """rad"""
     source: str
+    helix_angle: float = 0.0
+    """λ_s, rad; 0: straight edges"""
+    point: DrillPoint | None = None
+    """``None``: the source says nothing of it"""
 
 
 class Certainty(StrEnum):

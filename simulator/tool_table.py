@@ -21,6 +21,7 @@ DIAMETER = Range(low=0.01, high=2_000, unit="mm")
 LENGTH = Range(low=0, high=2_000, unit="mm")
 TEETH = Range(low=1, high=500)
 ANGLE = Range(low=0, high=179, unit="°")
+HELIX = Range(low=0, high=75, unit="°")
 TAPER = Range(low=0, high=80, unit="°")
 POINT = Range(low=30, high=180, unit="°")
 
@@ -46,6 +47,8 @@ class TableTool:
     cutting_material: CuttingMaterial
     teeth: int
     shape: Cutter | Insert
+    helix_angle: float | None = None
+    """rad; None: that of the grade"""
 
 
 def read_tool_table(path: Path) -> tuple[TableTool, ...]:
@@ -77,6 +80,7 @@ def _tool(row: Table) -> TableTool:
     if "cutting_material" in row:
         material = row.choice("cutting_material", CuttingMaterial)
     teeth = _whole(row, "teeth", TEETH) if "teeth" in row else 1
+    helix = row.optional_number("helix_deg", HELIX)
     return TableTool(
         number=number,
         id=name,
@@ -84,6 +88,7 @@ def _tool(row: Table) -> TableTool:
         cutting_material=material,
         teeth=teeth,
         shape=_insert(row, kind) if kind in TURNED else _cutter(row, kind, teeth),
+        helix_angle=None if helix is None else rad_from_deg(helix),
     )
 
 

@@ -203,6 +203,16 @@ class Program:
                 found[int(other.ref)] = other
         return sorted(found.values(), key=lambda step: step.index)
 
+    def after(self, step: Workingstep) -> list[Workingstep]:
+        """Workingsteps on the same features that run after this one, in order."""
+        found = {
+            int(other.ref): other
+            for feature in step.features
+            for other in self._by_feature[int(feature)]
+            if other.index > step.index
+        }
+        return sorted(found.values(), key=lambda step: step.index)
+
     def textures_of(
         self, feature: Ref[Entity]
     ) -> list[tuple[SurfaceTextureParameter, MachinedSurface]]:

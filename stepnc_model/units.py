@@ -11,6 +11,7 @@ MM_PER_M = 1000.0
 SECONDS_PER_MINUTE = 60.0
 WATTS_PER_KILOWATT = 1000.0
 MM_PER_MICROMETRE = 1e-3
+UM_PER_MM = 1000.0
 NMM_PER_NM = 1000.0
 
 
@@ -82,6 +83,16 @@ def mm_from_um(value: float) -> float:
 def um_from_mm(length: float) -> float:
     """Length in µm from mm."""
     return length / MM_PER_MICROMETRE
+
+
+def n_mm_from_n_um(value: float) -> float:
+    """Stiffness in N/mm from N/µm."""
+    return value * UM_PER_MM
+
+
+def n_um_from_n_mm(stiffness: float) -> float:
+    """Stiffness in N/µm from N/mm."""
+    return stiffness / UM_PER_MM
 
 
 def rad_from_deg(value: float) -> float:

@@ -19,6 +19,7 @@ from service.cli.options import (
     CONTROLS,
     INFEASIBLE,
     INTERRUPTED,
+    LIMIT_EXCEEDED,
     OK,
     Commands,
     add_file,
@@ -154,6 +155,12 @@ def add_optimise_options(parser: argparse.ArgumentParser) -> None:
         help=f"also NC code with the advised feeds, for {CONTROLS}",
     )
     _add_learned(parser)
+    add(
+        "--confirm",
+        action="store_true",
+        help="run the advised program on the virtual machine and print what it finds beside "
+        "what was promised; exit 5 where a bound is passed",
+    )
     add("--dry-run", action="store_true", help="write no STEP-NC file")
     add("--report", type=Path, metavar="HTML", help="write a self-contained page with plots")
     add_json(parser)
@@ -250,18 +257,22 @@ def _optimise(options: argparse.Namespace) -> int:
             control=options.nc,
             knowledge=options.kb,
             safety=options.safety,
+            confirm=options.confirm,
         ),
         tell=tell,
     )
+    confirmation = outcome.confirmation
     if options.json:
         from service.wire import plan_json
 
-        write_out(plan_json(outcome.plan))
+        write_out(plan_json(outcome.plan, confirmation))
     else:
         from service.tables import print_plan
 
-        print_plan(outcome.plan)
-    return INFEASIBLE if outcome.plan.is_infeasible else OK
+        print_plan(outcome.plan, confirmation)
+    if outcome.plan.is_infeasible:
+        return INFEASIBLE
+    return LIMIT_EXCEEDED if confirmation is not None and confirmation.passed else OK
 
 
 def _check(options: argparse.Namespace) -> int:

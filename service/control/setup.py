@@ -76,7 +76,12 @@ def preview_of(course: NominalCourse) -> Preview:
     """What the program expects: the force where the override acts."""
     force = np.where(course.can_override, course.force, np.float32(0.0))
     return Preview(
-        until=course.until, force=force, peak=course.peak, workingstep=course.workingstep
+        until=course.until,
+        force=force,
+        peak=course.peak,
+        wall=course.wall,
+        workingstep=course.workingstep,
+        land_force=course.land_force,
     )
 
 

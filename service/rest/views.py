@@ -136,6 +136,15 @@ class BeforeAfterView(View):
     after: float | None
 
 
+class StabilityView(View):
+    """What is known of a cut's stability; its bound is one of the limits."""
+
+    basis: str = Field(description="measured, estimated (bounds nothing) or not_used")
+    reason: str
+    stable_at_any_speed_mm: float | None
+    band_mm: list[float] | None = Field(description="of an estimate, least and greatest")
+
+
 class AdvisedView(View):
     """The advice for one workingstep: the feed, and why."""
 
@@ -156,6 +165,9 @@ class AdvisedView(View):
     roughness_ra_um: float | None
     energy_j: float | None
     time_s: BeforeAfterView
+    stability: StabilityView | None = Field(
+        default=None, description="null: chatter is no matter of this cut's depth"
+    )
 
 
 class AdviceView(View):

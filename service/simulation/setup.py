@@ -102,8 +102,20 @@ def from_program(
     program = read_program(file, units=units, name=name)
     match = material_for(material, program)
     tell(f"material: {match.reason}")
+    return prepared_program(program, machine_for(machine, program), match, tell=tell)
+
+
+def prepared_program(
+    program: Program, chosen: Machine, match: MaterialMatch, *, tell: Tell
+) -> Prepared:
+    """A program that was read, on a machine that suits it.
+
+    Raises
+    ------
+    StepNcError
+        When a tool path cannot be made.
+    """
     paths = with_feeds(paths_of(program, tell=tell), keep_going=False)
-    chosen = machine_for(machine, program)
     numbers = tool_numbers(paths.paths)
     steps = sum(len(path.steps) for path in paths.paths)
     blocks = Counted(blocks_of(program, paths.items, name=Path(program.name).stem))

@@ -17,6 +17,10 @@ class Stretch:
     segments: Segments
     spindle_speed: Floats
     """(N,) rev/s that the spindle has at the end of each segment; NaN: it keeps its speed"""
+    way: int = 0
+    """segments at the beginning that lead to the path of the workingstep"""
+    back: int = 0
+    """segments at the end that lead away from it"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -12,7 +12,7 @@ import numpy as np
 from simulator.machine.cutting import Edge
 from simulator.machine.samples import Execution
 from simulator.machine.spindle_course import SpindleCourse
-from simulator.machine.tooth_loads import Teeth
+from simulator.machine.tooth_loads import Teeth, wall_forces
 from simulator.machine.wear import Wear
 from simulator.motion.motion import Kinematics, Motion
 from simulator.motion.segments import Floats, Ints, Segments
@@ -33,6 +33,8 @@ class State:
     coolant_on: bool = False
     spindle_programmed: float = 0.0
     """rev/s, signed"""
+    is_way: bool = False
+    """at rest, before the first feed of the workingstep"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -49,6 +51,10 @@ class Course:
     wear: Wear
     teeth: Teeth | None = None
     """None: forces are means over a revolution"""
+    way: int = 0
+    """segments at the beginning that lead to the path of the workingstep"""
+    back: int = 0
+    """segments at the end that lead away from it"""
 
     @cached_property
     def offsets(self) -> Floats:
@@ -59,6 +65,13 @@ class Course:
     def station_ends(self) -> Floats:
         """(M,) mm of path at which each station ends."""
         return self.offsets[self.stations.segment] + self.stations.station
+
+    @cached_property
+    def walls(self) -> Floats:
+        """(2, M) of :func:`simulator.machine.tooth_loads.wall_forces`."""
+        if self.edge is None:
+            return np.zeros((2, len(self.stations)))
+        return wall_forces(self.stations, self.edge)
 
     def stations_at(self, kinematics: Kinematics) -> Ints:
         """Which station holds at each of some times."""
@@ -108,10 +121,10 @@ class Course:
         return self.offsets[rows] + part * self.segments.length[rows]
 
     def worn(self, times: Floats) -> Floats:
-        """Factor on the force at times from the start of the stretch."""
+        """Flank wear in mm at times from the start of the stretch."""
         if not self.wear.grows:
-            return np.full(len(times), self.wear.factor(0.0))
-        return self.wear.factors(np.interp(times, *self._cut_clock))
+            return np.full(len(times), self.wear.flank)
+        return self.wear.flanks(np.interp(times, *self._cut_clock))
 
     @property
     def cutting_seconds(self) -> float:

@@ -218,7 +218,7 @@ class _Interpreter:
             # Along z only, from nobody knows where: the machine stands there already.
             self.at[2] = block.z
             return
-        yield from self._rapid(Rapid(end=(x, y, block.z)))
+        yield from self._rapid(Rapid(end=(x, y, block.z), is_way=block.is_way))
 
     def _rapid(self, block: Rapid) -> Iterator[Act]:
         start = self._start(block.end)
@@ -226,7 +226,7 @@ class _Interpreter:
             wanted = _signed(self._speed_at(block.end[0]), self.surface.sense)
             yield from self._turn(wanted)
         if start != block.end:
-            self.rows.line(start, block.end, speed=inf, line=self.line)
+            self.rows.line(start, block.end, speed=inf, line=self.line, is_way=block.is_way)
         self.at = list(block.end)
 
     def _linear(self, block: Linear) -> Iterator[Act]:

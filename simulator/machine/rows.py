@@ -20,14 +20,25 @@ class Rows:
     def __init__(self) -> None:
         self._points: list[tuple[Point, Point, Point]] = []
         self._numbers: list[tuple[float, float, int, int, float]] = []
+        self._way, self._back = 0, 0
 
     def __len__(self) -> int:
         return len(self._points)
 
     def line(
-        self, start: Point, end: Point, *, speed: float, line: int, spindle: float = nan
+        self,
+        start: Point,
+        end: Point,
+        *,
+        speed: float,
+        line: int,
+        spindle: float = nan,
+        is_way: bool = False,
     ) -> None:
         """One line, rapid when its speed is infinite."""
+        leads = is_way and self._way == len(self._points)
+        self._way += leads
+        self._back = self._back + 1 if is_way and not leads else 0
         self._points.append((start, end, start))
         self._numbers.append((speed, 0.0, 2, line, spindle))
 
@@ -47,7 +58,7 @@ class Rows:
             point[normal] = start[normal] + part * rise
             return point[0], point[1], point[2]
 
-        here = start
+        here, self._back = start, 0
         for index in range(1, pieces + 1):
             there = block.end if index == pieces else at(index / pieces)
             speed, spindle = speeds(at((index - 0.5) / pieces)[0], there[0])
@@ -59,7 +70,8 @@ class Rows:
         """The stretch; the rows are empty afterwards."""
         points = np.array(self._points)
         speed, turn, normal, line, spindle = np.array(self._numbers).T
-        self._points, self._numbers = [], []
+        way, back = self._way, self._back
+        self._points, self._numbers, self._way, self._back = [], [], 0, 0
         segments = Segments(
             start=points[:, 0],
             end=points[:, 1],
@@ -70,4 +82,4 @@ class Rows:
             normal=normal.astype(np.int64),
             block=line.astype(np.int64),
         )
-        return Stretch(segments=segments, spindle_speed=spindle)
+        return Stretch(segments=segments, spindle_speed=spindle, way=way, back=back)

@@ -90,6 +90,8 @@ class Total:
     """s"""
     waiting_time: float = 0.0
     """s at rest: pauses, tool changes, a spindle that has not its speed"""
+    way_time: float = 0.0
+    """s before the path begins and after it: tool change, spindle, the moves to it and home"""
     energy: Energy = field(default_factory=Energy)
     cutting_energy: float = 0.0
     """J at the edge"""
@@ -97,10 +99,18 @@ class Total:
     """mm³ removed"""
     power: Peak = field(default_factory=Peak)
     """W of the spindle drive"""
+    cutting_power: Peak = field(default_factory=Peak)
+    """W at the edge"""
+    drive_power: Peak = field(default_factory=Peak)
+    """W of the spindle drive while there are chips"""
     force: Peak = field(default_factory=Peak)
-    """N, tangential"""
+    """N, tangential; of a mill without its plunges"""
+    thrust: Peak = field(default_factory=Peak)
+    """N, of drills and plunges"""
     chip: Peak = field(default_factory=Peak)
     """mm, mean thickness"""
+    deflection: Peak = field(default_factory=Peak)
+    """mm, of an end mill while it makes a wall"""
     overload_time: float = 0.0
     """s above the continuous power or the permitted force"""
 
@@ -117,12 +127,17 @@ class Total:
             cutting_time=self.cutting_time + other.cutting_time,
             rapid_time=self.rapid_time + other.rapid_time,
             waiting_time=self.waiting_time + other.waiting_time,
+            way_time=self.way_time + other.way_time,
             energy=self.energy + other.energy,
             cutting_energy=self.cutting_energy + other.cutting_energy,
             volume=self.volume + other.volume,
             power=max(self.power, other.power, key=_value),
+            cutting_power=max(self.cutting_power, other.cutting_power, key=_value),
+            drive_power=max(self.drive_power, other.drive_power, key=_value),
             force=max(self.force, other.force, key=_value),
+            thrust=max(self.thrust, other.thrust, key=_value),
             chip=max(self.chip, other.chip, key=_value),
+            deflection=max(self.deflection, other.deflection, key=_value),
             overload_time=self.overload_time + other.overload_time,
         )
 
@@ -159,11 +174,37 @@ def added(total: Total, episode: Episode, machine: Machine) -> Total:
         energy=total.energy + energy,
         cutting_energy=total.cutting_energy + float(weights @ samples.cutting_power),
         volume=total.volume + float(weights @ samples.removal_rate),
+        way_time=total.way_time + _way(episode),
         power=total.power.or_greater(samples.spindle_power, samples),
-        force=total.force.or_greater(samples.cutting_force, samples),
+        cutting_power=total.cutting_power.or_greater(samples.cutting_power, samples),
+        drive_power=total.drive_power.or_greater(
+            np.where(samples.removal_rate > 0.0, samples.spindle_power, 0.0), samples
+        ),
+        force=total.force.or_greater(_across(samples, episode), samples),
+        thrust=total.thrust.or_greater(samples.thrust, samples),
         chip=total.chip.or_greater(samples.chip_thickness, samples),
+        deflection=total.deflection.or_greater(samples.deflection, samples),
         overload_time=total.overload_time + float(weights @ is_loaded),
     )
+
+
+def _way(episode: Episode) -> float:
+    """Seconds of an episode before the path of its workingstep begins and after it ends."""
+    course = episode.course
+    if course is None:
+        return episode.end - episode.begin if episode.state.is_way else 0.0
+    ends = course.motion.ends
+    there = float(ends[course.way - 1]) if course.way else 0.0
+    back = float(ends[-1] - ends[-1 - course.back]) if course.back else 0.0
+    return there + back
+
+
+def _across(samples: Samples, episode: Episode) -> Floats:
+    """Cutting force, N, without that of a mill that goes straight down."""
+    course = episode.course
+    if course is None or course.edge is None or course.edge.flutes is None:
+        return samples.cutting_force
+    return np.where(samples.thrust > 0.0, 0.0, samples.cutting_force)
 
 
 def _nodes(episode: Episode) -> Floats:

@@ -32,9 +32,10 @@ from simulator.machine.samples import Execution
 from simulator.machine.spindle_course import following, ramped, standing
 from simulator.machine.tooth_loads import Teeth
 from simulator.machine.travel import Zero, require_axes, require_travel
-from simulator.machine.wear import WORN_OUT, Wear, wearing_along
+from simulator.machine.wear import Wear, wearing_along
 from simulator.motion.motion import ControlModel, axis_limits
 from simulator.motion.segments import Floats, Segments
+from simulator.physics.tool_life import LIFE_CRITERION
 from simulator.removal.cutter import Cutter, Insert
 from simulator.removal.stations import Stations, air
 from simulator.spec import Machine, MachineKind, Taylor
@@ -101,6 +102,8 @@ class VirtualMachine:
         self._stock: StockMap | None = None
         self._stocks: list[StockMap] = []
         self._clamp("")
+        self._has_fed = False
+        """in this workingstep"""
         self._flank: dict[int, float] = {}
         """mm of flank wear by the tool's number"""
         self._said: set[str] = set()
@@ -150,6 +153,7 @@ class VirtualMachine:
             case WorkingstepTo(id=name):
                 self.workingsteps.append(name)
                 self.state = replace(self.state, workingstep=len(self.workingsteps))
+                self._has_fed = False
                 self._clamp(name)
             case Stop():
                 left = max(self.spindle.reached - self.now, 0.0)
@@ -157,6 +161,8 @@ class VirtualMachine:
             case End():
                 self._turn(0.0)
                 self.state = replace(self.state, coolant_on=False)
+                # The spindle stops after the path, as it starts before it.
+                self._has_fed = False
                 yield from self._wait(self.spindle.reached - self.now)
 
     def _clamp(self, workingstep: str) -> None:
@@ -174,7 +180,7 @@ class VirtualMachine:
         return Episode(
             begin=begin,
             end=self.now,
-            state=replace(self.state, execution=execution),
+            state=replace(self.state, execution=execution, is_way=not self._has_fed),
             spindle=self.spindle,
             position=np.zeros(3) if self.position is None else self.position,
         )
@@ -219,7 +225,10 @@ class VirtualMachine:
             edge=None if self.tool is None else self.tool.edge,
             wear=self._wear(stretch, stations),
             teeth=self.setup.teeth,
+            way=stretch.way,
+            back=stretch.back,
         )
+        self._has_fed = self._has_fed or not bool(segments.is_rapid.all())
         self._worn(course)
         episode = Episode(
             begin=begin,
@@ -286,8 +295,8 @@ class VirtualMachine:
             return
         flank = course.wear.after(course.cutting_seconds).flank
         self._flank[self.tool.number] = flank
-        if flank > WORN_OUT:
-            text = f"T{self.tool.number} {self.tool.id} is worn beyond {WORN_OUT:g} mm"
+        if flank > LIFE_CRITERION:
+            text = f"T{self.tool.number} {self.tool.id} is worn beyond {LIFE_CRITERION:g} mm"
             self._say(text, int(course.segments.block[-1]))
 
     def _say(self, text: str, line: int = 0) -> None:

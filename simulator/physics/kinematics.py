@@ -14,7 +14,6 @@ References
 from math import pi
 
 from simulator.physics.domain import (
-    require_hole,
     require_not_negative,
     require_positive,
     require_teeth,
@@ -179,73 +178,6 @@ def milling_removal_rate(feed: float, *, axial_depth: float, radial_width: float
     require_positive(axial_depth, "axial depth", "mm")
     require_positive(radial_width, "radial width", "mm")
     return axial_depth * radial_width * feed
-
-
-def drilling_removal_rate(
-    feed: float, *, tool_diameter: float, previous_diameter: float = 0.0
-) -> float:
-    """Volume that a drill, reamer or boring bar removes in one second.
-
-    ``Q = π/4 · (D² − d²) · v_f``, [3]_; d is the hole that was there.
-
-    Parameters
-    ----------
-    feed : float, mm/s
-    tool_diameter : float, mm
-    previous_diameter : float, mm
-        0 for drilling into the solid.
-
-    Returns
-    -------
-    float, mm³/s
-
-    Raises
-    ------
-    ValueError
-        If feed or diameter is not positive or the hole is not smaller than the tool.
-
-    Examples
-    --------
-    >>> round(drilling_removal_rate(2.0, tool_diameter=10.0), 2)
-    157.08
-    """
-    require_positive(feed, "feed", "mm/s")
-    require_hole(tool_diameter, previous_diameter)
-    return pi / 4.0 * (tool_diameter**2 - previous_diameter**2) * feed
-
-
-def turning_removal_rate(
-    feed_per_revolution: float, *, depth: float, cutting_speed: float
-) -> float:
-    """Volume that a turning tool removes in one second.
-
-    ``Q = a_p · f · v_c``, [3]_; exact when v_c is taken on the mean of the diameters before and
-    after the cut, and high by less than ``a_p / d`` when it is taken on the outer one.
-
-    Parameters
-    ----------
-    feed_per_revolution : float, mm
-    depth : float, mm
-    cutting_speed : float, mm/s
-
-    Returns
-    -------
-    float, mm³/s
-
-    Raises
-    ------
-    ValueError
-        If any is not positive.
-
-    Examples
-    --------
-    >>> turning_removal_rate(0.25, depth=2.0, cutting_speed=2500.0)
-    1250.0
-    """
-    require_positive(feed_per_revolution, "feed per revolution", "mm")
-    require_positive(depth, "depth of cut", "mm")
-    require_positive(cutting_speed, "cutting speed", "mm/s")
-    return depth * feed_per_revolution * cutting_speed
 
 
 def machining_time(

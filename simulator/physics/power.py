@@ -52,35 +52,6 @@ def cutting_power(force: float, cutting_speed: float) -> float:
     return force * cutting_speed / _NMM_S_PER_WATT
 
 
-def removal_power(specific_cutting_force: float, removal_rate: float) -> float:
-    """Power that a removal rate takes: the specific force is an energy per volume.
-
-    ``P_c = k_c · Q / 1000``.
-
-    Parameters
-    ----------
-    specific_cutting_force : float, N/mm²
-    removal_rate : float, mm³/s
-
-    Returns
-    -------
-    float, W
-
-    Raises
-    ------
-    ValueError
-        If either is not positive.
-
-    Examples
-    --------
-    >>> removal_power(1000.0, 261.0)
-    261.0
-    """
-    require_positive(specific_cutting_force, "specific cutting force", "N/mm²")
-    require_positive(removal_rate, "removal rate", "mm³/s")
-    return specific_cutting_force * removal_rate / _NMM_S_PER_WATT
-
-
 def motor_power(cutting_power: float, efficiency: float) -> float:
     """Motor power that a cutting power asks for.
 
@@ -138,16 +109,3 @@ def torque(power: float, spindle_speed: float) -> float:
     require_not_negative(power, "power", "W")
     require_positive(spindle_speed, "spindle speed", "rev/s")
     return _NMM_S_PER_WATT * power / (2.0 * pi * spindle_speed)
-
-
-def torque_power(torque: float, spindle_speed: float) -> float:
-    """Power of a torque, the inverse of :func:`torque`: ``P = 2π · n · M / 1000``, W.
-
-    Raises
-    ------
-    ValueError
-        If the torque is negative or the speed not positive.
-    """
-    require_not_negative(torque, "torque", "N·mm")
-    require_positive(spindle_speed, "spindle speed", "rev/s")
-    return 2.0 * pi * spindle_speed * torque / _NMM_S_PER_WATT

@@ -20,6 +20,9 @@ from simulator.physics.domain import (
     require_positive,
 )
 
+STICK_OUT = 3.0
+"""least overhang over diameter of an end mill, customary; ISO 14649 names no overhang"""
+
 FLUTED_RATIO = 0.8  # equivalent diameter of the fluted part over the diameter, [1]; customary
 
 
@@ -79,6 +82,26 @@ class Cantilever:
         """Diameter at the holder: the flutes' when they reach it."""
         fluted = self.flute_length == self.overhang
         return self.flute_diameter if fluted else self.shank_diameter
+
+
+def end_mill(
+    tool_diameter: float, *, cutting_edge_length: float | None, youngs_modulus: float
+) -> Cantilever:
+    """Shank of an end mill that stands out three diameters, or its edge if that is longer.
+
+    Parameters
+    ----------
+    tool_diameter : float, mm
+    cutting_edge_length : float, optional, mm
+    youngs_modulus : float, N/mm²
+
+    Raises
+    ------
+    ValueError
+        If a number is not positive.
+    """
+    overhang = max(STICK_OUT * tool_diameter, cutting_edge_length or 0.0)
+    return _plain(overhang, equivalent_diameter(tool_diameter), youngs_modulus)
 
 
 def equivalent_diameter(tool_diameter: float, *, ratio: float = FLUTED_RATIO) -> float:

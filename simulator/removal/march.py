@@ -325,18 +325,21 @@ def _raised(row: Floats, lift: float, raised: Floats) -> Floats:
 
 @kernel
 def _shared(task: Task, out: Floats, begin: int, count: int, volume: float) -> int:
-    """Sections of a part that hold its volume, and air where there is none."""
-    exact, shape, length = True, 0.0, 0.0
+    """Sections that are not exact hold what is left of the volume; air where there is none."""
+    shape, length, rest = 0.0, 0.0, volume
     for index in range(begin, count):
-        exact = exact and out[index, EXACT] == 1.0
-        shape += out[index, SECTION] * out[index, LENGTH]
+        part = out[index, SECTION] * out[index, LENGTH]
+        if out[index, EXACT] == 1.0:
+            rest -= part
+            continue
+        shape += part
         length += out[index, LENGTH]
+    rest = max(rest, 0.0)
     kept = begin
     for index in range(begin, count):
         line = out[index]
-        if not exact:
-            line[EXACT] = 0.0
-            line[SECTION] = line[SECTION] * volume / shape if shape > 0.0 else volume / length
+        if line[EXACT] == 0.0:
+            line[SECTION] = line[SECTION] * rest / shape if shape > 0.0 else rest / length
         if line[SECTION] <= 0.0:
             kept = _air(out, kept, int(line[ROW]), line[STATION], line[LENGTH])
             continue

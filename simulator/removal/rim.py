@@ -27,11 +27,11 @@ from simulator.removal.arcs import (
     free_by_move,
     free_by_outline,
 )
-from simulator.removal.profile import Profile, is_plain, radius_at, rise
+from simulator.removal.profile import Profile, is_plain, is_upright, radius_at, rise
 from simulator.removal.ring import (
+    CORNER_SLICES,
     MOST_CANDIDATES,
     NEAR,
-    ROUND_SAMPLES,
     Pose,
     Room,
     Tool,
@@ -43,11 +43,13 @@ from simulator.removal.ring import (
 from simulator.removal.way import LEAST, LEVEL
 from simulator.removal.zmap import OUTSIDE, Grid
 
-CORNER_SLICES = 6
 FLANK_SLICES = 4
 
 FORGETTING = 32_768
 """moves whose outline is remembered"""
+
+SLIVERS = 0.05
+"""of the section, that may lie above its depth: slivers left on a wall do not make it deep"""
 
 TRACE = 1e-3
 """rad of contact below which there is none"""
@@ -97,19 +99,19 @@ def look(grid: Grid, before: Past, tool: Tool, work: Room, pose: Pose, into: Flo
     into[EXACT] = 1.0
     profile = tool.profile
     plain, is_known = is_plain(profile), True
+    upright = plain or is_upright(profile)
     gap = max(grid.dx, grid.dy)
     base = max(pose.z, grid.bottom)
     if plain:
         circle = circle_of(pose, profile.radius, tool.side)
         read_ring(grid, work, circle, gap)
         slices = levels(work, base)
-        is_known = slices >= 0
-        slices = abs(slices)
     else:
-        slices = _slices(grid, work, tool, pose, base)
+        slices = _slices(grid, work, tool, pose, base, upright)
     count_all = int(np.int64(0))
-    area, across, edges, top, widest, most = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    area, across, edges, widest, most = 0.0, 0.0, 0.0, 0.0, 0.0
     for index in range(slices):
+        work.areas[index] = 0.0
         low, high = work.bounds[index], work.bounds[index + 1]
         middle = 0.5 * (low + high)
         radius = radius_at(profile, middle - pose.z)
@@ -129,30 +131,72 @@ def look(grid: Grid, before: Past, tool: Tool, work: Room, pose: Pose, into: Flo
             angle += end - begin
             count_all = add_free(work.total, count_all, begin, end)
         most = max(most, angle)
-        area += (high - low) * radius * sines
+        work.areas[index] = (high - low) * radius * sines
+        area += work.areas[index]
         across += (high - low) * sines
         edges += _edge(profile, low - pose.z, high - pose.z, tool.sine) * angle
-        top = high - base
         widest = 2.0 * radius_at(profile, high - pose.z)
-    exact = plain and is_known and abs(pose.climb) <= LEVEL
+    exact = upright and is_known and abs(pose.climb) <= LEVEL
     into[EXACT] = 1.0 if exact else 0.0
     if count_all == 0 or most < TRACE:
         return
-    into[AREA], into[DEPTH], into[CHIP], into[DIAMETER] = area, top, across / edges, widest
+    top, above = slices, 0.0
+    while top > 1 and above + work.areas[top - 1] <= SLIVERS * area:
+        top -= 1
+        above += work.areas[top]
+    into[AREA], into[DEPTH] = area, work.bounds[top] - base
+    into[CHIP], into[DIAMETER] = across / edges, widest
     _hull(work.total, contact_arcs(work.total, count_all), into)
 
 
 @kernel
-def _slices(grid: Grid, work: Room, tool: Tool, pose: Pose, base: float) -> int:
-    """Slices of a rounded tool: up to the highest place that it touches ahead."""
+def _slices(grid: Grid, work: Room, tool: Tool, pose: Pose, base: float, upright: bool) -> int:
+    """Slices of a rounded tool: up to the highest place that it touches ahead.
+
+    Above the corner of an upright one they lie between the heights that its ring meets.
+    """
+    profile = tool.profile
+    top = _top(grid, work, tool, pose, base)
+    if top <= base:
+        return 0
+    shoulder = min(max(pose.z + profile.shoulder, base), top)
+    above = 0
+    if upright and top > shoulder + LEAST:
+        # The last ring that was read is the widest.
+        above = levels(work, shoulder)
+        for index in range(above, 0, -1):
+            work.bounds[index + CORNER_SLICES] = work.bounds[index]
+    count = _divided(work, 0, base, shoulder, CORNER_SLICES)
+    if above == 0:
+        return _divided(work, count, shoulder, top, FLANK_SLICES)
+    for index in range(1, above + 1):
+        work.bounds[count + index] = work.bounds[CORNER_SLICES + index]
+    return count + above
+
+
+@kernel
+def _divided(work: Room, count: int, low: float, high: float, parts: int) -> int:
+    """Number of slices after some more have been added that divide a height."""
+    work.bounds[count] = low
+    if high <= low + LEAST:
+        return count
+    for index in range(1, parts + 1):
+        work.bounds[count + index] = low + (high - low) * index / parts
+    return count + parts
+
+
+@kernel
+def _top(grid: Grid, work: Room, tool: Tool, pose: Pose, base: float) -> float:
+    """Highest place that a rounded tool touches ahead."""
     profile, gap = tool.profile, max(grid.dx, grid.dy)
-    step, top = pi / ROUND_SAMPLES, base
+    samples = len(work.heights)
+    step, top = pi / samples, base
     for third in range(1, 4):
         radius = profile.radius * third / 3.0
         circle = circle_of(pose, radius, tool.side)
         read_ring(grid, work, circle, gap)
         reach = pose.z + rise(profile, radius) - LEAST
-        for index in range(ROUND_SAMPLES):
+        for index in range(samples):
             height = work.heights[index]
             if height <= top:
                 continue
@@ -162,20 +206,7 @@ def _slices(grid: Grid, work: Room, tool: Tool, pose: Pose, base: float) -> int:
                 height_at(grid, circle, nearer, (index + 0.5) * step) > height - LEAST
             ):
                 top = height
-    if top <= base:
-        return 0
-    shoulder = min(max(pose.z + profile.shoulder, base), top)
-    count = 0
-    work.bounds[0] = base
-    if shoulder > base + LEAST:
-        for index in range(1, CORNER_SLICES + 1):
-            work.bounds[index] = base + (shoulder - base) * index / CORNER_SLICES
-        count = CORNER_SLICES
-    if top > shoulder + LEAST:
-        for index in range(1, FLANK_SLICES + 1):
-            work.bounds[count + index] = shoulder + (top - shoulder) * index / FLANK_SLICES
-        count += FLANK_SLICES
-    return count
+    return top
 
 
 @kernel

@@ -1,7 +1,7 @@
 """A broken tooth is found, and nothing else is taken for one.
 
-The forces are those of chips on the surface that earlier teeth have left
-(:func:`simulator.machine.tooth_forces.chip_thickness`), which knows nothing of shares.
+The forces are those of chips on the surface that earlier teeth have left, which know nothing of
+shares.
 """
 
 from collections.abc import Iterator
@@ -17,8 +17,6 @@ from hypothesis import strategies as st
 from controller.breakage import LEARNING, Breakage, inspected
 from controller.ports import Floats
 from controller.signal import Revolution
-from simulator.machine.tooth_forces import chip_thickness, tooth_angles
-from simulator.machine.transients import eccentric_runout
 from tests.controller.shown import REVOLUTION, SPINDLE_SPEED
 
 SAMPLES = 8
@@ -40,13 +38,20 @@ class Cutter:
 
     def forces(self, feed: float = FEED_PER_TOOTH, *, broken: int | None = None) -> Floats:
         """(z, K) N."""
-        runout = eccentric_runout(self.eccentricity, self.teeth)
+        turned = 2.0 * pi / self.teeth * np.arange(self.teeth)
+        runout = self.eccentricity * np.cos(turned)
         if broken is not None:
             runout[broken] -= SUNKEN
         middle = (np.arange(self.teeth * SAMPLES) + 0.5) / SAMPLES
         entry = pi - self.arc
-        angle = tooth_angles(entry + 2.0 * pi / self.teeth * middle, self.teeth)
-        chip = chip_thickness(angle, feed_per_tooth=feed, runout=runout)
+        tip = entry + 2.0 * pi / self.teeth * middle
+        angle = np.mod(tip[:, None] - turned, 2.0 * pi)
+        # What the tooth before left, or the one before that, is above this one's own path.
+        left = [
+            before * feed * np.sin(angle) + runout - np.roll(runout, before)
+            for before in range(1, self.teeth + 1)
+        ]
+        chip = np.min(left, axis=0).clip(min=0.0)
         in_cut = (angle >= entry) & (angle <= pi)
         force = self.force * ((chip / FEED_PER_TOOTH) ** EXPONENT * in_cut).sum(axis=1)
         return np.asarray(force.reshape(self.teeth, SAMPLES))

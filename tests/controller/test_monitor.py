@@ -8,11 +8,11 @@ from controller.guard import Keeping
 from controller.monitor import CALM, PAUSE, REACH, Monitor
 from controller.orders import Event, EventKind
 from controller.signal import Revolution
-from simulator.physics.cutting import wear_factor
 from tests.controller.shown import REVOLUTION
 
 KEEP = Keeping(set_point=400.0, breakage=2000.0, floor=0.2, ceiling=1.2, exponent=0.8)
 PERIOD = REVOLUTION.period
+LAND_SHARE = 1.85
 
 
 class Watching:
@@ -34,7 +34,7 @@ class Watching:
             tooth_means=np.full(4, force),
             **more,  # type: ignore[arg-type]
         )
-        self.events += self.monitor.seen(shown, self.keep, ratio=ratio)
+        self.events += self.monitor.seen(shown, self.keep, ratio=ratio, land_share=LAND_SHARE)
 
     @property
     def kinds(self) -> list[EventKind]:
@@ -98,7 +98,7 @@ def test_where_nothing_bounds_the_force_no_level_is_told() -> None:
 def test_a_jump_in_hardness_is_told_from_wear() -> None:
     worn = Watching()
     for wear in np.linspace(0.0, 0.1, 3000):
-        worn.show(390.0, ratio=log(wear_factor(float(wear)) / wear_factor(0.0)))
+        worn.show(390.0, ratio=log(1.0 + LAND_SHARE * wear))
     assert worn.events == []
     assert worn.monitor.lives["mill"].flank_wear == pytest.approx(0.1, abs=0.01)
     harder = Watching()
@@ -126,12 +126,12 @@ def test_changes_one_after_another_are_not_all_told() -> None:
 def test_a_worn_out_tool_is_told_once_in_its_life() -> None:
     watching = Watching()
     for wear in np.linspace(0.0, 0.33, 6000):
-        watching.show(390.0, ratio=log(wear_factor(float(wear)) / wear_factor(0.0)))
+        watching.show(390.0, ratio=log(1.0 + LAND_SHARE * wear))
     watching.monitor.begin("drill")
     watching.monitor.begin("mill")
     for flicker in range(400):
         wear = 0.33 if flicker % 2 else 0.25
-        watching.show(390.0, ratio=log(wear_factor(wear) / wear_factor(0.0)))
+        watching.show(390.0, ratio=log(1.0 + LAND_SHARE * wear))
     assert watching.kinds.count(EventKind.WEAR) == 1
     assert "tool 'mill'" in watching.events[-1].text
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from math import radians
 
 from optimiser.cut import Cut, CutKind, Texture
 from optimiser.limit import Limit, LimitName, Sense
@@ -36,6 +37,7 @@ CUT = Cut(
     engagement=unidirectional(6.0, 12.0),
     radial_width=6.0,
     depth_bound=26.0,
+    helix_angle=radians(30.0),
 )
 DRILLED = replace(
     CUT,

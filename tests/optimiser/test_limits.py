@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from math import pi, sqrt
+from math import pi, radians, sin, sqrt
 
 import pytest
 
@@ -10,11 +10,11 @@ from optimiser import loads
 from optimiser.cut import Texture
 from optimiser.limit import Limit, LimitName, Sense
 from optimiser.limits import (
-    FINISHING_DEFLECTION,
+    GREATEST_DEFLECTION,
     NOSE_FEED_RATIO,
-    ROUGHING_DEFLECTION,
-    STICK_OUT,
+    PermittedDeflection,
     cutting_speed_window,
+    drill_point,
     force_factor,
     force_load,
     limits_of,
@@ -24,7 +24,8 @@ from optimiser.limits import (
     speed_range,
     spindle_limits,
 )
-from simulator.physics.engagement import full_immersion, unidirectional
+from simulator.physics.engagement import bilateral, full_immersion, unidirectional
+from simulator.physics.strength import STICK_OUT
 from simulator.spec import ToolKind
 from tests.optimiser.cuts import (
     CARBIDE,
@@ -108,17 +109,29 @@ def test_chip_floor_grows_the_feed_of_a_narrow_cut() -> None:
 
 
 def test_deflection_is_that_of_a_bar_clamped_at_one_end() -> None:
-    """F·L³/(3·E·π·d⁴/64) with d = 0.8·D and L = 3·D."""
+    """F·L³/(3·E·π·d⁴/64) with d = 0.8·D, L = 3·D, F at the wall; stress is that of the peak."""
     limit = named(limits_of(CUT, CARBIDE), LimitName.TOOL_DEFLECTION)
     stress = named(limits_of(CUT, CARBIDE), LimitName.SHANK_STRENGTH)
     overhang, diameter = STICK_OUT * 12.0, 0.8 * 12.0
     assert CARBIDE.grade is not None
+    factor = force_factor(CARBIDE)
+    wall = loads.wall_force(CUT, CARBIDE.material.kienzle, factor)
+    across = loads.shank_force(CUT, CARBIDE.material.kienzle, factor)
+    assert wall is not None
     stiffness = 3.0 * CARBIDE.grade.youngs_modulus * pi * diameter**4 / 64.0
-    force = limit.load.value(0.05, 3.0, 60.0) * stiffness / overhang**3
-    expected = 32.0 * force * overhang / (pi * diameter**3)
+    expected = wall.value(0.05, 3.0, 60.0) * overhang**3 / stiffness
+    assert limit.load.value(0.05, 3.0, 60.0) == pytest.approx(expected)
+    expected = 32.0 * across.value(0.05, 3.0, 60.0) * overhang / (pi * diameter**3)
     assert stress.load.value(0.05, 3.0, 60.0) == pytest.approx(expected)
-    assert limit.bound == ROUGHING_DEFLECTION
+    assert limit.bound == GREATEST_DEFLECTION
     assert stress.bound == CARBIDE.grade.bending_strength
+
+
+def test_a_cut_that_reaches_no_wall_bends_the_tool_into_none() -> None:
+    within = replace(CUT, engagement=bilateral(6.0, 12.0, offset=0.0))
+    found = names(limits_of(within, CARBIDE))
+    assert LimitName.TOOL_DEFLECTION not in found
+    assert LimitName.SHANK_STRENGTH in found
 
 
 def test_long_edge_sticks_out_further() -> None:
@@ -130,13 +143,24 @@ def test_long_edge_sticks_out_further() -> None:
     assert deflections[1] == pytest.approx(8.0 * deflections[0])
 
 
-def test_finished_wall_bends_the_tool_less() -> None:
-    cut = replace(CUT, texture=Texture.WALL, is_finish_operation=True)
-    limit = named(limits_of(cut, CARBIDE), LimitName.TOOL_DEFLECTION)
-    assert limit.bound == FINISHING_DEFLECTION
-    roughed = replace(CUT, texture=Texture.WALL, is_finishing=True)
-    limit = named(limits_of(roughed, CARBIDE), LimitName.TOOL_DEFLECTION)
-    assert limit.bound == ROUGHING_DEFLECTION
+def test_deflection_keeps_what_the_wall_permits_and_says_why() -> None:
+    permitted = PermittedDeflection(value=0.0125, origin="a quarter of ±0.05 mm")
+    at = replace(CARBIDE, deflection=permitted)
+    limit = named(limits_of(CUT, at), LimitName.TOOL_DEFLECTION)
+    assert (limit.bound, limit.origin) == (0.0125, "a quarter of ±0.05 mm")
+
+
+def test_sweep_of_a_floor_does_not_spoil_the_wall() -> None:
+    at = replace(CARBIDE, deflection=PermittedDeflection(value=0.0125))
+    floor = replace(CUT, total_depth=0.2)
+    limits = limits_of(replace(CUT, floor=floor), at)
+    bounds = [each.bound for each in limits if each.name is LimitName.TOOL_DEFLECTION]
+    assert bounds == [0.0125, GREATEST_DEFLECTION]
+
+
+def test_material_of_a_paper_bends_no_tool() -> None:
+    at = replace(PAPER, deflection=PermittedDeflection(value=1e-6))
+    assert LimitName.TOOL_DEFLECTION not in names(limits_of(CUT, at))
 
 
 @pytest.mark.parametrize(
@@ -162,7 +186,9 @@ def test_cutting_force_of_a_drill_is_its_thrust() -> None:
     at = conditions(ToolKind.DRILL)
     limit = named(limits_of(DRILLED, at), LimitName.CUTTING_FORCE)
     assert limit.bound == 8000.0
-    assert limit.load == loads.thrust(DRILLED, at.material.kienzle, force_factor(at))
+    point = drill_point(at)
+    assert point.chisel_ratio == 0.1
+    assert limit.load == loads.thrust(DRILLED, at.material.kienzle, force_factor(at), point)
 
 
 def test_feed_mechanism_is_teeth_times_speed_times_feed() -> None:
@@ -336,11 +362,11 @@ def test_a_plunge_is_held_to_the_programmed_feed_where_nothing_says_what_is_born
 
 
 def test_a_plunge_presses_along_the_axis_as_a_drill_does() -> None:
-    """Half of k_c·f·D/2 for lips square to the axis; k_c at h = f/z."""
+    """The share of k_c·f·D/2 for lips square to the axis; k_c at h = f/z; no chisel edge."""
     thrust = straight_down(limits_of(PLUNGED, CARBIDE))[LimitName.CUTTING_FORCE]
     kienzle = CARBIDE.material.kienzle
     k_c = force_factor(CARBIDE) * kienzle.k_c11 * 0.05**-kienzle.m_c
-    expected = 0.5 * k_c * 4 * 0.05 * 6.0
+    expected = 0.5 / sin(radians(59.0)) * k_c * 4 * 0.05 * 6.0
     assert thrust.load.value(0.05, 3.0, 60.0) == pytest.approx(expected)
 
 

@@ -9,7 +9,7 @@ import pytest
 from optimiser.cut import Cut
 from optimiser.estimated import estimated_cut
 from optimiser.measured import MeasuredCuts
-from simulator.library import load_machine
+from simulator.library import load_machine, load_material
 from simulator.removal.engage import MillingStock
 from simulator.removal.lathe import TurningStock
 from simulator.spec import Kienzle
@@ -19,7 +19,7 @@ from stepnc_model.toolpath.generate import workingstep_path
 from stepnc_model.toolpath.path import length
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
-STEEL = Kienzle(k_c11=1500.0, m_c=0.25)
+STEEL = replace(load_material("c45"), kienzle=Kienzle(k_c11=1500.0, m_c=0.25))
 
 
 def program(part: str, *change: str) -> Program:
@@ -96,9 +96,8 @@ def test_mean_load_makes_the_energy_of_the_volume(
     bracket: tuple[MeasuredCuts, dict[str, Cut]],
 ) -> None:
     """With a constant specific force the mean load times length is the volume removed."""
-    source = MeasuredCuts(
-        bracket[0].program, load_machine("vmc15"), Kienzle(k_c11=1000.0, m_c=0.0)
-    )
+    even = replace(STEEL, kienzle=Kienzle(k_c11=1000.0, m_c=0.0))
+    source = MeasuredCuts(bracket[0].program, load_machine("vmc15"), even)
     for step in source.program.workingsteps[:6]:
         cut, _ = source.cut(step)
         assert cut.engagement is not None
@@ -226,7 +225,7 @@ def test_a_hole_that_nobody_drilled_is_not_there() -> None:
     """The reaming says 9.8 mm; the map knows better."""
     read = program("bracket", *NOT_DRILLED)
     step = step_of(read, "REAM HOLE 1")
-    assert estimated_cut(read, step)[0].previous_diameter == 9.8
+    assert estimated_cut(read, step, STEEL)[0].previous_diameter == 9.8
     cut, _ = MeasuredCuts(read, load_machine("vmc15"), STEEL).cut(step)
     assert cut.previous_diameter < 1.0
 
@@ -237,6 +236,6 @@ def test_what_an_estimate_guesses_is_not_said_where_it_is_known() -> None:
     read = Program(Part21File.from_bytes(text.encode(), name="bracket"), name="bracket")
     step = step_of(read, "REAM HOLE 1")
     guess = "is taken to cut into the solid"
-    assert any(guess in each.message for each in estimated_cut(read, step)[1])
+    assert any(guess in each.message for each in estimated_cut(read, step, STEEL)[1])
     _, findings = MeasuredCuts(read, load_machine("vmc15"), STEEL).cut(step)
     assert not any(guess in each.message for each in findings)

@@ -90,6 +90,7 @@ def test_floor_of_a_bottom_and_side_finish_limits_the_feed_too() -> None:
 
 def test_roughness_of_the_floor_limits_the_feed_too() -> None:
     """The floor's Ra 0.4 µm at a corner of 0.2 mm; 0.2 µm of it are there at any feed."""
-    advice = advice_of(plan_of("bracket", Task(roughness=0.4e-3)), "FINISH POCKET")
+    wide = ("#510=PLUS_MINUS_VALUE(0.1,0.1,3)", "#510=PLUS_MINUS_VALUE(0.2,0.2,3)")
+    advice = advice_of(plan_of("bracket", Task(roughness=0.4e-3), wide), "FINISH POCKET")
     assert advice.active is LimitName.ROUGHNESS
     assert after(advice).setting.feed == pytest.approx(sqrt(18 * sqrt(3) * 0.2 * 0.2e-3))

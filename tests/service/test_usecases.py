@@ -120,14 +120,23 @@ def test_an_unknown_workingstep_lists_all_that_are_known(bracket: Path) -> None:
 
 
 def test_limits_that_conflict_are_told_with_their_numbers(bracket: Path) -> None:
-    """Under 30 N a drill cannot even make a chip as thick as its edge is sharp."""
-    machine = weak_machine(bracket.parent, force=30.0)
+    """Under 110 N a drill cannot even make a chip as thick as its edge is sharp."""
+    machine = weak_machine(bracket.parent, force=110.0)
     asked = Request(file=bracket, machine=machine, workingsteps=("DRILL HOLE 1",))
     plan = usecases.optimise(asked).plan
     assert plan.is_infeasible
     drilled = next(each for each in plan.advices if each.workingstep.id == "DRILL HOLE 1")
     assert drilled.status is Status.INFEASIBLE
-    for words in ("cutting force", "30 N", "chip thickness", "0.008 mm"):
+    for words in ("cutting force", "110 N", "chip thickness", "0.008 mm"):
+        assert words in drilled.reason
+
+
+def test_a_chisel_edge_that_takes_more_than_the_bound_allows_no_feed(bracket: Path) -> None:
+    machine = weak_machine(bracket.parent, force=30.0)
+    asked = Request(file=bracket, machine=machine, workingsteps=("DRILL HOLE 1",))
+    (drilled,) = usecases.optimise(asked).plan.advices
+    assert drilled.status is Status.INFEASIBLE
+    for words in ("cutting force", "exceeds 30 N", "however small the feed"):
         assert words in drilled.reason
 
 

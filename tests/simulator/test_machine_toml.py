@@ -12,9 +12,25 @@ from simulator import machine_file as allowed
 from simulator.library import load_machine, machine_names
 from simulator.machine_file import read_machine
 from simulator.machine_toml import machine_toml
-from simulator.spec import Axis, AxisDrive, Machine, MachineKind, Spindle, SpindlePoint
+from simulator.spec import (
+    Axis,
+    AxisDrive,
+    Direction,
+    Machine,
+    MachineKind,
+    Spindle,
+    SpindlePoint,
+    VibratingPart,
+    VibrationMode,
+)
 from simulator.toml_file import Range, Table, read_toml_head
-from stepnc_model.units import nmm_from_nm, rev_s_from_rpm, speed_from_mm_min, watts_from_kw
+from stepnc_model.units import (
+    n_mm_from_n_um,
+    nmm_from_nm,
+    rev_s_from_rpm,
+    speed_from_mm_min,
+    watts_from_kw,
+)
 
 XML = Path(__file__).parent / "data" / "paper003.xml"
 
@@ -63,6 +79,24 @@ AXES = st.builds(
 )
 
 
+NAMES = TEXTS.map(str.strip).filter(bool)
+TOOL_MODES = st.fixed_dictionaries({
+    "part": st.just(VibratingPart.TOOL),
+    "tool": NAMES,
+    "tool_diameter": maybe(within(allowed.MODE_DIAMETER)),
+})
+WORK_MODES = st.just({"part": VibratingPart.WORKPIECE})
+MODES = st.builds(
+    lambda of, **numbers: VibrationMode(**of, **numbers),
+    TOOL_MODES | WORK_MODES,
+    direction=st.sampled_from(Direction),
+    natural_frequency=within(allowed.FREQUENCY),
+    damping_ratio=within(allowed.DAMPING),
+    stiffness=within(allowed.STIFFNESS).map(n_mm_from_n_um),
+    source=TEXTS,
+)
+
+
 @st.composite
 def spindles(draw: st.DrawFn) -> Spindle:
     """A curve of up to three points, far enough apart to be no step."""
@@ -106,6 +140,7 @@ MACHINES = st.builds(
     tool_change=within(allowed.TOOL_CHANGE),
     source=TEXTS,
     remarks=st.lists(TEXTS, max_size=3).map(tuple),
+    modes=st.lists(MODES, max_size=3).map(tuple),
 )
 
 

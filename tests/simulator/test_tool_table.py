@@ -32,6 +32,7 @@ def test_what_is_absent_is_customary(tmp_path: Path) -> None:
     assert tool.id == "endmill T3"
     assert tool.cutting_material is CuttingMaterial.CARBIDE
     assert tool.teeth == 1
+    assert tool.helix_angle is None
     assert tool.shape == Cutter(diameter=10.0, teeth=1)
 
 
@@ -48,8 +49,10 @@ def test_a_mill_with_everything(tmp_path: Path) -> None:
         edge_length_mm = 22
         holder_diameter_mm = 40
         overhang_mm = 55
+        helix_deg = 38
         """,
     )
+    assert tool.helix_angle == pytest.approx(rad_from_deg(38.0))
     assert (tool.id, tool.cutting_material, tool.teeth) == ("BULL 10", CuttingMaterial.HSS, 4)
     assert tool.shape == Cutter(
         diameter=10.0,

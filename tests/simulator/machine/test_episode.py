@@ -122,9 +122,9 @@ def test_wear_counts_time_with_chips(planned: Planned) -> None:
     course = replace(planned(), wear=Wear(flank=0.1, per_second=0.01))
     times = np.array([0.0, 0.1, course.motion.duration])
     seconds = np.array([0.0, 0.0, course.cutting_seconds])
-    np.testing.assert_allclose(course.worn(times), 1.0 + 1.85 * (0.1 + 0.01 * seconds))
+    np.testing.assert_allclose(course.worn(times), 0.1 + 0.01 * seconds)
     constant = replace(course, wear=Wear(flank=0.1))
-    np.testing.assert_allclose(constant.worn(times), 1.185)
+    np.testing.assert_allclose(constant.worn(times), 0.1)
 
 
 @pytest.mark.parametrize("points", [[(0, 0, 0), (0, 0, 0)], [(0, 0, 0), (5, 0, 0)]])

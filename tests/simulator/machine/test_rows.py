@@ -27,6 +27,18 @@ def test_lines_keep_speed_line_and_spindle() -> None:
     assert len(rows) == 0
 
 
+def test_ways_are_told_at_both_ends_and_not_within() -> None:
+    rows = Rows()
+    for index, is_way in enumerate([True, True, False, True, False, True, True, True]):
+        here, there = (float(index), 0.0, 0.0), (index + 1.0, 0.0, 0.0)
+        rows.line(here, there, speed=inf, line=1, is_way=is_way)
+    stretch = rows.taken()
+    assert (stretch.way, stretch.back) == (2, 3)
+    rows.line((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), speed=inf, line=2, is_way=True)
+    stretch = rows.taken()
+    assert (stretch.way, stretch.back) == (1, 0)
+
+
 @settings(max_examples=30)
 @given(
     plane=st.sampled_from(list(Plane)),

@@ -6,11 +6,12 @@ from math import cos, pi, sin
 import numpy as np
 import pytest
 
-from simulator.physics import engagement, linear_edge, milling, milling_forces, power
+from simulator.physics import engagement, milling, milling_forces
 from simulator.physics.engagement import Engagement
 from simulator.physics.milling import MillingCut
 from simulator.physics.milling_forces import MeanForces, ToothLaw
 from simulator.spec import Kienzle, LinearEdge
+from tests.oracles import cutting as oracle
 
 AL7075 = LinearEdge(k_tc=767.01, k_te=27.7, k_rc=168.8, k_re=26.6)
 ARCS = [
@@ -79,7 +80,7 @@ def test_mean_forces_are_the_integrals_of_one_tooth(arc: Engagement, edge_angle:
 def test_the_tangential_mean_is_that_of_the_scalar_models(arc: Engagement) -> None:
     at, steel = cut(arc), Kienzle(k_c11=1500.0, m_c=0.22)
     assert means(milling_forces.edge_law(AL7075), at).tangential == pytest.approx(
-        linear_edge.edge_mean_force(AL7075, at)
+        oracle.edge_mean_force(AL7075, at)
     )
     assert means(milling_forces.kienzle_law(steel), at).tangential == pytest.approx(
         milling.mean_force(steel, at)
@@ -91,7 +92,7 @@ def test_a_slot_in_aluminium_takes_the_power_of_the_worked_case() -> None:
     force = means(milling_forces.edge_law(AL7075), cut(engagement.full_immersion()))
     torque = force.tangential * 5.0
     assert torque == pytest.approx(1530.587, rel=1e-6)
-    assert power.torque_power(torque, 50.0) == pytest.approx(480.848, rel=1e-6)
+    assert oracle.torque_power(torque, 50.0) == pytest.approx(480.848, rel=1e-6)
 
 
 def test_means_of_a_slot_in_print() -> None:

@@ -92,3 +92,13 @@ def test_no_force_no_deflection_no_stress() -> None:
 def test_flutes_longer_than_the_overhang_are_refused() -> None:
     with pytest.raises(ValueError, match="flute length 50 mm must be at most the overhang"):
         replace(TOOL, flute_length=50.0)
+
+
+@pytest.mark.parametrize(("length", "overhang"), [(None, 36.0), (26.0, 36.0), (50.0, 50.0)])
+def test_an_end_mill_stands_out_three_diameters_or_its_edge(
+    length: float | None, overhang: float
+) -> None:
+    shank = strength.end_mill(12.0, cutting_edge_length=length, youngs_modulus=6e5)
+    expected = overhang**3 / (3.0 * 6e5 * pi * 9.6**4 / 64.0)
+    assert shank.compliance == pytest.approx(expected)
+    assert shank.stress(100.0) == pytest.approx(32.0 * 100.0 * overhang / (pi * 9.6**3))

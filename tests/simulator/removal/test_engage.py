@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from simulator.motion.segments import Floats, Segments, lines
-from simulator.physics.edge import effective_diameter, effective_edge_angle
+from simulator.physics.edge import effective_edge_angle
 from simulator.removal.cutter import Cutter, Holder
 from simulator.removal.engage import MillingStock
 from simulator.removal.stations import CutKind, Stations
 from stepnc_model.toolpath.job import Stock
+from tests.oracles.cutting import effective_diameter
 
 BOX = Stock(low=(0.0, 0.0, -20.0), high=(60.0, 40.0, 0.0))
 FLAT = Cutter(diameter=10.0)
@@ -180,9 +181,7 @@ def test_rounded_tools_have_their_effective_diameter_and_edge_angle(cutter: Cutt
     found = stock().cut(feed((10.0, 20.0, -1.0), (50.0, 20.0, -1.0)), cutter)
     inside = (found.station > 10.0) & (found.station < 34.0)
     radius = cutter.corner_radius
-    assert found.diameter[inside] == pytest.approx(
-        effective_diameter(10.0, 1.0, corner_radius=radius)
-    )
+    assert found.diameter[inside] == pytest.approx(effective_diameter(10.0, 1.0, radius=radius))
     angle = effective_edge_angle(radius, 1.0)
     assert found.chip_ratio[inside] == pytest.approx(sin(angle) * 2.0 / pi, rel=0.01)
 

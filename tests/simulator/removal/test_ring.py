@@ -8,6 +8,8 @@ import pytest
 
 from simulator.removal.arcs import Circle
 from simulator.removal.ring import (
+    BLURRED_SLICES,
+    CORNER_SLICES,
     MOST_LEVELS,
     SAMPLES,
     Pose,
@@ -40,7 +42,8 @@ def room() -> Room:
         heights=np.empty(SAMPLES),
         owner=np.empty(SAMPLES, dtype=np.int64),
         solid=np.empty(SAMPLES, dtype=np.int64),
-        bounds=np.empty(MOST_LEVELS + 3),
+        bounds=np.empty(MOST_LEVELS + CORNER_SLICES + 3),
+        areas=np.zeros(MOST_LEVELS + CORNER_SLICES + 3),
         candidates=np.empty(1, dtype=np.int64),
     )
 
@@ -98,8 +101,8 @@ def test_many_heights_are_blurred_into_equal_slices() -> None:
     work = room()
     work.heights[:] = np.linspace(-4.0, 0.0, SAMPLES)
     count = levels(work, -4.0)
-    assert count < 0
-    assert work.bounds[: 1 - count] == pytest.approx(np.linspace(-4.0, 0.0, 1 - count))
+    assert count == BLURRED_SLICES
+    assert work.bounds[: count + 1] == pytest.approx(np.linspace(-4.0, 0.0, count + 1))
 
 
 def test_a_section_is_where_the_tool_is() -> None:
