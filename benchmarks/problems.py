@@ -1,11 +1,16 @@
 """Random workingsteps with the limits and the proportions of real ones."""
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from math import pi
 from random import Random
 
+from optimiser.cut import Place
 from optimiser.limit import Limit, LimitName, Monomial, Sense
+from optimiser.loads import DepthCurve, Force
 from optimiser.problem import Cost, Problem, Setting
+from simulator.physics.engagement import unidirectional
+from simulator.physics.flutes import CuttingEdges, Law
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,7 +39,9 @@ class _Cut:
         )
 
 
-def random_problem(random: Random, *, free_speed: bool = False, edge: bool = False) -> Problem:
+def random_problem(
+    random: Random, *, free_speed: bool = False, edge: bool = False, helix: bool = False
+) -> Problem:
     """One milling workingstep drawn at random; most are feasible.
 
     Parameters
@@ -45,6 +52,8 @@ def random_problem(random: Random, *, free_speed: bool = False, edge: bool = Fal
         Whether the spindle speed may be chosen, over two stretches of the power curve.
     edge : bool
         Whether the force has an edge term (linear-edge model) instead of Kienzle's exponent.
+    helix : bool
+        Whether the tool bends and may break by forces along its helix, curves of the depth.
     """
     cut = _random_cut(random, edge=edge)
     power = random.uniform(300.0, 15000.0)
@@ -53,7 +62,7 @@ def random_problem(random: Random, *, free_speed: bool = False, edge: bool = Fal
     base_speed = cut.speed * random.uniform(0.7, 1.4)
     torque, constant = _spindle(cut, power, base_speed)
     passes = random.randint(1, 6)
-    return Problem(
+    problem = Problem(
         limits=limits,
         cost=Cost(
             length=random.uniform(50.0, 3000.0),
@@ -71,6 +80,9 @@ def random_problem(random: Random, *, free_speed: bool = False, edge: bool = Fal
         ),
         stretches=((torque,), (constant,)) if free_speed else ((constant,),),
     )
+    if not helix:
+        return problem
+    return replace(problem, limits=(*limits, *_bending(random, cut)))
 
 
 def _random_cut(random: Random, *, edge: bool) -> _Cut:
@@ -141,6 +153,37 @@ def _random_limits(random: Random, cut: _Cut) -> tuple[Limit, ...]:
             unit="mm",
         ),
     )
+
+
+def _bending(random: Random, cut: _Cut) -> Iterator[Limit]:
+    """Deflection at the wall and strength of a shank of carbide, 0.8 D thick and 3 D long."""
+    edges = CuttingEdges(
+        teeth=cut.teeth,
+        diameter=cut.diameter,
+        helix_angle=random.uniform(0.2, 0.9),
+        corner_radius=random.choice((0.0, 0.0, 0.1, 0.5)) * cut.diameter,
+    )
+    arc = unidirectional(cut.chip * cut.diameter, cut.diameter)
+    place = Place(engagement=arc, depth_share=random.choice((1.0, 1.2)))
+    law = Law(exponent=1.0 - cut.m_c)
+    k_c11 = random.uniform(600.0, 3500.0)
+    core = 0.8 * cut.diameter
+    deflection = 576.0 * cut.diameter**3 / (pi * 600_000.0 * core**4)
+    stress = 96.0 * cut.diameter / (pi * core**3)
+    for name, force, by_force, bound, unit in (
+        (LimitName.TOOL_DEFLECTION, Force.AT_WALL, deflection, 0.02, "mm"),
+        (LimitName.SHANK_STRENGTH, Force.ACROSS, stress, 300.0, "N/mm²"),
+    ):
+        yield Limit(
+            name=name,
+            load=Monomial(
+                coefficient=k_c11 * by_force,
+                feed_exponent=law.exponent,
+                curve=DepthCurve(edges=edges, place=place, law=law, force=force),
+            ),
+            bound=random.uniform(0.3, 3.0) * bound,
+            unit=unit,
+        )
 
 
 def _spindle(cut: _Cut, power: float, base_speed: float) -> tuple[Limit, Limit]:

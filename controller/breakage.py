@@ -1,14 +1,14 @@
-"""A broken tooth, seen in what each tooth of a revolution takes.
+"""A broken tooth, told from runout by what each tooth of a revolution takes.
 
-A broken tooth takes little, and what it leaves the next ones take with their own. Force is a
-power law of the chip, ``F ∝ h^p``, so ``F^(1/p)`` of a tooth over its mean over all teeth is
-the share of the feed that the tooth cuts. Runout shifts shares by an offset in mm over the feed
-per tooth, whatever the feed: the offsets are learnt as a running median, and what is judged is
-the share against the one that they predict at the feed of now. Units mm, N, rev/s.
+A broken tooth takes nothing, and the next one takes its chip as well, [1]_. Runout moves chip
+from one tooth to another too, but as constant offsets of their radii do: these are learnt from
+the first revolution on (:mod:`controller.offsets`), and hold for every feed and engagement. A
+tooth is broken when two revolutions in a row are far likelier without it than with all teeth,
+be their offsets the learnt ones or new ones. Thresholds on forces depend on the immersion,
+[2]_; these likelihoods do not. Units mm, N, rev/s.
 
-It takes two teeth at least. With up to about four teeth in the cut at once it holds; with more,
-one tooth is too small a part of the force, and which one it is gets uncertain from three on. A
-tooth that runout keeps out of the work, or almost so, can break unseen.
+It takes two teeth at least, and a cut whose arc of contact the program knows. A tooth that
+runout keeps out of the work can break unseen.
 
 References
 ----------
@@ -19,70 +19,113 @@ References
    force models", J. Eng. Industry 111 (1989), 149-157: thresholds depend on the immersion.
 """
 
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from math import log
 
 import numpy as np
 
+from controller.offsets import (
+    OUTLIER,
+    Judged,
+    Offsets,
+    judged,
+    misfits,
+    unknown,
+)
 from controller.ports import Floats
+from controller.preview import Expected
 from controller.signal import Revolution
+from controller.tooth_shares import Shares, force_ratio, shares_of
 
-WINDOW = 9
-"""revolutions of the running median: a break is confirmed before the median follows it, and a
-change of engagement, which takes longer, it follows"""
+EVIDENCE = 10.0
+"""of ln(likelihood) by which two revolutions must speak for a lost tooth"""
 
-LEARNING = 5
-"""revolutions without which nothing is judged"""
+EACH = 2.0
+"""the same of each of the two: one odd revolution is not enough"""
 
-DROP = 0.2
-"""of the feed per tooth that a tooth must miss"""
+TRUST = 2.0
+"""the same against teeth that have all moved, for each revolution that confirmed the offsets:
+a cutter of which nothing was learnt may have as much runout as it seems to"""
 
-SCATTERS = 6.0
-"""standard deviations of the shares that it must miss as well"""
+SETTLED = 10
+"""such revolutions that count at most"""
 
-STEADY = 0.25
-"""greatest change of ln F from one revolution to the next in which shares are judged: a force
-that grows within a revolution looks like teeth that are not alike"""
+FIT = 6.0
+"""misfit for each tooth up to which a revolution is explained"""
 
-_DEVIATION = 1.4826  # of a normal distribution over its median absolute deviation
+UNFIT = 18.0
+"""misfit for each tooth above which it speaks for nothing that is known"""
+
+ENOUGH = 20
+"""revolutions after which offsets are left as they are while revolutions fit them"""
+
+EXPECTED = 0.5
+"""misfit for each tooth that is no reason to change them"""
+
+DOUBTFUL = 30.0
+"""misfit for each tooth to offsets that are not quite right, up to which it may be lost"""
+
+NOTABLE = 2.0
+"""misfit for each tooth above which a revolution is looked at again"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Turn:
+    """A revolution, and what was known before it."""
+
+    shares: Shares
+    before: Offsets
+    misfit: float
+    """with all teeth"""
+    without: Floats
+    """(z,) without each of them, offsets as they were"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Breakage:
     """What was learnt of the teeth, and whether one is broken. A new one for a new tool."""
 
-    shares: Floats = field(default_factory=lambda: np.empty((0, 0)))
-    """(M, z) of each tooth in the last revolutions, M up to ``WINDOW``"""
-    feeds: Floats = field(default_factory=lambda: np.empty(0))
-    """(M,) mm, feed per tooth to the shares"""
-    workingstep: int = 0
-    """that they belong to; another one engages otherwise and is learnt anew"""
-    force: float = 0.0
-    """N, mean of the revolution before"""
-    suspect: int | None = None
-    """tooth that looked broken in the last revolution that was judged"""
+    offsets: Offsets | None = None
+    """None: nothing was learnt yet"""
+    turns: tuple[_Turn, ...] = ()
+    """the last revolutions without a pause, up to three: the oldest may be the one in which a
+    tooth broke, and speaks for neither side"""
+    ratio: float = 0.0
+    """force of the revolution before over the expected one; 0: there was none"""
     broken: int | None = None
     """tooth that is broken, 0 to z − 1; stays"""
+    reason: str = ""
+    """what speaks for it, in words"""
 
     @property
     def is_broken(self) -> bool:
         """Whether a tooth is broken."""
         return self.broken is not None
 
+    def paused(self) -> "Breakage":
+        """The same out of the cut: the offsets stay."""
+        return replace(self, turns=(), ratio=0.0)
 
-def inspected(breakage: Breakage, revolution: Revolution, *, exponent: float = 0.8) -> Breakage:
+
+def inspected(
+    breakage: Breakage,
+    revolution: Revolution,
+    expected: Expected | None,
+    *,
+    exponent: float = 0.8,
+) -> Breakage:
     """What is known of the teeth after one more revolution.
 
-    A tooth is broken when in two judged revolutions running it is the first of those that miss
-    ``DROP`` of its feed, one of the next half of the teeth taking half of that too much. Not
-    judged is a revolution in which a tooth or the feed is missing; one whose mean force is not
-    that of the one before (``STEADY``) clears the suspicion.
+    A revolution in which a tooth, the feed or the arc of contact is missing is not judged.
 
     Parameters
     ----------
     breakage : Breakage
     revolution : Revolution
         With chips: what noise alone shows has no pattern to learn.
+    expected : Expected, optional
+        What equal teeth would take; None: not known.
     exponent : float
         p = 1 − m_c of force over chip, 0 < p ≤ 1.
 
@@ -93,85 +136,93 @@ def inspected(breakage: Breakage, revolution: Revolution, *, exponent: float = 0
     """
     if not 0.0 < exponent <= 1.0:
         raise ValueError(f"exponent {exponent:g} must be above 0 and at most 1")
-    breakage = _begun(breakage, revolution)
-    was, force = breakage.force, revolution.force
-    if not force > 0.0:
+    if breakage.is_broken or revolution.teeth < 2:
         return breakage
-    breakage = replace(breakage, force=force)
-    if breakage.is_broken or revolution.teeth < 2 or not revolution.feed > 0.0:
+    ratio = force_ratio(revolution, expected)
+    if expected is None or ratio is None:
+        return breakage.paused()
+    if breakage.offsets is not None and len(breakage.offsets.mean) != revolution.teeth:
+        breakage = Breakage()
+    change = log(ratio / breakage.ratio) if breakage.ratio else None
+    shares = shares_of(revolution, expected, exponent=exponent, change=change)
+    return _verdict(_seen(breakage, shares, ratio))
+
+
+def _seen(breakage: Breakage, shares: Shares, ratio: float) -> Breakage:
+    """With one more revolution, whose teeth are taken for whole."""
+    before = breakage.offsets or unknown(len(shares.taken))
+    every = misfits(before, shares)
+    offsets, misfit = before, float(every[0])
+    if before.confirmed < ENOUGH or misfit > EXPECTED * len(shares.taken):
+        whole = judged(before, shares)
+        offsets, misfit = whole.offsets, whole.misfit
+    turn = _Turn(shares=shares, before=before, misfit=misfit, without=every[1:])
+    return Breakage(offsets=offsets, turns=(*breakage.turns[-2:], turn), ratio=ratio)
+
+
+def _verdict(breakage: Breakage) -> Breakage:
+    """With the tooth that the last revolutions tell of, or with new offsets."""
+    turns, teeth = breakage.turns, len(breakage.turns[-1].shares.taken)
+    if len(turns) < 2 or sum(turn.misfit for turn in turns[-2:]) < NOTABLE * teeth:
         return breakage
-    if not was > 0.0 or abs(log(force / was)) > STEADY:
-        return replace(breakage, suspect=None)
-    per_tooth = revolution.feed / (revolution.teeth * revolution.spindle_speed)
-    shares = _shares(revolution.tooth_means, exponent)
-    if shares is None:
-        return breakage
-    suspect = _suspect(breakage, shares, per_tooth)
-    is_confirmed = suspect is not None and suspect == breakage.suspect
-    return replace(
-        breakage,
-        shares=np.vstack((breakage.shares[1 - WINDOW :], shares)),
-        feeds=np.append(breakage.feeds[1 - WINDOW :], per_tooth),
-        suspect=suspect,
-        broken=suspect if is_confirmed else None,
+    known, last = turns[0].before, [turn.shares for turn in turns[-2:]]
+    for tooth in _suspects(turns[-2:], known):
+        if _is_lost(tooth, known, last):
+            return replace(breakage, broken=tooth, reason=_reason(turns[-1], known))
+    if len(turns) == 3 and all(turn.misfit > OUTLIER * teeth for turn in turns):
+        anew = _judged_all(unknown(teeth), last)
+        if all(each.misfit <= OUTLIER * teeth for each in anew):
+            return replace(breakage, offsets=anew[-1].offsets)
+    return breakage
+
+
+def _suspects(turns: Sequence[_Turn], known: Offsets) -> list[int]:
+    """Teeth whose loss each of two revolutions alone speaks for."""
+    suspects = list(range(len(known.mean)))
+    for turn in reversed(turns):
+        if known.confirmed >= SETTLED:
+            bound = max(DOUBTFUL * len(known.mean), turn.misfit)
+            suspects = [tooth for tooth in suspects if turn.without[tooth] < bound]
+        if not suspects:
+            break
+        least = judged(known, turn.shares).log_likelihood + EACH
+        alone = {each: judged(known, turn.shares, lost=each) for each in suspects}
+        suspects = [each for each in suspects if alone[each].log_likelihood >= least]
+    return suspects
+
+
+def _is_lost(tooth: int, known: Offsets, last: Sequence[Shares]) -> bool:
+    """Whether two revolutions together speak for a lost tooth."""
+    without = _judged_all(known, last, lost=tooth)
+    whole, other = _judged_all(known, last), _judged_all(unknown(len(known.mean)), last)
+    most = max(each.misfit for each in without) / len(known.mean)
+    if most > UNFIT:
+        return False
+    # What is badly explained, as in a corner, must beat any other explanation.
+    trust = TRUST * min(known.confirmed, SETTLED) if most <= FIT else 0.0
+    return _sum(without) - max(_sum(whole), _sum(other) - trust) >= EVIDENCE
+
+
+def _reason(turn: _Turn, known: Offsets) -> str:
+    """Which tooth period of the last revolution is farthest from what whole teeth take."""
+    whole = turn.shares.of(known.mean[None])[0]
+    at = int(np.abs(turn.shares.taken - whole).argmax())
+    return (
+        f"{turn.shares.taken[at]:.2f} of the mean force while tooth {at + 1} was the last to "
+        f"enter, {whole[at]:.2f} with whole teeth"
     )
 
 
-def _begun(breakage: Breakage, revolution: Revolution) -> Breakage:
-    """The state itself, or one that has learnt nothing when what it has is of another cut."""
-    is_same = (
-        breakage.shares.shape[1] == revolution.teeth
-        and breakage.workingstep == revolution.workingstep
-    )
-    if is_same:
-        return breakage
-    return Breakage(
-        shares=np.empty((0, revolution.teeth)),
-        workingstep=revolution.workingstep,
-        broken=breakage.broken,
-    )
+def _judged_all(
+    offsets: Offsets, shares: Sequence[Shares], *, lost: int | None = None
+) -> list[Judged]:
+    """Revolutions one after another, each with what those before it taught."""
+    found = []
+    for each in shares:
+        found.append(judged(offsets, each, lost=lost))
+        offsets = found[-1].offsets
+    return found
 
 
-def _shares(forces: Floats, exponent: float) -> Floats | None:
-    """(z,) share of each tooth in the feed, mean 1; None when one is lost or none cuts."""
-    chips = np.maximum(forces, 0.0) ** (1.0 / exponent)
-    total = float(np.add.reduce(chips))
-    if not total > 0.0:
-        return None
-    return np.asarray(chips * (len(chips) / total))
-
-
-def _suspect(breakage: Breakage, shares: Floats, per_tooth: float) -> int | None:
-    """The tooth that looks broken by its (z,) shares, if there is one."""
-    if len(breakage.feeds) < LEARNING:
-        return None
-    usual = _median(breakage.shares)
-    scatter = _DEVIATION * float(_median(np.abs(breakage.shares - usual)).max())
-    offsets = (breakage.shares - 1.0) * breakage.feeds[:, None]
-    expected = 1.0 + _median(offsets) / per_tooth
-    # A tooth that cuts nothing hides how low it lies: a share between the two tells nothing.
-    missing = (np.minimum(usual, expected) - shares).tolist()
-    excess = (shares - np.maximum(usual, expected)).tolist()
-    return _first_missing(missing, excess, least=max(DROP, SCATTERS * scatter))
-
-
-def _first_missing(missing: list[float], excess: list[float], *, least: float) -> int | None:
-    """First of the teeth that miss most, when one after it takes too much instead.
-
-    Where several teeth cut at once, the periods of those after the broken one miss it as well.
-    """
-    teeth, most = len(missing), max(missing)
-    if most < least:
-        return None
-    low = [tooth for tooth in range(teeth) if missing[tooth] >= 0.5 * most]
-    first = [tooth for tooth in low if (tooth - 1) % teeth not in low]
-    if len(first) != 1:
-        return None
-    after = range(first[0] + 1, first[0] + 1 + (teeth + 1) // 2)
-    is_taken = max(excess[tooth % teeth] for tooth in after) >= 0.5 * least
-    return first[0] if is_taken else None
-
-
-def _median(values: Floats) -> Floats:
-    """(z,) medians of the columns of (M, z), the lower one of two; quicker than numpy's."""
-    return np.asarray(np.sort(values, axis=0)[(len(values) - 1) // 2])
+def _sum(of: Sequence[Judged]) -> float:
+    return sum(each.log_likelihood for each in of)

@@ -1,10 +1,11 @@
 """Forces at different places of a path, made comparable.
 
-What bends a tool is the greatest force of a revolution, what the motor gives is the mean. Over
-the mean, the greatest force is the greater the narrower the arc of contact is; so one and the
-same mean force uses its bound up in a finishing cut and is far from it in a slot. The loop acts
-upon *equivalent* forces: the mean force at the plan's hardest place that uses the same share
-of its bound. Set point, thresholds and breakage force then hold for the whole workingstep.
+What breaks a tool is the greatest force of a revolution, what spoils a wall is the force
+normal to it while an edge makes it, what the motor gives is the mean. Over the mean, the others
+are the greater the narrower the arc of contact is; so one and the same mean force uses its
+bound up in a finishing cut and is far from it in a slot. The loop acts upon *equivalent*
+forces: the mean force at the plan's hardest place that uses the same share of its bound. Set
+point, thresholds and breakage force then hold for the whole workingstep.
 """
 
 from collections.abc import Sequence
@@ -35,8 +36,10 @@ def equivalent(plain: Preview, steps: Sequence[Step], aims: Aims) -> Preview:
     for number, step in enumerate(steps, 1):
         rows = plain.workingstep == number
         peak = np.asarray(plain.peak[rows], dtype=np.float64)
-        weight[rows] = step.reference.weights(peak, power_factor=aims.power_factor)
-    return replace(plain, force=plain.force * weight, weight=weight)
+        wall = None if plain.wall is None else np.asarray(plain.wall[rows], dtype=np.float64)
+        weight[rows] = step.reference.weights(peak, wall=wall, power_factor=aims.power_factor)
+    land = None if plain.land_force is None else plain.land_force * weight
+    return replace(plain, force=plain.force * weight, weight=weight, land_force=land)
 
 
 def weighed(reading: Reading, weight: float) -> Reading:

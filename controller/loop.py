@@ -15,14 +15,7 @@ from controller.aims import AROUND, Aims, Step
 from controller.cycle import Cycle
 from controller.equivalent import equivalent, weighed
 from controller.estimate import log_ratio
-from controller.guard import (
-    Allowed,
-    Holding,
-    after_hold,
-    allowed,
-    in_air,
-    taught,
-)
+from controller.guard import Allowed, Holding, after_hold, allowed, in_air, taught
 from controller.hold import Hold
 from controller.law import Law, Plant
 from controller.monitor import Monitor
@@ -88,6 +81,8 @@ class Loop:
         """N, load of a tooth since the last decision"""
         self._silence = HEARD
         self._expected = 0.0
+        self._land_share = 0.0
+        """1/mm, what flank wear adds to the ratio of the last revolution"""
         self._time = -inf
         self._orders: list[Order] = []
         self._events: list[Event] = []
@@ -142,6 +137,7 @@ class Loop:
             known = expected if expected > weight * self.aims.chips else 0.0
             ratio = log_ratio(revolution, known, expected_before=self._expected)
             self._expected = known
+            self._land_share = self._steering.land_share(revolution, expected)
         force = overload.mean(reading.force) if is_new else nan
         force = nan if is_implausible(force, self.aims.chips) else force
         self._act(reading, revolution, ratio, force=force)
@@ -330,7 +326,10 @@ class Loop:
                 self._steering.leave()
                 self._monitor.out_of_cut()
             return
-        self._events += self._monitor.seen(revolution, self._keep, ratio=ratio)
+        teeth, land_share = self._steering.teeth(revolution), self._land_share
+        self._events += self._monitor.seen(
+            revolution, self._keep, ratio=ratio, land_share=land_share, expected=teeth
+        )
         if self._monitor.is_broken:
             self._stop("a tooth is broken")
 

@@ -4,14 +4,14 @@ Running state: the states of the functions that look at each revolution. Units N
 """
 
 from collections.abc import Iterator
-from dataclasses import replace
 from math import expm1, inf
 
 from controller.breakage import Breakage, inspected
 from controller.guard import Keeping
 from controller.orders import Event, EventKind
+from controller.preview import Expected
 from controller.signal import Revolution
-from controller.threshold import Level, Watch, watched
+from controller.threshold import Level, Watch, reason, watched
 from controller.tool_life import ToolLife, compared_anew, lived, new_tool
 
 STEADY = 0.02
@@ -67,8 +67,7 @@ class Monitor:
 
     def begin(self, tool: str) -> None:
         """A workingstep begins: its cut may err otherwise than the last one's."""
-        if tool != self._tool:
-            self._breakage = Breakage()
+        self._breakage = self._breakage.paused() if tool == self._tool else Breakage()
         self._tool, self._watch, self._has_chips = tool, Watch(), False
         self._at_floor = 0
         life = self.lives.get(tool)
@@ -77,10 +76,16 @@ class Monitor:
     def out_of_cut(self) -> None:
         """Without chips. The ways out and in look alike, and each like a broken tooth."""
         self._has_chips = False
-        self._breakage = replace(self._breakage, force=0.0, suspect=None)
+        self._breakage = self._breakage.paused()
 
     def seen(
-        self, revolution: Revolution, keep: Keeping, *, ratio: float | None
+        self,
+        revolution: Revolution,
+        keep: Keeping,
+        *,
+        ratio: float | None,
+        land_share: float = 0.0,
+        expected: Expected | None = None,
     ) -> Iterator[Event]:
         """What one more revolution with chips tells.
 
@@ -91,6 +96,10 @@ class Monitor:
             What holds in the workingstep.
         ratio : float, optional
             ln(measured / expected); None: not to be compared.
+        land_share : float, 1/mm
+            What 1 mm of flank wear adds to measured over expected; 0: not known.
+        expected : Expected, optional
+            What equal teeth would take in it; None: teeth are not compared.
         """
         if not self._has_chips:
             self._watch = Watch()
@@ -99,21 +108,22 @@ class Monitor:
         if keep.set_point < inf:
             yield from self._warned(revolution, keep.set_point, is_steady=is_steady)
             yield from self._reached(revolution, keep)
-        yield from self._inspected(revolution, keep.exponent)
+        yield from self._inspected(revolution, expected, keep.exponent)
         if ratio is not None:
-            yield from self._lived(revolution, ratio)
+            yield from self._lived(revolution, ratio, land_share)
 
     def _warned(
         self, revolution: Revolution, set_point: float, *, is_steady: bool
     ) -> Iterator[Event]:
         """A higher level at once, a lower one when it has lasted."""
-        self._watch = watched(self._watch, revolution, set_point=set_point, is_steady=is_steady)
+        before, force = self._watch, revolution.force
+        self._watch = watched(before, revolution, set_point=set_point, is_steady=is_steady)
         level, now = self._watch.level, revolution.time
         if _RANKS[level] >= _RANKS[self.level]:
             self._since = now
         if _RANKS[level] > _RANKS[self.level] or now - self._since > CALM:
             self.level, self._since = level, now
-            text = f"{revolution.force:.4g} N, set point {set_point:.4g} N"
+            text = reason(before, level, force, set_point=set_point)
             yield Event(time=now, kind=_KINDS[level], text=text)
 
     def _reached(self, revolution: Revolution, keep: Keeping) -> Iterator[Event]:
@@ -133,18 +143,23 @@ class Monitor:
         )
         yield Event(time=revolution.time, kind=EventKind.UNREACHABLE, text=text)
 
-    def _inspected(self, revolution: Revolution, exponent: float) -> Iterator[Event]:
+    def _inspected(
+        self, revolution: Revolution, expected: Expected | None, exponent: float
+    ) -> Iterator[Event]:
         """A tooth that has broken."""
-        self._breakage = inspected(self._breakage, revolution, exponent=exponent)
+        self._breakage = inspected(self._breakage, revolution, expected, exponent=exponent)
         if self._breakage.broken is not None and not self.is_broken:
             self.is_broken = True
-            text = f"tooth {self._breakage.broken + 1} of {revolution.teeth} takes no chip"
+            text = f"tooth {self._breakage.broken + 1} of {revolution.teeth} takes no chip: "
+            text += self._breakage.reason
             yield Event(time=revolution.time, kind=EventKind.BREAKAGE, text=text)
 
-    def _lived(self, revolution: Revolution, ratio: float) -> Iterator[Event]:
+    def _lived(
+        self, revolution: Revolution, ratio: float, land_share: float
+    ) -> Iterator[Event]:
         """A sudden change of the work, or the end of a tool's life."""
         before = self.lives[self._tool]
-        life = self.lives[self._tool] = lived(before, ratio)
+        life = self.lives[self._tool] = lived(before, ratio, land_share=land_share)
         is_new = len(life.changes) > len(before.changes)
         is_due = revolution.time - self._changed > PAUSE
         if is_new and is_due and abs(life.changes[-1]) > NOTABLE:

@@ -10,10 +10,24 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from simulator.physics.tooth_means import Arcs
+
 Values = NDArray[np.float32] | NDArray[np.float64]
 
 LOOK_AHEAD = 8
 """revolutions: with fewer the force overshoots, with more feed is lost (docs/closed_loop.md)"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Expected:
+    """What the program expects in the periods of a revolution's teeth, by their number."""
+
+    force: NDArray[np.float64]
+    """(z,) N at an override of 1"""
+    change: NDArray[np.float64]
+    """(z,) N, greatest change of that force to the tooth period before or after"""
+    arcs: Arcs
+    """(z,)"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -31,11 +45,17 @@ class Preview:
     force: Values
     """(N,) N at override 1 with the catalogue's k_c; 0 in air"""
     peak: Values | None = None
-    """(N,) greatest force of a revolution over its mean; None: 1"""
+    """(N,) greatest force across the axis over the mean force; None: 1"""
+    wall: Values | None = None
+    """(N,) force normal to the wall that an edge makes, over the mean; None: 0"""
     workingstep: NDArray[np.int64] | None = None
     """(N,) counted from 1; None: 1"""
     weight: NDArray[np.float64] | None = None
     """(N,) by which forces were multiplied already, :mod:`controller.equivalent`; None: 1"""
+    land_force: Values | None = None
+    """(N,) N that 1 mm of flank wear adds, at any override; None: not known"""
+    arcs: Arcs | None = None
+    """(N,) arcs of contact; None: not known"""
 
     def __post_init__(self) -> None:
         if self.until.shape != self.force.shape or self.until.ndim != 1 or not len(self.until):
@@ -49,6 +69,38 @@ class Preview:
         """Expected force between two times of the program, N: mean over what they touch."""
         first, beyond = self._rows(begin, end)
         return float(self.force[first:beyond].mean())
+
+    def mean_land(self, begin: float, end: float) -> float:
+        """Force that 1 mm of flank wear adds between two times, N; 0: not known."""
+        if self.land_force is None:
+            return 0.0
+        first, beyond = self._rows(begin, end)
+        return float(self.land_force[first:beyond].mean())
+
+    def expected(self, begin: float, end: float, *, teeth: int, first: int) -> Expected | None:
+        """What is expected in each tooth period of a revolution; None: no arc is known.
+
+        Parameters
+        ----------
+        begin, end : float, s
+            Of the revolution, in the time of the program.
+        teeth : int
+        first : int
+            Tooth whose period comes first.
+        """
+        if self.arcs is None:
+            return None
+        middle = (np.arange(-1.0, teeth + 1.0) + 0.95) / teeth
+        rows = self.until.searchsorted(begin + (end - begin) * middle, side="left")
+        rows = np.minimum(rows, len(self.until) - 1)
+        force = np.asarray(self.force[rows], dtype=np.float64)
+        steps = np.abs(np.diff(force))
+        order = (np.arange(teeth) - first) % teeth
+        return Expected(
+            force=force[1:-1][order],
+            change=np.maximum(steps[1:], steps[:-1])[order],
+            arcs=self.arcs.rows(rows[1:-1][order]),
+        )
 
     def is_air(self, progress: float, *, revolution: float) -> bool:
         """Whether no chip is expected within a revolution before and after a time."""

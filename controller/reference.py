@@ -10,10 +10,11 @@ from math import inf
 
 import numpy as np
 
+from optimiser import loads
 from optimiser.advice import Advice, Load, State
 from optimiser.cut import Cut
 from optimiser.limit import LimitName, Sense
-from simulator.physics.milling import MillingCut, mean_force, peak_force
+from optimiser.limits import STRAIGHT_DOWN
 from simulator.reading import Floats
 from simulator.spec import Kienzle
 
@@ -24,9 +25,6 @@ FORCE_LIMITS = frozenset({
     LimitName.TOOL_DEFLECTION,
     LimitName.SHANK_STRENGTH,
 })
-PEAK_LIMITS = frozenset({LimitName.TOOL_DEFLECTION, LimitName.SHANK_STRENGTH})
-"""of which the greatest force of a revolution counts"""
-
 FEED_LIMITS = frozenset({
     LimitName.FEED_PER_TOOTH,
     LimitName.FEED_MECHANISM,
@@ -50,7 +48,14 @@ class ForceBound:
     force: float
     """N, mean of a revolution, where the plan cuts hardest"""
     peak: float = 0.0
-    """N, greatest of a revolution, for what bends or breaks the tool; 0: the mean counts"""
+    """N, greatest across the axis, for what breaks the tool; 0: the mean or the wall counts"""
+    wall: float = 0.0
+    """N, normal to the wall, for what bends the tool; 0: the mean or the peak counts"""
+
+    @property
+    def is_mean(self) -> bool:
+        """Whether it is the mean force that is bounded."""
+        return self.peak == 0.0 and self.wall == 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -86,32 +91,45 @@ class Reference:
         """The least force bound while the motor gives a factor of its power."""
         return min(self._scaled(power_factor), key=lambda each: each.force, default=None)
 
-    def weights(self, peak: Floats, *, power_factor: float = 1.0) -> Floats:
+    def weights(
+        self, peak: Floats, *, wall: Floats | None = None, power_factor: float = 1.0
+    ) -> Floats:
         """What a mean force counts at other places than the plan's hardest, as a factor.
 
-        ``w = F_bound · max(1/F_mean, ρ/F_peak)``, F_mean and F_peak the least bounds on mean
-        and greatest force, ρ greatest over mean there: forces that use the same share of their
-        bounds count alike.
+        ``w = F_bound · max(1/F_mean, ρ/F_peak, σ/F_wall)``, the F the least bounds on the mean,
+        the greatest force and that at the wall, ρ and σ these over the mean there: forces that
+        use the same share of their bounds count alike.
 
         Parameters
         ----------
         peak : (N,) array
-            ρ, at least 1.
+            ρ.
+        wall : (N,) array, optional
+            σ; none is made where it is not given.
         power_factor : float
         """
         least = self.bound(power_factor=power_factor)
         if least is None:
             return np.ones(len(peak))
         bounds = list(self._scaled(power_factor))
-        mean = min((each.force for each in bounds if each.peak == 0.0), default=inf)
+        mean = min((each.force for each in bounds if each.is_mean), default=inf)
         greatest = min((each.peak for each in bounds if each.peak > 0.0), default=inf)
-        weights: Floats = least.force * np.maximum(1.0 / mean, peak / greatest)
+        share = np.maximum(1.0 / mean, peak / greatest)
+        if wall is not None:
+            normal = min((each.wall for each in bounds if each.wall > 0.0), default=inf)
+            share = np.maximum(share, wall / normal)
+        weights: Floats = least.force * share
         return weights
 
     def scaled(self, factor: float) -> "Reference":
         """The same in forces that are a factor greater."""
         bounds = tuple(
-            replace(each, force=factor * each.force, peak=factor * each.peak)
+            replace(
+                each,
+                force=factor * each.force,
+                peak=factor * each.peak,
+                wall=factor * each.wall,
+            )
             for each in self.bounds
         )
         return replace(self, bounds=bounds, breakage=factor * self.breakage)
@@ -160,61 +178,92 @@ def _ceiling(state: State, rubbing: float) -> float:
     plan says so, and feeds that only rub make it worse.
     """
     ceiling = min(_overrides(state, Sense.AT_MOST), default=inf)
-    return ceiling if ceiling > rubbing else max(rubbing, 1.0)
+    ceiling = ceiling if ceiling > rubbing else max(rubbing, 1.0)
+    return min(ceiling, max(1.0, min(_plunge_overrides(state), default=inf)))
+
+
+def _plunge_overrides(state: State) -> Iterator[float]:
+    """Overrides that the ways down allow; one override holds for them and for the passes.
+
+    Forces down a ramp are bounded as those of a pass are, so that the loop keeps them; the
+    thrust of what is drilled is not.
+    """
+    at = state.setting
+    for load in state.plunge_loads:
+        is_drilled = load.limit.words.endswith(STRAIGHT_DOWN)
+        if at.plunge_feed is not None and (is_drilled or load.limit.name in FEED_LIMITS):
+            yield load.limit.feed_at_bound(at.depth, at.speed) / at.plunge_feed
 
 
 def _force_bounds(cut: Cut, state: State) -> Iterator[ForceBound]:
-    """Loads in proportion to the force, at the force that makes them reach their bounds."""
-    shares = _shares(state)
+    """Loads that rise with the force, at the force that makes them reach their bounds."""
+    shares = _shares(cut, state)
     for load in state.loads:
-        if load.limit.name in FORCE_LIMITS and load.value > 0.0:
+        rises = load.value - _constant(load, state)
+        if load.limit.name in FORCE_LIMITS and rises > 0.0:
             own = state.cutting_force * shares.get(_part(load), 1.0)
-            force = own * load.bound / load.value
-            is_peak = load.limit.name in PEAK_LIMITS
+            force = own * (load.bound - _constant(load, state)) / rises
+            if force <= 0.0:  # Its chisel edge alone is too much: no force keeps the bound.
+                continue
+            ratio = _over_mean(cut, load, state.setting.depth)
+            is_wall = load.limit.name is LimitName.TOOL_DEFLECTION
             yield ForceBound(
                 name=load.limit.name,
                 words=load.limit.words,
                 force=force,
-                peak=force * _peak_over_mean(cut, load) if is_peak else 0.0,
+                peak=0.0 if is_wall else force * ratio,
+                wall=force * ratio if is_wall else 0.0,
             )
 
 
-def _peak_over_mean(cut: Cut, load: Load) -> float:
-    """Greatest force of a revolution over its mean, in the part of the cut that is loaded."""
-    is_floor = cut.floor is not None and load.limit.load.depth_exponent == 0.0
-    part = cut.floor if is_floor and cut.floor is not None else cut
-    place = part.bending or part.hardest
-    if place is None:
-        return 1.0
-    at = MillingCut(
-        feed_per_tooth=0.1,
-        teeth=part.tool.teeth,
-        axial_depth=1.0,
-        engagement=place.engagement,
-        cutting_edge_angle=part.tool.cutting_edge_angle,
-    )
+def _over_mean(cut: Cut, load: Load, depth: float) -> float:
+    """What loads the tool over the mean force, in the part of the cut that is loaded.
+
+    0 for what the mean loads.
+    """
+    name, floor = load.limit.name, cut.floor
+    is_floor = floor is not None and not load.limit.load.knows_depth
+    part = floor if is_floor and floor is not None else cut
+    if is_floor and floor is not None:
+        depth = floor.total_depth
     law = Kienzle(k_c11=1.0, m_c=1.0 - load.limit.load.feed_exponent)
-    return peak_force(law, at) / mean_force(law, at)
+    force = None
+    if name is LimitName.TOOL_DEFLECTION:
+        force = loads.wall_force(part, law, 1.0)
+    elif name is LimitName.SHANK_STRENGTH:
+        force = loads.shank_force(part, law, 1.0)
+    if force is None or not isinstance(force.curve, loads.DepthCurve):
+        return 0.0
+    return loads.over_mean(force.curve, depth)
 
 
-def _shares(state: State) -> dict[tuple[str, float], float]:
+def _constant(load: Load, state: State) -> float:
+    """Part of a load that is there whatever the feed: of a thrust, that of the chisel edge."""
+    by, at = load.limit.load, state.setting
+    return float(by.offset * by.depth_factor(at.depth) * at.speed**by.speed_exponent)
+
+
+def _shares(cut: Cut, state: State) -> dict[tuple[str, float], float]:
     """Force of each part of the cut over that of the hardest, by their torques.
 
     Walls, the floor that is swept with them and a plunge take different forces with the same
-    cutter; the state tells the greatest of them.
+    cutter; the state tells the greatest of them. A plunge's acts at the middle of its lips.
     """
-    torques: dict[tuple[str, float], float] = {}
+    forces: dict[tuple[str, float], float] = {}
     for load in state.loads:
         if load.limit.name is LimitName.SPINDLE_TORQUE:
-            torques[_part(load)] = max(load.value, torques.get(_part(load), 0.0))
-    greatest = max(torques.values(), default=0.0)
-    return {part: torque / greatest for part, torque in torques.items() if torque > 0.0}
+            part = _part(load)
+            is_plunge = cut.plunge is not None and part[0].endswith(STRAIGHT_DOWN)
+            acting = cut.plunge if is_plunge and cut.plunge is not None else cut
+            forces[part] = max(load.value / acting.force_diameter, forces.get(part, 0.0))
+    greatest = max(forces.values(), default=0.0)
+    return {part: force / greatest for part, force in forces.items() if force > 0.0}
 
 
 def _part(load: Load) -> tuple[str, float]:
     """What tells the parts of a cut: how they are labelled, and how they know their depth."""
     label = load.limit.label.removeprefix(load.limit.name.words)
-    return label, load.limit.load.depth_exponent
+    return label, float(load.limit.load.knows_depth)
 
 
 def _overrides(state: State, sense: Sense) -> Iterator[float]:

@@ -44,6 +44,14 @@ class Revolution:
     """(z,) N, greatest while each tooth was the last to enter, by number; NaN: all were lost"""
     tooth_means: Floats
     """(z,) N, the means to the peaks"""
+    tooth_feeds: Floats
+    """(z,) mm/s, means to the peaks"""
+    tooth_overrides: Floats
+    """(z,) that the axes ran, means to the peaks"""
+    samples: int
+    """in a tooth period; 1: single teeth are not told apart"""
+    first: int
+    """tooth whose period came first"""
     coverage: float
     """share of samples that were not lost"""
     power: float
@@ -132,6 +140,10 @@ def revolution(readings: Sequence[Reading], *, progress_before: float) -> Revolu
         peak=shown.peak,
         tooth_peaks=_by_number(shown.peaks, first),
         tooth_means=_by_number(shown.means, first),
+        tooth_feeds=_by_number(np.array([each.feed for each in readings]), first),
+        tooth_overrides=_by_number(np.array([each.override for each in readings]), first),
+        samples=len(last.force),
+        first=first,
         coverage=shown.coverage,
         power=sum(powers) / len(powers) if powers else nan,
         feed=sum(each.feed for each in readings) / teeth,

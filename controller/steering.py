@@ -10,7 +10,7 @@ from typing import Any
 from controller.aims import Aims
 from controller.guard import Keeping
 from controller.law import Law, Plant, Situation
-from controller.preview import Preview
+from controller.preview import Expected, Preview
 from controller.signal import Revolution
 from simulator.reading import Reading
 
@@ -74,6 +74,22 @@ class Steering:
         """Force that the catalogue's k_c gives at the override that was run, N."""
         mean = self.preview.mean(revolution.progress_before, revolution.progress)
         return float(mean * max(revolution.override, 0.0) ** exponent)
+
+    def teeth(self, revolution: Revolution) -> Expected | None:
+        """What equal teeth would take in each period of a revolution; None: not known."""
+        return self.preview.expected(
+            revolution.progress_before,
+            revolution.progress,
+            teeth=revolution.teeth,
+            first=revolution.first,
+        )
+
+    def land_share(self, revolution: Revolution, expected: float) -> float:
+        """What 1 mm of flank wear adds to measured over expected force, 1/mm; 0: not known."""
+        if not expected > 0.0:
+            return 0.0
+        land = self.preview.mean_land(revolution.progress_before, revolution.progress)
+        return land / expected
 
     def _entered(
         self, revolution: Revolution, keep: Keeping, aims: Aims, override: float

@@ -129,6 +129,41 @@ def watched(
     return replace(_learnt(watch, log(force), by), level=level)
 
 
+def reason(
+    watch: Watch, level: Level, force: float, *, set_point: float, by: Thresholds = USUAL
+) -> str:
+    """Which rule gave a force its level, with its numbers: the words of every warning.
+
+    Parameters
+    ----------
+    watch : Watch
+        Before the revolution of that force.
+    level : Level
+    force : float, N
+    set_point : float, N
+    by : Thresholds
+
+    Examples
+    --------
+    >>> reason(Watch(), Level.OVER, 492.0, set_point=400.0)
+    'force 1.23 times the set point of 400 N: 492 N, from 1.2 times on'
+    """
+    threshold = watch.threshold(by)
+    if level is Level.WARNING and threshold is not None:
+        mean = exp(watch.log_mean)
+        count = min(watch.revolutions, by.memory)
+        return (
+            f"force {force / mean:.3g} times the mean of the last {count} revolutions: "
+            f"{force:.4g} N, from {threshold / mean:.3g} times on"
+        )
+    if level is Level.OVER:
+        return (
+            f"force {force / set_point:.3g} times the set point of {set_point:.4g} N: "
+            f"{force:.4g} N, from {1.0 + by.margin:.3g} times on"
+        )
+    return f"force {force:.4g} N, {force / set_point:.3g} times the set point"
+
+
 def _level(watch: Watch, force: float, *, set_point: float, by: Thresholds) -> Level:
     """Level of a force in a steady cut, before it is learnt."""
     if force > (1.0 + by.margin) * set_point:

@@ -2,14 +2,17 @@
 
 Wear raises the force slowly, harder work at once. A slowly moving mean follows the ratio of
 measured to expected force, and two cumulative sums look for a change that is too quick for it.
-Wear is what that mean has gained since the tool was new; after a sudden change what it is
-compared with is learnt anew, and the wear goes on from where it was. Units mm of flank wear,
+Wear is what that mean has gained since the tool was new, over what a millimetre of wear adds
+to the ratio: the wear land takes a force of its own beside that of the chip, so that this is
+more for thin chips (:mod:`simulator.physics.flank`). After a sudden change what it is compared
+with is learnt anew, and the wear goes on from where it was. Units mm of flank wear,
 dimensionless ratios.
 
 A change of less than ``Watchfulness.allowance`` is not seen and does count as wear: 4 % of
-force are 0.02 mm. Wear that is quicker than the allowance over the memory (0.04 in 200
-revolutions) is taken for a change. So is an error of the expected force that lasts some
-revolutions: noise may be large, but it must not be of one sign for long.
+force are 0.02 mm where a chip of 0.1 mm is cut in steel. Wear that is quicker than the
+allowance over the memory (0.04 in 200 revolutions) is taken for a change. So is an error of the
+expected force that lasts some revolutions: noise may be large, but it must not be of one sign
+for long.
 
 References
 ----------
@@ -20,14 +23,11 @@ References
 from dataclasses import dataclass, replace
 from math import exp, log, sqrt
 
-from simulator.physics.cutting import wear_factor
 from simulator.physics.domain import require_not_negative, require_positive
-
-WORN_OUT = 0.3
-"""mm of flank wear at the end of a tool's life, [2]_"""
+from simulator.physics.tool_life import LIFE_CRITERION
 
 _DECISION = 10.0  # standard deviations
-_PER_MM = wear_factor(1.0) - wear_factor(0.0)  # the factor is a straight line
+_LEAST_SHARP = 0.05  # of the force, that a chip takes however worn the tool began
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,10 +75,12 @@ class ToolLife:
     """slowly moving mean of ln(measured / expected)"""
     log_sharp: float = 0.0
     """what it would be with a sharp tool"""
+    land_share: float = 0.0
+    """slowly moving mean of what 1 mm of flank wear adds to the ratio, 1/mm; 0: not known"""
     log_variance: float = 0.0
     """of single ones about the mean"""
-    log_begun: float = 0.0
-    """ln of the wear factor when comparing began"""
+    begun: float = 0.0
+    """mm of flank wear when comparing began"""
     readings: int = 0
     """revolutions since then"""
     above: Drift = Drift()
@@ -93,33 +95,21 @@ class ToolLife:
 
     @property
     def flank_wear(self) -> float:
-        """VB in mm, by the inverse of the wear factor on the cutting force."""
-        return flank_wear(exp(self.log_ratio - self.log_sharp))
+        """VB in mm: what the ratio has gained over what a millimetre adds to it."""
+        if self.readings == 0 or self.land_share <= 0.0:
+            return self.begun
+        return max(0.0, (exp(self.log_ratio) - exp(self.log_sharp)) / self.land_share)
 
     @property
     def is_worn_out(self) -> bool:
         """Whether the end of the tool's life is reached, [2]_."""
-        return self.flank_wear >= WORN_OUT
-
-
-def flank_wear(factor: float) -> float:
-    """Flank wear that raises the cutting force by a factor; 0 when it is 1 or less.
-
-    The inverse of :func:`simulator.physics.cutting.wear_factor`, measured up to 0.3 mm.
-
-    Examples
-    --------
-    >>> round(flank_wear(1.37), 9)
-    0.2
-    """
-    return max(0.0, (factor - wear_factor(0.0)) / _PER_MM)
+        return self.flank_wear >= LIFE_CRITERION
 
 
 def new_tool(flank: float = 0.0) -> ToolLife:
     """A tool of which nothing was measured yet, with its flank wear in mm when it begins."""
     require_not_negative(flank, "flank wear", "mm")
-    worn = log(wear_factor(flank))
-    return ToolLife(log_ratio=worn, log_begun=worn)
+    return ToolLife(begun=flank)
 
 
 def compared_anew(life: ToolLife) -> ToolLife:
@@ -128,16 +118,18 @@ def compared_anew(life: ToolLife) -> ToolLife:
     For a change that is known of, such as another material or a kind of cut for which the
     expected force errs otherwise.
     """
-    worn = max(0.0, life.log_ratio - life.log_sharp)
     return ToolLife(
         log_ratio=life.log_ratio,
-        log_sharp=life.log_ratio - worn,
-        log_begun=worn,
+        log_sharp=life.log_sharp,
+        land_share=life.land_share,
+        begun=life.flank_wear,
         changes=life.changes,
     )
 
 
-def lived(life: ToolLife, ratio: float, *, by: Watchfulness = USUAL) -> ToolLife:
+def lived(
+    life: ToolLife, ratio: float, *, land_share: float, by: Watchfulness = USUAL
+) -> ToolLife:
     """The tool after one more revolution.
 
     Parameters
@@ -145,6 +137,8 @@ def lived(life: ToolLife, ratio: float, *, by: Watchfulness = USUAL) -> ToolLife
     life : ToolLife
     ratio : float
         ln(measured / expected) of :func:`controller.estimate.log_ratio`.
+    land_share : float, 1/mm
+        What 1 mm of flank wear adds to the ratio; 0: not known, and then no wear is told.
     by : Watchfulness
     """
     readings = life.readings + 1
@@ -155,10 +149,11 @@ def lived(life: ToolLife, ratio: float, *, by: Watchfulness = USUAL) -> ToolLife
         life,
         log_ratio=mean,
         log_variance=(1.0 - part) * (life.log_variance + part * away * away),
+        land_share=life.land_share + part * (land_share - life.land_share),
         readings=readings,
     )
     if readings <= by.learning:
-        return replace(moved, log_sharp=mean - life.log_begun)
+        return replace(moved, log_sharp=_sharp(moved))
     deviation = sqrt(life.log_variance)
     allowance = max(by.allowance, deviation)
     decision = max(by.decision, _DECISION * deviation)
@@ -170,6 +165,12 @@ def lived(life: ToolLife, ratio: float, *, by: Watchfulness = USUAL) -> ToolLife
     if below.total > decision:
         return _changed(moved, -below.total / below.revolutions - allowance, below, by)
     return moved
+
+
+def _sharp(life: ToolLife) -> float:
+    """Ln of the ratio without the wear with which comparing began."""
+    share = life.land_share * life.begun * exp(-life.log_ratio)
+    return life.log_ratio + log(max(1.0 - share, _LEAST_SHARP))
 
 
 def _summed(drift: Drift, step: float) -> Drift:

@@ -5,9 +5,12 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from optimiser.cut import Cut
+from optimiser.holding import HoldingLoad
 from optimiser.limit import Limit, LimitName, Sense
 from optimiser.modes import Mode
 from optimiser.problem import Setting
+from optimiser.safety import USUAL_QUANTILE
+from optimiser.stability import Stability
 from simulator.spec import Machine, MaterialMatch
 from stepnc_model.errors import Finding
 from stepnc_model.program import Workingstep
@@ -32,13 +35,13 @@ class Load:
     value: float
     """canonical unit"""
     bound: float
-    """canonical unit"""
+    """canonical unit, of the load times its safety factor"""
 
     @property
     def margin(self) -> float:
-        """Share of the bound that is left; negative when it is passed."""
+        """Share of the bound that is left, after the safety factor; negative: passed."""
         sign = 1.0 if self.limit.sense is Sense.AT_MOST else -1.0
-        return sign * (self.bound - self.value) / self.bound
+        return sign * (self.bound - self.limit.safety_factor * self.value) / self.bound
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,10 +58,24 @@ class State:
     motor_power: float
     """W"""
     cutting_force: float
-    """N"""
+    """N, mean of a revolution; of a mill along its passes"""
+    thrust: float
+    """N, along the axis, of a drill or of a mill that goes straight down; 0: of none"""
     roughness: float | None
     """Ra in mm; ``None`` where the feed does not describe it"""
     loads: tuple[Load, ...]
+    plunge_loads: tuple[Load, ...] = ()
+    """at the plunge feed, on the ways down that have one of their own"""
+    ramp_force: float = 0.0
+    """N, mean of a revolution, of a mill down a ramp at the plunge feed; 0: of none"""
+    plunge_power: float = 0.0
+    """W of the motor at the plunge feed; 0: of none"""
+
+    @property
+    def plunge_feed(self) -> float | None:
+        """Feed on the way down into the material, mm/s; None: there is none of its own."""
+        per_tooth = self.setting.plunge_feed
+        return None if per_tooth is None else self.feed * per_tooth / self.setting.feed
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -90,11 +107,27 @@ class Advice:
     """the same as the user reads it"""
     saving_of_one_more: float = 0.0
     """s saved by one more step of the active limit"""
+    safety_factor: float = 1.0
+    """k_c at the quantile that is planned with, over the nominal one"""
+    saving_of_free_speed: float = 0.0
+    """s saved if the spindle speed were free, on the path of the advice"""
+    cost_of_safety: float = 0.0
+    """s that planning with that quantile costs"""
     deepest_first_time: float | None = None
     """s with the fewest passes"""
     prices: tuple[tuple[LimitName, float], ...] = ()
     """relative fall of the cost for a relative rise of the bound"""
     front: tuple[Point, ...] = ()
+    plunge_reason: str = ""
+    """one sentence: what holds the plunge feed; empty where there is none of its own"""
+    plunge_fault: str = ""
+    """why the tool may not go straight down here; empty where it may"""
+    speed_fault: str = ""
+    """which bound a speed passes that nobody may touch; empty where none"""
+    holding_load: HoldingLoad | None = None
+    """what is asked of chuck, vice or clamps; None: nothing, or of a drill on a mill"""
+    stability: Stability | None = None
+    """what is known of it; None: chatter is no matter of this cut's depth"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -107,11 +140,23 @@ class Plan:
     material: MaterialMatch
     advices: tuple[Advice, ...]
     findings: tuple[Finding, ...]
+    safety: float = USUAL_QUANTILE
+    """quantile of k_c at which loads keep their bounds"""
 
     @property
     def is_infeasible(self) -> bool:
         """Whether some workingstep has no feasible setting."""
         return any(advice.status is Status.INFEASIBLE for advice in self.advices)
+
+    @property
+    def faults(self) -> tuple[str, ...]:
+        """A sentence for each plunge of a tool that cannot, and each speed that is too fast."""
+        return tuple(
+            f"{advice.workingstep.id}: {fault}"
+            for advice in self.advices
+            for fault in (advice.plunge_fault, advice.speed_fault)
+            if fault
+        )
 
     @property
     def time_before(self) -> float:

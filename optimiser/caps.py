@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from math import inf
 
-from optimiser.limit import ROUNDING, Limit, LimitName, Sense
+from optimiser.limit import ROUNDING, Limit, Sense
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -20,7 +20,7 @@ class Caps:
     powers: tuple[tuple[float, float], ...]
     """(factor, exponent) of the caps that do"""
     others: tuple[Limit, ...]
-    """limits with an offset that depend on the depth"""
+    """limits that depend on the depth, but by no power of it"""
     floor: float
     """mm, the greatest of the limits from below that know no depth"""
     floors: tuple[Limit, ...]
@@ -61,17 +61,17 @@ def caps_at(limits: Iterable[Limit], speed: float) -> Caps:
     for limit in limits:
         load = limit.load
         if load.feed_exponent == 0.0:
-            if limit.name is LimitName.AXIAL_DEPTH:
-                deepest = min(deepest, limit.bound / load.coefficient)
+            if limit.is_of_depth:
+                deepest = min(deepest, limit.greatest_depth(speed))
             continue
         if limit.sense is Sense.AT_LEAST:
-            if load.depth_exponent == 0.0:
+            if not load.knows_depth:
                 floor = max(floor, limit.feed_at_bound(1.0, speed))
             else:
                 floors.append(limit)
-        elif load.depth_exponent == 0.0:
+        elif not load.knows_depth:
             constant = min(constant, limit.feed_at_bound(1.0, speed))
-        elif load.offset == 0.0:
+        elif load.offset == 0.0 and load.curve is None:
             exponent = -load.depth_exponent / load.feed_exponent
             powers.append((limit.feed_at_bound(1.0, speed), exponent))
         else:

@@ -3,12 +3,13 @@
 from dataclasses import dataclass
 from math import sqrt
 
-from optimiser.hardest import Met, lengths
+from optimiser.hardest import Met
 from simulator.errors import SimulationError
 from simulator.motion.tool_path import Run
 from simulator.removal.cutter import Insert
 from simulator.removal.engage import MillingStock
 from simulator.removal.lathe import Bar, TurningStock
+from simulator.removal.stations import stretch_lengths
 from simulator.removal.tool_shape import shape_of
 from simulator.removal.trial import Patch, Trial
 from simulator.removal.zmap import MOST_CELLS
@@ -18,8 +19,9 @@ from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import SchemaError
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program, Workingstep
+from stepnc_model.stock import Stock
 from stepnc_model.tool import tool_of
-from stepnc_model.toolpath.job import Stock, stock_of
+from stepnc_model.toolpath.job import stock_of
 
 USUAL_CELLS = 200_000
 """of a map: fewer than the virtual machine's, for most sections do not come from it"""
@@ -133,7 +135,7 @@ def met_by(program: Program, step: Workingstep, run: Run, stock: StockMap | None
             change, cell = trial.after, stock.map.cell
     except (SimulationError, SchemaError, ValueError) as error:
         return Meeting(why=str(error))
-    met = Met(stations=stations, length=lengths(stations), cell=cell)
+    met = Met(stations=stations, length=stretch_lengths(stations), cell=cell)
     return Meeting(met=met, change=change, trial=trial)
 
 

@@ -89,6 +89,7 @@ def turning_cut(
         total_depth=total,
         is_depth_free=not is_finish,
         link_length=length + 2.0 * retract,
+        is_fed_inwards=isinstance(operation, Facing),
         texture=Texture.CORNER_PER_REVOLUTION if tool.corner_radius else Texture.NONE,
         corner_radius=tool.corner_radius or 0.0,
         is_finishing=step.is_last_on_feature or is_finish,
@@ -120,6 +121,7 @@ def _grooving_cut(
         total_depth=infeed * plunges,
         is_depth_free=False,
         radial_width=width,
+        is_fed_inwards=True,
         link_length=infeed + 2.0 * retract,
         is_finishing=step.is_last_on_feature,
     )

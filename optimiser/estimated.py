@@ -5,13 +5,17 @@ programmed.
 """
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 
-from optimiser.cut import Cut
+from optimiser.cut import Cut, CutKind, Texture
 from optimiser.estimate import FULL_LOAD, milling_cut
 from optimiser.estimate_hole import INTO_SOLID, hole_cut, is_hole_making
 from optimiser.estimate_turning import mean_diameter, turning_cut
 from optimiser.problem import Setting
 from optimiser.side_by_side import Result, one_by_one
+from simulator.edge_material import edge_material
+from simulator.library import grade_for
+from simulator.spec import CuttingMaterial, Machine, Material
 from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import Finding, Severity
 from stepnc_model.program import Program, Workingstep
@@ -25,12 +29,14 @@ GUESSES = frozenset({FULL_LOAD, INTO_SOLID})
 class Estimates:
     """A source of cuts that looks at features only."""
 
-    def __init__(self, program: Program) -> None:
+    def __init__(self, program: Program, machine: Machine, material: Material) -> None:
         self.program = program
+        self.machine = machine
+        self.material = material
 
     def cut(self, step: Workingstep) -> tuple[Cut, list[Finding]]:
         """The cut of a workingstep as programmed, and what was assumed."""
-        return estimated_cut(self.program, step)
+        return estimated_cut(self.program, step, self.machine, self.material)
 
     def at(self, _step: Workingstep, cut: Cut, _setting: Setting) -> Cut:
         """The same cut: an estimate knows one length of pass."""
@@ -46,8 +52,19 @@ class Estimates:
         return one_by_one(steps, do)
 
 
-def estimated_cut(program: Program, step: Workingstep) -> tuple[Cut, list[Finding]]:
+def estimated_cut(
+    program: Program, step: Workingstep, machine: Machine, material: Material
+) -> tuple[Cut, list[Finding]]:
     """The cut of a workingstep as estimated from its feature, and what was assumed.
+
+    Parameters
+    ----------
+    program : Program
+    step : Workingstep
+    machine : Machine
+    material : Material
+        Of the workpiece: helix and parallel land of a cutter are those of its grade, unless the
+        machine has the stated limits alone.
 
     Raises
     ------
@@ -78,4 +95,11 @@ def estimated_cut(program: Program, step: Workingstep) -> tuple[Cut, list[Findin
     elif is_hole_making(operation, tool):
         make = hole_cut
     cut, found = make(program, step, tool, speed=speed, feed=feed)
+    if cut.kind is CutKind.MILLING and not machine.only_stated_limits:
+        cutting_material = edge_material(tool.edge_material) or CuttingMaterial.CARBIDE
+        grade = grade_for(cut.tool_kind, cutting_material, material)
+        if grade is not None:
+            is_marked = cut.texture is Texture.CORNER_PER_REVOLUTION
+            land = grade.parallel_land if is_marked else 0.0
+            cut = replace(cut, helix_angle=grade.helix_angle, parallel_land=land)
     return cut, findings + list(found)

@@ -1,31 +1,39 @@
 """From a cut and its conditions to a problem, and from a setting to what it does."""
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
 from math import inf, isfinite, pi
 from types import MappingProxyType
 
 from optimiser import workingstep as exact
 from optimiser.advice import Load, State
-from optimiser.cut import Cut
+from optimiser.conditions import Conditions
+from optimiser.cut import Cut, CutKind
+from optimiser.held_speed import held_speed
+from optimiser.holding import chuck_limits, holding_limits
 from optimiser.limit import Limit, LimitName, Monomial, Sense
 from optimiser.limits import (
-    Conditions,
+    drill_point,
+    force_factor,
     force_load,
     limits_of,
     power_load,
-    roughness_load,
-    segment_at,
     speed_range,
     spindle_limits,
 )
-from optimiser.loads import scaled
+from optimiser.loads import scaled, thrust
 from optimiser.modes import Free, Mode
+from optimiser.plunge_feed import plunge_limits
 from optimiser.problem import Cost, Problem, Setting
+from optimiser.roughness import roughness_load
+from optimiser.safety import USUAL_QUANTILE, require_quantile, safety_factor
 from optimiser.source import Source, along_paths
+from optimiser.speed_stretch import segment_within, stretch_ends
+from optimiser.stability import stability_limits
 from simulator.library import find_window
-from simulator.physics.spindle import curve_segments
 from simulator.physics.tool_life import tool_life
+from simulator.spec import Machine, Material
 
 LEAST_DEPTH = 0.05
 """mm, no pass is planned shallower"""
@@ -48,6 +56,17 @@ class Task:
     """accepted corrections of k_c by the id of the tool; a tool that is not named has none"""
     front: bool = False
     """whether the front between time, roughness and energy is wanted"""
+    safety: float = USUAL_QUANTILE
+    """quantile of k_c at which loads must keep their bounds, 0.5 (nominal) to 0.999"""
+    learned_safety_factors: Mapping[str, float] = field(default_factory=dict, hash=False)
+    """k_c at that quantile over its accepted correction, by the id of the tool; a tool that is
+    not named has the spread of its material"""
+    centre_cutting: Mapping[str, bool] = field(default_factory=dict, hash=False)
+    """whether the edges of a mill reach its axis, by the id of the tool"""
+    allow_plunge: bool = False
+    """whether cutters that do not cut over centre may go straight down into the solid"""
+    wipers: frozenset[str] = frozenset()
+    """ids of the tools whose inserts have a wiper"""
     source: Source = along_paths
     """what makes the source of the cuts"""
 
@@ -55,17 +74,28 @@ class Task:
         for tool, factor in self.force_factors.items():
             if not (isfinite(factor) and factor > 0.0):
                 raise ValueError(f"tool '{tool}': a factor on k_c of {factor:g}")
-        # A copy: what the caller does with his own later must not change the task.
-        object.__setattr__(self, "force_factors", MappingProxyType(dict(self.force_factors)))
+        require_quantile(self.safety)
+        # Copies: what the caller does with his own later must not change the task.
+        for name in ("force_factors", "learned_safety_factors", "centre_cutting"):
+            object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
 
     def force_factor(self, tool: str) -> float:
         """Accepted correction of k_c for a tool, by its id."""
         return self.force_factors.get(tool, 1.0)
 
+    def safety_factor(self, tool: str, machine: Machine, material: Material) -> float:
+        """k_c at the quantile over the nominal one, for a tool by its id."""
+        if tool in self.learned_safety_factors:
+            return self.learned_safety_factors[tool]
+        if machine.only_stated_limits or material.spread is None:
+            return 1.0
+        return safety_factor(material.spread, self.safety)
+
 
 def problem_of(cut: Cut, at: Conditions, task: Task) -> Problem:
     """The mathematical problem of a cut."""
-    limits = limits_of(cut, at)
+    limits = limits_of(cut, at) + stability_limits(cut, at) + holding_limits(cut, at)
+    limits = _safe(limits, at)
     given = cut.programmed
     if Free.FEED not in task.free:
         limits += tuple(_held_feed(given.feed, sense) for sense in Sense)
@@ -84,6 +114,11 @@ def problem_of(cut: Cut, at: Conditions, task: Task) -> Problem:
     )
 
 
+def _safe(limits: tuple[Limit, ...], at: Conditions) -> tuple[Limit, ...]:
+    """Limits at the quantile of k_c that is planned with."""
+    return tuple(limit.with_safety(at.safety_factor) for limit in limits)
+
+
 def _held_feed(feed: float, sense: Sense) -> Limit:
     """The programmed feed as a limit, when it is not free."""
     return Limit(
@@ -100,18 +135,18 @@ def _stretches(
     cut: Cut, at: Conditions, task: Task
 ) -> tuple[tuple[float, ...], tuple[tuple[Limit, ...], ...]]:
     """Speeds that may be chosen, and the spindle's limits on each stretch of its curve."""
-    speed = cut.programmed.speed
+    speed = held_speed(cut, at)
     low, high = speed_range(cut, at)
     if Free.SPEED not in task.free or not low < high < inf:
-        return (speed,), (spindle_limits(cut, at, segment_at(at, speed)),)
-    low = max(low, LEAST_SPEED_RATIO * high)
-    segments = [
-        part
-        for part in curve_segments(at.machine.spindle)
-        if part.max_speed > low and part.min_speed < high
-    ]
-    inner = [part.max_speed for part in segments[:-1]]
-    return (low, *inner, high), tuple(spindle_limits(cut, at, part) for part in segments)
+        return (speed,), (_between(cut, at, speed, speed),)
+    ends = stretch_ends(cut, at, max(low, LEAST_SPEED_RATIO * high), high)
+    return ends, tuple(_between(cut, at, slow, fast) for slow, fast in pairwise(ends))
+
+
+def _between(cut: Cut, at: Conditions, slow: float, fast: float) -> tuple[Limit, ...]:
+    """What spindle and chuck allow on a stretch of speeds."""
+    spindle = spindle_limits(cut, at, segment_within(cut, at, slow, fast))
+    return _safe((*spindle, *chuck_limits(cut, at, slow, fast)), at)
 
 
 def _cost(cut: Cut, at: Conditions, task: Task) -> Cost:
@@ -119,11 +154,13 @@ def _cost(cut: Cut, at: Conditions, task: Task) -> Cost:
     machine = at.machine
     spindle = machine.spindle
     wear = _wear_rate(cut, at) if task.tool_change > 0.0 else None
+    # Energy is specific force times volume: what makes the power a peak is no part of it.
+    mean = replace(cut, power_diameter=None, thickest=1.0)
     return Cost(
         length=cut.length,
         once_length=cut.floor.length if cut.floor is not None else 0.0,
         teeth=cut.tool.teeth,
-        motor_power=scaled(power_load(cut, at), cut.load_share),
+        motor_power=scaled(power_load(mean, at), cut.load_share),
         link_time=cut.rest_time + (cut.link_length / machine.rapid if machine.rapid else 0.0),
         standby_power=machine.base_power + machine.coolant_power + spindle.idle_power,
         standby_power_per_speed=spindle.idle_power_per_speed,
@@ -145,10 +182,12 @@ def _wear_rate(cut: Cut, at: Conditions) -> Monomial | None:
 def state_of(cut: Cut, problem: Problem, at: Conditions, setting: Setting) -> State:
     """Everything about a cut at one setting."""
     point = (setting.feed, setting.depth, setting.speed)
-    floor = cut.floor
+    passes, ways_in = list(_passes(cut, setting)), list(_ways_in(cut, setting))
+    parts = passes + ways_in
+    along = [part for part in parts if part.cut.kind is CutKind.DRILLING]
     roughness = [
         load.value(*point)
-        for each in (cut, floor)
+        for each in (cut, cut.floor)
         if each is not None and (load := roughness_load(each)) is not None
     ]
     return State(
@@ -156,32 +195,86 @@ def state_of(cut: Cut, problem: Problem, at: Conditions, setting: Setting) -> St
         feed=setting.feed * cut.tool.teeth * setting.speed,
         time=problem.cost.time(setting),
         energy=problem.cost.energy(setting),
-        motor_power=_greater(power_load, cut, at, setting),
-        cutting_force=_greater(force_load, cut, at, setting),
+        motor_power=_greatest(power_load, parts, at, setting.speed),
+        cutting_force=_greatest(force_load, _across(cut, passes), at, setting.speed),
+        ramp_force=_greatest(force_load, _across(cut, ways_in), at, setting.speed),
+        plunge_power=_greatest(power_load, ways_in, at, setting.speed),
+        thrust=_greatest(_thrust_load, along, at, setting.speed),
         roughness=max(roughness, default=None),
-        loads=tuple(
-            Load(
-                limit=limit,
-                value=limit.load.value(*point),
-                bound=limit.bound_at(setting.speed),
-            )
-            for limit in exact.limits_at(problem, setting.speed)
-        ),
+        loads=_loads(exact.limits_at(problem, setting.speed), point),
+        plunge_loads=_plunge_loads(cut, at, setting),
     )
 
 
-def _greater(
-    load: Callable[[Cut, Conditions], Monomial], cut: Cut, at: Conditions, setting: Setting
-) -> float:
-    """A load of the walls, of the floor that is swept with them, or of a plunge: the greatest.
+def _plunge_loads(cut: Cut, at: Conditions, setting: Setting) -> tuple[Load, ...]:
+    """Loads at the plunge feed, where there is one."""
+    if setting.plunge_feed is None:
+        return ()
+    point = (setting.plunge_feed, setting.depth, setting.speed)
+    return _loads(plunge_limits(cut, at, setting.speed), point)
 
-    No load of a plunge depends on the depth.
+
+def _loads(limits: tuple[Limit, ...], point: tuple[float, float, float]) -> tuple[Load, ...]:
+    """Limits at one feed per tooth, depth and spindle speed."""
+    return tuple(
+        Load(limit=limit, value=limit.load.value(*point), bound=limit.full_bound_at(point[2]))
+        for limit in limits
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Part:
+    """A part of a cut with its own load."""
+
+    cut: Cut
+    feed: float
+    """mm per tooth"""
+    depth: float
+    """mm"""
+
+
+def _passes(cut: Cut, setting: Setting) -> Iterator[_Part]:
+    """The walls, the floor that is swept with them, and what is drilled at their feed.
+
+    No load of what is drilled depends on the depth.
     """
-    depths = [(cut, setting.depth)]
+    feed, depth = setting.feed, setting.depth
+    yield _Part(cut, feed, depth)
     if cut.floor is not None:
-        depths.append((cut.floor, cut.floor.total_depth))
+        yield _Part(cut.floor, feed, cut.floor.total_depth)
     if cut.plunge is not None:
-        depths.append((cut.plunge, setting.depth))
+        yield _Part(cut.plunge, feed, depth)
+
+
+def _ways_in(cut: Cut, setting: Setting) -> Iterator[_Part]:
+    """What is met on the ways down, at the plunge feed."""
+    way_in, feed = cut.way_in, setting.plunge_feed
+    if way_in is None or feed is None:
+        return
+    for drilled in way_in.drilled:
+        yield _Part(drilled, feed, setting.depth)
+    if way_in.ramp is not None:
+        yield _Part(way_in.ramp, feed, setting.depth)
+
+
+def _across(cut: Cut, parts: Iterable[_Part]) -> list[_Part]:
+    """Parts without what a mill drills."""
+    return [part for part in parts if part.cut.kind is cut.kind]
+
+
+def _thrust_load(cut: Cut, at: Conditions) -> Monomial:
+    """Force along the axis of what is drilled, N."""
+    return thrust(cut, at.material.kienzle, force_factor(at), drill_point(at))
+
+
+def _greatest(
+    load: Callable[[Cut, Conditions], Monomial],
+    parts: Iterable[_Part],
+    at: Conditions,
+    speed: float,
+) -> float:
+    """A load of the part that has most of it; 0 of none."""
     return max(
-        load(each, at).value(setting.feed, depth, setting.speed) for each, depth in depths
+        (load(part.cut, at).value(part.feed, part.depth, speed) for part in parts),
+        default=0.0,
     )

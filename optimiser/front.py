@@ -8,13 +8,14 @@ from dataclasses import replace
 
 from optimiser import workingstep as exact
 from optimiser.advice import Point, State
+from optimiser.conditions import Conditions
 from optimiser.cut import Cut
 from optimiser.errors import Infeasible
 from optimiser.formulate import state_of
 from optimiser.limit import Limit, LimitName, Sense
-from optimiser.limits import Conditions, roughness_limit, roughness_load
 from optimiser.modes import Mode
 from optimiser.problem import Problem, Setting
+from optimiser.roughness import roughness_limit, roughness_load
 
 POINTS = 15
 """levels of roughness between the finest that cuts and the one that costs nothing"""

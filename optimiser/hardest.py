@@ -1,40 +1,32 @@
 """From what the tool meets along its path to the places where it cuts hardest.
 
-The section of the cut is the measure: it is right also where the arc of contact holds slivers
-of a floor, or the depth is that of a sliver on a wall. With the depth it gives the width, and
-the arc of contact is that of the width: at the angles found where these agree with it, else
-one-sided. Depth beyond that of the pass counts as far as the section fills it. Loads are exact
-functions of depth and arc that rise with both, so every place is tried that is not within
-another, no deeper and its arc a part of the other's: a place that is worst for the mean force
-need not be worst for the shank. Units mm, rad.
+Loads are those of the virtual machine: the mean force follows from the section of the cut and
+the mean chip, forces along the helix from the arc of contact, and from the depth that the
+section fills there. Every station is tried: a place that is worst for the mean force need not
+be worst for the shank. Units mm, rad.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from math import cos, pi, sin, sqrt
+from collections.abc import Callable
+from dataclasses import dataclass, fields, replace
+from math import pi, sin
+
+import numpy as np
 
 from optimiser.cut import Cut, CutKind, Place
-from optimiser.loads import REFERENCE_FEED
-from simulator.motion.segments import Bools, Floats
-from simulator.physics import drilling, milling
-from simulator.physics.engagement import (
-    Engagement,
-    full_immersion,
-    mean_chip_ratio,
-    unidirectional,
-)
+from simulator.motion.segments import Bools, Floats, Ints
+from simulator.physics import drilling
+from simulator.physics.engagement import Engagement
+from simulator.physics.flutes import CuttingEdges, Law
+from simulator.physics.tooth_forces import Places, peak_resultant, wall_force
 from simulator.removal.stations import CutKind as StationKind
-from simulator.removal.stations import Stations
+from simulator.removal.stations import SingleArcs, Stations, single_arcs
 from simulator.spec import Kienzle, ToolKind
-
-NEARLY = 1e-3
-"""relative difference of widths that are equal: what an arc of 1/1000 rad makes"""
-
-AGREES = 0.02
-"""of the diameter: width by the angles against width by the section"""
 
 LEAST_RATIO = 0.01
 """mean chip over the feed; the power of what is thinner is not to be told"""
+
+LIKELY = 0.4
+"""of the roughly greatest force: what is less is no candidate, whatever it is exactly"""
 
 DIGITS = 3
 """to which engagements are told apart: µm, mrad"""
@@ -63,33 +55,71 @@ class Met:
         """Removed, mm³."""
         return float((self.stations.section * self.length).sum())
 
-
-def lengths(stations: Stations) -> Floats:
-    """(M,) mm, the stretch for which each station holds."""
-    before = stations.station.copy()
-    before[1:] = stations.station[:-1]
-    before[:1] = 0.0
-    before[1:][stations.segment[1:] != stations.segment[:-1]] = 0.0
-    stretch: Floats = stations.station - before
-    return stretch
+    def where(self, rows: Bools) -> "Met":
+        """The same of some stations only."""
+        kept = {each.name: getattr(self.stations, each.name)[rows] for each in fields(Stations)}
+        return replace(self, stations=Stations(**kept), length=self.length[rows])
 
 
-def with_hardest(cut: Cut, met: Met, kienzle: Kienzle, *, depth: float) -> Cut:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Bending:
+    """Forces along the helix at the stations that mill, over ``K·k_c1.1·f_z^q``, mm."""
+
+    at: Ints
+    """(K,) rows of the stations"""
+    shank: Floats
+    """(K,) greatest across the axis"""
+    wall: Floats
+    """(K,) greatest normal to the wall that is made"""
+
+
+def bending(cut: Cut, stations: Stations, kienzle: Kienzle) -> Bending:
+    """What bends an end mill along a path; nothing bends other tools."""
+    at = _milled_rows(stations)
+    if cut.tool_kind is not ToolKind.ENDMILL or not len(at):
+        return Bending(at=at[:0], shank=np.empty(0), wall=np.empty(0))
+    arcs = single_arcs(stations)
+    columns = (arcs.entry_angle, arcs.exit_angle, arcs.depth)
+    keys = np.round(np.stack([column[at] for column in columns]), DIGITS)
+    told, row = np.unique(keys, axis=1, return_inverse=True)
+    places = Places(entry_angle=told[0], exit_angle=told[1], axial_depth=told[2])
+    law, fill = Law(exponent=1.0 - kienzle.m_c), np.zeros(told.shape[1])
+    np.maximum.at(fill, row.ravel(), arcs.fill[at])
+    forces = (
+        _where_hard(each, cut.edges, places, law, fill)[row.ravel()]
+        for each in (peak_resultant, wall_force)
+    )
+    shank, wall = (arcs.fill[at] * force for force in forces)
+    return Bending(at=at, shank=shank, wall=wall)
+
+
+def _where_hard(
+    greatest: Callable[..., Floats],
+    edges: CuttingEdges,
+    places: Places,
+    law: Law,
+    fill: Floats,
+) -> Floats:
+    """Forces at places, exact where they may be among the greatest: there are thousands."""
+    found = greatest(edges, places, law, is_rough=True)
+    rows = np.flatnonzero(fill * found >= LIKELY * (fill * found).max())
+    found[rows] = greatest(edges, places.rows(rows), law)
+    return found
+
+
+def with_hardest(cut: Cut, met: Met, kienzle: Kienzle, *, depth: float, bent: Bending) -> Cut:
     """A cut with its engagement as met in passes of a nominal depth, where anything was met."""
-    is_judged = met.stations.kind == KINDS[cut.kind]
-    is_long = is_judged & (met.length >= met.cell)
-    rows = is_long if is_long.any() else is_judged
+    rows = met.stations.kind == KINDS[cut.kind]
+    if cut.kind is not CutKind.MILLING:
+        is_long = rows & (met.length >= met.cell)
+        rows = is_long if is_long.any() else rows
     if not rows.any():
         return cut
     if cut.kind is CutKind.MILLING:
-        places = _places(met.stations, rows, diameter=cut.diameter, nominal=depth)
-        return _milled(cut, places, kienzle, nominal=depth)
+        return _milled(cut, met, kienzle, nominal=depth, bent=bent)
     if cut.kind is CutKind.DRILLING:
-        return _drilled(cut, float(met.stations.section[rows].max()), met.cell)
-    deepest = float(met.stations.axial_depth[rows].max())
-    if cut.kind is CutKind.GROOVING:
-        return replace(cut, radial_width=min(cut.radial_width, deepest))
-    return replace(cut, depth_share=_share(cut, deepest / depth))
+        return _drilled(cut, met.stations, np.flatnonzero(rows))
+    return _turned(cut, met.stations, np.flatnonzero(rows), kienzle, nominal=depth)
 
 
 def weighted_volume(met: Met, exponent: float) -> float:
@@ -106,15 +136,14 @@ def greatest_section(cut: Cut, *, depth: float) -> tuple[float, float]:
     if cut.kind is CutKind.MILLING:
         if cut.engagement is None:
             raise ValueError("a milling cut needs its engagement")
-        width = 0.5 * cut.diameter * cut.engagement.cosine_difference
-        ratio = mean_chip_ratio(cut.engagement, cutting_edge_angle=tool.cutting_edge_angle)
-        return depth * cut.depth_share * width, ratio
+        width = 0.5 * cut.diameter * cut.engagement.cosine_difference * cut.fill
+        return depth * cut.depth_share * width, cut.mean_chip_ratio
     if cut.kind is CutKind.DRILLING:
-        point = 0.5 * tool.point_angle if tool.point_angle else drilling.CUSTOMARY_EDGE_ANGLE
-        return 0.25 * pi * (cut.diameter**2 - cut.previous_diameter**2), sin(point)
+        point = drilling.edge_angle(cut.tool_kind, tool.point_angle)
+        return 0.25 * pi * (cut.drilled_diameter**2 - cut.previous_diameter**2), sin(point)
     if cut.kind is CutKind.GROOVING:
         return pi * cut.diameter * cut.radial_width, 1.0
-    return pi * cut.diameter * depth * cut.depth_share, sin(tool.cutting_edge_angle)
+    return pi * cut.diameter * depth * cut.depth_share, sin(cut.turning_edge_angle)
 
 
 def _share(cut: Cut, share: float) -> float:
@@ -126,82 +155,84 @@ def _share(cut: Cut, share: float) -> float:
     return max(1.0, share) if cut.is_depth_free else share
 
 
-def _drilled(cut: Cut, section: float, cell: float) -> Cut:
-    """A hole with what was there before, unless the map cannot tell it from what is said."""
-    said, _ = greatest_section(cut, depth=cut.programmed.depth)
-    if abs(section - said) <= 0.5 * pi * cut.diameter * cell:
+def _drilled(cut: Cut, stations: Stations, at: Ints) -> Cut:
+    """A hole as wide as the lips cut where they cut most, with what was there before."""
+    row = at[stations.peak_section[at].argmax()]
+    # A lip's width is its axial depth here, and twice the radius of its middle the diameter.
+    middle, width = float(stations.diameter[row]), float(stations.axial_depth[row])
+    return replace(cut, widest_drilled=middle + width, previous_diameter=middle - width)
+
+
+def _turned(cut: Cut, stations: Stations, at: Ints, kienzle: Kienzle, *, nominal: float) -> Cut:
+    """A turned cut where its force is greatest: at a small depth the nose thins the chip."""
+    ratio = stations.chip_ratio[at].clip(LEAST_RATIO)
+    row = (stations.axial_depth[at] * ratio**-kienzle.m_c).argmax()
+    deepest = float(stations.axial_depth[at][row])
+    if cut.kind is CutKind.GROOVING:
+        return replace(cut, radial_width=min(cut.radial_width, deepest))
+    share = _share(cut, deepest / nominal)
+    return replace(cut, depth_share=share, chip_ratio=float(ratio[row]))
+
+
+def _milled(cut: Cut, met: Met, kienzle: Kienzle, *, nominal: float, bent: Bending) -> Cut:
+    """A milling cut with the places of its greatest forces: mean, across it, at the wall."""
+    stations = met.stations
+    at = _milled_rows(stations)
+    if not len(at):
         return cut
-    bored = sqrt(max(0.0, cut.diameter**2 - 4.0 * section / pi))
-    return replace(cut, previous_diameter=bored)
+    arcs = single_arcs(stations)
+    mean = stations.peak_section[at] * stations.chip_ratio[at].clip(LEAST_RATIO) ** -kienzle.m_c
+    hardest = at[(mean / stations.diameter[at]).argmax()]
 
+    def place(row: np.int64) -> Place:
+        return Place(
+            engagement=Engagement(
+                entry_angle=max(float(arcs.entry_angle[row]), 0.0),
+                exit_angle=min(float(arcs.exit_angle[row]), pi),
+            ),
+            depth_share=_share(cut, float(arcs.depth[row]) / nominal),
+            fill=float(arcs.fill[row]),
+        )
 
-def _milled(cut: Cut, places: Sequence[Place], kienzle: Kienzle, *, nominal: float) -> Cut:
-    """A milling cut with the places of its greatest mean force and of its greatest peak."""
-    mean = max(places, key=lambda place: milling.mean_force(kienzle, _at(cut, place)))
-    bending = None
-    if cut.tool_kind is ToolKind.ENDMILL:
-        bending = max(places, key=lambda place: milling.peak_force(kienzle, _at(cut, place)))
-        bending = replace(bending, depth_share=_share(cut, bending.depth_share / nominal))
+    shank = wall = None
+    if len(bent.at):
+        shank, wall = (place(bent.at[each.argmax()]) for each in (bent.shank, bent.wall))
+    greatest = place(hardest)
     return replace(
         cut,
-        engagement=mean.engagement,
-        depth_share=_share(cut, mean.depth_share / nominal),
-        bending=bending,
-        radial_width=0.5 * cut.diameter * mean.engagement.cosine_difference,
+        engagement=greatest.engagement,
+        depth_share=greatest.depth_share,
+        fill=greatest.fill,
+        chip_ratio=max(float(stations.chip_ratio[hardest]), LEAST_RATIO),
+        width_ratio=float(_width_ratio(arcs, at).max()),
+        chip_sine=float(_chip_sine(arcs, at).max()),
+        shank=shank,
+        wall=wall,
+        radial_width=0.5 * cut.diameter * greatest.engagement.cosine_difference * greatest.fill,
     )
 
 
-def _at(cut: Cut, place: Place) -> milling.MillingCut:
-    """The cut at a place whose depth is in mm."""
-    return milling.MillingCut(
-        feed_per_tooth=REFERENCE_FEED,
-        teeth=cut.tool.teeth,
-        axial_depth=place.depth_share,
-        engagement=place.engagement,
-        cutting_edge_angle=cut.tool.cutting_edge_angle,
-    )
+def _milled_rows(stations: Stations) -> Ints:
+    """Stations that mill along an arc that is known."""
+    has_arc = stations.exit_angle > stations.entry_angle
+    return np.flatnonzero((stations.kind == StationKind.MILLING) & has_arc)
 
 
-def _places(stations: Stations, rows: Bools, *, diameter: float, nominal: float) -> list[Place]:
-    """Engagements that occur with their depths in mm, but none that is within another."""
-    return _outer([
-        _place(row, diameter=diameter, nominal=nominal)
-        for row in stations.engagements(rows, digits=DIGITS)
-        if row[0] > 0.0
-    ])
+def _width_ratio(arcs: SingleArcs, at: Ints) -> Floats:
+    """a_e/D at stations."""
+    entry, exit_ = _within(arcs, at)
+    ratio: Floats = 0.5 * (np.cos(entry) - np.cos(exit_))
+    return ratio
 
 
-def _outer(places: Sequence[Place]) -> list[Place]:
-    """Places that are not within another one, each once, the deepest first."""
-    found: list[Place] = []
-    for place in sorted(places, key=lambda each: (-each.depth_share, -_arc(each))):
-        if not any(_is_within(place, other) for other in found):
-            found.append(place)
-    return found
+def _chip_sine(arcs: SingleArcs, at: Ints) -> Floats:
+    """Greatest sin φ on the arcs of stations."""
+    entry, exit_ = _within(arcs, at)
+    holds_top = (entry <= 0.5 * pi) & (exit_ >= 0.5 * pi)
+    sine: Floats = np.where(holds_top, 1.0, np.maximum(np.sin(entry), np.sin(exit_)))
+    return sine
 
 
-def _arc(place: Place) -> float:
-    return place.engagement.contact_angle
-
-
-def _is_within(place: Place, other: Place) -> bool:
-    """Whether the arc of a place that is no deeper is a part of another's."""
-    inner, outer = place.engagement, other.engagement
-    return outer.entry_angle <= inner.entry_angle and inner.exit_angle <= outer.exit_angle
-
-
-def _place(row: Sequence[float], *, diameter: float, nominal: float) -> Place:
-    """One engagement; a section wider than the tool is deeper than it was seen to be."""
-    section, depth, entry, exit = row
-    by_angles = 0.5 * diameter * (cos(entry) - cos(exit))
-    if depth > nominal and by_angles > 0.0:
-        depth = min(depth, max(nominal, section / by_angles))
-    depth = max(depth, section / diameter)
-    width = section / depth
-    if width >= diameter * (1.0 - NEARLY):
-        engagement = full_immersion()
-    elif abs(by_angles - width) <= AGREES * diameter and 0.0 <= entry < exit <= pi:
-        engagement = Engagement(entry_angle=entry, exit_angle=exit)
-    else:
-        engagement = unidirectional(width, diameter)
-    return Place(engagement=engagement, depth_share=depth)
+def _within(arcs: SingleArcs, at: Ints) -> tuple[Floats, Floats]:
+    """Entry and exit angles of stations on the side where chips are made."""
+    return arcs.entry_angle[at].clip(0.0, pi), arcs.exit_angle[at].clip(0.0, pi)

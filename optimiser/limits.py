@@ -5,54 +5,34 @@ A value that a source does not give does not limit. All loads come from
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
-from math import inf, pi, sqrt
+from dataclasses import replace
+from math import inf, pi
 
 from optimiser import loads
-from optimiser.cut import Cut, CutKind, Texture
+from optimiser.chip_load import catalogue_feed, feed_origin, greatest_feed, least_feed
+from optimiser.conditions import Conditions, PermittedDeflection
+from optimiser.cut import Cut, CutKind
 from optimiser.limit import Limit, LimitName, Monomial, Sense
+from optimiser.roughness import surface_limits
 from simulator.edge_material import correction_of
 from simulator.library import find_window
-from simulator.physics.engagement import mean_chip_ratio
+from simulator.physics.drilling import LIPS_ONLY
+from simulator.physics.holding import usable_speed
 from simulator.physics.spindle import CurveSegment, curve_segments
-from simulator.physics.strength import deflection, equivalent_diameter, force_for_stress
-from simulator.physics.surface import RA_FLOOR, RZ_PER_RA
-from simulator.spec import CuttingMaterial, Grade, Machine, Material, ToolKind
-
-ROUGHING_DEFLECTION = 0.1
-"""mm at the tip of an end mill while roughing: a fifth of a customary 0.5 mm allowance"""
-
-FINISHING_DEFLECTION = 0.05
-"""mm at the tip of an end mill that finishes a wall: half of a customary ±0.1 mm tolerance"""
-
-NOSE_FEED_RATIO = 0.8
-"""greatest feed per revolution over the nose radius of an insert, customary"""
+from simulator.physics.strength import end_mill
+from simulator.spec import DrillPoint, Grade, ToolKind
+from simulator.work_holding import Chuck
 
 PLUNGE_FEED_RATIO = 0.5
 """greatest feed per tooth straight down over that along the pass, customary: near the axis the
 edges hardly move; Fanar, general catalogue 2021, p. 329, takes 25 to 50 % of the table on the
 way into the material"""
 
-STICK_OUT = 3.0
-"""least overhang over diameter of an end mill, customary; the file names no overhang"""
+STRAIGHT_DOWN = "straight down"
+"""how limits of a plunge are told from those along the pass"""
 
-KW, NM, UM, MM_MIN, M_MIN, RPM = 1e-3, 1e-3, 1e3, 60.0, 0.06, 60.0
+KW, NM, MM_MIN, M_MIN, RPM = 1e-3, 1e-3, 60.0, 0.06, 60.0
 """user's number per canonical unit"""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Conditions:
-    """Everything besides the cut that sets its limits."""
-
-    machine: Machine
-    material: Material
-    cutting_material: CuttingMaterial
-    grade: Grade | None
-    """``None``: the material carries no tool limits"""
-    roughness: float | None
-    """Ra in mm that this surface must keep"""
-    force_factor: float = 1.0
-    """accepted correction of k_c from measurements"""
 
 
 def force_factor(at: Conditions) -> float:
@@ -63,7 +43,12 @@ def force_factor(at: Conditions) -> float:
 
 def force_load(cut: Cut, at: Conditions) -> Monomial:
     """Tangential force of this cut, N."""
-    return loads.cutting_force(cut, at.material.kienzle, force_factor(at))
+    return loads.cutting_force(cut, at.material.kienzle, force_factor(at), drill_point(at))
+
+
+def drill_point(at: Conditions) -> DrillPoint:
+    """Point of the tool where it cuts on its end."""
+    return (at.grade.point if at.grade is not None else None) or LIPS_ONLY
 
 
 def power_load(cut: Cut, at: Conditions) -> Monomial:
@@ -76,22 +61,24 @@ def limits_of(cut: Cut, at: Conditions) -> tuple[Limit, ...]:
     return (
         *_load_limits(cut, at),
         *_depth_limits(cut, at),
-        *_surface_limits(cut, at),
-        *(_surface_limits(cut.floor, at) if cut.floor is not None else ()),
-        *_speed_limits(cut, at),
+        *surface_limits(cut, at),
+        *(surface_limits(cut.floor, at) if cut.floor is not None else ()),
+        *speed_limits(cut, at),
     )
 
 
 def _load_limits(cut: Cut, at: Conditions) -> Iterator[Limit]:
     """Limits on what cuts, of the walls and of the floor that is swept at its own depth."""
-    yield from _machine_limits(cut, at)
-    yield from _tool_limits(cut, at)
+    yield from machine_limits(cut, at)
+    yield from tool_limits(cut, at)
     if cut.floor is not None:
         floor = cut.floor
-        for limit in (*_machine_limits(floor, at), *_tool_limits(floor, at)):
+        # Its sweep stays off the walls, and a tool that bends leaves the depth alone.
+        swept = replace(at, deflection=PermittedDeflection())
+        for limit in (*machine_limits(floor, swept), *tool_limits(floor, swept)):
             yield limit.at_depth(floor.total_depth)
     if cut.plunge is not None:
-        yield from map(_straight_down, _plunge_limits(cut, cut.plunge, at))
+        yield from map(straight_down, _plunge_limits(cut, cut.plunge, at))
 
 
 def _plunge_limits(cut: Cut, plunge: Cut, at: Conditions) -> Iterator[Limit]:
@@ -100,7 +87,7 @@ def _plunge_limits(cut: Cut, plunge: Cut, at: Conditions) -> Iterator[Limit]:
     Where nothing says what feed the mill bears along the pass, the programmed one is all that
     is known to be borne. Half of it is custom and no physics: it does not make the edges rub.
     """
-    highest = _greatest_feed(cut, at)
+    highest = catalogue_feed(cut, at)
     borne = cut.programmed.feed
     if highest is not None:
         rubbing = at.grade.min_chip_thickness / _chip_ratio(cut) if at.grade else 0.0
@@ -115,23 +102,23 @@ def _plunge_limits(cut: Cut, plunge: Cut, at: Conditions) -> Iterator[Limit]:
     if at.machine.max_cutting_force is not None:
         yield Limit(
             name=LimitName.CUTTING_FORCE,
-            load=loads.thrust(plunge, at.material.kienzle, force_factor(at)),
+            load=loads.thrust(plunge, at.material.kienzle, force_factor(at), drill_point(at)),
             bound=at.machine.max_cutting_force,
             unit="N",
             step=100.0,
         )
 
 
-def _straight_down(limit: Limit) -> Limit:
+def straight_down(limit: Limit) -> Limit:
     """A limit of a plunge, told as one."""
-    return replace(limit, label=f"{limit.words} straight down")
+    return replace(limit, label=f"{limit.words} {STRAIGHT_DOWN}")
 
 
 def spindle_limits(cut: Cut, at: Conditions, segment: CurveSegment) -> tuple[Limit, ...]:
     """Motor power and torque on one stretch of the spindle's curve."""
     limits = _spindle_limits(cut, at, segment)
     if cut.plunge is not None:
-        limits += tuple(map(_straight_down, _spindle_limits(cut.plunge, at, segment)))
+        limits += tuple(map(straight_down, _spindle_limits(cut.plunge, at, segment)))
     if cut.floor is None:
         return limits
     floor = cut.floor
@@ -149,6 +136,7 @@ def _spindle_limits(cut: Cut, at: Conditions, segment: CurveSegment) -> tuple[Li
         bound_speed_exponent=segment.power_exponent,
         unit="kW",
         scale=KW,
+        origin=_power_origin(at),
     )
     if segment.torque_coefficient is None:
         return (power,)
@@ -163,6 +151,15 @@ def _spindle_limits(cut: Cut, at: Conditions, segment: CurveSegment) -> tuple[Li
     return power, torque
 
 
+def _power_origin(at: Conditions) -> str:
+    """What the bound of the power leaves out; empty where the machine's power is all of it."""
+    spindle = at.machine.spindle
+    idles = spindle.idle_power or spindle.idle_power_per_speed
+    if at.machine.only_stated_limits or not idles:
+        return ""
+    return "what the idling spindle leaves of its drive's"
+
+
 def segment_at(at: Conditions, speed: float) -> CurveSegment:
     """Stretch of the spindle's curve that holds at a speed, the nearest beyond its ends."""
     segments = curve_segments(at.machine.spindle)
@@ -172,7 +169,7 @@ def segment_at(at: Conditions, speed: float) -> CurveSegment:
 def speed_range(cut: Cut, at: Conditions) -> tuple[float, float]:
     """Least and greatest spindle speed that machine and tool allow, rev/s."""
     low, high = 0.0, inf
-    for limit in _speed_limits(cut, at):
+    for limit in speed_limits(cut, at):
         bound = limit.bound / limit.load.coefficient
         if limit.sense is Sense.AT_MOST:
             high = min(high, bound)
@@ -181,14 +178,14 @@ def speed_range(cut: Cut, at: Conditions) -> tuple[float, float]:
     return low, high
 
 
-def _machine_limits(cut: Cut, at: Conditions) -> Iterator[Limit]:
+def machine_limits(cut: Cut, at: Conditions) -> Iterator[Limit]:
     """Cutting force and feed mechanism."""
     machine = at.machine
     if machine.max_cutting_force is not None:
         is_drill = cut.kind is CutKind.DRILLING
         yield Limit(
             name=LimitName.CUTTING_FORCE,
-            load=loads.thrust(cut, at.material.kienzle, force_factor(at))
+            load=loads.thrust(cut, at.material.kienzle, force_factor(at), drill_point(at))
             if is_drill
             else force_load(cut, at),
             bound=machine.max_cutting_force,
@@ -206,20 +203,34 @@ def _machine_limits(cut: Cut, at: Conditions) -> Iterator[Limit]:
         )
 
 
-def _tool_limits(cut: Cut, at: Conditions) -> Iterator[Limit]:
+def tool_limits(cut: Cut, at: Conditions) -> Iterator[Limit]:
     """Feed per tooth, chip thickness, deflection and strength of the shank."""
-    highest = _greatest_feed(cut, at)
+    highest = greatest_feed(cut, at)
+    feed = Monomial(coefficient=1.0, feed_exponent=1.0)
+    words = "feed per revolution" if cut.tool.diameter <= 0.0 else ""
     if highest is not None:
         yield Limit(
             name=LimitName.FEED_PER_TOOTH,
-            label="feed per revolution" if cut.tool.diameter <= 0.0 else "",
-            load=Monomial(coefficient=1.0, feed_exponent=1.0),
+            label=words,
+            load=feed,
             bound=highest,
             unit="mm",
             step=0.01,
+            origin=feed_origin(cut, at),
         )
     if at.grade is None:
         return
+    lowest = least_feed(cut, at)
+    if lowest is not None and not at.machine.only_stated_limits:
+        yield Limit(
+            name=LimitName.FEED_PER_TOOTH,
+            label=f"{words or LimitName.FEED_PER_TOOTH.words} against rubbing",
+            load=feed,
+            bound=lowest,
+            unit="mm",
+            sense=Sense.AT_LEAST,
+            step=0.01,
+        )
     yield Limit(
         name=LimitName.CHIP_THICKNESS,
         load=Monomial(coefficient=_chip_ratio(cut), feed_exponent=1.0),
@@ -228,38 +239,40 @@ def _tool_limits(cut: Cut, at: Conditions) -> Iterator[Limit]:
         sense=Sense.AT_LEAST,
         step=0.001,
     )
-    if cut.kind is CutKind.MILLING and cut.tool_kind is ToolKind.ENDMILL:
+    if is_bent(cut):
         yield from _bending_limits(cut, at, at.grade)
 
 
 def _bending_limits(cut: Cut, at: Conditions, grade: Grade) -> Iterator[Limit]:
     """Deflection and bending stress of an end mill clamped at one end."""
-    bending = loads.bending_force(cut, at.material.kienzle, force_factor(at))
-    diameter = equivalent_diameter(cut.tool.diameter)
-    overhang = max(STICK_OUT * cut.tool.diameter, cut.tool.cutting_edge_length or 0.0)
-    compliance = deflection(
-        1.0, overhang=overhang, diameter=diameter, youngs_modulus=grade.youngs_modulus
+    shank = end_mill(
+        cut.tool.diameter,
+        cutting_edge_length=cut.tool.cutting_edge_length,
+        youngs_modulus=grade.youngs_modulus,
     )
-    yield Limit(
-        name=LimitName.TOOL_DEFLECTION,
-        load=loads.scaled(bending, compliance),
-        bound=FINISHING_DEFLECTION if _is_finished_wall(cut) else ROUGHING_DEFLECTION,
-        unit="mm",
-        step=0.01,
-    )
-    stress = 1.0 / force_for_stress(1.0, overhang=overhang, diameter=diameter)
+    normal = loads.wall_force(cut, at.material.kienzle, force_factor(at))
+    if normal is not None:
+        yield Limit(
+            name=LimitName.TOOL_DEFLECTION,
+            load=loads.scaled(normal, shank.compliance),
+            bound=at.deflection.value,
+            origin=at.deflection.origin,
+            unit="mm",
+            step=0.01,
+        )
+    across = loads.shank_force(cut, at.material.kienzle, force_factor(at))
     yield Limit(
         name=LimitName.SHANK_STRENGTH,
-        load=loads.scaled(bending, stress),
+        load=loads.scaled(across, shank.stress(1.0)),
         bound=grade.bending_strength,
         unit="N/mm²",
         step=100.0,
     )
 
 
-def _is_finished_wall(cut: Cut) -> bool:
-    """Whether the tool's deflection stays in the part."""
-    return cut.is_finish_operation and cut.texture is Texture.WALL
+def is_bent(cut: Cut) -> bool:
+    """Whether the tool is slender: face mills are not."""
+    return cut.kind is CutKind.MILLING and cut.tool_kind is ToolKind.ENDMILL
 
 
 def _depth_limits(cut: Cut, at: Conditions) -> Iterator[Limit]:
@@ -279,21 +292,7 @@ def _depth_limits(cut: Cut, at: Conditions) -> Iterator[Limit]:
         )
 
 
-def _surface_limits(cut: Cut, at: Conditions) -> Iterator[Limit]:
-    """Roughness, where the feed describes it."""
-    if at.roughness is not None and roughness_load(cut) is not None:
-        yield roughness_limit(cut, at.roughness)
-
-
-def roughness_limit(cut: Cut, roughness: float) -> Limit:
-    """Ra in mm at most so much; ValueError when the feed does not describe the surface."""
-    load = roughness_load(cut)
-    if load is None:
-        raise ValueError("the feed does not describe this surface")
-    return Limit(name=LimitName.ROUGHNESS, load=load, bound=roughness, unit="µm", scale=UM)
-
-
-def _speed_limits(cut: Cut, at: Conditions) -> Iterator[Limit]:
+def speed_limits(cut: Cut, at: Conditions) -> Iterator[Limit]:
     """Window of the cutting speed, and what the spindle turns."""
     low, high = cutting_speed_window(at)
     spindle = at.machine.spindle
@@ -304,6 +303,7 @@ def _speed_limits(cut: Cut, at: Conditions) -> Iterator[Limit]:
         (LimitName.CUTTING_SPEED, velocity, low, Sense.AT_LEAST),
         (LimitName.SPINDLE_SPEED, turning, spindle.max_speed, Sense.AT_MOST),
         (LimitName.SPINDLE_SPEED, turning, spindle.min_speed, Sense.AT_LEAST),
+        (LimitName.SPINDLE_SPEED, turning, _chuck_speed(at), Sense.AT_MOST),
     ):
         if bound is None or bound <= 0.0:
             continue
@@ -319,6 +319,14 @@ def _speed_limits(cut: Cut, at: Conditions) -> Iterator[Limit]:
         )
 
 
+def _chuck_speed(at: Conditions) -> float | None:
+    """Speed above which a chuck holds too little to be used, rev/s; None of another one."""
+    if not isinstance(at.holding, Chuck):
+        return None
+    speed = usable_speed(at.holding)
+    return None if speed == inf else speed
+
+
 def cutting_speed_window(at: Conditions) -> tuple[float | None, float | None]:
     """Cutting speeds that the grade, else the material, recommends, mm/s."""
     grade = at.grade
@@ -332,48 +340,8 @@ def cutting_speed_window(at: Conditions) -> tuple[float | None, float | None]:
     return low, high
 
 
-def roughness_load(cut: Cut) -> Monomial | None:
-    """Ra in mm as a function of the feed, or None where the feed does not describe it.
-
-    ``Ra = f²/(18√3·r) + floor`` with f per revolution for one high tooth and per tooth for
-    equal ones; the wall left by an end mill ``Ra = f_z²/(4·D)/4 + floor``; see
-    :mod:`simulator.physics.surface`.
-    """
-    corner = 18.0 * sqrt(3.0) * cut.corner_radius
-    factors = {
-        Texture.CORNER_PER_REVOLUTION: (cut.tool.teeth**2, corner),
-        Texture.CORNER_PER_TOOTH: (1.0, corner),
-        Texture.WALL: (1.0, 4.0 * cut.diameter * RZ_PER_RA),
-        Texture.NONE: (1.0, 0.0),
-    }
-    numerator, denominator = factors[cut.texture]
-    if denominator <= 0.0:
-        return None
-    return Monomial(coefficient=numerator / denominator, offset=RA_FLOOR, feed_exponent=2.0)
-
-
-def _greatest_feed(cut: Cut, at: Conditions) -> float | None:
-    """Greatest feed per tooth that material and grade allow, mm."""
-    bounds = [at.material.max_feed_per_tooth]
-    grade = at.grade
-    if grade is not None:
-        if cut.kind is CutKind.TURNING and cut.corner_radius > 0.0:
-            bounds.append(NOSE_FEED_RATIO * cut.corner_radius)
-        teeth = 1 if cut.kind is CutKind.MILLING else cut.tool.teeth
-        if grade.max_feed is not None:
-            bounds.append(grade.max_feed / teeth)
-        if grade.max_feed_ratio is not None and cut.tool.diameter > 0.0:
-            bounds.append(grade.max_feed_ratio * cut.tool.diameter / teeth)
-        ratio = at.material.max_feed_per_tooth_ratio
-        is_carbide = at.cutting_material is CuttingMaterial.CARBIDE
-        if ratio is not None and is_carbide and cut.tool_kind is ToolKind.ENDMILL:
-            bounds.append(ratio * cut.tool.diameter)
-    known = [bound for bound in bounds if bound is not None]
-    return min(known) if known else None
-
-
 def _chip_ratio(cut: Cut) -> float:
     """Mean chip thickness over feed per tooth."""
     if cut.kind is CutKind.MILLING and cut.engagement is not None:
-        return mean_chip_ratio(cut.engagement, cutting_edge_angle=cut.tool.cutting_edge_angle)
+        return cut.mean_chip_ratio
     return 1.0

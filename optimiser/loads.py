@@ -1,62 +1,163 @@
-"""The loads of a cut as monomials in feed per tooth, depth and spindle speed.
+"""The loads of a cut in feed per tooth, depth and spindle speed.
 
 Every number comes from :mod:`simulator.physics`: a Kienzle force is ``c·f^(1−m_c)·a``, so its
-value at one point gives c. The functions take the force factor K (rake, speed, wear).
+value at one point gives c. The functions take the force factor K (rake, speed).
 """
 
+from dataclasses import dataclass, replace
+from enum import Enum, auto
+from functools import lru_cache
 from math import pi
 
 from optimiser.cut import Cut, CutKind, Place
 from optimiser.limit import Monomial
-from simulator.physics import drilling, milling, turning
-from simulator.spec import Kienzle
+from simulator.physics import drilling, kinematics, milling, power, turning
+from simulator.physics.flutes import WALL, CuttingEdges, Law
+from simulator.spec import DrillPoint, Kienzle
+
+LEAST = 1e-9
+"""mm; a straight edge makes its wall where it has no chip, and a load must be positive"""
+
+
+class Force(Enum):
+    """Which force along the helix a curve tells."""
+
+    ACROSS = auto()
+    """greatest across the axis within a revolution"""
+    AT_WALL = auto()
+    """greatest normal to a wall while an edge makes it"""
+
 
 REFERENCE_FEED = 0.1
 """mm, where the physics is asked; any would do"""
 
 
-def cutting_force(cut: Cut, kienzle: Kienzle, factor: float) -> Monomial:
-    """Tangential force in N; of a mill all teeth together, averaged over a revolution."""
+def cutting_force(
+    cut: Cut, kienzle: Kienzle, factor: float, point: DrillPoint = drilling.LIPS_ONLY
+) -> Monomial:
+    """Tangential force in N; of a mill all teeth together, averaged over a revolution.
+
+    Of a drill that of all lips in their middle, where the virtual machine has it too.
+    """
     if cut.kind is CutKind.MILLING:
         at = _milling_cut(cut, cut.hardest)
-        return _monomial(milling.mean_force(kienzle, at, factor=factor), kienzle, depth=1.0)
+        # The chip as it was met, which need not be that of the arc that holds all contact.
+        thinner = cut.mean_chip_ratio * REFERENCE_FEED / at.mean_chip_thickness
+        force = milling.mean_force(kienzle, at, factor=factor * cut.fill)
+        return _monomial(force * thinner**-kienzle.m_c, kienzle, depth=1.0)
     if cut.kind is CutKind.DRILLING:
-        moment = drilling.drilling_torque(kienzle, _drilling_cut(cut), factor=factor)
-        return _monomial(2.0 * moment / cut.diameter, kienzle, depth=0.0)
+        moment = drilling.drilling_torque(kienzle, _drilling_cut(cut, point), factor=factor)
+        force = cut.fill * 2.0 * moment / cut.force_diameter * _thicker(cut, kienzle)
+        return _monomial(force, kienzle, depth=0.0)
     is_groove = cut.kind is CutKind.GROOVING
     force = turning.cutting_force(
         kienzle,
         turning.TurningCut(
             feed_per_revolution=REFERENCE_FEED,
             depth=cut.radial_width if is_groove else cut.depth_share,
-            cutting_edge_angle=0.5 * pi if is_groove else cut.tool.cutting_edge_angle,
+            cutting_edge_angle=0.5 * pi if is_groove else cut.turning_edge_angle,
         ),
         factor=factor,
     )
     return _monomial(force, kienzle, depth=0.0 if is_groove else 1.0)
 
 
-def bending_force(cut: Cut, kienzle: Kienzle, factor: float) -> Monomial:
+def shank_force(cut: Cut, kienzle: Kienzle, factor: float) -> Monomial:
     """Greatest force across the axis of an end mill within a revolution, N."""
-    at = _milling_cut(cut, cut.bending or cut.hardest)
-    force = milling.peak_force(kienzle, at, factor=factor)
-    return _monomial(force, kienzle, depth=1.0)
+    return _along_helix(cut, cut.shank or cut.hardest, kienzle, factor, Force.ACROSS)
 
 
-def thrust(cut: Cut, kienzle: Kienzle, factor: float) -> Monomial:
-    """Force along the axis of a drill, N."""
-    force = drilling.drilling_thrust(kienzle, _drilling_cut(cut), factor=factor)
-    return _monomial(force, kienzle, depth=0.0)
+def wall_force(cut: Cut, kienzle: Kienzle, factor: float) -> Monomial | None:
+    """Force normal to the wall while an edge makes it, N; None where it reaches no wall."""
+    place = cut.wall or cut.hardest
+    if place is None or not _reaches_wall(place):
+        return None
+    return _along_helix(cut, place, kienzle, factor, Force.AT_WALL)
+
+
+def _reaches_wall(place: Place) -> bool:
+    arc = place.engagement
+    return arc.entry_angle <= WALL or arc.exit_angle >= pi - WALL
+
+
+def _along_helix(
+    cut: Cut, place: Place | None, kienzle: Kienzle, factor: float, force: Force
+) -> Monomial:
+    """A load that is integrated along the edges in the cut."""
+    if place is None:
+        raise ValueError("a milling cut needs its engagement")
+    exponent = 1.0 - kienzle.m_c
+    return Monomial(
+        coefficient=factor * kienzle.k_c11,
+        feed_exponent=exponent,
+        curve=DepthCurve(edges=cut.edges, place=place, law=Law(exponent=exponent), force=force),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class DepthCurve:
+    """Integral of the forces at one place as a function of the depth of a pass, mm."""
+
+    edges: CuttingEdges
+    place: Place
+    law: Law
+    force: Force
+
+    def __call__(self, depth: float) -> float:
+        """Integral at a depth in mm."""
+        return _integral(self, depth)
+
+
+@lru_cache(maxsize=65_536)
+def _integral(curve: DepthCurve, depth: float) -> float:
+    from simulator.physics import tooth_forces  # noqa: PLC0415 (numpy is slow to load)
+
+    arc = curve.place.engagement
+    place = tooth_forces.one_place(
+        arc.entry_angle, arc.exit_angle, axial_depth=depth * curve.place.depth_share
+    )
+    is_peak = curve.force is Force.ACROSS
+    greatest = tooth_forces.peak_resultant if is_peak else tooth_forces.wall_force
+    integral = float(greatest(curve.edges, place, curve.law)[0])
+    return max(curve.place.fill * integral, LEAST)
+
+
+def over_mean(curve: DepthCurve, depth: float) -> float:
+    """A force along the helix over the mean tangential force, at the curve's place."""
+    mean = milling.mean_force(
+        Kienzle(k_c11=1.0, m_c=1.0 - curve.law.exponent),
+        milling.MillingCut(
+            feed_per_tooth=1.0,
+            teeth=curve.edges.teeth,
+            axial_depth=depth * curve.place.depth_share,
+            engagement=curve.place.engagement,
+            cutting_edge_angle=curve.edges.cutting_edge_angle,
+        ),
+        factor=curve.place.fill,
+    )
+    return curve(depth) / mean
+
+
+def thrust(
+    cut: Cut, kienzle: Kienzle, factor: float, point: DrillPoint = drilling.LIPS_ONLY
+) -> Monomial:
+    """Force along the axis of a drill, N; the part of the chisel edge is an offset."""
+    at = _drilling_cut(cut, point)
+    force = cut.fill * drilling.lip_thrust(kienzle, at, factor=factor) * _thicker(cut, kienzle)
+    lips = _monomial(force, kienzle, depth=0.0)
+    return replace(lips, offset=drilling.chisel_thrust(kienzle, at, factor=factor))
 
 
 def motor_power(cut: Cut, force: Monomial, efficiency: float) -> Monomial:
     """Power that the main drive draws for the cut, W: ``F·π·D·n/(1000·η)``."""
-    return _scaled(force, pi * cut.diameter / (1000.0 * efficiency), speed=1.0)
+    velocity = kinematics.cutting_speed(cut.power_diameter or cut.force_diameter, 1.0)
+    each_newton = power.motor_power(power.cutting_power(1.0, velocity), efficiency)
+    return _scaled(force, each_newton, speed=1.0)
 
 
 def torque(cut: Cut, force: Monomial) -> Monomial:
     """Torque at the spindle, N·mm: ``F·D/2``."""
-    return _scaled(force, 0.5 * cut.diameter)
+    return _scaled(force, 0.5 * cut.force_diameter)
 
 
 def _scaled(load: Monomial, factor: float, speed: float = 0.0) -> Monomial:
@@ -66,6 +167,7 @@ def _scaled(load: Monomial, factor: float, speed: float = 0.0) -> Monomial:
         offset=load.offset * factor,
         feed_exponent=load.feed_exponent,
         depth_exponent=load.depth_exponent,
+        curve=load.curve,
         speed_exponent=load.speed_exponent + speed,
     )
 
@@ -98,13 +200,18 @@ def _milling_cut(cut: Cut, place: Place | None) -> milling.MillingCut:
     )
 
 
-def _drilling_cut(cut: Cut) -> drilling.DrillingCut:
+def _thicker(cut: Cut, kienzle: Kienzle) -> float:
+    """Force of the thickest chip over that of the feed's."""
+    return float(cut.thickest ** (1.0 - kienzle.m_c))
+
+
+def _drilling_cut(cut: Cut, point: DrillPoint) -> drilling.DrillingCut:
     """The hole with one lip's feed at the reference."""
-    point = cut.tool.point_angle
     return drilling.DrillingCut(
         feed_per_revolution=REFERENCE_FEED * cut.tool.teeth,
-        tool_diameter=cut.diameter,
+        tool_diameter=cut.drilled_diameter,
         previous_diameter=cut.previous_diameter,
         teeth=cut.tool.teeth,
-        cutting_edge_angle=0.5 * point if point else drilling.CUSTOMARY_EDGE_ANGLE,
+        cutting_edge_angle=drilling.edge_angle(cut.tool_kind, cut.tool.point_angle),
+        point=point,
     )

@@ -8,31 +8,48 @@ The rest counts as time: ramps, rapids, moves with a feed of their own, waits.
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
-from optimiser.clamped import Change, ClampedStocks, Meeting, Place, StockMap, met_by
+from optimiser.clamped import ClampedStocks, Meeting, Place, StockMap, met_by
 from optimiser.cut import Cut, CutKind
 from optimiser.estimated import GUESSES, estimated_cut
-from optimiser.hardest import Met, greatest_section, weighted_volume, with_hardest
+from optimiser.hardest import (
+    Met,
+    bending,
+    greatest_section,
+    weighted_volume,
+    with_hardest,
+)
 from optimiser.other_depth import with_depth
-from optimiser.plunge import plunge_of
+from optimiser.plunge import (
+    Slope,
+    along_passes,
+    down_ramps,
+    is_fed,
+    plunge_feed_of,
+    plunge_of,
+    way_in_of,
+)
 from optimiser.problem import Setting
+from optimiser.reached import Ride, with_reached
+from optimiser.seen import Seen, Trace
 from optimiser.side_by_side import Result, one_by_one, side_by_side
+from optimiser.turned import turned_of
 from simulator.motion.segments import Bools
 from simulator.motion.tool_path import (
     Pace,
     Run,
     duration,
-    follows,
     paced,
+    plunges,
     run_of,
     usual_motion,
 )
 from simulator.removal.engage import MillingStock
-from simulator.removal.lathe import TurningStock
+from simulator.removal.lathe import Bar, TurningStock
 from simulator.removal.stations import CutKind as StationKind
-from simulator.removal.trial import Trial, do_overlap, is_remembered_alike, renumbered
-from simulator.spec import Kienzle, Machine, MachineKind
+from simulator.removal.trial import do_overlap, is_remembered_alike, renumbered
+from simulator.spec import Machine, MachineKind, Material
 from stepnc_model.errors import Finding, PostError, SchemaError, Severity
 from stepnc_model.post.blocks import Machine as PostMachine
 from stepnc_model.post.conditions import Conditions, conditions
@@ -42,50 +59,17 @@ from stepnc_model.toolpath.generate import require_ready, workingstep_path
 from stepnc_model.toolpath.path import Feed, ToolPath
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _Seen:
-    """A path that was tried, and what it met."""
-
-    path: ToolPath
-    run: Run
-    """as programmed"""
-    cut: Cut
-    """with the engagement as met"""
-    passes: int
-    weighted: float
-    """weighted volume over that of the hardest place, mm"""
-    air: float
-    """share of the length that removes nothing"""
-    meeting: Meeting
-    times: dict[tuple[float, float], Cut] = field(default_factory=dict)
-    """the cut as timed already, by the ratios of feed and speed; filled when asked for"""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Trace:
-    """What a workingstep looked at and changed."""
-
-    place: Place | None = None
-    """which stock"""
-    change: Change | None = None
-    trial: Trial | None = None
-    """that of the change; None: not of a mill"""
-    trials: tuple[Trial, ...] = ()
-    """of all paths that were tried"""
-    left_out: dict[int, str] = field(default_factory=dict)
-    """features whose path could not be made, with the workingstep"""
-
-
 class MeasuredCuts:
     """A source of cuts along real paths. Running state: what is left of each stock.
 
     The stock goes on to the next workingstep as the path that was asked for last leaves it.
     """
 
-    def __init__(self, program: Program, machine: Machine, kienzle: Kienzle) -> None:
+    def __init__(self, program: Program, machine: Machine, material: Material) -> None:
         self.program = program
         self.machine = machine
-        self.kienzle = kienzle
+        self.material = material
+        self.kienzle = material.kienzle
         self.control, self.limits = usual_motion(machine)
         self.stocks = ClampedStocks(program, machine)
         self._left_out: dict[int, str] = {}
@@ -93,7 +77,7 @@ class MeasuredCuts:
         self._estimate: Cut | None = None
         self._found: StockMap | None = None
         """what the workingstep finds"""
-        self._seen: dict[int, _Seen] = {}
+        self._seen: dict[int, Seen] = {}
         """paths of the workingstep, by the number of passes"""
         self._trace = Trace()
         self._numbers: dict[Place, dict[int, int]] = {}
@@ -112,7 +96,7 @@ class MeasuredCuts:
         """
         self._seen = {}
         self._trace = Trace(place=self.stocks.place(step))
-        cut, findings = estimated_cut(self.program, step)
+        cut, findings = estimated_cut(self.program, step, self.machine, self.material)
         self._estimate, self._found = cut, self.stocks.before(step)
         try:
             seen = self._see(step, self._path(step), cut, passes=cut.programmed.passes)
@@ -126,7 +110,7 @@ class MeasuredCuts:
         else:
             text = f"the engagement is estimated from the feature: {seen.meeting.why}"
             findings.append(self._warning(step, text))
-        return self._timed(step, seen, feed=1.0, speed=1.0), findings
+        return self._timed(step, seen, seen.cut.programmed), findings
 
     def at(self, step: Workingstep, cut: Cut, setting: Setting) -> Cut:
         """The same cut as the path of another setting makes it.
@@ -146,8 +130,7 @@ class MeasuredCuts:
                 self._seen[setting.passes] = self._seen[given.passes]
         seen = self._seen[setting.passes]
         self._leave(step, seen.meeting)
-        feed, speed = setting.feed / given.feed, setting.speed / given.speed
-        timed = self._timed(step, seen, feed=feed, speed=speed)
+        timed = self._timed(step, seen, setting)
         passes, depth = estimate.programmed.passes, estimate.programmed.depth
         return replace(timed, programmed=replace(timed.programmed, passes=passes, depth=depth))
 
@@ -245,22 +228,28 @@ class MeasuredCuts:
         with self.program.using(path.operation_ref):
             return run_of(path, known_at_pace, self.machine.spindle)
 
-    def _see(self, step: Workingstep, path: ToolPath, cut: Cut, *, passes: int) -> _Seen:
+    def _see(self, step: Workingstep, path: ToolPath, cut: Cut, *, passes: int) -> Seen:
         """Try a path in the stock that the workingstep finds."""
         run = self._run(path, Pace(technology=step.technology_ref))
         meeting = met_by(self.program, step, run, self._found)
         met = meeting.met
-        weighted, air = 0.0, 0.0
+        weighted, air, along, bent, slope = 0.0, 0.0, None, None, None
         if met is not None:
             # Levels of a mill are equal, however deep they were asked to be.
             is_equal = cut.kind is CutKind.MILLING and cut.is_depth_free
             depth = cut.total_depth / passes if is_equal else cut.programmed.depth
-            cut = self._engaged(step, cut, met, run, depth=depth)
+            along, slope = along_passes(run, met), down_ramps(cut, run, met, self.kienzle)
+            bent = bending(cut, along.stations, self.kienzle)
+            cut = self._engaged(step, cut, met, run, slope=slope, depth=depth)
+            cut = with_hardest(cut, along, self.kienzle, depth=depth, bent=bent)
             section, ratio = greatest_section(cut, depth=depth)
             weighted = weighted_volume(met, self.kienzle.m_c)
             weighted /= section * ratio**-self.kienzle.m_c
-            air = _air_share(run, met, follows(run, step.technology_ref))
-        self._seen[passes] = seen = _Seen(
+            air = _air_share(run, met, is_fed(run, step.technology_ref, cut))
+            if isinstance(self._found, TurningStock) and isinstance(meeting.change, Bar):
+                turned = turned_of(cut, met, run, self._found, meeting.change)
+                cut = replace(cut, turned=turned)
+        self._seen[passes] = seen = Seen(
             path=path,
             run=run,
             cut=cut,
@@ -268,19 +257,34 @@ class MeasuredCuts:
             weighted=weighted,
             air=air,
             meeting=meeting,
+            along=along,
+            bent=bent,
+            slope=slope,
         )
         self._leave(step, meeting)
         return seen
 
-    def _engaged(self, step: Workingstep, cut: Cut, met: Met, run: Run, *, depth: float) -> Cut:
-        """The cut as it was met; turning is told where the programmed path is widest."""
+    def _engaged(
+        self,
+        step: Workingstep,
+        cut: Cut,
+        met: Met,
+        run: Run,
+        *,
+        slope: Slope | None,
+        depth: float,
+    ) -> Cut:
+        """The cut with its ways down; turning is told where the programmed path is widest."""
         cut = replace(cut, volume=met.volume)
         if cut.kind in {CutKind.TURNING, CutKind.GROOVING} and not cut.is_air:
             first = next(iter(self._seen.values()), None)
             widest = self._widest(met, run) if first is None else first.cut.diameter
             cut = self._at_widest(step, cut, widest)
-        plunge = plunge_of(cut, met, follows(run, step.technology_ref))
-        return with_hardest(replace(cut, plunge=plunge), met, self.kienzle, depth=depth)
+        way_in = way_in_of(cut, met, run, slope=slope, kienzle=self.kienzle, depth=depth)
+        if way_in is not None:
+            given = replace(cut.programmed, plunge_feed=plunge_feed_of(run, cut))
+            cut = replace(cut, way_in=way_in, programmed=given)
+        return replace(cut, plunge=plunge_of(cut, met, is_fed(run, step.technology_ref, cut)))
 
     def _widest(self, met: Met, run: Run) -> float:
         """Diameter of the bar where it is cut, mm: the same in however many passes."""
@@ -302,24 +306,42 @@ class MeasuredCuts:
         given = replace(cut.programmed, speed=speed, feed=feed)
         return replace(cut, diameter=diameter, programmed=given)
 
-    def _timed(self, step: Workingstep, seen: _Seen, *, feed: float, speed: float) -> Cut:
+    def _timed(self, step: Workingstep, seen: Seen, setting: Setting) -> Cut:
         """The cut of a path, run so much faster than programmed."""
-        if (feed, speed) not in seen.times:
-            seen.times[feed, speed] = self._run_through(step, seen, feed=feed, speed=speed)
-        return seen.times[feed, speed]
+        given, plunge = seen.cut.programmed, setting.plunge_feed
+        feed, speed = setting.feed / given.feed, setting.speed / given.speed
+        if feed == speed == 1.0 and plunge == given.plunge_feed:
+            plunge = None
+        if (feed, speed, plunge) not in seen.times:
+            per_turn = None if plunge is None else plunge * seen.cut.tool.teeth
+            pace = Pace(technology=step.technology_ref, feed=feed, speed=speed, plunge=per_turn)
+            seen.times[feed, speed, plunge] = self._run_through(step, seen, pace)
+        return seen.times[feed, speed, plunge]
 
-    def _run_through(self, step: Workingstep, seen: _Seen, *, feed: float, speed: float) -> Cut:
+    def _run_through(self, step: Workingstep, seen: Seen, pace: Pace) -> Cut:
         """The same, with the motion of the axes."""
         cut, given = seen.cut, seen.cut.programmed
         run = seen.run
-        if (feed, speed) != (1.0, 1.0):
-            pace = Pace(technology=step.technology_ref, feed=feed, speed=speed)
+        if pace != Pace(technology=step.technology_ref):
             run = self._run(seen.path, pace)
         seconds = run.segments.length / run.segments.speed
-        fed = float(seconds[follows(run, step.technology_ref)].sum())
+        fed = float(seconds[is_fed(run, step.technology_ref, cut)].sum())
         rest = max(0.0, duration(run, self.control, self.limits) - fed)
-        length = fed * given.feed * feed * cut.tool.teeth * given.speed * speed
+        per_second = given.feed * pace.feed * cut.tool.teeth * given.speed * pace.speed
+        length = fed * per_second
         known = not seen.meeting.why and length > 0.0
+        if seen.along is not None and seen.bent is not None:
+            # A spindle that follows the radius has other pieces at another speed.
+            is_turned = cut.kind in {CutKind.TURNING, CutKind.GROOVING}
+            ride = Ride(
+                run=seen.run if is_turned else run,
+                control=self.control,
+                limits=self.limits,
+                feed=per_second,
+                spindle=given.speed * (1.0 if is_turned else pace.speed),
+            )
+            cut = with_reached(cut, seen.along, seen.bent, ride, exponent=self.kienzle.m_c)
+            cut = self._with_ramp_reached(cut, seen, ride)
         return replace(
             cut,
             length=length / seen.passes,
@@ -329,6 +351,16 @@ class MeasuredCuts:
             load_share=seen.weighted / length if known else 1.0,
             air_length=seen.air * length / seen.passes,
         )
+
+    def _with_ramp_reached(self, cut: Cut, seen: Seen, ride: Ride) -> Cut:
+        """The cut with what the axes make of the loads down its ramps."""
+        ramp = None if cut.way_in is None else cut.way_in.ramp
+        slope = seen.slope
+        if slope is None or cut.way_in is None or ramp is None:
+            return cut
+        down = replace(ride, feed=float(ride.run.segments.speed[plunges(ride.run)][0]))
+        ramp = with_reached(ramp, slope.met, slope.bent, down, exponent=self.kienzle.m_c)
+        return replace(cut, way_in=replace(cut.way_in, ramp=ramp))
 
     def _warning(self, step: Workingstep, text: str) -> Finding:
         return self.program.finding(Severity.WARNING, text, step.operation_ref)

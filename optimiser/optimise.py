@@ -8,33 +8,42 @@ the advice stays, so that its time is that of the path that the file will give.
 Same inputs, same result: corrections of the cutting force come as an argument, by tool.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from math import isfinite
 
 from optimiser import workingstep as exact
-from optimiser.advice import Advice, Load, Plan, State, Status
+from optimiser.advice import Advice, Plan, State, Status
+from optimiser.asked_of_holding import holding_findings, with_holding
+from optimiser.centre_cutting import plunge_fault, plunge_findings
+from optimiser.conditions import Conditions, PermittedDeflection
 from optimiser.cut import Cut, CutKind
 from optimiser.errors import Infeasible, OptimisationError
+from optimiser.estimate_turning import mean_diameter
 from optimiser.formulate import Task, problem_of, state_of
 from optimiser.front import front_of
-from optimiser.limit import Limit
-from optimiser.limits import Conditions, roughness_load
-from optimiser.modes import Mode
+from optimiser.held_speed import why_thread_too_fast, why_too_fast
+from optimiser.holding import holding_load
+from optimiser.limits import is_bent
+from optimiser.modes import Free, Mode
 from optimiser.passes import Asked, best_of
 from optimiser.problem import Problem
+from optimiser.reasons import passed_limits, plunge_reason, reason_of
 from optimiser.requirement import required_roughness
-from optimiser.source import CutSource
+from optimiser.roughness import LAND_SHARE, roughness_load
+from optimiser.source import CutSource, WithWipers
+from optimiser.stability import estimate_texts, stability_of
+from optimiser.tolerance import permitted_deflection
 from simulator.edge_material import edge_material
 from simulator.errors import LibraryError
 from simulator.library import find_grade
 from simulator.spec import CuttingMaterial, Grade, Machine, MachineKind, MaterialMatch
 from stepnc_model.entities.milling import MillingTypeOperation
 from stepnc_model.entities.turning import TurningMachiningOperation
-from stepnc_model.errors import Finding, Severity
+from stepnc_model.errors import Finding, SchemaError, Severity
 from stepnc_model.program import Program, Workingstep
 from stepnc_model.technology import programmed
-from stepnc_model.tool import tool_of
+from stepnc_model.tool import Tool, tool_of
 
 DEFAULT_QUALITY = 3.2e-3
 """mm, Ra that QC keeps where neither user nor file asks for one: ISO 1302 general machining"""
@@ -74,6 +83,8 @@ def optimise(
     findings: list[Finding] = []
     advices = []
     cuts = task.source(program, machine, material.material)
+    if task.wipers:
+        cuts = WithWipers(cuts, task.wipers)
     last = max((step.index for step in program.workingsteps if selected(step)), default=-1)
 
     def do(step: Workingstep) -> tuple[Advice | None, list[Finding]]:
@@ -90,6 +101,8 @@ def optimise(
         progress()
         # Workingsteps that share a tool are told the same of it.
         findings += [finding for finding in found if finding not in findings]
+    findings += _estimates(program, advices)
+    findings += holding_findings(program, advices, machine)
     return Plan(
         program=program.name,
         mode=task.mode,
@@ -97,6 +110,7 @@ def optimise(
         material=material,
         advices=tuple(advices),
         findings=tuple(findings),
+        safety=task.safety,
     )
 
 
@@ -125,20 +139,32 @@ def advise(
     if conditions.is_synchronised or not _is_cut_with_feed(step):
         cuts.leave_out(step)
         reason = "the feed is bound to the pitch of the thread"
-        return replace(untouched, reason=reason), []
+        diameter = _thread_diameter(program, step, tool)
+        too_fast = why_thread_too_fast(
+            tool, conditions, machine, material.material, diameter=diameter
+        )
+        kept = _kept(untouched, reason, too_fast)
+        return kept, _too_fast(program, kept)
     elsewhere = _why_elsewhere(step, machine)
     if elsewhere:
         cuts.leave_out(step)
         return replace(untouched, status=Status.INFEASIBLE, reason=elsewhere), []
     cut, findings = cuts.cut(step)
     at, found = _conditions(program, step, cut, machine=machine, material=material, task=task)
-    findings += found
+    at, held = with_holding(at, program, step)
+    findings += found + held
     problem = problem_of(cut, at, task)
     before = state_of(cut, problem, at, problem.programmed)
     if not isfinite(before.time) or not isfinite(before.energy):
         raise ValueError(f"a time of {before.time:g} s: its numbers are beyond all machines")
     untouched = replace(
-        untouched, force_factor=at.force_factor, cut=cut, before=before, after=before
+        untouched,
+        force_factor=at.force_factor,
+        safety_factor=at.safety_factor,
+        cut=cut,
+        before=before,
+        after=before,
+        stability=stability_of(cut, at),
     )
     idle = _why_idle(cut)
     if idle:
@@ -148,7 +174,8 @@ def advise(
     advice = untouched
     if conditions.inhibition:
         reason = f"{conditions.inhibition}: nobody may touch this feed"
-        advice = replace(untouched, reason=reason)
+        advice = _kept(untouched, reason, why_too_fast(cut, at))
+        findings += _too_fast(program, advice)
     else:
         try:
             asked = Asked(step=step, at=at, task=task, cuts=cuts)
@@ -158,7 +185,50 @@ def advise(
             advice = replace(untouched, status=Status.INFEASIBLE, reason=reason, after=None)
         except OptimisationError as error:
             raise OptimisationError(f"{program.label(step.operation_ref)}: {error}") from error
-    return advice, findings + _passed_limits(program, advice)
+    may, used = task.allow_plunge, advice.cut
+    findings += plunge_findings(program, step, used, at, is_allowed=may)
+    state = advice.after or before
+    load = holding_load(used or cut, at, state.setting)
+    fault = plunge_fault(used, at, is_allowed=may)
+    advice = replace(advice, plunge_fault=fault, holding_load=load)
+    return advice, findings + passed_limits(program, advice)
+
+
+def _thread_diameter(program: Program, step: Workingstep, tool: Tool) -> float:
+    """Diameter of a thread in mm; 0 where its feature does not tell."""
+    if not isinstance(step.operation, TurningMachiningOperation):
+        return tool.diameter
+    try:
+        return mean_diameter(program, step)
+    except SchemaError:
+        return 0.0
+
+
+def _kept(untouched: Advice, reason: str, too_fast: str) -> Advice:
+    """A workingstep that nobody may touch, with what its speed passes."""
+    told = f"{reason}, and {too_fast}" if too_fast else reason
+    return replace(untouched, reason=told, speed_fault=too_fast)
+
+
+def _too_fast(program: Program, advice: Advice) -> list[Finding]:
+    """That a speed passes its bound and nobody may touch it."""
+    if not advice.speed_fault:
+        return []
+    text = f"nobody may touch the speed, and {advice.speed_fault}"
+    return [program.finding(Severity.ERROR, text, advice.workingstep.technology_ref)]
+
+
+def _estimates(program: Program, advices: Sequence[Advice]) -> list[Finding]:
+    """What is estimated of the stability of tools without measured modes, once a tool."""
+    told = [
+        (advice.tool, advice.stability, state.setting.depth)
+        for advice in advices
+        if advice.stability is not None and (state := advice.after or advice.before) is not None
+    ]
+    refs = {advice.tool.id: advice.workingstep.tool_ref for advice in advices}
+    return [
+        program.finding(Severity.NOTE, text, refs[tool]) for tool, text in estimate_texts(told)
+    ]
 
 
 def _why_elsewhere(step: Workingstep, machine: Machine) -> str:
@@ -191,31 +261,41 @@ def _solved(untouched: Advice, cut: Cut, problem: Problem, asked: Asked) -> Advi
     told = best_of(cut, problem, asked)
     solution = told.optimum.solution
     after = state_of(told.cut, told.problem, at, solution.setting)
-    saving = 0.0
+    saving = cost_of_safety = free_speed = 0.0
     if task.tool_change == 0.0:
+        free_speed = _saving_of_free_speed(told.cut, at, task, solution)
         saving = exact.saving_of_one_more(told.problem, task.mode, solution)
+        cost_of_safety = exact.cost_of_safety(told.problem, task.mode, solution)
     return replace(
         untouched,
         cut=told.cut,
+        stability=stability_of(told.cut, at),
         status=Status.ADVISED,
         reason=reason_of(after, solution.holding),
+        plunge_reason=plunge_reason(after),
         after=after,
         active=solution.active,
         active_words=solution.holding.words,
         saving_of_one_more=saving,
+        cost_of_safety=cost_of_safety,
+        saving_of_free_speed=free_speed,
         deepest_first_time=solution.deepest_first_time,
         prices=told.optimum.prices,
         front=front_of(told.problem, told.cut, at) if task.front else (),
     )
 
 
-def reason_of(state: State, limit: Limit) -> str:
-    """Sentence that names the limit that holds the feed."""
-    load = next(load for load in state.loads if load.limit is limit)
-    return (
-        f"{limit.words} {load.value * limit.scale:.4g} {limit.unit} reaches its bound of "
-        f"{load.bound * limit.scale:.4g} {limit.unit}"
-    )
+def _saving_of_free_speed(
+    cut: Cut, at: Conditions, task: Task, solution: exact.Solution
+) -> float:
+    """Seconds that a free spindle speed would save, on the same path."""
+    if Free.SPEED in task.free:
+        return 0.0
+    free = problem_of(cut, at, replace(task, free=task.free | {Free.SPEED}))
+    try:
+        return max(0.0, solution.time - exact.solve(free, task.mode).time)
+    except Infeasible:
+        return 0.0
 
 
 def _is_cut_with_feed(step: Workingstep) -> bool:
@@ -232,7 +312,7 @@ def _conditions(
     material: MaterialMatch,
     task: Task,
 ) -> tuple[Conditions, list[Finding]]:
-    """Grade, cutting material and roughness of a cut."""
+    """Grade, cutting material, roughness and permitted deflection of a cut."""
     findings: list[Finding] = []
     cutting_material = edge_material(cut.tool.edge_material)
     if cutting_material is None:
@@ -251,6 +331,10 @@ def _conditions(
         text = f"{step.operation_type} on machine '{machine.name}', a {machine.kind.value}"
         findings.append(program.finding(Severity.WARNING, text, step.operation_ref))
     asked = _roughness(program, step, cut, task, findings)
+    deflection = PermittedDeflection()
+    if grade is not None and is_bent(cut) and not machine.only_stated_limits:
+        deflection, found = permitted_deflection(program, step)
+        findings += found
     factor = task.force_factor(cut.tool.id)
     if factor != 1.0:
         text = f"k_c × {factor:.4g} for tool '{cut.tool.id}'"
@@ -262,7 +346,10 @@ def _conditions(
             cutting_material=cutting_material,
             grade=grade,
             roughness=asked,
+            deflection=deflection,
             force_factor=factor,
+            centre_cutting=task.centre_cutting.get(cut.tool.id, cut.tool.centre_cutting),
+            safety_factor=task.safety_factor(cut.tool.id, machine, work),
         ),
         findings,
     )
@@ -287,33 +374,11 @@ def _roughness(
         text = f"no roughness is asked for: QC keeps Ra {DEFAULT_QUALITY * 1e3:g} µm"
         findings.append(program.finding(Severity.NOTE, text, step.operation_ref))
     if asked is not None and roughness_load(cut) is None:
-        text = (
-            f"Ra {asked * 1e3:g} µm is asked for, but the feed does not describe this surface"
+        text = f"Ra {asked * 1e3:g} µm is asked for, but " + (
+            f"the parallel land of {cut.parallel_land:g} mm that inserts usually have makes "
+            f"this surface: the feed keeps {100.0 * LAND_SHARE:g} % of it in a revolution"
+            if cut.parallel_land
+            else "the feed does not describe this surface"
         )
         findings.append(program.finding(Severity.NOTE, text, step.operation_ref))
     return asked
-
-
-def _passed_limits(program: Program, advice: Advice) -> list[Finding]:
-    """Limits that the programmed setting passes, and the advised one too: a held speed's."""
-    if advice.before is None:
-        return []
-    still = set()
-    if advice.status is Status.ADVISED and advice.after is not None:
-        still = {
-            load.limit.name for load in advice.after.loads if _is_passed(load, advice.after)
-        }
-    found = {}
-    for load in advice.before.loads:
-        if _is_passed(load, advice.before):
-            name = load.limit.name
-            when = "as programmed and as advised" if name in still else "as programmed"
-            text = f"{when}: {exact.told(load.limit, load.value, advice.before.setting.speed)}"
-            ref = advice.workingstep.technology_ref
-            found[name] = program.finding(Severity.WARNING, text, ref)
-    return list(found.values())
-
-
-def _is_passed(load: Load, state: State) -> bool:
-    at = state.setting
-    return not load.limit.holds(at.feed, at.depth, at.speed)

@@ -8,17 +8,22 @@ from dataclasses import dataclass, replace
 from math import inf
 
 from optimiser import workingstep as exact
+from optimiser.conditions import Conditions
 from optimiser.cut import Cut
 from optimiser.errors import Infeasible
 from optimiser.formulate import Task, problem_of
 from optimiser.limit import LimitName
-from optimiser.limits import Conditions
-from optimiser.problem import Problem
+from optimiser.modes import Free
+from optimiser.plunge_feed import with_plunge_feed
+from optimiser.problem import Problem, Setting
 from optimiser.source import CutSource
 from stepnc_model.program import Workingstep
 
 ROUNDS = 4
 """greatest number of paths tried for the depth of one workingstep"""
+
+UNTIL_FEASIBLE = 10
+"""the same while none keeps its limits: stock that is left above makes passes deeper"""
 
 MANY = 100
 """passes; where more are programmed, so many more: the first number beyond that keeps the
@@ -63,14 +68,16 @@ def best_of(cut: Cut, problem: Problem, asked: Asked) -> Told:
     tried: set[int] = set()
     given = problem.programmed.passes
     passes = given
-    while passes not in tried and len(tried) < ROUNDS:
+    last: Infeasible | None = None
+    while passes not in tried and len(tried) < (ROUNDS if told else UNTIL_FEASIBLE):
         tried.add(passes)
         try:
             told[passes] = _told(cut, problem, passes, asked)
             problem = told[passes].problem
-        except Infeasible:
+        except Infeasible as conflict:
             if problem.passes[0] == problem.passes[1]:
                 raise
+            last = conflict
         if told and passes > max(MANY, given):
             break
         try:
@@ -85,7 +92,7 @@ def best_of(cut: Cut, problem: Problem, asked: Asked) -> Told:
         passes = proposal.passes
     best = min(told.values(), key=lambda each: _cost(each, asked.task), default=None)
     if best is None:
-        raise exact.conflict(problem)
+        raise last or exact.conflict(problem)
     # What comes next finds the stock as this path leaves it.
     asked.cuts.at(asked.step, best.cut, best.optimum.solution.setting)
     return best
@@ -103,12 +110,21 @@ def _told(cut: Cut, problem: Problem, passes: int, asked: Asked) -> Told:
     cut = asked.cuts.at(step, cut, replace(given, passes=passes, depth=depth))
     optimum = _with_passes(problem_of(cut, asked.at, task), passes, task)
     setting = optimum.solution.setting
-    cut = asked.cuts.at(step, cut, setting)
+    plunging = _with_plunge(cut, setting, asked)
+    cut = asked.cuts.at(step, cut, plunging)
     problem = problem_of(cut, asked.at, task)
     again = optimum if task.tool_change else _with_passes(problem, passes, task)
     if task.tool_change or again.solution.setting != setting:
         again = replace(optimum, solution=exact.settled(problem, setting))
+    again = replace(again, solution=replace(again.solution, setting=plunging))
     return Told(cut=cut, problem=problem, optimum=again)
+
+
+def _with_plunge(cut: Cut, setting: Setting, asked: Asked) -> Setting:
+    """The setting with the best plunge feed, where feeds are free."""
+    if Free.FEED not in asked.task.free:
+        return replace(setting, plunge_feed=cut.programmed.plunge_feed)
+    return with_plunge_feed(cut, asked.at, setting)
 
 
 def _with_passes(problem: Problem, passes: int, task: Task) -> Optimum:
@@ -119,7 +135,9 @@ def _with_passes(problem: Problem, passes: int, task: Task) -> Optimum:
         return free
     if passes != given.passes:
         given = replace(given, passes=passes, depth=problem.depth_at(passes))
-    return _optimum(replace(problem, passes=(passes, passes), programmed=given), task)
+    why = f"these are {passes} passes along their path"
+    held = replace(problem, passes=(passes, passes), programmed=given, why_held=why)
+    return _optimum(held, task)
 
 
 def _optimum(problem: Problem, task: Task) -> Optimum:

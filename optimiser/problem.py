@@ -4,13 +4,18 @@ Choose the feed per tooth f, the integer number of passes k (depth of one pass a
 when it is free, the spindle speed n. Units: mm, s, W, J, rev/s.
 """
 
-from dataclasses import dataclass
-from math import ceil
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import ceil, inf
 
-from optimiser.limit import ROUNDING, Limit, LimitName, Monomial
+from optimiser.limit import ROUNDING, Limit, Monomial
 
 DIGITS = 12
 """significant digits of a depth"""
+
+INSIDE = 1e-6
+"""share by which a range of stable speeds is entered: a speed in a file has its last digit"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -24,6 +29,9 @@ class Setting:
     passes: int
     speed: float
     """rev/s"""
+    plunge_feed: float | None = None
+    """mm per tooth on the way down into the material; None: there is none of its own. No cost
+    and no limit of the problem knows it: it is the best for the speed"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -92,6 +100,8 @@ class Problem:
     """ends of the stretches of the spindle's curve that may be used, ascending, rev/s; a
     single value when the speed is not free"""
     programmed: Setting
+    why_held: str = "the depth is not free"
+    """why there is no other number of passes, where there is none"""
     stretches: tuple[tuple[Limit, ...], ...] = ((),)
     """limits that hold on one stretch of the curve only, one tuple for each stretch"""
 
@@ -104,14 +114,49 @@ class Problem:
             return self.programmed.depth
         return float(f"{self.total_depth / passes:.{DIGITS}g}")
 
+    @property
+    def curved(self) -> Limit | None:
+        """The limit of the depth whose bound is a curve of the speed."""
+        return next((limit for limit in self.limits if limit.curve is not None), None)
+
+    @property
+    def is_branched(self) -> bool:
+        """Whether the speeds that a depth may have are several ranges."""
+        return self.curved is not None and len(self.speeds) > 1
+
+    def parts(self, depth: float) -> Iterator["Problem"]:
+        """The same problem on each range of speeds that may be used at a depth.
+
+        A range lies within one stretch of the spindle's curve, and within one lobe where the
+        depth of a pass is bounded by a curve of the speed: that bound is kept in all of it.
+        A single speed has no range.
+        """
+        curved = self.curved
+        for (low, high), limits in zip(pairwise(self.speeds), self.stretches, strict=False):
+            ranges: tuple[tuple[float, float], ...] = ((low, high),)
+            if curved is not None and curved.curve is not None:
+                load = curved.load.value(1.0, depth, 1.0) / curved.bound
+                ranges = tuple(curved.curve.allowing(load, low, high))
+            for slow, fast in ranges:
+                inset = (
+                    slow if slow == low else slow * (1.0 + INSIDE),
+                    fast if fast == high else fast * (1.0 - INSIDE),
+                )
+                if inset[0] < inset[1]:
+                    yield replace(self, speeds=inset, stretches=(limits,))
+
     def deepest(self) -> int:
         """Least number of passes that the depth limits allow."""
         depth = min(
-            (
-                (limit.bound / limit.load.coefficient) ** (1.0 / limit.load.depth_exponent)
-                for limit in self.limits
-                if limit.name is LimitName.AXIAL_DEPTH
-            ),
+            (self._greatest_depth(limit) for limit in self.limits if limit.is_of_depth),
             default=self.total_depth,
         )
+        if depth == inf:
+            return self.passes[0]
         return max(self.passes[0], ceil(self.total_depth / depth - ROUNDING))
+
+    def _greatest_depth(self, limit: Limit) -> float:
+        """Depth that a limit allows at its best speed, mm."""
+        if limit.curve is None or len(self.speeds) == 1:
+            return limit.greatest_depth(self.speeds[0])
+        return limit.greatest_depth(limit.curve.peak(self.speeds[0], self.speeds[-1]))

@@ -13,14 +13,16 @@ Eng. 8 (2007) 67–127, §§ 2 and 3.3. Only home of cvxpy.
 import warnings
 from dataclasses import dataclass, replace
 from functools import cache
+from math import inf
 
 import cvxpy as cp
 
 from optimiser.errors import Infeasible, OptimisationError, SolverFailed
+from optimiser.least_cost import least_cost
 from optimiser.limit import Limit, LimitName, Monomial, Sense
 from optimiser.modes import Mode
 from optimiser.problem import Problem, Setting
-from optimiser.workingstep import TIE, conflict, limits_at
+from optimiser.workingstep import TIE, conflict, is_posynomial, limits_at
 
 ROWS = (8, 24)
 """limits that a program can hold: the less it holds, the faster it is set and read"""
@@ -188,7 +190,7 @@ class GeometricProgram:
         for row, limit in zip(self._rows, limits, strict=False):
             load, sign = limit.load, 1.0 if limit.sense is Sense.AT_MOST else -1.0
             exponent = load.speed_exponent - limit.bound_speed_exponent
-            scale = depth**load.depth_exponent * unit.speed**exponent / limit.bound
+            scale = load.depth_factor(depth) * unit.speed**exponent / limit.bound
             chip = unit.feed**load.feed_exponent
             if sign < 0.0 and load.offset:
                 raise OptimisationError(f"{limit.name.words} with an offset is no posynomial")
@@ -257,8 +259,8 @@ def _rows_of(problem: Problem, stretch: int) -> list[Limit]:
 def solve(problem: Problem, mode: Mode) -> Optimum:
     """Optimum over all numbers of passes and all stretches of the spindle's curve.
 
-    The cost is convex in the logarithm of the number of passes, so the search ends at the
-    first rise.
+    Where the cost is convex in the logarithm of the number of passes the search ends at the
+    first rise, else where no more passes can cost less.
 
     Parameters
     ----------
@@ -275,12 +277,17 @@ def solve(problem: Problem, mode: Mode) -> Optimum:
         When no number of passes keeps all limits.
     """
     best: Optimum | None = None
+    is_convex = is_posynomial(problem) and not problem.is_branched
+    bound = least_cost(problem, mode)
     for passes in range(problem.deepest(), problem.passes[1] + 1):
+        worse = inf if best is None else best.cost * (1.0 + 100.0 * TIE)
+        if not is_convex and bound(passes) > worse:
+            break
         depth = problem.depth_at(passes)
         found = _best_stretch(problem, mode, passes=passes, depth=depth)
         if found is None:
             continue
-        if best is not None and found.cost > best.cost * (1.0 + 100.0 * TIE):
+        if is_convex and found.cost > worse:
             break
         if best is None or found.cost < best.cost:
             best = found
@@ -304,12 +311,16 @@ def snapped(problem: Problem, optimum: Optimum) -> Setting:
 def _best_stretch(problem: Problem, mode: Mode, *, passes: int, depth: float) -> Optimum | None:
     """Best of the stretches of the spindle's curve, or None when none is feasible."""
     best: Optimum | None = None
-    for stretch in range(len(problem.stretches)):
+    parts = [problem] if len(problem.speeds) == 1 else problem.parts(depth)
+    for part in parts:
         try:
-            compiled = program_for(problem, stretch)
-            found = compiled.solve(problem, mode, passes=passes, depth=depth, stretch=stretch)
+            compiled = program_for(part, 0)
+            found = compiled.solve(part, mode, passes=passes, depth=depth)
         except Infeasible:
             continue
+        low, high = part.speeds[0], part.speeds[-1]
+        at = found.setting
+        found = replace(found, setting=replace(at, speed=min(max(at.speed, low), high)))
         if best is None or found.cost < best.cost:
             best = found
     return best
@@ -329,7 +340,7 @@ def _cost_terms(
             (changes, wear.feed_exponent - 1.0, wear.speed_exponent - 1.0),
         ]
     cut = cost.motor_power
-    scale = stroke * depth**cut.depth_exponent
+    scale = stroke * cut.depth_factor(depth)
     return [
         (stroke * cost.standby_power, -1.0, -1.0),
         (stroke * cost.standby_power_per_speed, -1.0, 0.0),

@@ -4,14 +4,12 @@ ISO 14649-10 ``surface_texture_parameter`` on ``machined_surface``. The standard
 to the reader; profiles are told in micrometres everywhere, so the value is read as µm.
 """
 
+from simulator.physics.surface import RZ_PER_RA
 from stepnc_model.entities.enums import BottomOrSide
 from stepnc_model.entities.milling import PlaneMilling, SideMilling
 from stepnc_model.entities.surfaces import SurfaceTextureParameter
 from stepnc_model.program import Program, Workingstep
 from stepnc_model.units import mm_from_um
-
-RZ_PER_RA = 4.0
-"""customary ratio; see :mod:`simulator.physics.surface`"""
 
 
 def required_roughness(program: Program, step: Workingstep) -> float | None:

@@ -1,9 +1,10 @@
 """Where the optimiser takes its cuts from: the real tool paths, or the features."""
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from typing import Protocol
 
-from optimiser.cut import Cut
+from optimiser.cut import Cut, CutKind
 from optimiser.estimated import Estimates
 from optimiser.problem import Setting
 from optimiser.side_by_side import Result
@@ -38,13 +39,44 @@ Source = Callable[[Program, Machine, Material], CutSource]
 """what makes the source of a program's cuts"""
 
 
+class WithWipers:
+    """A source of cuts, some of whose turning inserts have a wiper.
+
+    Parameters
+    ----------
+    cuts : CutSource
+    wipers : set of str
+        Ids of the tools.
+    """
+
+    def __init__(self, cuts: CutSource, wipers: frozenset[str]) -> None:
+        self.leave_out = cuts.leave_out
+        self.each = cuts.each
+        self._cuts = cuts
+        self._wipers = wipers
+
+    def cut(self, step: Workingstep) -> tuple[Cut, list[Finding]]:
+        """The cut of a workingstep as programmed, and what was assumed."""
+        cut, findings = self._cuts.cut(step)
+        return self._with_wiper(cut), findings
+
+    def at(self, step: Workingstep, cut: Cut, setting: Setting) -> Cut:
+        """The same cut with length and time as they are at another setting."""
+        return self._with_wiper(self._cuts.at(step, cut, setting))
+
+    def _with_wiper(self, cut: Cut) -> Cut:
+        if cut.kind is not CutKind.TURNING or cut.tool.id not in self._wipers:
+            return cut
+        return replace(cut, tool=replace(cut.tool, has_wiper=True))
+
+
 def along_paths(program: Program, machine: Machine, material: Material) -> CutSource:
     """Cuts as the real tool path makes them in the stock that is left, timed by the machine."""
     from optimiser.measured import MeasuredCuts  # noqa: PLC0415 (numpy)
 
-    return MeasuredCuts(program, machine, material.kienzle)
+    return MeasuredCuts(program, machine, material)
 
 
-def from_features(program: Program, _machine: Machine, _material: Material) -> CutSource:
+def from_features(program: Program, machine: Machine, material: Material) -> CutSource:
     """Cuts estimated from features: quick, and blind to what the path really does."""
-    return Estimates(program)
+    return Estimates(program, machine, material)

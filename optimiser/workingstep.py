@@ -5,9 +5,12 @@ so at a given speed the best feed is its smallest cap: a closed form. When the s
 the best point of k is a vertex of the feasible polygon in (ln f, ln n), since along every edge
 both costs fall with the feed; all vertices are tried.
 
-The cost of the best point is a convex function of ln k (it is the value of a geometric
-program), so trying k = k_min, k_min + 1, … may stop at the first rise: exact, no rounding of a
-relaxed answer. Ties keep what was programmed.
+Where every load is a power of the depth, the cost of the best point is a convex function of
+ln k (it is the value of a geometric program), so trying k = k_min, k_min + 1, … may stop at the
+first rise. Along a helix loads are curves of the depth, and where lobes bound the depth its
+speeds are a union of ranges, the vertices of each of which are tried: then all k are tried up
+to the one at which limits that know no depth, and the ways between passes, cost more than the
+best so far. All of it is exact, no rounding of a relaxed answer. Ties keep what was programmed.
 """
 
 from collections.abc import Callable, Iterator
@@ -17,9 +20,11 @@ from math import exp, inf, log
 
 from optimiser.caps import Caps, caps_at
 from optimiser.errors import Infeasible, OptimisationError
+from optimiser.least_cost import least_cost
 from optimiser.limit import ROUNDING, Limit, LimitName, Sense
 from optimiser.modes import Mode
 from optimiser.problem import Problem, Setting
+from stepnc_model.units import rpm_from_rev_s
 
 TIE = 1e-9
 """relative difference of cost below which two settings are equally good"""
@@ -71,19 +76,24 @@ def solve(problem: Problem, mode: Mode) -> Solution:
     best: Setting | None = None
     first: Setting | None = None
     least = inf
-    for setting in _best_by_passes(problem, cost):
+    is_convex = is_posynomial(problem) and not problem.is_branched
+    best_in, bound = _search(problem, cost), least_cost(problem, mode)
+    for passes in range(problem.deepest(), problem.passes[1] + 1):
+        if not is_convex and bound(passes) > least * (1.0 + TIE):
+            break
+        setting = best_in(passes)
+        if setting is None:
+            continue
         first = first or setting
         found = cost(setting)
-        if found > least * (1.0 + TIE):
+        if is_convex and found > least * (1.0 + TIE):
             break
         if found < least * (1.0 - TIE):
             best, least = setting, found
     given = problem.programmed
     kept = None
     if _may_keep(problem):
-        kept = _best_at(
-            problem, given.passes, given.depth, cost=cost, caps=_fixed_caps(problem)
-        )
+        kept = best_in(given.passes, given.depth)
     if kept is not None and (best is None or cost(kept) <= least * (1.0 + TIE)):
         best = kept
     if best is None:
@@ -97,11 +107,14 @@ def cost_function(problem: Problem, mode: Mode) -> Callable[[Setting], float]:
 
 
 def limits_at(problem: Problem, speed: float) -> tuple[Limit, ...]:
-    """All limits that apply at one spindle speed."""
+    """All limits that apply at one spindle speed; a curve may begin above it."""
+    always = problem.limits
+    if problem.curved is not None:
+        always = tuple(limit for limit in always if limit.bound_at(speed) < inf)
     for index, limits in enumerate(problem.stretches):
         if index + 1 >= len(problem.speeds) or speed <= problem.speeds[index + 1]:
-            return problem.limits + limits
-    return problem.limits + problem.stretches[-1]
+            return always + limits
+    return always + problem.stretches[-1]
 
 
 def conflict(problem: Problem) -> Infeasible:
@@ -112,11 +125,12 @@ def conflict(problem: Problem) -> Infeasible:
     caps = [limit for limit in limits if limit.sense is Sense.AT_MOST]
     floors = [limit for limit in limits if limit.sense is Sense.AT_LEAST]
     for limit in caps:
-        if limit.name is LimitName.AXIAL_DEPTH and not limit.holds(1.0, depth, speed):
+        if limit.is_of_depth and not limit.holds(1.0, depth, speed):
             is_fixed = problem.passes[0] == problem.passes[1]
-            why = "the depth is not free" if is_fixed else f"there are {passes} passes at most"
+            why = problem.why_held if is_fixed else f"there are {passes} passes at most"
+            load = limit.load.value(1.0, depth, speed)
             return Infeasible(
-                f"{told(limit, limit.load.value(1.0, depth, speed), speed)}, and {why}",
+                f"{told(limit, load, speed)}, and {why}{_elsewhere(limit, load)}",
                 limits=(limit.name,),
             )
     cap = min(caps, key=lambda limit: limit.feed_at_bound(depth, speed))
@@ -133,21 +147,52 @@ def conflict(problem: Problem) -> Infeasible:
         )
     return Infeasible(
         f"{cap.words} allows a feed of at most {highest:.4g} mm/tooth"
-        f" ({cap.sense} {cap.bound_at(speed) * cap.scale:.4g} {cap.unit}),"
+        f" ({cap.sense} {cap.told_bound(speed)}{_with_safety(cap)}),"
         f" {floor.words} needs at least {lowest:.4g} mm/tooth"
-        f" ({floor.sense} {floor.bound_at(speed) * floor.scale:.4g} {floor.unit}),"
+        f" ({floor.sense} {floor.told_bound(speed)}),"
         f" at a depth of {depth:.4g} mm in {passes} passes",
         limits=(cap.name, floor.name),
     )
 
 
+def _with_safety(limit: Limit) -> str:
+    """What is added for the spread of k_c; empty for nothing."""
+    return f", {limit.safety_words}" if limit.safety_words else ""
+
+
+def _elsewhere(limit: Limit, load: float) -> str:
+    """At which speed a bound that is a curve of it allows more; empty for another bound."""
+    curve = limit.curve
+    if curve is None:
+        return ""
+    low, high = curve.speeds[0], curve.speeds[-1]
+    wide = max(
+        curve.allowing(load / limit.bound, low, high),
+        key=lambda found: found[1] - found[0],
+        default=None,
+    )
+    if wide is not None:
+        slow, fast = (rpm_from_rev_s(speed) for speed in wide)
+        return (
+            f"; {load * limit.scale:.4g} {limit.unit} would be stable "
+            f"from {slow:.0f} to {fast:.0f} rpm"
+        )
+    best = curve.peak(low, high)
+    return (
+        f"; {limit.bound_at(best) * limit.scale:.4g} {limit.unit} would be stable "
+        f"at {rpm_from_rev_s(best):.0f} rpm"
+    )
+
+
 def told(limit: Limit, load: float, speed: float) -> str:
     """One limit with its numbers: 'axial depth 6 mm exceeds 5 mm'."""
+    if limit.curve is not None:
+        return (
+            f"{limit.words} allows {limit.told_bound(speed)} "
+            f"at {rpm_from_rev_s(speed):.0f} rpm, not {limit.told(load)}"
+        )
     verb = "exceeds" if limit.sense is Sense.AT_MOST else "is below"
-    return (
-        f"{limit.words} {load * limit.scale:.4g} {limit.unit} {verb} "
-        f"{limit.bound_at(speed) * limit.scale:.4g} {limit.unit}"
-    )
+    return f"{limit.words} {limit.told(load)} {verb} {limit.told_bound(speed)}"
 
 
 def widened(problem: Problem, name: LimitName, *, by_factor: float) -> Problem:
@@ -165,11 +210,29 @@ def widened(problem: Problem, name: LimitName, *, by_factor: float) -> Problem:
     )
 
 
+def without_safety(problem: Problem) -> Problem:
+    """The same problem with nominal loads at their bounds."""
+    return replace(
+        problem,
+        limits=tuple(limit.without_safety for limit in problem.limits),
+        stretches=tuple(
+            tuple(limit.without_safety for limit in limits) for limits in problem.stretches
+        ),
+    )
+
+
+def cost_of_safety(problem: Problem, mode: Mode, solution: Solution) -> float:
+    """Seconds that the safety factors of the limits cost; 0 when none holds the feed."""
+    if all(limit.safety_factor == 1.0 for limit in solution.limits):
+        return 0.0
+    return max(0.0, solution.time - solve(without_safety(problem), mode).time)
+
+
 def saving_of_one_more(problem: Problem, mode: Mode, solution: Solution) -> float:
     """Seconds saved if the bound of the active limit were one step wider; 0 when none."""
     speed = solution.setting.speed
     active = solution.holding
-    factor = 1.0 + active.step / (active.scale * active.bound_at(speed))
+    factor = 1.0 + active.step / (active.scale * active.full_bound_at(speed))
     wider = widened(problem, active.name, by_factor=factor)
     return max(0.0, solution.time - solve(wider, mode).time)
 
@@ -180,45 +243,62 @@ def _may_keep(problem: Problem) -> bool:
     return all(
         limit.holds(at.feed, at.depth, at.speed)
         for limit in problem.limits
-        if limit.name is LimitName.AXIAL_DEPTH
+        if limit.is_of_depth and limit.curve is None
     )
 
 
-def _best_by_passes(problem: Problem, cost: Callable[[Setting], float]) -> Iterator[Setting]:
-    """Best setting of each feasible number of passes, fewest first."""
+def is_posynomial(problem: Problem) -> bool:
+    """Whether every load is a power of the depth: then the cost is convex in ln k."""
+    each = (problem.limits, *problem.stretches)
+    return all(limit.load.curve is None for limits in each for limit in limits)
+
+
+def at_depth(problem: Problem, depth: float) -> Problem:
+    """The same problem with its curves of the depth as numbers: each is asked once."""
+    if is_posynomial(problem):
+        return problem
+
+    def numbers(limits: tuple[Limit, ...]) -> tuple[Limit, ...]:
+        return tuple(
+            limit if limit.load.curve is None else limit.at_depth(depth) for limit in limits
+        )
+
+    return replace(
+        problem,
+        limits=numbers(problem.limits),
+        stretches=tuple(map(numbers, problem.stretches)),
+    )
+
+
+def _search(
+    problem: Problem, cost: Callable[[Setting], float]
+) -> Callable[..., Setting | None]:
+    """What finds the best setting of a number of passes, None where none keeps all limits."""
     caps = _fixed_caps(problem)
-    for passes in range(problem.deepest(), problem.passes[1] + 1):
-        depth = problem.depth_at(passes)
-        setting = _best_at(problem, passes, depth, cost=cost, caps=caps)
-        if setting is not None:
-            yield setting
+
+    def best(passes: int, depth: float | None = None) -> Setting | None:
+        depth = problem.depth_at(passes) if depth is None else depth
+        if caps is not None:
+            return _setting(caps, passes, depth)
+        flat = at_depth(problem, depth)
+        found = [
+            setting
+            for speed in _speed_candidates(flat, depth)
+            if (setting := _setting(_caps(flat, speed), passes, depth)) is not None
+        ]
+        return min(found, key=cost, default=None)
+
+    return best
 
 
 def _fixed_caps(problem: Problem) -> Caps | None:
     """Caps at the only speed there is, or None when the speed may be chosen."""
-    if len(problem.speeds) > 1:
-        return None
-    speed = problem.speeds[0]
+    return _caps(problem, problem.speeds[0]) if len(problem.speeds) == 1 else None
+
+
+def _caps(problem: Problem, speed: float) -> Caps:
+    """Caps of all limits at one speed."""
     return caps_at(limits_at(problem, speed), speed)
-
-
-def _best_at(
-    problem: Problem,
-    passes: int,
-    depth: float,
-    *,
-    cost: Callable[[Setting], float],
-    caps: Caps | None,
-) -> Setting | None:
-    """Best feed and speed at one depth, or None when no feed keeps all limits."""
-    if caps is not None:
-        return _setting(caps, passes, depth)
-    best: Setting | None = None
-    for speed in _speed_candidates(problem, depth):
-        setting = _setting(caps_at(limits_at(problem, speed), speed), passes, depth)
-        if setting is not None and (best is None or cost(setting) < cost(best)):
-            best = setting
-    return best
 
 
 def _setting(caps: Caps, passes: int, depth: float) -> Setting | None:
@@ -235,16 +315,12 @@ def _setting(caps: Caps, passes: int, depth: float) -> Setting | None:
 
 
 def _speed_candidates(problem: Problem, depth: float) -> Iterator[float]:
-    """Spindle speeds at which the best point of this depth can lie."""
-    if len(problem.speeds) == 1:
-        yield problem.speeds[0]
-        return
-    for low, high in zip(problem.speeds, problem.speeds[1:], strict=False):
+    """Spindle speeds, of several that may be chosen, at which the best point can lie."""
+    for part in problem.parts(depth):
+        low, high = part.speeds
         yield low
         yield high
-        bounding = [
-            limit for limit in limits_at(problem, high) if limit.load.feed_exponent > 0.0
-        ]
+        bounding = [limit for limit in limits_at(part, high) if limit.load.feed_exponent > 0.0]
         for first, second in combinations(bounding, 2):
             crossing = _crossing(first, second, depth=depth, between=(low, high))
             if crossing is not None:

@@ -1,10 +1,13 @@
 """Machine and material: those that the user names, or those that suit a program."""
 
+from dataclasses import replace
 from pathlib import Path
 
+from simulator.errors import SimulationError
+from simulator.holding_file import read_holding_file
 from simulator.library import load_machine, load_material, machine_names, material_names
 from simulator.matching import match_material
-from simulator.spec import Certainty, Machine, Material, MaterialMatch
+from simulator.spec import Certainty, Machine, MachineKind, Material, MaterialMatch
 from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import StepNcError
 from stepnc_model.program import Program
@@ -36,6 +39,13 @@ def machine_for(name: str, program: Program) -> Machine:
     return load_machine(DEFAULT_LATHE if is_turning else DEFAULT_MILL)
 
 
+def with_holding(machine: Machine, holding: Path | None) -> Machine:
+    """A machine with the work-holding of a file; as it is where there is none."""
+    if holding is None:
+        return machine
+    return replace(machine, holdings=read_holding_file(holding, machine.kind))
+
+
 def material_for(name: str, program: Program) -> MaterialMatch:
     """The material named, or the one the file names."""
     if name:
@@ -58,3 +68,18 @@ def load_material_named(name: str) -> MaterialMatch:
             reason=f"'{name}' as asked for",
         )
     return match_material((name,))
+
+
+def require_axes(machine: Machine) -> None:
+    """Refuse to run a machine that says nothing of how fast its axes are.
+
+    Raises
+    ------
+    SimulationError
+        With the axes of which nothing is known.
+    """
+    known = {axis.name for axis in machine.axes}
+    needed = {"X", "Z"} if machine.kind is MachineKind.LATHE else {"X", "Y", "Z"}
+    if missing := sorted(needed - known):
+        text = f"machine '{machine.name}' says nothing of its axes {', '.join(missing)}"
+        raise SimulationError(f"{text}: it cannot be run")

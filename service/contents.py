@@ -9,6 +9,7 @@ from stepnc_model.errors import Finding, SchemaError, Severity
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.plausibility import implausible
 from stepnc_model.program import Program
+from stepnc_model.tolerance import tolerance_findings
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -61,4 +62,4 @@ def _all_findings(program: Program) -> tuple[Finding, ...]:
     findings = program.findings()
     if any(finding.severity is Severity.ERROR for finding in findings):
         return findings
-    return findings + implausible(program)
+    return findings + implausible(program) + tolerance_findings(program)

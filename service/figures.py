@@ -143,7 +143,7 @@ def _shares(advice: Advice) -> dict[LimitName, float]:
     if advice.after is None or advice.status is Status.INFEASIBLE:
         return {}
     return {
-        load.limit.name: load.value / load.bound
+        load.limit.name: 1.0 - load.margin
         for load in tightest(advice.after.loads)
         if load.limit.sense is Sense.AT_MOST
     }

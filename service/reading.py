@@ -6,9 +6,11 @@ from pathlib import Path
 from typing import TypeVar
 
 from service.files import read_bytes
+from service.numbers import stock_in
 from stepnc_model.errors import StepNcError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
+from stepnc_model.toolpath.job import drawn_stock
 from stepnc_model.unit_profiles import PROFILES, UnitProfile
 
 E = TypeVar("E", bound=StrEnum)
@@ -21,12 +23,19 @@ def silent(_message: str) -> None:
     """Messages go nowhere."""
 
 
-def read_program(path: Path, *, units: str, name: str = "") -> Program:
-    """A program from a file, which is called as the file is unless a name is given."""
+def read_program(path: Path, *, units: str, name: str = "", stock: str = "") -> Program:
+    """A program from a file, which is called as the file is unless a name is given.
+
+    Its raw part may be named where the file draws none.
+    """
     profile = unit_profile(units)
     called = name or path.name
     file = Part21File.from_bytes(read_bytes(path), name=called)
-    return Program(file, units=profile, name=called)
+    raw = stock_in(stock) if stock else None
+    program = Program(file, units=profile, name=called, stock=raw)
+    if raw is not None and drawn_stock(program, None) is not None:
+        raise StepNcError(f"stock {stock}: '{called}' draws its own raw part: name no other")
+    return program
 
 
 def unit_profile(name: str) -> UnitProfile:

@@ -93,6 +93,7 @@ def _record(plan: Plan, advised: _Advised) -> Record:
         programmed_cutspeed=None if is_spindle else raw_speed,
         programmed_spindle=raw_speed if is_spindle else None,
         programmed_axial_depth=float(before.setting.depth),
+        plunge_feed_per_tooth=None if best.plunge_feed is None else rounded(best.plunge_feed),
     )
 
 

@@ -4,7 +4,7 @@ from html import escape
 
 from plotly.offline import get_plotlyjs
 
-from optimiser.advice import Advice, Plan, Status
+from optimiser.advice import Advice, Plan, State, Status
 from service.figures import (
     feed_figure,
     front_figure,
@@ -96,7 +96,8 @@ def _table(plan: Plan) -> str:
     """A row for each workingstep."""
     heads = (
         "<th>workingstep</th><th>operation, tool</th><th class=n>feed mm/min</th>"
-        "<th class=n>rpm</th><th class=n>depth mm × passes</th><th class=n>kW</th>"
+        "<th class=n>plunge feed mm/min</th><th class=n>rpm</th>"
+        "<th class=n>depth mm × passes</th><th class=n>kW</th>"
         "<th class=n>time s</th><th>why</th>"
     )
     rows = "\n".join(_row(advice) for advice in plan.advices)
@@ -113,11 +114,12 @@ def _row(advice: Advice) -> str:
     )
     why = f'<td class="{advice.status.value}">{escape(_why(advice))}</td>'
     if before is None:
-        return f"<tr>{names}{'<td class=n>–</td>' * 5}{why}</tr>"
+        return f"<tr>{names}{'<td class=n>–</td>' * 6}{why}</tr>"
     last = after or before
     old, new = before.setting, last.setting
     cells = (
         (f"{mm_min_from_speed(before.feed):.1f}", f"{mm_min_from_speed(last.feed):.1f}"),
+        (_plunge_feed(before), _plunge_feed(last)),
         (f"{rpm_from_rev_s(old.speed):.0f}", f"{rpm_from_rev_s(new.speed):.0f}"),
         (f"{old.depth:.3g} × {old.passes}", f"{new.depth:.3g} × {new.passes}"),
         (f"{kw_from_watts(before.motor_power):.2f}", f"{kw_from_watts(last.motor_power):.2f}"),
@@ -129,10 +131,16 @@ def _row(advice: Advice) -> str:
     return f"<tr>{names}{numbers}{why}</tr>"
 
 
+def _plunge_feed(state: State) -> str:
+    """Plunge feed in mm/min; a dash where there is none of its own."""
+    return "–" if state.plunge_feed is None else f"{mm_min_from_speed(state.plunge_feed):.1f}"
+
+
 def _why(advice: Advice) -> str:
     """The reason, with what is left untouched or impossible said first."""
     if advice.status is Status.ADVISED:
-        return advice.reason
+        plunge = f"; plunge feed: {advice.plunge_reason}" if advice.plunge_reason else ""
+        return advice.reason + plunge
     return f"{advice.status.value}: {advice.reason}"
 
 

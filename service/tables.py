@@ -3,23 +3,41 @@
 import os
 import sys
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
-from optimiser.advice import Advice, Plan, Status
+from optimiser.advice import Advice, Plan, State, Status
+from optimiser.limit import LimitName
+from optimiser.stability import Basis
 from service.contents import Contents
 from service.terminal import clean
-from simulator.spec import Machine, Material
+from simulator.spec import (
+    Machine,
+    Material,
+)
+from simulator.work_holding import (
+    Clamp,
+    Holding,
+)
 from stepnc_model.errors import Finding, Severity
 from stepnc_model.units import (
+    kn_from_newtons,
     kw_from_watts,
     m_min_from_speed,
     mm_min_from_speed,
+    n_um_from_n_mm,
     rpm_from_rev_s,
 )
+
+if TYPE_CHECKING:
+    from service.confirmation import Confirmation, Figure
 
 Row = Sequence[str]
 
 COLOURS = {Severity.ERROR: "31", Severity.WARNING: "33", Severity.NOTE: "36"}
 """ANSI colours of findings"""
+
+PLUNGE = 4
+"""column of the plunge feed, left out where no workingstep has one of its own"""
 
 MOST_FINDINGS = 40
 """findings shown in a table; --json has all"""
@@ -29,20 +47,27 @@ MOST_INDENTED = 20
 """levels of executables that a table shows by indenting"""
 
 
-def print_plan(plan: Plan) -> None:
+def print_plan(plan: Plan, confirmation: "Confirmation | None" = None) -> None:
     """Advice for a program: a row for each workingstep, then totals and findings."""
     material = plan.material.material
     print_line(
         f"{plan.program}: mode {plan.mode.value}, machine {plan.machine.name} "
         f"({plan.machine.title}), material {material.title}"
     )
-    header = (
-        "workingstep", "operation", "tool", "feed mm/min", "rpm", "depth mm x passes",
-        "active limit", "time s",
+    header: Row = (
+        "workingstep", "operation", "tool", "feed mm/min", "plunge mm/min", "rpm",
+        "depth mm x passes", "active limit", "time s",
     )  # fmt: skip
-    rows = [_advice_row(advice) for advice in plan.advices]
+    rows: list[Row] = [_advice_row(advice) for advice in plan.advices]
     total = f"{plan.time_before:.1f} -> {plan.time_after:.1f}"
-    print_table(header, [*rows, ("total", "", "", "", "", "", "", total)])
+    rows.append(("total", "", "", "", "", "", "", "", total))
+    if not any(row[PLUNGE] for row in rows):
+        header, *rows = (_without(row, PLUNGE) for row in (header, *rows))
+    print_table(header, rows)
+    print_line(_safety(plan))
+    saving = sum(advice.saving_of_free_speed for advice in plan.advices)
+    if saving > 0.0:
+        print_line(f"a free spindle speed would save {saving:.1f} s (--free feed,depth,speed)")
     print_line(
         f"energy {plan.energy_before / 1e3:.1f} -> {plan.energy_after / 1e3:.1f} kJ; "
         f"totals leave out {plan.left_out}"
@@ -52,7 +77,45 @@ def print_plan(plan: Plan) -> None:
     for advice in plan.advices:
         if advice.front:
             _print_front(advice)
+    if confirmation is not None:
+        _print_confirmation(confirmation)
     print_findings(plan.findings)
+
+
+def _without(row: Row, column: int) -> Row:
+    """A row without one of its cells."""
+    return (*row[:column], *row[column + 1 :])
+
+
+def _safety(plan: Plan) -> str:
+    """At which quantile of k_c bounds are kept, and what that costs."""
+    factors = [advice.safety_factor for advice in plan.advices if advice.safety_factor != 1.0]
+    if not factors:
+        return "loads are nominal: nothing is added for the spread of k_c"
+    low, high = f"{min(factors):.3g}", f"{max(factors):.3g}"
+    cost = sum(advice.cost_of_safety for advice in plan.advices)
+    return (
+        f"bounds are kept at the {100.0 * plan.safety:g} % quantile of k_c (--safety), nominal "
+        f"loads × {low if low == high else f'{low} to {high}'}, which costs {cost:.1f} s"
+    )
+
+
+def _print_confirmation(confirmation: "Confirmation") -> None:
+    """What was promised beside what the run found, and their ratio."""
+    print_line("promised -> found on the virtual machine (found / promised)")
+    headings = [figure.heading for figure in confirmation.steps[0].figures]
+    rows = [
+        (step.id, *(_figure(figure) for figure in step.figures)) for step in confirmation.steps
+    ]
+    print_table(("workingstep", *headings), rows)
+    for text in confirmation.passed:
+        print_line(f"bound passed: {text}", COLOURS[Severity.ERROR])
+
+
+def _figure(figure: "Figure") -> str:
+    if figure.ratio is None:
+        return "" if figure.found == 0.0 else f"0 -> {figure.found:.4g}"
+    return f"{figure.promised:.4g} -> {figure.found:.4g} ({figure.ratio:.3f})"
 
 
 def print_contents(contents: Contents) -> None:
@@ -134,7 +197,25 @@ def _machine_facts(machine: Machine) -> list[Row]:
         ("base power kW", kw_from_watts(machine.base_power)),
     ):
         facts.append((name, "not limited" if value is None else f"{value:g}"))
+    for mode in machine.modes:
+        of = mode.tool or (f"{mode.tool_diameter:g} mm" if mode.tool_diameter else "")
+        facts.append((
+            f"mode of {mode.part.value} {of}".rstrip() + f" along {mode.direction.value}",
+            f"{mode.natural_frequency:g} Hz, damping {mode.damping_ratio:g}, "
+            f"{n_um_from_n_mm(mode.stiffness):g} N/µm",
+        ))
+    facts += [_held(holding) for holding in machine.holdings]
     return facts
+
+
+def _held(holding: Holding) -> Row:
+    """One work-holding of a machine."""
+    of = f" of {holding.setup}" if holding.setup else ""
+    if isinstance(holding, Clamp):
+        force = f"{kn_from_newtons(holding.holding_force):g} kN"
+        return f"clamps{of}", f"{force}, friction {holding.friction:g}"
+    force = f"{kn_from_newtons(holding.clamping_force):g} kN at rest"
+    return f"chuck{of}", f"{force}, {holding.jaws} jaws, friction {holding.friction:g}"
 
 
 def _material_facts(material: Material) -> list[Row]:
@@ -159,12 +240,13 @@ def _advice_row(advice: Advice) -> Row:
     before, after = advice.before, advice.after
     names = (advice.workingstep.id, advice.workingstep.operation_type, advice.tool.id)
     if before is None:
-        return (*names, "", "", "", advice.status.value, "")
+        return (*names, "", "", "", "", advice.status.value, "")
     given = before.setting
     if after is None or advice.status is not Status.ADVISED:
         return (
             *names,
             f"{mm_min_from_speed(before.feed):.1f}",
+            _plunge_feed(before),
             f"{rpm_from_rev_s(given.speed):.1f}",
             f"{given.depth:.4g} x {given.passes}",
             advice.status.value,
@@ -177,11 +259,22 @@ def _advice_row(advice: Advice) -> Row:
     return (
         *names,
         f"{mm_min_from_speed(before.feed):.1f} -> {mm_min_from_speed(after.feed):.1f}",
+        _plunge_change(before, after),
         speed if speed == old_speed else f"{old_speed} -> {speed}",
         depth if depth == new_depth else f"{depth} -> {new_depth}",
         advice.active_words,
         f"{before.time:.1f} -> {after.time:.1f}",
     )
+
+
+def _plunge_feed(state: State) -> str:
+    """Plunge feed in mm/min; empty where there is none of its own."""
+    return "" if state.plunge_feed is None else f"{mm_min_from_speed(state.plunge_feed):.1f}"
+
+
+def _plunge_change(before: State, after: State) -> str:
+    """Plunge feed as programmed -> advised; a path of other passes may begin otherwise."""
+    return " -> ".join(feed for feed in (_plunge_feed(before), _plunge_feed(after)) if feed)
 
 
 def _reason(advice: Advice) -> str:
@@ -201,7 +294,23 @@ def _reason(advice: Advice) -> str:
     deepest = advice.deepest_first_time
     if deepest is not None and deepest > advice.after.time * 1.001:
         text += f"; the deepest passes would have taken {deepest:.1f} s"
-    return text
+    if advice.plunge_reason:
+        text += f"; plunge feed: {advice.plunge_reason}"
+    return text + _stability(advice, advice.after)
+
+
+def _stability(advice: Advice, state: State) -> str:
+    """The depth that measured modes allow, or why they are not asked."""
+    found = advice.stability
+    if found is None or found.basis is Basis.ESTIMATED:
+        return ""
+    load = next((load for load in state.loads if load.limit.name is LimitName.STABILITY), None)
+    if load is None:
+        return f"; stability not bounded: {found.reason or 'damped at this speed'}"
+    text = f"; stable to {load.bound:.3g} mm at this speed"
+    if found.least is not None:
+        text += f", {found.least:.3g} mm at any"
+    return text + f" ({found.reason})"
 
 
 def _print_front(advice: Advice) -> None:

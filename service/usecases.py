@@ -1,14 +1,16 @@
 """One function per verb. Packages meet here; the command line and REST are skins over it."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from optimiser.advice import Plan, Status
 from optimiser.formulate import Task
 from optimiser.modes import Free, Mode
 from optimiser.optimise import optimise as advise
-from service.chosen import machine_for, material_for
+from optimiser.safety import USUAL_QUANTILE, require_quantile
+from service.chosen import machine_for, material_for, require_axes, with_holding
 from service.files import (
     beside,
     is_same,
@@ -16,19 +18,24 @@ from service.files import (
     write_atomically,
     write_lines,
 )
-from service.knowledge.corrected import SAFETY, factors_for, finding_of, with_corrections
+from service.knowledge.corrected import factors_for, finding_of, with_corrections
 from service.knowledge.place import named_place, require_apart
 from service.progress import Progress
 from service.reading import Tell, one_of, read_program, silent
 from service.records import changes_of
-from simulator.spec import Certainty, MaterialMatch
+from simulator.spec import Certainty, Machine, MaterialMatch
 from stepnc_model import writeback
 from stepnc_model.errors import Finding, SchemaError, Severity, StepNcError, WriteError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.plausibility import refusal
 from stepnc_model.program import Program, Workingstep
+from stepnc_model.toolpath.job import stock_of
 from stepnc_model.units import mm_from_um
 from stepnc_model.writeback import Profile
+
+if TYPE_CHECKING:
+    from service.confirmation import Confirmation
+    from simulator.tool_table import TableTool
 
 NOTHING_WRITTEN = "nothing was written: no workingstep was advised"
 
@@ -58,8 +65,20 @@ class Request:
     """for which NC code is written too; none when empty"""
     knowledge: str = ""
     """knowledge base with accepted corrections; that of the environment when empty"""
-    safety: float = SAFETY
-    """quantile of the factor on k_c that the plan takes from a correction"""
+    confirm: bool = False
+    """whether the virtual machine runs the advised program"""
+    stock: str = ""
+    """raw part of a file that draws none, in mm: ``x0,y0,z0,x1,y1,z1`` or ``diameter,z0,z1``"""
+    holding: Path | None = None
+    """how the workpiece is held, instead of what the machine's file says"""
+    safety: float = USUAL_QUANTILE
+    """quantile of k_c at which loads keep their bounds"""
+    tools: Path | None = None
+    """tool table that says which of the program's tools cut over centre or have wipers"""
+    centre_cutting: Mapping[str, bool] = field(default_factory=dict, hash=False)
+    """the same without a table; the table goes first"""
+    allow_plunge: bool = False
+    """whether tools that do not cut over centre may go straight down into the solid"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -69,6 +88,8 @@ class Outcome:
     plan: Plan
     written: Path | None
     """the STEP-NC file, or None when nothing was written"""
+    confirmation: "Confirmation | None" = None
+    """None: not asked for"""
 
 
 def optimise(request: Request, *, tell: Tell = silent) -> Outcome:
@@ -84,11 +105,15 @@ def optimise(request: Request, *, tell: Tell = silent) -> Outcome:
     output = _output(request)
     nc_place = _nc_place(request, output)
     require_apart(named_place(request.knowledge), output, request.report, nc_place)
-    program = read_program(request.file, units=request.units, name=request.name)
+    program = read_program(
+        request.file, units=request.units, name=request.name, stock=request.stock
+    )
     chosen = _selected(program, request.workingsteps)
     findings = program.file.findings + program.model.findings()
     _require_usable(program, chosen, findings)
-    machine = machine_for(request.machine, program)
+    machine = with_holding(machine_for(request.machine, program), request.holding)
+    if request.confirm:
+        _require_run(program, chosen, machine)
     match = material_for(request.material, program)
     tell(f"material: {match.reason}")
     known, safety = request.knowledge, request.safety
@@ -103,7 +128,11 @@ def optimise(request: Request, *, tell: Tell = silent) -> Outcome:
         program,
         machine=machine,
         material=match,
-        task=replace(task, force_factors={each.tool: each.factor for each in factors}),
+        task=replace(
+            task,
+            force_factors={each.tool: each.centre for each in factors},
+            learned_safety_factors={each.tool: each.factor / each.centre for each in factors},
+        ),
         selected=lambda step: int(step.ref) in wanted,
         progress=Progress(tell, total=len(chosen)),
     )
@@ -112,6 +141,11 @@ def optimise(request: Request, *, tell: Tell = silent) -> Outcome:
     data = writeback.write(program, changes, profile) if changes else program.file.data
     if changes and factors and profile is Profile.OPTIMISATION:
         data = with_corrections(_read_again(program, data), factors)
+    confirmation = None
+    if request.confirm:
+        from service.confirm import confirm  # noqa: PLC0415 (numba takes a second)
+
+        confirmation = confirm(plan, _read_again(program, data), tell=tell)
     if nc_place is not None:
         # NC code first: where it cannot be made, nothing is written.
         code = _nc_code(program, data, request.control, tell)
@@ -129,7 +163,16 @@ def optimise(request: Request, *, tell: Tell = silent) -> Outcome:
         write_atomically(request.report, report_page(plan).encode())
         tell(f"report: {request.report}")
     _tell_conflicts(plan, tell)
-    return Outcome(plan=plan, written=written)
+    return Outcome(plan=plan, written=written, confirmation=confirmation)
+
+
+def _require_run(program: Program, chosen: tuple[Workingstep, ...], machine: Machine) -> None:
+    """Refuse to confirm what cannot be run: before all, not after the plan."""
+    require_axes(machine)
+    for step in chosen:
+        if stock_of(program, step.setup) is None:
+            text = f"'{step.id}' cannot be confirmed: the file draws no raw part"
+            raise StepNcError(f"{text}; name one with --stock")
 
 
 def _tell_conflicts(plan: Plan, tell: Tell) -> None:
@@ -180,13 +223,37 @@ def _task(request: Request) -> Task:
     if request.tool_change:
         _require_positive(request.tool_change, "tool change", "s")
     roughness = request.roughness_um
+    try:
+        require_quantile(request.safety)
+    except ValueError as error:
+        raise StepNcError(str(error)) from error
+    table = _table(request.tools)
     return Task(
         mode=mode,
         free=free,
         roughness=None if roughness is None else mm_from_um(roughness),
         tool_change=request.tool_change,
+        wipers=frozenset(tool.id for tool in table if tool.has_wiper),
         front=request.pareto,
+        safety=request.safety,
+        centre_cutting={**request.centre_cutting, **_centre_cutting(table)},
+        allow_plunge=request.allow_plunge,
     )
+
+
+def _centre_cutting(tools: tuple["TableTool", ...]) -> dict[str, bool]:
+    """Which tools of a table cut over centre, by their ids; none where there is no table."""
+    said = {tool.id: tool.centre_cutting for tool in tools}
+    return {name: does for name, does in said.items() if does is not None}
+
+
+def _table(tools: Path | None) -> tuple["TableTool", ...]:
+    """Tools of a table; none where there is no table."""
+    if tools is None:
+        return ()
+    from simulator.tool_table import read_tool_table  # noqa: PLC0415 (numpy)
+
+    return read_tool_table(tools)
 
 
 def _nc_place(request: Request, output: Path) -> Path | None:
@@ -215,7 +282,7 @@ def _nc_code(program: Program, data: bytes, control: str, tell: Tell) -> Iterato
 def _read_again(program: Program, data: bytes) -> Program:
     """A program as its file says it now."""
     file = Part21File.from_bytes(data, name=program.name)
-    return Program(file, units=program.units, name=program.name)
+    return Program(file, units=program.units, name=program.name, stock=program.stock)
 
 
 def _selected(program: Program, wanted: tuple[str, ...]) -> tuple[Workingstep, ...]:

@@ -7,28 +7,59 @@ from math import isfinite
 from typing import Any
 
 from optimiser.advice import Advice, Load, Plan, State, tightest
+from service.confirmation import Confirmation
 from service.contents import Contents
 from simulator.spec import Machine, Material
 from stepnc_model.errors import Finding
 from stepnc_model.units import (
     kw_from_watts,
     mm_min_from_speed,
+    nm_from_nmm,
     rpm_from_rev_s,
     um_from_mm,
 )
 
 
-def plan_json(plan: Plan) -> str:
-    """A plan as JSON."""
+def plan_json(plan: Plan, confirmation: Confirmation | None = None) -> str:
+    """A plan as JSON, and what its run found where one was asked for."""
+    found = {} if confirmation is None else {"confirmation": _confirmation(confirmation)}
     return dump({
         "program": plan.program,
         "mode": plan.mode.value,
         "machine": plan.machine.name,
         "material": plan.material.material.name,
+        "safety": {
+            "quantile": plan.safety,
+            "cost_s": sum(advice.cost_of_safety for advice in plan.advices),
+        },
+        "free_speed_saves_s": sum(advice.saving_of_free_speed for advice in plan.advices),
         "workingsteps": [_advice(advice) for advice in plan.advices],
         "total_time_s": {"before": plan.time_before, "after": plan.time_after},
         "findings": [finding_json(finding) for finding in plan.findings],
+        **found,
     })
+
+
+def _confirmation(confirmation: Confirmation) -> dict[str, Any]:
+    """What was promised and found."""
+    return {
+        "workingsteps": [
+            {
+                "id": step.id,
+                **{
+                    figure.key: {
+                        "promised": figure.promised,
+                        "found": figure.found,
+                        "ratio": figure.ratio,
+                        "bound": figure.bound if isfinite(figure.bound) else None,
+                    }
+                    for figure in step.figures
+                },
+            }
+            for step in confirmation.steps
+        ],
+        "passed": list(confirmation.passed),
+    }
 
 
 def contents_json(contents: Contents) -> str:
@@ -99,6 +130,9 @@ def _advice(advice: Advice) -> dict[str, Any]:
         },
         "sensitivity": _sensitivity(advice),
         "deepest_pass_first_time_s": advice.deepest_first_time,
+        "stability": _stability(advice),
+        "plunge": _plunge(advice),
+        "holding_load": _holding_load(advice),
         "prices": {name.value: price for name, price in advice.prices},
         "pareto": [
             {
@@ -114,6 +148,44 @@ def _advice(advice: Advice) -> dict[str, Any]:
     }
 
 
+def _stability(advice: Advice) -> dict[str, Any] | None:
+    """What is known of it; the bound itself is one of the limits."""
+    found = advice.stability
+    if found is None:
+        return None
+    return {
+        "basis": found.basis.value,
+        "reason": found.reason,
+        "stable_at_any_speed_mm": found.least,
+        "band_mm": found.band,
+    }
+
+
+def _plunge(advice: Advice) -> dict[str, Any] | None:
+    """What holds the plunge feed; null where no way down has one of its own."""
+    shown = advice.after or advice.before
+    if shown is None or not (shown.plunge_loads or advice.plunge_fault):
+        return None
+    return {
+        "reason": advice.plunge_reason,
+        "fault": advice.plunge_fault or None,
+        "limits": [_load(load) for load in tightest(shown.plunge_loads)],
+    }
+
+
+def _holding_load(advice: Advice) -> dict[str, float] | None:
+    """What is asked of chuck, vice or clamps; their bounds are among the limits."""
+    load = advice.holding_load
+    if load is None:
+        return None
+    return {
+        "torque_nm": nm_from_nmm(load.torque),
+        "moment_nm": nm_from_nmm(load.moment),
+        "force_n": load.force,
+        "lift_n": load.lift,
+    }
+
+
 def _setting(state: State | None) -> dict[str, Any] | None:
     """Feed, speed and depth in shop units."""
     if state is None:
@@ -125,11 +197,17 @@ def _setting(state: State | None) -> dict[str, Any] | None:
         "feed_per_tooth_mm": setting.feed,
         "axial_depth_mm": setting.depth,
         "passes": setting.passes,
+        "plunge_feed_mm_min": _mm_min(state.plunge_feed),
+        "plunge_feed_per_tooth_mm": setting.plunge_feed,
     }
 
 
+def _mm_min(feed: float | None) -> float | None:
+    return None if feed is None else mm_min_from_speed(feed)
+
+
 def _load(load: Load) -> dict[str, Any]:
-    """One limit with its margin as a share of the bound."""
+    """One limit with its margin as a share of the bound, after the safety factor."""
     limit = load.limit
     return {
         "name": limit.name.value,
@@ -137,6 +215,7 @@ def _load(load: Load) -> dict[str, Any]:
         "bound": load.bound * limit.scale,
         "unit": limit.unit,
         "sense": limit.sense.value,
+        "safety_factor": limit.safety_factor,
         "margin": load.margin,
     }
 

@@ -5,7 +5,7 @@ one ``[[grade]]`` row per cutting material and ISO group for its windows.
 """
 
 from simulator.material_file import ISO_GROUPS, RAKE, speed_window
-from simulator.spec import CuttingMaterial, Grade, ToolKind
+from simulator.spec import CuttingMaterial, DrillPoint, FeedWindow, Grade, ToolKind
 from simulator.toml_file import Range, Table
 from stepnc_model.units import rad_from_deg
 
@@ -19,6 +19,12 @@ DEPTH = Range(low=0.01, high=200, unit="mm")
 CHIP_THICKNESS = Range(low=1e-4, high=0.1, unit="mm")
 YOUNGS_MODULUS = Range(low=50_000, high=1_000_000, unit="N/mm²")
 BENDING_STRENGTH = Range(low=50, high=5_000, unit="N/mm²")
+HELIX = Range(low=0, high=75, unit="°")
+THRUST_SHARE = Range(low=0.2, high=1.5)
+CHISEL_RATIO = Range(low=0, high=0.4)
+WIDTH_RATIO = Range(low=0.05, high=1)
+SLOT_FACTOR = Range(low=0.1, high=1)
+LAND = Range(low=0.1, high=20, unit="mm")
 
 
 def read_grades(table: Table, kind: ToolKind) -> tuple[Grade, ...]:
@@ -71,7 +77,44 @@ def _grade(row: Table, *, edge: Table, kind: ToolKind, material: CuttingMaterial
         bending_strength=edge.number("bending_strength_n_mm2", BENDING_STRENGTH),
         rake_angle=None if rake is None else rad_from_deg(rake),
         source=f"{row.text('source')}; {edge.text('source')}",
+        helix_angle=rad_from_deg(edge.optional_number("helix_deg", HELIX) or 0.0),
+        point=_point(edge),
+        feed_window=_feed_window(edge),
+        parallel_land=_parallel_land(edge),
     )
+
+
+def _point(edge: Table) -> DrillPoint | None:
+    """Point of a drill, with a source of its own."""
+    if "point" not in edge:
+        return None
+    point = edge.table("point")
+    point.text("source")
+    return DrillPoint(
+        thrust_share=point.number("thrust_share", THRUST_SHARE),
+        chisel_ratio=point.number("chisel_ratio", CHISEL_RATIO),
+    )
+
+
+def _feed_window(edge: Table) -> FeedWindow | None:
+    """Engagement of the feeds, with a source of its own."""
+    if "feed_window" not in edge:
+        return None
+    window = edge.table("feed_window")
+    window.text("source")
+    return FeedWindow(
+        width_ratio=window.number("width_ratio", WIDTH_RATIO),
+        slot_factor=window.number("slot_factor", SLOT_FACTOR),
+    )
+
+
+def _parallel_land(edge: Table) -> float:
+    """Width of the inserts' parallel land in mm, with a source of its own; 0 without one."""
+    if "parallel_land" not in edge:
+        return 0.0
+    land = edge.table("parallel_land")
+    land.text("source")
+    return land.number("width_mm", LAND)
 
 
 def _group(row: Table) -> str:

@@ -132,11 +132,6 @@ def find_window(
     return next(iter(fitting or windows), None)
 
 
-def load_grades() -> tuple[Grade, ...]:
-    """All tool grades of the library."""
-    return tuple(grade for kind in ToolKind for grade in _grades(kind))
-
-
 def find_grade(tool_kind: ToolKind, cutting_material: CuttingMaterial, iso_group: str) -> Grade:
     """Grade of a kind of tool for an ISO group, or else the one that serves every group.
 
@@ -163,6 +158,18 @@ def find_grade(tool_kind: ToolKind, cutting_material: CuttingMaterial, iso_group
         f"no {cutting_material} grade for ISO group '{iso_group}'",
         path=str(_grade_path(tool_kind)),
     )
+
+
+def grade_for(
+    tool_kind: ToolKind, cutting_material: CuttingMaterial, material: Material
+) -> Grade | None:
+    """Grade of a kind of tool for a material; None where there is none."""
+    if not material.iso_group:
+        return None
+    try:
+        return find_grade(tool_kind, cutting_material, material.iso_group)
+    except LibraryError:
+        return None
 
 
 @cache

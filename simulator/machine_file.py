@@ -7,10 +7,27 @@ number outside is a slip of the unit. A limit whose key is absent does not limit
 from itertools import pairwise
 from math import inf
 
+from simulator.holding_file import read_holdings
 from simulator.physics.spindle import curve_segments
-from simulator.spec import Axis, AxisDrive, Machine, MachineKind, Spindle, SpindlePoint
+from simulator.spec import (
+    Axis,
+    AxisDrive,
+    Direction,
+    Machine,
+    MachineKind,
+    Spindle,
+    SpindlePoint,
+    VibratingPart,
+    VibrationMode,
+)
 from simulator.toml_file import Range, Table
-from stepnc_model.units import nmm_from_nm, rev_s_from_rpm, speed_from_mm_min, watts_from_kw
+from stepnc_model.units import (
+    n_mm_from_n_um,
+    nmm_from_nm,
+    rev_s_from_rpm,
+    speed_from_mm_min,
+    watts_from_kw,
+)
 
 SPEED = Range(low=0.1, high=500_000, unit="rpm")
 POWER = Range(low=0.001, high=1_000, unit="kW")
@@ -42,6 +59,10 @@ FRICTION = Range(low=0, high=1)
 PRELOAD = Range(low=0, high=1_000_000, unit="N")
 VISCOUS = Range(low=0, high=100, unit="N·m·s/rad")
 GEAR_RATIO = Range(low=0.01, high=1_000)
+FREQUENCY = Range(low=1, high=50_000, unit="Hz")
+DAMPING = Range(low=1e-4, high=0.5)
+STIFFNESS = Range(low=0.001, high=10_000, unit="N/µm")
+MODE_DIAMETER = Range(low=0.01, high=2_000, unit="mm")
 
 
 def read_machine(table: Table, *, name: str) -> Machine:
@@ -52,10 +73,11 @@ def read_machine(table: Table, *, name: str) -> Machine:
     LibraryError
         A key is missing, unknown or out of its range.
     """
+    kind = table.choice("kind", MachineKind)
     machine = Machine(
         name=name,
         title=table.text("title"),
-        kind=table.choice("kind", MachineKind),
+        kind=kind,
         spindle=_spindle(table.table("spindle")),
         axes=tuple(_axis(row) for row in table.tables("axis")),
         rapid=_feed(table, "rapid_mm_min"),
@@ -68,6 +90,9 @@ def read_machine(table: Table, *, name: str) -> Machine:
         tool_change=_amount(table, "tool_change_s", TOOL_CHANGE),
         source=table.text("source"),
         remarks=table.texts("remarks"),
+        modes=tuple(_mode(row) for row in table.tables("mode")),
+        holdings=read_holdings(table, kind),
+        only_stated_limits=table.flag("only_stated_limits"),
     )
     table.finish()
     return machine
@@ -156,6 +181,28 @@ def _drive(table: Table) -> AxisDrive:
         gear_ratio=table.optional_number("gear_ratio", GEAR_RATIO) or 1.0,
         efficiency=table.number("efficiency", EFFICIENCY),
         regeneration=_amount(table, "regeneration", REGENERATION),
+    )
+
+
+def _mode(table: Table) -> VibrationMode:
+    """One ``[[mode]]`` row; a mode of a tool says of which."""
+    part = table.choice("part", VibratingPart)
+    tool = table.text("tool").strip() if "tool" in table else ""
+    diameter = table.optional_number("tool_diameter_mm", MODE_DIAMETER)
+    is_named = bool(tool) or diameter is not None
+    if part is VibratingPart.TOOL and not is_named:
+        raise table.error("tool", "missing; expected the tool's id, or tool_diameter_mm")
+    if part is VibratingPart.WORKPIECE and is_named:
+        raise table.error("tool", "a mode of the workpiece belongs to no tool")
+    return VibrationMode(
+        part=part,
+        tool=tool,
+        tool_diameter=diameter,
+        direction=table.choice("direction", Direction),
+        natural_frequency=table.number("frequency_hz", FREQUENCY),
+        damping_ratio=table.number("damping_ratio", DAMPING),
+        stiffness=n_mm_from_n_um(table.number("stiffness_n_um", STIFFNESS)),
+        source=table.text("source"),
     )
 
 

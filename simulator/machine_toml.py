@@ -1,17 +1,35 @@
 """A machine as the text of a library file, in which it reads back equal.
 
 Each number stands in the unit of its key and as short as it can be without changing the
-canonical value. Only the machine's own source is known, so it stands in every table.
+canonical value. Only the sources of the machine, its modes and its work-holding are known;
+the machine's stands in all other tables.
 """
 
 import json
 from collections.abc import Callable, Sequence
 from math import inf, isinf, nextafter
 
-from simulator.spec import Axis, AxisDrive, Machine, Spindle, SpindlePoint
+from simulator.holding_file import HoldingKind
+from simulator.spec import (
+    Axis,
+    AxisDrive,
+    Machine,
+    Spindle,
+    SpindlePoint,
+    VibrationMode,
+)
+from simulator.work_holding import (
+    Chuck,
+    Clamp,
+    Holding,
+)
 from stepnc_model.units import (
+    kn_from_newtons,
     kw_from_watts,
     mm_min_from_speed,
+    n_mm_from_n_um,
+    n_um_from_n_mm,
+    newtons_from_kn,
     nm_from_nmm,
     nmm_from_nm,
     rev_s_from_rpm,
@@ -48,7 +66,14 @@ def machine_toml(machine: Machine, *, notes: Sequence[str] = ()) -> str:
     lines += _spindle(machine.spindle, machine.source)
     for axis in machine.axes:
         lines += _axis(axis, machine.source)
-    return "\n".join(lines) + "\n"
+    for holding in machine.holdings:
+        lines += _chuck(holding) if isinstance(holding, Chuck) else _clamp(holding)
+    return "\n".join(lines) + "\n" + modes_toml(machine.modes)
+
+
+def modes_toml(modes: Sequence[VibrationMode]) -> str:
+    """TOML text of measured modes, a ``[[mode]]`` table each; ends a machine file."""
+    return "".join("\n".join(_mode(mode)) + "\n" for mode in modes)
 
 
 def _comment(line: str) -> str:
@@ -61,6 +86,7 @@ def _root(machine: Machine) -> list[str]:
     lines = [
         f"title = {_text(machine.title)}",
         f"kind = {_text(machine.kind.value)}",
+        *(["only_stated_limits = true"] if machine.only_stated_limits else []),
         *_feed("rapid_mm_min", machine.rapid),
         *_feed("max_feed_mm_min", machine.max_feed),
         *_number("max_cutting_force_n", machine.max_cutting_force),
@@ -149,6 +175,61 @@ def _drive(drive: AxisDrive, source: str) -> list[str]:
     ]
 
 
+def _mode(mode: VibrationMode) -> list[str]:
+    """One ``[[mode]]`` row."""
+    return [
+        "",
+        "[[mode]]",
+        f"part = {_text(mode.part.value)}",
+        *([f"tool = {_text(mode.tool)}"] if mode.tool else []),
+        *_number("tool_diameter_mm", mode.tool_diameter),
+        f"direction = {_text(mode.direction.value)}",
+        *_number("frequency_hz", mode.natural_frequency),
+        *_number("damping_ratio", mode.damping_ratio),
+        *_number("stiffness_n_um", mode.stiffness, shown=n_um_from_n_mm, read=n_mm_from_n_um),
+        f"source = {_text(mode.source)}",
+    ]
+
+
+def _chuck(chuck: Chuck) -> list[str]:
+    """The ``[[holding]]`` row of a chuck."""
+    told = chuck.has_tailstock
+    return [
+        *_held(HoldingKind.CHUCK, chuck),
+        *_force("clamping_force_kn", chuck.clamping_force),
+        *_number("friction", chuck.friction),
+        *_number("jaws", chuck.jaws),
+        *_number("grip_diameter_mm", chuck.grip_diameter),
+        *_number("grip_length_mm", chuck.grip_length),
+        *_number("jaw_face_z_mm", chuck.jaw_face),
+        *_number("jaw_mass_kg", chuck.jaw_mass or None),
+        *_number("jaw_radius_mm", chuck.jaw_radius or None),
+        *_force("lost_force_kn", chuck.lost_force or None),
+        *_speed("lost_at_rpm", chuck.lost_at or None),
+        *_number("safety_factor", chuck.safety_factor),
+        *_number("clamping_safety_factor", chuck.clamping_safety_factor),
+        *([] if told is None else [f"tailstock = {str(told).lower()}"]),
+        f"source = {_text(chuck.source)}",
+    ]
+
+
+def _clamp(clamp: Clamp) -> list[str]:
+    """The ``[[holding]]`` row of a vice; clamps hold as it does."""
+    return [
+        *_held(HoldingKind.VICE, clamp),
+        *_force("holding_force_kn", clamp.holding_force),
+        *_number("friction", clamp.friction),
+        *_number("safety_factor", clamp.safety_factor),
+        f"source = {_text(clamp.source)}",
+    ]
+
+
+def _held(kind: HoldingKind, holding: Holding) -> list[str]:
+    """What a row begins with."""
+    setup = [f"setup = {_text(holding.setup)}"] if holding.setup else []
+    return ["", "[[holding]]", f"kind = {_text(kind.value)}", *setup]
+
+
 def _text(value: str) -> str:
     """A basic string; JSON's escapes are TOML's, save that TOML escapes DEL as well."""
     return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007F")
@@ -162,6 +243,11 @@ def _feed(key: str, value: float | None) -> list[str]:
 def _speed(key: str, value: float | None) -> list[str]:
     """A key in rpm."""
     return _number(key, value, shown=rpm_from_rev_s, read=rev_s_from_rpm)
+
+
+def _force(key: str, value: float | None) -> list[str]:
+    """A key in kN."""
+    return _number(key, value, shown=kn_from_newtons, read=newtons_from_kn)
 
 
 def _torque(key: str, value: float | None) -> list[str]:

@@ -7,6 +7,8 @@ that the source gives no value, and a limit without a value does not limit.
 from dataclasses import dataclass
 from enum import StrEnum
 
+from simulator.work_holding import Holding
+
 
 class MachineKind(StrEnum):
     """What turns: the tool or the workpiece."""
@@ -118,6 +120,45 @@ class Axis:
     """``None``: unknown; the axis draws no power of its own"""
 
 
+class Direction(StrEnum):
+    """Axis of the machine along which a structure gives."""
+
+    X = "x"
+    Y = "y"
+    Z = "z"
+    XY = "xy"
+    """x and y alike: a round tool in a spindle, measured once"""
+
+
+class VibratingPart(StrEnum):
+    """What was hit in the tap test."""
+
+    TOOL = "tool"
+    WORKPIECE = "workpiece"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VibrationMode:
+    """One mode of a structure as a tap test shows it at the tool point or the workpiece.
+
+    A tool's mode holds for the tool in its holder in this spindle, at this overhang.
+    """
+
+    part: VibratingPart
+    direction: Direction
+    natural_frequency: float
+    """Hz"""
+    damping_ratio: float
+    """ζ, share of the critical damping, 0 < ζ < 1"""
+    stiffness: float
+    """modal stiffness k, N/mm"""
+    source: str
+    tool: str = ""
+    """id of the tool as programs name it; empty: any tool of the diameter"""
+    tool_diameter: float | None = None
+    """mm; ``None``: whatever the tool's diameter is"""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Machine:
     """One machine tool."""
@@ -145,6 +186,13 @@ class Machine:
     """s, chip to chip"""
     source: str
     remarks: tuple[str, ...] = ()
+    modes: tuple[VibrationMode, ...] = ()
+    """measured ones; without them stability sets no bound"""
+    holdings: tuple[Holding, ...] = ()
+    """how workpieces are held; without them nothing of it is bounded"""
+    only_stated_limits: bool = False
+    """whether the limits that its source states are all there are, as those of a paper: no
+    safety factor, no stability, tolerance, helix, engagement or work-holding beside them"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -239,6 +287,14 @@ class Material:
     """mm, absolute, where the source gives one"""
     source: str
     remarks: tuple[str, ...] = ()
+    feed_force: Kienzle | None = None
+    """(k_f1.1, m_f) of turning, m_f may exceed 1; ``None``: the usual share of F_c"""
+    back_force: Kienzle | None = None
+    """(k_p1.1, m_p) of turning, likewise"""
+    spread: float | None = None
+    """of k_c: σ of ln k_c is ln(1 + spread); ``None``: k_c is taken to be exact"""
+    youngs_modulus: float | None = None
+    """N/mm², of a bar that bends; ``None``: not known"""
 
 
 class ToolKind(StrEnum):
@@ -255,6 +311,26 @@ class ToolKind(StrEnum):
     TURNING = "turning"
     GROOVING = "grooving"
     THREADING = "threading"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DrillPoint:
+    """Point of a tool that cuts on its end."""
+
+    thrust_share: float
+    """thrust of the lips over their tangential force times sin κ"""
+    chisel_ratio: float
+    """c/D, length of the chisel edge over the diameter; 0: it has none"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FeedWindow:
+    """At which engagement the feeds per tooth of a milling cutter hold."""
+
+    width_ratio: float
+    """greatest a_e/D for which they are meant"""
+    slot_factor: float
+    """factor on them in a full slot"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -293,6 +369,14 @@ class Grade:
     rake_angle: float | None
     """rad"""
     source: str
+    helix_angle: float = 0.0
+    """λ_s, rad; 0: straight edges"""
+    point: DrillPoint | None = None
+    """``None``: the source says nothing of it"""
+    feed_window: FeedWindow | None = None
+    """``None``: feeds hold at any engagement"""
+    parallel_land: float = 0.0
+    """b_s, mm of edge parallel to the face; 0: the corner makes the surface"""
 
 
 class Certainty(StrEnum):

@@ -58,6 +58,8 @@ COLUMNS = (
     Column(name="back_force", source="back_force", unit="N"),
     Column(name="removal_rate", source="removal_rate", unit="mm³/s"),
     Column(name="chip_thickness", source="chip_thickness", unit="mm"),
+    Column(name="thrust", source="thrust", unit="N"),
+    Column(name="tool_deflection", source="deflection", unit="mm"),
     Column(name="axial_depth", source="axial_depth", unit="mm"),
     Column(name="radial_width", source="radial_width", unit="mm"),
     Column(

@@ -102,6 +102,15 @@ class Table:
             known = ", ".join(kind)
             raise self.error(key, f"'{_cut(value)}' is none of {known}") from None
 
+    def flag(self, key: str) -> bool:
+        """``true`` or ``false``; false where the key is absent."""
+        if key not in self:
+            return False
+        value = self._take(key, "true or false")
+        if not isinstance(value, bool):
+            raise self.error(key, f"{_shown(value)} is neither true nor false")
+        return value
+
     def number(self, key: str, allowed: Range) -> float:
         """A number that must be there and in its range."""
         value = self._take(key, f"a number, {allowed}")

@@ -1,5 +1,7 @@
 """A tool table: tools by their numbers, for NC code that comes without a STEP-NC program.
 
+For a program that has its own tools it says what ISO 14649 has no attribute for.
+
 One ``[[tool]]`` table a tool, units in the keys; what is absent is customary.
 """
 
@@ -21,6 +23,7 @@ DIAMETER = Range(low=0.01, high=2_000, unit="mm")
 LENGTH = Range(low=0, high=2_000, unit="mm")
 TEETH = Range(low=1, high=500)
 ANGLE = Range(low=0, high=179, unit="°")
+HELIX = Range(low=0, high=75, unit="°")
 TAPER = Range(low=0, high=80, unit="°")
 POINT = Range(low=30, high=180, unit="°")
 
@@ -46,6 +49,12 @@ class TableTool:
     cutting_material: CuttingMaterial
     teeth: int
     shape: Cutter | Insert
+    helix_angle: float | None = None
+    """rad; None: that of the grade"""
+    centre_cutting: bool | None = None
+    """whether the edges of a mill reach its axis; None: not said"""
+    has_wiper: bool = False
+    """whether a flat beside the nose of a turning insert smooths the surface"""
 
 
 def read_tool_table(path: Path) -> tuple[TableTool, ...]:
@@ -77,6 +86,7 @@ def _tool(row: Table) -> TableTool:
     if "cutting_material" in row:
         material = row.choice("cutting_material", CuttingMaterial)
     teeth = _whole(row, "teeth", TEETH) if "teeth" in row else 1
+    helix = row.optional_number("helix_deg", HELIX)
     return TableTool(
         number=number,
         id=name,
@@ -84,7 +94,16 @@ def _tool(row: Table) -> TableTool:
         cutting_material=material,
         teeth=teeth,
         shape=_insert(row, kind) if kind in TURNED else _cutter(row, kind, teeth),
+        helix_angle=None if helix is None else rad_from_deg(helix),
+        centre_cutting=row.flag("centre_cutting") if "centre_cutting" in row else None,
+        has_wiper=_has_wiper(row, kind),
     )
+
+
+def _has_wiper(row: Table, kind: ToolKind) -> bool:
+    if "wiper" in row and kind is not ToolKind.TURNING:
+        raise row.error("wiper", f"is of turning inserts, not of kind {kind}")
+    return row.flag("wiper")
 
 
 def _whole(row: Table, key: str, allowed: Range) -> int:

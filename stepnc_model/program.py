@@ -32,6 +32,7 @@ from stepnc_model.errors import Finding, SchemaError, Severity
 from stepnc_model.finding_list import FindingList
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
+from stepnc_model.stock import Stock
 from stepnc_model.unit_profiles import ISO, UnitProfile
 
 T = TypeVar("T")
@@ -91,10 +92,21 @@ class Program:
         In which units the file writes feeds and speeds.
     name : str
         File name, for messages.
+    stock : Stock, optional
+        Raw part of a file that draws none.
     """
 
-    def __init__(self, file: Part21File, *, units: UnitProfile = ISO, name: str = "") -> None:
+    def __init__(
+        self,
+        file: Part21File,
+        *,
+        units: UnitProfile = ISO,
+        name: str = "",
+        stock: Stock | None = None,
+    ) -> None:
         self.name = name
+        self.stock = stock
+        """raw part of a file that draws none, as the user says"""
         self.units = units
         self.file = file
         self.model = Model(file)
@@ -195,13 +207,17 @@ class Program:
 
     def before(self, step: Workingstep) -> list[Workingstep]:
         """Workingsteps on the same features that run before this one, in order."""
-        found: dict[int, Workingstep] = {}
-        for feature in step.features:
-            for other in self._by_feature[int(feature)]:
-                if other.ref == step.ref:
-                    break
-                found[int(other.ref)] = other
-        return sorted(found.values(), key=lambda step: step.index)
+        return [other for other in self._on_features_of(step) if other.index < step.index]
+
+    def after(self, step: Workingstep) -> list[Workingstep]:
+        """Workingsteps on the same features that run after this one, in order."""
+        return [other for other in self._on_features_of(step) if other.index > step.index]
+
+    def _on_features_of(self, step: Workingstep) -> list[Workingstep]:
+        """Workingsteps on the features of one, in order."""
+        features = (self._by_feature[int(feature)] for feature in step.features)
+        found = {int(other.ref): other for each in features for other in each}
+        return sorted(found.values(), key=lambda other: other.index)
 
     def textures_of(
         self, feature: Ref[Entity]

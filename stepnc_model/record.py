@@ -78,6 +78,8 @@ class Record:
     programmed_cutspeed: float | None = field(default=None, metadata={"unit": "m/s"})
     programmed_spindle: float | None = field(default=None, metadata={"unit": "rev/s"})
     programmed_axial_depth: float | None = field(default=None, metadata={"unit": "mm"})
+    plunge_feed_per_tooth: float | None = field(default=None, metadata={"unit": "mm"})
+    """on the way down into the material; None: the feed of the cut"""
 
 
 MODES: dict[str, type[Entity]] = {
@@ -137,6 +139,7 @@ def write_entities(record: Record, edits: Edits) -> Ref[Entity]:
             machine=record.machine,
             material=record.material,
             generator=record.generator,
+            plunge_feed_per_tooth=record.plunge_feed_per_tooth,
         )
     )
     return add(_optimisation(record, available, details))
@@ -193,6 +196,7 @@ def _from_entities(model: Model, ref: Ref[Entity]) -> Record | None:
         programmed_cutspeed=programmed.cutspeed,
         programmed_spindle=programmed.spindle,
         programmed_axial_depth=programmed.axial_cutting_depth,
+        plunge_feed_per_tooth=details.plunge_feed_per_tooth,
     )
 
 

@@ -30,6 +30,18 @@ MAX_TEETH = 500
 """circular saws have more, and are no milling cutters"""
 
 
+CENTRE_CUTTING = {
+    "BALL_ENDMILL": True,
+    "FACEMILL": False,
+    "SIDE_MILL": False,
+    "T_SLOT_MILL": False,
+    "DOVETAIL_MILL": False,
+    "WOODRUFF_KEYSEAT_MILL": False,
+    "THREAD_MILL": False,
+}
+"""bodies whose form tells whether their edges reach the axis"""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Tool:
     """What the physics needs to know of a cutting tool.
@@ -58,6 +70,10 @@ class Tool:
     """rad, included angle of a drill's point"""
     width: float | None = None
     """mm, of a grooving insert"""
+    centre_cutting: bool | None = None
+    """whether the edges of a mill reach its axis; None: its form does not tell"""
+    has_wiper: bool = False
+    """a flat beside the nose smooths what it leaves; ISO 14649 has no attribute for it"""
 
 
 def tool_of(program: Program, ref: Ref[Entity]) -> Tool:
@@ -106,6 +122,7 @@ def _rotating(program: Program, ref: Ref[Entity], tool: MillingCuttingTool) -> T
         corner_radius=radius or None,
         cutting_edge_length=dimension.cutting_edge_length or None,
         point_angle=_point_angle(dimension.tool_top_angle),
+        centre_cutting=CENTRE_CUTTING.get(body.keyword),
     )
 
 

@@ -11,6 +11,8 @@ MM_PER_M = 1000.0
 SECONDS_PER_MINUTE = 60.0
 WATTS_PER_KILOWATT = 1000.0
 MM_PER_MICROMETRE = 1e-3
+UM_PER_MM = 1000.0
+NEWTONS_PER_KILONEWTON = 1000.0
 NMM_PER_NM = 1000.0
 
 
@@ -64,6 +66,16 @@ def kw_from_watts(power: float) -> float:
     return power / WATTS_PER_KILOWATT
 
 
+def newtons_from_kn(value: float) -> float:
+    """Force in N from kN."""
+    return value * NEWTONS_PER_KILONEWTON
+
+
+def kn_from_newtons(force: float) -> float:
+    """Force in kN from N."""
+    return force / NEWTONS_PER_KILONEWTON
+
+
 def nmm_from_nm(value: float) -> float:
     """Torque in N·mm from N·m."""
     return value * NMM_PER_NM
@@ -82,6 +94,16 @@ def mm_from_um(value: float) -> float:
 def um_from_mm(length: float) -> float:
     """Length in µm from mm."""
     return length / MM_PER_MICROMETRE
+
+
+def n_mm_from_n_um(value: float) -> float:
+    """Stiffness in N/mm from N/µm."""
+    return value * UM_PER_MM
+
+
+def n_um_from_n_mm(stiffness: float) -> float:
+    """Stiffness in N/µm from N/mm."""
+    return stiffness / UM_PER_MM
 
 
 def rad_from_deg(value: float) -> float:

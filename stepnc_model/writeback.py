@@ -65,7 +65,8 @@ class Change:
 def write(program: Program, changes: Sequence[Change], profile: Profile) -> bytes:
     """The file with the advice in it.
 
-    Several workingsteps may run one operation; it can hold one feed only, and gets the lowest.
+    Several workingsteps may run one operation; it can hold one feed only, and gets the lowest,
+    of the plunge too.
 
     Parameters
     ----------
@@ -87,8 +88,7 @@ def write(program: Program, changes: Sequence[Change], profile: Profile) -> byte
     chosen: dict[int, Change] = {}
     for change in changes:
         operation = int(change.workingstep.operation_ref)
-        if operation not in chosen or change.feed < chosen[operation].feed:
-            chosen[operation] = change
+        chosen[operation] = _slower(change, chosen.get(operation, change))
     draft = Draft(program)
     for change in chosen.values():
         take_out(draft, change.workingstep)
@@ -99,6 +99,14 @@ def write(program: Program, changes: Sequence[Change], profile: Profile) -> byte
         record = _with_first_programmed(change.record, old)
         _put_in(draft, change.workingstep, record, profile)
     return _finished(draft)
+
+
+def _slower(one: Change, other: Change) -> Change:
+    """The change with the lower feed, with the lower plunge feed of both."""
+    slower = one if one.feed < other.feed else other
+    feeds = [each.record.plunge_feed_per_tooth for each in (one, other)]
+    least = min((feed for feed in feeds if feed is not None), default=None)
+    return replace(slower, record=replace(slower.record, plunge_feed_per_tooth=least))
 
 
 def convert(program: Program, profile: Profile) -> bytes:

@@ -22,8 +22,8 @@ VARIABLES = {
     "STEPNC_DATA": "folder of the service's data where no `--data` is given",
     "XDG_DATA_HOME": "where the usual knowledge base lies, `stepnc/knowledge.db` below it; "
     "without it `~/.local/share`",
-    "XDG_CACHE_HOME": "where machine code of kernels is kept, `stepnc-optimiser` below it, "
-    "when it may not lie beside the sources; without it `~/.cache`",
+    "XDG_CACHE_HOME": "where compiled kernels lie that have no place beside their modules, "
+    "`stepnc-optimiser` below it; without it `~/.cache`",
     "NO_COLOR": "set to anything: no colours on a terminal",
     "COLUMNS": "letters in a line, for tables that fold",
 }

@@ -123,7 +123,7 @@ def _control(options: argparse.Namespace) -> int:
 
 def _request(options: argparse.Namespace) -> "ControlRequest":
     from service.control.run import ControlRequest
-    from service.simulation.setup import numbers_in
+    from service.numbers import numbers_in
 
     low, high = numbers_in(options.band, "override band", counts=(2,))
     return ControlRequest(

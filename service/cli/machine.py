@@ -1,4 +1,4 @@
-"""Commands of the virtual machine: ``simulate`` and ``calibrate``."""
+"""Commands of the virtual machine: ``simulate``, ``calibrate`` and ``taptest``."""
 
 import argparse
 import re
@@ -18,6 +18,7 @@ def add_machine_commands(commands: Commands) -> None:
     """Add them to ``stepnc``."""
     _add_simulate(commands)
     _add_calibrate(commands)
+    _add_tap_test(commands)
 
 
 def add_what_runs(parser: argparse.ArgumentParser) -> None:
@@ -57,22 +58,67 @@ def add_what_runs(parser: argparse.ArgumentParser) -> None:
 
 def _add_calibrate(commands: Commands) -> None:
     parser = commands.add_parser(
-        "calibrate", help="fit a machine file to measured runs of a program"
+        "calibrate",
+        help="fit a machine file to measured runs of a program, or tool life to measured lives",
     )
     parser._negative_number_matcher = re.compile(r"-[.\d]")
     add = parser.add_argument
     add(
         "runs",
         type=Path,
-        nargs="+",
+        nargs="*",
         metavar="RUN.csv",
         help="measured runs: time_s and powers in W, named as `simulate` writes them",
     )
+    add(
+        "--life",
+        action="append",
+        default=[],
+        metavar="V:T",
+        help="an edge was worn after T min at V m/min, as 120:25; two or more: Taylor's law",
+    )
+    add(
+        "--tool-life",
+        type=Path,
+        metavar="CSV",
+        help="such pairs in a file with the columns speed_m_min and life_min",
+    )
+    add("--edge", default="carbide", help="of the tool lives: hss, carbide (default), ceramic")
     add("--program", type=Path, metavar="FILE", help="the STEP-NC program that was run")
     add_what_runs(parser)
-    add("-o", "--output", type=Path, metavar="TOML", help="write the machine as calibrated")
+    add(
+        "-o",
+        "--output",
+        type=Path,
+        metavar="TOML",
+        help="write the machine as calibrated, or the [[tool_life]] table of a material",
+    )
     add_json(parser)
-    parser.set_defaults(run=_calibrate)
+    parser.set_defaults(run=_calibrate, refuse=parser.error)
+
+
+def _add_tap_test(commands: Commands) -> None:
+    parser = commands.add_parser(
+        "taptest", help="modes for the stability of cuts from a measured frequency response"
+    )
+    add = parser.add_argument
+    add(
+        "response",
+        type=Path,
+        metavar="FRF.csv",
+        help="frequency_hz and real and imaginary part: real_um_n, imag_um_n "
+        "(m_n, mm_n, um_n, or m_s2_n of an accelerometer)",
+    )
+    add("--direction", required=True, help="of the tap: x, y, z, or xy for a round tool")
+    add("--tool", default="", metavar="ID", help="tool that was tapped, as programs name it")
+    add("--tool-diameter-mm", type=float, metavar="MM", help="of the tool that was tapped")
+    add("--workpiece", action="store_true", help="the workpiece was tapped")
+    add("--modes", type=int, metavar="N", help="how many (default: by the peaks)")
+    add("--source", default="", help="who measured it, with which holder and overhang")
+    add("--machine", default="", help="one of `stepnc machines`, or your own file")
+    add("-o", "--output", type=Path, metavar="TOML", help="write the machine with its modes")
+    add_json(parser)
+    parser.set_defaults(run=_tap_test)
 
 
 def _add_simulate(commands: Commands) -> None:
@@ -184,6 +230,10 @@ def _simulate(options: argparse.Namespace) -> int:
 
 def _calibrate(options: argparse.Namespace) -> int:
     """``stepnc calibrate``."""
+    if options.life or options.tool_life is not None:
+        return _calibrate_tool_life(options)
+    if not options.runs:
+        options.refuse("the following arguments are required: RUN.csv, or --life")
     from service.calibration.run import CalibrationRequest, calibrate
     from service.terminal import tell
 
@@ -203,6 +253,60 @@ def _calibrate(options: argparse.Namespace) -> int:
         from service.calibration.table import print_calibration
 
         print_calibration(result)
+    return OK
+
+
+def _calibrate_tool_life(options: argparse.Namespace) -> int:
+    """``stepnc calibrate --life``."""
+    from service.calibration.tool_life import (
+        ToolLifeRequest,
+        calibrate_tool_life,
+        tool_life_json,
+        tool_life_text,
+    )
+    from service.terminal import tell, write_out
+    from stepnc_model.errors import StepNcError
+
+    if options.runs or options.program is not None:
+        raise StepNcError("measured runs and tool lives are calibrated one at a time")
+    result = calibrate_tool_life(
+        ToolLifeRequest(
+            pairs=tuple(options.life),
+            file=options.tool_life,
+            cutting_material=options.edge,
+            output=options.output,
+        )
+    )
+    if options.output is not None:
+        tell(f"tool life: {options.output}")
+    write_out(tool_life_json(result) if options.json else tool_life_text(result))
+    return OK
+
+
+def _tap_test(options: argparse.Namespace) -> int:
+    """``stepnc taptest``."""
+    from service.calibration.tap_table import print_tap_test, tap_test_json
+    from service.calibration.tap_test import TapTestRequest, tap_test
+    from service.terminal import tell, write_out
+
+    result = tap_test(
+        TapTestRequest(
+            response=options.response,
+            direction=options.direction,
+            tool=options.tool,
+            tool_diameter_mm=options.tool_diameter_mm,
+            workpiece=options.workpiece,
+            modes=options.modes,
+            source=options.source,
+            machine=options.machine,
+            output=options.output,
+        ),
+        tell=tell,
+    )
+    if options.json:
+        write_out(tap_test_json(result))
+    else:
+        print_tap_test(result)
     return OK
 
 

@@ -19,6 +19,7 @@ from service.cli.options import (
     CONTROLS,
     INFEASIBLE,
     INTERRUPTED,
+    LIMIT_EXCEEDED,
     OK,
     Commands,
     add_file,
@@ -153,7 +154,37 @@ def add_optimise_options(parser: argparse.ArgumentParser) -> None:
         metavar="CONTROL",
         help=f"also NC code with the advised feeds, for {CONTROLS}",
     )
+    add(
+        "--holding",
+        type=Path,
+        metavar="TOML",
+        help="how the workpiece is held: [[holding]] tables of chuck, vice or clamps, by setup",
+    )
+    add(
+        "--tools",
+        type=Path,
+        metavar="TOML",
+        help="tool table that says which of the program's tools cut over centre or have wipers",
+    )
+    add(
+        "--allow-plunge",
+        action="store_true",
+        help="let tools that do not cut over centre go straight down into the solid; exit 5 "
+        "without",
+    )
     _add_learned(parser)
+    add(
+        "--confirm",
+        action="store_true",
+        help="run the advised program on the virtual machine and print what it finds beside "
+        "what was promised; exit 5 where a bound is passed",
+    )
+    add(
+        "--stock",
+        default="",
+        metavar="NUMBERS",
+        help="raw part, where the file draws none: x0,y0,z0,x1,y1,z1 or diameter,z0,z1 in mm",
+    )
     add("--dry-run", action="store_true", help="write no STEP-NC file")
     add("--report", type=Path, metavar="HTML", help="write a self-contained page with plots")
     add_json(parser)
@@ -168,7 +199,8 @@ def _add_learned(parser: argparse.ArgumentParser) -> None:
         type=float,
         default=0.9,
         metavar="Q",
-        help="quantile of a corrected k_c to plan with, 0.5 to 0.999 (default 0.9)",
+        help="quantile of k_c, by its spread in catalogues or as learned, at which loads keep "
+        "their bounds: 0.5 (nominal) to 0.999 (default 0.9)",
     )
 
 
@@ -250,18 +282,27 @@ def _optimise(options: argparse.Namespace) -> int:
             control=options.nc,
             knowledge=options.kb,
             safety=options.safety,
+            confirm=options.confirm,
+            holding=options.holding,
+            tools=options.tools,
+            allow_plunge=options.allow_plunge,
+            stock=options.stock,
         ),
         tell=tell,
     )
+    confirmation = outcome.confirmation
     if options.json:
         from service.wire import plan_json
 
-        write_out(plan_json(outcome.plan))
+        write_out(plan_json(outcome.plan, confirmation))
     else:
         from service.tables import print_plan
 
-        print_plan(outcome.plan)
-    return INFEASIBLE if outcome.plan.is_infeasible else OK
+        print_plan(outcome.plan, confirmation)
+    if outcome.plan.is_infeasible:
+        return INFEASIBLE
+    is_passed = confirmation is not None and bool(confirmation.passed)
+    return LIMIT_EXCEEDED if is_passed or outcome.plan.faults else OK
 
 
 def _check(options: argparse.Namespace) -> int:

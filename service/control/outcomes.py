@@ -10,8 +10,8 @@ from controller.estimate import force_ratio
 from controller.record import Record
 from optimiser.advice import Advice, State
 from optimiser.cut import Cut, CutKind
-from optimiser.limits import roughness_load
 from optimiser.region import region_of
+from optimiser.roughness import roughness_load
 from service.control.planned import Planned
 from service.control.run import ControlRun
 from service.records import immersion

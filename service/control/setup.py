@@ -12,6 +12,7 @@ from optimiser.cut import CutKind
 from optimiser.formulate import Task
 from optimiser.modes import Mode
 from optimiser.optimise import optimise as advise
+from optimiser.safety import LEAST_QUANTILE
 from optimiser.source import from_features
 from service.chosen import load_material_named
 from service.control.planned import Planned
@@ -76,7 +77,13 @@ def preview_of(course: NominalCourse) -> Preview:
     """What the program expects: the force where the override acts."""
     force = np.where(course.can_override, course.force, np.float32(0.0))
     return Preview(
-        until=course.until, force=force, peak=course.peak, workingstep=course.workingstep
+        until=course.until,
+        force=force,
+        peak=course.peak,
+        wall=course.wall,
+        workingstep=course.workingstep,
+        land_force=course.land_force,
+        arcs=course.arcs,
     )
 
 
@@ -106,13 +113,14 @@ def plan_as_it_is(
         program.workingsteps,
         machine=machine,
         material=material,
-        safety=0.5,
+        safety=LEAST_QUANTILE,
         is_new_allowed=True,
     )
     task = Task(
         mode=mode,
         free=frozenset(),
         force_factors={each.tool: each.factor for each in factors},
+        safety=LEAST_QUANTILE,
         source=from_features,
     )
     return advise(program, machine=machine, material=material, task=task)

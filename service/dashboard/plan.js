@@ -53,6 +53,7 @@ function wish() {
     workingsteps: only.length < all ? only : [], profile: byId("profile").value,
     nc_control: byId("nc-control").value || null, has_pareto: byId("pareto").checked,
     tool_change_s: numeric("tool-change") ?? 0, has_corrections: byId("corrections").checked,
+    is_confirmed: byId("confirm").checked, stock: byId("stock").value.trim(),
     ...(safety === null ? {} : { safety: safety / 100 }),
   };
 }
@@ -64,8 +65,9 @@ function recall(request) {
   for (const each of form.querySelectorAll('input[name="free"]')) each.checked = request.free.includes(each.value);
   for (const [id, name] of [["machine", "machine"], ["material", "material"], ["units", "units"],
     ["roughness", "roughness_um"], ["profile", "profile"], ["nc-control", "nc_control"],
-    ["tool-change", "tool_change_s"]]) put(id, request[name]);
+    ["tool-change", "tool_change_s"], ["stock", "stock"]]) put(id, request[name]);
   byId("pareto").checked = request.has_pareto;
+  byId("confirm").checked = request.is_confirmed ?? false;
   byId("corrections").checked = request.has_corrections;
 }
 

@@ -2,6 +2,7 @@
 
 import { api, byId, duration, el, fill, fixed, number, save, show, tell } from "/dashboard/app.js";
 import { findingsList } from "/dashboard/plan_program.js";
+import { showConfirmation } from "/dashboard/plan_confirm.js";
 import { stepsCsv, stepsTable } from "/dashboard/plan_table.js";
 
 const MODES = { TC: "least time", QC: "roughness kept", EC: "least energy" };
@@ -48,7 +49,9 @@ export function showResult(asked, found) {
       el("div", {}, el("span", { class: "value bad" }, String(infeasible)))) : null,
     el("div", { class: "figures", id: "figures-simulated" }));
   fill(byId("result-findings"), el("p", { class: "soft small" },
-    "As planned: without tool changes and moves between workingsteps."),
+    "As planned: without tool changes and moves between workingsteps. " + (found.safety.cost_s
+      ? `Bounds are kept at the ${number(100 * found.safety.quantile, 4)} % quantile of k_c, which costs ${number(found.safety.cost_s, 3)} s.`
+      : "")),
   infeasible ? el("div", { class: "banner bad", role: "alert" },
     `${infeasible} workingstep${infeasible > 1 ? "s have" : " has"} no feasible feed: the table says why. They stay as programmed, also in the NC code; times compare the others.`) : null,
   found.is_written ? null : el("div", { class: "banner warn" }, "No optimised program was written: nothing was changed in it."),
@@ -58,6 +61,7 @@ export function showResult(asked, found) {
   byId("download-nc").title = found.nc_control ? `for ${found.nc_control}` : "choose a control and optimise again";
   byId("download-nc").textContent = found.nc_control ? `NC code, ${found.nc_control}` : "NC code";
   stepsTable(byId("steps"), steps);
+  showConfirmation(found.confirmation);
   bars(steps);
 }
 

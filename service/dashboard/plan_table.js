@@ -131,7 +131,8 @@ function detail(step, at) {
 
 function limits(step) {
   if (!step.limits.length) return el("p", { class: "soft" }, "No limits were evaluated.");
-  const used = ({ value, bound, sense }) => (sense === "at least" ? bound / value : value / bound);
+  const used = ({ value, bound, sense, safety_factor: safety }) =>
+    (sense === "at least" ? bound / value : safety * value / bound);
   const sorted = [...step.limits].sort((a, b) => used(b) - used(a));
   const told = step.advised ? "as advised" : "as programmed";
   return el("table", {}, el("caption", {}, `Limits ${told}, nearest first`),
@@ -142,7 +143,8 @@ function limits(step) {
       const name = limitWords(limit.name, step);
       return el("tr", {},
         el("th", { scope: "row" }, limit.name === step.active_limit && isNear ? el("b", {}, name) : name),
-        el("td", { class: "n" }, four(limit.value), limit.sense === "at least" ? " ≥ " : " ≤ ",
+        el("td", { class: "n" }, four(limit.value),
+          limit.safety_factor === 1 ? "" : ` × ${four(limit.safety_factor)}`, limit.sense === "at least" ? " ≥ " : " ≤ ",
           `${four(limit.bound)} ${limit.unit}`),
         el("td", { class: "bar" }, el("div", { class: `meter ${isOver ? "over" : isNear ? "near" : ""}`,
           role: "img", "aria-label": `${percent(share)} of ${name} used` },
@@ -157,6 +159,7 @@ function facts(step) {
   const both = (name, form = four) => change(step.programmed?.[name], step.advised?.[name], form);
   const lines = [
     [`${tooth[0].toUpperCase()}${tooth.slice(1)}, mm`, both("feed_per_tooth_mm")],
+    step.plunge ? ["Plunge feed, mm/min", both("plunge_feed_mm_min")] : null,
     ["Depth of a pass, mm", both("axial_depth_mm")],
     ["Motor power, kW", number(step.motor_power_kw)],
     ["Cutting force, N", number(step.cutting_force_n)],

@@ -38,13 +38,18 @@ def run(task: Task) -> None:
             control=asked["nc_control"],
             knowledge=task.depot.knowledge if asked["has_corrections"] else "",
             safety=asked["safety"],
+            # Jobs from before these could be asked for have none of them.
+            confirm=asked.get("is_confirmed", False),
+            stock=asked.get("stock", ""),
+            centre_cutting=asked.get("centre_cutting", {}),
+            allow_plunge=asked.get("allow_plunge", False),
         ),
         tell=task.tell,
     )
     if asked["nc_control"]:
         _name_code(task)
     task.keep({
-        **json.loads(plan_json(outcome.plan)),
+        **json.loads(plan_json(outcome.plan, outcome.confirmation)),
         "program": name,
         "is_written": outcome.written is not None,
         "nc_control": asked["nc_control"] or None,

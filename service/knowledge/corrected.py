@@ -3,19 +3,14 @@
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
+from optimiser.safety import USUAL_QUANTILE
 from simulator.spec import Machine, MaterialMatch
-from stepnc_model.errors import Finding, Severity, StepNcError
+from stepnc_model.errors import Finding, Severity
 from stepnc_model.program import Program, Workingstep
 from stepnc_model.tool import tool_of
 
 if TYPE_CHECKING:
     from service.knowledge.verbs import AcceptedFactor
-
-MOST_SAFETY = 0.999
-"""greatest quantile: beyond, the tail of a distribution decides that nobody has seen"""
-
-SAFETY = 0.9
-"""quantile of the factor on k_c: one run in ten needs more force than planned"""
 
 
 def factors_for(  # noqa: PLR0913 (all that a context is made of)
@@ -25,7 +20,7 @@ def factors_for(  # noqa: PLR0913 (all that a context is made of)
     *,
     machine: Machine,
     material: MaterialMatch,
-    safety: float = SAFETY,
+    safety: float = USUAL_QUANTILE,
     is_new_allowed: bool = False,
 ) -> "tuple[AcceptedFactor, ...]":
     """Accepted factors of the tools of some workingsteps.
@@ -46,10 +41,8 @@ def factors_for(  # noqa: PLR0913 (all that a context is made of)
     Raises
     ------
     StepNcError
-        When the quantile is out of range, or the knowledge base cannot be read.
+        When the knowledge base cannot be read.
     """
-    if not 0.5 <= safety <= MOST_SAFETY:
-        raise StepNcError(f"safety {safety:g}: it must be 0.5 to {MOST_SAFETY:g}")
     from service.knowledge.place import named_place  # noqa: PLC0415 (os and paths only when asked)
 
     found = named_place(place)
@@ -73,7 +66,7 @@ def finding_of(factor: "AcceptedFactor", *, safety: float) -> Finding:
     when = factor.accepted_at.date().isoformat()
     text = (
         f"tool '{factor.tool}': learned k_c × {factor.centre:.3f} from {factor.outcomes} "
-        f"outcomes, accepted by {factor.accepted_by} on {when}; planned with its "
+        f"outcomes, accepted by {factor.accepted_by} on {when}; bounds are kept at its "
         f"{100.0 * safety:g} % quantile, × {factor.factor:.3f}"
     )
     return Finding(severity=Severity.NOTE, message=text)

@@ -22,10 +22,11 @@ from stepnc_model.post.blocks import Cycles, Machine
 from stepnc_model.post.controls import Control, read, write
 from stepnc_model.post.neutral import blocks_of
 from stepnc_model.program import Executable, Program
+from stepnc_model.stock import Stock
 from stepnc_model.technology import programmed
 from stepnc_model.toolpath.function import LEFT_OUT, Function
 from stepnc_model.toolpath.generate import generate, raised, require_ready
-from stepnc_model.toolpath.job import Stock, clamps_of, stock_of
+from stepnc_model.toolpath.job import clamps_of, stock_of
 from stepnc_model.toolpath.path import Point, ToolPath
 
 

@@ -11,9 +11,9 @@ from controller.orders import Criterion
 from controller.preview import LOOK_AHEAD
 from kbe.evaluation import Grouping, RowFilter, SortKey
 from optimiser.modes import Free, Mode
+from optimiser.safety import GREATEST_QUANTILE, LEAST_QUANTILE, USUAL_QUANTILE
 from service.control.live import MOST_PERCENT
 from service.depot.ids import PATTERN
-from service.knowledge.corrected import SAFETY
 from service.live.pace import LEAST, MOST
 from service.trial.inputs import FIELDS, MillingType
 from simulator.machine.disturbance import NoiseKind
@@ -96,8 +96,31 @@ class AdviceBody(Body):
         description="s to change a worn tool; 0: tool life is left out",
     )
     has_corrections: bool = Field(True, description="plan with what was learned and accepted")
+    is_confirmed: bool = Field(
+        False, description="run the advised program too, and tell what it finds beside the plan"
+    )
+    stock: Name = Field(
+        "",
+        description="raw part of a program that draws none, mm: x0,y0,z0,x1,y1,z1 or "
+        "diameter,z0,z1",
+        examples=["0,0,-30,100,120,5"],
+    )
     safety: float = Field(
-        SAFETY, ge=0.5, le=0.999, description="quantile of a corrected k_c to plan with"
+        USUAL_QUANTILE,
+        ge=LEAST_QUANTILE,
+        le=GREATEST_QUANTILE,
+        description="quantile of k_c at which loads keep their bounds; 0.5: nominal",
+    )
+
+    centre_cutting: dict[Name, bool] = Field(
+        {},
+        max_length=1000,
+        description="whether tools cut over centre, by their ids",
+        examples=[{"END MILL 10MM": True}],
+    )
+    allow_plunge: bool = Field(
+        False,
+        description="tools that do not cut over centre may go straight down into the solid",
     )
 
     def words(self) -> dict[str, Any]:

@@ -127,6 +127,18 @@ class SettingView(View):
     feed_per_tooth_mm: float
     axial_depth_mm: float
     passes: int | None = None
+    plunge_feed_mm_min: float | None = Field(
+        default=None, description="on the way down into the material; null: as the cut"
+    )
+    plunge_feed_per_tooth_mm: float | None = None
+
+
+class PlungeView(View):
+    """What holds the plunge feed."""
+
+    reason: str
+    fault: str | None = Field(description="why the tool may not go straight down; null: it may")
+    limits: list[LimitView]
 
 
 class BeforeAfterView(View):
@@ -134,6 +146,24 @@ class BeforeAfterView(View):
 
     before: float | None
     after: float | None
+
+
+class StabilityView(View):
+    """What is known of a cut's stability; its bound is one of the limits."""
+
+    basis: str = Field(description="measured, estimated (bounds nothing) or not_used")
+    reason: str
+    stable_at_any_speed_mm: float | None
+    band_mm: list[float] | None = Field(description="of an estimate, least and greatest")
+
+
+class HoldingLoadView(View):
+    """What a cut asks of what holds its workpiece; bounds are among the limits."""
+
+    torque_nm: float = Field(description="about the axis of a bar, axial force included")
+    moment_nm: float = Field(description="of tilting about the jaws; 0: not known, or none")
+    force_n: float = Field(description="across the axis of a mill, the greatest")
+    lift_n: float = Field(description="along it, that pulls the workpiece up")
 
 
 class AdvisedView(View):
@@ -156,6 +186,43 @@ class AdvisedView(View):
     roughness_ra_um: float | None
     energy_j: float | None
     time_s: BeforeAfterView
+    stability: StabilityView | None = Field(
+        default=None, description="null: chatter is no matter of this cut's depth"
+    )
+    plunge: PlungeView | None = Field(
+        default=None, description="null: no way down has a feed of its own"
+    )
+    holding_load: HoldingLoadView | None = Field(
+        default=None, description="null: not cut, or nothing is asked of a holding"
+    )
+
+
+class FigureView(View):
+    """One promise and what became of it."""
+
+    promised: float
+    found: float
+    ratio: float | None = Field(description="found over promised")
+    bound: float | None = Field(description="that the figure must keep")
+
+
+class ConfirmedView(View):
+    """A workingstep beside its run."""
+
+    id: str
+    time_s: FigureView
+    cutting_force_n: FigureView
+    thrust_n: FigureView
+    deflection_um: FigureView
+    cutting_power_w: FigureView
+    drive_power_w: FigureView
+
+
+class ConfirmationView(View):
+    """A plan beside its run."""
+
+    workingsteps: list[ConfirmedView]
+    passed: list[str] = Field(description="a sentence for each bound that the run passed")
 
 
 class AdviceView(View):
@@ -172,6 +239,9 @@ class AdviceView(View):
     findings: list[FindingView]
     is_written: bool = Field(description="whether there is an optimised program")
     nc_control: str | None
+    confirmation: ConfirmationView | None = Field(
+        None, description="what a run of the advised program found; only where asked for"
+    )
 
 
 class RunTotalView(View):

@@ -7,7 +7,9 @@ from enum import StrEnum
 from pathlib import Path
 
 from service.buckets import Trace
+from service.chosen import require_axes
 from service.files import require_place
+from service.numbers import numbers_in
 from service.progress import Ticker, bar
 from service.reading import Tell, one_of, silent
 from service.run_file import require_suffix
@@ -17,7 +19,7 @@ from service.simulation.setup import (
     Prepared,
     from_code,
     from_program,
-    numbers_in,
+    prepared_program,
 )
 from service.simulation.timeline_file import TimelineFile
 from service.simulation.trace import TraceKeeper
@@ -32,8 +34,9 @@ from simulator.machine.virtual import LoadedTool, Setup, VirtualMachine
 from simulator.motion.control import DEVIATION, Control, control_model
 from simulator.motion.fir import FixedTimeFilter
 from simulator.motion.motion import ControlModel, axis_limits
-from simulator.spec import Machine, MachineKind, MaterialMatch
+from simulator.spec import Machine, MaterialMatch
 from stepnc_model.errors import Finding, StepNcError, WriteError
+from stepnc_model.program import Program
 from stepnc_model.units import mm_from_um
 
 MOST_FACTOR = 100.0
@@ -137,15 +140,8 @@ def simulate(
         run.trace = TraceKeeper()
     if request.output is not None:
         run.file = TimelineFile(request.output, virtual.workingsteps, program=prepared.name)
-    ticker = Ticker(tell)
     try:
-        with run.file or nullcontext():
-            for episode in virtual.run(interpret(prepared.blocks, virtual.machine)):
-                run.add(
-                    episode, ticked=lambda: ticker(lambda: _progress(prepared, virtual, run))
-                )
-    except SimulationError as error:
-        raise SimulationError(f"{place_in(prepared, virtual)}: {error}") from error
+        _run(prepared, virtual, run, tell=tell)
     finally:
         if run.file is not None and run.file.place is not None:
             tell(f"written: {run.file.place} ({run.file.rows} samples)")
@@ -159,6 +155,23 @@ def simulate(
         samples=0 if run.file is None else run.file.rows,
         trace=None if run.trace is None else run.trace.trace(),
     )
+
+
+def run_of_program(
+    program: Program, machine: Machine, material: MaterialMatch, *, tell: Tell = silent
+) -> tuple[tuple[str, Total], ...]:
+    """Totals of a program that was read, by workingstep in the order of their beginning.
+
+    Raises
+    ------
+    StepNcError
+        When the machine cannot run it.
+    """
+    prepared = prepared_program(program, machine, material, tell=tell)
+    virtual = _machine(SimulationRequest(), prepared, teeth=None)
+    run = Gathering(virtual, Disturbance(), rate=1.0, watchers=())
+    _run(prepared, virtual, run, tell=tell)
+    return tuple(zip(virtual.workingsteps, run.totals[1:], strict=True))
 
 
 def waiting_machine(
@@ -175,6 +188,19 @@ def waiting_machine(
     teeth = _teeth(request)
     prepared = _prepared(request, tell)
     return prepared, _machine(request, prepared, teeth=teeth)
+
+
+def _run(prepared: Prepared, virtual: VirtualMachine, run: Gathering, *, tell: Tell) -> None:
+    """Run to the end, told of where it is."""
+    ticker = Ticker(tell)
+    try:
+        with run.file or nullcontext():
+            for episode in virtual.run(interpret(prepared.blocks, virtual.machine)):
+                run.add(
+                    episode, ticked=lambda: ticker(lambda: _progress(prepared, virtual, run))
+                )
+    except SimulationError as error:
+        raise SimulationError(f"{place_in(prepared, virtual)}: {error}") from error
 
 
 def _progress(prepared: Prepared, virtual: VirtualMachine, run: Gathering) -> str:
@@ -217,7 +243,7 @@ def _machine(
     request: SimulationRequest, prepared: Prepared, *, teeth: Teeth | None
 ) -> VirtualMachine:
     """The machine as it waits for the program."""
-    _require_axes(prepared.machine)
+    require_axes(prepared.machine)
     return VirtualMachine(
         Setup(
             machine=prepared.machine,
@@ -228,15 +254,6 @@ def _machine(
             zero=_zero(request.zero, prepared),
         )
     )
-
-
-def _require_axes(machine: Machine) -> None:
-    """A machine that can be run says how fast its axes are."""
-    known = {axis.name for axis in machine.axes}
-    needed = {"X", "Z"} if machine.kind is MachineKind.LATHE else {"X", "Y", "Z"}
-    if missing := sorted(needed - known):
-        text = f"machine '{machine.name}' says nothing of its axes {', '.join(missing)}"
-        raise SimulationError(f"{text}: it cannot be run")
 
 
 def _require(request: SimulationRequest) -> None:

@@ -2,12 +2,12 @@
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
-from math import isfinite
 from pathlib import Path
 from typing import Generic, TypeVar
 
 from service.chosen import load_material_named, machine_for, material_for
 from service.files import open_lines
+from service.numbers import require_size, stock_in
 from service.paths.toolpaths import paths_of, with_feeds
 from service.reading import Tell, one_of, read_program
 from simulator.library import load_machine
@@ -25,16 +25,13 @@ from stepnc_model.post import blocks as post
 from stepnc_model.post.controls import SUFFIXES, Control, read_blocks
 from stepnc_model.post.neutral import blocks_of, tool_numbers
 from stepnc_model.program import Program
-from stepnc_model.toolpath.job import Stock, stock_of
-from stepnc_model.toolpath.path import FARTHEST
+from stepnc_model.stock import Stock
+from stepnc_model.toolpath.job import stock_of
 
 T = TypeVar("T")
 
 AROUND_PATH, AROUND_PROGRAM = 4, 7
 """blocks that are no steps: tool, spindle and coolant before a path, begin and end at last"""
-
-LEAST_SIZE = 0.01
-"""mm, of a stock along an axis"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -102,8 +99,20 @@ def from_program(
     program = read_program(file, units=units, name=name)
     match = material_for(material, program)
     tell(f"material: {match.reason}")
+    return prepared_program(program, machine_for(machine, program), match, tell=tell)
+
+
+def prepared_program(
+    program: Program, chosen: Machine, match: MaterialMatch, *, tell: Tell
+) -> Prepared:
+    """A program that was read, on a machine that suits it.
+
+    Raises
+    ------
+    StepNcError
+        When a tool path cannot be made.
+    """
     paths = with_feeds(paths_of(program, tell=tell), keep_going=False)
-    chosen = machine_for(machine, program)
     numbers = tool_numbers(paths.paths)
     steps = sum(len(path.steps) for path in paths.paths)
     blocks = Counted(blocks_of(program, paths.items, name=Path(program.name).stem))
@@ -145,7 +154,7 @@ def from_code(
             raise StepNcError("a tool table without a material: name one with --material")
         read = read_tool_table(request.tools)
         tools = {tool.number: table_tool(tool, match.material) for tool in read}
-    raw = _stock(request.stock) if request.stock else None
+    raw = stock_in(request.stock) if request.stock else None
     size = _size(request.code)
     lines = Counted(_lines(request.code), len)
     clamped = None if raw is None else stock_map(chosen, raw)
@@ -202,10 +211,7 @@ def stock_map(machine: Machine, raw: Stock) -> StockMap:
     StepNcError
         When there is nothing of it, or more than any machine holds.
     """
-    for axis, low, high in zip("xyz", raw.low, raw.high, strict=True):
-        if not high - low >= LEAST_SIZE or max(abs(low), abs(high)) > FARTHEST:
-            bound = f"at least {LEAST_SIZE:g} mm, within {FARTHEST:g} mm of zero"
-            raise StepNcError(f"stock: {axis} from {low:g} to {high:g} mm: {bound}")
+    require_size(raw)
     return TurningStock(raw) if machine.kind is MachineKind.LATHE else MillingStock(raw)
 
 
@@ -283,32 +289,3 @@ def _dialect(request: CodeRequest) -> Control:
 def _plain(text: str) -> str:
     """A remark as any control spells it."""
     return "".join(filter(str.isalnum, text)).upper()
-
-
-def _stock(text: str) -> Stock:
-    """Six corners of a block, or diameter and two ends of a bar, in mm."""
-    numbers = numbers_in(text, "stock", counts=(3, 6))
-    radius = None
-    if len(numbers) == 3:
-        radius = 0.5 * numbers[0]
-        numbers = (-radius, -radius, numbers[1], radius, radius, numbers[2])
-    low, high = numbers[:3], numbers[3:]
-    return Stock(low=(low[0], low[1], low[2]), high=(high[0], high[1], high[2]), radius=radius)
-
-
-def numbers_in(text: str, what: str, *, counts: tuple[int, ...]) -> tuple[float, ...]:
-    """Finite numbers with commas between them.
-
-    Raises
-    ------
-    StepNcError
-        When they are no numbers, or not as many as they may be.
-    """
-    try:
-        numbers = tuple(float(word) for word in text.split(","))
-    except ValueError:
-        numbers = ()
-    if len(numbers) not in counts or not all(map(isfinite, numbers)):
-        wanted = " or ".join(map(str, counts))
-        raise StepNcError(f"{what} '{text}': {wanted} numbers with commas between them")
-    return numbers

@@ -20,7 +20,7 @@ def print_simulation(simulation: Simulation, *, carbon: CarbonFactor = WORLD) ->
     )
     header = (
         "workingstep", "time s", "cutting", "air", "rapid", "waiting", "energy kJ",
-        "spindle kW", "force N", "removed cm³",
+        "spindle kW", "force N", "bent µm", "removed cm³",
     )  # fmt: skip
     found = rows(simulation)
     body = [(row.name, *_numbers(row.total)) for row in found]
@@ -42,6 +42,7 @@ def _numbers(total: Total) -> tuple[str, ...]:
         f"{total.energy.total * 1e-3:.1f}",
         f"{kw_from_watts(total.power.value):.2f}",
         f"{total.force.value:.0f}",
+        f"{total.deflection.value * 1e3:.1f}",
         f"{total.volume * 1e-3:.2f}",
     )
 

@@ -42,13 +42,18 @@ def _total(total: Total) -> dict[str, Any]:
         "air_time_s": total.air_time,
         "rapid_time_s": total.rapid_time,
         "waiting_time_s": total.waiting_time,
+        "way_time_s": total.way_time,
         "overload_time_s": total.overload_time,
         "energy_j": {**asdict(total.energy), "total": total.energy.total},
         "cutting_energy_j": total.cutting_energy,
         "volume_mm3": total.volume,
         "peak_spindle_power": _peak(total.power, "w"),
+        "peak_cutting_power": _peak(total.cutting_power, "w"),
+        "peak_drive_power": _peak(total.drive_power, "w"),
         "peak_cutting_force": _peak(total.force, "n"),
+        "peak_thrust": _peak(total.thrust, "n"),
         "peak_chip_thickness": _peak(total.chip, "mm"),
+        "peak_tool_deflection": _peak(total.deflection, "mm"),
     }
 
 

@@ -26,7 +26,7 @@ from optimiser.limit import LimitName
 from service.trial.inputs import Inputs, MillingType
 from simulator.library import find_grade, load_material
 from simulator.motion.segments import Floats
-from simulator.physics import kinematics
+from simulator.physics import flank, kinematics
 from simulator.physics.engagement import (
     Engagement,
     bilateral,
@@ -160,6 +160,10 @@ def course_of(trial: TrialCut) -> NominalCourse:
         0.0 if arc is None else mean_force(trial.kienzle, replace(trial.cut, engagement=arc))
         for arc in arcs
     ]
+    lands = [
+        0.0 if arc is None else _engaged_width(replace(trial.cut, engagement=arc))
+        for arc in arcs
+    ]
     force = np.array(forces)
     cuts = force > 0.0
     until = (AIR + np.arange(len(arcs))) / trial.spindle_speed
@@ -176,6 +180,7 @@ def course_of(trial: TrialCut) -> NominalCourse:
         feed=_single(trial.feed, count),
         programmed=_single(trial.feed, count),
         force=_single(force, count),
+        land_force=_single(flank.CUTTING * np.array(lands), count),
         exponent=_single(exponent_of(trial), count),
         removal_rate=_single(trial.cut.axial_depth * widths * trial.feed, count),
         axial_depth=_single(np.where(cuts, trial.cut.axial_depth, 0.0), count),
@@ -186,6 +191,8 @@ def course_of(trial: TrialCut) -> NominalCourse:
         entry_angle=_single(entry, count),
         exit_angle=_single(exit_, count),
         peak=_single(np.array([_peak(trial, arc) for arc in arcs]), count),
+        wall=_single(0.0, count),
+        lag=_single(0.0, count),
         teeth=np.full(count, trial.cut.teeth),
         tool=np.ones(count, dtype=np.int64),
         workingstep=np.ones(count, dtype=np.int64),
@@ -194,7 +201,12 @@ def course_of(trial: TrialCut) -> NominalCourse:
 
 def preview_of(course: NominalCourse) -> Preview:
     """What the loop is told of the cut."""
-    return Preview(until=course.until, force=course.force)
+    return Preview(
+        until=course.until,
+        force=course.force,
+        land_force=course.land_force,
+        arcs=course.arcs,
+    )
 
 
 def step_of(trial: TrialCut, inputs: Inputs) -> Step:
@@ -255,6 +267,11 @@ def _arcs(engagement: Engagement) -> list[Engagement | None]:
         is_met = exit_ > entry
         arcs.append(Engagement(entry_angle=entry, exit_angle=exit_) if is_met else None)
     return [*arcs, engagement]
+
+
+def _engaged_width(cut: MillingCut) -> float:
+    """Width of all teeth in the cut, mean of a revolution, across the depth, mm."""
+    return cut.axial_depth * cut.teeth * cut.engagement.contact_angle / (2.0 * pi)
 
 
 def _peak(trial: TrialCut, arc: Engagement | None) -> float:

@@ -29,7 +29,6 @@ INERTIA = 0.01  # kg·m², likewise
 CUTTING = 0.5
 """catalogues differ by 20 to 70 % for the same steel"""
 CALIBRATED = "powers fitted to measured runs, see the head of this file"
-_NMM_S_PER_WATT = 1000.0
 _MM2_PER_M2 = 1e6
 
 

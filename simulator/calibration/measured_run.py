@@ -7,7 +7,7 @@ live with, but somebody should know, is a :class:`~stepnc_model.errors.Finding`.
 
 import csv
 from array import array
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
@@ -107,8 +107,18 @@ def thinned(run: MeasuredRun, *, most: int) -> MeasuredRun:
     )
 
 
-def read_columns(path: Path, *, wanted: Sequence[str]) -> tuple[dict[str, Floats], Ints]:
+def read_columns(
+    path: Path, *, wanted: Sequence[str], spelt: Callable[[str], str] = str
+) -> tuple[dict[str, Floats], Ints]:
     """Those columns of a CSV file that it has, and the line of each row.
+
+    Parameters
+    ----------
+    path : Path
+    wanted : sequence of str
+        Headings.
+    spelt : callable
+        From a heading of the file to one that may be wanted.
 
     Returns
     -------
@@ -120,7 +130,7 @@ def read_columns(path: Path, *, wanted: Sequence[str]) -> tuple[dict[str, Floats
         No such text, too few rows, a row of another length, or a cell that is no number.
     """
     rows = _rows(path)
-    headings = next(rows, [])
+    headings = [spelt(heading) for heading in next(rows, [])]
     columns = {name: headings.index(name) for name in wanted if name in headings}
     # A list of a million rows would take gigabytes.
     values, lines = array("d"), array("q")

@@ -17,6 +17,12 @@ class Stretch:
     segments: Segments
     spindle_speed: Floats
     """(N,) rev/s that the spindle has at the end of each segment; NaN: it keeps its speed"""
+    per_revolution: Floats
+    """(N,) mm of path in a revolution of the spindle; NaN: a feed by time"""
+    way: int = 0
+    """segments at the beginning that lead to the path of the workingstep"""
+    back: int = 0
+    """segments at the end that lead away from it"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -12,11 +12,12 @@ import numpy as np
 from simulator.machine.cutting import Edge
 from simulator.machine.samples import Execution
 from simulator.machine.spindle_course import SpindleCourse
-from simulator.machine.tooth_loads import Teeth
+from simulator.machine.tooth_loads import Teeth, wall_forces
 from simulator.machine.wear import Wear
 from simulator.motion.motion import Kinematics, Motion
+from simulator.motion.passing import Passing
 from simulator.motion.segments import Floats, Ints, Segments
-from simulator.removal.stations import Stations
+from simulator.removal.stations import Stations, stretch_lengths
 
 ARC_STEP = 0.2
 """rad of an arc over which the power of its axes counts as smooth"""
@@ -33,6 +34,8 @@ class State:
     coolant_on: bool = False
     spindle_programmed: float = 0.0
     """rev/s, signed"""
+    is_way: bool = False
+    """at rest, before the first feed of the workingstep"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -49,16 +52,32 @@ class Course:
     wear: Wear
     teeth: Teeth | None = None
     """None: forces are means over a revolution"""
+    way: int = 0
+    """segments at the beginning that lead to the path of the workingstep"""
+    back: int = 0
+    """segments at the end that lead away from it"""
 
     @cached_property
+    def passing(self) -> Passing:
+        """When places of the way are passed."""
+        return Passing(segments=self.segments, motion=self.motion)
+
+    @property
     def offsets(self) -> Floats:
         """(N + 1,) mm of path before each segment."""
-        return np.concatenate(([0.0], np.cumsum(self.segments.length)))
+        return self.passing.offsets
 
     @cached_property
     def station_ends(self) -> Floats:
         """(M,) mm of path at which each station ends."""
         return self.offsets[self.stations.segment] + self.stations.station
+
+    @cached_property
+    def walls(self) -> Floats:
+        """(2, M) of :func:`simulator.machine.tooth_loads.wall_forces`."""
+        if self.edge is None:
+            return np.zeros((2, len(self.stations)))
+        return wall_forces(self.stations, self.edge)
 
     def stations_at(self, kinematics: Kinematics) -> Ints:
         """Which station holds at each of some times."""
@@ -66,37 +85,24 @@ class Course:
         rows = np.searchsorted(self.station_ends, along, side="left")
         return np.minimum(rows, len(self.stations) - 1)
 
+    def beyond(self, kinematics: Kinematics, rows: Ints) -> Floats:
+        """Places in the stretches of stations: -1/2 at the beginning, 1/2 at the end."""
+        ends = self.stations.station[rows]
+        lengths = self._stretches[rows]
+        left = (ends - kinematics.station) / np.where(lengths > 0.0, lengths, 1.0)
+        place: Floats = np.clip(0.5 - left, -0.5, 0.5)
+        return place
+
     @cached_property
-    def clock(self) -> tuple[Floats, Floats]:
-        """Times from the start, s, and mm of path behind: fine enough to be joined straight."""
-        knots = np.unique(np.concatenate((self.motion.knots, self.motion.ends)))
-        parts = np.array([0.25, 0.5, 0.75, 1.0])
-        inside = knots[:-1, None] + np.diff(knots)[:, None] * parts
-        times = np.concatenate((knots[:1], inside.ravel()))
-        at = self.motion.at(times)
-        along = self.offsets[at.segment] + at.station
-        return times, np.maximum.accumulate(along)
+    def _stretches(self) -> Floats:
+        """(M,) mm, of :func:`simulator.removal.stations.stretch_lengths`."""
+        return stretch_lengths(self.stations)
 
     @cached_property
     def nodes(self) -> Floats:
         """(K,) times between which all powers are smooth, as far as that is known."""
         places = np.sort(np.concatenate((self.station_ends, self._arc_places())))
-        return np.unique(np.concatenate((self.motion.knots, self._passed(places))))
-
-    def _passed(self, places: Floats) -> Floats:
-        """Times at which places, ascending along the path in mm, are passed."""
-        times, along = self.clock
-        guess = np.interp(places, along, times)
-        at = self.motion.at(guess)
-        speed = np.linalg.norm(at.velocity, axis=1)
-        left = places - self.offsets[at.segment] - at.station
-        # Within a phase the way is a parabola, s = v·t + a·t²/2; this form keeps its digits.
-        moves = np.where(speed > 0.0, speed, 1.0)
-        along_path = np.sum(at.acceleration * at.velocity, axis=1) / moves
-        root = moves + np.sqrt(np.maximum(moves**2 + 2.0 * along_path * left, 0.0))
-        step = np.where(speed > 0.0, 2.0 * left / root, 0.0)
-        row = np.clip(np.searchsorted(along, places), 1, len(along) - 1)
-        return np.maximum.accumulate(np.clip(guess + step, times[row - 1], times[row]))
+        return np.unique(np.concatenate((self.motion.knots, self.passing.times(places))))
 
     def _arc_places(self) -> Floats:
         """Mm of path at which the directions of arcs have changed noticeably."""
@@ -108,10 +114,10 @@ class Course:
         return self.offsets[rows] + part * self.segments.length[rows]
 
     def worn(self, times: Floats) -> Floats:
-        """Factor on the force at times from the start of the stretch."""
+        """Flank wear in mm at times from the start of the stretch."""
         if not self.wear.grows:
-            return np.full(len(times), self.wear.factor(0.0))
-        return self.wear.factors(np.interp(times, *self._cut_clock))
+            return np.full(len(times), self.wear.flank)
+        return self.wear.flanks(np.interp(times, *self._cut_clock))
 
     @property
     def cutting_seconds(self) -> float:
@@ -129,7 +135,7 @@ class Course:
     @cached_property
     def _cut_clock(self) -> tuple[Floats, Floats]:
         """(M + 1,) times at which stations end, and s with chips until then."""
-        ends = np.concatenate(([0.0], self._passed(self.station_ends)))
+        ends = np.concatenate(([0.0], self.passing.times(self.station_ends)))
         seconds = np.cumsum(np.diff(ends) * (self.stations.section > 0.0))
         return ends, np.concatenate(([0.0], seconds))
 

@@ -21,7 +21,7 @@ from simulator.machine.acts import (
     Wait,
     WorkingstepTo,
 )
-from simulator.machine.rows import Rows
+from simulator.machine.rows import Pace, Rows
 from simulator.spec import Machine
 from stepnc_model.post.blocks import (
     Block,
@@ -160,7 +160,6 @@ class _Interpreter:
     def _spindle_off(self, _block: SpindleOff | SpindleOrient) -> Iterator[Act]:
         self.surface = None
         yield from self._turn(0.0)
-        self.is_awaited = False
 
     def _turn(self, speed: float) -> Iterator[Act]:
         if speed == self.speed:
@@ -218,7 +217,7 @@ class _Interpreter:
             # Along z only, from nobody knows where: the machine stands there already.
             self.at[2] = block.z
             return
-        yield from self._rapid(Rapid(end=(x, y, block.z)))
+        yield from self._rapid(Rapid(end=(x, y, block.z), is_way=block.is_way))
 
     def _rapid(self, block: Rapid) -> Iterator[Act]:
         start = self._start(block.end)
@@ -226,7 +225,8 @@ class _Interpreter:
             wanted = _signed(self._speed_at(block.end[0]), self.surface.sense)
             yield from self._turn(wanted)
         if start != block.end:
-            self.rows.line(start, block.end, speed=inf, line=self.line)
+            pace = Pace(speed=inf)
+            self.rows.line(start, block.end, pace=pace, line=self.line, is_way=block.is_way)
         self.at = list(block.end)
 
     def _linear(self, block: Linear) -> Iterator[Act]:
@@ -236,9 +236,9 @@ class _Interpreter:
         at = start
         for to in (*(_between(start, block.end, part) for part in parts), block.end):
             middle = 0.5 * (at[0] + to[0])
-            speed, spindle = self._speeds(block.rate, middle, to[0])
+            pace = self._pace(block.rate, middle, to[0])
             if at != to:
-                self.rows.line(at, to, speed=speed, line=self.line, spindle=spindle)
+                self.rows.line(at, to, pace=pace, line=self.line)
             at = to
         self.at = list(block.end)
 
@@ -253,7 +253,7 @@ class _Interpreter:
             start,
             block,
             pieces=self._arc_pieces(start, block),
-            speeds=lambda middle, end: self._speeds(block.rate, middle, end),
+            paces=lambda middle, end: self._pace(block.rate, middle, end),
             line=self.line,
         )
         self.at = list(block.end)
@@ -274,8 +274,9 @@ class _Interpreter:
             return [1.0]
         count = ceil(log(high / least) / PIECE)
         radii = [high * (least / high) ** (index / count) for index in range(count)]
-        # Below the least radius the speed is the greatest and stays: one piece.
-        radii += [least, low] if low < least else [low]
+        # Below the least radius the greatest speed is wanted; a late spindle still ramps.
+        inner = ceil((least - low) / (PIECE * least))
+        radii += [least - (least - low) * index / inner for index in range(inner)] + [low]
         parts = [(high - radius) / (high - low) for radius in radii]
         if abs(one) < abs(other):
             parts = [1.0 - part for part in reversed(parts)]
@@ -296,10 +297,11 @@ class _Interpreter:
         """Radius below which the spindle keeps its greatest speed, mm."""
         return surface.speed / (2.0 * pi * self._most(surface))
 
-    def _speeds(self, rate: Rate, middle: float, end: float) -> tuple[float, float]:
-        """Speed along the path in mm/s, and of the spindle at the end in rev/s."""
-        speed, last = rate.value, nan
+    def _pace(self, rate: Rate, middle: float, end: float) -> Pace:
+        """Pace of a piece by the radius in its middle and at its end."""
+        speed, last, per_revolution = rate.value, nan, nan
         if rate.mode is RateMode.PER_REVOLUTION:
+            per_revolution = rate.value
             speed *= self._speed_at(middle)
         if self.surface is not None:
             last = self.speed = _signed(self._speed_at(end), self.surface.sense)
@@ -307,7 +309,7 @@ class _Interpreter:
             reason = "the spindle stands" if rate.value > 0.0 else "it must be positive"
             unit = "mm/rev" if rate.mode is RateMode.PER_REVOLUTION else "mm/s"
             raise ProgramFault(f"feed {rate.value:g} {unit}: {reason}", self.line)
-        return speed, last
+        return Pace(speed=speed, spindle=last, per_revolution=per_revolution)
 
     def _cut_begins(self, radius: float) -> Iterator[Act]:
         """The feed waits for the spindle."""

@@ -94,6 +94,10 @@ class Samples:
     """(M,) mm³/s"""
     chip_thickness: Floats
     """(M,) mm, mean"""
+    thrust: Floats
+    """(M,) N, along the axis, of a drill or of a mill that goes straight down"""
+    deflection: Floats
+    """(M,) mm that an end mill gives way while it makes a wall"""
     axial_depth: Floats
     """(M,) mm"""
     radial_width: Floats

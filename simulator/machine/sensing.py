@@ -8,13 +8,14 @@ from math import ceil
 
 import numpy as np
 
-from simulator.machine.cutting import CuttingLoads, cutting_loads, no_loads
+from simulator.machine.cutting import CuttingLoads, cutting_loads, no_loads, worn_loads
 from simulator.machine.drives import axes_power, main_power, overload
-from simulator.machine.episode import Episode
+from simulator.machine.episode import Course, Episode
 from simulator.machine.samples import Execution, PathMode, Samples
-from simulator.machine.tooth_loads import entered_loads, tooth_loads
+from simulator.machine.tooth_loads import bent, entered_loads, tooth_loads
 from simulator.motion.motion import Kinematics
 from simulator.motion.segments import Floats, Ints
+from simulator.removal.stations import CutKind
 from simulator.spec import Machine
 
 ROUNDING = 1e-9
@@ -81,6 +82,8 @@ def sensed(episode: Episode, machine: Machine, times: Floats) -> Samples:
         back_force=loads.back_force,
         removal_rate=loads.removal_rate,
         chip_thickness=loads.chip_thickness,
+        thrust=loads.thrust,
+        deflection=loads.deflection,
         axial_depth=_along(episode, rows, "axial_depth", count),
         # A section smeared over a window may ask for more width than the cutter has.
         radial_width=np.minimum(
@@ -90,7 +93,7 @@ def sensed(episode: Episode, machine: Machine, times: Floats) -> Samples:
         execution=np.full(count, int(state.execution)),
         path_mode=mode,
         coolant=np.full(count, int(state.coolant_on)),
-        overload=overload(machine, loads.power, speed, force=loads.force),
+        overload=overload(machine, loads.power, speed, force=_pushing(episode, rows, loads)),
         line=line,
         tool=np.full(count, state.tool),
         workingstep=np.full(count, state.workingstep),
@@ -122,23 +125,52 @@ def _loads(
     course = episode.course
     if course is None or rows is None or course.edge is None:
         return no_loads(len(times))
+    stations, edge, turning = course.stations, course.edge, np.abs(speed)
     loads = cutting_loads(
-        course.stations,
+        stations,
         rows,
-        speed=np.linalg.norm(kinematics.velocity, axis=1),
-        spindle_speed=np.abs(speed),
-        edge=course.edge,
-        wear=course.worn(times - episode.begin),
+        speed=_cutting_feed(kinematics, stations.kind[rows]),
+        spindle_speed=turning,
+        edge=edge,
+        beyond=course.beyond(kinematics, rows),
     )
+    worn = course.worn(times - episode.begin)
+    loads = bent(
+        loads, course.stations, rows, edge=course.edge, walls=course.walls, flank_wear=worn
+    )
+    if course.teeth is not None:
+        since = _revolutions_since_entry(episode, course, times)
+        loads = entered_loads(loads, stations, rows, since_entry=since, edge=edge)
+    loads = worn_loads(loads, stations, rows, spindle_speed=turning, edge=edge, flank_wear=worn)
     if course.teeth is None:
         return loads
     turned = episode.spindle.revolutions(times)
-    entry = episode.begin + course.entry_times(times - episode.begin)
-    since = np.abs(turned - episode.spindle.revolutions(entry))
-    loads = entered_loads(loads, course.stations, rows, since_entry=since, edge=course.edge)
     return tooth_loads(
-        loads, course.stations, rows, turned=turned, edge=course.edge, teeth=course.teeth
+        loads, stations, rows, turned=turned, edge=edge, teeth=course.teeth, flank_wear=worn
     )
+
+
+def _cutting_feed(kinematics: Kinematics, kind: Ints) -> Floats:
+    """Feed at M times, mm/s: that of a tool that sinks is along its axis, also at a corner."""
+    along = np.abs(kinematics.velocity[:, 2])
+    path = np.linalg.norm(kinematics.velocity, axis=1)
+    feed: Floats = np.where(kind == CutKind.DRILLING, along, path)
+    return feed
+
+
+def _pushing(episode: Episode, rows: Ints | None, loads: CuttingLoads) -> Floats:
+    """Force that is held against what the machine bears: of a drill its thrust, as planned."""
+    if episode.course is None or rows is None:
+        return loads.force
+    is_drilling = episode.course.stations.kind[rows] == CutKind.DRILLING
+    return np.where(is_drilling, loads.feed_force, loads.force)
+
+
+def _revolutions_since_entry(episode: Episode, course: Course, times: Floats) -> Floats:
+    """Revolutions of the spindle since the cut that runs at some times began."""
+    entry = episode.begin + course.entry_times(times - episode.begin)
+    turned: Floats = episode.spindle.revolutions(times) - episode.spindle.revolutions(entry)
+    return np.abs(turned)
 
 
 def _along(episode: Episode, rows: Ints | None, name: str, count: int) -> Floats:

@@ -1,14 +1,18 @@
 """Tools of a program as the virtual machine holds them: shape, edge and wear."""
 
 from dataclasses import replace
+from math import isinf
 
 from simulator.edge_material import correction_of, edge_material
-from simulator.errors import LibraryError
-from simulator.library import find_grade, find_window
+from simulator.library import find_window, grade_for
 from simulator.machine.cutting import Edge
-from simulator.machine.virtual import LoadedTool
+from simulator.machine.virtual import LoadedTool, Shape
+from simulator.physics.drilling import LIPS_ONLY
+from simulator.physics.flutes import CuttingEdges
+from simulator.physics.strength import end_mill
+from simulator.removal.cutter import Cutter
 from simulator.removal.tool_shape import THREADS, shape_of, tool_kind
-from simulator.spec import CuttingMaterial, Grade, Material, Taylor, ToolKind
+from simulator.spec import CuttingMaterial, Material, Taylor, ToolKind
 from simulator.tool_table import TableTool
 from stepnc_model.entities.entity import Entity
 from stepnc_model.part21.values import Ref
@@ -42,11 +46,12 @@ def loaded_tool(
     kind = tool_kind(tool)
     # Carbide where nothing is said, as in the optimiser.
     cutting_material = edge_material(tool.edge_material) or CuttingMaterial.CARBIDE
-    edge = _edge(kind, cutting_material, tool.teeth, material=material)
+    shape = shape_of(program, ref)
+    edge = _edge(kind, cutting_material, tool.teeth, shape=shape, material=material)
     return LoadedTool(
         number=number,
         id=tool.id,
-        shape=shape_of(program, ref),
+        shape=shape,
         edge=replace(edge, factor=factor * edge.factor),
         taylor=_taylor(kind, cutting_material, material),
     )
@@ -54,7 +59,11 @@ def loaded_tool(
 
 def table_tool(tool: TableTool, material: Material, *, factor: float = 1.0) -> LoadedTool:
     """A tool of a tool table."""
-    edge = _edge(tool.kind, tool.cutting_material, tool.teeth, material=material)
+    edge = _edge(
+        tool.kind, tool.cutting_material, tool.teeth, shape=tool.shape, material=material
+    )
+    if edge.flutes is not None and tool.helix_angle is not None:
+        edge = replace(edge, flutes=replace(edge.flutes, helix_angle=tool.helix_angle))
     return LoadedTool(
         number=tool.number,
         id=tool.id,
@@ -72,20 +81,37 @@ def _taylor(
 
 
 def _edge(
-    kind: ToolKind, cutting_material: CuttingMaterial, teeth: int, *, material: Material
+    kind: ToolKind,
+    cutting_material: CuttingMaterial,
+    teeth: int,
+    *,
+    shape: Shape | None,
+    material: Material,
 ) -> Edge:
-    """What a tool cuts a material with."""
-    grade = _grade(kind, cutting_material, material)
+    """What a tool cuts a material with, and how far an end mill gives way."""
+    grade = grade_for(kind, cutting_material, material)
     correction = correction_of(material, grade, cutting_material)
-    return Edge(teeth=teeth, kienzle=material.kienzle, factor=correction.factor)
-
-
-def _grade(
-    kind: ToolKind, cutting_material: CuttingMaterial, material: Material
-) -> Grade | None:
-    if not material.iso_group:
-        return None
-    try:
-        return find_grade(kind, cutting_material, material.iso_group)
-    except LibraryError:
-        return None
+    edge = Edge(
+        teeth=teeth,
+        kienzle=material.kienzle,
+        factor=correction.factor,
+        point=(None if grade is None else grade.point) or LIPS_ONLY,
+        feed_force=material.feed_force,
+        back_force=material.back_force,
+    )
+    if not isinstance(shape, Cutter) or shape.is_drill:
+        return edge
+    flutes = CuttingEdges(
+        teeth=teeth,
+        diameter=shape.diameter,
+        helix_angle=0.0 if grade is None else grade.helix_angle,
+        corner_radius=shape.corner_radius,
+        cutting_edge_angle=shape.cutting_edge_angle,
+    )
+    compliance = 0.0
+    if grade is not None and kind is ToolKind.ENDMILL:
+        length = None if isinf(shape.edge_length) else shape.edge_length
+        compliance = end_mill(
+            shape.diameter, cutting_edge_length=length, youngs_modulus=grade.youngs_modulus
+        ).compliance
+    return replace(edge, flutes=flutes, compliance=compliance)

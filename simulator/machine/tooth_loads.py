@@ -1,21 +1,34 @@
-"""Forces as a dynamometer would show them: of the teeth of a milling cutter, of a first chip.
+"""Forces as a dynamometer would show them, of teeth and of a first chip; how the tool bends.
 
-At each time the teeth stand where the spindle has turned them; straight edges, with runout.
-In turning the chip grows in the first revolution. What is neither keeps its mean. Units mm, N,
-rad.
+At each time the teeth of a milling cutter stand where the spindle has turned them, along their
+helix and with runout. In turning the chip grows in the first revolution. What is neither keeps
+its mean. Units mm, N, rad.
 """
 
 from dataclasses import dataclass, replace
-from math import pi
+from math import pi, sin
 
 import numpy as np
 
-from simulator.machine.cutting import NMM_S_PER_WATT, CuttingLoads, Edge
-from simulator.machine.tooth_forces import arcs_of, chip_thickness, tooth_angles
-from simulator.machine.transients import eccentric_runout, entry_share
-from simulator.motion.segments import Floats, Ints
-from simulator.physics.milling_forces import RADIAL_SHARE
-from simulator.removal.stations import CutKind, Stations
+from simulator.machine.cutting import CuttingLoads, Edge
+from simulator.machine.transients import entry_share
+from simulator.motion.segments import Bools, Floats, Ints
+from simulator.physics import flank
+from simulator.physics.flutes import CuttingEdges, Law
+from simulator.physics.tooth_forces import (
+    Places,
+    Runout,
+    eccentric_runout,
+    forces,
+    wall_force,
+)
+from simulator.removal.stations import CutKind, Stations, single_arcs
+
+DIGITS = 3
+"""to which engagements are told apart: µm, mrad"""
+
+LAND = Law(exponent=0.0, radial_share=flank.NORMAL / flank.CUTTING)
+"""of a wear land, which rubs along the edges in the cut whatever the chip"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -26,7 +39,7 @@ class Teeth:
     """mm, of the cutter's axis off the spindle's"""
 
 
-def tooth_loads(
+def tooth_loads(  # noqa: PLR0913 (places, times and state of the edge are apart)
     mean: CuttingLoads,
     stations: Stations,
     rows: Ints,
@@ -34,13 +47,14 @@ def tooth_loads(
     turned: Floats,
     edge: Edge,
     teeth: Teeth,
+    flank_wear: Floats,
 ) -> CuttingLoads:
     """Loads with the forces of the teeth that are in the cut at each time.
 
     Parameters
     ----------
     mean : CuttingLoads
-        Means over a revolution at M times; power and removal rate stay means.
+        Means over a revolution at M times; power, removal rate and deflection stay.
     stations : Stations
     rows : (M,) array of int
         Which station holds.
@@ -48,30 +62,84 @@ def tooth_loads(
         Revolutions of the spindle.
     edge : Edge
     teeth : Teeth
+    flank_wear : (M,) array, mm
     """
-    has_arc = (stations.kind == CutKind.MILLING) & (stations.exit_angle > stations.entry_angle)
-    is_milling = has_arc[rows] & (mean.force > 0.0)
-    at = np.flatnonzero(is_milling)
-    station, runout = rows[at], eccentric_runout(teeth.eccentricity, edge.teeth)
-    entry, exit_ = stations.entry_angle[station], stations.exit_angle[station]
-    arc = arcs_of(entry, exit_)
-    # Of the edge that really cuts: sin κ, and the width that removes what the map says.
-    slope = stations.chip_ratio[station] * arc.contact / arc.sine
-    width = 2.0 * stations.section[station] / (stations.diameter[station] * arc.sine * slope)
-    per_tooth = mean.chip_thickness[at] / stations.chip_ratio[station]
-    angle = tooth_angles(2.0 * pi * np.abs(turned[at]), edge.teeth)
-    whole = chip_thickness(angle, feed_per_tooth=per_tooth[:, None], runout=runout)
-    chip = slope[:, None] * whole
-    in_cut = (chip > 0.0) & (angle >= entry[:, None]) & (angle <= exit_[:, None])
-    chip_force = np.where(in_cut, chip, 1.0) ** (1.0 - edge.kienzle.m_c) * in_cut
-    # Means take k_c at the mean chip; what wear and edge add to them, teeth get too.
-    tangential = (width * _factor(mean, edge, at))[:, None] * chip_force
-    sine, cosine = np.sin(angle), np.cos(angle)
+    at = np.flatnonzero(_has_arc(stations)[rows] & (mean.force > 0.0))
+    per_tooth, scale = _scale(mean, stations, rows, edge, at)
+    runout = None
+    if teeth.eccentricity > 0.0:
+        offsets = eccentric_runout(teeth.eccentricity, edge.teeth)
+        runout = Runout(offsets=offsets, feed_per_tooth=per_tooth)
     force, feed, back = mean.force.copy(), mean.feed_force.copy(), mean.back_force.copy()
-    force[at] = tangential.sum(axis=1)
-    feed[at] = (tangential * (cosine + RADIAL_SHARE * sine)).sum(axis=1)
-    back[at] = (tangential * (sine - RADIAL_SHARE * cosine)).sum(axis=1)
+    force[at] = feed[at] = back[at] = 0.0
+    for law, newtons in ((_law(edge), scale), (LAND, _land(edge, flank_wear[at]))):
+        if not newtons.any():
+            continue
+        found = forces(
+            _flutes(edge),
+            _places(stations, rows[at]),
+            law,
+            rotation=2.0 * pi * np.abs(turned[at])[:, None],
+            runout=runout,
+        )
+        force[at] += newtons * found.tangential[:, 0]
+        feed[at] += newtons * found.feed[:, 0]
+        back[at] += newtons * found.normal[:, 0]
     return replace(mean, force=force, feed_force=feed, back_force=back)
+
+
+def wall_forces(stations: Stations, edge: Edge) -> Floats:
+    """(2, M) mm, normal force of each station while a wall is made: of a sharp edge, of a land.
+
+    Over ``K·k_c1.1·f_z^q`` and the share by which the section fills the engagement, and over
+    the force of a mm of land; see :func:`simulator.physics.tooth_forces.wall_force`. 0 for
+    what does not bend.
+    """
+    found = np.zeros((2, len(stations)))
+    at = np.flatnonzero(_has_arc(stations))
+    if edge.compliance == 0.0 or not len(at):
+        return found
+    arcs = single_arcs(stations)
+    columns = (arcs.entry_angle, arcs.exit_angle, arcs.depth)
+    keys = np.round(np.stack([column[at] for column in columns]), DIGITS)
+    told, row = np.unique(keys, axis=1, return_inverse=True)
+    places = Places(entry_angle=told[0], exit_angle=told[1], axial_depth=told[2])
+    for made, law in zip(found, (_law(edge), LAND), strict=True):
+        made[at] = wall_force(_flutes(edge), places, law)[row.ravel()]
+    return found
+
+
+def bent(
+    loads: CuttingLoads,
+    stations: Stations,
+    rows: Ints,
+    *,
+    edge: Edge,
+    walls: Floats,
+    flank_wear: Floats,
+) -> CuttingLoads:
+    """Loads with the deflection of the tool.
+
+    Parameters
+    ----------
+    loads : CuttingLoads
+        Means over a revolution at M times.
+    stations : Stations
+    rows : (M,) array of int
+        Which station holds.
+    edge : Edge
+    walls : array
+        Of :func:`wall_forces`.
+    flank_wear : (M,) array, mm
+    """
+    if edge.compliance == 0.0:
+        return loads
+    at = np.flatnonzero(_has_arc(stations)[rows] & (loads.force > 0.0))
+    _, scale = _scale(loads, stations, rows, edge, at)
+    sharp, land = walls[:, rows[at]]
+    deflection = loads.deflection.copy()
+    deflection[at] = edge.compliance * (scale * sharp + _land(edge, flank_wear[at]) * land)
+    return replace(loads, deflection=deflection)
 
 
 def entered_loads(
@@ -100,8 +168,45 @@ def entered_loads(
     )
 
 
-def _factor(mean: CuttingLoads, edge: Edge, at: Ints) -> Floats:
-    """K · k_c1.1 of each sample, N/mm², back from the mean power."""
-    specific = mean.power[at] * NMM_S_PER_WATT / mean.removal_rate[at]
-    factor: Floats = specific * mean.chip_thickness[at] ** edge.kienzle.m_c
-    return factor
+def _has_arc(stations: Stations) -> Bools:
+    """Which stations mill along an arc that is known."""
+    is_milling: Bools = (stations.kind == CutKind.MILLING) & (stations.section > 0.0)
+    is_milling &= stations.exit_angle > stations.entry_angle
+    return is_milling
+
+
+def _places(stations: Stations, rows: Ints) -> Places:
+    arcs = single_arcs(stations)
+    return Places(
+        entry_angle=arcs.entry_angle[rows],
+        exit_angle=arcs.exit_angle[rows],
+        axial_depth=arcs.depth[rows],
+    )
+
+
+def _flutes(edge: Edge) -> CuttingEdges:
+    return edge.flutes or CuttingEdges(teeth=edge.teeth, diameter=1.0)
+
+
+def _law(edge: Edge) -> Law:
+    return Law(exponent=1.0 - edge.kienzle.m_c)
+
+
+def _land(edge: Edge, flank_wear: Floats) -> Floats:
+    """N in 1 mm of edge that rubs; the coefficient counts across the depth."""
+    return flank.CUTTING * flank_wear * sin(_flutes(edge).cutting_edge_angle)
+
+
+def _scale(
+    mean: CuttingLoads, stations: Stations, rows: Ints, edge: Edge, at: Ints
+) -> tuple[Floats, Floats]:
+    """Feed per tooth in mm, and N of a sharp edge in 1 mm of the integrals, at some times.
+
+    The section says how much of the engagement is filled.
+    """
+    station = rows[at]
+    per_tooth = mean.chip_thickness[at] / stations.chip_ratio[station]
+    fill = single_arcs(stations).fill[station] * mean.filled[at]
+    factor = edge.factor * edge.kienzle.k_c11
+    scale: Floats = factor * per_tooth ** (1.0 - edge.kienzle.m_c) * fill
+    return per_tooth, scale

@@ -12,14 +12,12 @@ from math import sqrt
 
 import numpy as np
 
+from simulator.machine.drives import main_power
 from simulator.machine.episode import Episode
 from simulator.machine.samples import Condition, PathMode, Samples
 from simulator.machine.sensing import sensed
 from simulator.motion.segments import Floats
 from simulator.spec import Machine
-
-KILOWATT_HOUR = 3.6e6
-"""J"""
 
 PLACES = np.array([1e-6, 0.5 - 0.5 / sqrt(3.0), 0.5 + 0.5 / sqrt(3.0), 1.0 - 1e-6])
 """on 0 to 1: just inside the ends, and the abscissae of the two-point rule"""
@@ -90,6 +88,8 @@ class Total:
     """s"""
     waiting_time: float = 0.0
     """s at rest: pauses, tool changes, a spindle that has not its speed"""
+    way_time: float = 0.0
+    """s before the path begins and after it: tool change, spindle, the moves to it and home"""
     energy: Energy = field(default_factory=Energy)
     cutting_energy: float = 0.0
     """J at the edge"""
@@ -97,10 +97,19 @@ class Total:
     """mm³ removed"""
     power: Peak = field(default_factory=Peak)
     """W of the spindle drive"""
+    cutting_power: Peak = field(default_factory=Peak)
+    """W at the edge"""
+    drive_power: Peak = field(default_factory=Peak)
+    """W of the spindle drive while there are chips: of the cut and of the idle spindle, without
+    what a spindle that follows the radius takes to speed up"""
     force: Peak = field(default_factory=Peak)
-    """N, tangential"""
+    """N, tangential; of a mill without its plunges"""
+    thrust: Peak = field(default_factory=Peak)
+    """N, of drills and plunges"""
     chip: Peak = field(default_factory=Peak)
     """mm, mean thickness"""
+    deflection: Peak = field(default_factory=Peak)
+    """mm, of an end mill while it makes a wall"""
     overload_time: float = 0.0
     """s above the continuous power or the permitted force"""
 
@@ -117,12 +126,17 @@ class Total:
             cutting_time=self.cutting_time + other.cutting_time,
             rapid_time=self.rapid_time + other.rapid_time,
             waiting_time=self.waiting_time + other.waiting_time,
+            way_time=self.way_time + other.way_time,
             energy=self.energy + other.energy,
             cutting_energy=self.cutting_energy + other.cutting_energy,
             volume=self.volume + other.volume,
             power=max(self.power, other.power, key=_value),
+            cutting_power=max(self.cutting_power, other.cutting_power, key=_value),
+            drive_power=max(self.drive_power, other.drive_power, key=_value),
             force=max(self.force, other.force, key=_value),
+            thrust=max(self.thrust, other.thrust, key=_value),
             chip=max(self.chip, other.chip, key=_value),
+            deflection=max(self.deflection, other.deflection, key=_value),
             overload_time=self.overload_time + other.overload_time,
         )
 
@@ -150,6 +164,8 @@ def added(total: Total, episode: Episode, machine: Machine) -> Total:
         coolant=float(weights @ samples.coolant_power),
         base=float(weights @ samples.base_power),
     )
+    # A rapid through material is no cut but a collision, and told as that.
+    feeds = samples.path_mode != PathMode.RAPID
     is_loaded = samples.overload != Condition.NORMAL
     return replace(
         total,
@@ -159,11 +175,47 @@ def added(total: Total, episode: Episode, machine: Machine) -> Total:
         energy=total.energy + energy,
         cutting_energy=total.cutting_energy + float(weights @ samples.cutting_power),
         volume=total.volume + float(weights @ samples.removal_rate),
+        way_time=total.way_time + _way(episode),
         power=total.power.or_greater(samples.spindle_power, samples),
-        force=total.force.or_greater(samples.cutting_force, samples),
-        chip=total.chip.or_greater(samples.chip_thickness, samples),
+        cutting_power=total.cutting_power.or_greater(feeds * samples.cutting_power, samples),
+        drive_power=total.drive_power.or_greater(
+            np.where(samples.removal_rate > 0.0, feeds * _steady(samples, machine), 0.0),
+            samples,
+        ),
+        force=total.force.or_greater(feeds * _across(samples, episode), samples),
+        thrust=total.thrust.or_greater(feeds * samples.thrust, samples),
+        chip=total.chip.or_greater(feeds * samples.chip_thickness, samples),
+        deflection=total.deflection.or_greater(feeds * samples.deflection, samples),
         overload_time=total.overload_time + float(weights @ is_loaded),
     )
+
+
+def _steady(samples: Samples, machine: Machine) -> Floats:
+    """Power of the spindle drive at a constant speed, W."""
+    still = np.zeros(len(samples.time))
+    power: Floats = main_power(
+        machine, samples.spindle_speed, still, cutting_power=samples.cutting_power
+    )
+    return power
+
+
+def _way(episode: Episode) -> float:
+    """Seconds of an episode before the path of its workingstep begins and after it ends."""
+    course = episode.course
+    if course is None:
+        return episode.end - episode.begin if episode.state.is_way else 0.0
+    ends = course.motion.ends
+    there = float(ends[course.way - 1]) if course.way else 0.0
+    back = float(ends[-1] - ends[-1 - course.back]) if course.back else 0.0
+    return there + back
+
+
+def _across(samples: Samples, episode: Episode) -> Floats:
+    """Cutting force, N, without that of a mill that goes straight down."""
+    course = episode.course
+    if course is None or course.edge is None or course.edge.flutes is None:
+        return samples.cutting_force
+    return np.where(samples.thrust > 0.0, 0.0, samples.cutting_force)
 
 
 def _nodes(episode: Episode) -> Floats:

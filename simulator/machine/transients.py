@@ -1,4 +1,4 @@
-"""What drives and cuts add to the steady state: delay, overshoot, first revolution, runout.
+"""What drives and cuts add to the steady state: delay, overshoot, first revolution.
 
 A drive answers its load late, as a first-order lag, or late and too far, as a second-order
 one. Both are made of one pole, so that one recursion serves: exact at the samples for a signal
@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from simulator.kernels.kernel import entry
 from simulator.motion.segments import Floats
-from simulator.physics.domain import require_not_negative, require_positive, require_teeth
+from simulator.physics.domain import require_not_negative, require_positive
 
 USUAL_DELAY = 0.05
 """s, main drive; 0.02 to 0.1 are met"""
@@ -150,28 +150,3 @@ def entry_share(revolutions: Floats) -> Floats:
     depth grows is in the stock's map.
     """
     return np.clip(revolutions, 0.0, 1.0)
-
-
-def eccentric_runout(eccentricity: float, teeth: int) -> Floats:
-    """Radius of each tooth over the nominal one when a cutter's axis is off the spindle's.
-
-    ``ρ_j = ρ·cos(2π·j/z)``, tooth 0 the highest.
-
-    Parameters
-    ----------
-    eccentricity : float, mm
-        ρ; 0.005 to 0.01 mm as a rule.
-    teeth : int
-
-    Returns
-    -------
-    (z,) array, mm
-
-    Raises
-    ------
-    ValueError
-        When the eccentricity is negative or there is no tooth.
-    """
-    require_not_negative(eccentricity, "eccentricity", "mm")
-    require_teeth(teeth)
-    return eccentricity * np.cos(2.0 * pi / teeth * np.arange(teeth, dtype=np.float64))

@@ -11,7 +11,7 @@ from simulator.errors import OutOfTravel, ProgramFault
 from simulator.motion.motion import AXES
 from simulator.motion.segments import FIRST, SECOND, Floats, Ints, Segments
 from simulator.spec import Machine, MachineKind
-from stepnc_model.toolpath.job import Stock
+from stepnc_model.stock import Stock
 
 Zero = tuple[float, float, float]
 """place of the program's zero on the axes X, Y, Z, mm"""

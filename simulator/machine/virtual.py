@@ -28,13 +28,15 @@ from simulator.machine.acts import (
 from simulator.machine.contacts import Met, contacts
 from simulator.machine.cutting import Edge
 from simulator.machine.episode import Course, Episode, State
+from simulator.machine.pacing import paced
 from simulator.machine.samples import Execution
-from simulator.machine.spindle_course import following, ramped, standing
+from simulator.machine.spindle_course import SpindleCourse, ramped, standing
 from simulator.machine.tooth_loads import Teeth
 from simulator.machine.travel import Zero, require_axes, require_travel
-from simulator.machine.wear import WORN_OUT, Wear, wearing_along
+from simulator.machine.wear import Wear, wearing_along
 from simulator.motion.motion import ControlModel, axis_limits
 from simulator.motion.segments import Floats, Segments
+from simulator.physics.tool_life import LIFE_CRITERION
 from simulator.removal.cutter import Cutter, Insert
 from simulator.removal.stations import Stations, air
 from simulator.spec import Machine, MachineKind, Taylor
@@ -101,6 +103,8 @@ class VirtualMachine:
         self._stock: StockMap | None = None
         self._stocks: list[StockMap] = []
         self._clamp("")
+        self._has_fed = False
+        """in this workingstep"""
         self._flank: dict[int, float] = {}
         """mm of flank wear by the tool's number"""
         self._said: set[str] = set()
@@ -150,6 +154,7 @@ class VirtualMachine:
             case WorkingstepTo(id=name):
                 self.workingsteps.append(name)
                 self.state = replace(self.state, workingstep=len(self.workingsteps))
+                self._has_fed = False
                 self._clamp(name)
             case Stop():
                 left = max(self.spindle.reached - self.now, 0.0)
@@ -157,6 +162,8 @@ class VirtualMachine:
             case End():
                 self._turn(0.0)
                 self.state = replace(self.state, coolant_on=False)
+                # The spindle stops after the path, as it starts before it.
+                self._has_fed = False
                 yield from self._wait(self.spindle.reached - self.now)
 
     def _clamp(self, workingstep: str) -> None:
@@ -174,7 +181,7 @@ class VirtualMachine:
         return Episode(
             begin=begin,
             end=self.now,
-            state=replace(self.state, execution=execution),
+            state=replace(self.state, execution=execution, is_way=not self._has_fed),
             spindle=self.spindle,
             position=np.zeros(3) if self.position is None else self.position,
         )
@@ -203,13 +210,20 @@ class VirtualMachine:
         self.state = replace(self.state, tool=number)
 
     def _move(self, stretch: Stretch) -> Episode:
-        segments = stretch.segments
-        require_axes(self.machine, segments)
+        require_axes(self.machine, stretch.segments)
         if self.setup.zero is not None:
-            require_travel(self.machine, segments, self.setup.zero)
-        motion = self.setup.control.plan(segments, self.limits)
-        begin, self.now = self.now, self.now + motion.duration
-        self._follow(stretch, begin + motion.ends, begin)
+            require_travel(self.machine, stretch.segments, self.setup.zero)
+        begin = self.now
+        run = paced(
+            stretch,
+            lambda segments: self.setup.control.plan(segments, self.limits),
+            self.spindle,
+            begin=begin,
+            acceleration=self.machine.spindle.acceleration or inf,
+        )
+        self._follow(stretch, run.spindle)
+        segments, motion = run.segments, run.motion
+        self.now += motion.duration
         stations = self._cut(segments)
         course = Course(
             segments=segments,
@@ -217,9 +231,12 @@ class VirtualMachine:
             spindle_programmed=stretch.spindle_speed,
             stations=stations,
             edge=None if self.tool is None else self.tool.edge,
-            wear=self._wear(stretch, stations),
+            wear=self._wear(stretch, segments, stations),
             teeth=self.setup.teeth,
+            way=stretch.way,
+            back=stretch.back,
         )
+        self._has_fed = self._has_fed or not bool(segments.is_rapid.all())
         self._worn(course)
         episode = Episode(
             begin=begin,
@@ -232,18 +249,11 @@ class VirtualMachine:
         self.position = segments.end[-1]
         return episode
 
-    def _follow(self, stretch: Stretch, ends: Floats, begin: float) -> None:
-        """The spindle follows the radius where it keeps a surface speed."""
-        wanted = stretch.spindle_speed
-        if not np.isnan(wanted).all():
-            self.spindle = following(
-                self.spindle,
-                begin,
-                ends,
-                wanted=wanted,
-                acceleration=self.machine.spindle.acceleration or inf,
-            )
-            last = float(wanted[~np.isnan(wanted)][-1])
+    def _follow(self, stretch: Stretch, spindle: SpindleCourse) -> None:
+        """The spindle as it goes on, and what it was told last."""
+        self.spindle, told = spindle, stretch.spindle_speed
+        if not np.isnan(told).all():
+            last = float(told[~np.isnan(told)][-1])
             self.state = replace(self.state, spindle_programmed=last)
 
     def _cut(self, segments: Segments) -> Stations:
@@ -267,7 +277,7 @@ class VirtualMachine:
             self._say("cuts while the spindle stands: its force is not known", line)
         return stations
 
-    def _wear(self, stretch: Stretch, stations: Stations) -> Wear:
+    def _wear(self, stretch: Stretch, segments: Segments, stations: Stations) -> Wear:
         """Wear of the edge that begins a stretch, and how fast it grows there."""
         if self.tool is None:
             return Wear()
@@ -276,9 +286,7 @@ class VirtualMachine:
             return Wear(flank=flank)
         wanted = stretch.spindle_speed
         speed = np.abs(np.where(np.isnan(wanted), self.spindle.target, wanted))
-        return wearing_along(
-            flank, self.tool.taylor, stretch.segments, stations, spindle_speed=speed
-        )
+        return wearing_along(flank, self.tool.taylor, segments, stations, spindle_speed=speed)
 
     def _worn(self, course: Course) -> None:
         """What a stretch leaves of the edge."""
@@ -286,8 +294,8 @@ class VirtualMachine:
             return
         flank = course.wear.after(course.cutting_seconds).flank
         self._flank[self.tool.number] = flank
-        if flank > WORN_OUT:
-            text = f"T{self.tool.number} {self.tool.id} is worn beyond {WORN_OUT:g} mm"
+        if flank > LIFE_CRITERION:
+            text = f"T{self.tool.number} {self.tool.id} is worn beyond {LIFE_CRITERION:g} mm"
             self._say(text, int(course.segments.block[-1]))
 
     def _say(self, text: str, line: int = 0) -> None:

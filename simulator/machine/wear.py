@@ -1,4 +1,4 @@
-"""Wear of an edge while it cuts, and what it does to the force.
+"""Wear of an edge while it cuts. What it does to the force: :mod:`simulator.physics.flank`.
 
 Straight in cutting time, without the quicker wear of the first minute: an edge is taken as worn
 out, after the life that Taylor gives it, at a flank wear of 0.3 mm. Units s, mm.
@@ -15,13 +15,9 @@ from math import pi
 import numpy as np
 
 from simulator.motion.segments import Floats, Segments
-from simulator.physics.cutting import wear_factor
-from simulator.physics.tool_life import wear_rate
+from simulator.physics.tool_life import LIFE_CRITERION, wear_rate
 from simulator.removal.stations import Stations
 from simulator.spec import Taylor
-
-WORN_OUT = 0.3
-"""mm of flank wear at the end of a tool's life, [2]_"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,19 +38,14 @@ class Wear:
         """The edge after some seconds of cutting."""
         return Wear(flank=self.flank + self.per_second * seconds, per_second=self.per_second)
 
-    def factor(self, seconds: float) -> float:
-        """Factor on the cutting force after some seconds of cutting."""
-        return wear_factor(self.flank + self.per_second * seconds)
-
-    def factors(self, seconds: Floats) -> Floats:
-        """Factors after (M,) seconds of cutting."""
-        fresh, worn = self.factor(0.0), self.factor(1.0)
-        return np.asarray(fresh + (worn - fresh) * seconds)
+    def flanks(self, seconds: Floats) -> Floats:
+        """Flank wear in mm after (M,) seconds of cutting."""
+        return np.asarray(self.flank + self.per_second * seconds)
 
 
 def wearing(flank: float, taylor: Taylor, cutting_speed: float) -> Wear:
     """An edge that cuts at a speed in mm/s: so much of its life goes by in a second, [1]_."""
-    per_second = WORN_OUT * wear_rate(taylor, cutting_speed)
+    per_second = LIFE_CRITERION * wear_rate(taylor, cutting_speed)
     return Wear(flank=flank, per_second=per_second)
 
 

@@ -162,9 +162,12 @@ class FilteredMotion:
 
     @property
     def knots(self) -> Floats:
-        """(K,) times at which a corner enters or leaves one of the averages, s."""
-        first, second = self.filter.first, self.filter.second
-        delays = np.array([0.0, second, first, first + second])
+        """(K,) times at which a corner enters or leaves one of the averages, s.
+
+        And those half a window later, when the station comes to the corner.
+        """
+        first, second, window = self.filter.first, self.filter.second, self.filter.window
+        delays = np.array([0.0, second, 0.5 * window, first, window])
         times = self.pieces.time[1:-1, None] + delays
         return np.unique(np.minimum(times, self.duration))
 

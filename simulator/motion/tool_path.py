@@ -17,7 +17,8 @@ import numpy as np
 from simulator.motion.control import Control, control_model
 from simulator.motion.exact_stop import ExactStop
 from simulator.motion.motion import AxisLimits, ControlModel, axis_limits
-from simulator.motion.segments import Bools, Floats, Ints, Segments, chained
+from simulator.motion.segments import Bools, Floats, Segments, chained
+from simulator.motion.surface_speed import behind, in_pieces
 from simulator.spec import Machine, Spindle
 from stepnc_model.entities.entity import Entity
 from stepnc_model.errors import PostError
@@ -35,14 +36,6 @@ from stepnc_model.toolpath.path import (
     SpindleSpeed,
     ToolPath,
 )
-
-PIECE = 0.02
-"""relative change of the radius within one piece at constant surface speed"""
-
-MOST_PIECES = 400
-
-NEAREST = 0.02
-"""mm from the axis, within which no piece is told from the next"""
 
 Spin = SpindleOn | SurfaceSpeed | SpindleOff
 
@@ -77,13 +70,15 @@ class Run:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Pace:
-    """How much faster than programmed a technology is run, as ratios."""
+    """How much faster than programmed a technology is run, as ratios; and how it plunges."""
 
     technology: Ref[Entity]
     feed: float = 1.0
     """of the feed per tooth, or per revolution"""
     speed: float = 1.0
     """of the spindle speed"""
+    plunge: float | None = None
+    """mm per revolution on the way down into the material; None: as the path says"""
 
 
 class _Row(NamedTuple):
@@ -120,6 +115,8 @@ def paced(look_up: LookUp, pace: Pace) -> LookUp:
     """The same conditions with one technology run faster; feeds of a path's own stay."""
 
     def faster(feed: Feed) -> Conditions:
+        if feed.is_plunge and pace.plunge is not None:
+            feed = replace(feed, per_revolution=pace.plunge)
         found = look_up(feed)
         if feed.technology != pace.technology:
             return found
@@ -169,6 +166,13 @@ def follows(run: Run, technology: Ref[Entity]) -> Bools:
     return bound
 
 
+def plunges(run: Run) -> Bools:
+    """(N,) which segments lead down into the material, at a feed of their own if need be."""
+    is_plunge = [move.feed is not None and move.feed.is_plunge for move in run.moves]
+    plunging: Bools = np.array(is_plunge, dtype=np.bool_)[run.segments.block]
+    return plunging
+
+
 def duration(run: Run, control: ControlModel, limits: AxisLimits) -> float:
     """Time from the start of a path to its end, waits included, s."""
     moving = sum(
@@ -201,6 +205,8 @@ class _Collector:
         self.parts: list[tuple[Segments, Floats]] = []
         self.legs: list[Leg] = []
         self.is_clockwise: bool | None = None
+        self.is_spindle_awaited = False
+        """whether the wait of the last leg is for the spindle"""
 
     def run(self) -> Run:
         """The whole path; the spindle turns when it begins."""
@@ -212,10 +218,14 @@ class _Collector:
                     self._move(step)
                 case Dwell():
                     self._close(self._seconds(step))
+                    self.is_spindle_awaited = False
                 case SpindleSpeed(technology=technology):
                     self._take(self.look_up(Feed(technology=technology)))
                 case SpindleCommand():
                     self._turn(self.asked, step)
+        if self.is_spindle_awaited and all(row.found is None for row in self.rows):
+            # Only a feed waits for the spindle, and none comes any more.
+            self.legs[-1] = replace(self.legs[-1], wait=0.0)
         self._close(0.0)
         segments = [part for part, _ in self.parts]
         return Run(
@@ -252,6 +262,7 @@ class _Collector:
             wait = abs(wanted - self.speed) / self.ramp
         if wait > 0.0 or any(row.found is not None for row in self.rows):
             self._close(wait)
+            self.is_spindle_awaited = True
         self.asked, self.speed = asked, wanted
 
     def _signed(self, asked: Spin | None, command: SpindleCommand) -> float:
@@ -306,9 +317,12 @@ class _Collector:
         segments = _segments(self.rows, first=len(self.moves))
         if isinstance(self.asked, SurfaceSpeed):
             least = self.asked.speed / (2.0 * pi * min(self.fastest, self.asked.limit or inf))
-            segments = _split(segments, _pieces(segments, max(least, NEAREST)))
+            segments = in_pieces(segments, least)
         rows = np.arange(len(segments))
         spindle = self._speeds(segments.position(rows, 0.5 * segments.length)[:, 0])
+        if isinstance(self.asked, SurfaceSpeed):
+            found = [self.rows[of].found for of in segments.block - len(self.moves)]
+            spindle = behind(spindle, segments.length, _advance(found), ramp=self.ramp)
         speed = segments.speed.copy()
         for row, of in enumerate(segments.block - len(self.moves)):
             found = self.rows[of].found
@@ -332,6 +346,15 @@ class _Collector:
         return speed
 
 
+def _advance(found: Sequence[Conditions | None]) -> Floats:
+    """(N,) feeds per revolution, mm; 0 of rapids and of feeds by time."""
+    rates = [None if each is None else each.rate for each in found]
+    return np.array([
+        rate.value if rate is not None and rate.mode is RateMode.PER_REVOLUTION else 0.0
+        for rate in rates
+    ])
+
+
 def _segments(rows: Sequence[_Row], *, first: int) -> Segments:
     """Lines and arcs of moves, all of them as fast as the axes go."""
     arcs = [row.move.arc for row in rows]
@@ -348,29 +371,3 @@ def _segments(rows: Sequence[_Row], *, first: int) -> Segments:
         normal=np.array(normal, dtype=np.int64),
         block=first + np.arange(len(rows)),
     )
-
-
-def _pieces(segments: Segments, least: float) -> Ints:
-    """(N,) into how many pieces each is split because the spindle follows the radius.
-
-    Within ``least``, mm, the spindle has its greatest speed.
-    """
-    one, other = np.abs(segments.start[:, 0]), np.abs(segments.end[:, 0])
-    low = np.maximum(np.minimum(one, other), least)
-    high = np.maximum(np.maximum(one, other), low)
-    count = np.clip(np.ceil(np.log(high / low) / PIECE), 1, MOST_PIECES)
-    pieces: Ints = np.where(segments.is_rapid, 1, count).astype(np.int64)
-    return pieces
-
-
-def _split(segments: Segments, pieces: Ints) -> Segments:
-    """Each segment in so many pieces of equal length."""
-    rows = np.repeat(np.arange(len(segments)), pieces)
-    number = np.arange(len(rows)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
-    step = (segments.length / pieces)[rows]
-    is_last = number + 1 == pieces[rows]
-    end = segments.position(rows, (number + 1) * step)
-    end[is_last] = segments.end
-    start = np.concatenate((segments.start[:1], end[:-1]))
-    start[number == 0] = segments.start
-    return replace(segments[rows], start=start, end=end, turn=(segments.turn / pieces)[rows])

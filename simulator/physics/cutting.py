@@ -2,7 +2,7 @@
 
 A chip of width b and thickness h pulls with ``F = K·k_c1.1·b·h^(1−m_c)``. Scalars in mm, N,
 N/mm² and rad. Without calibration ±20 % is the honest uncertainty: catalogues differ by that
-much on the same steel.
+much on the same steel. What wear adds is in :mod:`simulator.physics.flank`.
 
 References
 ----------
@@ -15,12 +15,10 @@ References
 
 from dataclasses import dataclass
 
-from simulator.physics.domain import require_not_negative, require_positive
+from simulator.physics.domain import require_positive
 from simulator.spec import CuttingMaterial, Kienzle
 from stepnc_model.units import deg_from_rad
 
-SHARP = 1.0  # wear factor of a new edge
-WORN = 1.3  # wear factor at the end of the tool's life; [2] allows up to 1.5
 SPEED_FACTORS = {
     CuttingMaterial.CARBIDE: 1.0,  # [2]; k_c1.1 of tables is measured with carbide
     CuttingMaterial.HSS: 1.2,  # [2]; the slower edge meets the stronger work
@@ -36,18 +34,15 @@ class ForceCorrection:
     """K_γ"""
     speed: float = 1.0
     """K_v"""
-    wear: float = SHARP
-    """K_wear, from 1 (sharp) to 1.5 (end of life)"""
 
     def __post_init__(self) -> None:
         require_positive(self.rake, "rake factor", "")
         require_positive(self.speed, "speed factor", "")
-        require_positive(self.wear, "wear factor", "")
 
     @property
     def factor(self) -> float:
-        """``K = K_γ · K_v · K_wear``."""
-        return self.rake * self.speed * self.wear
+        """``K = K_γ · K_v``."""
+        return self.rake * self.speed
 
 
 def rake_factor(rake_angle: float, reference_rake: float) -> float:
@@ -89,48 +84,6 @@ def speed_factor(cutting_material: CuttingMaterial) -> float:
     return SPEED_FACTORS[cutting_material]
 
 
-def wear_factor(flank_wear: float) -> float:
-    """Factor of the measured flank wear on the cutting force.
-
-    ``K_wear = 1 + 1.85·VB/mm``, fitted to turning of hardened H13 (1.22 at 0.1 mm, 1.54 at
-    0.3 mm). Feed and back force rise far more, see :func:`feed_wear_factor`.
-
-    Parameters
-    ----------
-    flank_wear : float, mm
-        VB, measured range 0 to 0.3 mm.
-
-    Returns
-    -------
-    float
-        Dimensionless.
-
-    Raises
-    ------
-    ValueError
-        If the wear is negative.
-
-    Examples
-    --------
-    >>> wear_factor(0.2)
-    1.37
-    """
-    require_not_negative(flank_wear, "flank wear", "mm")
-    return 1.0 + 1.85 * flank_wear
-
-
-def feed_wear_factor(flank_wear: float) -> float:
-    """Factor on the feed force: ``1 + 7.4·VB/mm``; source and range of :func:`wear_factor`."""
-    require_not_negative(flank_wear, "flank wear", "mm")
-    return 1.0 + 7.4 * flank_wear
-
-
-def back_wear_factor(flank_wear: float) -> float:
-    """Factor on the back force: ``1 + 8.3·VB/mm``; source and range of :func:`wear_factor`."""
-    require_not_negative(flank_wear, "flank wear", "mm")
-    return 1.0 + 8.3 * flank_wear
-
-
 def specific_cutting_force(chip_thickness: float, *, k_c11: float, m_c: float) -> float:
     """Specific cutting force of a chip of thickness h.
 
@@ -166,6 +119,35 @@ def specific_cutting_force(chip_thickness: float, *, k_c11: float, m_c: float) -
     if not 0.0 <= m_c < 1.0:
         raise ValueError(f"Kienzle exponent {m_c:g} must be at least 0 and less than 1")
     return float(k_c11 * chip_thickness**-m_c)
+
+
+def chip_stiffness(chip_thickness: float, *, k_c11: float, m_c: float) -> float:
+    """Force that a chip of 1 mm width gains for 1 mm of thickness: the slope of Kienzle's law.
+
+    ``dF/(b·dh) = (1 − m_c)·k_c1.1·h^(−m_c)``, by [1]_; below k_c by the share m_c. The slope,
+    and not k_c itself, answers to a wave on the surface, as K_tc does in the linear-edge law.
+
+    Parameters
+    ----------
+    chip_thickness : float, mm
+    k_c11 : float, N/mm²
+    m_c : float
+
+    Returns
+    -------
+    float, N/mm²
+
+    Raises
+    ------
+    ValueError
+        As :func:`specific_cutting_force`.
+
+    Examples
+    --------
+    >>> chip_stiffness(1.0, k_c11=1500.0, m_c=0.22)
+    1170.0
+    """
+    return (1.0 - m_c) * specific_cutting_force(chip_thickness, k_c11=k_c11, m_c=m_c)
 
 
 def chip_force(

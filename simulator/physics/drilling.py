@@ -1,20 +1,26 @@
 """Torque and thrust of tools that cut on their end: drills, reamers, boring bars, sinks.
 
 Each lip cuts a chip of thickness ``h = f/z·sin κ`` and width ``b = (D − d)/(2·sin κ)``, κ half
-the point angle, d the hole that was there. The chisel edge is not modelled; it adds to the
-thrust of an unthinned drill, for which [2]_ gives three times the thrust and four tenths more
-torque (Ø10, 0.2 mm, low-carbon steel). Scalars in mm, N, N·mm and rad.
+the point angle, d the hole that was there. Between the lips a drill has a chisel edge of length
+c, which hardly cuts: it displaces. Its part in torque and thrust follows the factors that [1]_
+prints over c/D; a hole that was there before and is wider than the chisel edge leaves none of
+it. mm, N, N·mm and rad.
 
 References
 ----------
-.. [1] Sandvik Coromant, technical guide, drilling formulae:
+.. [1] Machinery's Handbook, 31st ed., pp. 1152-1153, "Machining power", tables 7 to 9:
+   ``T = 0.05·K_d·F_f·F_T·B + 0.007·K_d·D²·J`` in N and ``M = 0.000025·K_d·F_f·F_M·A`` in N·m,
+   with F_f = f^0.8, F_T = D^0.8 and F_M = D^1.8 in mm.
+.. [2] Sandvik Coromant, technical guide, drilling formulae:
    ``P_c = f·v_c·D·k_c/(240·10³)`` in kW and ``F_f ≈ 0.5·k_c·D/2·f·sin κ``.
-.. [2] Tungaloy, general catalogue 2020-2021, p. L068: ``M_c = K·D²·(0.630 + 16.84·f)/100`` in
-   N·m and ``T_c = 570·K·D·f^0.85`` in N.
+.. [3] Tungaloy, general catalogue 2020-2021, p. L068: ``M_c = K·D²·(0.630 + 16.84·f)/100`` in
+   N·m and ``T_c = 570·K·D·f^0.85`` in N, twist drills.
+.. [4] "Common drilling formulas", a page of workshop formulae: ``F_f = 0.7·D/2·f·k_c``.
 """
 
+from bisect import bisect_left
 from dataclasses import dataclass
-from math import sin
+from math import pi, sin
 
 from simulator.physics.cutting import specific_cutting_force
 from simulator.physics.domain import (
@@ -23,11 +29,70 @@ from simulator.physics.domain import (
     require_positive,
     require_teeth,
 )
-from simulator.spec import Kienzle
+from simulator.physics.drive import Value
+from simulator.spec import DrillPoint, Kienzle, ToolKind
 from stepnc_model.units import rad_from_deg
 
 CUSTOMARY_EDGE_ANGLE = rad_from_deg(59.0)  # half of the customary point angle of 118°
-THRUST_SHARE = 0.5  # [1]; other catalogues take 0.7
+
+LIPS_ONLY = DrillPoint(thrust_share=0.5 / sin(CUSTOMARY_EDGE_ANGLE), chisel_ratio=0.0)
+"""A tool of which no more is known. The share, 0.583, is that of [1]_ without chisel edge:
+``0.05·K_d·F_f·F_T`` is half of the lips' tangential force at a point angle of 118°"""
+
+REFERENCE_FEED = 0.2
+"""mm, f₀: the feed at which K_d of [1]_ is told by k_c, the middle of its table 8"""
+
+
+def edge_angle(kind: ToolKind, point_angle: float | None) -> float:
+    """κ of the lips of a tool that cuts on its end, rad: half its point angle.
+
+    Parameters
+    ----------
+    kind : ToolKind
+    point_angle : float, rad, or None
+        None: customary for a drill, and flat for a reamer or a counterbore.
+    """
+    if point_angle:
+        return 0.5 * point_angle
+    return CUSTOMARY_EDGE_ANGLE if kind is ToolKind.DRILL else 0.5 * pi
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ChiselFactors:
+    """What a chisel edge adds, [1]_ table 7."""
+
+    torque: float
+    """A, on the torque of the lips"""
+    thrust: float
+    """B, on the thrust of the lips"""
+    constant: float
+    """J, of a thrust that does not depend on the feed"""
+
+
+NO_CHISEL = ChiselFactors(torque=1.0, thrust=1.0, constant=0.0)
+
+CHISEL_RATIOS = (0.0, 0.03, 0.05, 0.08, 0.10, 0.13, 0.15, 0.18, 0.20, 0.25, 0.30, 0.35, 0.40)
+"""c/D of [1]_ table 7; 0.18: drills of standard design, 0.03: split points. 0 is added"""
+
+CHISEL_FACTORS = (
+    NO_CHISEL,
+    ChiselFactors(torque=1.000, thrust=1.100, constant=0.001),
+    ChiselFactors(torque=1.005, thrust=1.140, constant=0.003),
+    ChiselFactors(torque=1.015, thrust=1.200, constant=0.006),
+    ChiselFactors(torque=1.020, thrust=1.235, constant=0.010),
+    ChiselFactors(torque=1.040, thrust=1.270, constant=0.017),
+    ChiselFactors(torque=1.080, thrust=1.310, constant=0.022),
+    ChiselFactors(torque=1.085, thrust=1.355, constant=0.030),
+    ChiselFactors(torque=1.105, thrust=1.380, constant=0.040),
+    ChiselFactors(torque=1.155, thrust=1.445, constant=0.065),
+    ChiselFactors(torque=1.235, thrust=1.500, constant=0.090),
+    ChiselFactors(torque=1.310, thrust=1.575, constant=0.120),
+    ChiselFactors(torque=1.395, thrust=1.620, constant=0.160),
+)
+"""A, B and J of [1]_ table 7"""
+
+_CONSTANT_SCALE = 0.007 * 5.0 * REFERENCE_FEED**0.2  # see constant_thrust
+_CONSTANT_EXPONENT = 2.2
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,12 +109,14 @@ class DrillingCut:
     """lips z"""
     cutting_edge_angle: float = CUSTOMARY_EDGE_ANGLE
     """κ, half the point angle, rad; π/2 for a boring bar"""
+    point: DrillPoint = LIPS_ONLY
 
     def __post_init__(self) -> None:
         require_positive(self.feed_per_revolution, "feed per revolution", "mm")
         require_hole(self.tool_diameter, self.previous_diameter)
         require_teeth(self.teeth)
         require_edge_angle(self.cutting_edge_angle)
+        require_positive(self.point.thrust_share, "thrust share", "")
 
     @property
     def chip_thickness(self) -> float:
@@ -57,10 +124,52 @@ class DrillingCut:
         return self.feed_per_revolution / self.teeth * sin(self.cutting_edge_angle)
 
     @property
-    def chip_width(self) -> float:
-        """``b = (D − d) / (2·sin κ)`` of one lip in mm."""
-        depth = 0.5 * (self.tool_diameter - self.previous_diameter)
-        return depth / sin(self.cutting_edge_angle)
+    def chisel(self) -> ChiselFactors:
+        """Of the point where its chisel edge meets material; else none."""
+        if self.previous_diameter > self.point.chisel_ratio * self.tool_diameter:
+            return NO_CHISEL
+        return chisel_factors(self.point.chisel_ratio)
+
+
+def chisel_factors(chisel_ratio: float) -> ChiselFactors:
+    """Factors of a chisel edge, straight between the rows of [1]_ table 7.
+
+    Parameters
+    ----------
+    chisel_ratio : float
+        c/D, length of the chisel edge over the diameter, 0 to 0.4.
+
+    Returns
+    -------
+    ChiselFactors
+
+    Raises
+    ------
+    ValueError
+        If the ratio is outside of the table.
+
+    Examples
+    --------
+    >>> chisel_factors(0.18)
+    ChiselFactors(torque=1.085, thrust=1.355, constant=0.03)
+    """
+    if not 0.0 <= chisel_ratio <= CHISEL_RATIOS[-1]:
+        raise ValueError(
+            f"chisel ratio {chisel_ratio:g} must be at least 0 and at most "
+            f"{CHISEL_RATIOS[-1]:g}"
+        )
+    row = bisect_left(CHISEL_RATIOS, chisel_ratio)
+    above = CHISEL_FACTORS[row]
+    if CHISEL_RATIOS[row] == chisel_ratio:
+        return above
+    below = CHISEL_FACTORS[row - 1]
+    step = CHISEL_RATIOS[row] - CHISEL_RATIOS[row - 1]
+    part = (chisel_ratio - CHISEL_RATIOS[row - 1]) / step
+    return ChiselFactors(
+        torque=below.torque + part * (above.torque - below.torque),
+        thrust=below.thrust + part * (above.thrust - below.thrust),
+        constant=below.constant + part * (above.constant - below.constant),
+    )
 
 
 def drilling_specific_force(
@@ -91,11 +200,11 @@ def drilling_specific_force(
 
 
 def drilling_torque(kienzle: Kienzle, cut: DrillingCut, *, factor: float = 1.0) -> float:
-    """Torque of all lips about the axis.
+    """Torque about the axis.
 
-    ``M_c = k_c · f · (D² − d²) / 8``: z chips of area ``b·h`` at the middle of their lips,
-    ``(D + d)/4`` from the axis. Times ``2π·n`` it is ``k_c·Q``, and for d = 0 the power of
-    [1]_.
+    ``M_c = A · k_c · f · (D² − d²) / 8``: z chips of area ``b·h`` at the middle of their lips,
+    ``(D + d)/4`` from the axis, and the chisel edge. Times ``2π·n`` it is ``A·k_c·Q``, and for
+    d = 0 and A = 1 the power of [2]_.
 
     Parameters
     ----------
@@ -121,19 +230,13 @@ def drilling_torque(kienzle: Kienzle, cut: DrillingCut, *, factor: float = 1.0) 
     """
     k_c = drilling_specific_force(kienzle, cut, factor=factor)
     section = cut.tool_diameter**2 - cut.previous_diameter**2
-    return k_c * cut.feed_per_revolution * section / 8.0
+    return cut.chisel.torque * k_c * cut.feed_per_revolution * section / 8.0
 
 
-def drilling_thrust(
-    kienzle: Kienzle,
-    cut: DrillingCut,
-    *,
-    factor: float = 1.0,
-    thrust_share: float = THRUST_SHARE,
-) -> float:
-    """Force along the axis.
+def lip_thrust(kienzle: Kienzle, cut: DrillingCut, *, factor: float = 1.0) -> float:
+    """Part of the thrust that rises with the feed.
 
-    ``F_f = s · k_c · f · (D − d)/2 · sin κ`` with s = 0.5, [1]_.
+    ``s · B · k_c · f · (D − d)/2 · sin κ``, the form of [2]_ with the factors of [1]_.
 
     Parameters
     ----------
@@ -141,8 +244,6 @@ def drilling_thrust(
     cut : DrillingCut
     factor : float
         K of :class:`~simulator.physics.cutting.ForceCorrection`.
-    thrust_share : float
-        s, dimensionless.
 
     Returns
     -------
@@ -151,18 +252,57 @@ def drilling_thrust(
     Raises
     ------
     ValueError
-        If factor or share is not positive.
-
-    Examples
-    --------
-    >>> from math import pi
-    >>> hole = DrillingCut(
-    ...     feed_per_revolution=0.2, tool_diameter=10.0, cutting_edge_angle=pi / 2
-    ... )
-    >>> drilling_thrust(Kienzle(k_c11=2000.0, m_c=0.0), hole)
-    1000.0
+        If the factor is not positive.
     """
-    require_positive(thrust_share, "thrust share", "")
     k_c = drilling_specific_force(kienzle, cut, factor=factor)
     depth = 0.5 * (cut.tool_diameter - cut.previous_diameter)
-    return thrust_share * k_c * cut.feed_per_revolution * depth * sin(cut.cutting_edge_angle)
+    share = cut.point.thrust_share * cut.chisel.thrust * sin(cut.cutting_edge_angle)
+    return share * k_c * cut.feed_per_revolution * depth
+
+
+def constant_thrust(
+    kienzle: Kienzle, diameter: Value, *, lip_sine: Value, teeth: int, constant: float
+) -> Value:
+    """Part of the thrust that the chisel edge takes whatever the feed.
+
+    ``0.007 · K_d · D² · J`` of [1]_, where ``K_d = 5·k_c·(f₀·D)^0.2``: so much makes its torque
+    ``0.000025·K_d·f^0.8·D^1.8`` N·m equal to ``k_c·f·D²/8`` at the feed f₀. Arithmetic only.
+
+    Parameters
+    ----------
+    kienzle : Kienzle
+    diameter : float or array, mm
+        D, at most that of the tool while it enters.
+    lip_sine : float or array
+        sin κ.
+    teeth : int
+        Lips.
+    constant : float
+        J of :class:`ChiselFactors`.
+
+    Returns
+    -------
+    float or array, N
+    """
+    chip = REFERENCE_FEED / teeth * lip_sine
+    k_c = kienzle.k_c11 * chip ** (-kienzle.m_c)
+    force: Value = _CONSTANT_SCALE * constant * k_c * diameter**_CONSTANT_EXPONENT
+    return force
+
+
+def chisel_thrust(kienzle: Kienzle, cut: DrillingCut, *, factor: float = 1.0) -> float:
+    """Part of the thrust that does not depend on the feed: :func:`constant_thrust` of a cut, N.
+
+    Raises
+    ------
+    ValueError
+        If the factor is not positive.
+    """
+    require_positive(factor, "force factor", "")
+    return factor * constant_thrust(
+        kienzle,
+        cut.tool_diameter,
+        lip_sine=sin(cut.cutting_edge_angle),
+        teeth=cut.teeth,
+        constant=cut.chisel.constant,
+    )

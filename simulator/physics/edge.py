@@ -8,57 +8,13 @@ References
 .. [1] Sandvik Coromant, technical guide, formulae for round inserts and ball-nose end mills.
 """
 
-from math import acos, asin, cos, pi, sin, sqrt
+from math import acos, asin, cos, pi, sin
 
 from simulator.physics.domain import (
-    require_at_most,
     require_edge_angle,
     require_not_negative,
     require_positive,
 )
-
-
-def effective_diameter(
-    tool_diameter: float, axial_depth: float, *, corner_radius: float = 0.0
-) -> float:
-    """Greatest diameter that cuts at a depth.
-
-    ``D_eff = D − 2r + 2·√(a_p·(2r − a_p))`` while a_p < r, D beyond; a ball end mill has
-    r = D/2, which leaves ``2·√(a_p·(D − a_p))``, [1]_.
-
-    Parameters
-    ----------
-    tool_diameter : float, mm
-    axial_depth : float, mm
-    corner_radius : float, mm
-        0 for a square end mill, D/2 for a ball.
-
-    Returns
-    -------
-    float, mm
-
-    Raises
-    ------
-    ValueError
-        If diameter or depth is not positive or the radius exceeds half the diameter.
-
-    Examples
-    --------
-    >>> effective_diameter(10.0, 1.0, corner_radius=5.0)
-    6.0
-    """
-    require_positive(tool_diameter, "tool diameter", "mm")
-    require_positive(axial_depth, "axial depth", "mm")
-    require_not_negative(corner_radius, "corner radius", "mm")
-    if corner_radius > tool_diameter / 2.0:
-        raise ValueError(
-            f"corner radius {corner_radius:g} mm must be at most half the tool diameter, "
-            f"{tool_diameter / 2.0:g} mm"
-        )
-    if axial_depth >= corner_radius:
-        return tool_diameter
-    flat = tool_diameter - 2.0 * corner_radius
-    return flat + 2.0 * sqrt(axial_depth * (2.0 * corner_radius - axial_depth))
 
 
 def effective_edge_angle(
@@ -93,6 +49,7 @@ def effective_edge_angle(
     --------
     >>> round(effective_edge_angle(0.8, 2.5), 3)
     1.008
+    >>> from math import sqrt
     >>> round(effective_edge_angle(5.0, 0.05), 4), round(asin(sqrt(0.05 / 10.0)), 4)
     (0.0707, 0.0708)
     """
@@ -106,32 +63,3 @@ def effective_edge_angle(
         straight = (axial_depth - arc_height) / sin(cutting_edge_angle)
         edge_length = corner_radius * cutting_edge_angle + straight
     return asin(min(axial_depth / edge_length, 1.0))
-
-
-def minimum_chip_thickness(edge_radius: float, *, ratio: float) -> float:
-    """Chip below which the edge rubs instead of cutting: ``h_min = ratio · r_β``.
-
-    Parameters
-    ----------
-    edge_radius : float, mm
-        Rounding r_β of the cutting edge, 0.005 to 0.05 mm as a rule.
-    ratio : float
-        0.2 to 0.4 for metals.
-
-    Returns
-    -------
-    float, mm
-
-    Raises
-    ------
-    ValueError
-        If the radius is not positive or the ratio outside (0, 1].
-
-    Examples
-    --------
-    >>> minimum_chip_thickness(0.02, ratio=0.25)
-    0.005
-    """
-    require_positive(edge_radius, "edge radius", "mm")
-    require_at_most(ratio, 1.0, thing="ratio of chip thickness to edge radius", unit="")
-    return ratio * edge_radius

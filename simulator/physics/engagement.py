@@ -1,4 +1,4 @@
-"""Where a milling cutter meets the work: angles, chip thickness, teeth in cut.
+"""Where a milling cutter meets the work: angles and chip thickness.
 
 The angle φ of a tooth is counted in the direction of rotation from the normal to the feed, so
 that the chip is ``h = f_z · sin κ · sin φ`` thick: conventional (up) milling enters at φ = 0,
@@ -15,28 +15,15 @@ References
 """
 
 from dataclasses import dataclass
-from enum import StrEnum
-from math import acos, asin, ceil, pi, sin, sqrt
+from math import acos, asin, pi, sin, sqrt
 
 from simulator.physics.domain import (
     require_at_most,
     require_edge_angle,
     require_positive,
-    require_teeth,
 )
 
-_ROUNDING = 1e-9  # share of a tooth pitch below which a tooth is not counted as engaged
-
-
-class FaceMillingType(StrEnum):
-    """Immersions of [1]_ Fig. 6."""
-
-    FULL_IMMERSION = "full_immersion"
-    """the width of cut is the cutter's diameter"""
-    UNIDIRECTIONAL = "unidirectional"
-    """one side of the cutter cuts"""
-    BILATERAL = "bilateral"
-    """the middle of the cutter cuts"""
+_ROUNDING = 1e-9  # share of the diameter by which a strip may reach beyond the cutter
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -171,32 +158,6 @@ def bilateral(radial_width: float, tool_diameter: float, *, offset: float = 0.0)
     return Engagement(entry_angle=entry, exit_angle=exit_)
 
 
-def engagement_of(
-    kind: FaceMillingType, *, radial_width: float, tool_diameter: float
-) -> Engagement:
-    """Engagement of a face milling type, centred when bilateral, climb when unidirectional.
-
-    Parameters
-    ----------
-    kind : FaceMillingType
-    radial_width : float, mm
-        Full immersion needs none and does not look at it.
-    tool_diameter : float, mm
-
-    Raises
-    ------
-    ValueError
-        If the width is not positive or exceeds the diameter.
-    """
-    match kind:
-        case FaceMillingType.FULL_IMMERSION:
-            return full_immersion()
-        case FaceMillingType.UNIDIRECTIONAL:
-            return unidirectional(radial_width, tool_diameter)
-        case FaceMillingType.BILATERAL:
-            return bilateral(radial_width, tool_diameter)
-
-
 def mean_chip_thickness(
     feed_per_tooth: float, engagement: Engagement, *, cutting_edge_angle: float = pi / 2.0
 ) -> float:
@@ -235,76 +196,3 @@ def mean_chip_ratio(engagement: Engagement, *, cutting_edge_angle: float = pi / 
     require_edge_angle(cutting_edge_angle)
     shape = engagement.cosine_difference / engagement.contact_angle
     return sin(cutting_edge_angle) * shape
-
-
-def greatest_chip_thickness(
-    feed_per_tooth: float, engagement: Engagement, *, cutting_edge_angle: float = pi / 2.0
-) -> float:
-    """Thickest chip on the arc: ``h_max = f_z · sin κ · max sin φ``.
-
-    Parameters
-    ----------
-    feed_per_tooth : float, mm
-    engagement : Engagement
-    cutting_edge_angle : float, rad
-
-    Returns
-    -------
-    float, mm
-
-    Raises
-    ------
-    ValueError
-        If the feed is not positive or the edge angle is outside (0, π).
-
-    Examples
-    --------
-    >>> greatest_chip_thickness(0.1, full_immersion())
-    0.1
-    """
-    require_positive(feed_per_tooth, "feed per tooth", "mm")
-    require_edge_angle(cutting_edge_angle)
-    return feed_per_tooth * sin(cutting_edge_angle) * engagement.greatest_sine
-
-
-def feed_for_mean_chip(
-    chip_thickness: float, engagement: Engagement, *, cutting_edge_angle: float = pi / 2.0
-) -> float:
-    """Feed per tooth that gives a mean chip, the inverse of :func:`mean_chip_thickness`.
-
-    Parameters
-    ----------
-    chip_thickness : float, mm
-    engagement : Engagement
-    cutting_edge_angle : float, rad
-
-    Returns
-    -------
-    float, mm
-
-    Raises
-    ------
-    ValueError
-        If the thickness is not positive or the edge angle is outside (0, π).
-    """
-    require_positive(chip_thickness, "chip thickness", "mm")
-    return chip_thickness / mean_chip_ratio(engagement, cutting_edge_angle=cutting_edge_angle)
-
-
-def mean_teeth_in_cut(engagement: Engagement, teeth: int) -> float:
-    """Teeth engaged at once, on average: ``z · (φ_ex − φ_st) / 2π``."""
-    require_teeth(teeth)
-    return teeth * engagement.contact_angle / (2.0 * pi)
-
-
-def most_teeth_in_cut(engagement: Engagement, teeth: int) -> int:
-    """Teeth engaged at once, at most; straight edges, evenly spaced.
-
-    Examples
-    --------
-    Four teeth in a slot: one enters as another leaves.
-
-    >>> most_teeth_in_cut(full_immersion(), 4)
-    2
-    """
-    return max(ceil(mean_teeth_in_cut(engagement, teeth) - _ROUNDING), 1)

@@ -1,4 +1,4 @@
-"""Speeds, feeds, removal rates and times of a cut, from its geometry alone.
+"""Speeds, feeds and removal rates of a cut, from its geometry alone.
 
 All arguments and results are scalars in mm, s and rev/s, so that the 1000 and the 60 of the
 handbook forms disappear.
@@ -6,7 +6,7 @@ handbook forms disappear.
 References
 ----------
 .. [1] F. Ridwan, X. Xu and G. Liu, "A framework for machining optimisation based on STEP-NC",
-   J. Intell. Manuf., 2010; eqs. (2), (3), (11).
+   J. Intell. Manuf., 2010; eqs. (2), (3).
 .. [2] Mitsubishi Materials, "Technical information", formulae for turning, milling, drilling.
 .. [3] M. P. Groover, "Fundamentals of Modern Manufacturing", machining operations.
 """
@@ -14,8 +14,6 @@ References
 from math import pi
 
 from simulator.physics.domain import (
-    require_hole,
-    require_not_negative,
     require_positive,
     require_teeth,
 )
@@ -179,107 +177,3 @@ def milling_removal_rate(feed: float, *, axial_depth: float, radial_width: float
     require_positive(axial_depth, "axial depth", "mm")
     require_positive(radial_width, "radial width", "mm")
     return axial_depth * radial_width * feed
-
-
-def drilling_removal_rate(
-    feed: float, *, tool_diameter: float, previous_diameter: float = 0.0
-) -> float:
-    """Volume that a drill, reamer or boring bar removes in one second.
-
-    ``Q = π/4 · (D² − d²) · v_f``, [3]_; d is the hole that was there.
-
-    Parameters
-    ----------
-    feed : float, mm/s
-    tool_diameter : float, mm
-    previous_diameter : float, mm
-        0 for drilling into the solid.
-
-    Returns
-    -------
-    float, mm³/s
-
-    Raises
-    ------
-    ValueError
-        If feed or diameter is not positive or the hole is not smaller than the tool.
-
-    Examples
-    --------
-    >>> round(drilling_removal_rate(2.0, tool_diameter=10.0), 2)
-    157.08
-    """
-    require_positive(feed, "feed", "mm/s")
-    require_hole(tool_diameter, previous_diameter)
-    return pi / 4.0 * (tool_diameter**2 - previous_diameter**2) * feed
-
-
-def turning_removal_rate(
-    feed_per_revolution: float, *, depth: float, cutting_speed: float
-) -> float:
-    """Volume that a turning tool removes in one second.
-
-    ``Q = a_p · f · v_c``, [3]_; exact when v_c is taken on the mean of the diameters before and
-    after the cut, and high by less than ``a_p / d`` when it is taken on the outer one.
-
-    Parameters
-    ----------
-    feed_per_revolution : float, mm
-    depth : float, mm
-    cutting_speed : float, mm/s
-
-    Returns
-    -------
-    float, mm³/s
-
-    Raises
-    ------
-    ValueError
-        If any is not positive.
-
-    Examples
-    --------
-    >>> turning_removal_rate(0.25, depth=2.0, cutting_speed=2500.0)
-    1250.0
-    """
-    require_positive(feed_per_revolution, "feed per revolution", "mm")
-    require_positive(depth, "depth of cut", "mm")
-    require_positive(cutting_speed, "cutting speed", "mm/s")
-    return depth * feed_per_revolution * cutting_speed
-
-
-def machining_time(
-    length: float, feed: float, *, approach: float = 0.0, overrun: float = 0.0
-) -> float:
-    """Time at cutting feed over a length with its way in and its way out.
-
-    ``t = (L + A + O) / v_f``: [1]_ eq. (11) with the approach and overrun that it leaves out.
-
-    Parameters
-    ----------
-    length : float, mm
-        Of the workpiece along the path.
-    feed : float, mm/s
-    approach, overrun : float, mm
-
-    Returns
-    -------
-    float, s
-
-    Raises
-    ------
-    ValueError
-        If length or feed is not positive, or approach or overrun is negative.
-
-    Examples
-    --------
-    300 mm with 21 mm approach at 120 mm/min: 2.675 min (El-Hofy).
-
-    >>> round(machining_time(300.0, 120 / 60, approach=21.0) / 60, 3)
-    2.675
-    """
-    require_positive(length, "length", "mm")
-    require_positive(feed, "feed", "mm/s")
-    require_not_negative(approach, "approach", "mm")
-    require_not_negative(overrun, "overrun", "mm")
-    return (length + approach + overrun) / feed

@@ -1,6 +1,6 @@
-"""Power and torque that a cut takes. What the spindle gives is in :mod:`.spindle`.
+"""Power that a cut takes. What the spindle gives is in :mod:`.spindle`.
 
-Scalars in N, mm/s, W, N·mm and rev/s.
+Scalars in N, mm/s and W.
 
 References
 ----------
@@ -8,8 +8,6 @@ References
    J. Intell. Manuf., 2010; eqs. (5), (6). The constraint "N_m ≤ N_mc" is printed the wrong
    way round: the predicted motor power must not exceed the motor's.
 """
-
-from math import pi
 
 from simulator.physics.domain import (
     require_at_most,
@@ -52,35 +50,6 @@ def cutting_power(force: float, cutting_speed: float) -> float:
     return force * cutting_speed / _NMM_S_PER_WATT
 
 
-def removal_power(specific_cutting_force: float, removal_rate: float) -> float:
-    """Power that a removal rate takes: the specific force is an energy per volume.
-
-    ``P_c = k_c · Q / 1000``.
-
-    Parameters
-    ----------
-    specific_cutting_force : float, N/mm²
-    removal_rate : float, mm³/s
-
-    Returns
-    -------
-    float, W
-
-    Raises
-    ------
-    ValueError
-        If either is not positive.
-
-    Examples
-    --------
-    >>> removal_power(1000.0, 261.0)
-    261.0
-    """
-    require_positive(specific_cutting_force, "specific cutting force", "N/mm²")
-    require_positive(removal_rate, "removal rate", "mm³/s")
-    return specific_cutting_force * removal_rate / _NMM_S_PER_WATT
-
-
 def motor_power(cutting_power: float, efficiency: float) -> float:
     """Motor power that a cutting power asks for.
 
@@ -109,45 +78,3 @@ def motor_power(cutting_power: float, efficiency: float) -> float:
     require_not_negative(cutting_power, "cutting power", "W")
     require_at_most(efficiency, 1.0, thing="efficiency", unit="")
     return cutting_power / efficiency
-
-
-def torque(power: float, spindle_speed: float) -> float:
-    """Torque about the spindle that carries a power.
-
-    ``M = 1000 · P / (2π · n)``.
-
-    Parameters
-    ----------
-    power : float, W
-    spindle_speed : float, rev/s
-
-    Returns
-    -------
-    float, N·mm
-
-    Raises
-    ------
-    ValueError
-        If the power is negative or the speed not positive.
-
-    Examples
-    --------
-    >>> round(torque(480.848, 50.0), 0)
-    1531.0
-    """
-    require_not_negative(power, "power", "W")
-    require_positive(spindle_speed, "spindle speed", "rev/s")
-    return _NMM_S_PER_WATT * power / (2.0 * pi * spindle_speed)
-
-
-def torque_power(torque: float, spindle_speed: float) -> float:
-    """Power of a torque, the inverse of :func:`torque`: ``P = 2π · n · M / 1000``, W.
-
-    Raises
-    ------
-    ValueError
-        If the torque is negative or the speed not positive.
-    """
-    require_not_negative(torque, "torque", "N·mm")
-    require_positive(spindle_speed, "spindle speed", "rev/s")
-    return 2.0 * pi * spindle_speed * torque / _NMM_S_PER_WATT

@@ -109,27 +109,6 @@ def available_power(spindle: Spindle, spindle_speed: float) -> float:
     return _stretch_at(spindle, spindle_speed).power(spindle_speed)
 
 
-def available_torque(spindle: Spindle, spindle_speed: float) -> float | None:
-    """Torque that the spindle gives continuously at a speed.
-
-    Parameters
-    ----------
-    spindle : Spindle
-    spindle_speed : float, rev/s
-
-    Returns
-    -------
-    float, N·mm, or None
-        ``None``: the source gives none on this stretch of the curve.
-
-    Raises
-    ------
-    ValueError
-        If the speed is not positive or the curve unusable.
-    """
-    return _stretch_at(spindle, spindle_speed).torque(spindle_speed)
-
-
 def _stretch_at(spindle: Spindle, spindle_speed: float) -> CurveSegment:
     """Stretch of the unlimited curve that holds a speed."""
     require_positive(spindle_speed, "spindle speed", "rev/s")

@@ -16,9 +16,8 @@ torque (here always rev/s²); cutting power is force times speed without a 2π; 
 not divided by the efficiency; the oil film follows Petroff in the speed's own unit.
 """
 
-from math import log1p, pi
+from math import pi
 
-from simulator.physics.domain import require_not_negative, require_positive
 from simulator.physics.drive import Quantity, Value, electrical_power
 from simulator.spec import Spindle
 
@@ -73,29 +72,6 @@ def idle_power(spindle: Spindle, speed: Value) -> Value:
     return power
 
 
-def running_torque(spindle: Spindle, speed: float) -> float:
-    """Torque of a spindle that turns without cutting, ``T_run = η·P_idle/(2π·n)``, [1]_ (14).
-
-    Parameters
-    ----------
-    spindle : Spindle
-    speed : float, rev/s
-        Positive.
-
-    Returns
-    -------
-    float, N·mm
-
-    Raises
-    ------
-    ValueError
-        If the speed is not positive.
-    """
-    require_positive(speed, "spindle speed", "rev/s")
-    mechanical = spindle.efficiency * idle_power(spindle, speed)
-    return _NMM_S_PER_WATT * mechanical / (2.0 * pi * speed)
-
-
 def spindle_power(
     spindle: Spindle,
     speed: Value,
@@ -128,88 +104,3 @@ def spindle_power(
     return electrical_power(
         mechanical, efficiency=spindle.efficiency, regeneration=spindle.regeneration
     )
-
-
-def kinetic_energy(inertia: float, speed: Value) -> Value:
-    """Energy stored in a rotor, ``½·J·(2πn)²``, J of kg·m² and rev/s."""
-    energy: Value = 0.5 * inertia * (2.0 * pi * speed) ** 2
-    return energy
-
-
-def petroff_torque(
-    viscosity: float, speed: float, *, diameter: float, length: float, gap: float
-) -> float:
-    """Torque that shears the film around a turning cylinder, ``(π/4)·μ·D³·L·ω/gap``.
-
-    Petroff's law for a small gap; [1]_ (13) gives 0.658 times that, its speed in rad/s.
-
-    Parameters
-    ----------
-    viscosity : float, N·s/mm²
-        1e-6 of what it is in Pa·s; oil 1e-8 to 1e-7.
-    speed : float, rev/s
-    diameter, length, gap : float, mm
-
-    Returns
-    -------
-    float, N·mm
-
-    Raises
-    ------
-    ValueError
-        If a dimension is not positive, or viscosity or speed is negative.
-
-    Examples
-    --------
-    >>> round(petroff_torque(1e-8, 50.0, diameter=80.0, length=100.0, gap=0.05), 2)
-    2526.62
-    """
-    require_not_negative(viscosity, "viscosity", "N·s/mm²")
-    require_not_negative(speed, "spindle speed", "rev/s")
-    for size, name in ((diameter, "diameter"), (length, "length"), (gap, "gap")):
-        require_positive(size, name, "mm")
-    return pi / 4.0 * viscosity * diameter**3 * length * 2.0 * pi * speed / gap
-
-
-def coast_down_time(
-    inertia: float, speed: float, *, dry_torque: float, viscous: float = 0.0
-) -> float:
-    """Time in which friction alone stops a spindle, ``t = (J/B)·ln(1 + B·ω/T_c)``.
-
-    The solution of ``J·dω/dt = −T_c − B·ω``; minutes for a large spindle, which is why
-    machines brake.
-
-    Parameters
-    ----------
-    inertia : float, kg·m²
-    speed : float, rev/s
-        At which the motor lets go.
-    dry_torque : float, N·mm
-        T_c, independent of speed; without one it never stops.
-    viscous : float, N·mm·s/rad
-        B.
-
-    Returns
-    -------
-    float, s
-
-    Raises
-    ------
-    ValueError
-        If inertia or dry torque is not positive, or another value negative.
-
-    Examples
-    --------
-    >>> round(coast_down_time(0.5, 30.0, dry_torque=1000.0), 1)
-    94.2
-    >>> round(coast_down_time(0.5, 30.0, dry_torque=1000.0, viscous=8.7), 1)
-    55.8
-    """
-    require_positive(inertia, "inertia", "kg·m²")
-    require_not_negative(speed, "spindle speed", "rev/s")
-    require_positive(dry_torque, "dry torque", "N·mm")
-    require_not_negative(viscous, "viscous friction", "N·mm·s/rad")
-    angular = 2.0 * pi * speed
-    if viscous == 0.0:
-        return _NMM_PER_NM * inertia * angular / dry_torque
-    return _NMM_PER_NM * inertia / viscous * log1p(viscous * angular / dry_torque)

@@ -20,6 +20,9 @@ from simulator.physics.domain import (
     require_positive,
 )
 
+STICK_OUT = 3.0
+"""least overhang over diameter of an end mill, customary; ISO 14649 names no overhang"""
+
 FLUTED_RATIO = 0.8  # equivalent diameter of the fluted part over the diameter, [1]; customary
 
 
@@ -79,6 +82,26 @@ class Cantilever:
         """Diameter at the holder: the flutes' when they reach it."""
         fluted = self.flute_length == self.overhang
         return self.flute_diameter if fluted else self.shank_diameter
+
+
+def end_mill(
+    tool_diameter: float, *, cutting_edge_length: float | None, youngs_modulus: float
+) -> Cantilever:
+    """Shank of an end mill that stands out three diameters, or its edge if that is longer.
+
+    Parameters
+    ----------
+    tool_diameter : float, mm
+    cutting_edge_length : float, optional, mm
+    youngs_modulus : float, N/mm²
+
+    Raises
+    ------
+    ValueError
+        If a number is not positive.
+    """
+    overhang = max(STICK_OUT * tool_diameter, cutting_edge_length or 0.0)
+    return _plain(overhang, equivalent_diameter(tool_diameter), youngs_modulus)
 
 
 def equivalent_diameter(tool_diameter: float, *, ratio: float = FLUTED_RATIO) -> float:
@@ -164,30 +187,6 @@ def deflection(
     return force * bar.compliance
 
 
-def force_for_deflection(
-    deflection: float, *, overhang: float, diameter: float, youngs_modulus: float
-) -> float:
-    """Force that a permissible deflection allows, the inverse of :func:`deflection`.
-
-    Parameters
-    ----------
-    deflection : float, mm
-    overhang, diameter : float, mm
-    youngs_modulus : float, N/mm²
-
-    Returns
-    -------
-    float, N
-
-    Raises
-    ------
-    ValueError
-        If any is not positive.
-    """
-    require_positive(deflection, "deflection", "mm")
-    return deflection / _plain(overhang, diameter, youngs_modulus).compliance
-
-
 def _plain(overhang: float, diameter: float, youngs_modulus: float) -> Cantilever:
     """Bar of one diameter."""
     return Cantilever(
@@ -222,27 +221,6 @@ def bending_stress(force: float, *, overhang: float, diameter: float) -> float:
     238.7
     """
     require_not_negative(force, "force", "N")
-    return force / force_for_stress(1.0, overhang=overhang, diameter=diameter)
-
-
-def force_for_stress(stress: float, *, overhang: float, diameter: float) -> float:
-    """Force that a permissible bending stress allows: ``F = π·d³·σ / (32·L)``.
-
-    Parameters
-    ----------
-    stress : float, N/mm²
-    overhang, diameter : float, mm
-
-    Returns
-    -------
-    float, N
-
-    Raises
-    ------
-    ValueError
-        If any is not positive.
-    """
-    require_positive(stress, "bending stress", "N/mm²")
     require_positive(overhang, "overhang", "mm")
     require_positive(diameter, "diameter", "mm")
-    return pi * diameter**3 * stress / (32.0 * overhang)
+    return 32.0 * force * overhang / (pi * diameter**3)

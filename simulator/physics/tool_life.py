@@ -11,7 +11,7 @@ References
 
 from math import pow
 
-from simulator.physics.domain import require_not_negative, require_positive
+from simulator.physics.domain import require_positive
 from simulator.spec import Taylor
 from stepnc_model.units import SECONDS_PER_MINUTE
 
@@ -90,76 +90,6 @@ def wear_rate(taylor: Taylor, cutting_speed: float) -> float:
         As :func:`tool_life`.
     """
     return 1.0 / tool_life(taylor, cutting_speed)
-
-
-def tool_changes(cutting_time: float, life: float) -> float:
-    """Share of tool changes that a cut costs: ``t_c / T``, a fraction, not rounded up.
-
-    Parameters
-    ----------
-    cutting_time : float, s
-    life : float, s
-
-    Returns
-    -------
-    float
-
-    Raises
-    ------
-    ValueError
-        If the time is negative or the life not positive.
-
-    Examples
-    --------
-    >>> tool_changes(120.0, 240.0)
-    0.5
-    """
-    require_not_negative(cutting_time, "cutting time", "s")
-    require_positive(life, "tool life", "s")
-    return cutting_time / life
-
-
-def flank_wear(
-    cutting_time: float,
-    life: float,
-    *,
-    run_in: float = 0.0,
-    criterion: float = LIFE_CRITERION,
-) -> float:
-    """Flank wear after a time of cutting, growing evenly after a quick run-in.
-
-    ``VB(t) = VB_0 + (VB_max − VB_0) · t/T``, so that the criterion is met exactly at t = T. The
-    steep end beyond it is not modelled.
-
-    Parameters
-    ----------
-    cutting_time : float, s
-    life : float, s
-    run_in : float, mm
-        VB_0, 0.03 to 0.05 mm as a rule.
-    criterion : float, mm
-        VB_max at the end of life, [2]_.
-
-    Returns
-    -------
-    float, mm
-
-    Raises
-    ------
-    ValueError
-        If time or run-in is negative, life not positive, or run-in not below the criterion.
-
-    Examples
-    --------
-    >>> round(flank_wear(120.0, 240.0, run_in=0.04), 9)
-    0.17
-    """
-    require_not_negative(run_in, "run-in wear", "mm")
-    if run_in >= criterion:
-        raise ValueError(
-            f"run-in wear {run_in:g} mm must be less than the criterion, {criterion:g} mm"
-        )
-    return run_in + (criterion - run_in) * tool_changes(cutting_time, life)
 
 
 def _require_usable(taylor: Taylor) -> None:

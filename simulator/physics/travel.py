@@ -44,34 +44,6 @@ def centred_approach(tool_diameter: float, radial_width: float) -> float:
     return 0.5 * (tool_diameter - sqrt(tool_diameter**2 - radial_width**2))
 
 
-def centred_overrun(tool_diameter: float, radial_width: float) -> float:
-    """Way past the end of a face until the whole cutter has left it.
-
-    ``O = D − A``: approach and overrun together are one diameter, the ``t = (L + D)/v_f`` of
-    [1]_.
-
-    Parameters
-    ----------
-    tool_diameter : float, mm
-    radial_width : float, mm
-
-    Returns
-    -------
-    float, mm
-
-    Raises
-    ------
-    ValueError
-        As :func:`centred_approach`.
-
-    Examples
-    --------
-    >>> centred_overrun(50.0, 30.0)
-    45.0
-    """
-    return tool_diameter - centred_approach(tool_diameter, radial_width)
-
-
 def one_sided_approach(tool_diameter: float, radial_width: float) -> float:
     """Way from first contact to the full width when one side of the cutter is engaged.
 

@@ -14,7 +14,6 @@ import numpy as np
 
 from simulator.errors import MachineSilent
 from simulator.motion.segments import Floats, Ints
-from simulator.physics.cutting import wear_factor
 from simulator.plant.course import NominalCourse
 from simulator.plant.dynamometer import DYNAMOMETER, POWER_METER, Acquisition, Instrument
 from simulator.plant.hidden import Change, Changed, Hidden
@@ -269,17 +268,13 @@ class ControlledMachine:
 
     def _mean_force(self, rows: Ints, overrides: Floats) -> Floats:
         """Mean of a revolution at each sample, N."""
-        now, hidden = self._now, self.hidden
-        factor = (
-            hidden.force_factor
-            * now.factors[Changed.DEPTH]
-            * now.factors[Changed.HARDNESS]
-            * wear_factor(self._flank_wear)
-            / wear_factor(0.0)
-        )
-        exponent = float(self.course.exponent[self._now.cell])
-        force: Floats = factor * self.course.force[rows] * overrides**exponent
-        return force
+        now, hidden, course = self._now, self.hidden, self.course
+        factor = hidden.force_factor * now.factors[Changed.HARDNESS]
+        exponent = float(course.exponent[now.cell])
+        chips: Floats = factor * course.force[rows] * overrides**exponent
+        # The wear land rubs whatever the chip does.
+        land = self._flank_wear * course.land_force[rows]
+        return now.factors[Changed.DEPTH] * (chips + land)
 
     def _pattern(self, cell: int) -> Floats:
         course = self.course
@@ -292,6 +287,7 @@ class ControlledMachine:
                 entry_angle=_rounded(float(course.entry_angle[cell])),
                 exit_angle=_rounded(float(course.exit_angle[cell])),
                 exponent=round(float(course.exponent[cell]), 4),
+                lag=_rounded(self._now.factors[Changed.DEPTH] * float(course.lag[cell])),
                 runout=_rounded(runout),
                 broken=self._now.broken.get(self._now.tool),
             )

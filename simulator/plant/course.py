@@ -9,18 +9,21 @@ whole time is exact. Units mm, s, N, W, rad, rev/s.
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, fields
-from math import ceil
+from math import ceil, hypot
 
 import numpy as np
 from numpy.typing import NDArray
 
-from simulator.machine.cutting import Edge
+from simulator.machine.cutting import Edge, engaged_width
 from simulator.machine.episode import Episode
 from simulator.machine.samples import PathMode, Samples
 from simulator.machine.sensing import sensed
 from simulator.motion.segments import Bools, Floats, Ints
+from simulator.physics import flank
+from simulator.physics.milling import RADIAL_SHARE
 from simulator.physics.spindle_motion import idle_power
-from simulator.plant.pattern import Teeth, peak_over_mean
+from simulator.physics.tooth_means import Arcs
+from simulator.plant.pattern import Teeth, peak_over_mean, wall_over_mean
 from simulator.removal.stations import CutKind
 from simulator.spec import Machine
 
@@ -49,6 +52,8 @@ class NominalCourse:
     """(N,) mm/s; 0 where nothing is programmed"""
     force: Singles
     """(N,) N, tangential, mean of a revolution"""
+    land_force: Singles
+    """(N,) N per mm of flank wear, tangential, mean; no feed changes it"""
     exponent: Singles
     """(N,) p of force over feed, 1 − m_c"""
     removal_rate: Singles
@@ -66,7 +71,11 @@ class NominalCourse:
     exit_angle: Singles
     """(N,) rad"""
     peak: Singles
-    """(N,) greatest force of a revolution over its mean; 1 where no arc is known"""
+    """(N,) greatest force across the axis over the mean force; 1 where no arc is known"""
+    wall: Singles
+    """(N,) force normal to the wall that an edge makes, over the mean; 0 without a wall"""
+    lag: Singles
+    """(N,) rad by which the upper end of the edges in the cut is behind their tips"""
     teeth: Ints
     """(N,)"""
     tool: Ints
@@ -84,6 +93,11 @@ class NominalCourse:
 
     def __len__(self) -> int:
         return len(self.until)
+
+    @property
+    def arcs(self) -> Arcs:
+        """(N,) arcs of contact."""
+        return Arcs(entry_angle=self.entry_angle, exit_angle=self.exit_angle, lag=self.lag)
 
     @property
     def duration(self) -> float:
@@ -132,7 +146,7 @@ def _part(
 ) -> NominalCourse:
     samples = sensed(episode, machine, middle)
     course, count = episode.course, len(until)
-    diameter = entry = exit_ = np.zeros(count)
+    diameter = entry = exit_ = land = np.zeros(count)
     if course is not None:
         at = course.motion.at(np.clip(middle - episode.begin, 0.0, course.motion.duration))
         stations, rows = course.stations, course.stations_at(at)
@@ -140,7 +154,13 @@ def _part(
         has_arc = stations.kind[rows] == CutKind.MILLING
         entry = np.where(has_arc, stations.entry_angle[rows], 0.0)
         exit_ = np.where(has_arc, stations.exit_angle[rows], 0.0)
+        if course.edge is not None:
+            width = engaged_width(stations, course.edge.teeth)[rows]
+            land = flank.land_force(flank.CUTTING, 1.0, width) * (samples.cutting_force > 0.0)
     edge = None if course is None else course.edge
+    flutes = None if edge is None else edge.flutes
+    lag = (0.0 if flutes is None else flutes.lag) * samples.axial_depth
+    peak, wall = _ratios(samples, entry, exit_, lag=lag, edge=edge)
     speed = np.abs(samples.spindle_speed)
     return NominalCourse(
         until=until,
@@ -149,6 +169,7 @@ def _part(
         feed=_single(samples.path_speed),
         programmed=_single(samples.feed_programmed),
         force=_single(samples.cutting_force),
+        land_force=_single(land),
         exponent=_single(np.full(count, _exponent(edge))),
         removal_rate=_single(samples.removal_rate),
         axial_depth=_single(samples.axial_depth),
@@ -157,41 +178,50 @@ def _part(
         diameter=_single(diameter),
         entry_angle=_single(entry),
         exit_angle=_single(exit_),
-        peak=_single(_peaks(samples, entry, exit_, edge=edge)),
+        peak=_single(peak),
+        wall=_single(wall),
+        lag=_single(lag),
         teeth=np.full(count, 1 if edge is None else edge.teeth),
         tool=samples.tool,
         workingstep=samples.workingstep,
     )
 
 
-def _peaks(samples: Samples, entry: Floats, exit_: Floats, *, edge: Edge | None) -> Floats:
-    """Greatest force over the mean, of arcs that are told apart by hundredths of a radian.
+def _ratios(
+    samples: Samples, entry: Floats, exit_: Floats, *, lag: Floats, edge: Edge | None
+) -> tuple[Floats, Floats]:
+    """Greatest force and force at the wall over the mean; told apart are 0.01 rad.
 
     At most what the teeth in the cut take when each has its thickest chip: where the map knows
     a section but hardly an arc, as on the way down, the arc alone would tell far too much.
     """
-    peaks = np.ones(len(entry))
-    if edge is None:
-        return peaks
-    arcs, row = np.unique(np.round(np.stack((entry, exit_)), 2), axis=1, return_inverse=True)
-    told = [
-        peak_over_mean(
-            Teeth(
-                count=edge.teeth,
-                entry_angle=begin,
-                exit_angle=end,
-                exponent=_exponent(edge),
-            )
-        )
-        for begin, end in arcs.T.tolist()
-    ]
+    peak, wall = np.ones(len(entry)), np.zeros(len(entry))
     cuts = np.flatnonzero((samples.cutting_force > 0.0) & (exit_ > entry))
+    if edge is None or not len(cuts):
+        return peak, wall
+    keys = np.round(np.stack((entry[cuts], exit_[cuts], lag[cuts])), 2)
+    arcs, row = np.unique(keys, axis=1, return_inverse=True)
+    teeth = [
+        Teeth(
+            count=edge.teeth,
+            entry_angle=begin,
+            exit_angle=end,
+            exponent=_exponent(edge),
+            lag=behind,
+        )
+        for begin, end, behind in arcs.T.tolist()
+    ]
     per_tooth = samples.path_speed[cuts] / (edge.teeth * np.abs(samples.spindle_speed[cuts]))
-    together = np.ceil((exit_ - entry)[cuts] * edge.teeth / (2.0 * np.pi))
-    whole = edge.factor * edge.kienzle.k_c11 * per_tooth ** _exponent(edge)
+    contact = (exit_ - entry + lag)[cuts]
+    together = np.ceil(contact * edge.teeth / (2.0 * np.pi))
+    tooth = edge.factor * edge.kienzle.k_c11 * per_tooth ** _exponent(edge)
+    whole = hypot(1.0, RADIAL_SHARE) * tooth
     most = whole * samples.axial_depth[cuts] * together / samples.cutting_force[cuts]
-    peaks[cuts] = np.maximum(np.minimum(np.array(told)[row.ravel()][cuts], most), 1.0)
-    return peaks
+    greatest = np.array([peak_over_mean(each) for each in teeth])[row.ravel()]
+    normal = np.array([wall_over_mean(each) for each in teeth])[row.ravel()]
+    peak[cuts] = np.minimum(greatest, most)
+    wall[cuts] = np.minimum(normal, most)
+    return peak, wall
 
 
 def _exponent(edge: Edge | None) -> float:

@@ -1,19 +1,27 @@
 """Force over a revolution of the cutter, relative to its mean.
 
-The teeth of :mod:`simulator.machine.tooth_forces` on one arc of contact, with runout or with a
-tooth that has broken. Times the mean force of a revolution, which is that of the power, it is
-what a dynamometer shows. Units mm, rad.
+The teeth of :mod:`simulator.physics.tooth_forces` on one arc of contact, along their helix,
+with runout or with a tooth that has broken. Times the mean force of a revolution, which is that
+of the power, it is what a dynamometer shows. Units mm, rad.
 """
 
 from dataclasses import dataclass
 from functools import lru_cache
-from math import cos, pi
+from math import atan, cos, pi
 
 import numpy as np
 
-from simulator.machine.tooth_forces import chip_thickness, tooth_angles
-from simulator.machine.transients import eccentric_runout
 from simulator.motion.segments import Floats
+from simulator.physics.flutes import CuttingEdges, Law
+from simulator.physics.tooth_forces import (
+    Places,
+    Runout,
+    eccentric_runout,
+    forces,
+    one_place,
+    peak_resultant,
+    wall_force,
+)
 
 SAMPLES = 8
 """of a tooth period"""
@@ -34,6 +42,8 @@ class Teeth:
     exit_angle: float
     exponent: float
     """of force over chip thickness"""
+    lag: float = 0.0
+    """rad by which the upper end of the edge in the cut is behind its tip"""
     runout: float = 0.0
     """eccentricity over feed per tooth"""
     broken: int | None = None
@@ -71,18 +81,40 @@ def pattern(teeth: Teeth) -> Floats:
 
 @lru_cache(maxsize=4096)
 def peak_over_mean(teeth: Teeth) -> float:
-    """Greatest force of a revolution over its mean; 1 where no arc is known.
+    """Greatest force across the axis in a revolution, over the mean tangential force.
 
-    The mean is that of the power, with k_c at the mean chip, as the optimiser has it:
-    ``z·φ/2π · (C/φ)^p`` over the force of one tooth at its thickest chip. Teeth without runout.
+    1 where no arc is known; less where teeth pull against each other. The mean is that of the
+    power, with k_c at the mean chip, as the optimiser has it: ``z·φ/2π · (C/φ)^q`` over the
+    force of one tooth at its thickest chip. Teeth without runout.
     """
-    contact = teeth.exit_angle - teeth.entry_angle
-    if not contact > 0.0:
+    if not teeth.exit_angle > teeth.entry_angle:
         return 1.0
-    force = _force(teeth, np.zeros(teeth.count))
+    found = peak_resultant(_edges(teeth), _place(teeth), Law(exponent=teeth.exponent))
+    return float(found[0]) / _mean(teeth)
+
+
+@lru_cache(maxsize=4096)
+def wall_over_mean(teeth: Teeth) -> float:
+    """Force normal to the wall while an edge makes it, over that mean; 0 without a wall."""
+    if not teeth.exit_angle > teeth.entry_angle:
+        return 0.0
+    found = wall_force(_edges(teeth), _place(teeth), Law(exponent=teeth.exponent))
+    return float(found[0]) / _mean(teeth)
+
+
+def _mean(teeth: Teeth) -> float:
+    contact = teeth.exit_angle - teeth.entry_angle
     chip = (cos(teeth.entry_angle) - cos(teeth.exit_angle)) / contact
-    mean = teeth.count * contact / (2.0 * pi) * chip**teeth.exponent
-    return float(max(force.max() / mean, 1.0))
+    return float(teeth.count * contact / (2.0 * pi) * chip**teeth.exponent)
+
+
+def _edges(teeth: Teeth) -> CuttingEdges:
+    """Edges of a cutter of radius 1, which lag as they do over a depth of 1."""
+    return CuttingEdges(teeth=teeth.count, diameter=2.0, helix_angle=atan(teeth.lag))
+
+
+def _place(teeth: Teeth) -> Places:
+    return one_place(teeth.entry_angle, teeth.exit_angle, axial_depth=1.0)
 
 
 def _force(teeth: Teeth, runout: Floats) -> Floats:
@@ -90,8 +122,12 @@ def _force(teeth: Teeth, runout: Floats) -> Floats:
     pitch = 2.0 * pi / teeth.count
     each = SAMPLES * PLACES
     middle = (np.arange(teeth.count * each) + 0.5) / each
-    angle = tooth_angles(teeth.entry_angle + pitch * middle, teeth.count)
-    chip = chip_thickness(angle, feed_per_tooth=1.0, runout=runout)
-    in_cut = (chip > 0.0) & (angle >= teeth.entry_angle) & (angle <= teeth.exit_angle)
-    force: Floats = (np.where(in_cut, chip, 0.0) ** teeth.exponent * in_cut).sum(axis=1)
+    found = forces(
+        _edges(teeth),
+        _place(teeth),
+        Law(exponent=teeth.exponent),
+        rotation=(teeth.entry_angle + pitch * middle)[None, :],
+        runout=Runout(offsets=runout, feed_per_tooth=np.ones(1)) if runout.any() else None,
+    )
+    force: Floats = found.tangential[0]
     return force

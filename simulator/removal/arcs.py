@@ -14,7 +14,7 @@ import numpy as np
 
 from simulator.kernels.kernel import kernel
 from simulator.motion.segments import Floats
-from simulator.removal.profile import Profile, is_plain, radius_at
+from simulator.removal.profile import Profile, is_upright, radius_at
 from simulator.removal.way import LEVEL, Way, arc_distance, way_between
 from simulator.removal.zmap import Grid
 
@@ -110,12 +110,31 @@ def _cleared(record: Floats, profile: Profile, level: float) -> tuple[float, flo
     upright = record[11] == 0.0 and hypot(record[3] - record[0], record[4] - record[1]) < TOUCH
     if high - low <= LEVEL or (upright and not bends_out):
         return 0.0, 1.0, radius_at(profile, max(level - low, 0.0))
-    if bends_out or not is_plain(profile):
+    if bends_out or not is_upright(profile):
         return 0.0, 0.0, 0.0
-    part = min((level - record[2]) / (record[5] - record[2]), 1.0)
+    # A corner clears a little more than this: of what it is nearly through, at most its radius.
+    if level >= high:
+        return 0.0, 1.0, radius_at(profile, level - high)
+    if level >= low + profile.corner:
+        reached, radius = level - profile.corner, profile.radius
+    else:
+        reached, radius = level, radius_at(profile, 0.5 * (level - low))
+    part = min((reached - record[2]) / (record[5] - record[2]), 1.0)
     if record[5] > record[2]:
-        return 0.0, part, profile.radius
-    return max(part, 0.0), 1.0, profile.radius
+        return 0.0, part, radius
+    return max(part, 0.0), 1.0, radius
+
+
+@kernel
+def hole_radius(record: Floats, x: float, y: float, level: float) -> float:
+    """Radius at a height of the hole that an earlier move sank at (x, y), mm; else 0."""
+    away = hypot(record[0] - x, record[1] - y) + hypot(record[3] - x, record[4] - y)
+    if away > TOUCH or record[11] != 0.0:
+        return 0.0
+    profile = Profile(
+        record[13], record[14], record[15], record[16], record[17], record[18], record[19]
+    )
+    return _cleared(record, profile, level)[2]
 
 
 @kernel

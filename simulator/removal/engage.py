@@ -26,6 +26,7 @@ from simulator.removal.march import (
     EXACT,
     EXIT,
     FINDINGS,
+    GROWTH,
     HOLDER,
     HOLDER_X,
     HOLDER_Y,
@@ -50,7 +51,7 @@ from simulator.removal.stations import CutKind, Stations
 from simulator.removal.task import March, Task, desk_for, rows_of
 from simulator.removal.trial import Patch, Trial, box_of, moves_of, patch_of, put_back
 from simulator.removal.zmap import ZMap, cell_size, zmap_of
-from stepnc_model.toolpath.job import Stock
+from stepnc_model.stock import Stock
 
 WINDOW = 10.0
 """cells of path over which the map's volume is a measure"""
@@ -203,8 +204,8 @@ def _how(cutter: Cutter, profile: Profile, cell: float) -> March:
     """How to march with a cutter over cells of a size."""
     holder = cutter.holder
     return March(
-        step=max(STEP_SHARE * profile.radius, 4.0 * cell),
-        least=max(LEAST_SHARE * profile.radius, cell),
+        step=STEP_SHARE * profile.radius,
+        least=LEAST_SHARE * profile.radius,
         coarse=5.0 * cell,
         shape=np.array(profile),
         neck=cylinder(profile.radius),
@@ -251,6 +252,7 @@ def _stations(lines: Floats, cutter: Cutter) -> Stations:
         station=lines[:, STATION].copy(),
         kind=kind,
         section=section.copy(),
+        growth=lines[:, GROWTH].copy(),
         axial_depth=axial,
         radial_width=np.where(kind == CutKind.DRILLING, axial, width),
         entry_angle=lines[:, ENTRY].copy(),

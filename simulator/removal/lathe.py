@@ -30,7 +30,7 @@ from simulator.removal.lathe_edge import chip_ratios, edge_angles
 from simulator.removal.lathe_ways import UPRIGHT, body_of, ways_of
 from simulator.removal.lathe_windows import Removed, Windows, grouped, windows_of
 from simulator.removal.stations import CutKind, Stations
-from stepnc_model.toolpath.job import Stock
+from stepnc_model.stock import Stock
 
 DEFAULT_CELL = 0.01
 """mm; longer bars than MOST_CELLS of it have longer cells"""
@@ -261,6 +261,7 @@ def _stations(removed: Removed, kind: CutKind, chip_ratio: Floats) -> Stations:
         station=windows.end,
         kind=np.where(is_cut, int(kind), int(CutKind.AIR)),
         section=section,
+        growth=nothing,
         axial_depth=depth,
         radial_width=depth / np.where(is_cut, chip_ratio, 1.0),
         entry_angle=nothing,

@@ -11,12 +11,14 @@ import numpy as np
 from simulator.kernels.kernel import entry, kernel
 from simulator.motion.segments import Floats, Ints
 from simulator.removal.carve import MEASURE, carve_part
-from simulator.removal.rim import AREA, FORGETTING, Past, lip, look
+from simulator.removal.profile import is_plain
+from simulator.removal.rim import AREA, FLANK, FORGETTING, Past, look
 from simulator.removal.rim import CONTACT as CONTACT_SEEN
 from simulator.removal.ring import Pose
+from simulator.removal.sink import LIP_ERROR, hole, lip
 from simulator.removal.stations import CutKind
 from simulator.removal.task import DEEPEST, Task
-from simulator.removal.way import place
+from simulator.removal.way import copy, place, raised
 
 STEEP = 0.1
 """horizontal share of a move below which the tool sinks rather than mills"""
@@ -27,8 +29,14 @@ CHANGE_OF_ANGLE = 0.15
 CHANGE_OF_SECTION = 0.15
 """share of the greater by which the sections of two stations may differ"""
 
+POINTED = 0.4
+"""of the step, for tools whose point goes on growing"""
+
 MOST_STRETCHES = 4000
 """of a row; longer rows have longer stretches"""
+
+THINNEST = 0.05
+"""mm of a skin that a sinking tool meets; a thinner one counts over so much"""
 
 MOST_TURNS = 100.0
 """of one arc"""
@@ -53,10 +61,11 @@ ROOM_FOR_ROW = 5 * MOST_STRETCHES
     DIAMETER,
     EXACT,
     LENGTH,
-) = range(12)
+    GROWTH,
+) = range(13)
 """columns of what the march writes; EXACT: the section comes from exact arcs"""
 
-COLUMNS = 12
+COLUMNS = 13
 
 VOLUME, DEPTH, SPOT_X, SPOT_Y, SPOT_Z, SHANK, HOLDER, HOLDER_X, HOLDER_Y = range(9)
 """columns of what the march finds on each row"""
@@ -137,27 +146,53 @@ def _sink(task: Task, segment: Segment, out: Floats, count: int, found: Floats) 
     if min(row[2], row[5]) >= grid.top:
         _leave(task.past)
         return _air(out, count, index, length, length)
-    stretches = min(max(1, ceil(length / task.how.step)), MOST_STRETCHES)
+    profile = task.tool.profile
+    step = task.how.step * (1.0 if is_plain(profile) else POINTED)
+    stretches = min(max(1, ceil(length / step)), MOST_STRETCHES)
+    bored = 0.0
     for stretch in range(stretches):
         span = (stretch / stretches, (stretch + 1) / stretches)
         x, y, z = place(row, span[1])
-        inner, outer = lip(grid, task.tool.profile, x, y, z)
-        volume = _cut(task, row, span, found)
+        inner, outer = lip(grid, profile, x, y, z)
+        # Where a point left through the bottom, the axis tells no more how wide its tool is.
+        middle = place(row, 0.5 * (span[0] + span[1]))
+        bored = max(bored, hole(grid, task.past, middle))
+        if abs(inner - bored) <= LIP_ERROR * profile.radius + max(grid.dx, grid.dy):
+            inner = bored
+        volume, depth = _cut(task, row, span, found)
         long = length / stretches
         if volume <= 0.0:
             count = _air(out, count, index, span[1] * length, long)
             continue
+        # A mill meets a skin over its own thickness: material ends a stretch, or begins it.
+        met = long if task.how.tip_sine < 1.0 else max(depth, THINNEST)
+        met = met if met < long - INSET else long
+        before = 0.0 if z < grid.bottom else long - met
+        if before > 0.0:
+            count = _air(out, count, index, span[0] * length + before, before)
         if outer <= inner:
-            inner, outer = 0.0, task.tool.profile.radius
+            inner, outer = 0.0, profile.radius
         line = out[count]
         line[:] = 0.0
-        line[ROW], line[STATION], line[KIND] = index, span[1] * length, _DRILLING
-        line[SECTION] = volume / long
+        end = span[0] * length + before + met
+        line[ROW], line[STATION], line[KIND] = index, end, _DRILLING
+        line[SECTION] = volume / met
+        if is_plain(profile):
+            ring = pi * (profile.radius**2 - bored**2)
+            if abs(ring - line[SECTION]) <= pi * profile.radius * max(grid.dx, grid.dy):
+                # A ring thinner than a cell: what drilled the hole tells it, not the map.
+                inner, outer, line[SECTION] = bored, profile.radius, ring
+        elif task.how.tip_sine < 1.0:
+            # A point goes on growing: at the end of the stretch it cuts more than on average.
+            more = pi * (outer**2 - inner**2) - line[SECTION]
+            line[GROWTH] = 2.0 * min(max(more, 0.0), line[SECTION])
         line[AXIAL] = outer - inner
         line[CHIP] = task.how.tip_sine
         line[DIAMETER] = outer + inner
-        line[LENGTH] = long
+        line[LENGTH] = met
         count += 1
+        if before + met < long:
+            count = _air(out, count, index, span[1] * length, long - before - met)
     return count
 
 
@@ -172,7 +207,7 @@ def _mill(
         _leave(task.past)
         return _air(out, count, index, span[1] * length, (span[1] - span[0]) * length)
     count = _stations(task, segment, span, out, count)
-    volume = _cut(task, row, span, found)
+    volume, _ = _cut(task, row, span, found)
     return _shared(task, out, begin, count, volume)
 
 
@@ -218,10 +253,11 @@ def _stations(task: Task, segment: Segment, span: Span, out: Floats, count: int)
             for column in range(1, 7):
                 line[AXIAL - 1 + column] = fuller[column]
             line[LENGTH] = long
-            line[EXACT] = left[7] * right[7]
+            line[EXACT] = min(left[7], right[7])
+            line[GROWTH] = right[AREA] - left[AREA] if line[EXACT] > 0.0 else 0.0
             count += 1
             last = part
-            _copy(right, left, 0)
+            copy(right, left, 0)
             top -= 1
     return count
 
@@ -257,8 +293,8 @@ def _differs(task: Task, left: Floats, right: Floats, long: float) -> bool:
 
 
 @kernel
-def _cut(task: Task, row: Floats, span: Span, found: Floats) -> float:
-    """Cut a part of a row and keep account; gives the volume."""
+def _cut(task: Task, row: Floats, span: Span, found: Floats) -> tuple[float, float]:
+    """Cut a part of a row and keep account; gives volume and greatest depth."""
     grid, past = task.grid, task.past
     start, end = place(row, span[0]), place(row, span[1])
     low = min(start[2], end[2]) - abs(row[9]) * (row[12] != 2.0)
@@ -267,7 +303,7 @@ def _cut(task: Task, row: Floats, span: Span, found: Floats) -> float:
         lost = carve_part(
             grid,
             task.how.neck,
-            _raised(row, task.how.shank, task.desk.raised),
+            raised(row, task.how.shank, task.desk.raised),
             span,
             int(np.int64(MEASURE)),
             start[0] > inf,
@@ -279,12 +315,12 @@ def _cut(task: Task, row: Floats, span: Span, found: Floats) -> float:
     last[0], last[1], last[2] = end
     if volume > 0.0:
         record = past.records[past.next[0] % FORGETTING]
-        _copy(row, record, 0)
+        copy(row, record, 0)
         record[0], record[1], record[2] = start
         record[3], record[4], record[5] = end
         record[10] = row[10] + span[0] * row[11]
         record[11] = (span[1] - span[0]) * row[11]
-        _copy(task.how.shape, record, 13)
+        copy(task.how.shape, record, 13)
         past.next[0] += 1
         found[VOLUME] += volume
         if depth > found[DEPTH]:
@@ -296,47 +332,52 @@ def _cut(task: Task, row: Floats, span: Span, found: Floats) -> float:
         lost = carve_part(
             grid,
             task.how.holder,
-            _raised(row, task.how.overhang, task.desk.raised),
+            raised(row, task.how.overhang, task.desk.raised),
             span,
             int(np.int64(MEASURE)),
             start[0] > inf,
         )
         if lost[1] > found[HOLDER]:
             found[HOLDER], found[HOLDER_X], found[HOLDER_Y] = lost[1], lost[2], lost[3]
-    return volume
+    return volume, depth
 
 
 @kernel
-def _copy(source: Floats, into: Floats, first: int) -> None:
-    """Copy numbers to a place in other numbers."""
-    for index in range(len(source)):
-        into[first + index] = source[index]
-
-
-@kernel
-def _raised(row: Floats, lift: float, raised: Floats) -> Floats:
-    """A row farther up."""
-    _copy(row, raised, 0)
-    raised[2] += lift
-    raised[5] += lift
-    raised[8] += lift
-    return raised
+def _with_end(out: Floats, begin: int, count: int, volume: float) -> None:
+    """Add what the end of a flat tool cuts on its way down, alike all along."""
+    rest, length = volume, 0.0
+    for index in range(begin, count):
+        rest -= out[index, SECTION] * out[index, LENGTH]
+        length += out[index, LENGTH] * (out[index, EXACT] == FLANK)
+    for index in range(begin, count):
+        if out[index, EXACT] == FLANK:
+            out[index, SECTION] += max(rest, 0.0) / length
+            out[index, EXACT] = 1.0
 
 
 @kernel
 def _shared(task: Task, out: Floats, begin: int, count: int, volume: float) -> int:
-    """Sections of a part that hold its volume, and air where there is none."""
-    exact, shape, length = True, 0.0, 0.0
+    """Sections that are not exact hold what is left of the volume; air where there is none."""
+    unknown = False
     for index in range(begin, count):
-        exact = exact and out[index, EXACT] == 1.0
-        shape += out[index, SECTION] * out[index, LENGTH]
+        unknown = unknown or out[index, EXACT] == 0.0
+    if not unknown:
+        _with_end(out, begin, count, volume)
+    shape, length, rest = 0.0, 0.0, volume
+    for index in range(begin, count):
+        part = out[index, SECTION] * out[index, LENGTH]
+        if out[index, EXACT] == 1.0:
+            rest -= part
+            continue
+        out[index, EXACT], out[index, GROWTH] = 0.0, 0.0
+        shape += part
         length += out[index, LENGTH]
+    rest = max(rest, 0.0)
     kept = begin
     for index in range(begin, count):
         line = out[index]
-        if not exact:
-            line[EXACT] = 0.0
-            line[SECTION] = line[SECTION] * volume / shape if shape > 0.0 else volume / length
+        if line[EXACT] == 0.0:
+            line[SECTION] = line[SECTION] * rest / shape if shape > 0.0 else rest / length
         if line[SECTION] <= 0.0:
             kept = _air(out, kept, int(line[ROW]), line[STATION], line[LENGTH])
             continue
@@ -347,6 +388,6 @@ def _shared(task: Task, out: Floats, begin: int, count: int, volume: float) -> i
             line[CHIP] = 2.0 / pi * task.how.tip_sine
             line[DIAMETER] = 2.0 * task.tool.profile.radius
         if kept != index:
-            _copy(line, out[kept], 0)
+            copy(line, out[kept], 0)
         kept += 1
     return kept

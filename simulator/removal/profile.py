@@ -12,6 +12,9 @@ from typing import NamedTuple
 from simulator.kernels.kernel import kernel
 from simulator.removal.cutter import Cutter
 
+SMALL_CORNER = 0.25
+"""of the radius; the section of what is rounder depends on how its end is sliced"""
+
 _STRAIGHT = 1e-9  # rad; a smaller taper is none
 
 
@@ -81,6 +84,13 @@ def cylinder(radius: float) -> Profile:
 def is_plain(profile: Profile) -> bool:
     """Whether the tool is a cylinder with a flat end."""
     return profile.slope == 0.0 and profile.flat == profile.radius
+
+
+@kernel
+def is_upright(profile: Profile) -> bool:
+    """Whether the tool is a cylinder with a flat end, or one whose corner is small."""
+    has_small_corner = profile.corner <= SMALL_CORNER * profile.radius
+    return profile.slope == 0.0 and profile.flank == 0.0 and has_small_corner
 
 
 @kernel

@@ -11,7 +11,7 @@ divide the depth. Mean chip over feed per tooth is ``∫∫ sin φ dφ dz / ∫�
 edge, which is ``sin κ·(cos φ_st − cos φ_ex)/(φ_ex − φ_st)`` for one arc. Units mm and rad.
 """
 
-from math import acos, asin, cos, floor, pi, sin, sqrt
+from math import acos, asin, pi, sin, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -27,30 +27,35 @@ from simulator.removal.arcs import (
     free_by_move,
     free_by_outline,
 )
-from simulator.removal.profile import Profile, is_plain, radius_at, rise
+from simulator.removal.profile import Profile, is_plain, is_upright, radius_at, rise
 from simulator.removal.ring import (
+    CORNER_SLICES,
     MOST_CANDIDATES,
     NEAR,
-    ROUND_SAMPLES,
     Pose,
     Room,
     Tool,
+    cell_at,
     circle_of,
-    height_at,
     levels,
     read_ring,
 )
 from simulator.removal.way import LEAST, LEVEL
 from simulator.removal.zmap import OUTSIDE, Grid
 
-CORNER_SLICES = 6
 FLANK_SLICES = 4
 
 FORGETTING = 32_768
 """moves whose outline is remembered"""
 
+SLIVERS = 0.05
+"""of the section, that may lie above its depth: slivers left on a wall do not make it deep"""
+
 TRACE = 1e-3
 """rad of contact below which there is none"""
+
+INSIDE_SAMPLES = 8
+"""of each contact arc"""
 
 RECENT = 3
 """last moves, whose outlines count whether the map names them or not"""
@@ -69,7 +74,11 @@ class Past(NamedTuple):
 
 AREA, DEPTH, ENTRY, EXIT, CONTACT, CHIP, DIAMETER, EXACT = range(8)
 """columns of an engagement: section in mm², greatest depth, angles, mean chip over feed per
-tooth, greatest diameter that cuts; EXACT: all outlines were, on a level move of a flat tool"""
+tooth, greatest diameter that cuts; EXACT: 1 where all outlines were, on a level move of an
+upright tool; FLANK where such a one goes down, whose end cuts too; else 0"""
+
+FLANK = 0.5
+"""of EXACT: the section tells what the side of the tool cuts, and not its end"""
 
 ENGAGEMENT = 8
 
@@ -97,26 +106,26 @@ def look(grid: Grid, before: Past, tool: Tool, work: Room, pose: Pose, into: Flo
     into[EXACT] = 1.0
     profile = tool.profile
     plain, is_known = is_plain(profile), True
+    upright = plain or is_upright(profile)
     gap = max(grid.dx, grid.dy)
     base = max(pose.z, grid.bottom)
     if plain:
         circle = circle_of(pose, profile.radius, tool.side)
         read_ring(grid, work, circle, gap)
         slices = levels(work, base)
-        is_known = slices >= 0
-        slices = abs(slices)
     else:
-        slices = _slices(grid, work, tool, pose, base)
+        slices = _slices(grid, work, tool, pose, base, upright)
     count_all = int(np.int64(0))
-    area, across, edges, top, widest, most = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    area, across, edges, widest, most = 0.0, 0.0, 0.0, 0.0, 0.0
     for index in range(slices):
+        work.areas[index] = 0.0
         low, high = work.bounds[index], work.bounds[index + 1]
         middle = 0.5 * (low + high)
         radius = radius_at(profile, middle - pose.z)
         circle = circle_of(pose, radius, tool.side)
         if not plain:
             read_ring(grid, work, circle, gap)
-        found, known = _slice(grid, before, work, circle, middle)
+        found, known = _slice(grid, before, work, circle, middle, index > 0)
         if not plain and pose.climb > 0.0:
             found = _leading(work, found, profile, middle - pose.z, pose.climb)
         is_known = is_known and known
@@ -129,72 +138,113 @@ def look(grid: Grid, before: Past, tool: Tool, work: Room, pose: Pose, into: Flo
             angle += end - begin
             count_all = add_free(work.total, count_all, begin, end)
         most = max(most, angle)
-        area += (high - low) * radius * sines
+        work.areas[index] = (high - low) * radius * sines
+        area += work.areas[index]
         across += (high - low) * sines
         edges += _edge(profile, low - pose.z, high - pose.z, tool.sine) * angle
-        top = high - base
         widest = 2.0 * radius_at(profile, high - pose.z)
-    exact = plain and is_known and abs(pose.climb) <= LEVEL
-    into[EXACT] = 1.0 if exact else 0.0
+    into[EXACT] = _exactness(upright and is_known, pose.climb)
     if count_all == 0 or most < TRACE:
         return
-    into[AREA], into[DEPTH], into[CHIP], into[DIAMETER] = area, top, across / edges, widest
+    top, above = slices, 0.0
+    while top > 1 and above + work.areas[top - 1] <= SLIVERS * area:
+        top -= 1
+        above += work.areas[top]
+    into[AREA], into[DEPTH] = area, work.bounds[top] - base
+    into[CHIP], into[DIAMETER] = across / edges, widest
     _hull(work.total, contact_arcs(work.total, count_all), into)
 
 
 @kernel
-def _slices(grid: Grid, work: Room, tool: Tool, pose: Pose, base: float) -> int:
-    """Slices of a rounded tool: up to the highest place that it touches ahead."""
+def _exactness(is_known: bool, climb: float) -> float:
+    """How exact the section is, by the outlines and the slope of the path."""
+    if not is_known or climb > LEVEL:
+        return 0.0
+    return FLANK if climb < -LEVEL else 1.0
+
+
+@kernel
+def _slices(grid: Grid, work: Room, tool: Tool, pose: Pose, base: float, upright: bool) -> int:
+    """Slices of a rounded tool: up to the highest place that it touches ahead.
+
+    Above the corner of an upright one they lie between the heights that its ring meets.
+    """
+    profile = tool.profile
+    top = _top(grid, work, tool, pose, base)
+    if top <= base:
+        return 0
+    shoulder = min(max(pose.z + profile.shoulder, base), top)
+    above = 0
+    if upright and top > shoulder + LEAST:
+        # The last ring that was read is the widest.
+        above = levels(work, shoulder)
+        for index in range(above, 0, -1):
+            work.bounds[index + CORNER_SLICES] = work.bounds[index]
+    count = _divided(work, 0, base, shoulder, CORNER_SLICES)
+    if above == 0:
+        return _divided(work, count, shoulder, top, FLANK_SLICES)
+    for index in range(1, above + 1):
+        work.bounds[count + index] = work.bounds[CORNER_SLICES + index]
+    return count + above
+
+
+@kernel
+def _divided(work: Room, count: int, low: float, high: float, parts: int) -> int:
+    """Number of slices after some more have been added that divide a height."""
+    work.bounds[count] = low
+    if high <= low + LEAST:
+        return count
+    for index in range(1, parts + 1):
+        work.bounds[count + index] = low + (high - low) * index / parts
+    return count + parts
+
+
+@kernel
+def _top(grid: Grid, work: Room, tool: Tool, pose: Pose, base: float) -> float:
+    """Highest place that a rounded tool touches ahead."""
     profile, gap = tool.profile, max(grid.dx, grid.dy)
-    step, top = pi / ROUND_SAMPLES, base
+    samples = len(work.heights)
+    step, top = pi / samples, base
     for third in range(1, 4):
         radius = profile.radius * third / 3.0
         circle = circle_of(pose, radius, tool.side)
         read_ring(grid, work, circle, gap)
         reach = pose.z + rise(profile, radius) - LEAST
-        for index in range(ROUND_SAMPLES):
+        for index in range(samples):
             height = work.heights[index]
             if height <= top:
                 continue
             # What is lower than the tool there may go on to where the tool comes as low.
             nearer = radius_at(profile, height - pose.z) + gap
             if height > reach or (
-                height_at(grid, circle, nearer, (index + 0.5) * step) > height - LEAST
+                cell_at(grid, circle, nearer, (index + 0.5) * step)[0] > height - LEAST
             ):
                 top = height
-    if top <= base:
-        return 0
-    shoulder = min(max(pose.z + profile.shoulder, base), top)
-    count = 0
-    work.bounds[0] = base
-    if shoulder > base + LEAST:
-        for index in range(1, CORNER_SLICES + 1):
-            work.bounds[index] = base + (shoulder - base) * index / CORNER_SLICES
-        count = CORNER_SLICES
-    if top > shoulder + LEAST:
-        for index in range(1, FLANK_SLICES + 1):
-            work.bounds[count + index] = shoulder + (top - shoulder) * index / FLANK_SLICES
-        count += FLANK_SLICES
-    return count
+    return top
+
+
+@kernel
+def _recent(before: Past, work: Room, circle: Circle, level: float) -> int:
+    """Candidates from the last moves; number of intervals that they freed."""
+    latest, free = before.next[0], int(np.int64(0))
+    for index in range(min(latest, RECENT)):
+        number = max(latest - RECENT, 0) + index
+        work.candidates[index] = number
+        record = before.records[number % FORGETTING]
+        free = max(free_by_move(work.arcs, free, circle, record, level), free)
+    return free
 
 
 @kernel
 def _slice(
-    grid: Grid, before: Past, work: Room, circle: Circle, level: float
+    grid: Grid, before: Past, work: Room, circle: Circle, level: float, is_above: bool
 ) -> tuple[int, bool]:
-    """Contact arcs of one slice, and whether all outlines were exact."""
+    """Contact arcs of one slice, above the lowest or not; whether all outlines were exact."""
     latest = before.next[0]
     samples = len(work.heights)
     step = pi / samples
-    free, known, is_at_border = int(np.int64(0)), True, grid.radius > 0.0
-    candidates = 0
-    for number in range(max(latest - RECENT, 0), latest):
-        work.candidates[candidates] = number
-        candidates += 1
-        tried = free_by_move(
-            work.arcs, free, circle, before.records[number % FORGETTING], level
-        )
-        free = max(tried, free)
+    known, is_at_border = True, grid.radius > 0.0
+    free, candidates = _recent(before, work, circle, level), min(latest, RECENT)
     if _runs(work, level) == 0:
         return 0, True
     for index in range(samples):
@@ -225,7 +275,32 @@ def _slice(
         free = add_free(work.arcs, free, index * step, (index + 1) * step)
     if is_at_border:
         free = free_by_outline(work.arcs, free, circle, grid)
+    if is_above:
+        free = _named_inside(grid, before, work, circle, level, free)
     return contact_arcs(work.arcs, free), known
+
+
+@kernel
+def _named_inside(
+    grid: Grid, before: Past, work: Room, circle: Circle, level: float, free: int
+) -> int:
+    """Add what moves freed that no sample outside the rim names; number of free intervals.
+
+    What only the arc of a corner freed, in an earlier pass, may be narrower than a cell.
+    """
+    inside = circle.radius - 0.5 * max(grid.dx, grid.dy)
+    latest, last = before.next[0], -1
+    for arc in range(contact_arcs(work.arcs, free)):
+        begin, end = work.arcs.contact[arc, 0], work.arcs.contact[arc, 1]
+        for part in range(INSIDE_SAMPLES):
+            angle = begin + (end - begin) * (part + 0.5) / INSIDE_SAMPLES
+            height, owner = cell_at(grid, circle, inside, angle)
+            is_old = max(latest - FORGETTING, 0) <= owner < latest
+            if is_old and height <= level and owner != last:
+                record = before.records[owner % FORGETTING]
+                free = max(free_by_move(work.arcs, free, circle, record, level), free)
+                last = owner
+    return free
 
 
 @kernel
@@ -296,24 +371,3 @@ def _hull(total: Intervals, gaps: int, into: Floats) -> None:
             into[ENTRY] = end
         if end == pi:
             into[EXIT] = begin
-
-
-@kernel
-def lip(grid: Grid, profile: Profile, x: float, y: float, z: float) -> tuple[float, float]:
-    """Inner and outer radius of what a tool that sinks down to a place cuts there, mm."""
-    rings, spokes = 16, 16
-    inner, outer = profile.radius, 0.0
-    columns, rows = grid.heights.shape
-    for ring in range(rings):
-        radius = (ring + 0.5) / rings * profile.radius
-        height = z + rise(profile, radius) + LEAST
-        for spoke in range(spokes):
-            angle = 2.0 * pi * (spoke + 0.5) / spokes
-            column = floor((x + radius * cos(angle) - grid.x) / grid.dx)
-            row = floor((y + radius * sin(angle) - grid.y) / grid.dy)
-            if not (0 <= column < columns and 0 <= row < rows):
-                continue
-            if grid.heights[column, row] > max(height, grid.bottom):
-                inner = min(inner, ring / rings * profile.radius)
-                outer = max(outer, (ring + 1) / rings * profile.radius)
-    return inner, outer

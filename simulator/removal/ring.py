@@ -28,8 +28,11 @@ ROUND_SAMPLES = 48
 MOST_LEVELS = 8
 """heights that a flat cutter tells apart"""
 
-BLURRED_SLICES = 4
-"""that divide its depth where there are more"""
+CORNER_SLICES = 6
+"""of a rounded end"""
+
+BLURRED_SLICES = 8
+"""that divide its depth where there are more, as on a ramp"""
 
 NEAR = 8
 """samples from a solid one within which a free one asks for the outline that freed it"""
@@ -49,7 +52,9 @@ class Room(NamedTuple):
     solid: Ints
     """(S,) samples from there to the next that is solid"""
     bounds: Floats
-    """(MOST_LEVELS + 2,) mm between slices"""
+    """(MOST_LEVELS + CORNER_SLICES + 3,) mm between slices"""
+    areas: Floats
+    """mm², of each slice"""
     candidates: Ints
     """(MOST_CANDIDATES,)"""
 
@@ -85,7 +90,8 @@ def room_for(samples: int) -> Room:
         np.empty(samples),
         np.empty(samples, dtype=np.int64),
         np.empty(samples, dtype=np.int64),
-        np.empty(MOST_LEVELS + 3),
+        np.empty(MOST_LEVELS + CORNER_SLICES + 3),
+        np.zeros(MOST_LEVELS + CORNER_SLICES + 3),
         np.empty(MOST_CANDIDATES, dtype=np.int64),
     )
 
@@ -123,20 +129,20 @@ def read_ring(grid: Grid, work: Room, circle: Circle, gap: float) -> None:
 
 
 @kernel
-def height_at(grid: Grid, circle: Circle, radius: float, angle: float) -> float:
-    """Height of the map at an angle φ and a distance from the axis."""
+def cell_at(grid: Grid, circle: Circle, radius: float, angle: float) -> tuple[float, int]:
+    """Height and owner of the map at an angle φ and a distance from the axis."""
     across, onward = circle.side * radius * cos(angle), radius * sin(angle)
     x = circle.x + onward * circle.ahead_x - across * circle.ahead_y
     y = circle.y + onward * circle.ahead_y + across * circle.ahead_x
     column, row = floor((x - grid.x) / grid.dx), floor((y - grid.y) / grid.dy)
     if 0 <= column < grid.heights.shape[0] and 0 <= row < grid.heights.shape[1]:
-        return float(grid.heights[column, row])
-    return grid.bottom
+        return float(grid.heights[column, row]), int(grid.owner[column, row])
+    return grid.bottom, OUTSIDE
 
 
 @kernel
 def levels(work: Room, base: float) -> int:
-    """Slices of a flat cutter: between the heights that its ring meets; negative: blurred."""
+    """Slices of a flat cutter: between the heights that its ring meets, or even ones."""
     bounds = work.bounds
     bounds[0] = base
     count, top = 0, base
@@ -160,5 +166,4 @@ def levels(work: Room, base: float) -> int:
         count = BLURRED_SLICES
         for index in range(1, count + 1):
             bounds[index] = base + (top - base) * index / count
-        return -count
     return count

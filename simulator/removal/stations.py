@@ -7,10 +7,22 @@ with the two, force and power need not know whether the cut is milling, drilling
 
 from dataclasses import dataclass, fields
 from enum import IntEnum
+from math import pi
 
 import numpy as np
 
-from simulator.motion.segments import Bools, Floats, Ints
+from simulator.motion.segments import Floats, Ints
+
+WALL = 0.1
+"""rad from φ = 0 or π within which an arc of contact reaches the wall: 0.5 % of the radius"""
+
+SINGLE = 0.02
+"""of the section, within which an arc is the only one"""
+
+THICKEST = 2.3311
+"""rad, length of the arc at a wall whose mean chip is greatest: tan(β/2) = β"""
+
+HALVINGS = 40
 
 
 class CutKind(IntEnum):
@@ -39,6 +51,8 @@ class Stations:
     """(M,) :class:`CutKind`"""
     section: Floats
     """(M,) mm², volume removed per mm of path"""
+    growth: Floats
+    """(M,) mm² by which the section grows from the beginning of the stretch to its end"""
     axial_depth: Floats
     """(M,) mm, a_p; in turning the depth of cut; 0 in air"""
     radial_width: Floats
@@ -61,15 +75,24 @@ class Stations:
             if getattr(self, field.name).shape != (count,):
                 raise ValueError(f"{field.name} must have shape {(count,)}")
 
+    @property
+    def peak_section(self) -> Floats:
+        """(M,) mm², greatest section of each stretch: what angles, depth and chip belong to."""
+        peak: Floats = self.section + 0.5 * np.abs(self.growth)
+        return peak
+
     def __len__(self) -> int:
         return len(self.segment)
 
-    def engagements(self, rows: Bools, *, digits: int) -> list[list[float]]:
-        """Sections, depths, entry and exit angles of some rows, rounded, each once."""
-        columns = (self.section, self.axial_depth, self.entry_angle, self.exit_angle)
-        met = np.column_stack([column[rows] for column in columns]).round(digits)
-        different: list[list[float]] = np.unique(met, axis=0).tolist()
-        return different
+
+def stretch_lengths(stations: Stations) -> Floats:
+    """(M,) mm, the stretch for which each station holds."""
+    before = stations.station.copy()
+    before[1:] = stations.station[:-1]
+    before[:1] = 0.0
+    before[1:][stations.segment[1:] != stations.segment[:-1]] = 0.0
+    stretch: Floats = stations.station - before
+    return stretch
 
 
 def air(segments: Ints, length: Floats) -> Stations:
@@ -88,6 +111,7 @@ def air(segments: Ints, length: Floats) -> Stations:
         station=length,
         kind=np.full(len(segments), int(CutKind.AIR)),
         section=nothing,
+        growth=nothing,
         axial_depth=nothing,
         radial_width=nothing,
         entry_angle=nothing,
@@ -98,11 +122,75 @@ def air(segments: Ints, length: Floats) -> Stations:
     )
 
 
-def merged(parts: list[Stations]) -> Stations:
-    """Stations of several runs in the order of their segments."""
-    columns = {
-        field.name: np.concatenate([getattr(part, field.name) for part in parts])
-        for field in fields(Stations)
-    }
-    order = np.lexsort((columns["station"], columns["segment"]))
-    return Stations(**{name: column[order] for name, column in columns.items()})
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class SingleArcs:
+    """One arc of contact for each station, with the section and the mean chip that were met."""
+
+    entry_angle: Floats
+    """(M,) rad"""
+    exit_angle: Floats
+    """(M,) rad; the entry angle in air"""
+    depth: Floats
+    """(M,) mm, at most the axial depth"""
+    fill: Floats
+    """(M,) section over that of arc and depth, 1 where both are met; 0 in air"""
+
+
+def single_arcs(stations: Stations) -> SingleArcs:
+    """One arc for each station that mills.
+
+    The arc of a station holds all contact, also slivers of a floor or of a wall high above. Of
+    what was seen in several arcs the mean chip tells how long one of them would be: at the wall
+    that it reaches, else about the middle. The section then tells its depth. All is that of the
+    place of the stretch where the section is greatest.
+    """
+    entry, exit_ = stations.entry_angle.copy(), stations.exit_angle.copy()
+    section = stations.peak_section
+    cuts = (section > 0.0) & (exit_ > entry)
+    radius = 0.5 * stations.diameter
+    seen = radius * stations.axial_depth * (np.cos(entry) - np.cos(exit_))
+    is_several = cuts & (np.abs(seen - section) > SINGLE * seen)
+    at = np.flatnonzero(is_several)
+    if len(at):
+        least = section[at] / (radius * stations.axial_depth)[at]
+        entry[at], exit_[at] = _of_mean_chip(
+            entry[at], exit_[at], stations.chip_ratio[at], least=least
+        )
+    swept = radius * (np.cos(entry) - np.cos(exit_))
+    known = np.where(cuts, swept, 1.0)
+    depth = np.where(cuts, np.minimum(stations.axial_depth, section / known), 0.0)
+    is_deep = depth > 0.0
+    return SingleArcs(
+        entry_angle=np.where(is_deep, entry, 0.0),
+        exit_angle=np.where(is_deep, exit_, 0.0),
+        depth=depth,
+        fill=np.where(is_deep, section / np.where(is_deep, known * depth, 1.0), 0.0),
+    )
+
+
+def _of_mean_chip(
+    entry: Floats, exit_: Floats, ratio: Floats, *, least: Floats
+) -> tuple[Floats, Floats]:
+    """Arcs within others whose mean chip over the feed per tooth is given, or these others.
+
+    The mean chip of an arc at a wall grows with its length up to 2.33 rad; that of an arc about
+    a middle falls. No arc has a smaller ``cos φ_st − cos φ_ex`` than the least: with it the
+    section takes the whole depth.
+    """
+    whole = exit_ - entry
+    is_down, is_up = exit_ >= pi - WALL, entry <= WALL
+    is_walled = is_down | is_up
+    middle = 0.5 * (entry + exit_)
+    low = np.full(len(whole), 1e-6)
+    high = np.where(is_walled, np.minimum(whole, THICKEST), whole)
+    for _ in range(HALVINGS):
+        length = 0.5 * (low + high)
+        walled = (1.0 - np.cos(length)) / length
+        centred = 2.0 * np.sin(middle) * np.sin(0.5 * length) / length
+        is_short = np.where(is_walled, walled < ratio, centred > ratio)
+        low, high = np.where(is_short, length, low), np.where(is_short, high, length)
+    walled = np.arccos(1.0 - np.minimum(least, 2.0))
+    centred = 2.0 * np.arcsin(np.minimum(0.5 * least / np.sin(middle), 1.0))
+    high = np.minimum(np.maximum(high, np.where(is_walled, walled, centred)), whole)
+    start = np.where(is_down, pi - high, np.where(is_up, 0.0, middle - 0.5 * high))
+    return start, start + high

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from simulator.motion.segments import Floats, Segments
-from simulator.removal.profile import Profile, is_plain
+from simulator.removal.profile import Profile, is_upright
 from simulator.removal.rim import ENGAGEMENT, Past
 from simulator.removal.ring import ROUND_SAMPLES, SAMPLES, Room, Tool, room_for
 from simulator.removal.zmap import Grid
@@ -65,7 +65,7 @@ class Task(NamedTuple):
 
 def desk_for(tool: Tool) -> Desk:
     """Room for the work of a tool."""
-    samples = SAMPLES if is_plain(tool.profile) else ROUND_SAMPLES
+    samples = SAMPLES if is_upright(tool.profile) else ROUND_SAMPLES
     return Desk(
         room_for(samples),
         np.empty(DEEPEST),

@@ -2,6 +2,7 @@
 
 from math import inf, pi
 
+from simulator.physics.drilling import edge_angle
 from simulator.removal.cutter import Cutter, Holder, Insert
 from simulator.removal.profile import profile_of
 from simulator.spec import ToolKind
@@ -21,7 +22,6 @@ from stepnc_model.units import rad_from_deg
 HOLDER_SHARE = 2.0
 """diameter of a holder over that of its tool, where nothing is said: a collet chuck"""
 
-CUSTOMARY_POINT = rad_from_deg(118.0)
 
 STEEPEST_DEG = 80.0
 """degrees between the flank of a tapered tool and its axis"""
@@ -106,12 +106,11 @@ def _insert(program: Program, tool: Tool, entity: TurningMachineCuttingTool) -> 
 def _cutter(program: Program, tool: Tool, entity: Entity) -> Cutter:
     kind = tool_kind(tool)
     is_end = kind in ENDS
-    point = tool.point_angle or (CUSTOMARY_POINT if kind is ToolKind.DRILL else pi)
     return Cutter(
         diameter=tool.diameter,
         corner_radius=0.0 if is_end else min(tool.corner_radius or 0.0, 0.5 * tool.diameter),
         taper_angle=_taper(program, entity),
-        point_angle=point if is_end else pi,
+        point_angle=2.0 * edge_angle(kind, tool.point_angle) if is_end else pi,
         teeth=tool.teeth,
         edge_length=tool.cutting_edge_length or inf,
         cutting_edge_angle=tool.cutting_edge_angle,

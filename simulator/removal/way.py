@@ -106,3 +106,20 @@ def helix_height(way: Way, x: float, y: float, reach: float) -> float:
             part = (low if way.end_z > way.z else high) / whole
             best = min(best, way.z + part * (way.end_z - way.z))
     return best
+
+
+@kernel
+def copy(source: Floats, into: Floats, first: int) -> None:
+    """Copy numbers to a place in other numbers."""
+    for index in range(len(source)):
+        into[first + index] = source[index]
+
+
+@kernel
+def raised(row: Floats, lift: float, into: Floats) -> Floats:
+    """A row farther up."""
+    copy(row, into, 0)
+    into[2] += lift
+    into[5] += lift
+    into[8] += lift
+    return into

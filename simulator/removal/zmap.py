@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simulator.motion.segments import Floats
-from stepnc_model.toolpath.job import Stock
+from stepnc_model.stock import Stock
 
 MOST_CELLS = 4_000_000
 """of a map whose cell size nobody chose"""

@@ -18,10 +18,14 @@ class PlusMinusValue(Entity):
 
 @entity
 class LimitsAndFits(Entity):
-    """Tolerance by deviation and grade of ISO 286."""
+    """Tolerance by deviation and grade of ISO 286.
 
-    deviation: float
-    grade: float
+    Both are of the type ``length_measure``, which cannot hold the letters of ISO 286; files
+    that write 'H' and 'IT7' are read as well.
+    """
+
+    deviation: float | str
+    grade: float | str
     its_fitting_type: FittingType | None = None
 
 

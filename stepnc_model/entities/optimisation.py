@@ -121,6 +121,8 @@ class OptimisationRecord(Entity):
     machine: str
     material: str
     generator: str
+    plunge_feed_per_tooth: float | None = None
+    """mm, on the way down into the material; absent: the feed of the cut"""
 
 
 @entity

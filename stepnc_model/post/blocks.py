@@ -144,6 +144,8 @@ class Retract:
     """Rapid along z only: nothing is known of x and y after a tool change."""
 
     z: float
+    is_way: bool = False
+    """between two workingsteps, not part of a path"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -151,6 +153,8 @@ class Rapid:
     """Straight in rapid."""
 
     end: Point
+    is_way: bool = False
+    """between two workingsteps, not part of a path"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -151,7 +151,7 @@ class _Sequence:
             except StepNcError as error:
                 raise PostError(f"'{path.id}': {error}") from error
         if self.at is not None:
-            yield Retract(z=max(self.safe_z, self.at[2]))
+            yield Retract(z=max(self.safe_z, self.at[2]), is_way=True)
         yield from self._spindle(SpindleOff())
         yield from self._cool(Coolant())
         yield ProgramEnd()
@@ -211,7 +211,7 @@ class _Sequence:
         yield from self._spindle(SpindleOff())
         yield from self._cool(Coolant())
         if self.at is not None:
-            yield Retract(z=max(self.safe_z, self.at[2]))
+            yield Retract(z=max(self.safe_z, self.at[2]), is_way=True)
         self.at, self.tool = None, ref
         self.turning = self.programmed = None
         yield ToolChange(number=self.numbers[ref], id=tool_of(self.program, ref).id)
@@ -223,10 +223,10 @@ class _Sequence:
         x, y, _ = start
         safe_z = self.safe_z if self.at is None else max(self.safe_z, self.at[2])
         if self.at is None or self.at[2] != safe_z:
-            yield Retract(z=safe_z)
-        yield Rapid(end=(x, y, safe_z))
+            yield Retract(z=safe_z, is_way=True)
+        yield Rapid(end=(x, y, safe_z), is_way=True)
         if start[2] != safe_z:
-            yield Rapid(end=start)
+            yield Rapid(end=start, is_way=True)
         self.at = start
 
     def _step(self, step: Step) -> Iterator[Block]:

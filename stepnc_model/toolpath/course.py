@@ -32,6 +32,7 @@ class Course:
         self._steps: list[Step] = []
         self._cycles: list[Cycle] = []
         self._findings: list[Finding] = list(job.findings)
+        self._plunge_feed = job.plunge_feed
         self.at = start
         """where the tool is"""
 
@@ -53,7 +54,7 @@ class Course:
 
     def line(self, end: Point, type: MoveType, feed: Feed | None = None) -> None:
         """Straight, at the programmed feed or at another one."""
-        self.add(Move(end=end, type=type, feed=feed or self._job.feed))
+        self.add(Move(end=end, type=type, feed=feed or self._feed(end, type)))
 
     def arc(
         self,
@@ -66,7 +67,12 @@ class Course:
     ) -> None:
         """About a centre, at the programmed feed."""
         arc = Arc(centre=centre, turn=turn, plane=plane)
-        self.add(Move(end=end, type=type, feed=self._job.feed, arc=arc))
+        self.add(Move(end=end, type=type, feed=self._feed(end, type), arc=arc))
+
+    def _feed(self, end: Point, type: MoveType) -> Feed:
+        """The programmed feed, or that of an approach that goes down: a plunge or a ramp."""
+        is_plunge = type is MoveType.APPROACH and end[2] < self.at[2] - SAME
+        return self._plunge_feed if is_plunge else self._job.feed
 
     def add(self, move: Move) -> None:
         """Append a move, unless it leads nowhere."""

@@ -1,6 +1,6 @@
 """What every tool path is made from: the workingstep, its tool, its frame and its heights."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.geometry import Block, RightCircularCylinder
@@ -9,6 +9,8 @@ from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import Finding, PathError, Severity
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program, Workingstep
+from stepnc_model.record_edit import find_record
+from stepnc_model.stock import Stock
 from stepnc_model.tool import Tool, tool_of
 from stepnc_model.toolpath.frame import (
     Frame,
@@ -30,16 +32,6 @@ DEFAULT_SECURITY = 50.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Stock:
-    """Raw part in the coordinates of the setup: a box, or a bar about an axis along z."""
-
-    low: tuple[float, float, float]
-    high: tuple[float, float, float]
-    radius: float | None = None
-    """mm, of a bar; its axis is in the middle of the box"""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class Job:
     """One workingstep with what its tool path needs to know."""
 
@@ -55,6 +47,25 @@ class Job:
     def feed(self) -> Feed:
         """The programmed feed."""
         return Feed(technology=self.step.technology_ref)
+
+    @property
+    def plunge_feed(self) -> Feed:
+        """The feed on the way down into the material: as advised, else the programmed one.
+
+        Raises
+        ------
+        PathError
+            When the advised one is not positive.
+        """
+        plunge = replace(self.feed, is_plunge=True)
+        record = find_record(self.program, self.step)
+        per_tooth = None if record is None else record.plunge_feed_per_tooth
+        if per_tooth is None:
+            return plunge
+        if per_tooth <= 0.0:
+            message = f"plunge feed {per_tooth:g} mm/tooth: it must be positive"
+            raise self.fault(message, self.step.operation_ref, "plunge_feed_per_tooth")
+        return replace(plunge, per_revolution=per_tooth * self.tool.teeth)
 
     def rapid_z(self, at: Point) -> float:
         """How far down over a point the tool may come in rapid: there, or above the stock.
@@ -120,7 +131,15 @@ def job_of(program: Program, step: Workingstep) -> Job:
 
 
 def stock_of(program: Program, setup: Ref[Setup] | None) -> Stock | None:
-    """The raw part, by the bounding geometry of the raw piece or of the workpiece."""
+    """The raw part, by the bounding geometry of the raw piece or of the workpiece.
+
+    Else what the user says, in the coordinates of every setup.
+    """
+    return drawn_stock(program, setup) or program.stock
+
+
+def drawn_stock(program: Program, setup: Ref[Setup] | None) -> Stock | None:
+    """The raw part as the file has it; None where it says nothing of it."""
     workpiece = program.workpiece()
     if workpiece is None:
         return None

@@ -67,6 +67,8 @@ class Feed:
     """mm/s; overrides the programmed feed"""
     is_synchronised: bool = False
     """bound to the angle of the spindle: threads"""
+    is_plunge: bool = False
+    """of a mill's way down into the material, whose feed may be another than that of the cut"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

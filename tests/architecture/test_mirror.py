@@ -14,8 +14,18 @@ NOUNS = {
 
 TOGETHER = {
     "simulator/spec.py": "dataclasses only; loaded and checked in tests/simulator",
+    "simulator/work_holding.py": "dataclasses only; read in test_holding_file.py",
+    "simulator/physics/holding.py": "held against print in tests/reference/test_vdi_3106.py",
+    "simulator/physics/slender_bar.py": "likewise in tests/reference/test_slender_bars.py",
+    "optimiser/asked_of_holding.py": "told in tests/optimiser/test_holding.py",
+    "optimiser/grip.py": "taken from programs in tests/optimiser/test_holding.py",
     "simulator/errors.py": "raised and read in tests/simulator",
     "optimiser/advice.py": "made and read in tests/optimiser/test_optimise.py",
+    "optimiser/reasons.py": "read in tests/optimiser/test_optimise.py and test_plunge_feed.py",
+    "optimiser/seen.py": "dataclasses only; made and read in tests/optimiser/test_measured.py",
+    "optimiser/least_cost.py": "held against all passes in tests/optimiser/test_workingstep.py",
+    "simulator/physics/flutes.py": "edges of tests/simulator/physics/test_tooth_forces.py",
+    "service/confirmation.py": "made and read in tests/service/test_confirm.py",
     "service/figures.py": "drawn in tests/service/test_report.py",
     "controller/aims.py": "dataclasses only; obeyed in tests/controller/test_loop.py",
     "controller/cycle.py": "made and read in tests/controller/test_loop.py",

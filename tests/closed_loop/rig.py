@@ -153,7 +153,12 @@ def rig(
         source=Dynamometer(10.0) if source is None else source,
         law=law,
         steps=[step(reference())] if steps is None else steps,
-        preview=Preview(until=course.until, force=course.force),
+        preview=Preview(
+            until=course.until,
+            force=course.force,
+            land_force=course.land_force,
+            arcs=course.arcs,
+        ),
         aims=Aims(look_ahead=0) if aims is None else aims,
     )
     return Rig(machine=machine, sensor=sensor, loop=loop)

@@ -24,12 +24,11 @@ from controller.preview import Preview
 from controller.reference import Reference
 from controller.source import Dynamometer
 from simulator.motion.segments import Floats
-from simulator.physics.cutting import wear_factor
 from simulator.plant.controlled import Bench, ControlledMachine
 from simulator.plant.course import NominalCourse
 from simulator.plant.dynamometer import DYNAMOMETER
 from simulator.plant.hidden import Change, Changed, Hidden
-from tests.simulator.plant.courses import EXPONENT, SPEED, TEETH, course
+from tests.simulator.plant.courses import EXPONENT, LAND_SHARE, SPEED, TEETH, course
 
 LAWS = tuple(name for name in LawName if name is not LawName.NONE)
 
@@ -107,8 +106,8 @@ def _silence(revolution: int) -> Hidden:
     return Hidden(changes=(Change(time=time, what=Changed.SILENCE, value=0.3),))
 
 
-WEAR = 0.3 * wear_factor(0.0) / (wear_factor(1.0) - wear_factor(0.0))
-"""mm of flank wear that raises the force by 30 %"""
+WEAR = 0.3 * SET_POINT / (LAND_SHARE * PER_DEPTH * 4.0)
+"""mm of flank wear that adds 30 % of the set point where the cut is deepest"""
 
 LOSSY = Bench(dynamometer=replace(DYNAMOMETER, missing=0.2), seed=1)
 
@@ -129,7 +128,7 @@ TRIALS: dict[str, Trial] = {
     "(a) depth 2 → 4 → 1 mm, known to the program": KNOWN,
     "(b) the same depths, unknown to the program": UNKNOWN,
     "(c) hardness +30 %": HARDER,
-    "(d) wear +30 % over the run of (a)": WORN,
+    "(d) wear, at 4 mm +30 % of the set point, over the run of (a)": WORN,
     "(e) (a) with 20 % of samples lost, 0.3 s of silence in a steady cut": LOST,
     "(e') the same, the silence while the depth doubles": BLIND,
     "(f) (a) with a hidden factor 0.7 on the force": SOFT,
@@ -237,7 +236,12 @@ def loop(on: Plugged, law: Law[Any], trial: Trial) -> Loop:
         source=Dynamometer(10.0),
         law=lambda _plant: law,
         steps=[step],
-        preview=Preview(until=program.until, force=program.force),
+        preview=Preview(
+            until=program.until,
+            force=program.force,
+            land_force=program.land_force,
+            arcs=program.arcs,
+        ),
         aims=Aims(
             set_point=SET_POINT,
             band=trial.band,

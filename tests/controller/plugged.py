@@ -18,6 +18,7 @@ from controller.preview import Preview
 from controller.reference import ForceBound, Reference
 from controller.source import Dynamometer
 from optimiser.limit import LimitName
+from simulator.physics.tooth_means import Arcs
 
 SPINDLE_SPEED = 50.0
 """rev/s"""
@@ -99,6 +100,10 @@ class Wishing:
         return state, self.wish
 
 
+ENTRY = np.full(1, 2.0)
+"""rad, where the arc of contact begins everywhere"""
+
+
 def step(**more: Any) -> Step:
     """A workingstep with a set point of 400 N and a strength of 2000 N."""
     bound = ForceBound(name=LimitName.MOTOR_POWER, words="motor power", force=SET_POINT)
@@ -153,7 +158,11 @@ def plugged(
         source=Dynamometer(10.0),
         law=law if callable(law) else lambda _plant: law,
         steps=[step()] if steps is None else steps,
-        preview=Preview(until=np.array([1e6]), force=np.array([SET_POINT])),
+        preview=Preview(
+            until=np.array([1e6]),
+            force=np.array([SET_POINT]),
+            arcs=Arcs(entry_angle=ENTRY, exit_angle=ENTRY + 0.5, lag=np.zeros(1)),
+        ),
         aims=Aims(look_ahead=0) if aims is None else aims,
     )
     return Plugged(loop=loop, port=port)

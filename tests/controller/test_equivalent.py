@@ -32,6 +32,18 @@ def test_forces_that_use_the_same_share_of_their_bounds_count_alike() -> None:
     assert shares.tolist() == [100.0 / 400.0, 100.0 / 800.0, 100.0 / 100.0]
 
 
+def test_what_bends_a_wall_counts_by_its_own_force() -> None:
+    """At the plan's place 100 N of 400 N; a thin wall takes twice the share of its mean."""
+    at_wall = replace(BENDING, peak=0.0, wall=200.0)
+    step = Step(reference=Reference(workingstep="x", bounds=(at_wall, POWER)))
+    plain = replace(PLAIN, wall=np.array([0.5, 0.0, 1.0, 1.0]))
+    found = equivalent(plain, [step], Aims())
+    # In the slot only the motor's power counts: 100 N of 1000 N.
+    assert found.force.tolist() == [100.0, 40.0, 200.0, 100.0]
+    without = equivalent(PLAIN, [step], Aims())
+    assert without.force.tolist() == [40.0, 40.0, 40.0, 100.0]
+
+
 def test_less_motor_power_bounds_the_slot() -> None:
     found = equivalent(PLAIN, [STEP], Aims(power_factor=0.5))
     assert found.force[1] == pytest.approx(400.0 * 100.0 / 500.0)

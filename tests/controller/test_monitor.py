@@ -7,12 +7,14 @@ import pytest
 from controller.guard import Keeping
 from controller.monitor import CALM, PAUSE, REACH, Monitor
 from controller.orders import Event, EventKind
+from controller.preview import Expected
 from controller.signal import Revolution
-from simulator.physics.cutting import wear_factor
+from simulator.physics.tooth_means import Arcs
 from tests.controller.shown import REVOLUTION
 
 KEEP = Keeping(set_point=400.0, breakage=2000.0, floor=0.2, ceiling=1.2, exponent=0.8)
 PERIOD = REVOLUTION.period
+LAND_SHARE = 1.85
 
 
 class Watching:
@@ -34,7 +36,7 @@ class Watching:
             tooth_means=np.full(4, force),
             **more,  # type: ignore[arg-type]
         )
-        self.events += self.monitor.seen(shown, self.keep, ratio=ratio)
+        self.events += self.monitor.seen(shown, self.keep, ratio=ratio, land_share=LAND_SHARE)
 
     @property
     def kinds(self) -> list[EventKind]:
@@ -98,7 +100,7 @@ def test_where_nothing_bounds_the_force_no_level_is_told() -> None:
 def test_a_jump_in_hardness_is_told_from_wear() -> None:
     worn = Watching()
     for wear in np.linspace(0.0, 0.1, 3000):
-        worn.show(390.0, ratio=log(wear_factor(float(wear)) / wear_factor(0.0)))
+        worn.show(390.0, ratio=log(1.0 + LAND_SHARE * wear))
     assert worn.events == []
     assert worn.monitor.lives["mill"].flank_wear == pytest.approx(0.1, abs=0.01)
     harder = Watching()
@@ -126,26 +128,42 @@ def test_changes_one_after_another_are_not_all_told() -> None:
 def test_a_worn_out_tool_is_told_once_in_its_life() -> None:
     watching = Watching()
     for wear in np.linspace(0.0, 0.33, 6000):
-        watching.show(390.0, ratio=log(wear_factor(float(wear)) / wear_factor(0.0)))
+        watching.show(390.0, ratio=log(1.0 + LAND_SHARE * wear))
     watching.monitor.begin("drill")
     watching.monitor.begin("mill")
     for flicker in range(400):
         wear = 0.33 if flicker % 2 else 0.25
-        watching.show(390.0, ratio=log(wear_factor(wear) / wear_factor(0.0)))
+        watching.show(390.0, ratio=log(1.0 + LAND_SHARE * wear))
     assert watching.kinds.count(EventKind.WEAR) == 1
     assert "tool 'mill'" in watching.events[-1].text
 
 
-def test_a_broken_tooth_is_told_once_and_by_its_number() -> None:
+THIN = Expected(
+    force=np.full(4, 400.0),
+    change=np.zeros(4),
+    arcs=Arcs(entry_angle=np.full(4, 2.5), exit_angle=np.full(4, 3.0), lag=np.zeros(4)),
+)
+"""each tooth alone in its period"""
+
+
+def turned(watching: Watching, *means: float, time: float = 1.0) -> None:
+    """One revolution more of teeth that take so much."""
+    taken = np.array(means)
+    shown = replace(REVOLUTION, time=time, force=float(taken.mean()), tooth_means=taken)
+    watching.events += watching.monitor.seen(shown, KEEP, ratio=None, expected=THIN)
+
+
+def test_a_broken_tooth_is_told_once_with_its_number_and_its_force() -> None:
     watching = Watching()
-    for _ in range(30):
-        watching.show(400.0)
-    broken = np.array([400.0, 0.0, 750.0, 400.0])
+    for _ in range(5):
+        turned(watching, 400.0, 400.0, 400.0, 400.0)
     for turn in range(10):
-        shown = replace(REVOLUTION, time=1.0 + turn, force=387.5, tooth_means=broken)
-        watching.events += watching.monitor.seen(shown, KEEP, ratio=None)
+        turned(watching, 400.0, 0.0, 700.0, 400.0, time=2.0 + turn)
     assert watching.kinds == [EventKind.BREAKAGE]
-    assert watching.events[0].text == "tooth 2 of 4 takes no chip"
+    assert watching.events[0].text == (
+        "tooth 2 of 4 takes no chip: 0.00 of the mean force while tooth 2 was the last to "
+        "enter, 1.00 with whole teeth"
+    )
     assert watching.monitor.is_broken
 
 
@@ -154,13 +172,31 @@ def test_the_way_out_of_a_cut_and_the_way_in_are_no_broken_tooth() -> None:
     watching = Watching()
     for _ in range(5):
         for _ in range(30):
-            watching.show(400.0)
+            turned(watching, 400.0, 400.0, 400.0, 400.0)
         for _ in range(2):
-            half = np.array([400.0, 0.0, 400.0, 400.0])
-            shown = replace(REVOLUTION, force=320.0, tooth_means=half)
-            watching.events += watching.monitor.seen(shown, KEEP, ratio=None)
+            turned(watching, 400.0, 0.0, 400.0, 400.0)
             watching.monitor.out_of_cut()
     assert watching.events == []
+
+
+@pytest.mark.parametrize(
+    ("force", "words"),
+    [
+        (
+            380.0,
+            "force 1.27 times the mean of the last 40 revolutions: 380 N, from 1.11 times on",
+        ),
+        (492.0, "force 1.23 times the set point of 400 N: 492 N, from 1.2 times on"),
+    ],
+)
+def test_a_warning_says_which_rule_tripped_and_with_what_numbers(
+    force: float, words: str
+) -> None:
+    watching = Watching()
+    for _ in range(40):
+        watching.show(300.0)
+    watching.show(force)
+    assert [event.text for event in watching.events] == [f"force {words}"]
 
 
 def test_each_tool_has_its_own_life() -> None:

@@ -4,6 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from controller.preview import Preview
+from simulator.physics.tooth_means import Arcs
 
 STEP = Preview(until=np.arange(1.0, 11.0), force=np.array([1.0] * 5 + [2.0] * 2 + [0.5] * 3))
 """seconds of force 1, 2 and 0.5 from 0, 5 and 7 s on"""
@@ -66,3 +67,20 @@ def test_impossible_previews_are_refused(
 ) -> None:
     with pytest.raises(ValueError, match=why):
         Preview(until=np.array(until), force=np.array(force))
+
+
+def test_teeth_are_expected_to_take_what_is_there_when_they_are_the_last_to_enter() -> None:
+    at = np.arange(10.0)
+    arcs = Arcs(entry_angle=at, exit_angle=at + 1.0, lag=0.1 * at)
+    preview = Preview(until=STEP.until, force=STEP.force, arcs=arcs)
+    # From 3 to 7 s, a second for each of four teeth, of which the third comes first.
+    found = preview.expected(3.0, 7.0, teeth=4, first=2)
+    assert found is not None
+    assert found.force.tolist() == [2.0, 2.0, 1.0, 1.0]
+    assert found.change.tolist() == [1.0, 1.5, 0.0, 1.0]
+    assert found.arcs.entry_angle.tolist() == [5.0, 6.0, 3.0, 4.0]
+    assert found.arcs.lag == pytest.approx([0.5, 0.6, 0.3, 0.4])
+
+
+def test_without_arcs_nothing_is_expected_of_single_teeth() -> None:
+    assert STEP.expected(3.0, 7.0, teeth=4, first=0) is None

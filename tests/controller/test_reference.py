@@ -15,6 +15,7 @@ from controller.reference import (
 from optimiser.advice import Advice, Load, State
 from optimiser.formulate import Task
 from optimiser.limit import Limit, LimitName, Monomial, Sense
+from optimiser.loads import cutting_force, shank_force, wall_force
 from optimiser.modes import Mode
 from optimiser.optimise import optimise
 from optimiser.source import from_features
@@ -35,7 +36,7 @@ def advices(part: str, machine: str = "vmc15") -> dict[str, Advice]:
         Program(Part21File.from_bytes(text, name=part), name=part),
         machine=load_machine(machine),
         material=match_material(["C45"]),
-        task=Task(mode=Mode.TC, free=frozenset(), source=from_features),
+        task=Task(mode=Mode.TC, safety=0.5, free=frozenset(), source=from_features),
     )
     return {advice.workingstep.id: advice for advice in plan.advices}
 
@@ -81,6 +82,25 @@ def test_a_bound_is_the_force_at_the_feed_that_reaches_the_limit(part: str, name
         assert bound == pytest.approx(force.limit.load.value(feed, at.depth, at.speed))
 
 
+def test_the_shank_is_bound_by_the_peak_and_the_deflection_by_the_force_at_the_wall() -> None:
+    """Bounds over their loads' forces are those that the plan has."""
+    advice = advices("bracket")["ROUGH CONTOUR"]
+    assert advice.cut is not None
+    at = state(advice).setting
+    law = match_material(["C45"]).material.kienzle
+    shank = shank_force(advice.cut, law, 1.0).value(at.feed, at.depth, at.speed)
+    wall = wall_force(advice.cut, law, 1.0)
+    assert wall is not None
+    normal = wall.value(at.feed, at.depth, at.speed)
+    mean = cutting_force(advice.cut, law, 1.0).value(at.feed, at.depth, at.speed)
+    for each in reference_of(advice).bounds:
+        is_wall = each.name is LimitName.TOOL_DEFLECTION
+        is_peak = each.name is LimitName.SHANK_STRENGTH
+        assert each.wall == pytest.approx(each.force * normal / mean if is_wall else 0.0)
+        assert each.peak == pytest.approx(each.force * shank / mean if is_peak else 0.0)
+        assert each.is_mean is not (is_wall or is_peak)
+
+
 def test_power_is_reached_at_the_force_that_it_gives_at_the_cutting_speed() -> None:
     """35 m/min: F = P·η/v_c."""
     advice = advices("paper002")["ROUGH THE FACE"]
@@ -115,15 +135,14 @@ def test_the_ceiling_is_that_of_the_chip_load() -> None:
     assert reference_of(advices("bracket")["ROUGH FACE"]).ceiling == pytest.approx(3.5)
 
 
-def test_the_ceiling_of_a_finished_face_is_that_of_its_roughness() -> None:
-    """c·f² + e = Ra, solved for the feed of 0.06 mm times the override."""
-    advice = advices("bracket")["FINISH FACE"]
+def test_the_ceiling_of_a_finished_bar_is_that_of_its_roughness() -> None:
+    """c·f² + e = Ra, solved for the feed of 0.12 mm times the override."""
+    advice = advices("shaft", "lathe22")["FINISH CONTOUR"]
     (load,) = loads(advice, LimitName.ROUGHNESS)
     monomial = load.limit.load
     feed = ((load.bound - monomial.offset) / monomial.coefficient) ** 0.5
     assert load.bound == 1.6e-3
-    assert reference_of(advice).ceiling == pytest.approx(feed / 0.06)
-    assert reference_of(advice).ceiling < 1.0
+    assert reference_of(advice).ceiling == pytest.approx(feed / 0.12)
 
 
 def test_the_floor_is_that_of_the_thinnest_chip() -> None:
@@ -177,7 +196,10 @@ def test_a_floor_that_is_swept_with_the_walls_is_bound_by_its_own_force() -> Non
 def test_a_drills_thrust_is_told_as_the_force_at_its_edges() -> None:
     advice = advices("bracket")["DRILL HOLE 1"]
     (thrust,) = loads(advice, LimitName.CUTTING_FORCE)
-    expected = state(advice).cutting_force * thrust.bound / thrust.value
+    constant = thrust.limit.load.offset
+    assert 0.0 < constant < 0.5 * thrust.value
+    left = (thrust.bound - constant) / (thrust.value - constant)
+    expected = state(advice).cutting_force * left
     assert bounds(reference_of(advice))[LimitName.CUTTING_FORCE] == pytest.approx(expected)
 
 

@@ -53,6 +53,7 @@ def test_figures_are_those_of_all_samples(
         means = np.roll(forces[row].mean(axis=1), first)
         np.testing.assert_array_equal(each.tooth_peaks, peaks)
         np.testing.assert_allclose(each.tooth_means, means)
+        assert (each.samples, each.first) == (count, first)
         assert each.coverage == 1.0
         assert each.period == pytest.approx(period)
         lines = 2.0 / (teeth * count) * np.abs(np.fft.rfft(forces[row].ravel()))

@@ -9,15 +9,16 @@ from hypothesis import strategies as st
 
 from controller.ports import Floats
 from controller.tool_life import (
-    WORN_OUT,
     ToolLife,
     Watchfulness,
     compared_anew,
-    flank_wear,
     lived,
     new_tool,
 )
-from simulator.physics.cutting import wear_factor
+from simulator.physics.tool_life import LIFE_CRITERION
+
+LAND_SHARE = 1.85
+"""1/mm, what flank wear adds to the ratio: as in steel at a chip of about 0.1 mm"""
 
 LEARNING = Watchfulness().learning
 MEMORY = Watchfulness().memory
@@ -27,26 +28,48 @@ def lifetime(ratios: Floats, life: ToolLife | None = None) -> list[ToolLife]:
     """The tool after each of the revolutions with these measured over expected forces."""
     now, found = life or new_tool(), []
     for ratio in np.log(ratios).tolist():
-        now = lived(now, ratio)
+        now = lived(now, ratio, land_share=LAND_SHARE)
         found.append(now)
     return found
 
 
 def wearing(count: int, until: float) -> Floats:
-    """Wear factor in each revolution while VB grows in a straight line."""
-    return np.array([wear_factor(vb) for vb in np.linspace(0.0, until, count).tolist()])
+    """Ratio in each revolution while VB grows in a straight line, of work as expected."""
+    return worn(np.linspace(0.0, until, count))
 
 
-@given(st.floats(0.0, 0.5))
-def test_wear_is_the_inverse_of_its_factor(vb: float) -> None:
-    assert flank_wear(wear_factor(vb)) == pytest.approx(vb, abs=1e-12)
+def worn(flank: Floats | float, *, work: Floats | float = 1.0) -> Floats:
+    """Ratio at some flank wear, in work that takes a factor of the expected force."""
+    return np.asarray(work + LAND_SHARE * np.asarray(flank))
+
+
+@given(vb=st.floats(0.0, 0.3), work=st.floats(0.5, 2.0), share=st.floats(0.5, 8.0))
+def test_wear_is_what_the_ratio_gains_over_what_a_millimetre_adds(
+    vb: float, work: float, share: float
+) -> None:
+    """Whatever the work is like, and however thin the chips are."""
+    by = Watchfulness(allowance=1e3)
+    life = new_tool()
+    for _ in range(LEARNING):
+        life = lived(life, log(work), land_share=share, by=by)
+    for _ in range(10 * MEMORY):
+        life = lived(life, log(work + share * vb), land_share=share, by=by)
+    assert life.flank_wear == pytest.approx(vb, abs=1e-3)
 
 
 def test_force_below_that_of_a_sharp_tool_is_no_wear() -> None:
-    assert flank_wear(0.8) == 0.0
+    life = lifetime(np.concatenate((np.full(LEARNING, 1.0), np.full(MEMORY, 0.97))))[-1]
+    assert life.flank_wear == 0.0
 
 
-@given(ratio=st.floats(0.3, 3.0), flank=st.floats(0.0, 0.25))
+def test_where_nobody_knows_what_wear_adds_none_is_told() -> None:
+    life = new_tool(0.1)
+    for _ in range(MEMORY):
+        life = lived(life, log(1.5), land_share=0.0)
+    assert life.flank_wear == 0.1
+
+
+@given(ratio=st.floats(0.6, 3.0), flank=st.floats(0.0, 0.25))
 def test_what_the_catalogue_has_wrong_is_no_wear(ratio: float, flank: float) -> None:
     life = lifetime(np.full(2 * LEARNING, ratio), new_tool(flank))[-1]
     assert life.flank_wear == pytest.approx(flank, abs=1e-9)
@@ -66,11 +89,11 @@ def test_slow_wear_is_followed_to_the_end_of_the_life(seed: int) -> None:
     """0.35 mm in 20000 revolutions, 7 min at 3000 rpm; 3 % noise."""
     noise = np.random.default_rng(seed).normal(0.0, 0.03, 20_000)
     truth = np.linspace(0.0, 0.35, 20_000)
-    lives = lifetime(1.15 * wearing(20_000, 0.35) * np.exp(noise))
+    lives = lifetime(worn(truth, work=1.15) * np.exp(noise))
     found = np.array([life.flank_wear for life in lives])
     assert np.abs(found - truth)[LEARNING:].max() < 0.03
     worn_out = next(row for row, life in enumerate(lives) if life.is_worn_out)
-    assert truth[worn_out] == pytest.approx(WORN_OUT, abs=0.025)
+    assert truth[worn_out] == pytest.approx(LIFE_CRITERION, abs=0.025)
     assert lives[-1].changes == ()
 
 
@@ -88,7 +111,8 @@ def test_harder_or_softer_work_is_no_wear(factor: float, seed: int) -> None:
     count, at = 6000, 3000
     noise = np.random.default_rng(seed).normal(0.0, 0.03, count)
     jump = np.where(np.arange(count) < at, 1.0, factor)
-    lives = lifetime(wearing(count, 0.12) * jump * np.exp(noise))
+    truth = np.linspace(0.0, 0.12, count)
+    lives = lifetime(worn(truth, work=jump) * np.exp(noise))
     seen = next(row for row, life in enumerate(lives) if life.changes)
     assert at <= seen <= at + 12
     assert len(lives[-1].changes) == 1
@@ -96,7 +120,7 @@ def test_harder_or_softer_work_is_no_wear(factor: float, seed: int) -> None:
     # Just then, and to the end.
     assert lives[at + 20].flank_wear == pytest.approx(0.06, abs=0.02)
     assert lives[-1].flank_wear == pytest.approx(0.12, abs=0.025)
-    assert lives[-1].ratio == pytest.approx(wear_factor(0.12) * factor, rel=0.02)
+    assert lives[-1].ratio == pytest.approx(factor + LAND_SHARE * 0.12, rel=0.02)
 
 
 @pytest.mark.parametrize("factor", [0.7, 0.9, 1.1, 1.5])
@@ -137,8 +161,8 @@ def test_change_that_is_known_of_leaves_the_wear() -> None:
 def test_wear_goes_on_from_where_it_was() -> None:
     """Within what the mean lags behind so quick a wear, once at the change and once now."""
     before = lifetime(wearing(4000, 0.2))[-1]
-    rest = np.array([wear_factor(vb) for vb in np.linspace(0.2, 0.35, 4000).tolist()])
-    after = lifetime(0.8 * rest, compared_anew(before))[-1]
+    rest = worn(np.linspace(0.2, 0.35, 4000), work=0.8)
+    after = lifetime(rest, compared_anew(before))[-1]
     lag = (0.2 / 4000 + 0.15 / 4000) * MEMORY
     assert 0.35 - 1.5 * lag < after.flank_wear < 0.35
     assert after.is_worn_out
@@ -146,7 +170,9 @@ def test_wear_goes_on_from_where_it_was() -> None:
 
 def test_ratio_is_one_before_anything_was_measured() -> None:
     assert new_tool().ratio == 1.0
-    assert exp(lived(new_tool(), log(1.2)).log_ratio) == pytest.approx(1.2)
+    assert exp(lived(new_tool(), log(1.2), land_share=LAND_SHARE).log_ratio) == pytest.approx(
+        1.2
+    )
 
 
 @pytest.mark.parametrize("name", ["memory", "learning", "allowance", "decision"])

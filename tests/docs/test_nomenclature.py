@@ -99,6 +99,7 @@ def test_names_at_the_edge_exist_and_carry_the_unit(edge: str) -> None:
     assert set(names) <= words()
     unit, _, _ = edge.partition(":")
     plain = {"%": "percent", "degrees": "deg", "µm": "um", "N·m": "nm", "kg·m²": "kg_m2"}
+    plain["N/µm"] = "n_um"
     spelt = plain.get(unit, unit.lower().replace("²", "2").replace("³", "3").replace("/", "_"))
     assert names[0].endswith(f"_{spelt}")
 

@@ -2,12 +2,11 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from math import radians
 
+from optimiser.conditions import Conditions
 from optimiser.cut import Cut, CutKind, Texture
 from optimiser.limit import Limit, LimitName, Sense
-from optimiser.limits import (
-    Conditions,
-)
 from optimiser.problem import Setting
 from simulator.library import find_grade, load_machine, load_material
 from simulator.physics.engagement import unidirectional
@@ -36,6 +35,7 @@ CUT = Cut(
     engagement=unidirectional(6.0, 12.0),
     radial_width=6.0,
     depth_bound=26.0,
+    helix_angle=radians(30.0),
 )
 DRILLED = replace(
     CUT,

@@ -1,14 +1,19 @@
 """Estimates by the kind of the operation."""
 
+from math import radians
 from pathlib import Path
 
 import pytest
 
 from optimiser.cut import CutKind
 from optimiser.estimated import Estimates, estimated_cut
+from simulator.library import find_grade, load_machine, load_material
+from simulator.spec import CuttingMaterial, ToolKind
 from stepnc_model.program import Program
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
+STEEL = load_material("c45")
+MILL = load_machine("vmc15")
 
 
 @pytest.mark.parametrize(
@@ -23,7 +28,7 @@ PARTS = Path(__file__).parents[2] / "examples" / "parts"
 def test_each_operation_has_its_estimate(part: str, name: str, kind: CutKind) -> None:
     program = Program.load(PARTS / f"{part}.stpnc")
     (step,) = (each for each in program.workingsteps if each.id == name)
-    cut, _ = estimated_cut(program, step)
+    cut, _ = estimated_cut(program, step, MILL, STEEL)
     assert cut.kind is kind
     assert cut.volume is None
     assert not cut.is_air
@@ -31,8 +36,24 @@ def test_each_operation_has_its_estimate(part: str, name: str, kind: CutKind) ->
 
 def test_no_workingstep_knows_of_another() -> None:
     program = Program.load(PARTS / "bracket.stpnc")
-    cuts = Estimates(program)
+    cuts = Estimates(program, MILL, STEEL)
     first, second = program.workingsteps[:2]
     alone, _ = cuts.cut(second)
     cuts.leave_out(first)
     assert cuts.cut(second)[0] == alone
+
+
+def helix_of(name: str, material: str) -> float:
+    program = Program.load(PARTS / "bracket.stpnc")
+    (step,) = (each for each in program.workingsteps if each.id == name)
+    return estimated_cut(program, step, MILL, load_material(material))[0].helix_angle
+
+
+def test_the_helix_of_a_cutter_is_that_of_its_grade() -> None:
+    grade = find_grade(ToolKind.ENDMILL, CuttingMaterial.CARBIDE, "P")
+    assert helix_of("FINISH CONTOUR", "c45") == grade.helix_angle == radians(30.0)
+
+
+def test_edges_of_a_face_mill_and_of_what_has_no_grade_are_straight() -> None:
+    assert helix_of("ROUGH FACE", "c45") == 0.0
+    assert helix_of("FINISH CONTOUR", "paper002") == 0.0

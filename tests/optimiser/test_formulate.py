@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
+from optimiser.conditions import Conditions
 from optimiser.cut import Cut, CutKind
 from optimiser.formulate import Task, problem_of, state_of
 from optimiser.limit import LimitName
-from optimiser.limits import Conditions
 from optimiser.modes import Free
 from optimiser.optimise import optimise
 from optimiser.problem import Setting
@@ -111,7 +111,7 @@ def test_a_factor_that_no_force_can_have_is_refused(factor: float) -> None:
         Task(force_factors={"a": factor})
 
 
-def test_a_state_tells_the_force_of_the_plunge_where_it_is_greater() -> None:
+def test_a_plunge_has_its_thrust_and_power_and_no_part_in_the_cutting_force() -> None:
     """Light passes of 0.1 mm, but a plunge into the solid between them."""
     mill = Tool(id="mill", keyword="TAPERED_ENDMILL", diameter=10.0, teeth=4)
     cut = Cut(
@@ -139,6 +139,7 @@ def test_a_state_tells_the_force_of_the_plunge_where_it_is_greater() -> None:
         state_of(each, problem_of(each, at, TASK), at, cut.programmed)
         for each in (cut, replace(cut, plunge=down), down)
     )
-    assert plunged.cutting_force == alone.cutting_force > plain.cutting_force
+    assert plunged.cutting_force == plain.cutting_force < alone.cutting_force
+    assert plunged.thrust == alone.thrust > plain.thrust == 0.0
     assert plunged.motor_power == alone.motor_power > plain.motor_power
     assert plunged.time == plain.time

@@ -35,7 +35,7 @@ def measures(point: Point) -> tuple[float, float, float]:
 
 @pytest.mark.parametrize("free", [(Free.FEED,), (Free.FEED, Free.DEPTH, Free.SPEED)])
 def test_no_point_beats_another(free: tuple[Free, ...]) -> None:
-    front = advice("FINISH FACE", *free).front
+    front = advice("FINISH CONTOUR", *free).front
     assert len(front) >= POINTS - 1
     for one, other in combinations(map(measures, front), 2):
         assert not all(a <= b for a, b in zip(one, other, strict=True))
@@ -43,7 +43,7 @@ def test_no_point_beats_another(free: tuple[Free, ...]) -> None:
 
 
 def test_time_is_bought_with_roughness() -> None:
-    front = advice("FINISH FACE", Free.FEED).front
+    front = advice("FINISH CONTOUR", Free.FEED).front
     times = [point.state.time for point in front]
     rough = [point.state.roughness or 0.0 for point in front]
     assert times == sorted(times)
@@ -52,7 +52,7 @@ def test_time_is_bought_with_roughness() -> None:
 
 def test_the_front_passes_through_the_advice() -> None:
     """At the Ra that the advice keeps, no point of the front is faster."""
-    found = advice("FINISH FACE", Free.FEED)
+    found = advice("FINISH CONTOUR", Free.FEED)
     assert found.after is not None
     assert found.after.roughness is not None
     finer = [

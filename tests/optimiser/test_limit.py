@@ -6,7 +6,7 @@ from random import Random
 import pytest
 
 from benchmarks.problems import random_problem
-from optimiser.limit import ROUNDING, Limit, LimitName, Monomial, Sense
+from optimiser.limit import ROUNDING, Limit, LimitName, Monomial, Sense, SpeedCurve
 
 FORCE = Monomial(coefficient=2000.0, offset=30.0, feed_exponent=0.75, depth_exponent=1.0)
 
@@ -131,3 +131,48 @@ def test_bound_holds_on_its_side_up_to_rounding(
 def test_names_are_told_in_words() -> None:
     assert LimitName.CHIP_THICKNESS.words == "chip thickness"
     assert all("_" not in name.words for name in LimitName)
+
+
+CURVE = SpeedCurve(speeds=(10.0, 20.0, 30.0, 40.0), bounds=(1.0, 5.0, 2.0, 4.0))
+
+
+def test_a_curve_is_straight_between_its_points_and_open_below_them() -> None:
+    assert [CURVE.at(speed) for speed in (9.0, 10.0, 15.0, 30.0, 35.0, 40.0, 50.0)] == [
+        inf, 1.0, 3.0, 2.0, 3.0, 4.0, 4.0,
+    ]  # fmt: skip
+    assert CURVE.peak(10.0, 40.0) == 20.0
+    assert CURVE.peak(31.0, 36.0) == 36.0
+
+
+@pytest.mark.parametrize(
+    ("load", "between", "expected"),
+    [
+        (3.0, (10.0, 40.0), [(15.0, 26.0 + 2.0 / 3.0), (35.0, 40.0)]),
+        (3.0, (5.0, 40.0), [(5.0, 10.0), (15.0, 26.0 + 2.0 / 3.0), (35.0, 40.0)]),
+        (3.0, (16.0, 20.0), [(16.0, 20.0)]),
+        (0.5, (5.0, 40.0), [(5.0, 40.0)]),
+        (6.0, (10.0, 40.0), []),
+        (6.0, (5.0, 40.0), [(5.0, 10.0)]),
+    ],
+)
+def test_ranges_of_speed_that_allow_a_load(
+    load: float, between: tuple[float, float], expected: list[tuple[float, float]]
+) -> None:
+    found = [pytest.approx(each) for each in CURVE.allowing(load, *between)]
+    assert expected == found
+
+
+def test_a_limit_with_a_curve_is_one_of_the_depth() -> None:
+    limit = Limit(
+        name=LimitName.STABILITY,
+        load=Monomial(coefficient=2.0, depth_exponent=1.0),
+        bound=1.0,
+        unit="mm",
+        curve=CURVE,
+    )
+    assert limit.is_of_depth
+    assert limit.bound_at(20.0) == 5.0
+    assert limit.greatest_depth(20.0) == 2.5
+    assert limit.holds(0.1, 2.5, 20.0)
+    assert not limit.holds(0.1, 2.6, 20.0)
+    assert limit.holds(0.1, 100.0, 9.0)

@@ -2,29 +2,27 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from math import pi, sqrt
+from math import pi, radians, sin
 
 import pytest
 
 from optimiser import loads
+from optimiser.chip_load import FINISH_NOSE_FEED, ROUGH_NOSE_FEED
+from optimiser.conditions import GREATEST_DEFLECTION, PermittedDeflection
 from optimiser.cut import Texture
 from optimiser.limit import Limit, LimitName, Sense
 from optimiser.limits import (
-    FINISHING_DEFLECTION,
-    NOSE_FEED_RATIO,
-    ROUGHING_DEFLECTION,
-    STICK_OUT,
     cutting_speed_window,
     force_factor,
     force_load,
     limits_of,
     power_load,
-    roughness_load,
     segment_at,
     speed_range,
     spindle_limits,
 )
-from simulator.physics.engagement import full_immersion, unidirectional
+from simulator.physics.engagement import bilateral, full_immersion, unidirectional
+from simulator.physics.strength import STICK_OUT
 from simulator.spec import ToolKind
 from tests.optimiser.cuts import (
     CARBIDE,
@@ -93,8 +91,16 @@ def test_drills_feed_is_per_revolution_and_shared_by_its_lips() -> None:
 
 def test_feed_of_an_insert_stays_below_its_nose() -> None:
     at = conditions(ToolKind.TURNING)
-    limit = named(limits_of(replace(TURNED, corner_radius=0.2), at), LimitName.FEED_PER_TOOTH)
-    assert limit.bound == pytest.approx(NOSE_FEED_RATIO * 0.2)
+    cut = replace(TURNED, corner_radius=0.2)
+    for finish, wiper, share in (
+        (False, False, ROUGH_NOSE_FEED),
+        (True, False, FINISH_NOSE_FEED),
+        (True, True, ROUGH_NOSE_FEED),
+    ):
+        tool = replace(cut.tool, has_wiper=wiper)
+        one = replace(cut, tool=tool, is_finishing=finish)
+        limit = named(limits_of(one, at), LimitName.FEED_PER_TOOTH)
+        assert limit.bound == pytest.approx(share * 0.2)
 
 
 def test_chip_floor_grows_the_feed_of_a_narrow_cut() -> None:
@@ -108,17 +114,29 @@ def test_chip_floor_grows_the_feed_of_a_narrow_cut() -> None:
 
 
 def test_deflection_is_that_of_a_bar_clamped_at_one_end() -> None:
-    """F·L³/(3·E·π·d⁴/64) with d = 0.8·D and L = 3·D."""
+    """F·L³/(3·E·π·d⁴/64) with d = 0.8·D, L = 3·D, F at the wall; stress is that of the peak."""
     limit = named(limits_of(CUT, CARBIDE), LimitName.TOOL_DEFLECTION)
     stress = named(limits_of(CUT, CARBIDE), LimitName.SHANK_STRENGTH)
     overhang, diameter = STICK_OUT * 12.0, 0.8 * 12.0
     assert CARBIDE.grade is not None
+    factor = force_factor(CARBIDE)
+    wall = loads.wall_force(CUT, CARBIDE.material.kienzle, factor)
+    across = loads.shank_force(CUT, CARBIDE.material.kienzle, factor)
+    assert wall is not None
     stiffness = 3.0 * CARBIDE.grade.youngs_modulus * pi * diameter**4 / 64.0
-    force = limit.load.value(0.05, 3.0, 60.0) * stiffness / overhang**3
-    expected = 32.0 * force * overhang / (pi * diameter**3)
+    expected = wall.value(0.05, 3.0, 60.0) * overhang**3 / stiffness
+    assert limit.load.value(0.05, 3.0, 60.0) == pytest.approx(expected)
+    expected = 32.0 * across.value(0.05, 3.0, 60.0) * overhang / (pi * diameter**3)
     assert stress.load.value(0.05, 3.0, 60.0) == pytest.approx(expected)
-    assert limit.bound == ROUGHING_DEFLECTION
+    assert limit.bound == GREATEST_DEFLECTION
     assert stress.bound == CARBIDE.grade.bending_strength
+
+
+def test_a_cut_that_reaches_no_wall_bends_the_tool_into_none() -> None:
+    within = replace(CUT, engagement=bilateral(6.0, 12.0, offset=0.0))
+    found = names(limits_of(within, CARBIDE))
+    assert LimitName.TOOL_DEFLECTION not in found
+    assert LimitName.SHANK_STRENGTH in found
 
 
 def test_long_edge_sticks_out_further() -> None:
@@ -130,94 +148,24 @@ def test_long_edge_sticks_out_further() -> None:
     assert deflections[1] == pytest.approx(8.0 * deflections[0])
 
 
-def test_finished_wall_bends_the_tool_less() -> None:
-    cut = replace(CUT, texture=Texture.WALL, is_finish_operation=True)
-    limit = named(limits_of(cut, CARBIDE), LimitName.TOOL_DEFLECTION)
-    assert limit.bound == FINISHING_DEFLECTION
-    roughed = replace(CUT, texture=Texture.WALL, is_finishing=True)
-    limit = named(limits_of(roughed, CARBIDE), LimitName.TOOL_DEFLECTION)
-    assert limit.bound == ROUGHING_DEFLECTION
+def test_deflection_keeps_what_the_wall_permits_and_says_why() -> None:
+    permitted = PermittedDeflection(value=0.0125, origin="a quarter of ±0.05 mm")
+    at = replace(CARBIDE, deflection=permitted)
+    limit = named(limits_of(CUT, at), LimitName.TOOL_DEFLECTION)
+    assert (limit.bound, limit.origin) == (0.0125, "a quarter of ±0.05 mm")
 
 
-@pytest.mark.parametrize(
-    ("machine", "edge", "expected"),
-    [(2.0, 26.0, 2.0), (None, 4.0, 4.0), (None, None, 24.0)],
-)
-def test_least_bound_of_the_depth_holds(
-    machine: float | None, edge: float | None, expected: float
-) -> None:
-    """Machine, cutting edge, or twice the diameter by the grade."""
-    at = replace(CARBIDE, machine=replace(CARBIDE.machine, max_axial_depth=machine))
-    limit = named(limits_of(replace(CUT, depth_bound=edge), at), LimitName.AXIAL_DEPTH)
-    assert limit.bound == pytest.approx(expected)
+def test_sweep_of_a_floor_does_not_spoil_the_wall() -> None:
+    at = replace(CARBIDE, deflection=PermittedDeflection(value=0.0125))
+    floor = replace(CUT, total_depth=0.2)
+    limits = limits_of(replace(CUT, floor=floor), at)
+    bounds = [each.bound for each in limits if each.name is LimitName.TOOL_DEFLECTION]
+    assert bounds == [0.0125, GREATEST_DEFLECTION]
 
 
-def test_depth_of_a_hole_is_no_depth_of_cut() -> None:
-    limits = limits_of(DRILLED, conditions(ToolKind.DRILL))
-    assert LimitName.AXIAL_DEPTH not in names(limits)
-
-
-def test_cutting_force_of_a_drill_is_its_thrust() -> None:
-    """The force along the axis is what the machine has to push with."""
-    at = conditions(ToolKind.DRILL)
-    limit = named(limits_of(DRILLED, at), LimitName.CUTTING_FORCE)
-    assert limit.bound == 8000.0
-    assert limit.load == loads.thrust(DRILLED, at.material.kienzle, force_factor(at))
-
-
-def test_feed_mechanism_is_teeth_times_speed_times_feed() -> None:
-    limit = named(limits_of(CUT, CARBIDE), LimitName.FEED_MECHANISM)
-    assert limit.load.value(0.1, 3.0, 60.0) == pytest.approx(0.1 * 4 * 60.0)
-    assert limit.bound * limit.scale == pytest.approx(20_000.0)
-
-
-@pytest.mark.parametrize("teeth", [1, 5])
-def test_face_milled_floor_is_marked_once_a_revolution(teeth: int) -> None:
-    """f²/(18√3·r) with f = z·f_z, and 0.2 µm that no feed removes."""
-    cut = replace(
-        CUT,
-        tool=replace(MILL, teeth=teeth),
-        texture=Texture.CORNER_PER_REVOLUTION,
-        corner_radius=0.8,
-    )
-    load = roughness_load(cut)
-    assert load is not None
-    expected = (teeth * 0.1) ** 2 / (18.0 * sqrt(3.0) * 0.8) + 0.2e-3
-    assert load.value(0.1, 3.0, 60.0) == pytest.approx(expected)
-
-
-def test_end_milled_floor_is_marked_by_every_tooth() -> None:
-    cut = replace(CUT, texture=Texture.CORNER_PER_TOOTH, corner_radius=0.5)
-    load = roughness_load(cut)
-    assert load is not None
-    expected = 0.1**2 / (18.0 * sqrt(3.0) * 0.5) + 0.2e-3
-    assert load.value(0.1, 3.0, 60.0) == pytest.approx(expected)
-
-
-def test_wall_is_marked_by_the_circle_of_the_mill() -> None:
-    """f_z²/(4·D) from peak to valley, a quarter of it as Ra."""
-    load = roughness_load(replace(CUT, texture=Texture.WALL))
-    assert load is not None
-    expected = 0.1**2 / (4.0 * 12.0) / 4.0 + 0.2e-3
-    assert load.value(0.1, 3.0, 60.0) == pytest.approx(expected)
-
-
-def test_surface_that_the_feed_does_not_describe_has_no_roughness() -> None:
-    assert roughness_load(CUT) is None
-    at = replace(CARBIDE, roughness=1.6e-3)
-    assert LimitName.ROUGHNESS not in names(limits_of(CUT, at))
-
-
-def test_turned_roughness_of_print_allows_the_feed_of_print() -> None:
-    """Ra 1.6 µm and a nose of 0.8 mm: 0.1998 mm without the floor of 0.2 µm."""
-    at = conditions(ToolKind.TURNING, roughness=1.6e-3 + 0.2e-3)
-    limit = named(limits_of(TURNED, at), LimitName.ROUGHNESS)
-    assert limit.feed_at_bound(1.0, 10.0) == pytest.approx(0.1998, abs=5e-5)
-
-
-def test_roughness_that_nobody_asks_for_does_not_limit() -> None:
-    cut = replace(CUT, texture=Texture.WALL)
-    assert LimitName.ROUGHNESS not in names(limits_of(cut, CARBIDE))
+def test_material_of_a_paper_bends_no_tool() -> None:
+    at = replace(PAPER, deflection=PermittedDeflection(value=1e-6))
+    assert LimitName.TOOL_DEFLECTION not in names(limits_of(CUT, at))
 
 
 def test_floor_limits_the_feed_too_at_its_own_depth() -> None:
@@ -336,11 +284,11 @@ def test_a_plunge_is_held_to_the_programmed_feed_where_nothing_says_what_is_born
 
 
 def test_a_plunge_presses_along_the_axis_as_a_drill_does() -> None:
-    """Half of k_c·f·D/2 for lips square to the axis; k_c at h = f/z."""
+    """The share of k_c·f·D/2 for lips square to the axis; k_c at h = f/z; no chisel edge."""
     thrust = straight_down(limits_of(PLUNGED, CARBIDE))[LimitName.CUTTING_FORCE]
     kienzle = CARBIDE.material.kienzle
     k_c = force_factor(CARBIDE) * kienzle.k_c11 * 0.05**-kienzle.m_c
-    expected = 0.5 * k_c * 4 * 0.05 * 6.0
+    expected = 0.5 / sin(radians(59.0)) * k_c * 4 * 0.05 * 6.0
     assert thrust.load.value(0.05, 3.0, 60.0) == pytest.approx(expected)
 
 

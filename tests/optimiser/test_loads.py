@@ -10,13 +10,16 @@ from optimiser.cut import Cut, CutKind, Place
 from optimiser.problem import Setting
 from simulator.physics import drilling, milling, turning
 from simulator.physics.engagement import Engagement, full_immersion, unidirectional
-from simulator.spec import Kienzle, ToolKind
+from simulator.spec import DrillPoint, Kienzle, ToolKind
 from stepnc_model.tool import Tool
+from tests.oracles.cutting import drilling_thrust
+from tests.simulator.physics.discs import Mill
 
 STEEL = Kienzle(k_c11=1500.0, m_c=0.22)
 CONSTANT = Kienzle(k_c11=1000.0, m_c=0.0)
 FEEDS = (0.004, 0.05, 0.1, 0.37, 1.2)
 MILL = Tool(id="end mill", keyword="TAPERED_ENDMILL", diameter=20.0, teeth=4)
+TWO = replace(MILL, teeth=2)
 DRILL = Tool(
     id="drill", keyword="TWIST_DRILL", diameter=10.0, teeth=2, point_angle=radians(118.0)
 )
@@ -57,19 +60,61 @@ def test_milling_force_of_constant_resistance_by_hand() -> None:
     assert load.value(0.1, 3.0, 1.0) == pytest.approx(1200.0 / pi)
 
 
+def discs(arc: Engagement, *, depth: float, helix: float) -> Mill:
+    return Mill(
+        teeth=4,
+        diameter=20.0,
+        helix=helix,
+        entry=arc.entry_angle,
+        exit=arc.exit_angle,
+        depth=depth,
+        exponent=0.78,
+    )
+
+
 @pytest.mark.parametrize("feed", FEEDS)
-def test_bending_force_is_the_peak_force_of_the_physics(feed: float) -> None:
+@pytest.mark.parametrize("depth", [0.4, 5.0, 20.0])
+def test_shank_and_wall_force_are_those_of_thin_discs(feed: float, depth: float) -> None:
     arc = unidirectional(2.0, 20.0)
-    load = loads.bending_force(milled(arc), STEEL, 1.0)
-    asked = milling.MillingCut(feed_per_tooth=feed, teeth=4, axial_depth=5.0, engagement=arc)
-    assert load.value(feed, 5.0, 1.0) == pytest.approx(milling.peak_force(STEEL, asked))
+    cut = replace(milled(arc), helix_angle=radians(30.0))
+    mill = discs(arc, depth=depth, helix=radians(30.0))
+    scale = 1.2 * 1500.0 * feed**0.78
+    shank, wall = loads.shank_force(cut, STEEL, 1.2), loads.wall_force(cut, STEEL, 1.2)
+    assert wall is not None
+    assert shank.value(feed, depth, 1.0) == pytest.approx(scale * mill.peak(), rel=0.01)
+    assert wall.value(feed, depth, 1.0) == pytest.approx(scale * mill.wall(pi), rel=0.01)
+
+
+def test_a_straight_edge_has_a_force_in_proportion_to_its_depth() -> None:
+    """One tooth at its thickest chip: k·a·f^q·√(1 + 0.3²)."""
+    load = loads.shank_force(milled(unidirectional(10.0, 20.0), TWO), STEEL, 1.0)
+    for depth in (0.5, 2.0, 9.0):
+        expected = 1500.0 * depth * 0.1**0.78 * (1.0 + 0.3**2) ** 0.5
+        assert load.value(0.1, depth, 1.0) == pytest.approx(expected, rel=2e-3)
+
+
+def test_where_no_wall_is_reached_nothing_bends_by_it() -> None:
+    within = Engagement(entry_angle=0.5, exit_angle=2.5)
+    assert loads.wall_force(milled(within), STEEL, 1.0) is None
+    assert loads.wall_force(milled(full_immersion()), STEEL, 1.0) is not None
+
+
+def test_a_force_over_the_mean_is_that_of_both_by_themselves() -> None:
+    arc = unidirectional(2.0, 20.0)
+    cut = replace(milled(arc), helix_angle=radians(30.0))
+    shank, mean = loads.shank_force(cut, STEEL, 1.0), loads.cutting_force(cut, STEEL, 1.0)
+    assert isinstance(shank.curve, loads.DepthCurve)
+    expected = shank.value(0.1, 7.0, 1.0) / mean.value(0.1, 7.0, 1.0)
+    assert loads.over_mean(shank.curve, 7.0) == pytest.approx(expected)
 
 
 @pytest.mark.parametrize("feed", FEEDS)
 @pytest.mark.parametrize("previous", [0.0, 6.0])
+@pytest.mark.parametrize("chisel", [0.0, 0.2])
 def test_drilling_force_and_thrust_are_those_of_the_physics(
-    feed: float, previous: float
+    feed: float, previous: float, chisel: float
 ) -> None:
+    point = DrillPoint(thrust_share=0.6, chisel_ratio=chisel)
     cut = replace(cut_of(CutKind.DRILLING, DRILL), previous_diameter=previous)
     asked = drilling.DrillingCut(
         feed_per_revolution=2.0 * feed,
@@ -77,12 +122,16 @@ def test_drilling_force_and_thrust_are_those_of_the_physics(
         previous_diameter=previous,
         teeth=2,
         cutting_edge_angle=radians(59.0),
+        point=point,
     )
-    torque = loads.torque(cut, loads.cutting_force(cut, STEEL, 1.1))
-    thrust = loads.thrust(cut, STEEL, 1.1)
+    force = loads.cutting_force(cut, STEEL, 1.1, point)
+    torque = loads.torque(cut, force)
+    thrust = loads.thrust(cut, STEEL, 1.1, point)
     expected = drilling.drilling_torque(STEEL, asked, factor=1.1)
     assert torque.value(feed, 40.0, 1.0) == pytest.approx(expected)
-    expected = drilling.drilling_thrust(STEEL, asked, factor=1.1)
+    # All lips in their middle, a quarter of both diameters from the axis.
+    assert force.value(feed, 40.0, 1.0) == pytest.approx(expected / (0.25 * (10.0 + previous)))
+    expected = drilling_thrust(STEEL, asked, factor=1.1)
     assert thrust.value(feed, 40.0, 1.0) == pytest.approx(expected)
 
 
@@ -174,9 +223,33 @@ def test_turning_a_deeper_place_loads_in_proportion() -> None:
 
 def test_the_shank_bends_where_it_is_bent_most() -> None:
     narrow = Place(engagement=unidirectional(2.0, 20.0), depth_share=3.0)
-    cut = replace(milled(full_immersion()), bending=narrow)
-    asked = milling.MillingCut(
-        feed_per_tooth=0.1, teeth=4, axial_depth=6.0, engagement=narrow.engagement
-    )
-    expected = milling.peak_force(STEEL, asked)
-    assert loads.bending_force(cut, STEEL, 1.0).value(0.1, 2.0, 1.0) == pytest.approx(expected)
+    cut = replace(milled(full_immersion()), shank=narrow, helix_angle=0.5)
+    mill = discs(narrow.engagement, depth=6.0, helix=0.5)
+    expected = 1500.0 * 0.1**0.78 * mill.peak()
+    found = loads.shank_force(cut, STEEL, 1.0).value(0.1, 2.0, 1.0)
+    assert found == pytest.approx(expected, rel=0.01)
+
+
+def test_the_wall_is_spoilt_where_it_is_made() -> None:
+    narrow = Place(engagement=unidirectional(2.0, 20.0), depth_share=3.0)
+    cut = replace(milled(full_immersion()), wall=narrow, helix_angle=0.5)
+    mill = discs(narrow.engagement, depth=6.0, helix=0.5)
+    expected = 1500.0 * 0.1**0.78 * mill.wall(pi)
+    load = loads.wall_force(cut, STEEL, 1.0)
+    assert load is not None
+    assert load.value(0.1, 2.0, 1.0) == pytest.approx(expected, rel=0.01)
+
+
+def test_a_cut_that_is_filled_more_loads_in_proportion() -> None:
+    cut = milled(full_immersion())
+    plain = loads.cutting_force(cut, STEEL, 1.0)
+    fuller = loads.cutting_force(replace(cut, fill=1.5), STEEL, 1.0)
+    assert fuller.coefficient == pytest.approx(1.5 * plain.coefficient)
+
+
+def test_the_mean_chip_that_was_met_holds_the_resistance() -> None:
+    """``h^(−m)``: half the mean chip of a slot, 2/π."""
+    cut = milled(full_immersion())
+    plain = loads.cutting_force(cut, STEEL, 1.0)
+    thinner = loads.cutting_force(replace(cut, chip_ratio=1.0 / pi), STEEL, 1.0)
+    assert thinner.coefficient == pytest.approx(2.0**STEEL.m_c * plain.coefficient)

@@ -1,7 +1,7 @@
 """Cuts of the sample parts along their paths, held against the paths and the stock."""
 
 from dataclasses import replace
-from math import pi
+from math import pi, radians, sin
 from pathlib import Path
 
 import pytest
@@ -9,7 +9,7 @@ import pytest
 from optimiser.cut import Cut
 from optimiser.estimated import estimated_cut
 from optimiser.measured import MeasuredCuts
-from simulator.library import load_machine
+from simulator.library import load_machine, load_material
 from simulator.removal.engage import MillingStock
 from simulator.removal.lathe import TurningStock
 from simulator.spec import Kienzle
@@ -19,7 +19,7 @@ from stepnc_model.toolpath.generate import workingstep_path
 from stepnc_model.toolpath.path import length
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
-STEEL = Kienzle(k_c11=1500.0, m_c=0.25)
+STEEL = replace(load_material("c45"), kienzle=Kienzle(k_c11=1500.0, m_c=0.25))
 
 
 def program(part: str, *change: str) -> Program:
@@ -96,9 +96,8 @@ def test_mean_load_makes_the_energy_of_the_volume(
     bracket: tuple[MeasuredCuts, dict[str, Cut]],
 ) -> None:
     """With a constant specific force the mean load times length is the volume removed."""
-    source = MeasuredCuts(
-        bracket[0].program, load_machine("vmc15"), Kienzle(k_c11=1000.0, m_c=0.0)
-    )
+    even = replace(STEEL, kienzle=Kienzle(k_c11=1000.0, m_c=0.0))
+    source = MeasuredCuts(bracket[0].program, load_machine("vmc15"), even)
     for step in source.program.workingsteps[:6]:
         cut, _ = source.cut(step)
         assert cut.engagement is not None
@@ -114,7 +113,10 @@ def test_a_slot_is_full_and_a_wall_is_thin(
 ) -> None:
     cuts = bracket[1]
     assert cuts["MILL SLOT"].radial_width == pytest.approx(12.0, rel=0.01)
-    assert cuts["ROUGH POCKET"].radial_width == pytest.approx(12.0, rel=0.01)
+    # Its hardest place goes down a ramp: the end cuts too, as if the flank went deeper.
+    pocket = cuts["ROUGH POCKET"]
+    assert pocket.depth_share * pocket.radial_width > 12.0
+    assert pocket.radial_width > 11.0
     assert cuts["FINISH CONTOUR"].radial_width < 1.0
 
 
@@ -140,9 +142,24 @@ def test_open_pockets_are_entered_straight_down_and_nothing_else_is(
     bracket: tuple[MeasuredCuts, dict[str, Cut]],
 ) -> None:
     """PLUNGE_TOOLAXIS inside the stock; faces, steps and slots begin beside it."""
-    plunges = {name: cut.plunge for name, cut in bracket[1].items() if cut.plunge is not None}
-    assert set(plunges) == {"ROUGH OPEN POCKET", "FINISH OPEN POCKET"}
-    assert all(plunge.previous_diameter == 0.0 for plunge in plunges.values())
+    ways = {name: cut.way_in for name, cut in bracket[1].items() if cut.way_in is not None}
+    straight = {name for name, way in ways.items() if way.drilled}
+    assert straight == {"ROUGH OPEN POCKET", "FINISH OPEN POCKET"}
+    assert all(ways[name].reaches_axis and ways[name].ramp is None for name in straight)
+    assert {name for name, way in ways.items() if way.ramp} == {"ROUGH POCKET", "FINISH POCKET"}
+    assert ways["ROUGH POCKET"].sine == pytest.approx(sin(radians(3.0)))
+    assert all(cut.plunge is None for cut in bracket[1].values())
+
+
+def test_a_plunge_is_told_by_what_is_left_there(
+    bracket: tuple[MeasuredCuts, dict[str, Cut]],
+) -> None:
+    """The open side of the pocket: half of the tool hangs in the air."""
+    way = bracket[1]["ROUGH OPEN POCKET"].way_in
+    assert way is not None
+    for drilled in way.drilled:
+        assert drilled.previous_diameter == 0.0
+        assert drilled.fill == pytest.approx(0.5, abs=0.02)
 
 
 def test_the_same_setting_is_told_alike_each_time(
@@ -226,7 +243,7 @@ def test_a_hole_that_nobody_drilled_is_not_there() -> None:
     """The reaming says 9.8 mm; the map knows better."""
     read = program("bracket", *NOT_DRILLED)
     step = step_of(read, "REAM HOLE 1")
-    assert estimated_cut(read, step)[0].previous_diameter == 9.8
+    assert estimated_cut(read, step, load_machine("vmc15"), STEEL)[0].previous_diameter == 9.8
     cut, _ = MeasuredCuts(read, load_machine("vmc15"), STEEL).cut(step)
     assert cut.previous_diameter < 1.0
 
@@ -237,6 +254,9 @@ def test_what_an_estimate_guesses_is_not_said_where_it_is_known() -> None:
     read = Program(Part21File.from_bytes(text.encode(), name="bracket"), name="bracket")
     step = step_of(read, "REAM HOLE 1")
     guess = "is taken to cut into the solid"
-    assert any(guess in each.message for each in estimated_cut(read, step)[1])
+    assert any(
+        guess in each.message
+        for each in estimated_cut(read, step, load_machine("vmc15"), STEEL)[1]
+    )
     _, findings = MeasuredCuts(read, load_machine("vmc15"), STEEL).cut(step)
     assert not any(guess in each.message for each in findings)

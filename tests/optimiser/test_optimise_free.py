@@ -27,13 +27,13 @@ def test_feed_that_is_not_free_stays() -> None:
 
 
 def test_programmed_feed_that_breaks_a_limit_is_infeasible_when_it_is_not_free() -> None:
-    """Three times the roughness: the cap and the held feed conflict."""
-    plan = plan_of("bracket", Task(free=frozenset({Free.DEPTH})))
-    advice = advice_of(plan, "FINISH FACE")
+    """The cap and the held feed conflict."""
+    plan = plan_of("shaft", Task(free=frozenset({Free.DEPTH}), roughness=0.5e-3))
+    advice = advice_of(plan, "FINISH CONTOUR")
     assert advice.status is Status.INFEASIBLE
     assert plan.is_infeasible
     assert advice.after is None
-    for part in ("roughness", "1.6 µm", "programmed feed", "0.06 mm"):
+    for part in ("roughness", "0.5 µm", "programmed feed", "0.12 mm"):
         assert part in advice.reason
 
 
@@ -90,6 +90,7 @@ def test_floor_of_a_bottom_and_side_finish_limits_the_feed_too() -> None:
 
 def test_roughness_of_the_floor_limits_the_feed_too() -> None:
     """The floor's Ra 0.4 µm at a corner of 0.2 mm; 0.2 µm of it are there at any feed."""
-    advice = advice_of(plan_of("bracket", Task(roughness=0.4e-3)), "FINISH POCKET")
+    wide = ("#510=PLUS_MINUS_VALUE(0.1,0.1,3)", "#510=PLUS_MINUS_VALUE(0.2,0.2,3)")
+    advice = advice_of(plan_of("bracket", Task(roughness=0.4e-3), wide), "FINISH POCKET")
     assert advice.active is LimitName.ROUGHNESS
     assert after(advice).setting.feed == pytest.approx(sqrt(18 * sqrt(3) * 0.2 * 0.2e-3))

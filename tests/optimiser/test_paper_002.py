@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from optimiser.conditions import Conditions
 from optimiser.cut import Cut, CutKind
 from optimiser.limit import LimitName
-from optimiser.limits import Conditions, limits_of, power_load, segment_at, spindle_limits
+from optimiser.limits import limits_of, power_load, segment_at, spindle_limits
 from optimiser.modes import Mode
 from optimiser.problem import Cost, Problem, Setting
 from optimiser.workingstep import (

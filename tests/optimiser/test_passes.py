@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import pytest
 
+from optimiser.conditions import Conditions
 from optimiser.cut import Cut, CutKind
 from optimiser.errors import Infeasible
 from optimiser.formulate import Task, problem_of
-from optimiser.limits import Conditions
 from optimiser.modes import Free
 from optimiser.passes import Asked, Told, best_of
 from optimiser.problem import Setting

@@ -7,23 +7,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from optimiser.advice import Plan
 from optimiser.cut import Cut, CutKind
-from optimiser.formulate import Task
 from optimiser.hardest import Met
-from optimiser.limit import LimitName
-from optimiser.limits import PLUNGE_FEED_RATIO
-from optimiser.optimise import optimise
 from optimiser.plunge import CORE, plunge_of
 from optimiser.problem import Setting
-from simulator.library import load_machine
-from simulator.matching import match_material
 from simulator.physics.engagement import full_immersion
 from simulator.removal.stations import CutKind as StationKind
 from simulator.removal.stations import Stations
 from simulator.spec import ToolKind
-from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
 from stepnc_model.tool import Tool
 
 BRACKET = Path(__file__).parents[2] / "examples" / "parts" / "bracket.stpnc"
@@ -49,6 +40,7 @@ def met(section: float, inner: float, *, kind: StationKind = StationKind.DRILLIN
         station=2.0 * one,
         kind=np.array([int(kind)]),
         section=section * one,
+        growth=0.0 * one,
         axial_depth=(5.0 - inner) * one,
         radial_width=(5.0 - inner) * one,
         entry_angle=0.0 * one,
@@ -91,46 +83,3 @@ def test_a_pilot_hole_is_taken_off() -> None:
 )
 def test_what_is_no_plunge_at_the_feed_of_the_cut(cut: Cut, found: Met, bound: bool) -> None:
     assert plunge_of(cut, found, np.array([bound])) is None
-
-
-def plan_of(before: str = "", after: str = "") -> Plan:
-    text = BRACKET.read_text()
-    assert before in text
-    text = text.replace(before, after) if before else text
-    return optimise(
-        Program(Part21File.from_bytes(text.encode()), name="bracket"),
-        machine=load_machine("vmc15"),
-        material=match_material(["C45"]),
-        task=Task(),
-        selected=lambda step: step.id in {"ROUGH POCKET", "ROUGH OPEN POCKET"},
-    )
-
-
-def test_a_pocket_that_is_entered_straight_down_keeps_half_the_feed_per_tooth() -> None:
-    """ISCAR's 0.01·D for carbide in steel gives 0.1 mm along the pass."""
-    ramped, plunged = plan_of().advices
-    assert ramped.cut is not None
-    assert ramped.cut.plunge is None
-    assert plunged.cut is not None
-    assert plunged.cut.plunge is not None
-    assert plunged.after is not None
-    bounds = {
-        load.limit.words: load.bound
-        for load in plunged.after.loads
-        if load.limit.name is LimitName.FEED_PER_TOOTH
-    }
-    assert bounds == {
-        "feed per tooth": pytest.approx(0.1),
-        "feed per tooth straight down": pytest.approx(PLUNGE_FEED_RATIO * 0.1),
-    }
-    assert plunged.after.setting.feed <= PLUNGE_FEED_RATIO * 0.1 * (1.0 + 1e-9)
-
-
-def test_a_ramp_instead_frees_the_feed() -> None:
-    ramp = ("'ROUGH OPEN POCKET',10.,$,#430,#305,#330,5.,#340,",
-            "'ROUGH OPEN POCKET',10.,$,#430,#305,#330,5.,#342,")  # fmt: skip
-    _, ramped = plan_of(*ramp).advices
-    assert ramped.cut is not None
-    assert ramped.cut.plunge is None
-    assert ramped.after is not None
-    assert ramped.after.setting.feed > PLUNGE_FEED_RATIO * 0.1

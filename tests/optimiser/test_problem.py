@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from optimiser.limit import Limit, LimitName, Monomial
+from optimiser.limit import Limit, LimitName, Monomial, SpeedCurve
 from optimiser.problem import Cost, Problem, Setting
 
 POWER = Monomial(coefficient=40.0, feed_exponent=1.0, depth_exponent=1.0, speed_exponent=1.0)
@@ -86,3 +86,53 @@ def test_without_a_depth_limit_one_pass_may_do() -> None:
 
 def test_never_fewer_passes_than_are_free() -> None:
     assert problem(5.0, passes=(3, 3)).deepest() == 3
+
+
+LOBES = Limit(
+    name=LimitName.STABILITY,
+    load=Monomial(coefficient=1.0, depth_exponent=1.0),
+    bound=1.0,
+    unit="mm",
+    curve=SpeedCurve(speeds=(10.0, 20.0, 30.0, 40.0), bounds=(1.0, 5.0, 2.0, 4.0)),
+)
+
+
+def branched(*speeds: float) -> Problem:
+    """A problem with lobes whose speed may be chosen."""
+    count = len(speeds) - 1
+    return replace(
+        problem(8.0),
+        limits=(*problem(8.0).limits, LOBES),
+        speeds=speeds,
+        stretches=((),) * count,
+    )
+
+
+def test_parts_are_the_ranges_of_speed_that_are_stable_within_each_stretch() -> None:
+    found = [part.speeds for part in branched(10.0, 18.0, 40.0).parts(3.0)]
+    expected = [(15.0, 18.0), (18.0, 26.0 + 2.0 / 3.0), (35.0, 40.0)]
+    assert len(found) == len(expected)
+    for got, wanted in zip(found, expected, strict=True):
+        assert got == pytest.approx(wanted, rel=2e-6)
+
+
+def test_parts_keep_inside_what_is_stable() -> None:
+    for part in branched(10.0, 40.0).parts(3.0):
+        assert all(LOBES.holds(0.1, 3.0, speed) for speed in part.speeds)
+        assert LOBES.holds(0.1, 3.0, 0.5 * sum(part.speeds))
+
+
+def test_no_speed_is_left_where_no_lobe_is_high_enough() -> None:
+    assert list(branched(10.0, 40.0).parts(5.5)) == []
+
+
+def test_the_best_speed_says_how_few_passes_may_do() -> None:
+    assert branched(10.0, 40.0).deepest() == 2
+    assert branched(30.0, 40.0).deepest() == 3
+    assert replace(branched(10.0, 40.0), speeds=(25.0,)).deepest() == 3
+    assert branched(5.0, 40.0).deepest() == 2  # 8 mm: no lobe limits below 10 rev/s
+
+
+def test_only_lobes_and_a_choice_of_speeds_make_branches() -> None:
+    assert branched(10.0, 40.0).is_branched
+    assert not replace(branched(10.0, 40.0), speeds=(25.0,)).is_branched

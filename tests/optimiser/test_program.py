@@ -10,6 +10,7 @@ from optimiser import program, workingstep
 from optimiser.errors import Infeasible
 from optimiser.limit import Limit, LimitName, Monomial
 from optimiser.modes import Mode
+from tests.optimiser.test_workingstep import with_lobes
 
 CASES = 540
 
@@ -41,6 +42,29 @@ def test_closed_form_equals_the_geometric_program(block: int) -> None:
     assert compared > 50
 
 
+@pytest.mark.parametrize("block", range(5))
+def test_closed_form_equals_the_geometric_program_along_a_helix(block: int) -> None:
+    """About the number of passes that the closed form found; all passes on every tenth."""
+    compared = 0
+    for seed in range(100 * block, 100 * (block + 1)):
+        free_speed, mode = seed % 3 == 0, Mode.EC if seed % 4 == 0 else Mode.TC
+        problem = random_problem(
+            Random(seed), free_speed=free_speed, edge=seed % 5 == 0, helix=True
+        )
+        try:
+            solution = workingstep.solve(problem, mode)
+        except Infeasible:
+            continue
+        passes = solution.setting.passes
+        if seed % 10:
+            problem = replace(problem, passes=(max(1, passes - 1), min(passes + 1, 60)))
+        compared += 1
+        closed = workingstep.cost_function(problem, mode)(solution.setting)
+        judged = program.solve(problem, mode).cost
+        assert closed == pytest.approx(judged, rel=1e-6), f"seed {seed}"
+    assert compared > 80
+
+
 def test_prices_equal_finite_differences() -> None:
     problem = random_problem(Random(7))
     found = program.solve(problem, Mode.TC)
@@ -70,3 +94,22 @@ def test_a_bound_just_above_the_floor_keeps_its_digits() -> None:
     )
     measured = (solution.time / wider.time - 1.0) / 1e-6
     assert judged.prices[LimitName.ROUGHNESS] == pytest.approx(measured, rel=1e-3)
+
+
+def test_both_agree_below_lobes() -> None:
+    compared = 0
+    for seed in range(12):
+        problem = with_lobes(random_problem(Random(seed), free_speed=True), seed)
+        try:
+            judged = program.solve(problem, Mode.TC)
+        except Infeasible:
+            continue
+        compared += 1
+        found = workingstep.solve(problem, Mode.TC)
+        cost = workingstep.cost_function(problem, Mode.TC)
+        assert cost(found.setting) == pytest.approx(judged.cost, rel=1e-5), f"seed {seed}"
+        lobes = problem.curved
+        assert lobes is not None
+        at = program.snapped(problem, judged)
+        assert lobes.holds(at.feed, at.depth, at.speed)
+    assert compared > 5

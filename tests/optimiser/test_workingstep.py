@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from benchmarks.problems import random_problem
 from optimiser.errors import Infeasible, OptimisationError
-from optimiser.limit import Limit, LimitName, Monomial, Sense
+from optimiser.least_cost import least_cost
+from optimiser.limit import Limit, LimitName, Monomial, Sense, SpeedCurve
 from optimiser.modes import Mode
 from optimiser.problem import Cost, Problem, Setting
 from optimiser.workingstep import (
@@ -26,8 +27,9 @@ from optimiser.workingstep import (
 Floats = NDArray[np.float64]
 
 
-def problem_of(seed: int, *, free_speed: bool = False) -> Problem:
-    return random_problem(Random(seed), free_speed=free_speed, edge=seed % 4 == 0)
+def problem_of(seed: int, *, free_speed: bool = False, helix: bool = False) -> Problem:
+    random = Random(seed)
+    return random_problem(random, free_speed=free_speed, edge=seed % 4 == 0, helix=helix)
 
 
 def solved(problem: Problem, mode: Mode = Mode.TC) -> Solution | None:
@@ -41,6 +43,7 @@ def brute_cost(problem: Problem, mode: Mode, passes: Floats, speeds: Floats) -> 
     """Least cost of every pair of passes and speed, infinite where nothing is allowed."""
     speed = np.broadcast_to(speeds, passes.shape)
     depth = problem.total_depth / passes
+    each = [problem.depth_at(int(count)) for count in passes[:, 0]]
     highest, lowest = np.full(passes.shape, np.inf), np.zeros(passes.shape)
     allowed = np.ones(passes.shape, dtype=bool)
     second = problem.speeds[1] if len(problem.speeds) > 2 else np.inf
@@ -50,7 +53,10 @@ def brute_cost(problem: Problem, mode: Mode, passes: Floats, speeds: Floats) -> 
     for limit, where in [(limit, everywhere) for limit in problem.limits] + stretches:
         load = limit.load
         room = limit.bound * speed**limit.bound_speed_exponent
-        room /= depth**load.depth_exponent * speed**load.speed_exponent
+        factor = depth**load.depth_exponent
+        if load.curve is not None:
+            factor = np.array([[load.curve(one)] for one in each])
+        room /= factor * speed**load.speed_exponent
         if load.feed_exponent == 0.0:
             allowed &= ~where | (load.coefficient + load.offset <= room * (1.0 + 1e-9))
             continue
@@ -126,6 +132,68 @@ def test_optimum_of_a_free_speed_equals_a_fine_grid(mode: Mode) -> None:
         assert cost <= least * (1.0 + 1e-8), f"seed {seed}"
         assert cost >= least * (1.0 - 1e-4), f"seed {seed}"
     assert compared >= 300
+
+
+@pytest.mark.parametrize("mode", [Mode.TC, Mode.EC])
+@pytest.mark.parametrize("free_speed", [False, True])
+def test_optimum_along_a_helix_equals_brute_force_over_all_passes(
+    mode: Mode, free_speed: bool
+) -> None:
+    """Loads that are curves of the depth: no grid of passes, feed and speed beats it."""
+    compared, bent, late = 0, 0, 0
+    for seed in range(150):
+        problem = problem_of(seed, free_speed=free_speed, helix=True)
+        least = brute_force(problem, mode)
+        solution = solved(problem, mode)
+        if least == np.inf:
+            assert free_speed or solution is None, f"seed {seed}"
+            continue
+        assert solution is not None, f"seed {seed}"
+        compared += 1
+        bent += solution.active in {LimitName.TOOL_DEFLECTION, LimitName.SHANK_STRENGTH}
+        late += solution.setting.passes > problem.deepest() + 1
+        cost = cost_function(problem, mode)(solution.setting)
+        assert cost <= least * (1.0 + 1e-8), f"seed {seed}"
+        # The grid of speeds is made finer about its best number of passes only.
+        assert cost >= least * (1.0 - (1e-3 if free_speed else 1e-8)), f"seed {seed}"
+    assert compared >= 120
+    assert bent >= 40
+    assert late >= 5
+
+
+@pytest.mark.parametrize("mode", [Mode.TC, Mode.EC])
+def test_least_cost_is_never_above_that_of_any_number_of_passes(mode: Mode) -> None:
+    reached = 0.0
+    for seed in range(150):
+        problem = problem_of(seed, free_speed=seed % 2 == 0, helix=seed % 3 == 0)
+        bound = least_cost(problem, mode)
+        passes = np.arange(1.0, problem.passes[1] + 1.0)[:, None]
+        speeds = np.geomspace(problem.speeds[0], problem.speeds[-1], 41)
+        pairs = np.broadcast_to(passes, (passes.size, speeds.size))
+        least = brute_cost(problem, mode, pairs, speeds).min(axis=1)
+        bounds = np.array([bound(int(count)) for count in passes[:, 0]])
+        assert (bounds <= least * (1.0 + 1e-9)).all(), f"seed {seed}"
+        assert (np.diff(bounds) >= 0.0).all(), f"seed {seed}"
+        reached = max(reached, float((bounds / least).max()))
+    # It is no bound for show: some workingsteps attain it.
+    assert reached > 0.999
+
+
+def test_a_deeper_pass_may_cost_less_where_a_shallower_costs_more() -> None:
+    """A load that falls with the depth for a while has two valleys; the second one is found."""
+
+    def curve(depth: float) -> float:
+        return {12.0: 3.0, 6.0: 8.0, 4.0: 8.0}.get(depth, 0.5)
+
+    load = Monomial(coefficient=1000.0, feed_exponent=1.0, curve=curve)
+    force = Limit(name=LimitName.CUTTING_FORCE, load=load, bound=300.0, unit="N")
+    problem = simple(force, feed_limit(1.0), passes=1)
+    assert solve(problem, Mode.TC).setting.passes == 4
+    times = [
+        problem.cost.time(Setting(feed=min(feed, 1.0), depth=1.0, passes=count, speed=20.0))
+        for count, feed in ((1, 0.1), (2, 0.0375), (3, 0.0375), (4, 0.6))
+    ]
+    assert times[3] < times[0] < times[1] < times[2]
 
 
 def test_deepest_pass_first_is_often_not_the_best_and_never_better() -> None:
@@ -322,3 +390,93 @@ def test_active_limit_is_at_its_bound() -> None:
             for limit in active
         ]
         assert max(ratios) == pytest.approx(1.0, rel=1e-6)
+
+
+def with_lobes(problem: Problem, seed: int) -> Problem:
+    """The same problem, its depth bounded by made-up lobes over its speeds."""
+    random = Random(seed)
+    low, high = problem.speeds[0], problem.speeds[-1]
+    speeds = np.geomspace(low, high, 40)
+    floor = problem.total_depth * random.uniform(0.05, 0.4)
+    bounds = floor * (1.0 + np.array([random.uniform(0.0, 4.0) ** 2 for _ in speeds]))
+    lobes = Limit(
+        name=LimitName.STABILITY,
+        load=Monomial(coefficient=1.0, depth_exponent=1.0),
+        bound=1.0,
+        unit="mm",
+        curve=SpeedCurve(speeds=tuple(speeds.tolist()), bounds=tuple(bounds.tolist())),
+    )
+    return replace(problem, limits=(*problem.limits, lobes))
+
+
+def held_at(problem: Problem, speed: float) -> Problem:
+    """The same problem at one speed."""
+    second = problem.speeds[1] if len(problem.speeds) > 2 else np.inf
+    stretch = problem.stretches[0] if speed <= second else problem.stretches[-1]
+    return replace(problem, speeds=(speed,), stretches=(stretch,))
+
+
+@pytest.mark.parametrize("mode", [Mode.TC, Mode.EC])
+def test_optimum_below_lobes_equals_a_fine_grid_of_held_speeds(mode: Mode) -> None:
+    compared = 0
+    for seed in range(24):
+        problem = with_lobes(problem_of(seed, free_speed=True), seed)
+        found = solved(problem, mode)
+        cost = cost_function(problem, mode)
+        grid = np.geomspace(problem.speeds[0], problem.speeds[-1], 400)
+        at_grid = [solved(held_at(problem, float(speed)), mode) for speed in grid]
+        costs = [cost(each.setting) for each in at_grid if each is not None]
+        if found is None:
+            assert not costs
+            continue
+        compared += 1
+        lobes = problem.curved
+        assert lobes is not None
+        setting = found.setting
+        assert lobes.holds(setting.feed, setting.depth, setting.speed)
+        assert cost(setting) <= min(costs, default=np.inf) * (1.0 + 1e-5)
+        near = solved(held_at(problem, setting.speed), mode)
+        assert near is not None
+        assert cost(near.setting) == pytest.approx(cost(setting), rel=1e-9)
+    assert compared > 12
+
+
+def test_a_depth_that_is_unstable_at_the_held_speed_takes_more_passes() -> None:
+    problem = with_lobes(problem_of(3, free_speed=True), 3)
+    lobes = problem.curved
+    assert lobes is not None
+    for speed in np.geomspace(problem.speeds[0], problem.speeds[-1], 9).tolist():
+        found = solved(held_at(problem, speed))
+        if found is not None:
+            assert found.setting.depth <= lobes.bound_at(speed) * (1.0 + 1e-9)
+
+
+def test_an_unstable_depth_that_is_not_free_says_which_speeds_would_do() -> None:
+    problem = with_lobes(problem_of(3, free_speed=True), 3)
+    lobes = problem.curved
+    assert lobes is not None
+    assert lobes.curve is not None
+    worst = min(lobes.curve.speeds, key=lobes.curve.at)
+    deep = 1.5 * lobes.bound_at(worst)
+    given = replace(problem.programmed, depth=deep, speed=worst, passes=1)
+    held = replace(held_at(problem, worst), passes=(1, 1), programmed=given)
+    with pytest.raises(
+        Infeasible,
+        match=r"stability allows .* mm at \d+ rpm, not .* mm, and the "
+        r"depth is not free; .* mm would be stable from \d+ to \d+ rpm",
+    ) as error:
+        solve(held, Mode.TC)
+    assert error.value.limits == (LimitName.STABILITY,)
+    impossible = replace(given, depth=100.0 * max(lobes.curve.bounds))
+    held = replace(held, limits=(lobes,))
+    with pytest.raises(Infeasible, match=r"; .* mm would be stable at \d+ rpm"):
+        solve(replace(held, programmed=impossible), Mode.TC)
+
+
+def test_a_curve_that_begins_above_a_speed_is_no_limit_there() -> None:
+    problem = with_lobes(problem_of(3, free_speed=True), 3)
+    below = 0.9 * problem.speeds[0]
+    assert LimitName.STABILITY not in {limit.name for limit in limits_at(problem, below)}
+    assert LimitName.STABILITY in {
+        limit.name for limit in limits_at(problem, problem.speeds[0])
+    }

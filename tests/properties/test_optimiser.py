@@ -27,7 +27,8 @@ CAPS = (
 
 
 def problem_of(seed: int, *, free_speed: bool) -> Problem:
-    return random_problem(Random(seed), free_speed=free_speed, edge=seed % 3 == 0)
+    random = Random(seed)
+    return random_problem(random, free_speed=free_speed, edge=seed % 3 == 0, helix=seed % 2 > 0)
 
 
 def solution_of(problem: Problem, mode: Mode) -> Solution:

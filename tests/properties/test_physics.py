@@ -1,7 +1,8 @@
 """Laws that hold for every cut."""
 
+from dataclasses import replace
 from itertools import accumulate
-from math import pi
+from math import pi, sin
 from operator import mul
 
 import pytest
@@ -14,19 +15,18 @@ from simulator.physics import (
     edge,
     engagement,
     kinematics,
-    linear_edge,
     milling,
-    motion,
     power,
-    scallop,
     spindle,
-    surface,
     tool_life,
 )
 from simulator.physics.drilling import DrillingCut
 from simulator.physics.engagement import Engagement
+from simulator.physics.flutes import CuttingEdges, Law
 from simulator.physics.milling import MillingCut
+from simulator.physics.tooth_forces import one_place, peak_resultant, wall_force
 from simulator.spec import Kienzle, LinearEdge, Spindle, SpindlePoint, Taylor
+from tests.oracles import cutting as oracle
 
 diameters = st.floats(1.0, 250.0)
 shares = st.floats(1e-3, 1.0)
@@ -79,24 +79,9 @@ def test_mean_chip_is_at_most_the_thickest_and_that_at_most_the_feed(
     feed: float, arc: Engagement, kappa: float
 ) -> None:
     mean = engagement.mean_chip_thickness(feed, arc, cutting_edge_angle=kappa)
-    greatest = engagement.greatest_chip_thickness(feed, arc, cutting_edge_angle=kappa)
+    greatest = feed * sin(kappa) * arc.greatest_sine
     assert 0.0 < mean <= greatest * (1.0 + 1e-9)
     assert greatest <= feed
-
-
-@given(feed=feeds, arc=engagements(), kappa=edge_angles)
-def test_feed_for_a_mean_chip_is_the_inverse(
-    feed: float, arc: Engagement, kappa: float
-) -> None:
-    mean = engagement.mean_chip_thickness(feed, arc, cutting_edge_angle=kappa)
-    back = engagement.feed_for_mean_chip(mean, arc, cutting_edge_angle=kappa)
-    assert back == pytest.approx(feed)
-
-
-@given(arc=engagements(), teeth=teeth_numbers)
-def test_most_teeth_in_cut_are_the_mean_rounded_up(arc: Engagement, teeth: int) -> None:
-    mean = engagement.mean_teeth_in_cut(arc, teeth)
-    assert mean - 1e-6 <= engagement.most_teeth_in_cut(arc, teeth) < mean + 1.0
 
 
 @given(kienzle=kienzles, thickness=feeds, width=depths, more=st.floats(1.001, 10.0))
@@ -110,7 +95,7 @@ def test_force_rises_with_the_chip_s_area(
 
 
 @given(kienzle=kienzles, cut=cuts, more=st.floats(1.01, 10.0))
-def test_milling_forces_rise_with_feed_and_depth(
+def test_milling_force_rises_with_the_feed(
     kienzle: Kienzle, cut: MillingCut, more: float
 ) -> None:
     faster = MillingCut(
@@ -120,9 +105,8 @@ def test_milling_forces_rise_with_feed_and_depth(
         engagement=cut.engagement,
         cutting_edge_angle=cut.cutting_edge_angle,
     )
-    for force in (milling.mean_force, milling.peak_force, milling.peak_tooth_force):
-        ratio = force(kienzle, faster) / force(kienzle, cut)
-        assert ratio == pytest.approx(more ** (1.0 - kienzle.m_c))
+    ratio = milling.mean_force(kienzle, faster) / milling.mean_force(kienzle, cut)
+    assert ratio == pytest.approx(more ** (1.0 - kienzle.m_c))
 
 
 @given(kienzle=kienzles, cut=cuts, diameter=diameters, spindle_speed=speeds)
@@ -137,25 +121,47 @@ def test_mean_force_times_speed_is_specific_force_times_removal_rate(
         axial_depth=cut.axial_depth,
         radial_width=0.5 * diameter * cut.engagement.cosine_difference,
     )
-    by_volume = power.removal_power(milling.mean_specific_force(kienzle, cut), rate)
+    by_volume = oracle.removal_power(milling.mean_specific_force(kienzle, cut), rate)
     assert by_force == pytest.approx(by_volume)
 
 
-@given(kienzle=kienzles, cut=cuts)
-def test_peak_lies_between_one_tooth_and_all_teeth_in_cut(
-    kienzle: Kienzle, cut: MillingCut
+@given(kienzle=kienzles, cut=cuts, helix=st.floats(0.0, 1.2), diameter=diameters)
+def test_peak_of_a_helix_lies_below_the_chips_of_all_teeth_in_cut(
+    kienzle: Kienzle, cut: MillingCut, helix: float, diameter: float
 ) -> None:
-    peak = milling.peak_force(kienzle, cut)
-    tooth = milling.peak_tooth_force(kienzle, cut)
-    together = cut.engagement.contact_angle / cut.tooth_pitch + 1.0
-    assert tooth * (1.0 - 1e-9) <= peak <= together * tooth * (1.0 + 1e-6)
+    """Straight edges reach one tooth's force, and a helix never all of those on its arc."""
+    law = Law(exponent=1.0 - kienzle.m_c)
+    arc = cut.engagement
+    at = one_place(arc.entry_angle, arc.exit_angle, axial_depth=cut.axial_depth)
+    edges = CuttingEdges(
+        teeth=cut.teeth,
+        diameter=diameter,
+        helix_angle=helix,
+        cutting_edge_angle=cut.cutting_edge_angle,
+    )
+    scale = kienzle.k_c11 * cut.feed_per_tooth**law.exponent
+    sine = sin(cut.cutting_edge_angle)
+    tooth = cutting.chip_force(
+        kienzle,
+        chip_thickness=cut.feed_per_tooth * sine * arc.greatest_sine,
+        chip_width=cut.axial_depth / sine,
+    )
+    most = tooth * (1.0 + law.radial_share**2) ** 0.5 * (1.0 + 1e-6)
+    lag = edges.lag * cut.axial_depth
+    together = (arc.contact_angle + lag) / edges.pitch + 1.0
+    assert scale * peak_resultant(edges, at, law)[0] <= together * most
+    straight = scale * peak_resultant(replace(edges, helix_angle=0.0), at, law)[0]
+    # Several teeth pull against each other, but a tooth by itself gives all it has.
+    if arc.contact_angle < edges.pitch:
+        assert straight >= tooth * (1.0 - 2e-3)
+    assert wall_force(edges, at, law)[0] <= peak_resultant(edges, at, law)[0] * 1.01 + 1e-9
 
 
 @given(cut=cuts, k_tc=st.floats(100.0, 4000.0), k_te=st.floats(0.0, 100.0))
 def test_linear_edge_force_has_the_shearing_share_of_a_constant_specific_force(
     cut: MillingCut, k_tc: float, k_te: float
 ) -> None:
-    force = linear_edge.edge_mean_force(LinearEdge(k_tc=k_tc, k_te=k_te), cut)
+    force = oracle.edge_mean_force(LinearEdge(k_tc=k_tc, k_te=k_te), cut)
     sheared = milling.mean_force(Kienzle(k_c11=k_tc, m_c=0.0), cut)
     assert force >= sheared * (1.0 - 1e-12)
 
@@ -181,31 +187,6 @@ def test_speeds_and_feeds_round_trip(
     assert kinematics.feed_per_tooth(v_f, spindle_speed, teeth=teeth) == pytest.approx(feed)
 
 
-@given(radius=st.floats(0.05, 20.0), share=st.floats(1e-4, 2.0))
-def test_roughness_and_feed_round_trip(radius: float, share: float) -> None:
-    feed = share * radius
-    r_t = surface.peak_to_valley(feed, radius)
-    r_a = surface.arithmetic_roughness(feed, radius)
-    assert r_a < r_t
-    assert surface.feed_for_peak_to_valley(min(r_t, 0.5 * radius), radius) == pytest.approx(
-        feed
-    )
-    if share < 1.999:
-        assert surface.feed_for_arithmetic_roughness(r_a, radius) == pytest.approx(feed)
-
-
-@given(diameter=diameters, share=st.floats(1e-6, 1.0))
-def test_step_over_and_ridge_round_trip_and_the_first_term_is_low(
-    diameter: float, share: float
-) -> None:
-    step_over = share * diameter
-    height = scallop.scallop_height(step_over, diameter)
-    assert scallop.approximate_scallop_height(step_over, diameter) <= height * (1 + 1e-12)
-    assert scallop.step_over_for_scallop(
-        min(height, 0.5 * diameter), diameter
-    ) == pytest.approx(step_over)
-
-
 @given(radius=st.floats(0.0, 20.0), depth=depths, kappa=st.floats(0.2, 1.8))
 def test_rounded_edge_never_stands_steeper_than_its_straight_part(
     radius: float, depth: float, kappa: float
@@ -214,33 +195,11 @@ def test_rounded_edge_never_stands_steeper_than_its_straight_part(
     assert 0.0 < angle <= min(kappa, pi / 2.0) + 1e-7
 
 
-@given(diameter=diameters, share=st.floats(0.0, 0.5), depth=depths)
-def test_effective_diameter_is_at_most_the_tool_s(
-    diameter: float, share: float, depth: float
-) -> None:
-    effective = edge.effective_diameter(diameter, depth, corner_radius=share * diameter)
-    assert diameter * (1.0 - 2.0 * share) * (1.0 - 1e-9) <= effective
-    assert effective <= diameter * (1.0 + 1e-12)
-
-
 @given(n=st.floats(0.08, 0.7), c=st.floats(100.0, 20_000.0), life=st.floats(10.0, 10_000.0))
 def test_speed_and_life_round_trip(n: float, c: float, life: float) -> None:
     taylor = Taylor(exponent=n, constant=c)
     speed = tool_life.speed_for_life(taylor, life)
     assert tool_life.tool_life(taylor, speed) == pytest.approx(life, rel=1e-6)
-
-
-@given(
-    length=st.just(0.0) | st.floats(1e-9, 2000.0),
-    speed=speeds,
-    acceleration=st.floats(10.0, 20_000.0),
-)
-def test_move_is_never_faster_than_either_bound(
-    length: float, speed: float, acceleration: float
-) -> None:
-    time = motion.move_time(length, speed=speed, acceleration=acceleration)
-    assert time >= length / speed * (1.0 - 1e-12)
-    assert time >= 2.0 * (length / acceleration) ** 0.5 * (1.0 - 1e-12)
 
 
 @st.composite

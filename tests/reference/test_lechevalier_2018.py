@@ -17,7 +17,6 @@ from simulator.physics import (
     engagement,
     kinematics,
     milling,
-    motion,
     power,
     spindle_motion,
 )
@@ -31,6 +30,9 @@ from stepnc_model.units import (
     speed_from_m_s,
     speed_from_mm_min,
 )
+from tests.oracles import cutting as oracle
+from tests.oracles import motion as moves
+from tests.oracles import spindle as oracle_spindle
 
 STEEL = Kienzle(k_c11=1500.0, m_c=0.22)
 SPINDLE = rev_s_from_rpm(1750.0)
@@ -61,7 +63,7 @@ def test_validation_cuts(
     assert f_z == pytest.approx(feed_per_tooth, abs=5e-7)
     assert milling.mean_specific_force(STEEL, slot) == pytest.approx(specific_force, abs=0.6)
     assert cutting_power == pytest.approx(watts, abs=0.06)
-    assert kinematics.machining_time(101.6, feed) == pytest.approx(seconds, abs=6e-4)
+    assert moves.machining_time(101.6, feed) == pytest.approx(seconds, abs=6e-4)
 
 
 def test_first_cut_mean_chip_force_and_removal_rate() -> None:
@@ -91,19 +93,19 @@ def test_first_cut_mean_chip_force_and_removal_rate() -> None:
 def test_moves_from_rest_to_rest_at_6_m_s2(
     length_m: float, speed_m_s: float, seconds: float
 ) -> None:
-    time = motion.move_time(
+    time = moves.move_time(
         1000.0 * length_m, speed=speed_from_m_s(speed_m_s), acceleration=6000.0
     )
     assert time == pytest.approx(seconds, rel=1e-4)
 
 
 def test_short_rapid_move_peaks_below_the_rapid() -> None:
-    peak = motion.peak_speed(100.0, speed=1600.0, acceleration=6000.0)
+    peak = moves.peak_speed(100.0, speed=1600.0, acceleration=6000.0)
     assert m_s_from_speed(peak) == pytest.approx(0.7746, abs=5e-5)
 
 
 def test_spindle_reaches_1750_rpm_in_2_9_s_at_10_rev_s2() -> None:
-    assert motion.ramp_time(SPINDLE, 10.0) == pytest.approx(2.916667, rel=1e-6)
+    assert moves.ramp_time(SPINDLE, 10.0) == pytest.approx(2.916667, rel=1e-6)
 
 
 def test_step_nc_speeds_are_metres_and_revolutions_a_second() -> None:
@@ -182,7 +184,7 @@ def phase_energy(drive: AxisDrive, *, speeds: tuple[float, float], time: float) 
 def test_energy_of_a_rapid_of_100_mm() -> None:
     rapid = 16_000 / 60
     ramp = rapid / 6000.0
-    steady = motion.move_time(100.0, speed=rapid, acceleration=6000.0) - 2.0 * ramp
+    steady = moves.move_time(100.0, speed=rapid, acceleration=6000.0) - 2.0 * ramp
     assert ramp == pytest.approx(0.04444, rel=1e-3)
     assert steady == pytest.approx(0.33056, rel=1e-4)
     phases = (
@@ -200,7 +202,7 @@ def test_energy_of_a_rapid_of_100_mm() -> None:
 def test_energy_of_the_first_feed_case() -> None:
     """Axis 21.13 J; basic load 370 W and coolant 280 W take 31 837 J meanwhile."""
     feed = speed_from_mm_min(124.46)
-    seconds = kinematics.machining_time(101.6, feed)
+    seconds = moves.machining_time(101.6, feed)
     machine = load_machine("paper003")
     assert feed_axis.axis_power(drive(), feed) * seconds == pytest.approx(21.13, rel=1e-3)
     always = machine.base_power + machine.coolant_power
@@ -216,28 +218,28 @@ def test_spindle_ramps_in_either_reading_of_the_acceleration(
 ) -> None:
     spindle = load_machine("paper003").spindle
     torque = spindle_motion.acceleration_torque(0.5, acceleration)
-    assert motion.ramp_time(SPINDLE, acceleration) == pytest.approx(seconds, rel=1e-4)
+    assert moves.ramp_time(SPINDLE, acceleration) == pytest.approx(seconds, rel=1e-4)
     assert nm_from_nmm(torque) == pytest.approx(newton_metres, rel=1e-4)
     peak = spindle_motion.spindle_power(spindle, SPINDLE, acceleration)
     assert peak == pytest.approx(watts, rel=1e-4)
-    assert spindle_motion.kinetic_energy(0.5, SPINDLE) == pytest.approx(8396.0, rel=1e-4)
+    assert oracle_spindle.kinetic_energy(0.5, SPINDLE) == pytest.approx(8396.0, rel=1e-4)
 
 
 def test_running_torque_by_petroff_if_the_gap_were_1_mm() -> None:
-    torque = spindle_motion.petroff_torque(0.2, SPINDLE, diameter=5.7, length=0.3, gap=1.0)
+    torque = oracle_spindle.petroff_torque(0.2, SPINDLE, diameter=5.7, length=0.3, gap=1.0)
     assert nm_from_nmm(torque) == pytest.approx(1.5993, rel=1e-4)
-    watts = power.motor_power(power.torque_power(torque, SPINDLE), 0.95)
+    watts = power.motor_power(oracle.torque_power(torque, SPINDLE), 0.95)
     assert watts == pytest.approx(308.5, rel=1e-3)
 
 
 def test_coasting_on_that_film_takes_minutes() -> None:
     """J/B = 57 s and 264 s to a hundredth of the speed, by viscous friction alone."""
-    torque = spindle_motion.petroff_torque(0.2, SPINDLE, diameter=5.7, length=0.3, gap=1.0)
+    torque = oracle_spindle.petroff_torque(0.2, SPINDLE, diameter=5.7, length=0.3, gap=1.0)
     viscous = torque / (2 * pi * SPINDLE)
     assert 500.0 / viscous == pytest.approx(57.0, rel=0.01)
     # Dry friction far below the viscous one at the end: t(ω) − t(ω/100) is the viscous time.
     whole, rest = (
-        spindle_motion.coast_down_time(0.5, speed, dry_torque=1e-6, viscous=viscous)
+        oracle_spindle.coast_down_time(0.5, speed, dry_torque=1e-6, viscous=viscous)
         for speed in (SPINDLE, SPINDLE / 100.0)
     )
     assert whole - rest == pytest.approx(264.0, rel=2e-3)

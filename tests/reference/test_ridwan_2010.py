@@ -18,6 +18,7 @@ from stepnc_model.units import (
     rpm_from_rev_s,
     speed_from_m_min,
 )
+from tests.oracles.motion import machining_time
 
 DIAMETER = 18.0  # mm
 DEPTH = 3.0  # mm
@@ -137,6 +138,21 @@ def test_realistic_specific_force_is_three_times_the_paper_s(
     assert milling.mean_specific_force(kienzle, cut) == pytest.approx(specific_force, abs=1.0)
 
 
+def test_figure_11_contradicts_table_2() -> None:
+    """Table 2 has 35 m/min: its 500 rpm are 28, its #40 41, and that feeds 0.83 mm a tooth."""
+    slow, fast = (kinematics.cutting_speed(DIAMETER, n) for n in (500.0 / 60.0, 12.0))
+    assert (0.06 * slow, 0.06 * fast) == pytest.approx((28.27, 40.72), abs=5e-3)
+    assert kinematics.feed_per_tooth(40.0, 12.0, teeth=4) == pytest.approx(0.8333, abs=5e-5)
+
+
+def test_evaluated_0_33_of_table_1_needs_a_resistance_of_1420() -> None:
+    assert 1000.0 * 0.29 / motor_kw(0.33, teeth=1) == pytest.approx(1420.0, abs=1.0)
+
+
+def test_length_of_table_2_takes_62_s_at_290_mm_min() -> None:
+    assert machining_time(300.0, 290.0 / 60.0) == pytest.approx(62.07, abs=5e-3)
+
+
 def test_all_three_rise_with_the_motor_s_power() -> None:
     """The text says that force, chip load and removal rate fall; they are in proportion."""
     cut = milling.MillingCut(
@@ -151,7 +167,7 @@ def test_all_three_rise_with_the_motor_s_power() -> None:
 def test_printed_equation_12_is_a_factor_1_974_too_small() -> None:
     printed = (8.0 * 0.8 * 1.6e-3) ** 0.5
     assert printed == pytest.approx(0.1012, abs=5e-5)
-    correct = surface.feed_for_arithmetic_roughness(1.6e-3, 0.8)
+    correct = (1.6e-3 / surface.corner_coefficient(0.8)) ** 0.5
     assert correct == pytest.approx(0.1998, abs=5e-5)
     assert correct / printed == pytest.approx(1.974, abs=5e-4)
 

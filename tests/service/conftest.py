@@ -57,6 +57,8 @@ def made_samples(time: Floats, force: Floats) -> Samples:
         back_force=0.2 * force,
         removal_rate=0.1 * force,
         chip_thickness=0.1 * ones,
+        thrust=0.0 * ones,
+        deflection=2e-5 * force,
         axial_depth=ones,
         radial_width=ones,
         execution=zeros + 1,
@@ -92,6 +94,7 @@ def simulation() -> Simulation:
         power=Peak(value=4500.0, time=30.0, line=12),
         force=Peak(value=950.0, time=31.0, line=13),
         chip=Peak(value=0.12, time=32.0, line=14),
+        deflection=Peak(value=0.0234, time=33.0, line=15),
         overload_time=2.5,
     )  # fmt: skip
     finish = Total(

@@ -20,3 +20,14 @@ def test_a_program_without_a_workplan_is_not(tmp_path: Path) -> None:
     contents = check(path)
     assert not contents.is_usable
     assert contents.findings
+
+
+def test_tolerance_that_cannot_be_read_is_a_warning(tmp_path: Path) -> None:
+    text = (PARTS / "bracket.stpnc").read_text().replace("(0.05,0.05,3)", "(0.05,-0.05,3)")
+    path = tmp_path / "part.stpnc"
+    path.write_text(text)
+    contents = check(path)
+    assert contents.is_usable
+    (found,) = (each for each in contents.findings if "ISO 2768-m holds" in each.message)
+    assert found.entity == "#511 PLUS_MINUS_VALUE"
+    assert found.line > 0

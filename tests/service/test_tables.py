@@ -1,5 +1,6 @@
 """Tables on a terminal: data to stdout, colours only where they are wanted."""
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,6 +15,9 @@ from service.tables import (
     print_entry,
     print_plan,
 )
+from simulator.library import load_machine
+from simulator.machine_toml import machine_toml
+from simulator.spec import Direction, VibratingPart, VibrationMode
 from stepnc_model.errors import Finding, Severity
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
@@ -119,3 +123,55 @@ def test_an_entry_tells_its_source(
     shown = capsys.readouterr().out
     assert shown.startswith(f"{name}: ")
     assert "\nsource: " in shown
+
+
+MODE = VibrationMode(
+    part=VibratingPart.TOOL,
+    tool="END MILL 20MM",
+    direction=Direction.XY,
+    natural_frequency=1_150.0,
+    damping_ratio=0.03,
+    stiffness=5_000.0,
+    source="tap test",
+)
+
+
+def test_a_plan_tells_what_is_stable_or_why_that_is_not_asked(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    machine = tmp_path / "tapped.toml"
+    text = machine_toml(replace(load_machine("vmc15"), modes=(MODE,)))
+    machine.write_text(text, encoding="utf-8")
+    request = usecases.Request(
+        file=PARTS / "bracket.stpnc",
+        machine=str(machine),
+        material="al7075",
+        free="feed,depth,speed",
+        workingsteps=("ROUGH CONTOUR", "FINISH CONTOUR", "MILL SLOT"),
+        dry_run=True,
+    )
+    print_plan(usecases.optimise(request).plan)
+    lines = capsys.readouterr().out.splitlines()
+    (bounded,) = (line for line in lines if line.startswith("  ROUGH CONTOUR: "))
+    (thin,) = (line for line in lines if line.startswith("  FINISH CONTOUR: "))
+    (unknown,) = (line for line in lines if line.startswith("  MILL SLOT: "))
+    assert re.search(
+        r"; stable to \S+ mm at this speed, \S+ mm at any \(1 measured mode\)", bounded
+    )
+    assert re.search(r"stability not bounded: a_e/D \S+ is below 0\.1, where zero order", thin)
+    assert "stab" not in unknown
+    notes = [line for line in lines if "no modes are measured" in line]
+    assert len(notes) == 1
+    assert "'END MILL 12MM'" in notes[0]
+
+
+def test_a_machine_shows_its_measured_modes(capsys: pytest.CaptureFixture[str]) -> None:
+    work = replace(MODE, part=VibratingPart.WORKPIECE, tool="", direction=Direction.X)
+    wide = replace(MODE, tool="", tool_diameter=12.0)
+    print_entry(replace(load_machine("vmc15"), modes=(MODE, work, wide)))
+    shown = capsys.readouterr().out
+    assert re.search(
+        r"mode of tool END MILL 20MM along xy +1150 Hz, damping 0\.03, 5 N/µm", shown
+    )
+    assert "mode of workpiece along x " in shown
+    assert "mode of tool 12 mm along xy " in shown

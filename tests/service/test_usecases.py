@@ -120,21 +120,30 @@ def test_an_unknown_workingstep_lists_all_that_are_known(bracket: Path) -> None:
 
 
 def test_limits_that_conflict_are_told_with_their_numbers(bracket: Path) -> None:
-    """Under 30 N a drill cannot even make a chip as thick as its edge is sharp."""
-    machine = weak_machine(bracket.parent, force=30.0)
+    """Under 139 N a drill makes no chip that its edges bite into."""
+    machine = weak_machine(bracket.parent, force=139.0)
     asked = Request(file=bracket, machine=machine, workingsteps=("DRILL HOLE 1",))
     plan = usecases.optimise(asked).plan
     assert plan.is_infeasible
     drilled = next(each for each in plan.advices if each.workingstep.id == "DRILL HOLE 1")
     assert drilled.status is Status.INFEASIBLE
-    for words in ("cutting force", "30 N", "chip thickness", "0.008 mm"):
+    for words in ("cutting force", "139 N", "feed per tooth against rubbing", "0.0588 mm"):
+        assert words in drilled.reason
+
+
+def test_a_chisel_edge_that_takes_more_than_the_bound_allows_no_feed(bracket: Path) -> None:
+    machine = weak_machine(bracket.parent, force=30.0)
+    asked = Request(file=bracket, machine=machine, workingsteps=("DRILL HOLE 1",))
+    (drilled,) = usecases.optimise(asked).plan.advices
+    assert drilled.status is Status.INFEASIBLE
+    for words in ("cutting force", "exceeds 30 N", "however small the feed"):
         assert words in drilled.reason
 
 
 def test_an_infeasible_workingstep_stays_as_it_is_and_the_others_are_written(
     bracket: Path,
 ) -> None:
-    machine = weak_machine(bracket.parent, force=30.0)
+    machine = weak_machine(bracket.parent, force=900.0)
     some = ("DRILL HOLE 1", "DRILL HOLE 2", "CENTRE HOLE 1", "FINISH CONTOUR")
     outcome = usecases.optimise(Request(file=bracket, machine=machine, workingsteps=some))
     assert outcome.written is not None

@@ -15,10 +15,13 @@ from service.wire import contents_json, entries_json, entry_json, plan_json
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 
 LIMIT_KEYS = {"name", "value", "bound", "unit"}
-STATE_KEYS = {"feed_mm_min", "spindle_rpm", "feed_per_tooth_mm", "axial_depth_mm", "passes"}
+STATE_KEYS = {
+    "feed_mm_min", "spindle_rpm", "feed_per_tooth_mm", "axial_depth_mm", "passes",
+    "plunge_feed_mm_min", "plunge_feed_per_tooth_mm",
+}  # fmt: skip
 STEP_KEYS = {
     "id", "operation", "tool", "programmed", "advised", "active_limit", "limits",
-    "motor_power_kw", "cutting_force_n", "roughness_ra_um", "time_s",
+    "motor_power_kw", "cutting_force_n", "roughness_ra_um", "time_s", "stability", "plunge",
 }  # fmt: skip
 PLAN_KEYS = {"program", "mode", "machine", "workingsteps", "total_time_s", "findings"}
 TIMES = {"before", "after"}
@@ -136,3 +139,16 @@ def test_a_library_is_json(kind: str) -> None:
 def test_an_entry_is_json(kind: str, name: str) -> None:
     entry = chosen.library_entry(kind, name)
     assert json.loads(entry_json(entry), parse_constant=refused)["name"] == name
+
+
+def test_an_estimated_stability_is_told_with_its_band() -> None:
+    found = [step["stability"] for step in advised("bracket.stpnc")["workingsteps"]]
+    estimated = [each for each in found if each and each["basis"] == "estimated"]
+    assert estimated
+    for each in estimated:
+        low, high = each["band_mm"]
+        assert low <= each["stable_at_any_speed_mm"] <= high
+    thin = [each for each in found if each and each["basis"] == "not_used"]
+    assert all(each["stable_at_any_speed_mm"] is None for each in thin)
+    # Drilling and reaming.
+    assert None in found

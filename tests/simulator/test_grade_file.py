@@ -45,6 +45,14 @@ def test_a_grade_joins_its_row_and_its_edge(tmp_path: Path) -> None:
     assert grade.rake_angle == pytest.approx(radians(20))
     assert grade.max_depth is None
     assert grade.source == "shop; maker"
+    assert grade.helix_angle == 0.0
+
+
+def test_the_helix_belongs_to_the_edge(tmp_path: Path) -> None:
+    (grade,) = grades_of(GOOD.replace("rake", "helix_deg = 35\nrake"), tmp_path)
+    assert grade.helix_angle == pytest.approx(radians(35))
+    with pytest.raises(LibraryError, match=r"helix_deg.*75"):
+        grades_of(GOOD.replace("rake", "helix_deg = 80\nrake"), tmp_path)
 
 
 @pytest.mark.parametrize(

@@ -8,10 +8,11 @@ from pathlib import Path
 import pytest
 
 from simulator.errors import LibraryError, UnknownMachine, UnknownMaterial
+from simulator.grade_file import read_grades
 from simulator.library import (
+    DATA,
     find_grade,
     find_window,
-    load_grades,
     load_machine,
     load_material,
     machine_names,
@@ -19,6 +20,7 @@ from simulator.library import (
 )
 from simulator.matching import match_material
 from simulator.spec import CuttingMaterial, ToolBody, ToolKind
+from simulator.toml_file import read_toml
 from stepnc_model.units import m_min_from_speed
 
 TABLE = Path(__file__).parents[3] / "shared" / "data" / "materials.csv"
@@ -115,7 +117,12 @@ def test_a_grade_that_does_not_exist_is_an_error() -> None:
 
 
 def test_no_two_grades_answer_the_same_question() -> None:
-    keys = [(g.tool_kind, g.cutting_material, g.iso_group) for g in load_grades()]
+    grades = [
+        grade
+        for kind in ToolKind
+        for grade in read_grades(read_toml(DATA / "tools" / f"{kind}.toml"), kind)
+    ]
+    keys = [(g.tool_kind, g.cutting_material, g.iso_group) for g in grades]
     assert len(keys) == len(set(keys))
 
 
@@ -156,7 +163,8 @@ def test_every_material_of_the_source_table_is_in_the_library_with_its_facts() -
         material = match_material([row["name"]]).material
         assert material.title == row["name"]
         assert material.iso_group == row["iso"]
-        assert material.kienzle.k_c11 == float(row["kc11_N_mm2"])
+        if row["iso"] != "H":
+            assert material.kienzle.k_c11 == float(row["kc11_N_mm2"])
         assert material.hardness_hb == number(row["hardness_HB"])
         assert material.tensile_strength == number(row["Rm_MPa"])
         assert material.density == float(row["density_g_cm3"])
@@ -166,9 +174,19 @@ def test_every_material_of_the_source_table_is_in_the_library_with_its_facts() -
 
 def test_kienzles_law_gives_the_specific_force_of_the_source_table() -> None:
     for row in rows():
+        if row["iso"] == "H":
+            continue  # corrected by another source: measured forces lay far below the table's
         law = match_material([row["name"]]).material.kienzle
         at_a_tenth = float(row["kc_at_h0.1_N_mm2"])
         assert log10(law.k_c11 * 0.1**-law.m_c) == pytest.approx(log10(at_a_tenth), abs=2e-4)
+
+
+@pytest.mark.parametrize("name", ["hardened_55hrc", "hardened_60hrc", "chilled_iron"])
+def test_hardened_materials_are_below_the_one_table_that_measurements_passed(name: str) -> None:
+    """At chips of turning its rows lay 51 and 164 % above what was measured."""
+    law = load_material(name).kienzle
+    for chip in (0.1, 0.2, 0.4):
+        assert law.k_c11 * chip**-law.m_c < 4700.0 * 1.04 * chip**-0.2
 
 
 def test_the_windows_are_those_of_the_source_table() -> None:

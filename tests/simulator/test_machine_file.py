@@ -9,7 +9,14 @@ from simulator.errors import LibraryError
 from simulator.library import load_machine, machine_names
 from simulator.physics.axis import axis_power, motor_speed
 from simulator.physics.spindle_motion import spindle_power
-from simulator.spec import AxisDrive, Machine, MachineKind
+from simulator.spec import (
+    AxisDrive,
+    Direction,
+    Machine,
+    MachineKind,
+    VibratingPart,
+    VibrationMode,
+)
 from stepnc_model.units import rpm_from_rev_s
 
 GOOD = """
@@ -210,3 +217,60 @@ def test_no_spindle_gives_more_at_its_nose_than_its_motor_does(name: str) -> Non
         if point.torque is not None:
             watts = 2 * pi * point.speed * point.torque / 1000
             assert watts == pytest.approx(spindle.efficiency * point.power, rel=0.01)
+
+
+MODE = """
+[[mode]]
+part = "tool"
+tool = "END MILL 20MM"
+tool_diameter_mm = 20
+direction = "xy"
+frequency_hz = 922
+damping_ratio = 0.011
+stiffness_n_um = 1.34
+source = "tap test"
+"""
+
+
+def test_measured_modes_are_read_in_canonical_units(tmp_path: Path) -> None:
+    (mode,) = machine_of(GOOD + MODE, tmp_path).modes
+    assert mode == VibrationMode(
+        part=VibratingPart.TOOL,
+        tool="END MILL 20MM",
+        tool_diameter=20.0,
+        direction=Direction.XY,
+        natural_frequency=922.0,
+        damping_ratio=0.011,
+        stiffness=1_340.0,
+        source="tap test",
+    )
+    assert machine_of(GOOD, tmp_path).modes == ()
+
+
+@pytest.mark.parametrize(
+    ("good", "bad", "message"),
+    [
+        (
+            "frequency_hz = 922",
+            "frequency_hz = 0.5",
+            "mode[1].frequency_hz: 0.5 Hz is below 1 Hz",
+        ),
+        ("damping_ratio = 0.011", "damping_ratio = 1.1", "damping_ratio: 1.1 exceeds 0.5"),
+        ("stiffness_n_um = 1.34", "stiffness_n_um = 1.34e6", "exceeds 10000 N/µm"),
+        ("stiffness_n_um", "stiffness", "stiffness_n_um: missing"),
+        ('direction = "xy"', 'direction = "up"', "direction: 'up' is none of x, y, z, xy"),
+        ('part = "tool"', 'part = "bed"', "part: 'bed' is none of tool, workpiece"),
+        ('part = "tool"', 'part = "workpiece"', "a mode of the workpiece belongs to no tool"),
+        ('source = "tap test"', "", "source: missing"),
+        (
+            'tool = "END MILL 20MM"\ntool_diameter_mm = 20\n',
+            "",
+            "mode[1].tool: missing; expected the tool's id, or tool_diameter_mm",
+        ),
+    ],
+)
+def test_a_bad_mode_is_told(good: str, bad: str, message: str, tmp_path: Path) -> None:
+    assert good in MODE
+    with pytest.raises(LibraryError) as error:
+        machine_of(GOOD + MODE.replace(good, bad), tmp_path)
+    assert message in str(error.value)

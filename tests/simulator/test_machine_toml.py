@@ -8,13 +8,32 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from simulator import holding_file as read_as
 from simulator import machine_file as allowed
 from simulator.library import load_machine, machine_names
 from simulator.machine_file import read_machine
 from simulator.machine_toml import machine_toml
-from simulator.spec import Axis, AxisDrive, Machine, MachineKind, Spindle, SpindlePoint
+from simulator.spec import (
+    Axis,
+    AxisDrive,
+    Direction,
+    Machine,
+    MachineKind,
+    Spindle,
+    SpindlePoint,
+    VibratingPart,
+    VibrationMode,
+)
 from simulator.toml_file import Range, Table, read_toml_head
-from stepnc_model.units import nmm_from_nm, rev_s_from_rpm, speed_from_mm_min, watts_from_kw
+from simulator.work_holding import Chuck, Clamp, Holding
+from stepnc_model.units import (
+    n_mm_from_n_um,
+    newtons_from_kn,
+    nmm_from_nm,
+    rev_s_from_rpm,
+    speed_from_mm_min,
+    watts_from_kw,
+)
 
 XML = Path(__file__).parent / "data" / "paper003.xml"
 
@@ -63,6 +82,24 @@ AXES = st.builds(
 )
 
 
+NAMES = TEXTS.map(str.strip).filter(bool)
+TOOL_MODES = st.fixed_dictionaries({
+    "part": st.just(VibratingPart.TOOL),
+    "tool": NAMES,
+    "tool_diameter": maybe(within(allowed.MODE_DIAMETER)),
+})
+WORK_MODES = st.just({"part": VibratingPart.WORKPIECE})
+MODES = st.builds(
+    lambda of, **numbers: VibrationMode(**of, **numbers),
+    TOOL_MODES | WORK_MODES,
+    direction=st.sampled_from(Direction),
+    natural_frequency=within(allowed.FREQUENCY),
+    damping_ratio=within(allowed.DAMPING),
+    stiffness=within(allowed.STIFFNESS).map(n_mm_from_n_um),
+    source=TEXTS,
+)
+
+
 @st.composite
 def spindles(draw: st.DrawFn) -> Spindle:
     """A curve of up to three points, far enough apart to be no step."""
@@ -106,12 +143,61 @@ MACHINES = st.builds(
     tool_change=within(allowed.TOOL_CHANGE),
     source=TEXTS,
     remarks=st.lists(TEXTS, max_size=3).map(tuple),
+    modes=st.lists(MODES, max_size=3).map(tuple),
+)
+
+
+def held(machine: Machine, holding: Holding | None) -> Machine:
+    """The machine with what can hold on one of its kind."""
+    is_fitting = isinstance(holding, Chuck) is (machine.kind is MachineKind.LATHE)
+    return replace(machine, holdings=(holding,) if holding and is_fitting else ())
+
+
+KILONEWTONS = within(read_as.FORCE).map(newtons_from_kn)
+CHUCKS = st.builds(
+    lambda jaw, loss, **rest: Chuck(**jaw, **loss, **rest),
+    st.just({})
+    | st.fixed_dictionaries({
+        "jaw_mass": within(read_as.MASS),
+        "jaw_radius": within(read_as.GRIP),
+    }),
+    st.just({})
+    | st.fixed_dictionaries({
+        "lost_force": KILONEWTONS,
+        "lost_at": within(read_as.SPEED).map(rev_s_from_rpm),
+    }),
+    clamping_force=KILONEWTONS,
+    friction=within(read_as.FRICTION),
+    source=TEXTS,
+    setup=TEXTS.map(str.strip),
+    jaws=st.integers(2, 12),
+    grip_diameter=maybe(within(read_as.GRIP)),
+    grip_length=maybe(within(read_as.GRIP)),
+    jaw_face=maybe(within(read_as.PLACE)),
+    safety_factor=within(read_as.SAFETY),
+    clamping_safety_factor=within(read_as.SAFETY),
+    has_tailstock=st.sampled_from([None, False, True]),
+)
+CLAMPS = st.builds(
+    Clamp,
+    holding_force=KILONEWTONS,
+    friction=within(read_as.FRICTION),
+    source=TEXTS,
+    setup=TEXTS.map(str.strip),
+    safety_factor=within(read_as.SAFETY),
 )
 
 
 @settings(max_examples=60)
-@given(machine=MACHINES, notes=st.lists(TEXTS, max_size=3))
-def test_a_machine_reads_back_equal(machine: Machine, notes: list[str]) -> None:
+@given(
+    machine=MACHINES,
+    holding=st.none() | CHUCKS | CLAMPS,
+    notes=st.lists(TEXTS, max_size=3),
+)
+def test_a_machine_reads_back_equal(
+    machine: Machine, holding: Holding | None, notes: list[str]
+) -> None:
+    machine = held(machine, holding)
     assert read(machine_toml(machine, notes=notes)) == machine
 
 

@@ -67,7 +67,8 @@ def test_a_users_own_file_is_read_in_canonical_units(tmp_path: Path) -> None:
     assert (window.min_cutting_speed, window.max_cutting_speed) == (2000.0, 4000.0)
     assert window.taylor is not None
     assert window.taylor.constant == 5000.0
-    assert material.remarks == ("measured on my machine",)
+    assert material.remarks[0] == "measured on my machine"
+    assert material.remarks[1].startswith("turning: feed force 0.45 (0.27 to 0.80)")
 
 
 @pytest.mark.parametrize(
@@ -103,3 +104,27 @@ def test_alternatives_are_checked_but_not_loaded(tmp_path: Path) -> None:
     assert material_of(GOOD + alternative, tmp_path).kienzle.k_c11 == 1700
     with pytest.raises(LibraryError, match=r"kienzle_alternative\[1\].m_c: 3 exceeds 0.9"):
         material_of(GOOD + alternative.replace("0.3", "3"), tmp_path)
+
+
+def test_a_measured_share_of_turning_is_read_with_its_range(tmp_path: Path) -> None:
+    share = """
+[turning_share]
+feed_share = 0.4
+min_feed_share = 0.3
+max_feed_share = 0.5
+back_share = 0.6
+min_back_share = 0.5
+max_back_share = 0.9
+source = "dynamometer"
+"""
+    material = material_of(GOOD + share, tmp_path)
+    assert material.feed_force is not None
+    assert material.feed_force.k_c11 == pytest.approx(0.4 * material.kienzle.k_c11)
+    assert material.feed_force.m_c == material.kienzle.m_c
+    assert material.remarks[-1] == (
+        "turning: feed force 0.4 (0.3 to 0.5), back force 0.6 (0.5 to 0.9) of the cutting"
+        " force: dynamometer"
+    )
+    beyond = share.replace("back_share = 0.6", "back_share = 0.95")
+    with pytest.raises(LibraryError, match=r"0\.95 is not within 0\.5 to 0\.9"):
+        material_of(GOOD + beyond, tmp_path)

@@ -32,7 +32,15 @@ def test_what_is_absent_is_customary(tmp_path: Path) -> None:
     assert tool.id == "endmill T3"
     assert tool.cutting_material is CuttingMaterial.CARBIDE
     assert tool.teeth == 1
+    assert tool.helix_angle is None
+    assert tool.centre_cutting is None
     assert tool.shape == Cutter(diameter=10.0, teeth=1)
+
+
+@pytest.mark.parametrize("does", [True, False])
+def test_a_mill_cuts_over_centre_or_not(tmp_path: Path, does: bool) -> None:
+    tool = only(tmp_path, MILL + f"centre_cutting = {str(does).lower()}\n")
+    assert tool.centre_cutting is does
 
 
 def test_a_mill_with_everything(tmp_path: Path) -> None:
@@ -48,8 +56,10 @@ def test_a_mill_with_everything(tmp_path: Path) -> None:
         edge_length_mm = 22
         holder_diameter_mm = 40
         overhang_mm = 55
+        helix_deg = 38
         """,
     )
+    assert tool.helix_angle == pytest.approx(rad_from_deg(38.0))
     assert (tool.id, tool.cutting_material, tool.teeth) == ("BULL 10", CuttingMaterial.HSS, 4)
     assert tool.shape == Cutter(
         diameter=10.0,
@@ -159,3 +169,11 @@ def test_numbers_stay_apart(tmp_path: Path) -> None:
     rows = [MILL.replace("number = 3", f"number = {number}") for number in (2, 7, 12)]
     tools = read_tool_table(table(tmp_path, *rows))
     assert [tool.number for tool in tools] == [2, 7, 12]
+
+
+def test_a_turning_insert_may_have_a_wiper(tmp_path: Path) -> None:
+    insert = 'number = 1\nkind = "turning"\nnose_radius_mm = 0.8\n'
+    assert only(tmp_path, insert + "wiper = true\n").has_wiper
+    assert not only(tmp_path, insert).has_wiper
+    with pytest.raises(LibraryError, match="wiper: is of turning inserts, not of kind endmill"):
+        only(tmp_path, MILL + "wiper = true\n")

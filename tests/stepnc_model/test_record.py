@@ -61,6 +61,7 @@ RECORD = Record(
     programmed_cutspeed=0.58,
     programmed_spindle=-12.0,
     programmed_axial_depth=3.0,
+    plunge_feed_per_tooth=0.02,
 )
 OPTIONAL = tuple(each.name for each in fields(Record) if each.default is None)
 

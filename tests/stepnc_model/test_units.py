@@ -17,6 +17,7 @@ PAIRS: list[tuple[Conversion, Conversion]] = [
     (units.watts_from_kw, units.kw_from_watts),
     (units.nmm_from_nm, units.nm_from_nmm),
     (units.mm_from_um, units.um_from_mm),
+    (units.n_mm_from_n_um, units.n_um_from_n_mm),
     (units.rad_from_deg, units.deg_from_rad),
 ]
 
@@ -31,6 +32,7 @@ PAIRS: list[tuple[Conversion, Conversion]] = [
         (units.watts_from_kw, 7.5, 7500.0),
         (units.nmm_from_nm, 2.5, 2500.0),
         (units.mm_from_um, 1.6, 0.0016),
+        (units.n_mm_from_n_um, 12.5, 12_500.0),
         (units.rad_from_deg, 180.0, pi),
     ],
 )

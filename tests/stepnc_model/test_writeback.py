@@ -1,6 +1,7 @@
 """The optimum goes into the file, and nothing else of the file changes."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -305,6 +306,21 @@ class TestShared:
         ] == [0.125, 0.2]
         assert after.workingsteps[1].technology_ref == Ref(41)
         assert len(after.file.ids_of("MILLING_TECHNOLOGY")) == 2
+
+    def test_an_operation_that_two_run_plunges_at_the_lower_feed(self) -> None:
+        program = program_of(part("paper002"))
+        (step,) = program.workingsteps
+        changes = [
+            replace(change, record=replace(change.record, plunge_feed_per_tooth=plunge))
+            for change, plunge in (
+                (change_of(program, step, feed=0.125), 0.05),
+                (change_of(program, step, feed=0.2), 0.025),
+                (change_of(program, step, feed=0.3), None),
+            )
+        ]
+        data = writeback.write(program, changes, Profile.OPTIMISATION)
+        (record,) = writeback.records(program_of(data)).values()
+        assert record.plunge_feed_per_tooth == 0.025
 
     def test_shared_machine_functions_stay_as_they_are(self) -> None:
         before = two_operations()

@@ -17,6 +17,7 @@ from stepnc_model.entities.toolpaths import (
 from stepnc_model.errors import Finding, PathError, Severity
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
+from stepnc_model.stock import Stock
 from stepnc_model.tool import Tool
 from stepnc_model.toolpath.curve import Segment, move_of
 from stepnc_model.toolpath.explicit.connect import (
@@ -27,7 +28,7 @@ from stepnc_model.toolpath.explicit.connect import (
 from stepnc_model.toolpath.explicit.speed import Pace, pace_of, paced
 from stepnc_model.toolpath.explicit.trajectory import trajectory_segments
 from stepnc_model.toolpath.frame import Frame
-from stepnc_model.toolpath.job import DEFAULT_CLEARANCE, Stock
+from stepnc_model.toolpath.job import DEFAULT_CLEARANCE
 from stepnc_model.toolpath.path import (
     Dwell,
     Feed,

@@ -351,7 +351,7 @@ def _warn_of_plunge(
     if is_straight and (
         not layer.solid or any(contains(layer.solid, [cut.start], tolerance=1e-3))
     ):
-        text = "straight down into the material at the feed of the cut: a ramp spares the tool"
+        text = "straight down into the material: a ramp spares the tool"
         course.find(job.warning(text, attribute="approach"))
 
 

@@ -58,7 +58,9 @@ def cycle(
     if force is not None:
         turn = Revolution(
             time=1.0, period=0.02, force=force, peak=force, tooth_peaks=np.full(1, force),
-            tooth_means=np.full(1, force), coverage=1.0, power=0.0, feed=5.0,
+            tooth_means=np.full(1, force), tooth_feeds=np.full(1, 5.0),
+            tooth_overrides=np.full(1, override), samples=4, first=0, coverage=1.0, power=0.0,
+            feed=5.0,
             override=override, spindle_speed=50.0, progress=1.0, progress_before=0.98,
             workingstep=1, tooth_passing=0.0, once_per_revolution=0.0,
         )  # fmt: skip

@@ -38,14 +38,14 @@ def test_a_file_is_uploaded_optimised_and_downloaded(page: Page, tmp_path: Path)
     assert rows.count() == 16
     expect(page.locator("#steps")).to_contain_text("feed per tooth 0.35 mm reaches its bound")
     contour = page.locator("#steps tr.step", has_text="ROUGH CONTOUR")
-    expect(contour).to_contain_text("10 × 2→6.67 × 3")
+    expect(contour).to_contain_text("10 × 2→20 × 1")
     with page.expect_download() as cells:
         page.locator("#download-csv").click()
     cells.value.save_as(tmp_path / "table.csv")
     with (tmp_path / "table.csv").open(encoding="utf-8", newline="") as file:
         lines = {line["workingstep"]: line for line in csv.DictReader(file)}
     found = lines["ROUGH CONTOUR"]
-    assert (found["passes_programmed"], found["passes_advised"]) == ("2", "3")
+    assert (found["passes_programmed"], found["passes_advised"]) == ("2", "1")
     with page.expect_download() as download:
         page.locator("#download-program").click()
     assert download.value.suggested_filename == "bracket.optimised.stpnc"
@@ -80,6 +80,30 @@ def test_a_workingstep_opens_by_keyboard_and_headings_sort(page: Page) -> None:
     page.locator("#sort-feed").focus()
     page.keyboard.press("Enter")
     expect(page.locator("#steps th[aria-sort]").first).to_be_visible()
+
+
+def test_a_plan_stands_beside_its_run(page: Page) -> None:
+    page.goto("/dashboard/plan.html")
+    page.locator("#program-example").select_option("shaft")
+    expect(page.locator("#program-shown")).to_contain_text("shaft.stpnc")
+    page.locator("#more-options summary").click()
+    page.locator("#confirm").check()
+    page.locator("#optimise").click()
+    figures = page.locator("#confirmed-figures")
+    expect(figures.locator("tbody tr")).to_have_count(5, timeout=60_000)
+    expect(figures).to_contain_text("FINISH CONTOUR")
+    expect(figures).to_contain_text("1.000")
+    expect(page.locator("#confirmed-passed")).to_be_empty()
+    again = page.url
+    page.goto("/dashboard/plan.html")
+    page.goto(again)
+    expect(page.locator("#confirmed")).to_be_visible(timeout=60_000)
+    expect(page.locator("#confirm")).to_be_checked()
+
+
+def test_a_plan_that_was_not_run_shows_no_run(page: Page) -> None:
+    optimised(page, "paper002")
+    expect(page.locator("#confirmed")).to_be_hidden()
 
 
 @pytest.mark.parametrize("text", ["no program at all", "ISO-10303-21;"])

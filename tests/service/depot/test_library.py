@@ -95,6 +95,19 @@ def test_a_file_is_kept_shown_and_deleted(depot: Depot, shelf: Shelf) -> None:
         library.remove(depot, shelf, "our-own_1")
 
 
+def test_a_machine_keeps_its_measured_modes(depot: Depot) -> None:
+    mode = (
+        b'\n[[mode]]\npart = "tool"\ntool = "MILL"\ndirection = "xy"\nfrequency_hz = 922\n'
+        b'damping_ratio = 0.03\nstiffness_n_um = 12\nsource = "tap test"\n'
+    )
+    library.put(depot, Shelf.MACHINES, "tapped", MACHINE + mode)
+    machine = library.one(depot, Shelf.MACHINES, "tapped").entry
+    assert isinstance(machine, Machine)
+    assert [each.natural_frequency for each in machine.modes] == [922.0]
+    with pytest.raises(LibraryError, match=r"mode\[1\].damping_ratio"):
+        library.put(depot, Shelf.MACHINES, "bad", MACHINE + mode.replace(b"0.03", b"3"))
+
+
 @pytest.mark.parametrize("name", PATHS)
 def test_a_name_that_could_be_a_path_is_never_one(depot: Depot, name: str) -> None:
     (depot.root / "x.toml").write_bytes(MACHINE)

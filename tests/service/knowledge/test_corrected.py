@@ -10,8 +10,6 @@ import pytest
 
 from kbe.store import open_store
 from optimiser.formulate import Task
-from service.chosen import machine_for, material_for
-from service.knowledge.corrected import factors_for
 from service.reading import read_program
 from service.usecases import Request, optimise
 from stepnc_model.errors import StepNcError
@@ -54,11 +52,12 @@ def test_a_plan_takes_the_quantile_of_the_accepted_factor_and_says_so(
 ) -> None:
     plan = optimise(request(tmp_path, knowledge=place)).plan
     # Student's t with 6 degrees of freedom: 1.440 at 0.9 (any table).
-    assert plan.advices[0].force_factor == pytest.approx(1.3 * exp(0.05 * 1.440), 1e-3)
+    assert plan.advices[0].force_factor == pytest.approx(1.3)
+    assert plan.advices[0].safety_factor == pytest.approx(exp(0.05 * 1.440), 1e-3)
     said = [finding.message for finding in plan.findings if "learned" in finding.message]
     assert said == [
         "tool 'MILL 18MM': learned k_c × 1.300 from 3 outcomes, accepted by Ada on 2026-03-02; "
-        "planned with its 90 % quantile, × 1.397"
+        "bounds are kept at its 90 % quantile, × 1.397"
     ]
 
 
@@ -69,7 +68,7 @@ def test_the_median_is_the_centre(place: str, tmp_path: Path) -> None:
 
 def test_the_force_is_kept_with_the_learned_factor(place: str, tmp_path: Path) -> None:
     learned = optimise(request(tmp_path, knowledge=place, safety=0.5)).plan.advices[0]
-    catalogue = optimise(request(tmp_path)).plan.advices[0]
+    catalogue = optimise(request(tmp_path, safety=0.5)).plan.advices[0]
     assert learned.after is not None
     assert catalogue.after is not None
     assert learned.after.time > catalogue.after.time
@@ -111,14 +110,6 @@ def test_a_knowledge_base_that_is_not_there_is_refused(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("safety", [0.49, 0.9995, float("nan")])
 def test_an_impossible_quantile_is_refused(tmp_path: Path, safety: float) -> None:
-    program = read_program(PART, units="iso")
-    machine, material = machine_for("vmc15", program), material_for("c45", program)
-    with pytest.raises(StepNcError, match="safety"):
-        factors_for(
-            str(tmp_path / "x.db"),
-            program,
-            (),
-            machine=machine,
-            material=material,
-            safety=safety,
-        )
+    with pytest.raises(StepNcError, match=r"safety .*: it must be 0\.5 to 0\.999"):
+        optimise(request(tmp_path, safety=safety))
+    assert not (tmp_path / "out.stpnc").exists()

@@ -53,7 +53,7 @@ def done(service: Server) -> Done:
         asked = {
             "advice": (
                 f"/v1/programs/{program}/advice",
-                {"nc_control": "linuxcnc", "machine": "vmc15"},
+                {"nc_control": "linuxcnc", "machine": "vmc15", "is_confirmed": True},
             ),
             "simulation": ("/v1/simulations", {"program_id": program}),
             "control": ("/v1/control-runs", {"program_id": program, "pace": 0.0}),

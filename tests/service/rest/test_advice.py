@@ -13,7 +13,7 @@ from service.jobs.task import RESULT
 from service.rest import advice
 from service.rest.advice import Ready, Shelf
 from tests.service.rest.conftest import Done
-from tests.service.rest.server import is_problem
+from tests.service.rest.server import is_problem, made, over
 
 
 def test_the_whole_and_one_workingstep_say_the_same(client: httpx.Client, done: Done) -> None:
@@ -25,6 +25,23 @@ def test_the_whole_and_one_workingstep_say_the_same(client: httpx.Client, done: 
     for name in (step["id"], step["instance"].removeprefix("#"), "ROUGH%20THE%20FACE"):
         assert client.get(f"/v1/advice/{done.advice}/workingsteps/{name}").json() == step
     is_problem(client.get(f"/v1/advice/{done.advice}/workingsteps/none"), 404)
+
+
+def test_a_confirmed_advice_tells_what_its_run_found(client: httpx.Client, done: Done) -> None:
+    whole = client.get(f"/v1/advice/{done.advice}").json()
+    [step] = whole["confirmation"]["workingsteps"]
+    assert step["id"] == whole["workingsteps"][0]["id"]
+    assert step["time_s"]["ratio"] == pytest.approx(1.0, abs=0.01)
+    assert step["cutting_force_n"]["found"] > 0.0
+    assert whole["confirmation"]["passed"] == []
+
+
+def test_a_run_of_a_machine_without_axes_is_refused(client: httpx.Client, done: Done) -> None:
+    body = {"machine": "paper002", "is_confirmed": True}
+    job = made(client.post(f"/v1/programs/{done.program}/advice", json=body))
+    ended = over(client, job, within=60.0)
+    assert ended["state"] == "failed"
+    assert "says nothing of its axes X, Y, Z" in ended["problem"]["detail"]
 
 
 def test_answers_are_tagged(client: httpx.Client, done: Done) -> None:

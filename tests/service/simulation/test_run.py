@@ -8,6 +8,7 @@ import pyarrow as pa
 import pytest
 from pyarrow import parquet
 
+from optimiser.limit import LimitName
 from service import progress, usecases
 from service.paths import toolpaths
 from service.simulation.run import Simulation, SimulationRequest, simulate
@@ -344,3 +345,23 @@ def test_what_is_advised_passes_no_limit_of_the_machine(
     usecases.optimise(usecases.Request(file=file, machine=machine, output=output))
     found = simulate(SimulationRequest(file=output, machine=machine))
     assert found.whole.overload_time == 0.0
+
+
+def test_the_tool_bends_in_the_run_as_far_as_the_plan_says(tmp_path: Path) -> None:
+    """The face of paper 002 is held by a deflection of 0.1 mm, and the run shows it."""
+    output, samples = tmp_path / "part.stpnc", tmp_path / "run.parquet"
+    request = usecases.Request(
+        file=EXAMPLES / "parts" / "paper002.stpnc",
+        machine="vmc15",
+        material="c45",
+        output=output,
+    )
+    (advice,) = usecases.optimise(request).plan.advices
+    assert advice.active is LimitName.TOOL_DEFLECTION
+    run = simulate(
+        SimulationRequest(file=output, machine="vmc15", material="c45", output=samples)
+    )
+    # Nominal: the bound of 0.1 mm is kept at the 90 % quantile of k_c.
+    assert run.whole.deflection.value == pytest.approx(0.1 / 1.2632, rel=0.01)
+    column = parquet.read_table(samples)["tool_deflection"].to_numpy()
+    assert column.max() == pytest.approx(run.whole.deflection.value, rel=1e-3)

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from service.numbers import numbers_in
 from service.reading import silent
 from service.simulation.setup import (
     CodeRequest,
@@ -12,7 +13,6 @@ from service.simulation.setup import (
     Prepared,
     from_code,
     from_program,
-    numbers_in,
 )
 from simulator.removal.engage import MillingStock
 from simulator.removal.lathe import TurningStock

@@ -45,3 +45,4 @@ def test_peaks_have_time_and_line(wire: dict[str, Any]) -> None:
     }
     assert wire["total"]["peak_cutting_force"]["value_n"] == 950.0
     assert wire["total"]["peak_chip_thickness"]["value_mm"] == 0.12
+    assert wire["total"]["peak_tool_deflection"]["value_mm"] == 0.0234

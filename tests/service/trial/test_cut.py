@@ -92,7 +92,7 @@ def test_the_course_leads_into_a_cut_without_end(kind: MillingType, width: float
     now = predicted(trial, inputs.feed_per_tooth_mm)
     assert course.removal_rate[-1] == pytest.approx(now.removal_rate, rel=1e-6)
     assert course.feed[-1] == pytest.approx(trial.feed, rel=1e-6)
-    assert (course.peak >= 1.0).all()
+    assert (course.peak > 0.0).all()
     # The last cell of the way in is almost the cut itself.
     assert course.force[-2] > 0.85 * course.force[-1] or width < 1.0
 

@@ -100,6 +100,7 @@ class EvenStock:
             station=segments.length,
             kind=np.where(cuts, int(CutKind.MILLING), int(CutKind.AIR)),
             section=np.where(cuts, 20.0, 0.0),
+            growth=np.zeros(len(cuts)),
             axial_depth=np.where(cuts, 2.0, 0.0),
             radial_width=np.where(cuts, 10.0, 0.0),
             entry_angle=np.zeros(len(cuts)),

@@ -34,6 +34,7 @@ def stations() -> Stations:
         station=np.array([2.0, 8.0, 10.0, 0.0, 5.0 * pi]),
         kind=np.full(count, int(CutKind.MILLING)),
         section=np.array([0.0, 5.0, 0.0, 0.0, 5.0]),
+        growth=np.zeros(5),
         axial_depth=nothing,
         radial_width=nothing,
         entry_angle=nothing,
@@ -122,9 +123,9 @@ def test_wear_counts_time_with_chips(planned: Planned) -> None:
     course = replace(planned(), wear=Wear(flank=0.1, per_second=0.01))
     times = np.array([0.0, 0.1, course.motion.duration])
     seconds = np.array([0.0, 0.0, course.cutting_seconds])
-    np.testing.assert_allclose(course.worn(times), 1.0 + 1.85 * (0.1 + 0.01 * seconds))
+    np.testing.assert_allclose(course.worn(times), 0.1 + 0.01 * seconds)
     constant = replace(course, wear=Wear(flank=0.1))
-    np.testing.assert_allclose(constant.worn(times), 1.185)
+    np.testing.assert_allclose(constant.worn(times), 0.1)
 
 
 @pytest.mark.parametrize("points", [[(0, 0, 0), (0, 0, 0)], [(0, 0, 0), (5, 0, 0)]])
@@ -140,6 +141,7 @@ def test_path_of_one_segment(
         "entry_angle",
         "exit_angle",
         "contact_angle",
+        "growth",
     ]
     met = Stations(
         segment=np.array([0]),

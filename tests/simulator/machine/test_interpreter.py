@@ -114,7 +114,7 @@ def test_only_a_feed_waits_for_the_spindle_and_only_once(mill: Machine) -> None:
     found = steps(mill, *turn, nc.Rapid(end=(0.0, 0.0, 60.0)), HOME, *feeds)
     assert kinds(found) == [SpindleTo, Stretch, SpindleReached, Stretch]
     stopped = steps(mill, *turn, nc.SpindleOff(), *feeds)
-    assert kinds(stopped) == [SpindleTo, SpindleTo, Stretch]
+    assert kinds(stopped) == [SpindleTo, SpindleTo, SpindleReached, Stretch]
 
 
 def test_feed_per_revolution_is_times_the_speed_that_the_spindle_has(mill: Machine) -> None:

@@ -7,15 +7,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from simulator.machine.rows import Rows
+from simulator.machine.rows import Pace, Rows
 from stepnc_model.post.blocks import Circular, Rate
 from stepnc_model.toolpath.path import Plane, Point
 
 
 def test_lines_keep_speed_line_and_spindle() -> None:
     rows = Rows()
-    rows.line((0.0, 0.0, 0.0), (3.0, 4.0, 0.0), speed=inf, line=7)
-    rows.line((3.0, 4.0, 0.0), (3.0, 4.0, -2.0), speed=5.0, line=8, spindle=12.0)
+    rows.line((0.0, 0.0, 0.0), (3.0, 4.0, 0.0), pace=Pace(speed=inf), line=7)
+    pace = Pace(speed=5.0, spindle=12.0, per_revolution=0.4)
+    rows.line((3.0, 4.0, 0.0), (3.0, 4.0, -2.0), pace=pace, line=8)
     assert len(rows) == 2
     stretch = rows.taken()
     segments = stretch.segments
@@ -24,7 +25,21 @@ def test_lines_keep_speed_line_and_spindle() -> None:
     assert segments.block.tolist() == [7, 8]
     assert isnan(stretch.spindle_speed[0])
     assert stretch.spindle_speed[1] == 12.0
+    assert isnan(stretch.per_revolution[0])
+    assert stretch.per_revolution[1] == 0.4
     assert len(rows) == 0
+
+
+def test_ways_are_told_at_both_ends_and_not_within() -> None:
+    rows = Rows()
+    for index, is_way in enumerate([True, True, False, True, False, True, True, True]):
+        here, there = (float(index), 0.0, 0.0), (index + 1.0, 0.0, 0.0)
+        rows.line(here, there, pace=Pace(speed=inf), line=1, is_way=is_way)
+    stretch = rows.taken()
+    assert (stretch.way, stretch.back) == (2, 3)
+    rows.line((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), pace=Pace(speed=inf), line=2, is_way=True)
+    stretch = rows.taken()
+    assert (stretch.way, stretch.back) == (1, 0)
 
 
 @settings(max_examples=30)
@@ -49,7 +64,11 @@ def test_pieces_of_an_arc_lie_on_it_and_add_up(
     rows = Rows()
     block = Circular(end=there, centre=centre, turn=turn, rate=Rate(value=1.0), plane=plane)
     rows.arc(
-        begin, block, pieces=pieces, speeds=lambda middle, end: (middle + 20.0, end), line=4
+        begin,
+        block,
+        pieces=pieces,
+        paces=lambda middle, end: Pace(speed=middle + 20.0, spindle=end),
+        line=4,
     )
     stretch = rows.taken()
     segments = stretch.segments
@@ -68,5 +87,5 @@ def test_pieces_of_an_arc_lie_on_it_and_add_up(
 def test_whole_circle_ends_where_it_began() -> None:
     rows, at = Rows(), (5.0, 0.0, 0.0)
     block = Circular(end=at, centre=(0.0, 0.0, 0.0), turn=2 * pi, rate=Rate(value=1.0))
-    rows.arc(at, block, pieces=4, speeds=lambda _a, _b: (1.0, 1.0), line=1)
+    rows.arc(at, block, pieces=4, paces=lambda _a, _b: Pace(speed=1.0, spindle=1.0), line=1)
     assert rows.taken().segments.length.sum() == pytest.approx(10.0 * pi)

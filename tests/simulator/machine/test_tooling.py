@@ -105,6 +105,36 @@ def test_material_without_a_group_has_no_grade() -> None:
     assert table_tool(table(ToolKind.ENDMILL), unknown, factor=1.25).edge.factor == 1.25
 
 
+def test_an_end_mill_has_the_helix_of_its_grade_and_gives_way() -> None:
+    """30°; 64·(3·D)³/(3·E·π·(0.8·D)⁴) mm per N, D = 8 mm of carbide."""
+    edge = table_tool(table(ToolKind.ENDMILL), STEEL).edge
+    assert edge.flutes is not None
+    assert edge.flutes.helix_angle == pytest.approx(rad_from_deg(30.0))
+    assert (edge.flutes.teeth, edge.flutes.diameter) == (3, 8.0)
+    expected = 64.0 * 24.0**3 / (3.0 * 600_000.0 * pi * 6.4**4)
+    assert edge.compliance == pytest.approx(expected)
+
+
+def test_a_table_may_say_the_helix() -> None:
+    said = replace(table(ToolKind.ENDMILL), helix_angle=rad_from_deg(45.0))
+    edge = table_tool(said, STEEL).edge
+    assert edge.flutes is not None
+    assert edge.flutes.helix_angle == rad_from_deg(45.0)
+
+
+def test_what_has_no_grade_has_straight_edges_and_does_not_bend() -> None:
+    """As the papers' materials: nothing says what their tools are made of."""
+    edge = table_tool(table(ToolKind.ENDMILL), replace(STEEL, iso_group="")).edge
+    assert edge.flutes is not None
+    assert edge.flutes.helix_angle == 0.0
+    assert edge.compliance == 0.0
+
+
+def test_face_mills_and_drills_do_not_bend() -> None:
+    assert table_tool(table(ToolKind.FACEMILL), STEEL).edge.compliance == 0.0
+    assert table_tool(table(ToolKind.DRILL), STEEL).edge.compliance == 0.0
+
+
 @pytest.mark.parametrize("kind", [ToolKind.TAP, ToolKind.THREADING])
 def test_threads_have_no_shape(kind: ToolKind) -> None:
     assert table_tool(table(kind), STEEL).shape is None

@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 from simulator.machine.transients import (
     Follower,
     Response,
-    eccentric_runout,
     entry_share,
 )
 
@@ -95,16 +94,8 @@ def test_figures_out_of_range_are_refused() -> None:
         Response(overshoot=1.0)
     with pytest.raises(ValueError, match="interval 0 s"):
         Follower(LAG, 0.0)
-    with pytest.raises(ValueError, match="number of teeth 0"):
-        eccentric_runout(0.01, 0)
 
 
 def test_the_chip_grows_in_the_first_revolution() -> None:
     revolutions = np.array([-1.0, 0.0, 0.25, 1.0, 7.0])
     assert entry_share(revolutions).tolist() == [0.0, 0.0, 0.25, 1.0, 1.0]
-
-
-def test_an_eccentric_cutter_has_no_runout_in_the_mean() -> None:
-    runout = eccentric_runout(0.01, 4)
-    np.testing.assert_allclose(runout, [0.01, 0.0, -0.01, 0.0], atol=1e-15)
-    assert (runout - np.roll(runout, 1)).sum() == pytest.approx(0.0)

@@ -15,14 +15,14 @@ from simulator.machine.samples import Execution, Samples, joined
 from simulator.machine.sensing import Sampler, sensed
 from simulator.machine.travel import Zero
 from simulator.machine.virtual import LoadedTool, Setup, Shape, StockMap, VirtualMachine
-from simulator.machine.wear import WORN_OUT
 from simulator.motion.exact_stop import ExactStop
-from simulator.physics.motion import move_time
+from simulator.physics.tool_life import LIFE_CRITERION
 from simulator.removal.cutter import Cutter, Holder, Insert
 from simulator.removal.engage import MillingStock
 from simulator.spec import Kienzle, Machine, Taylor
 from stepnc_model.post import blocks as nc
-from stepnc_model.toolpath.job import Stock
+from stepnc_model.stock import Stock
+from tests.oracles.motion import move_time
 
 FEED = nc.Rate(value=20.0)
 HOME = nc.Rapid(end=(0.0, 0.0, 50.0))
@@ -296,13 +296,14 @@ def test_wear_grows_with_cutting_time_and_raises_the_force(
     first, second = (e.course for e in cuts)
     assert first is not None
     assert second is not None
-    assert first.wear.per_second == pytest.approx(WORN_OUT / 60.0)
-    assert second.wear.flank == pytest.approx(WORN_OUT / 60.0 * first.cutting_seconds)
+    assert first.wear.per_second == pytest.approx(LIFE_CRITERION / 60.0)
+    assert second.wear.flank == pytest.approx(LIFE_CRITERION / 60.0 * first.cutting_seconds)
     assert first.cutting_seconds == pytest.approx(100.0 / 20.0 + 20.0 / 2000.0)
     early, late = cuts[0].begin + 1.0, cuts[0].begin + 4.0
     force = found.at(mill, early, late).cutting_force
-    flank = WORN_OUT / 60.0 * np.array([1.0, 4.0])
-    np.testing.assert_allclose(force, 509.296 * (1.0 + 1.85 * flank), rtol=1e-6)
+    flank = LIFE_CRITERION / 60.0 * np.array([1.0, 4.0])
+    # Two teeth on half a turn, 2 mm deep: 2 mm of edge rub at all times.
+    np.testing.assert_allclose(force, 509.296 + 490.0 * 2.0 * flank, rtol=1e-6)
 
 
 def test_worn_tool_is_said(mill: Machine, even_stock: Stocks) -> None:

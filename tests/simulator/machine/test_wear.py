@@ -8,8 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from simulator.machine.wear import WORN_OUT, Wear, wearing, wearing_along
+from simulator.machine.wear import Wear, wearing, wearing_along
 from simulator.motion.segments import lines
+from simulator.physics.tool_life import LIFE_CRITERION
 from simulator.removal.stations import CutKind, Stations
 from simulator.spec import Taylor
 
@@ -21,13 +22,11 @@ SPEED = 200_000 / 60
 
 def test_edge_is_worn_out_after_the_life_of_taylor() -> None:
     worn = wearing(0.0, STEEL, SPEED).after(240.0)
-    assert worn.flank == pytest.approx(WORN_OUT)
-    # 1.54 was measured at 0.3 mm; the line through the measurements has 1.555.
-    assert worn.factor(0.0) == pytest.approx(1.54, rel=0.02)
+    assert worn.flank == pytest.approx(LIFE_CRITERION)
 
 
-def test_sharp_edge_has_the_factor_one() -> None:
-    assert Wear().factor(100.0) == 1.0
+def test_an_edge_without_a_rate_stays_as_it_is() -> None:
+    assert Wear().after(100.0) == Wear()
     assert not Wear(flank=0.1).grows
 
 
@@ -36,13 +35,12 @@ def test_sharp_edge_has_the_factor_one() -> None:
     rate=st.floats(0.0, 0.01),
     seconds=st.lists(st.floats(0.0, 100.0), min_size=1),
 )
-def test_factors_of_many_times_are_those_of_each(
+def test_wear_at_many_times_is_that_at_each(
     flank: float, rate: float, seconds: list[float]
 ) -> None:
     wear = Wear(flank=flank, per_second=rate)
-    wanted = [wear.factor(each) for each in seconds]
-    np.testing.assert_allclose(wear.factors(np.array(seconds)), wanted, rtol=1e-9)
-    assert wear.after(seconds[0]).factor(0.0) == pytest.approx(wanted[0])
+    wanted = [wear.after(each).flank for each in seconds]
+    np.testing.assert_allclose(wear.flanks(np.array(seconds)), wanted, rtol=1e-9)
 
 
 def stations(diameter: list[float], section: list[float]) -> Stations:
@@ -53,6 +51,7 @@ def stations(diameter: list[float], section: list[float]) -> Stations:
         station=np.full(count, 10.0),
         kind=np.full(count, int(CutKind.TURNING)),
         section=np.array(section),
+        growth=np.zeros(len(section)),
         axial_depth=nothing,
         radial_width=nothing,
         entry_angle=nothing,
@@ -76,7 +75,7 @@ def test_constant_surface_speed_wears_as_if_the_diameter_stayed() -> None:
         spindle_speed=SPEED / (pi * diameter),
     )
     assert found.flank == 0.1
-    assert found.per_second == pytest.approx(WORN_OUT / 240.0)
+    assert found.per_second == pytest.approx(LIFE_CRITERION / 240.0)
 
 
 def test_rate_is_the_mean_over_time_with_chips() -> None:
@@ -86,7 +85,7 @@ def test_rate_is_the_mean_over_time_with_chips() -> None:
     spindle = np.full(3, SPEED / (pi * 100.0))
     found = wearing_along(0.0, STEEL, path, cuts, spindle_speed=spindle)
     mean = (2.0 * 1.0 + 4.0 * 4.0) / 6.0
-    assert found.per_second == pytest.approx(mean * WORN_OUT / 240.0)
+    assert found.per_second == pytest.approx(mean * LIFE_CRITERION / 240.0)
 
 
 @pytest.mark.parametrize("spindle", [0.0, 10.0])

@@ -7,7 +7,7 @@ import pytest
 from simulator.motion.exact_stop import ExactStop
 from simulator.motion.motion import AxisLimits, Motion
 from simulator.motion.segments import Segments, arc, lines
-from simulator.physics.motion import move_time
+from tests.oracles.motion import move_time
 
 
 def _mill(rapid: float) -> AxisLimits:

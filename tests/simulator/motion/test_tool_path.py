@@ -23,7 +23,6 @@ from simulator.motion.tool_path import (
     run_of,
     usual_motion,
 )
-from simulator.physics.motion import move_time
 from simulator.spec import Spindle
 from stepnc_model.entities.entity import Entity
 from stepnc_model.errors import PostError
@@ -42,6 +41,7 @@ from stepnc_model.toolpath.path import (
     Step,
     ToolPath,
 )
+from tests.oracles.motion import move_time
 
 HERE, OTHER = Ref[Entity](7), Ref[Entity](8)
 FEED = Feed(technology=HERE)

@@ -51,30 +51,23 @@ def test_every_cutting_material_has_a_speed_factor() -> None:
 
 
 def test_corrections_multiply() -> None:
-    correction = ForceCorrection(rake=0.94, speed=1.2, wear=cutting.WORN)
-    assert correction.factor == pytest.approx(0.94 * 1.2 * 1.3)
+    correction = ForceCorrection(rake=0.94, speed=1.2)
+    assert correction.factor == pytest.approx(0.94 * 1.2)
     assert ForceCorrection().factor == 1.0
 
 
 def test_correction_of_zero_is_refused() -> None:
-    with pytest.raises(ValueError, match="wear factor 0"):
-        ForceCorrection(wear=0.0)
+    with pytest.raises(ValueError, match="speed factor 0"):
+        ForceCorrection(speed=0.0)
 
 
 def test_factor_scales_the_force() -> None:
-    sharp = cutting.chip_force(STEEL, chip_thickness=0.1, chip_width=1.0)
-    worn = cutting.chip_force(STEEL, chip_thickness=0.1, chip_width=1.0, factor=1.3)
-    assert worn == pytest.approx(1.3 * sharp)
+    usual = cutting.chip_force(STEEL, chip_thickness=0.1, chip_width=1.0)
+    harder = cutting.chip_force(STEEL, chip_thickness=0.1, chip_width=1.0, factor=1.3)
+    assert harder == pytest.approx(1.3 * usual)
 
 
 @pytest.mark.parametrize("exponent", [-0.1, 1.0, float("nan")])
 def test_exponent_outside_its_range_is_refused(exponent: float) -> None:
     with pytest.raises(ValueError, match="at least 0 and less than 1"):
         cutting.specific_cutting_force(0.1, k_c11=1500.0, m_c=exponent)
-
-
-def test_negative_wear_is_refused() -> None:
-    for factor in (cutting.wear_factor, cutting.feed_wear_factor, cutting.back_wear_factor):
-        assert factor(0.0) == 1.0
-        with pytest.raises(ValueError, match=r"flank wear -0\.1 mm"):
-            factor(-0.1)

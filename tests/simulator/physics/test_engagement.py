@@ -3,7 +3,7 @@ from math import acos, cos, pi
 import pytest
 
 from simulator.physics import engagement
-from simulator.physics.engagement import Engagement, FaceMillingType
+from simulator.physics.engagement import Engagement
 
 
 def test_climb_milling_leaves_at_pi() -> None:
@@ -36,9 +36,16 @@ def test_strip_beyond_the_cutter_is_refused() -> None:
         engagement.bilateral(8.0, 20.0, offset=7.0)
 
 
-@pytest.mark.parametrize("kind", list(FaceMillingType))
-def test_every_type_at_full_width_is_the_slot(kind: FaceMillingType) -> None:
-    arc = engagement.engagement_of(kind, radial_width=18.0, tool_diameter=18.0)
+@pytest.mark.parametrize(
+    "arc",
+    [
+        engagement.full_immersion(),
+        engagement.unidirectional(18.0, 18.0),
+        engagement.conventional(18.0, 18.0),
+        engagement.bilateral(18.0, 18.0),
+    ],
+)
+def test_every_type_at_full_width_is_the_slot(arc: Engagement) -> None:
     assert arc.cosine_difference == pytest.approx(2.0)
     assert arc.contact_angle == pytest.approx(pi)
 
@@ -73,21 +80,14 @@ def test_slot_s_mean_chip_is_two_over_pi() -> None:
 
 def test_narrow_cut_s_thickest_chip_is_at_its_end() -> None:
     arc = engagement.conventional(2.0, 20.0)
-    thickest = engagement.greatest_chip_thickness(0.1, arc)
-    assert thickest == pytest.approx(0.1 * (1.0 - (1.0 - 0.2) ** 2) ** 0.5)
+    assert arc.greatest_sine == pytest.approx((1.0 - (1.0 - 0.2) ** 2) ** 0.5)
+    assert engagement.full_immersion().greatest_sine == 1.0
 
 
 def test_lower_edge_angle_thins_the_chip() -> None:
     arc = engagement.full_immersion()
     thin = engagement.mean_chip_thickness(0.1, arc, cutting_edge_angle=pi / 4.0)
     assert thin == pytest.approx(engagement.mean_chip_thickness(0.1, arc) / 2.0**0.5)
-
-
-@pytest.mark.parametrize(("teeth", "most"), [(1, 1), (2, 1), (3, 2), (4, 2), (6, 3)])
-def test_teeth_in_a_slot(teeth: int, most: int) -> None:
-    arc = engagement.full_immersion()
-    assert engagement.mean_teeth_in_cut(arc, teeth) == pytest.approx(teeth / 2.0)
-    assert engagement.most_teeth_in_cut(arc, teeth) == most
 
 
 def test_width_beyond_the_diameter_is_refused() -> None:

@@ -3,12 +3,19 @@ from math import inf
 
 import pytest
 
-from simulator.physics.spindle import available_power, available_torque, curve_segments
+from simulator.physics.spindle import available_power, curve_segments
 from simulator.spec import Spindle, SpindlePoint
 
 LOW = SpindlePoint(speed=5.0, power=3000.0, torque=95_493.0)
 BASE = SpindlePoint(speed=25.0, power=15_000.0, torque=95_493.0)
 TOP = SpindlePoint(speed=200.0, power=15_000.0, torque=11_937.0)
+
+
+def available_torque(machine: Spindle, speed: float) -> float | None:
+    """Torque of the stretch that holds a speed."""
+    return next(part for part in curve_segments(machine) if speed <= part.max_speed).torque(
+        speed
+    )
 
 
 def spindle(

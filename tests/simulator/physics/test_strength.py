@@ -73,17 +73,6 @@ def test_plain_bar_s_stress_is_at_the_holder() -> None:
     assert plain.stress(300.0) == pytest.approx(32.0 * 300.0 * 40.0 / (pi * 1000.0))
 
 
-def test_permissible_forces_are_inverse() -> None:
-    force = strength.force_for_deflection(
-        0.02, overhang=40.0, diameter=8.0, youngs_modulus=CARBIDE
-    )
-    assert strength.deflection(
-        force, overhang=40.0, diameter=8.0, youngs_modulus=CARBIDE
-    ) == pytest.approx(0.02)
-    force = strength.force_for_stress(1000.0, overhang=40.0, diameter=8.0)
-    assert strength.bending_stress(force, overhang=40.0, diameter=8.0) == pytest.approx(1000.0)
-
-
 def test_no_force_no_deflection_no_stress() -> None:
     assert strength.deflection(0.0, overhang=40.0, diameter=8.0, youngs_modulus=CARBIDE) == 0.0
     assert TOOL.stress(0.0) == 0.0
@@ -92,3 +81,13 @@ def test_no_force_no_deflection_no_stress() -> None:
 def test_flutes_longer_than_the_overhang_are_refused() -> None:
     with pytest.raises(ValueError, match="flute length 50 mm must be at most the overhang"):
         replace(TOOL, flute_length=50.0)
+
+
+@pytest.mark.parametrize(("length", "overhang"), [(None, 36.0), (26.0, 36.0), (50.0, 50.0)])
+def test_an_end_mill_stands_out_three_diameters_or_its_edge(
+    length: float | None, overhang: float
+) -> None:
+    shank = strength.end_mill(12.0, cutting_edge_length=length, youngs_modulus=6e5)
+    expected = overhang**3 / (3.0 * 6e5 * pi * 9.6**4 / 64.0)
+    assert shank.compliance == pytest.approx(expected)
+    assert shank.stress(100.0) == pytest.approx(32.0 * 100.0 * overhang / (pi * 9.6**3))

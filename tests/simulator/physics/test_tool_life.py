@@ -21,21 +21,7 @@ def test_wear_rate_is_one_over_life() -> None:
     )
 
 
-def test_wear_meets_the_criterion_at_the_end_of_life() -> None:
-    assert tool_life.flank_wear(900.0, 900.0, run_in=0.04) == pytest.approx(0.3)
-    assert tool_life.flank_wear(0.0, 900.0, run_in=0.04) == pytest.approx(0.04)
-
-
-def test_share_of_a_tool_change_is_not_rounded() -> None:
-    assert tool_life.tool_changes(90.0, 900.0) == pytest.approx(0.1)
-
-
 @pytest.mark.parametrize("exponent", [0.0, 1.0, -0.2])
 def test_exponent_outside_its_range_is_refused(exponent: float) -> None:
     with pytest.raises(ValueError, match="Taylor exponent"):
         tool_life.tool_life(Taylor(exponent=exponent, constant=8000.0), 4000.0)
-
-
-def test_run_in_beyond_the_criterion_is_refused() -> None:
-    with pytest.raises(ValueError, match=r"must be less than the criterion, 0\.3 mm"):
-        tool_life.flank_wear(10.0, 900.0, run_in=0.3)

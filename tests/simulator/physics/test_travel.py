@@ -24,11 +24,6 @@ def test_narrow_face_needs_hardly_any_approach() -> None:
     assert travel.centred_approach(100.0, 1.0) == pytest.approx(0.0025, abs=1e-6)
 
 
-def test_approach_and_overrun_together_are_one_diameter() -> None:
-    way = travel.centred_approach(63.0, 40.0) + travel.centred_overrun(63.0, 40.0)
-    assert way == pytest.approx(63.0)
-
-
 def test_flat_bottomed_tool_has_no_point() -> None:
     assert travel.drill_point_length(10.0, pi) == pytest.approx(0.0, abs=1e-12)
 

@@ -27,10 +27,27 @@ def test_each_component_follows_its_own_pair() -> None:
     cut = TurningCut(feed_per_revolution=0.25, depth=2.5)
     feed = Kienzle(k_c11=351.0, m_c=0.7)
     back = Kienzle(k_c11=274.0, m_c=0.5)
-    forces = turning.turning_forces(cut, cutting=STEEL, feed=feed, back=back)
-    assert forces.cutting == pytest.approx(turning.cutting_force(STEEL, cut))
+    force = turning.cutting_force(STEEL, cut)
+    forces = turning.turning_forces(
+        force, cut.chip_thickness, cutting=STEEL, feed=feed, back=back
+    )
+    assert forces.cutting == force
     assert forces.feed == pytest.approx(351.0 * 2.5 * 0.25**0.3)
     assert forces.back == pytest.approx(274.0 * 2.5 * 0.25**0.5)
+
+
+def test_without_a_pair_a_force_is_the_usual_share() -> None:
+    forces = turning.turning_forces(1000.0, 0.3, cutting=STEEL, feed=None, back=None)
+    assert forces.feed == pytest.approx(1000.0 * turning.FEED_SHARE)
+    assert forces.back == pytest.approx(1000.0 * turning.BACK_SHARE)
+
+
+def test_what_is_thinner_than_was_measured_keeps_its_share() -> None:
+    """1 − m_f of St 70 is −0.07: its feed force would grow without end."""
+    pair = Kienzle(k_c11=228.0, m_c=1.07)
+    least = turning.force_share(pair, STEEL, turning.THINNEST)
+    assert turning.force_share(pair, STEEL, 1e-6) == pytest.approx(least)
+    assert turning.force_share(pair, STEEL, 0.1) < least
 
 
 def test_depth_of_zero_is_refused() -> None:

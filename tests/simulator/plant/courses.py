@@ -15,6 +15,9 @@ TEETH = 2
 FEED = 10.0
 """mm/s"""
 
+LAND_SHARE = 1.85
+"""1/mm: 1 mm of flank wear adds so much of the force at an override of 1"""
+
 
 def course(
     force: Floats, *, cell: float = 0.01, can_override: Bools | None = None
@@ -33,6 +36,7 @@ def course(
         feed=single(FEED),
         programmed=single(FEED),
         force=single(force),
+        land_force=single(LAND_SHARE * force),
         exponent=single(EXPONENT),
         removal_rate=single(np.where(cuts, 100.0, 0.0)),
         axial_depth=single(np.where(cuts, 2.0, 0.0)),
@@ -42,6 +46,8 @@ def course(
         entry_angle=single(0.0),
         exit_angle=single(np.where(cuts, pi, 0.0)),
         peak=single(1.0),
+        wall=single(0.0),
+        lag=single(0.0),
         teeth=np.full(count, TEETH),
         tool=np.ones(count, dtype=np.int64),
         workingstep=np.ones(count, dtype=np.int64),

@@ -9,7 +9,15 @@ from simulator.plant.course import NominalCourse
 from simulator.plant.dynamometer import Instrument
 from simulator.plant.hidden import Change, Changed, Hidden
 from simulator.reading import Reading
-from tests.simulator.plant.courses import EXPONENT, FEED, SPEED, TEETH, course, levels
+from tests.simulator.plant.courses import (
+    EXPONENT,
+    FEED,
+    LAND_SHARE,
+    SPEED,
+    TEETH,
+    course,
+    levels,
+)
 
 PERFECT = Bench(dynamometer=Instrument(), power_meter=Instrument())
 PERIOD = 1.0 / (SPEED * TEETH)
@@ -111,6 +119,17 @@ def test_wear_grows_only_while_it_cuts_and_raises_the_force() -> None:
     worn = machine(course(levels(100.0)), replace(QUICK, flank_wear=0.2))
     assert worn.read() is not None
     assert worn.truth.force == pytest.approx(137.0, rel=1e-3)
+
+
+def test_the_wear_land_takes_its_force_at_every_feed_and_in_every_work() -> None:
+    """``F = K·g·u^p + VB·l``, both in proportion to the depth."""
+    hidden = replace(QUICK, flank_wear=0.2, force_factor=1.3)
+    at = machine(course(levels(100.0)), hidden)
+    at.set(0.5)
+    for _ in range(20):
+        assert at.read() is not None
+    expected = 1.3 * 100.0 * 0.5**EXPONENT + 0.2 * LAND_SHARE * 100.0
+    assert at.truth.force == pytest.approx(expected, rel=1e-3)
 
 
 def test_a_silent_sensor_shows_nothing_for_a_while() -> None:

@@ -40,12 +40,22 @@ def test_force_over_feed_has_the_exponent_of_kienzle(milled: NominalCourse) -> N
 
 
 def test_the_peak_over_the_mean_is_that_of_the_arc(milled: NominalCourse) -> None:
-    # Full slots with four teeth: √2 over 4/π with forces in proportion to the chip, less steep
-    # with Kienzle's exponent.
+    # Full slots with four teeth: those at 45° and 135° pull the same way across the feed and
+    # against each other along it, √2·sin 45° and the radial share of it, over 4/π.
     cuts = (milled.force > 0.99 * milled.force.max()) & milled.can_override
-    np.testing.assert_allclose(milled.peak[cuts], 2.0**0.5 * np.pi / 4.0, rtol=0.03)
-    assert (milled.peak >= 1.0).all()
+    np.testing.assert_allclose(milled.peak[cuts], np.hypot(1.0, 0.3) * np.pi / 4.0, rtol=0.04)
+    assert (milled.wall[cuts] > 0.0).all()
+    assert (milled.wall <= milled.peak * 1.01).all()
+    assert (milled.peak > 0.0).all()
     assert (milled.peak[~milled.can_override] == 1.0).all()
+    assert (milled.wall[~milled.can_override] == 0.0).all()
+
+
+def test_the_upper_end_of_the_edges_lags_by_the_helix(milled: NominalCourse) -> None:
+    # 30° are half a revolution in 5.4 diameters.
+    cuts = (milled.force > 0.0) & (milled.diameter > 0.0)
+    lag = 2.0 * np.tan(np.pi / 6.0) / milled.diameter[cuts] * milled.axial_depth[cuts]
+    np.testing.assert_allclose(milled.lag[cuts], lag, rtol=1e-5)
 
 
 def test_nothing_is_no_course() -> None:

@@ -1,4 +1,5 @@
-from math import asin, cos, pi
+from dataclasses import replace
+from math import asin, atan, cos, pi
 
 import numpy as np
 import pytest
@@ -6,9 +7,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from simulator.physics.engagement import Engagement
-from simulator.physics.milling import MillingCut, mean_force, peak_force
-from simulator.plant.pattern import SAMPLES, Teeth, pattern, peak_over_mean
+from simulator.physics.milling import MillingCut, mean_force
+from simulator.plant.pattern import SAMPLES, Teeth, pattern, peak_over_mean, wall_over_mean
 from simulator.spec import Kienzle
+from tests.simulator.physics.discs import Mill
 
 SLOT = Teeth(count=2, entry_angle=0.0, exit_angle=pi, exponent=1.0)
 
@@ -19,9 +21,10 @@ SLOT = Teeth(count=2, entry_angle=0.0, exit_angle=pi, exponent=1.0)
     st.floats(1e-4, pi),
     st.floats(0.5, 1.0),
     st.floats(0.0, 0.5),
+    st.floats(0.0, 5.0),
 )
 def test_the_mean_of_a_revolution_is_one(
-    count: int, entry: float, contact: float, exponent: float, runout: float
+    count: int, entry: float, contact: float, exponent: float, runout: float, lag: float
 ) -> None:
     teeth = Teeth(
         count=count,
@@ -29,6 +32,7 @@ def test_the_mean_of_a_revolution_is_one(
         exit_angle=min(entry + contact, pi),
         exponent=exponent,
         runout=runout,
+        lag=lag,
     )
     shape = pattern(teeth)
     assert shape.shape == (count, SAMPLES)
@@ -74,24 +78,48 @@ def test_without_an_arc_the_force_is_even() -> None:
 
 
 def test_the_peak_of_a_slot_with_four_teeth_is_that_of_two_at_45_degrees() -> None:
-    # Two teeth cut at 45° and 135°: √2 over the mean 4/π of four teeth in a slot.
+    # Two teeth at 45° and 135°: 1 towards the side and 0.3 against the feed at any rotation,
+    # over the mean 4/π of four teeth in a slot.
     slot = Teeth(count=4, entry_angle=0.0, exit_angle=pi, exponent=1.0)
-    assert peak_over_mean(slot) == pytest.approx(2.0**0.5 * pi / 4.0, rel=1e-3)
+    assert peak_over_mean(slot) == pytest.approx((1.0 + 0.3**2) ** 0.5 * pi / 4.0, rel=1e-3)
 
 
 def test_peak_over_mean_is_that_of_the_plan() -> None:
-    law, arc = Kienzle(k_c11=1500.0, m_c=0.22), Engagement(entry_angle=1.9, exit_angle=pi)
-    cut = MillingCut(feed_per_tooth=0.1, teeth=3, axial_depth=2.0, engagement=arc)
-    teeth = Teeth(count=3, entry_angle=1.9, exit_angle=pi, exponent=0.78)
-    expected = peak_force(law, cut) / mean_force(law, cut)
-    assert peak_over_mean(teeth) == pytest.approx(expected, rel=2e-3)
+    """Thin discs over the mean force of the physics, D = 12 mm and a_p = 9 mm."""
+    law, arc = Kienzle(k_c11=1.0, m_c=0.22), Engagement(entry_angle=1.9, exit_angle=pi)
+    cut = MillingCut(feed_per_tooth=1.0, teeth=3, axial_depth=9.0, engagement=arc)
+    teeth = Teeth(count=3, entry_angle=1.9, exit_angle=pi, exponent=0.78, lag=0.8)
+    mill = Mill(
+        teeth=3,
+        diameter=12.0,
+        helix=atan(0.8 * 6.0 / 9.0),
+        entry=1.9,
+        exit=pi,
+        depth=9.0,
+        exponent=0.78,
+    )
+    mean = mean_force(law, cut)
+    assert peak_over_mean(teeth) == pytest.approx(mill.peak() / mean, rel=0.01)
+    assert wall_over_mean(teeth) == pytest.approx(mill.wall(pi) / mean, rel=0.01)
 
 
-@given(st.integers(1, 8), st.floats(0.01, pi), st.floats(0.5, 1.0))
-def test_no_mean_is_above_its_peak(count: int, contact: float, exponent: float) -> None:
-    arc = Teeth(count=count, entry_angle=0.0, exit_angle=contact, exponent=exponent)
+@given(st.floats(0.01, pi), st.floats(0.5, 1.0), st.floats(0.0, 3.0))
+def test_no_mean_of_a_single_tooth_is_above_its_peak(
+    contact: float, exponent: float, lag: float
+) -> None:
+    arc = Teeth(count=1, entry_angle=0.0, exit_angle=contact, exponent=exponent, lag=lag)
     assert peak_over_mean(arc) >= 1.0
 
 
+def test_a_helix_evens_the_force_out() -> None:
+    straight = Teeth(count=3, entry_angle=1.9, exit_angle=pi, exponent=0.78)
+    spread = [pattern(replace(straight, lag=lag)).std() for lag in (0.0, 0.8, 1.6)]
+    assert spread == sorted(spread, reverse=True)
+    # At the lag of a tooth pitch the force stays the same.
+    assert pattern(replace(straight, lag=2.0 * pi / 3.0)).std() < 1e-3
+
+
 def test_without_an_arc_the_peak_is_the_mean() -> None:
-    assert peak_over_mean(Teeth(count=2, entry_angle=0.0, exit_angle=0.0, exponent=0.8)) == 1.0
+    nothing = Teeth(count=2, entry_angle=0.0, exit_angle=0.0, exponent=0.8)
+    assert peak_over_mean(nothing) == 1.0
+    assert wall_over_mean(nothing) == 0.0

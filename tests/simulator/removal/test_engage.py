@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from simulator.motion.segments import Floats, Segments, lines
-from simulator.physics.edge import effective_diameter, effective_edge_angle
+from simulator.physics.edge import effective_edge_angle
 from simulator.removal.cutter import Cutter, Holder
 from simulator.removal.engage import MillingStock
 from simulator.removal.stations import CutKind, Stations
-from stepnc_model.toolpath.job import Stock
+from stepnc_model.stock import Stock
+from tests.oracles.cutting import effective_diameter
 
 BOX = Stock(low=(0.0, 0.0, -20.0), high=(60.0, 40.0, 0.0))
 FLAT = Cutter(diameter=10.0)
@@ -109,6 +110,28 @@ def test_peak_in_a_corner_of_a_pocket() -> None:
     assert degrees(found.contact_angle[corner]) == pytest.approx(expected, abs=1e-3)
 
 
+@pytest.mark.parametrize("cell", [0.1, 0.25, 0.4])
+def test_the_peak_of_a_corner_is_that_of_its_end_whatever_the_cells(cell: float) -> None:
+    """0.3 mm head-on into a wall: a chord of ``2√(2Re − e²)``, however the stations fall."""
+    chord = 2.0 * sqrt(2.0 * 5.0 * 0.3 - 0.3**2)
+    found = stock(cell).cut(feed((-8.0, 20.0, -2.0), (-4.7, 20.0, -2.0)), FLAT)
+    assert found.peak_section.max() == pytest.approx(2.0 * chord, rel=1e-3)
+    assert volume(found) == pytest.approx(2.0 * segment_area(5.0, 0.3), rel=0.05)
+
+
+@pytest.mark.parametrize("cell", [0.1, 0.3])
+def test_a_ring_thinner_than_a_cell_is_told_by_the_hole_before(cell: float) -> None:
+    work = stock(cell)
+    down = feed((30.0, 20.0, 3.0), (30.0, 20.0, -15.0))
+    work.cut(down, Cutter(diameter=9.8, point_angle=2.44, is_drill=True))
+    found = work.cut(
+        feed((30.0, 20.0, 3.0), (30.0, 20.0, -10.0)), Cutter(diameter=10.0, is_drill=True)
+    )
+    ring = 0.25 * pi * (10.0**2 - 9.8**2)
+    # The first stretch begins above the stock.
+    assert found.section[found.section > 0.0][1:] == pytest.approx(ring, rel=1e-9)
+
+
 def test_second_pass_is_air() -> None:
     work = stock()
     path = feed((-6.0, 20.0, -2.0), (30.0, 20.0, -2.0), (40.0, 30.0, -4.0))
@@ -180,11 +203,21 @@ def test_rounded_tools_have_their_effective_diameter_and_edge_angle(cutter: Cutt
     found = stock().cut(feed((10.0, 20.0, -1.0), (50.0, 20.0, -1.0)), cutter)
     inside = (found.station > 10.0) & (found.station < 34.0)
     radius = cutter.corner_radius
-    assert found.diameter[inside] == pytest.approx(
-        effective_diameter(10.0, 1.0, corner_radius=radius)
-    )
+    assert found.diameter[inside] == pytest.approx(effective_diameter(10.0, 1.0, radius=radius))
     angle = effective_edge_angle(radius, 1.0)
     assert found.chip_ratio[inside] == pytest.approx(sin(angle) * 2.0 / pi, rel=0.01)
+
+
+def test_a_skin_is_met_over_its_own_thickness() -> None:
+    """The floor that roughing left, and a plate that a tool goes through: full sections."""
+    work, mill = stock(), Cutter(diameter=10.0)
+    deep = feed((20.0, 20.0, 5.0), (20.0, 20.0, -4.0))
+    work.cut(deep, mill)
+    skin = work.cut(feed((20.0, 20.0, 5.0), (20.0, 20.0, -4.2)), mill)
+    (row,) = np.flatnonzero(skin.kind == CutKind.DRILLING)
+    assert skin.section[row] == pytest.approx(25.0 * pi, rel=5e-3)
+    assert skin.station[row] - skin.station[row - 1] == pytest.approx(0.2)
+    assert skin.station[row] == pytest.approx(9.2)
 
 
 def test_plunge_and_drill() -> None:

@@ -6,9 +6,10 @@ import pytest
 from simulator.motion.segments import lines
 from simulator.removal.cutter import Cutter
 from simulator.removal.engage import MillingStock
+from simulator.removal.rim import FORGETTING
 from simulator.removal.stations import CutKind
 from simulator.removal.task import rows_of
-from stepnc_model.toolpath.job import Stock
+from stepnc_model.stock import Stock
 
 BOX = Stock(low=(0.0, 0.0, -12.0), high=(60.0, 40.0, 0.0))
 
@@ -46,3 +47,20 @@ def test_long_programs_are_taken_in_pieces() -> None:
     work = MillingStock(BOX, cell=0.5)
     found = work.cut(lines(list(points), speed=1.0), Cutter(diameter=10.0))
     assert np.unique(found.segment).tolist() == list(range(20_000))
+
+
+def test_exact_stations_stay_exact_where_others_of_their_move_are_not() -> None:
+    """Beside a slot whose first half is forgotten: that holds what is left of the volume."""
+    work, flat = MillingStock(BOX, cell=0.5), Cutter(diameter=10.0)
+    work.cut(lines([(-8.0, 20.0, -2.0), (30.0, 20.0, -2.0)], speed=1.0), flat)
+    work._past.next[0] += FORGETTING
+    work.cut(lines([(30.0, 20.0, -2.0), (68.0, 20.0, -2.0)], speed=1.0), flat)
+    before = work.volume
+    found = work.cut(lines([(-8.0, 24.0, -2.0), (68.0, 24.0, -2.0)], speed=1.0), flat)
+    remembered = (found.station > 52.0) & (found.station < 60.0)
+    assert found.section[remembered] == pytest.approx(8.0, rel=1e-6)
+    forgotten = (found.station > 20.0) & (found.station < 34.0)
+    assert np.abs(found.section[forgotten] / 8.0 - 1.0).max() > 1e-4
+    assert found.section[forgotten] == pytest.approx(8.0, rel=0.1)
+    cut = float((found.section * np.diff(found.station, prepend=0.0)).sum())
+    assert cut == pytest.approx(work.volume - before)

@@ -5,7 +5,14 @@ from math import cos, pi, sin, tan
 import pytest
 
 from simulator.removal.cutter import Cutter
-from simulator.removal.profile import cylinder, profile_of, radius_at, rise
+from simulator.removal.profile import (
+    cylinder,
+    is_plain,
+    is_upright,
+    profile_of,
+    radius_at,
+    rise,
+)
 
 CUTTERS = [
     Cutter(diameter=10.0),
@@ -50,3 +57,22 @@ def test_radius_and_height_are_inverse(cutter: Cutter) -> None:
 def test_impossible_cutters_are_refused(cutter: Cutter, word: str) -> None:
     with pytest.raises(ValueError, match=word):
         profile_of(cutter, reach=30.0)
+
+
+@pytest.mark.parametrize(
+    ("cutter", "plain", "upright"),
+    [
+        (Cutter(diameter=10.0), True, True),
+        (Cutter(diameter=10.0, corner_radius=1.25), False, True),
+        (Cutter(diameter=10.0, corner_radius=1.3), False, False),
+        (Cutter(diameter=10.0, corner_radius=5.0), False, False),
+        (Cutter(diameter=10.0, corner_radius=1.0, taper_angle=0.1), False, False),
+        (Cutter(diameter=10.0, point_angle=2.0), False, False),
+    ],
+)
+def test_a_cylinder_with_a_small_corner_is_upright(
+    cutter: Cutter, plain: bool, upright: bool
+) -> None:
+    profile = profile_of(cutter, reach=30.0)
+    assert bool(is_plain(profile)) is plain
+    assert bool(is_upright(profile)) is upright

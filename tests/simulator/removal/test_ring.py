@@ -8,12 +8,14 @@ import pytest
 
 from simulator.removal.arcs import Circle
 from simulator.removal.ring import (
+    BLURRED_SLICES,
+    CORNER_SLICES,
     MOST_LEVELS,
     SAMPLES,
     Pose,
     Room,
+    cell_at,
     circle_of,
-    height_at,
     levels,
     read_ring,
 )
@@ -40,7 +42,8 @@ def room() -> Room:
         heights=np.empty(SAMPLES),
         owner=np.empty(SAMPLES, dtype=np.int64),
         solid=np.empty(SAMPLES, dtype=np.int64),
-        bounds=np.empty(MOST_LEVELS + 3),
+        bounds=np.empty(MOST_LEVELS + CORNER_SLICES + 3),
+        areas=np.zeros(MOST_LEVELS + CORNER_SLICES + 3),
         candidates=np.empty(1, dtype=np.int64),
     )
 
@@ -82,9 +85,9 @@ def test_beside_the_stock_the_ring_is_at_the_bottom_and_nobodys() -> None:
 def test_the_height_at_an_angle_is_that_of_its_cell() -> None:
     """0 is left of the feed, half π ahead."""
     circle = Circle(0.0, 0.0, RADIUS, 0.0, 1.0, 1.0)
-    assert height_at(step(), circle, 3.0, 0.2) == LOW
-    assert height_at(step(), circle, 3.0, pi - 0.2) == HIGH
-    assert height_at(step(), circle, 30.0, 0.2) == BOTTOM
+    assert cell_at(step(), circle, 3.0, 0.2)[0] == LOW
+    assert cell_at(step(), circle, 3.0, pi - 0.2)[0] == HIGH
+    assert cell_at(step(), circle, 30.0, 0.2)[0] == BOTTOM
 
 
 def test_slices_lie_between_the_heights_in_order() -> None:
@@ -98,8 +101,8 @@ def test_many_heights_are_blurred_into_equal_slices() -> None:
     work = room()
     work.heights[:] = np.linspace(-4.0, 0.0, SAMPLES)
     count = levels(work, -4.0)
-    assert count < 0
-    assert work.bounds[: 1 - count] == pytest.approx(np.linspace(-4.0, 0.0, 1 - count))
+    assert count == BLURRED_SLICES
+    assert work.bounds[: count + 1] == pytest.approx(np.linspace(-4.0, 0.0, count + 1))
 
 
 def test_a_section_is_where_the_tool_is() -> None:

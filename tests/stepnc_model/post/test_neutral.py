@@ -132,11 +132,11 @@ def test_a_whole_program(part: Program) -> None:
         ToolChange(number=1, id="MILL 10MM"),
         SpindleOn(speed=20.0),
         FLOOD,
-        Retract(z=30.0),
-        Rapid(end=(5.0, 5.0, 30.0)),
+        Retract(z=30.0, is_way=True),
+        Rapid(end=(5.0, 5.0, 30.0), is_way=True),
         Rapid(end=(5.0, 5.0, 2.0)),
         Linear(end=(9.0, 5.0, 2.0), rate=RATE),
-        Retract(z=30.0),
+        Retract(z=30.0, is_way=True),
         SpindleOff(),
         Coolant(),
         ProgramEnd(),
@@ -152,12 +152,12 @@ def test_between_tools_everything_stops_and_the_tool_rises_first(part: Program) 
         Comment(text="WS", workingstep="WS"),
         SpindleOff(),
         Coolant(),
-        Retract(z=80.0),
+        Retract(z=80.0, is_way=True),
         ToolChange(number=2, id="DRILL 8MM"),
         SpindleOn(speed=20.0),
         FLOOD,
-        Retract(z=80.0),
-        Rapid(end=(50.0, 60.0, 80.0)),
+        Retract(z=80.0, is_way=True),
+        Rapid(end=(50.0, 60.0, 80.0), is_way=True),
     ]
 
 
@@ -175,9 +175,9 @@ def test_the_same_tool_goes_up_across_and_down(part: Program) -> None:
     found = blocks(part, one, low)
     at = len(found) - 1 - found[::-1].index(Comment(text="WS", workingstep="WS"))
     assert found[at + 1 : at + 4] == [
-        Retract(z=30.0),
-        Rapid(end=(50.0, 60.0, 30.0)),
-        Rapid(end=(50.0, 60.0, 10.0)),
+        Retract(z=30.0, is_way=True),
+        Rapid(end=(50.0, 60.0, 30.0), is_way=True),
+        Rapid(end=(50.0, 60.0, 10.0), is_way=True),
     ]
 
 

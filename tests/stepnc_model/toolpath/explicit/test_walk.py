@@ -10,10 +10,10 @@ from stepnc_model.errors import PathError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
+from stepnc_model.stock import Stock
 from stepnc_model.tool import Tool
 from stepnc_model.toolpath.explicit.walk import Surroundings, Walk
 from stepnc_model.toolpath.frame import Frame
-from stepnc_model.toolpath.job import Stock
 from stepnc_model.toolpath.path import Dwell, Move
 
 HEADER = (

@@ -1,0 +1,113 @@
+"""Which work-holding a workingstep has; and where it has none, what the setup asks of it."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+
+from optimiser.advice import Advice
+from optimiser.conditions import Conditions
+from optimiser.grip import Grip, grip_of, holding_of, setup_id
+from optimiser.holding import TURNING, HoldingLoad
+from optimiser.tolerance import permitted_bar_deflection
+from simulator.spec import (
+    Machine,
+    MachineKind,
+)
+from simulator.work_holding import (
+    Chuck,
+)
+from stepnc_model.entities.entity import Entity
+from stepnc_model.entities.turning import Contouring, Grooving
+from stepnc_model.errors import Finding, Severity
+from stepnc_model.part21.values import Ref
+from stepnc_model.program import Program, Workingstep
+
+
+def with_holding(
+    at: Conditions, program: Program, step: Workingstep
+) -> tuple[Conditions, list[Finding]]:
+    """Conditions with what holds the workpiece, and what was assumed of its tolerances.
+
+    Raises
+    ------
+    LibraryError
+        When neither a chuck's table nor the program says where it grips.
+    """
+    machine = at.machine
+    if machine.only_stated_limits:
+        return at, []
+    holding = holding_of(program, step.setup, machine)
+    if machine.kind is not MachineKind.LATHE:
+        return replace(at, holding=holding), []
+    chuck = holding if isinstance(holding, Chuck) else None
+    at = replace(at, holding=chuck, grip=grip_of(program, step, chuck))
+    if chuck is None or not isinstance(step.operation, (Contouring, Grooving)):
+        return at, []
+    deflection, findings = permitted_bar_deflection(program, step)
+    return replace(at, bar_deflection=deflection), findings
+
+
+def holding_findings(
+    program: Program, advices: Sequence[Advice], machine: Machine
+) -> list[Finding]:
+    """A note for each setup without work-holding, and a warning for tables of no setup."""
+    found = list(_unknown_setups(program, machine))
+    if machine.only_stated_limits:
+        return found
+    by_setup: dict[Ref[Entity] | None, list[Advice]] = {}
+    for advice in advices:
+        if advice.holding_load is not None:
+            by_setup.setdefault(advice.workingstep.setup, []).append(advice)
+    for setup, held in by_setup.items():
+        if holding_of(program, held[0].workingstep.setup, machine) is None:
+            of = f"'{setup_id(program, held[0].workingstep.setup)}'" if setup else "the program"
+            text = f"no [[holding]] bounds the work-holding of {of}: {_asked(program, held)}"
+            ref = setup if setup is not None else held[0].workingstep.ref
+            found.append(program.finding(Severity.NOTE, text, ref))
+    return found
+
+
+def _unknown_setups(program: Program, machine: Machine) -> Iterator[Finding]:
+    """Tables that name a setup which the program does not have."""
+    setups = {step.setup: None for step in program.workingsteps if step.setup is not None}
+    known = [setup_id(program, setup) for setup in setups]
+    for holding in machine.holdings:
+        if holding.setup and holding.setup.casefold() not in map(str.casefold, known):
+            names = ", ".join(f"'{name}'" for name in known) or "none"
+            text = f"work-holding of setup '{holding.setup}': the program's setups are {names}"
+            yield Finding(severity=Severity.WARNING, message=text)
+
+
+def _asked(program: Program, held: Sequence[Advice]) -> str:
+    """The greatest loads of a setup, with the workingsteps that they come from."""
+    first = held[0]
+    if first.cut is None or first.cut.kind not in TURNING:
+        across = _greatest(held, lambda load: load.force, "N across the spindle")
+        lift = _greatest(held, lambda load: load.lift, "N upwards")
+        return f"a vice or clamps are asked to hold {across}{lift and ' and ' + lift}"
+    torque = _greatest(held, lambda load: 1e-3 * load.torque, "N·m about the axis")
+    moment = _greatest(held, lambda load: 1e-3 * load.moment, "N·m of tilting about the jaws")
+    grip = grip_of(program, first.workingstep, None)
+    return (
+        f"the chuck is asked to hold {torque}{moment and ' and ' + moment}"
+        f"{'' if grip is None else '; ' + _told(grip)}"
+    )
+
+
+def _greatest(held: Sequence[Advice], of: Callable[[HoldingLoad], float], unit: str) -> str:
+    """The greatest of one load; empty where there is none."""
+    loads = [
+        (of(advice.holding_load), advice.workingstep.id)
+        for advice in held
+        if advice.holding_load is not None
+    ]
+    value, name = max(loads)
+    return f"{value:.4g} {unit} ({name})" if value > 0.0 else ""
+
+
+def _told(grip: Grip) -> str:
+    """Where the program says that a bar is held."""
+    centre = ", with a tailstock" if grip.has_tailstock else ""
+    return (
+        f"the program has it grip {grip.size.length:.4g} mm on Ø{grip.size.diameter:.4g} mm, "
+        f"{grip.overhang:.4g} mm stand out (L/D {grip.slenderness:.2g}){centre}"
+    )

@@ -1,0 +1,123 @@
+"""The feed per tooth of a catalogue at another engagement than its own.
+
+Catalogues mean their feeds for a usual width of cut. In a narrower one the chip is thinner than
+the feed, which may rise until the chip is as thick as the catalogue means it; in a wider one
+chips stay longer in the cut and leave a slot badly, and the feed falls, in a full slot to the
+catalogue's own factor.
+"""
+
+from optimiser.conditions import Conditions
+from optimiser.cut import Cut, CutKind
+from simulator.physics.engagement import conventional
+from simulator.spec import CuttingMaterial, FeedWindow, Grade, ToolKind
+
+GREATEST_THINNING = 4.0
+"""factor on the catalogue's feed: beyond, a wall that comes nearer is met at many times the
+chip that the edge bears; customary bound of CAM systems"""
+
+FINISH_NOSE_FEED = 0.5
+"""greatest feed per revolution over the nose radius where the surface stays: a radius of two to
+three feeds is recommended, Mitsubishi Materials, general catalogue 2020-2021, technical data"""
+
+ROUGH_NOSE_FEED = 2.0 / 3.0
+"""the same where it does not, for the strength of the nose: customary; 1/1.6 of strong inserts
+(C, S) and 1/2.5 of weak ones (D, T) are printed too"""
+
+
+def _factor(cut: Cut, at: Conditions) -> float:
+    """Factor on the catalogue's feed per tooth by the engagement."""
+    if at.grade is None or at.machine.only_stated_limits:
+        return 1.0
+    return engagement_factor(cut, at.grade)
+
+
+def feed_origin(cut: Cut, at: Conditions) -> str:
+    """How the engagement moved the catalogue's feed; empty where it did not."""
+    factor = _factor(cut, at)
+    return "" if factor == 1.0 else f"{factor:.3g} of the catalogue's at this engagement"
+
+
+def least_feed(cut: Cut, at: Conditions) -> float | None:
+    """Least feed per tooth that material or grade recommend, mm: below it edges rub."""
+    bounds: list[float | None] = []
+    if at.grade is not None:
+        teeth = 1 if cut.kind is CutKind.MILLING else cut.tool.teeth
+        ratio = at.grade.min_feed_ratio
+        if at.grade.min_feed is not None:
+            bounds.append(at.grade.min_feed / teeth)
+        if ratio is not None and cut.tool.diameter > 0.0:
+            bounds.append(ratio * cut.tool.diameter / teeth)
+    ratio = at.material.min_feed_per_tooth_ratio
+    if cut.tool_kind is ToolKind.ENDMILL and ratio is not None:
+        bounds.append(ratio * cut.tool.diameter)
+    lowest = min((each for each in bounds if each), default=None)
+    return None if lowest is None else lowest * min(1.0, _factor(cut, at))
+
+
+def greatest_feed(cut: Cut, at: Conditions) -> float | None:
+    """Greatest feed per tooth that material and grade allow at this engagement, mm."""
+    feed = catalogue_feed(cut, at)
+    return None if feed is None else feed * _factor(cut, at)
+
+
+def catalogue_feed(cut: Cut, at: Conditions) -> float | None:
+    """Greatest feed per tooth that material and grade allow at their own engagement, mm."""
+    bounds = [at.material.max_feed_per_tooth]
+    grade = at.grade
+    if grade is not None:
+        if cut.kind is CutKind.TURNING and cut.corner_radius > 0.0:
+            # A wiper makes the surface without the nose, whose strength alone counts then.
+            is_finish = cut.is_finishing and not cut.tool.has_wiper
+            share = FINISH_NOSE_FEED if is_finish else ROUGH_NOSE_FEED
+            bounds.append(share * cut.corner_radius)
+        teeth = 1 if cut.kind is CutKind.MILLING else cut.tool.teeth
+        if grade.max_feed is not None:
+            bounds.append(grade.max_feed / teeth)
+        if grade.max_feed_ratio is not None and cut.tool.diameter > 0.0:
+            bounds.append(grade.max_feed_ratio * cut.tool.diameter / teeth)
+        ratio = at.material.max_feed_per_tooth_ratio
+        is_carbide = at.cutting_material is CuttingMaterial.CARBIDE
+        if ratio is not None and is_carbide and cut.tool_kind is ToolKind.ENDMILL:
+            bounds.append(ratio * cut.tool.diameter)
+    known = [bound for bound in bounds if bound is not None]
+    return min(known) if known else None
+
+
+def engagement_factor(cut: Cut, grade: Grade) -> float:
+    """Factor on the feed per tooth of a catalogue where the path meets most; 1: no data."""
+    window = grade.feed_window
+    if cut.kind is not CutKind.MILLING or window is None or cut.engagement is None:
+        return 1.0
+    width = cut.width_ratio or 0.5 * cut.engagement.cosine_difference
+    sine = cut.chip_sine or cut.engagement.greatest_sine
+    return feed_factor(width, sine, window)
+
+
+def feed_factor(width_ratio: float, sine: float, window: FeedWindow) -> float:
+    """Factor on the feed per tooth at an engagement.
+
+    ``h(x_ref)/h`` with ``h = f_z·sin φ`` at the thickest chip, at most 4; beyond the width of
+    the window linear in a_e/D to the factor of a slot.
+
+    Parameters
+    ----------
+    width_ratio : float
+        a_e/D.
+    sine : float
+        Greatest sin φ in the cut: chip thickness over feed per tooth of a straight edge.
+    window : FeedWindow
+
+    Examples
+    --------
+    A tenth of the diameter from the side: ``1/(2·sqrt(0.1·0.9))``, catalogues' 1.67.
+
+    >>> window = FeedWindow(width_ratio=0.5, slot_factor=0.75)
+    >>> round(feed_factor(0.1, 0.6, window), 2), feed_factor(1.0, 1.0, window)
+    (1.67, 0.75)
+    """
+    reference = window.width_ratio
+    if width_ratio > reference:
+        beyond = min(1.0, (width_ratio - reference) / (1.0 - reference))
+        return 1.0 - beyond * (1.0 - window.slot_factor)
+    thickest = conventional(reference, 1.0).greatest_sine
+    return min(GREATEST_THINNING, max(1.0, thickest / sine))

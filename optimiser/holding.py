@@ -1,0 +1,285 @@
+"""Limits of what holds the workpiece, and what a cut asks of it.
+
+A chuck must not slip, nor let a bar tilt; a bar must not bend too far; a vice or clamps hold by
+friction. Only what the user says of them bounds (:class:`simulator.spec.Chuck`); else one note
+for each setup tells what is asked. Units mm, N, N·mm, rev/s.
+
+Forces along and across the feed have exponents of their own, so their resultant is no power of
+the feed. It is convex in logarithms: a power through two feeds is never below it in between.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from math import hypot, log, sin, tan
+
+from optimiser import loads
+from optimiser.conditions import Conditions
+from optimiser.cut import Cut, CutKind
+from optimiser.limit import Limit, LimitName, Monomial
+from optimiser.limits import drill_point, force_factor, force_load
+from optimiser.problem import Setting
+from optimiser.speed_stretch import powers_of_speed
+from simulator.physics.holding import (
+    LEAST_LEFT,
+    greatest_moment,
+    greatest_torque,
+    holding_force,
+    slipping_torque,
+    usable_speed,
+)
+from simulator.physics.slender_bar import compliance
+from simulator.physics.turning import TurningForces, turning_forces
+from simulator.work_holding import (
+    Chuck,
+    Clamp,
+)
+from stepnc_model.units import rpm_from_rev_s
+
+FEEDS = (0.05, 1.0)
+"""mm per revolution, between which turning feeds lie, and forces are powers of the feed"""
+
+PLACES = 24
+"""along a bar with a tailstock, at which its bending is asked for"""
+
+TURNING = frozenset({CutKind.TURNING, CutKind.GROOVING})
+
+NM, UM = 1e-3, 1e3
+"""user's number per canonical unit"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HoldingLoad:
+    """What a cut asks of what holds its workpiece."""
+
+    torque: float = 0.0
+    """N·mm about the spindle's axis, of a bar; with the axial force that slips as it does"""
+    moment: float = 0.0
+    """N·mm about the jaws, across the axis; 0 where nothing says where they are"""
+    force: float = 0.0
+    """N across the axis of a mill, the greatest"""
+    lift: float = 0.0
+    """N along it, that pulls the workpiece towards the spindle"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Forces:
+    """Force of a turning or drilling tool on the bar, N, at one feed and 1 mm of depth."""
+
+    cutting: float
+    axial: float
+    radial: float
+
+
+def holding_limits(cut: Cut, at: Conditions) -> tuple[Limit, ...]:
+    """Limits of a vice, clamps and a slender bar, which know no spindle speed."""
+    if isinstance(at.holding, Clamp):
+        return tuple(_clamp_limits(cut, at, at.holding))
+    bending = _bar_compliance(cut, at)
+    if not bending or at.bar_deflection is None:
+        return ()
+    return (
+        Limit(
+            name=LimitName.BAR_DEFLECTION,
+            load=_load(cut, at, lambda forces: bending * forces.radial),
+            bound=at.bar_deflection.value,
+            origin=at.bar_deflection.origin,
+            unit="µm",
+            scale=UM,
+            step=1.0,
+        ),
+    )
+
+
+def chuck_limits(cut: Cut, at: Conditions, slow: float, fast: float) -> tuple[Limit, ...]:
+    """Torque and tilting moment that a chuck holds between two spindle speeds.
+
+    What counts is the greatest speed on the path.
+    """
+    chuck, grip = at.holding, at.grip
+    if not isinstance(chuck, Chuck) or grip is None or cut.kind is CutKind.MILLING:
+        return ()
+
+    def at_speed(speed: float) -> float:
+        return min(_fastest(cut, speed), usable_speed(chuck))
+
+    size = grip.size
+    origin = f"{size.length:.4g} mm of grip on Ø{size.diameter:.4g} mm"
+    if slow == fast:
+        origin += f" at {rpm_from_rev_s(_fastest(cut, slow)):.0f} rpm"
+    if _fastest(cut, fast) > usable_speed(chuck):
+        usable = rpm_from_rev_s(usable_speed(chuck))
+        origin += f", where it holds less than {LEAST_LEFT:.0%} from {usable:.0f} rpm on"
+
+    def limit(name: LimitName, load: Monomial, holds: Callable[[float], float]) -> Limit:
+        bound, exponent = powers_of_speed(lambda speed: holds(at_speed(speed)), slow, fast)
+        return Limit(
+            name=name,
+            load=load,
+            bound=bound,
+            bound_speed_exponent=exponent,
+            unit="N·m",
+            scale=NM,
+            origin=origin,
+        )
+
+    found = [
+        limit(
+            LimitName.CHUCK_TORQUE,
+            _torque(cut, at),
+            lambda speed: greatest_torque(chuck, size, speed),
+        )
+    ]
+    moment = _moment(cut, at)
+    if moment is not None and not grip.has_tailstock:
+        found.append(
+            limit(
+                LimitName.TILTING_MOMENT,
+                moment,
+                lambda speed: greatest_moment(chuck, size, speed),
+            )
+        )
+    return tuple(found)
+
+
+def holding_load(cut: Cut, at: Conditions, setting: Setting) -> HoldingLoad | None:
+    """What a cut at a setting asks of what holds its workpiece; None of a cut in air."""
+    if cut.is_air or at.machine.only_stated_limits:
+        return None
+    point = (setting.feed, setting.depth, setting.speed)
+    if cut.kind in TURNING or at.grip is not None:
+        moment = _moment(cut, at)
+        return HoldingLoad(
+            torque=_torque(cut, at).value(*point),
+            moment=0.0 if moment is None else moment.value(*point),
+        )
+    if cut.kind is not CutKind.MILLING or cut.engagement is None:
+        return None
+    across, lift = _across(cut, at), _lift(cut, at)
+    return HoldingLoad(
+        force=across.value(*point), lift=0.0 if lift is None else lift.value(*point)
+    )
+
+
+def _clamp_limits(cut: Cut, at: Conditions, clamp: Clamp) -> Iterator[Limit]:
+    """Greatest force across the axis of a mill, and what pulls the workpiece upwards."""
+    if cut.kind is not CutKind.MILLING:
+        return
+    limit = Limit(
+        name=LimitName.HOLDING_FORCE,
+        load=_across(cut, at),
+        bound=holding_force(clamp),
+        unit="N",
+        step=100.0,
+    )
+    yield limit
+    lift = _lift(cut, at)
+    if lift is not None:
+        yield replace(limit, label="lifting force", load=lift)
+    if cut.floor is not None:
+        for swept in _clamp_limits(cut.floor, at, clamp):
+            yield swept.at_depth(cut.floor.total_depth)
+
+
+def _across(cut: Cut, at: Conditions) -> Monomial:
+    """Greatest force of a mill across its axis within a revolution, N."""
+    return loads.shank_force(cut, at.material.kienzle, force_factor(at))
+
+
+def _lift(cut: Cut, at: Conditions) -> Monomial | None:
+    """Force with which helical edges pull the workpiece out, N; None of straight ones."""
+    if cut.helix_angle <= 0.0:
+        return None
+    return loads.scaled(force_load(cut, at), tan(cut.helix_angle))
+
+
+def _torque(cut: Cut, at: Conditions) -> Monomial:
+    """Torque of a cut, with its axial force where it is known what holds that."""
+    arm = 0.5 * cut.force_diameter
+    grip = at.grip
+    if grip is None:
+        return _load(cut, at, lambda forces: arm * forces.cutting)
+    return _load(
+        cut, at, lambda forces: slipping_torque(arm * forces.cutting, forces.axial, grip.size)
+    )
+
+
+def _moment(cut: Cut, at: Conditions) -> Monomial | None:
+    """Moment of a cut about the jaws; None where they are not known, or of a tool on the axis.
+
+    In the plane of the tool feed and back force turn against each other: the greater counts.
+    """
+    if at.grip is None or cut.kind not in TURNING:
+        return None
+    front = at.grip.front if cut.turned is None else cut.turned.high
+    out, arm = max(0.0, front - at.grip.face), 0.5 * cut.diameter
+    return _load(
+        cut,
+        at,
+        lambda forces: hypot(
+            out * forces.cutting, max(out * forces.radial, arm * forces.axial)
+        ),
+    )
+
+
+def _bar_compliance(cut: Cut, at: Conditions) -> float:
+    """Greatest deflection of a bar under 1 N at the tool, mm/N; 0 where it is not judged."""
+    grip, turned, modulus = at.grip, cut.turned, at.material.youngs_modulus
+    if grip is None or turned is None or modulus is None or grip.has_rest:
+        return 0.0
+    shift = turned.back - grip.face
+    sections = [
+        replace(part, start=part.start + shift, end=part.end + shift)
+        for part in turned.sections
+    ]
+    low, high = max(0.0, turned.low - grip.face), turned.high - grip.face
+    free = sections[-1].end
+    places = [high]
+    if grip.has_tailstock:
+        places = [low + (high - low) * row / PLACES for row in range(PLACES + 1)]
+    return max(
+        compliance(
+            sections,
+            min(place, free),
+            youngs_modulus=modulus,
+            centre=free if grip.has_tailstock else None,
+        )
+        for place in places
+    )
+
+
+def _load(cut: Cut, at: Conditions, of: Callable[[_Forces], float]) -> Monomial:
+    """A positive load of the forces on a bar, as the power of the feed through two feeds."""
+    depth = 0.0 if cut.kind is not CutKind.TURNING else 1.0
+    low, high = (of(_forces(cut, at, feed / cut.tool.teeth)) for feed in FEEDS)
+    if low <= 0.0:
+        return Monomial(coefficient=loads.LEAST, depth_exponent=depth)
+    exponent = log(high / low) / log(FEEDS[1] / FEEDS[0])
+    return Monomial(
+        coefficient=low / (FEEDS[0] / cut.tool.teeth) ** exponent,
+        feed_exponent=exponent,
+        depth_exponent=depth,
+    )
+
+
+def _forces(cut: Cut, at: Conditions, feed: float) -> _Forces:
+    """Forces on a bar at a feed per edge, at 1 mm of depth where they know it."""
+    cutting = force_load(cut, at).value(feed, 1.0, 1.0)
+    if cut.kind is CutKind.DRILLING:
+        thrust = loads.thrust(cut, at.material.kienzle, force_factor(at), drill_point(at))
+        return _Forces(cutting=cutting, axial=thrust.value(feed, 1.0, 1.0), radial=0.0)
+    sine = 1.0 if cut.kind is CutKind.GROOVING else sin(cut.tool.cutting_edge_angle)
+    material = at.material
+    found: TurningForces[float] = turning_forces(
+        cutting,
+        feed * sine,
+        cutting=material.kienzle,
+        feed=material.feed_force,
+        back=material.back_force,
+    )
+    if cut.is_fed_inwards:
+        return _Forces(cutting=cutting, axial=found.back, radial=found.feed)
+    return _Forces(cutting=cutting, axial=found.feed, radial=found.back)
+
+
+def _fastest(cut: Cut, speed: float) -> float:
+    return speed if cut.turned is None else cut.turned.fastest(speed)

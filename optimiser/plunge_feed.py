@@ -1,0 +1,137 @@
+"""The feed of a mill on its way down into the material: the greatest that its limits allow.
+
+Straight down the mill is a drill with flat lips: thrust, torque and power are those of a drill,
+and the feed per tooth is a share of the catalogue's, since near the axis the edges hardly move.
+A cutter whose edges reach the axis takes half of it; one of which nobody says so a quarter.
+
+On a ramp at the angle α the part ``f·sin α`` along the axis is a plunge, and the rest mills as
+a pass does, at the engagement that is met. Time and energy fall with the feed, so at a spindle
+speed the best plunge feed is the least of its caps in every mode: a plunge leaves no surface.
+The speed is chosen for the passes.
+
+References
+----------
+.. [1] Fanar, general catalogue 2021, p. 329: 25 to 50 % of the table's feed on the way into the
+   material.
+"""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from optimiser import loads
+from optimiser.chip_load import catalogue_feed
+from optimiser.conditions import Conditions
+from optimiser.cut import Cut
+from optimiser.limit import Limit, LimitName, Monomial, Sense
+from optimiser.limits import (
+    PLUNGE_FEED_RATIO,
+    drill_point,
+    force_factor,
+    machine_limits,
+    segment_at,
+    spindle_limits,
+    straight_down,
+    tool_limits,
+)
+from optimiser.problem import Setting
+
+CAUTIOUS_FEED_RATIO = 0.25
+"""the same for a cutter of which nobody says that it cuts over centre, [1]"""
+
+DOWN_A_RAMP = "down the ramp"
+"""how limits of a ramp are told from those of a pass"""
+
+
+def plunge_limits(cut: Cut, at: Conditions, speed: float) -> tuple[Limit, ...]:
+    """Limits of the plunge feed at one spindle speed in rev/s; none where nothing is met."""
+    found = (*_straight(cut, at, speed), *_ramp(cut, at, speed))
+    return tuple(
+        limit.with_safety(at.safety_factor)
+        for limit in found
+        if limit.sense is Sense.AT_MOST and limit.load.feed_exponent > 0.0
+    )
+
+
+def holding(limits: tuple[Limit, ...], setting: Setting) -> Limit:
+    """The limit that allows the least plunge feed."""
+    return min(limits, key=lambda each: each.feed_at_bound(setting.depth, setting.speed))
+
+
+def with_plunge_feed(cut: Cut, at: Conditions, setting: Setting) -> Setting:
+    """A setting with the greatest plunge feed, where the cut has one of its own."""
+    limits = plunge_limits(cut, at, setting.speed)
+    if not limits:
+        return setting
+    best = holding(limits, setting).feed_at_bound(setting.depth, setting.speed)
+    return replace(setting, plunge_feed=best)
+
+
+def _straight(cut: Cut, at: Conditions, speed: float) -> Iterator[Limit]:
+    """Limits of what is drilled."""
+    if cut.way_in is None or not cut.way_in.drilled:
+        return
+    ratio = _feed_ratio(at) if cut.way_in.reaches_axis else 1.0
+    yield straight_down(_feed_limit(cut, at, ratio=ratio, share=1.0))
+    for drilled in cut.way_in.drilled:
+        for limit in (*machine_limits(drilled, at), *_spindle_limits(drilled, at, speed)):
+            yield straight_down(limit)
+
+
+def _ramp(cut: Cut, at: Conditions, speed: float) -> Iterator[Limit]:
+    """Limits of what a ramp mills, and of the plunge in it."""
+    if cut.way_in is None or cut.way_in.ramp is None:
+        return
+    ramp, sine = cut.way_in.ramp, cut.way_in.sine
+    found = [*machine_limits(ramp, at), *tool_limits(ramp, at)]
+    found += _spindle_limits(ramp, at, speed)
+    if sine > 0.0:
+        found.append(_feed_limit(cut, at, ratio=_feed_ratio(at), share=sine))
+        found += _thrust_limits(cut, at, sine)
+    for limit in found:
+        yield replace(limit, label=f"{limit.words} {DOWN_A_RAMP}")
+
+
+def _spindle_limits(cut: Cut, at: Conditions, speed: float) -> tuple[Limit, ...]:
+    return spindle_limits(cut, at, segment_at(at, speed))
+
+
+def _feed_ratio(at: Conditions) -> float:
+    """Feed per tooth along the axis over that of the catalogue."""
+    return PLUNGE_FEED_RATIO if at.centre_cutting else CAUTIOUS_FEED_RATIO
+
+
+def _feed_limit(cut: Cut, at: Conditions, *, ratio: float, share: float) -> Limit:
+    """Feed per tooth along the axis, which is a share of that along the path.
+
+    Where nothing says what feed the mill bears along the pass, the programmed one is all that
+    is known to be borne. A part of it is custom and no physics: it does not make the edges rub.
+    """
+    highest = catalogue_feed(cut, at)
+    borne = share * (cut.programmed.plunge_feed or cut.programmed.feed)
+    if highest is not None:
+        rubbing = at.grade.min_chip_thickness if at.grade else 0.0
+        borne = min(highest, max(ratio * highest, rubbing))
+    return Limit(
+        name=LimitName.PROGRAMMED_FEED if highest is None else LimitName.FEED_PER_TOOTH,
+        load=Monomial(coefficient=share, feed_exponent=1.0),
+        bound=borne,
+        unit="mm",
+        step=0.01,
+        origin=f"{ratio:g} of the catalogue's along the axis" if ratio < 1.0 else "",
+    )
+
+
+def _thrust_limits(cut: Cut, at: Conditions, sine: float) -> Iterator[Limit]:
+    """Thrust of a plunge into the solid at the part of the feed along the axis."""
+    if at.machine.max_cutting_force is None:
+        return
+    drill = cut.as_drill
+    load = loads.thrust(drill, at.material.kienzle, force_factor(at), drill_point(at))
+    yield Limit(
+        name=LimitName.CUTTING_FORCE,
+        label="thrust",
+        load=loads.scaled(load, sine**load.feed_exponent),
+        bound=at.machine.max_cutting_force,
+        unit="N",
+        step=100.0,
+    )

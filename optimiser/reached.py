@@ -1,0 +1,160 @@
+"""What the greatest forces of a path become because its axes are slower there than the feed.
+
+Limits are held against the programmed feed: another control may not brake in a corner. What a
+run on this machine shows is less where the hardest place is a corner, an end, or a way down
+with a feed of its own. Units mm, s.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from optimiser.cut import Cut, CutKind, Reached
+from optimiser.hardest import KINDS, LEAST_RATIO, Bending, Met
+from simulator.motion.motion import AxisLimits, ControlModel
+from simulator.motion.reached import reached_speeds
+from simulator.motion.segments import Bools, Floats, Ints
+from simulator.motion.tool_path import Run
+from simulator.removal.stations import Stations
+
+INSIDE = np.array([1e-6, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0 - 1e-6])
+"""places in a stretch, the first and the last just inside its ends"""
+
+HARD = 0.5
+"""of the greatest force; where more than that is reached, no easier place can be harder"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ride:
+    """How the axes run a path."""
+
+    run: Run
+    control: ControlModel
+    limits: AxisLimits
+    feed: float
+    """mm/s, of the technology"""
+    spindle: float
+    """rev/s at the diameter of the cut"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Loads:
+    """Force, power and force at the wall, in proportion."""
+
+    rows: Ints
+    """(K,) stations that cut at a feed"""
+    programmed: Floats
+    """(3, K) with the chip that is programmed there"""
+    nominal: Floats
+    """(3,) greatest with the chip of the technology's feed, as limits have them"""
+
+
+def with_reached(cut: Cut, met: Met, bent: Bending, ride: Ride, *, exponent: float) -> Cut:
+    """A cut with what its greatest loads become along its path.
+
+    Parameters
+    ----------
+    cut : Cut
+    met : Met
+        What the path met.
+    bent : Bending
+        By the same stations.
+    ride : Ride
+    exponent : float
+        m_c.
+    """
+    stations = met.stations
+    rows = (stations.kind == KINDS[cut.kind]) & (stations.section > 0.0)
+    rows &= ~ride.run.segments.is_rapid[stations.segment]
+    rows &= ride.run.spindle[stations.segment] > 0.0
+    if not rows.any():
+        return cut
+    loads = _loads(cut, met, bent, ride, np.flatnonzero(rows), exponent)
+    if cut.kind in {CutKind.TURNING, CutKind.GROOVING}:
+        at = met.stations.segment[loads.rows[loads.programmed[1].argmax()]]
+        return replace(
+            cut,
+            power_diameter=_power_diameter(loads, ride),
+            power_speed=float(ride.run.spindle[at]) / ride.spindle,
+        )
+    if cut.kind is CutKind.DRILLING:
+        # The limits hold against what is programmed, whatever the strategy of the hole.
+        most, force = loads.programmed.max(axis=1), float(loads.nominal[0])
+        thickest = max(float(most[0]) / force, 1.0)
+        cut = replace(
+            cut,
+            thickest=thickest ** (1.0 / (1.0 - exponent)),
+            power_diameter=_power_diameter(loads, ride) / thickest,
+        )
+        loads = replace(loads, nominal=np.array([thickest * force, most[1], 0.0]))
+    hard = (loads.programmed >= HARD * loads.nominal[:, None]) & (loads.programmed > 0.0)
+    found = _shares(met, ride, loads, np.any(hard, axis=0), exponent)
+    if found.min() < HARD:
+        found = _shares(met, ride, loads, np.ones(len(loads.rows), dtype=np.bool_), exponent)
+    force, power, wall = found.tolist()
+    return replace(cut, reached=Reached(force=force, power=power, wall=wall))
+
+
+def _loads(
+    cut: Cut, met: Met, bent: Bending, ride: Ride, rows: Ints, exponent: float
+) -> _Loads:
+    """What the stations take."""
+    stations, segment = met.stations, met.stations.segment[rows]
+    ratio, diameter = stations.chip_ratio[rows].clip(LEAST_RATIO), stations.diameter[rows]
+    if cut.kind in {CutKind.TURNING, CutKind.GROOVING}:
+        force = stations.axial_depth[rows] * ratio**-exponent
+    else:
+        force = stations.peak_section[rows] * ratio**-exponent / diameter
+    wall = np.zeros(len(stations))
+    wall[bent.at] = bent.wall
+    spindle = ride.run.spindle[segment]
+    chip = ride.run.segments.speed[segment] / ride.feed * ride.spindle / spindle
+    if cut.kind in {CutKind.TURNING, CutKind.GROOVING}:
+        chip = np.ones(len(rows))
+    thinned = chip ** (1.0 - exponent)
+    programmed = np.stack((force, force * diameter * spindle, wall[rows])) * thinned
+    most = float(force.max())
+    power = most * cut.force_diameter * ride.spindle
+    return _Loads(
+        rows=rows,
+        programmed=programmed,
+        nominal=np.array([most, power, float(wall[rows].max())]),
+    )
+
+
+def _power_diameter(loads: _Loads, ride: Ride) -> float:
+    """Diameter, mm, at which the greatest force takes the greatest power."""
+    return float(loads.programmed[1].max() / (loads.nominal[0] * ride.spindle))
+
+
+def _shares(met: Met, ride: Ride, loads: _Loads, at: Bools, exponent: float) -> Floats:
+    """(3,) what the axes leave of the nominal loads; 1 of nothing."""
+    rows = loads.rows[at]
+    if not len(rows):
+        return np.zeros(3)
+    programmed = ride.run.segments.speed[met.stations.segment[rows], None]
+    slower = (_speeds(met, ride, rows) / programmed) ** (1.0 - exponent)
+    reached = loads.programmed[:, at] * (_filled(met.stations, rows) * slower).max(axis=1)
+    is_some = loads.nominal > 0.0
+    whole = np.where(is_some, loads.nominal, 1.0)
+    return np.where(is_some, reached.max(axis=1) / whole, 1.0)
+
+
+def _speeds(met: Met, ride: Ride, rows: Ints) -> Floats:
+    """(K, P) mm/s at the places in K stretches."""
+    places = met.stations.station[rows, None] - met.length[rows, None] * (1.0 - INSIDE)
+    speeds = reached_speeds(
+        ride.run,
+        ride.control,
+        ride.limits,
+        segment=np.repeat(met.stations.segment[rows], len(INSIDE)),
+        station=places.ravel(),
+    )
+    return speeds.reshape(places.shape)
+
+
+def _filled(stations: Stations, rows: Ints) -> Floats:
+    """(K, P) section there over the greatest of the stretch."""
+    section = stations.section[rows, None] + stations.growth[rows, None] * (INSIDE - 0.5)
+    share: Floats = section / stations.peak_section[rows, None]
+    return share

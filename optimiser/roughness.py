@@ -1,0 +1,65 @@
+"""The surface that a feed leaves, and the feed that a surface allows."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from optimiser.conditions import Conditions
+from optimiser.cut import Cut, Texture
+from optimiser.limit import Limit, LimitName, Monomial
+from simulator.physics.surface import RA_FLOOR, corner_coefficient, wall_coefficient
+from stepnc_model.units import UM_PER_MM
+
+LAND_SHARE = 0.8
+"""greatest feed per revolution over the parallel land of a face mill's inserts: each revolution
+then smooths what the one before left; Sandvik Coromant, milling surface generation"""
+
+WIPER_FEED = 2.0
+"""feed of a wiper insert over that of a round nose for the same surface; Kyocera, chipbreaker
+selection for steel, WP and WQ: double feed rate while maintaining a smooth finish"""
+
+
+def surface_limits(cut: Cut, at: Conditions) -> Iterator[Limit]:
+    """Roughness, where the feed describes it."""
+    if at.roughness is None:
+        return
+    if cut.parallel_land > 0.0 and at.roughness >= RA_FLOOR:
+        yield Limit(
+            name=LimitName.ROUGHNESS,
+            label="feed per revolution on the parallel land",
+            load=Monomial(coefficient=float(cut.tool.teeth), feed_exponent=1.0),
+            bound=LAND_SHARE * cut.parallel_land,
+            unit="mm",
+            step=0.1,
+        )
+    elif roughness_load(replace(cut, parallel_land=0.0)) is not None:
+        yield roughness_limit(replace(cut, parallel_land=0.0), at.roughness)
+
+
+def roughness_limit(cut: Cut, roughness: float) -> Limit:
+    """Ra in mm at most so much; ValueError when the feed does not describe the surface."""
+    load = roughness_load(cut)
+    if load is None:
+        raise ValueError("the feed does not describe this surface")
+    return Limit(
+        name=LimitName.ROUGHNESS, load=load, bound=roughness, unit="µm", scale=UM_PER_MM
+    )
+
+
+def roughness_load(cut: Cut) -> Monomial | None:
+    """Ra in mm as a function of the feed, or None where the feed does not describe it.
+
+    Ideal roughness of :mod:`simulator.physics.surface` and the floor; the feed of a corner is
+    per revolution for one high tooth, per tooth for equal ones, over :data:`WIPER_FEED` with a
+    wiper.
+    """
+    if cut.texture is Texture.NONE or cut.parallel_land > 0.0:
+        return None
+    if cut.texture is Texture.WALL:
+        coefficient = wall_coefficient(cut.diameter)
+    elif cut.corner_radius > 0.0:
+        marked_by = cut.tool.teeth if cut.texture is Texture.CORNER_PER_REVOLUTION else 1
+        smoothed = WIPER_FEED**2 if cut.tool.has_wiper else 1.0
+        coefficient = marked_by**2 * corner_coefficient(cut.corner_radius) / smoothed
+    else:
+        return None
+    return Monomial(coefficient=coefficient, offset=RA_FLOOR, feed_exponent=2.0)

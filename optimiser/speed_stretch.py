@@ -1,0 +1,94 @@
+"""Bounds that fall with the spindle speed, as powers of it on stretches of the speeds.
+
+What solves takes bounds ``b·n^δ``. What the idling spindle leaves of its drive's power, and
+what the flying jaws leave of a chuck's force, are no powers of the speed; but their logarithm
+is concave in that of the speed, so that a power through the ends of a stretch lies below them
+in between: on the safe side, and by little where the stretch is short.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from itertools import pairwise
+from math import ceil, inf, log, sqrt
+
+from optimiser.conditions import Conditions
+from optimiser.cut import Cut
+from optimiser.limits import segment_at
+from simulator.physics.holding import permitted_speed
+from simulator.physics.spindle import CurveSegment, available_power, curve_segments
+from simulator.physics.spindle_motion import idle_power
+from simulator.work_holding import (
+    Chuck,
+)
+
+STEP = 2.0
+"""greatest ratio of the ends of a stretch: a power is 3 % off what an idling spindle leaves
+where it takes a third of the drive"""
+
+LOSSES = tuple(share / 10.0 for share in range(1, 10))
+"""of a chuck's force, by which stretches end as well: a power is 6 % off in the last of them,
+1 % before"""
+
+LEAST_POWER = 1.0
+"""W; what idles a spindle must leave something, for a bound must be positive"""
+
+
+def powers_of_speed(
+    bound_at: Callable[[float], float], slow: float, fast: float
+) -> tuple[float, float]:
+    """(b, δ) of ``b·n^δ`` through a bound at two speeds; of one speed δ is 0."""
+    low, high = bound_at(slow), bound_at(fast)
+    exponent = log(high / low) / log(fast / slow) if fast > slow else 0.0
+    return low / slow**exponent, exponent
+
+
+def stretch_ends(cut: Cut, at: Conditions, low: float, high: float) -> tuple[float, ...]:
+    """Speeds between which bounds are powers of the speed, ascending from least to greatest."""
+    inner = {part.max_speed for part in curve_segments(at.machine.spindle)}
+    if not at.machine.only_stated_limits:
+        if cut.turned is not None and cut.turned.speed_ratio < inf:
+            inner |= {speed / cut.turned.speed_ratio for speed in inner}
+        inner |= set(_chuck_ends(cut, at))
+    ends = (low, *sorted(speed for speed in inner if low < speed < high), high)
+    if at.machine.only_stated_limits:
+        return ends
+    return (*(speed for pair in pairwise(ends) for speed in _parts(*pair)), high)
+
+
+def _parts(slow: float, fast: float) -> Iterator[float]:
+    """Speeds from one on, in equal steps of its logarithm, before another."""
+    count = max(1, ceil(log(fast / slow) / log(STEP) - 1e-9))
+    return (slow * (fast / slow) ** (row / count) for row in range(count))
+
+
+def _chuck_ends(cut: Cut, at: Conditions) -> Iterator[float]:
+    """Speeds at which a chuck has lost more and more of its force."""
+    if isinstance(at.holding, Chuck) and (limit := permitted_speed(at.holding)) < inf:
+        ratio = cut.turned.speed_ratio if cut.turned is not None else 1.0
+        for share in LOSSES:
+            yield limit * sqrt(share)
+            yield limit * sqrt(share) / ratio
+
+
+def segment_within(cut: Cut, at: Conditions, slow: float, fast: float) -> CurveSegment:
+    """The spindle's curve on a stretch: what idling leaves of its power on the whole path."""
+    segment = segment_at(at, sqrt(slow * fast))
+    if at.machine.only_stated_limits:
+        return segment
+    spindle = at.machine.spindle
+
+    def left(speed: float) -> float:
+        fastest = speed if cut.turned is None else cut.turned.fastest(speed)
+        return min(
+            max(available_power(spindle, each) - idle_power(spindle, each), LEAST_POWER)
+            for each in (speed, fastest)
+        )
+
+    coefficient, exponent = powers_of_speed(left, slow, fast)
+    return replace(
+        segment,
+        min_speed=slow,
+        max_speed=fast,
+        power_coefficient=coefficient,
+        power_exponent=exponent,
+    )

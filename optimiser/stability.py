@@ -1,0 +1,343 @@
+"""Stability of a cut: which measured modes hold for it, and what depth they allow.
+
+Only measured modes bound the depth: by the zero-order lobes in milling, by the orthogonal limit
+at any speed in turning. Without them an estimate by the tool's overhang tells the depth that is
+stable at any speed, with its band; it bounds nothing, for it would forbid nearly every slot.
+Zero order is not used for thin cuts and at speeds at which the flank damps; that is told.
+"""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import lru_cache
+from math import inf, sin, sqrt
+from typing import TYPE_CHECKING
+
+from optimiser.chip_load import least_feed
+from optimiser.conditions import Conditions
+from optimiser.cut import Cut, CutKind
+from optimiser.limit import Limit, LimitName, Monomial, SpeedCurve
+from optimiser.limits import force_factor, speed_range
+from optimiser.measured_modes import MeasuredModes, measured_modes, what_is_measured
+from simulator.physics.cutting import chip_stiffness
+from simulator.physics.engagement import mean_chip_ratio
+from simulator.physics.milling import RADIAL_SHARE
+from simulator.physics.strength import STICK_OUT, deflection, equivalent_diameter
+from simulator.spec import (
+    Direction,
+    Grade,
+    ToolKind,
+    VibratingPart,
+    VibrationMode,
+)
+from stepnc_model.tool import Tool
+from stepnc_model.units import n_um_from_n_mm, rpm_from_rev_s
+
+if TYPE_CHECKING:
+    from simulator.physics.receptance import Structure
+    from simulator.physics.stability import DynamicCut
+
+FREQUENCY_TOLERANCE = 0.01
+"""share by which a natural frequency may be off: what a tap test with a resolution of a few Hz
+tells, and what a warm spindle moves; no speed is advised nearer to the edge of a lobe"""
+
+SPEED_STEP = 1e-3
+"""share between two speeds at which lobes are drawn"""
+
+LEAST_SPEED_SHARE = 0.1
+"""of the greatest speed, where neither machine nor tool names a least one"""
+
+STIFFNESS_BAND = (5_000.0, 20_000.0)
+"""N/mm at the tip of usual end mills: band of the estimate"""
+
+DAMPING_BAND = (0.02, 0.05)
+"""ζ of tools in their holders: band of the estimate"""
+
+TOOL_SHARE = 0.5
+"""of the stiffness of the tool alone that is left at its tip: holder and spindle often give as
+much as the tool"""
+
+
+class Basis(StrEnum):
+    """What a statement on stability rests on."""
+
+    MEASURED = "measured"
+    """modes of a tap test: the depth is bounded"""
+    ESTIMATED = "estimated"
+    """the overhang of the tool: nothing is bounded"""
+    NOT_USED = "not_used"
+    """the model does not hold for this cut: nothing is bounded"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stability:
+    """What is known of the stability of a cut."""
+
+    basis: Basis
+    reason: str
+    """what was measured or assumed, or why the model is not used"""
+    least: float | None = None
+    """mm of one pass, stable at any speed"""
+    band: tuple[float, float] | None = None
+    """mm, of an estimate"""
+
+
+def stability_limits(cut: Cut, at: Conditions) -> tuple[Limit, ...]:
+    """The depth of one pass that measured modes allow; none where nothing is measured."""
+    measured = measured_modes(cut, at.machine)
+    if measured is None or _why_not_used(cut, at, measured):
+        return ()
+    if cut.kind is CutKind.TURNING:
+        depth = _turning_depth(cut, at, measured)
+        return (_limit(cut, bound=depth, curve=None),) if depth < inf else ()
+    return (_limit(cut, bound=1.0, curve=_lobes(cut, at, measured)),)
+
+
+def stability_of(cut: Cut, at: Conditions) -> Stability | None:
+    """What is known of a cut's stability; None where chatter is no matter of its depth."""
+    if cut.kind not in {CutKind.MILLING, CutKind.TURNING} or cut.is_air:
+        return None
+    measured = measured_modes(cut, at.machine)
+    if measured is not None:
+        why = _why_not_used(cut, at, measured)
+        if why:
+            return Stability(basis=Basis.NOT_USED, reason=why)
+        return Stability(
+            basis=Basis.MEASURED,
+            reason=what_is_measured(cut, measured),
+            least=_least_measured(cut, at, measured) / cut.depth_share,
+        )
+    if cut.kind is not CutKind.MILLING or at.grade is None or cut.engagement is None:
+        return None
+    if at.machine.only_stated_limits:
+        return None
+    why = _why_thin(cut)
+    if why:
+        return Stability(basis=Basis.NOT_USED, reason=why)
+    return _estimated(cut, at, at.grade)
+
+
+def estimate_texts(told: Iterable[tuple[Tool, Stability, float]]) -> Iterator[tuple[str, str]]:
+    """Id of each tool without measured modes, and what is estimated for its hardest cut.
+
+    Parameters
+    ----------
+    told : iterable of (Tool, Stability, float)
+        Of each workingstep, with the depth of its passes in mm.
+    """
+    hardest: dict[str, tuple[Stability, float]] = {}
+    for tool, found, depth in told:
+        if found.basis is not Basis.ESTIMATED or found.least is None:
+            continue
+        before = hardest.get(tool.id)
+        if before is None or depth / found.least > before[1] / (before[0].least or inf):
+            hardest[tool.id] = (found, depth)
+    for tool_id, (found, depth) in hardest.items():
+        low, high = found.band or (0.0, 0.0)
+        stiff, soft = n_um_from_n_mm(STIFFNESS_BAND[1]), n_um_from_n_mm(STIFFNESS_BAND[0])
+        yield (
+            tool_id,
+            f"stability bounds no depth of tool '{tool_id}', as no modes are measured; "
+            f"estimated by {found.reason}, {found.least:.2g} mm would be stable at any speed "
+            f"({low:.2g} to {high:.2g} mm for {soft:g} to {stiff:g} N/µm and "
+            f"ζ {DAMPING_BAND[0]:g} to {DAMPING_BAND[1]:g}), and {depth:.3g} mm are cut: "
+            "tap the tool, and import its modes with `stepnc taptest`",
+        )
+
+
+def _limit(cut: Cut, *, bound: float, curve: SpeedCurve | None) -> Limit:
+    """The depth where the cut is deepest, against chatter."""
+    return Limit(
+        name=LimitName.STABILITY,
+        load=Monomial(coefficient=cut.depth_share, depth_exponent=1.0),
+        bound=bound,
+        unit="mm",
+        curve=curve,
+    )
+
+
+def _why_not_used(cut: Cut, at: Conditions, measured: MeasuredModes) -> str:
+    """Why measured modes bound nothing; empty where they do."""
+    if cut.kind is CutKind.MILLING:
+        why = _why_thin(cut)
+        if why:
+            return why
+        modes, highest = measured.in_plane, _speeds(cut, at)[1]
+    else:
+        modes, highest = measured.along_axis, cut.programmed.speed
+    from simulator.physics.stability import damped_speed  # noqa: PLC0415 (numpy)
+
+    damped = damped_speed(modes, cut.diameter)
+    if highest > damped:
+        return ""
+    return (
+        f"the flank damps the waves below {rpm_from_rev_s(damped):.0f} rpm, where zero order "
+        "is not used"
+    )
+
+
+def _why_thin(cut: Cut) -> str:
+    """Why zero order does not hold for an engagement; empty where it does."""
+    from simulator.physics.stability import LEAST_IMMERSION  # noqa: PLC0415 (numpy)
+
+    if cut.engagement is None:
+        return "the engagement is not known"
+    immersion = 0.5 * cut.engagement.cosine_difference
+    if immersion >= LEAST_IMMERSION:
+        return ""
+    return f"a_e/D {immersion:.2g} is below {LEAST_IMMERSION:g}, where zero order is not used"
+
+
+def _cutting_stiffness(cut: Cut, at: Conditions) -> tuple[float, float]:
+    """K_t in N/mm² and K_r: what a wave adds to the force, so without the edge's rubbing.
+
+    From the linear-edge law where it was measured, else the slope of Kienzle's force at the
+    mean chip of the least feed that is recommended: the thinner chip is the stiffer one, and
+    the bound must not move with the feed that is sought under it.
+    """
+    factor, edge = force_factor(at), at.material.linear_edge
+    sine = sin(cut.tool.cutting_edge_angle)
+    if edge is not None:
+        ratio = edge.k_rc / edge.k_tc if edge.k_rc > 0.0 else RADIAL_SHARE
+        return factor * edge.k_tc, sine * ratio
+    kienzle = at.material.kienzle
+    chip = (least_feed(cut, at) or cut.programmed.feed) * _chip_ratio(cut)
+    if at.grade is not None:
+        chip = max(chip, at.grade.min_chip_thickness)
+    stiffness = chip_stiffness(chip, k_c11=kienzle.k_c11, m_c=kienzle.m_c)
+    return factor * stiffness, sine * RADIAL_SHARE
+
+
+def _chip_ratio(cut: Cut) -> float:
+    """Mean chip over the feed per tooth or revolution."""
+    if cut.engagement is None:
+        return sin(cut.tool.cutting_edge_angle)
+    return mean_chip_ratio(cut.engagement, cutting_edge_angle=cut.tool.cutting_edge_angle)
+
+
+def _speeds(cut: Cut, at: Conditions) -> tuple[float, float]:
+    """Speeds that lobes are drawn for: those that may be chosen, and the programmed one."""
+    given = cut.programmed.speed
+    low, high = speed_range(cut, at)
+    if not low < high < inf:
+        return given, given
+    low = max(low, LEAST_SPEED_SHARE * high)
+    return min(low, given), max(high, given)
+
+
+def _lobes(cut: Cut, at: Conditions, measured: MeasuredModes) -> SpeedCurve:
+    """Greatest stable depth by speed, from where the flank stops damping."""
+    from simulator.physics.receptance import Structure  # noqa: PLC0415 (numpy)
+    from simulator.physics.stability import damped_speed  # noqa: PLC0415 (numpy)
+
+    low, high = _speeds(cut, at)
+    low = max(low, damped_speed(measured.in_plane, cut.diameter))
+    structure = Structure(x=measured.x, y=measured.y)
+    return _drawn(_dynamic_cut(cut, at), structure, low, high)
+
+
+def _least_measured(cut: Cut, at: Conditions, measured: MeasuredModes) -> float:
+    """Depth that is stable at any speed, mm."""
+    from simulator.physics.receptance import Structure  # noqa: PLC0415 (numpy)
+
+    if cut.kind is CutKind.TURNING:
+        return _turning_depth(cut, at, measured)
+    return _least(_dynamic_cut(cut, at), Structure(x=measured.x, y=measured.y))
+
+
+def _turning_depth(cut: Cut, at: Conditions, measured: MeasuredModes) -> float:
+    """Depth of cut in turning that is stable at any speed, mm."""
+    from simulator.physics.stability import MOST_DEPTH  # noqa: PLC0415 (numpy)
+    from simulator.physics.turning_stability import orthogonal_limit  # noqa: PLC0415 (numpy)
+
+    stiffness, ratio = _cutting_stiffness(cut, at)
+    angle = cut.tool.cutting_edge_angle
+    depth = orthogonal_limit(
+        measured.x,
+        measured.z,
+        stiffness=stiffness * ratio / sin(angle),
+        cutting_edge_angle=angle,
+    )
+    return depth if depth < MOST_DEPTH else inf
+
+
+def _dynamic_cut(cut: Cut, at: Conditions) -> "DynamicCut":
+    """What a milling cut does with a wave where it is engaged most."""
+    from simulator.physics.stability import DynamicCut  # noqa: PLC0415 (numpy)
+
+    if cut.engagement is None:
+        raise ValueError("a milling cut needs its engagement")
+    stiffness, ratio = _cutting_stiffness(cut, at)
+    return DynamicCut(
+        engagement=cut.engagement,
+        teeth=cut.tool.teeth,
+        stiffness=stiffness,
+        radial_ratio=ratio,
+    )
+
+
+@lru_cache(maxsize=256)
+def _drawn(cut: "DynamicCut", structure: "Structure", low: float, high: float) -> SpeedCurve:
+    """Lobes between two speeds; kept, for a workingstep asks for the same ones many times."""
+    from simulator.physics.stability import lobes  # noqa: PLC0415 (numpy)
+
+    speeds, depths = lobes(
+        cut, structure, between=(low, high), step=SPEED_STEP, tolerance=FREQUENCY_TOLERANCE
+    )
+    return SpeedCurve(speeds=speeds, bounds=depths)
+
+
+@lru_cache(maxsize=256)
+def _least(cut: "DynamicCut", structure: "Structure") -> float:
+    """Depth that is stable at any speed, mm."""
+    from simulator.physics.stability import least_stable_depth  # noqa: PLC0415 (numpy)
+
+    return least_stable_depth(cut, structure)
+
+
+def _estimated(cut: Cut, at: Conditions, grade: Grade) -> Stability:
+    """What the overhang of the tool lets expect, the same along x and y."""
+    diameter, softest, stiffest = cut.tool.diameter, *STIFFNESS_BAND
+    stiffness, of = sqrt(softest * stiffest), "usual tools"
+    if cut.tool_kind is ToolKind.ENDMILL:
+        overhang = max(STICK_OUT * diameter, cut.tool.cutting_edge_length or 0.0)
+        compliance = deflection(
+            1.0,
+            overhang=overhang,
+            diameter=equivalent_diameter(diameter),
+            youngs_modulus=grade.youngs_modulus,
+        )
+        stiffness = min(max(TOOL_SHARE / compliance, softest), stiffest)
+        of = f"an overhang of {overhang:.3g} mm"
+    damping = sqrt(DAMPING_BAND[0] * DAMPING_BAND[1])
+    found = [
+        _expected(cut, at, stiffness=k, damping=zeta)
+        for k, zeta in (
+            (stiffness, damping),
+            (softest, DAMPING_BAND[0]),
+            (stiffest, DAMPING_BAND[1]),
+        )
+    ]
+    return Stability(
+        basis=Basis.ESTIMATED,
+        reason=f"{of} ({n_um_from_n_mm(stiffness):.2g} N/µm, ζ {damping:.2g})",
+        least=found[0],
+        band=(found[1], found[2]),
+    )
+
+
+def _expected(cut: Cut, at: Conditions, *, stiffness: float, damping: float) -> float:
+    """Depth of one pass that is stable at any speed, mm, for one mode along x and y."""
+    from simulator.physics.receptance import Structure  # noqa: PLC0415 (numpy)
+
+    mode = VibrationMode(
+        part=VibratingPart.TOOL,
+        direction=Direction.XY,
+        # The least of all lobes does not depend on it.
+        natural_frequency=1_000.0,
+        damping_ratio=damping,
+        stiffness=stiffness,
+        source="estimate",
+    )
+    structure = Structure(x=(mode,), y=(mode,))
+    return _least(_dynamic_cut(cut, at), structure) / cut.depth_share

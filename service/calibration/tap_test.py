@@ -1,0 +1,153 @@
+"""The verb ``taptest``: modes of a tool or a workpiece from a measured frequency response."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from service.files import require_place, write_atomically
+from service.reading import Tell, one_of, silent
+from simulator.calibration.frequency_response import read_response
+from simulator.calibration.modal_fit import ModalFit, fitted_modes
+from simulator.errors import CalibrationError
+from simulator.library import load_machine
+from simulator.machine_file import DAMPING, FREQUENCY, MODE_DIAMETER, STIFFNESS
+from simulator.machine_toml import machine_toml
+from simulator.spec import Direction, Machine, VibratingPart, VibrationMode
+from stepnc_model.errors import Finding, Severity, StepNcError
+from stepnc_model.units import n_um_from_n_mm
+
+MOST_UNEXPLAINED = 0.2
+"""share of the response beyond which its modes are doubted"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TapTestRequest:
+    """What the user asks of ``taptest``, in the user's units."""
+
+    response: Path
+    direction: str
+    tool: str = ""
+    """id of the tool as programs name it"""
+    tool_diameter_mm: float | None = None
+    workpiece: bool = False
+    """the workpiece was tapped, and no tool"""
+    modes: int | None = None
+    source: str = ""
+    machine: str = ""
+    output: Path | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TapTestResult:
+    """What ``taptest`` found."""
+
+    modes: tuple[VibrationMode, ...]
+    fit: ModalFit
+    findings: tuple[Finding, ...]
+
+
+def tap_test(request: TapTestRequest, *, tell: Tell = silent) -> TapTestResult:
+    """Fit modes to a frequency response; with an output, write the machine file with them.
+
+    Modes of the same part in the same direction are replaced.
+
+    Raises
+    ------
+    StepNcError
+        For everything that is wrong with response, words or output; nothing is written.
+    """
+    direction = one_of(Direction, request.direction.lower(), "direction")
+    _require_part(request)
+    machine = _machine(request)
+    path = str(request.response)
+    fit = fitted_modes(read_response(request.response), count=request.modes, path=path)
+    modes = tuple(
+        VibrationMode(
+            part=VibratingPart.WORKPIECE if request.workpiece else VibratingPart.TOOL,
+            tool=request.tool.strip(),
+            tool_diameter=request.tool_diameter_mm,
+            direction=direction,
+            natural_frequency=_rounded(mode.natural_frequency),
+            damping_ratio=_rounded(mode.damping_ratio),
+            stiffness=_rounded(mode.stiffness),
+            source=request.source or f"tap test {request.response.name}",
+        )
+        for mode in fit.modes
+    )
+    for mode in modes:
+        _require_usual(mode, path)
+    if machine is not None and request.output is not None:
+        kept = tuple(
+            left for old in machine.modes if (left := _left_of(old, modes[0])) is not None
+        )
+        text = machine_toml(replace(machine, modes=(*kept, *modes)))
+        write_atomically(request.output, text.encode())
+        tell(f"machine file: {request.output}")
+    return TapTestResult(modes=modes, fit=fit, findings=tuple(_doubts(fit)))
+
+
+def _require_part(request: TapTestRequest) -> None:
+    """A tool by its id or diameter, or the workpiece."""
+    is_tool = bool(request.tool.strip()) or request.tool_diameter_mm is not None
+    if is_tool is request.workpiece:
+        raise StepNcError(
+            "say what was tapped: --tool ID or --tool-diameter-mm MM, or --workpiece"
+        )
+    if request.tool_diameter_mm is not None:
+        complaint = MODE_DIAMETER.complaint(request.tool_diameter_mm)
+        if complaint:
+            raise StepNcError(f"tool diameter: {complaint}")
+    if request.modes is not None and request.modes < 1:
+        raise StepNcError(f"{request.modes} modes: at least 1")
+
+
+def _machine(request: TapTestRequest) -> Machine | None:
+    """The machine whose file is written."""
+    if request.output is None:
+        if request.machine:
+            raise StepNcError("--machine is written with its modes: name a file with -o")
+        return None
+    if not request.machine:
+        raise StepNcError("-o writes a machine file: name the machine with --machine")
+    require_place(request.output, apart_from=request.response)
+    return load_machine(request.machine)
+
+
+def _rounded(value: float) -> float:
+    """As many digits as a tap test may tell."""
+    return float(f"{value:.4g}")
+
+
+def _require_usual(mode: VibrationMode, path: str) -> None:
+    """A mode that the machine file would take."""
+    for what, value, allowed in (
+        ("natural frequency", mode.natural_frequency, FREQUENCY),
+        ("damping ratio", mode.damping_ratio, DAMPING),
+        ("stiffness", n_um_from_n_mm(mode.stiffness), STIFFNESS),
+    ):
+        complaint = allowed.complaint(value)
+        if complaint:
+            raise CalibrationError(f"{what}: {complaint}; another unit?", path=path)
+
+
+def _left_of(old: VibrationMode, new: VibrationMode) -> VibrationMode | None:
+    """What stays of an old mode: all, or the direction in which nothing new was measured."""
+    same = (new.part, new.tool.casefold(), new.tool_diameter) == (
+        old.part,
+        old.tool.casefold(),
+        old.tool_diameter,
+    )
+    left = set(old.direction.value) - set(new.direction.value) if same else set()
+    if not same or left == set(old.direction.value):
+        return old
+    return replace(old, direction=Direction(left.pop())) if left else None
+
+
+def _doubts(fit: ModalFit) -> list[Finding]:
+    """What somebody should know of a fit."""
+    if fit.unexplained <= MOST_UNEXPLAINED:
+        return []
+    text = (
+        f"the modes leave {fit.unexplained:.0%} of the response unexplained: "
+        "look at its coherence, or ask for another number of modes"
+    )
+    return [Finding(severity=Severity.WARNING, message=text)]

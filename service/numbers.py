@@ -1,0 +1,55 @@
+"""Numbers and raw parts that the user types, with commas between them."""
+
+from math import isfinite
+
+from stepnc_model.errors import StepNcError
+from stepnc_model.stock import Stock
+from stepnc_model.toolpath.path import FARTHEST
+
+LEAST_SIZE = 0.01
+"""mm, of a stock along an axis"""
+
+
+def numbers_in(text: str, what: str, *, counts: tuple[int, ...]) -> tuple[float, ...]:
+    """Finite numbers with commas between them.
+
+    Raises
+    ------
+    StepNcError
+        When they are no numbers, or not as many as they may be.
+    """
+    try:
+        numbers = tuple(float(word) for word in text.split(","))
+    except ValueError:
+        numbers = ()
+    if len(numbers) not in counts or not all(map(isfinite, numbers)):
+        wanted = " or ".join(map(str, counts))
+        raise StepNcError(f"{what} '{text}': {wanted} numbers with commas between them")
+    return numbers
+
+
+def stock_in(text: str) -> Stock:
+    """Six corners of a block, or diameter and two ends of a bar, in mm.
+
+    Raises
+    ------
+    StepNcError
+        When they are no such numbers, or :func:`require_size` refuses the stock.
+    """
+    numbers = numbers_in(text, "stock", counts=(3, 6))
+    radius = None
+    if len(numbers) == 3:
+        radius = 0.5 * numbers[0]
+        numbers = (-radius, -radius, numbers[1], radius, radius, numbers[2])
+    low, high = numbers[:3], numbers[3:]
+    stock = Stock(low=(low[0], low[1], low[2]), high=(high[0], high[1], high[2]), radius=radius)
+    require_size(stock)
+    return stock
+
+
+def require_size(stock: Stock) -> None:
+    """Refuse a stock of which there is nothing, or more than any machine holds."""
+    for axis, low, high in zip("xyz", stock.low, stock.high, strict=True):
+        if not high - low >= LEAST_SIZE or max(abs(low), abs(high)) > FARTHEST:
+            bound = f"at least {LEAST_SIZE:g} mm, within {FARTHEST:g} mm of zero"
+            raise StepNcError(f"stock: {axis} from {low:g} to {high:g} mm: {bound}")

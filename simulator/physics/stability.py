@@ -1,0 +1,342 @@
+"""Regenerative chatter: the depth beyond which a cut excites a mode of the structure.
+
+Milling by the zero-order solution of [1]_: only the mean of the directional coefficients over
+a tooth period is kept, which makes the border of stability a closed form of the chatter
+frequency. That holds while the cut is nearly continuous; below a radial width of a tenth of
+the diameter the neglected harmonics open further lobes (period doubling, [2]_). Flank and wave
+are taken not to touch: at low speed they do, and damp.
+
+Feed along x, the angle φ of a tooth as in :mod:`simulator.physics.engagement`; the structure
+gives in the plane of the cut, rigid along the spindle. Units mm, s, N, rad, rev/s.
+
+References
+----------
+.. [1] Y. Altintas and E. Budak, "Analytical prediction of stability lobes in milling", CIRP
+   Annals 44(1), 1995, 357-362, doi:10.1016/S0007-8506(07)62342-7; also Y. Altintas,
+   "Manufacturing Automation", Cambridge, 2012, ch. 4.
+.. [2] S. D. Merdol and Y. Altintas, "Multi frequency solution of chatter stability for low
+   immersion milling", J. Manuf. Sci. Eng. 126 (2004), 459-466.
+.. [3] R. L. Sisson and R. L. Kegg, "An explanation of low-speed chatter effects", J. Eng. Ind.
+   91 (1969), 951-958: the flank of the tool meets the slope of the wave.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import ceil, cos, pi, sin
+
+import numpy as np
+
+from simulator.physics.domain import (
+    require_not_negative,
+    require_positive,
+    require_teeth,
+)
+from simulator.physics.engagement import Engagement
+from simulator.physics.receptance import (
+    Complex,
+    Floats,
+    Structure,
+    chatter_frequencies,
+    receptance,
+)
+from simulator.spec import VibrationMode
+
+LEAST_IMMERSION = 0.1
+"""a_e/D below which zero order is not used: [2]_ shows its error for small immersions"""
+
+DAMPED_WAVELENGTH = 0.5
+"""mm of a wave on the surface, below which the flank damps: at an amplitude of 14 µm its slope
+is that of a clearance of 10°, [3]_; conservative, for waves grow until they lose the chip"""
+
+MOST_LOBES = 150
+"""lobes counted from the fastest; below the slowest of them the least depth holds"""
+
+MOST_DEPTH = 1e4
+"""mm, stands for a depth that no mode limits"""
+
+FEED_ANGLES = 12
+"""directions of feed that are tried between 0 and π"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DynamicCut:
+    """What a milling cut does with a wave on the surface."""
+
+    engagement: Engagement
+    teeth: int
+    stiffness: float
+    """K_t, N/mm²: tangential force that a depth of 1 mm gains for 1 mm of chip"""
+    radial_ratio: float
+    """K_r, radial over tangential force"""
+
+    def __post_init__(self) -> None:
+        require_teeth(self.teeth)
+        require_positive(self.stiffness, "cutting stiffness", "N/mm²")
+        require_not_negative(self.radial_ratio, "radial ratio", "")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Border:
+    """The border of stability by chatter frequency; NaN where there is none."""
+
+    frequency: Floats
+    """(N,) ω_c in rad/s, ascending"""
+    depth: Floats
+    """(N,) mm"""
+    phase: Floats
+    """(N,) ε in rad between two waves, 0 to 2π"""
+
+
+def directional_coefficients(engagement: Engagement, radial_ratio: float) -> Floats:
+    """Mean directional coefficients of a cut, times 2π over the number of teeth.
+
+    ``α_xx = ½·[cos 2φ − 2K_r·φ + K_r·sin 2φ]``, ``α_xy = ½·[−sin 2φ − 2φ + K_r·cos 2φ]``,
+    ``α_yx = ½·[−sin 2φ + 2φ + K_r·cos 2φ]``, ``α_yy = ½·[−cos 2φ − 2K_r·φ − K_r·sin 2φ]``
+    from φ_st to φ_ex, [1]_.
+
+    Parameters
+    ----------
+    engagement : Engagement
+    radial_ratio : float
+        K_r.
+
+    Returns
+    -------
+    (2, 2) array
+
+    Examples
+    --------
+    A slot: only the radial force acts along its own deflection.
+
+    >>> from simulator.physics.engagement import full_immersion
+    >>> (directional_coefficients(full_immersion(), 0.3) / pi).round(6) + 0.0
+    array([[-0.3, -1. ],
+           [ 1. , -0.3]])
+    """
+    k_r = radial_ratio
+
+    def primitive(angle: float) -> Floats:
+        s, c = sin(2.0 * angle), cos(2.0 * angle)
+        return 0.5 * np.array([
+            [c - 2.0 * k_r * angle + k_r * s, -s - 2.0 * angle + k_r * c],
+            [-s + 2.0 * angle + k_r * c, -c - 2.0 * k_r * angle - k_r * s],
+        ])
+
+    return primitive(engagement.exit_angle) - primitive(engagement.entry_angle)
+
+
+def borders(
+    cut: DynamicCut, structure: Structure, *, feed_angle: float = 0.0
+) -> tuple[Border, Border]:
+    """Border of stability for each of the two eigenvalues, by chatter frequency.
+
+    ``a_lim = −2π·Λ_R/(z·K_t)·(1 + (Λ_I/Λ_R)²)`` with Λ from
+    ``det(I + Λ·[α][Φ(iω_c)]) = 0``, and ``ε = π − 2·atan(Λ_I/Λ_R)``, [1]_.
+
+    Parameters
+    ----------
+    cut : DynamicCut
+    structure : Structure
+        Modes along x and y of the machine.
+    feed_angle : float, rad
+        From x of the machine to the feed.
+
+    Returns
+    -------
+    tuple of two Border
+    """
+    frequency = chatter_frequencies((*structure.x, *structure.y))
+    along, across = (receptance(modes, frequency) for modes in (structure.x, structure.y))
+    c, s = cos(feed_angle), sin(feed_angle)
+    # Symmetric receptance seen from the feed: R·diag(Φ_x, Φ_y)·Rᵀ.
+    xx = c * c * along + s * s * across
+    yy = s * s * along + c * c * across
+    xy = c * s * (across - along)
+    alpha = directional_coefficients(cut.engagement, cut.radial_ratio)
+    trace = alpha[0, 0] * xx + (alpha[0, 1] + alpha[1, 0]) * xy + alpha[1, 1] * yy
+    product = (alpha[0, 0] * alpha[1, 1] - alpha[0, 1] * alpha[1, 0]) * along * across
+    root = np.sqrt(trace**2 - 4.0 * product)
+    one, other = _continuous(0.5 * (trace + root), 0.5 * (trace - root))
+    return _border(cut, frequency, one), _border(cut, frequency, other)
+
+
+def least_stable_depth(cut: DynamicCut, structure: Structure) -> float:
+    """Depth that is stable at any spindle speed and in any direction of feed, mm."""
+    least = min(
+        float(np.nanmin(border.depth, initial=MOST_DEPTH))
+        for angle in _feed_angles(structure)
+        for border in borders(cut, structure, feed_angle=angle)
+    )
+    return min(least, MOST_DEPTH)
+
+
+def stable_depths(
+    cut: DynamicCut, structure: Structure, speeds: Floats, *, tolerance: float = 0.0
+) -> Floats:
+    """Greatest stable depth at each spindle speed: the least of all lobes, [1]_.
+
+    A lobe k has ``n = ω_c / (z·(ε + 2kπ))``. All lobes are drawn onto the given speeds, where
+    the least depth counts, in the worst direction of feed.
+
+    Parameters
+    ----------
+    cut : DynamicCut
+    structure : Structure
+    speeds : (N,) array, rev/s
+        Ascending, positive.
+    tolerance : float
+        Share by which the natural frequencies may be off: scaling all of them scales the
+        speeds of the lobes, so the least depth within this share of a speed counts.
+
+    Returns
+    -------
+    (N,) array, mm
+        :data:`MOST_DEPTH` where no lobe limits.
+
+    Examples
+    --------
+    >>> from simulator.physics.engagement import full_immersion
+    >>> from simulator.spec import Direction, VibratingPart, VibrationMode
+    >>> mode = VibrationMode(
+    ...     part=VibratingPart.TOOL, direction=Direction.XY, natural_frequency=600.0,
+    ...     damping_ratio=0.03, stiffness=10_000.0, source="example",
+    ... )
+    >>> slot = DynamicCut(
+    ...     engagement=full_immersion(), teeth=4, stiffness=800.0, radial_ratio=0.3
+    ... )
+    >>> speeds = np.array([100.0, 150.0])  # the tooth period is the mode's at 150 rev/s
+    >>> stable_depths(slot, Structure(x=(mode,), y=(mode,)), speeds).round(2)
+    array([0.37, 4.18])
+    """
+    drawn = np.full(speeds.shape, MOST_DEPTH)
+    for angle in _feed_angles(structure):
+        for border in borders(cut, structure, feed_angle=angle):
+            _draw(drawn, speeds, border, teeth=cut.teeth)
+    slowest = speeds < _slowest_lobe((*structure.x, *structure.y), cut.teeth)
+    if slowest.any():
+        drawn[slowest] = least_stable_depth(cut, structure)
+    if tolerance <= 0.0:
+        return drawn
+    low = np.searchsorted(speeds, speeds * (1.0 - tolerance), side="left")
+    high = np.searchsorted(speeds, speeds * (1.0 + tolerance), side="right")
+    return np.array([drawn[a:b].min() for a, b in zip(low, high, strict=True)])
+
+
+def lobes(
+    cut: DynamicCut,
+    structure: Structure,
+    *,
+    between: tuple[float, float],
+    step: float,
+    tolerance: float,
+) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Speeds at equal ratios within a range, and the stable depth at each, as plain numbers.
+
+    Parameters
+    ----------
+    cut : DynamicCut
+    structure : Structure
+    between : (float, float), rev/s
+        Least and greatest speed; they may be equal.
+    step : float
+        Share between two speeds.
+    tolerance : float
+        As in :func:`stable_depths`.
+
+    Returns
+    -------
+    tuple of float, rev/s, and tuple of float, mm
+    """
+    low, high = between
+    beyond = np.log1p(tolerance) + 2.0 * step
+    count = ceil((np.log(high / low) + 2.0 * beyond) / step) + 1
+    speeds = np.geomspace(low * np.exp(-beyond), high * np.exp(beyond), count)
+    depths = stable_depths(cut, structure, speeds, tolerance=tolerance)
+    ends = np.array([low, high])
+    inner = (speeds > low) & (speeds < high)
+    found = np.concatenate([ends[:1], speeds[inner], ends[1:]])
+    at_ends = np.interp(ends, speeds, depths)
+    shown = np.concatenate([at_ends[:1], depths[inner], at_ends[1:]])
+    return tuple(found.tolist()), tuple(shown.tolist())
+
+
+def damped_speed(modes: Sequence[VibrationMode], diameter: float) -> float:
+    """Spindle speed below which the flank damps every mode, rev/s.
+
+    The wave on the surface is ``v_c/f`` long; below :data:`DAMPED_WAVELENGTH` the flank meets
+    its slope, [3]_. The slowest mode decides: the others are damped before it.
+
+    Parameters
+    ----------
+    modes : sequence of VibrationMode
+    diameter : float, mm
+        At which the cutting speed is taken.
+
+    Raises
+    ------
+    ValueError
+        If the diameter is not positive.
+    """
+    require_positive(diameter, "diameter", "mm")
+    slowest = min(mode.natural_frequency for mode in modes)
+    return DAMPED_WAVELENGTH * slowest / (pi * diameter)
+
+
+def _continuous(one: Complex, other: Complex) -> tuple[Complex, Complex]:
+    """The two eigenvalues followed along the frequency: the root's branch may change."""
+    stays = np.abs(np.diff(one)) + np.abs(np.diff(other))
+    crosses = np.abs(one[1:] - other[:-1]) + np.abs(other[1:] - one[:-1])
+    swapped = np.concatenate([[False], np.cumsum(crosses < stays) % 2 == 1])
+    return np.where(swapped, other, one), np.where(swapped, one, other)
+
+
+def _border(cut: DynamicCut, frequency: Floats, eigenvalue: Complex) -> Border:
+    """Border of one eigenvalue μ of [α][Φ]; ``Λ = −1/μ``."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        root = -1.0 / eigenvalue
+        ratio = root.imag / root.real
+        depth = -2.0 * pi * root.real / (cut.teeth * cut.stiffness) * (1.0 + ratio**2)
+        exists = (root.real < 0.0) & np.isfinite(depth)
+    return Border(
+        frequency=frequency,
+        depth=np.where(exists, depth, np.nan),
+        phase=np.where(exists, pi - 2.0 * np.arctan(ratio), np.nan),
+    )
+
+
+def _feed_angles(structure: Structure) -> tuple[float, ...]:
+    """Directions of feed to be tried: one where the structure gives alike in all."""
+    alike = [(m.natural_frequency, m.damping_ratio, m.stiffness) for m in structure.x] == [
+        (m.natural_frequency, m.damping_ratio, m.stiffness) for m in structure.y
+    ]
+    return (0.0,) if alike else tuple(pi * i / FEED_ANGLES for i in range(FEED_ANGLES))
+
+
+def _slowest_lobe(modes: Sequence[VibrationMode], teeth: int) -> float:
+    """Speed below which lobes beyond the counted ones begin, rev/s."""
+    fastest = max(mode.natural_frequency for mode in modes)
+    return fastest / (teeth * MOST_LOBES)
+
+
+def _draw(drawn: Floats, speeds: Floats, border: Border, *, teeth: int) -> None:
+    """Lower the depths to all lobes of a border, straight between chatter frequencies."""
+    slowest = float(speeds[0]) * teeth
+    count = min(MOST_LOBES, ceil(float(border.frequency[-1]) / (2.0 * pi * slowest)) + 1)
+    turns = 2.0 * pi * np.arange(count)[:, None]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        n = border.frequency / (teeth * (border.phase + turns))
+    depth = np.broadcast_to(border.depth, n.shape)
+    n1, n2, d1, d2 = (
+        part.ravel() for part in (n[:, :-1], n[:, 1:], depth[:, :-1], depth[:, 1:])
+    )
+    kept = np.isfinite(n1) & np.isfinite(n2)
+    n1, n2, d1, d2 = n1[kept], n2[kept], d1[kept], d2[kept]
+    first = np.searchsorted(speeds, np.minimum(n1, n2), side="left")
+    counts = np.searchsorted(speeds, np.maximum(n1, n2), side="right") - first
+    # One row for each speed that a piece of a lobe passes.
+    row = np.repeat(np.arange(len(n1)), counts)
+    start = np.cumsum(counts) - counts
+    at = first[row] + np.arange(len(row)) - start[row]
+    span = np.where(n2 == n1, 1.0, n2 - n1)
+    share = np.clip((speeds[at] - n1[row]) / span[row], 0.0, 1.0)
+    np.minimum.at(drawn, at, d1[row] + share * (d2[row] - d1[row]))
