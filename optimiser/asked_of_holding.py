@@ -6,7 +6,7 @@ from dataclasses import replace
 from optimiser.advice import Advice
 from optimiser.conditions import Conditions
 from optimiser.grip import Grip, grip_of, holding_of, setup_id
-from optimiser.holding import TURNING, HoldingLoad
+from optimiser.holding import HoldingLoad
 from optimiser.tolerance import permitted_bar_deflection
 from simulator.spec import (
     Machine,
@@ -80,7 +80,7 @@ def _unknown_setups(program: Program, machine: Machine) -> Iterator[Finding]:
 def _asked(program: Program, held: Sequence[Advice]) -> str:
     """The greatest loads of a setup, with the workingsteps that they come from."""
     first = held[0]
-    if first.cut is None or first.cut.kind not in TURNING:
+    if first.cut is None or not first.cut.kind.is_turned:
         across = _greatest(held, lambda load: load.force, "N across the spindle")
         lift = _greatest(held, lambda load: load.lift, "N upwards")
         return f"a vice or clamps are asked to hold {across}{lift and ' and ' + lift}"

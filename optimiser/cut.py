@@ -27,6 +27,11 @@ class CutKind(StrEnum):
     TURNING = "turning"
     GROOVING = "grooving"
 
+    @property
+    def is_turned(self) -> bool:
+        """Whether the workpiece turns, not the tool."""
+        return self in {CutKind.TURNING, CutKind.GROOVING}
+
 
 class Texture(StrEnum):
     """How the feed marks the finished surface."""

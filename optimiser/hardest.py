@@ -14,6 +14,7 @@ import numpy as np
 
 from optimiser.cut import Cut, CutKind, Place
 from simulator.motion.segments import Bools, Floats, Ints
+from simulator.motion.tool_path import Run
 from simulator.physics import drilling
 from simulator.physics.engagement import Engagement
 from simulator.physics.flutes import CuttingEdges, Law
@@ -59,6 +60,14 @@ class Met:
         """The same of some stations only."""
         kept = {each.name: getattr(self.stations, each.name)[rows] for each in fields(Stations)}
         return replace(self, stations=Stations(**kept), length=self.length[rows])
+
+    def on(self, run: Run, other: Run) -> "Met":
+        """The same, met on a path, on one that is the same way in other pieces."""
+        length = other.segments.length
+        before = (np.cumsum(length) - length)[self.stations.segment]
+        middle = before + self.stations.station - 0.5 * self.length
+        piece = np.searchsorted(np.cumsum(run.segments.length)[:-1], middle)
+        return replace(self, stations=replace(self.stations, segment=piece))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

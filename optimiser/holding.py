@@ -41,8 +41,6 @@ FEEDS = (0.05, 1.0)
 PLACES = 24
 """along a bar with a tailstock, at which its bending is asked for"""
 
-TURNING = frozenset({CutKind.TURNING, CutKind.GROOVING})
-
 NM, UM = 1e-3, 1e3
 """user's number per canonical unit"""
 
@@ -146,7 +144,7 @@ def holding_load(cut: Cut, at: Conditions, setting: Setting) -> HoldingLoad | No
     if cut.is_air or at.machine.only_stated_limits:
         return None
     point = (setting.feed, setting.depth, setting.speed)
-    if cut.kind in TURNING or at.grip is not None:
+    if cut.kind.is_turned or at.grip is not None:
         moment = _moment(cut, at)
         return HoldingLoad(
             torque=_torque(cut, at).value(*point),
@@ -208,7 +206,7 @@ def _moment(cut: Cut, at: Conditions) -> Monomial | None:
 
     In the plane of the tool feed and back force turn against each other: the greater counts.
     """
-    if at.grip is None or cut.kind not in TURNING:
+    if at.grip is None or not cut.kind.is_turned:
         return None
     front = at.grip.front if cut.turned is None else cut.turned.high
     out, arm = max(0.0, front - at.grip.face), 0.5 * cut.diameter

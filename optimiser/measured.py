@@ -276,7 +276,7 @@ class MeasuredCuts:
     ) -> Cut:
         """The cut with its ways down; turning is told where the programmed path is widest."""
         cut = replace(cut, volume=met.volume)
-        if cut.kind in {CutKind.TURNING, CutKind.GROOVING} and not cut.is_air:
+        if cut.kind.is_turned and not cut.is_air:
             first = next(iter(self._seen.values()), None)
             widest = self._widest(met, run) if first is None else first.cut.diameter
             cut = self._at_widest(step, cut, widest)
@@ -331,16 +331,15 @@ class MeasuredCuts:
         length = fed * per_second
         known = not seen.meeting.why and length > 0.0
         if seen.along is not None and seen.bent is not None:
-            # A spindle that follows the radius has other pieces at another speed.
-            is_turned = cut.kind in {CutKind.TURNING, CutKind.GROOVING}
             ride = Ride(
-                run=seen.run if is_turned else run,
+                run=run,
                 control=self.control,
                 limits=self.limits,
                 feed=per_second,
-                spindle=given.speed * (1.0 if is_turned else pace.speed),
+                spindle=given.speed * pace.speed,
             )
-            cut = with_reached(cut, seen.along, seen.bent, ride, exponent=self.kienzle.m_c)
+            along = seen.along.on(run, seen.run) if cut.kind.is_turned else seen.along
+            cut = with_reached(cut, along, seen.bent, ride, exponent=self.kienzle.m_c)
             cut = self._with_ramp_reached(cut, seen, ride)
         return replace(
             cut,

@@ -17,7 +17,7 @@ from optimiser.advice import Advice, Plan, State, Status
 from optimiser.asked_of_holding import holding_findings, with_holding
 from optimiser.centre_cutting import plunge_fault, plunge_findings
 from optimiser.conditions import Conditions, PermittedDeflection
-from optimiser.cut import Cut, CutKind
+from optimiser.cut import Cut
 from optimiser.errors import Infeasible, OptimisationError
 from optimiser.estimate_turning import mean_diameter
 from optimiser.formulate import Task, problem_of, state_of
@@ -326,7 +326,7 @@ def _conditions(
             grade = find_grade(cut.tool_kind, cutting_material, work.iso_group)
         except LibraryError as error:
             findings.append(program.finding(Severity.WARNING, str(error), step.tool_ref))
-    is_turned = cut.kind in {CutKind.TURNING, CutKind.GROOVING}
+    is_turned = cut.kind.is_turned
     if is_turned is not (machine.kind is MachineKind.LATHE):
         text = f"{step.operation_type} on machine '{machine.name}', a {machine.kind.value}"
         findings.append(program.finding(Severity.WARNING, text, step.operation_ref))

@@ -70,7 +70,7 @@ def with_reached(cut: Cut, met: Met, bent: Bending, ride: Ride, *, exponent: flo
     if not rows.any():
         return cut
     loads = _loads(cut, met, bent, ride, np.flatnonzero(rows), exponent)
-    if cut.kind in {CutKind.TURNING, CutKind.GROOVING}:
+    if cut.kind.is_turned:
         at = met.stations.segment[loads.rows[loads.programmed[1].argmax()]]
         return replace(
             cut,
@@ -101,7 +101,7 @@ def _loads(
     """What the stations take."""
     stations, segment = met.stations, met.stations.segment[rows]
     ratio, diameter = stations.chip_ratio[rows].clip(LEAST_RATIO), stations.diameter[rows]
-    if cut.kind in {CutKind.TURNING, CutKind.GROOVING}:
+    if cut.kind.is_turned:
         force = stations.axial_depth[rows] * ratio**-exponent
     else:
         force = stations.peak_section[rows] * ratio**-exponent / diameter
@@ -109,7 +109,7 @@ def _loads(
     wall[bent.at] = bent.wall
     spindle = ride.run.spindle[segment]
     chip = ride.run.segments.speed[segment] / ride.feed * ride.spindle / spindle
-    if cut.kind in {CutKind.TURNING, CutKind.GROOVING}:
+    if cut.kind.is_turned:
         chip = np.ones(len(rows))
     thinned = chip ** (1.0 - exponent)
     programmed = np.stack((force, force * diameter * spindle, wall[rows])) * thinned

@@ -196,7 +196,7 @@ def test_a_warning_says_which_rule_tripped_and_with_what_numbers(
     for _ in range(40):
         watching.show(300.0)
     watching.show(force)
-    assert [event.text for event in watching.events] == [f"force {words}"]
+    assert [event.text for event in watching.events] == [words]
 
 
 def test_each_tool_has_its_own_life() -> None:

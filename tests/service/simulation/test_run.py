@@ -145,7 +145,7 @@ def times_and_power(path: Path) -> tuple[np.ndarray, np.ndarray]:
     return table["time_s"].to_numpy(), table["electric_wattage"].to_numpy()
 
 
-@pytest.mark.parametrize("rate", [1.0, 10.0, 10_000.0])
+@pytest.mark.parametrize("rate", [1.0, 100.0, 10_000.0])
 def test_samples_come_at_their_rate_and_change_no_total(
     face: Path, tmp_path: Path, rate: float
 ) -> None:
@@ -157,7 +157,7 @@ def test_samples_come_at_their_rate_and_change_no_total(
     assert run.samples == len(times)
     np.testing.assert_allclose(times, np.arange(len(times)) / rate)
     assert 0.0 <= times[-1] - run.whole.duration < 1.0 / rate
-    if rate >= 10.0:
+    if rate >= 100.0:
         assert power.mean() * run.whole.duration == pytest.approx(
             run.whole.energy.total, rel=0.01
         )
