@@ -124,9 +124,11 @@ def _noise(
     """(z, z) covariance of what shares err by."""
     teeth = revolution.teeth
     order = (np.arange(teeth) - revolution.first) % teeth
-    near = expected.change / expected.force.mean()
+    near = JITTER * expected.change / expected.force.mean()
     even = FLOOR / revolution.tooth_means.mean(), MISSED * (1.0 - revolution.coverage)
-    own = READING**2 * (1.0 + taken**2) + (JITTER * near) ** 2 + even[0] ** 2 + even[1] ** 2
+    own = READING**2 * (1.0 + taken**2) + even[0] ** 2 + even[1] ** 2
+    # What one tooth takes more than expected moves the mean, and with it the shares of all.
+    jitter = np.diag(near) - np.outer(taken, near) / teeth
     grown = drift * taken * ((order + 0.5) / teeth - 0.5)
     moved = EARLY * (np.roll(taken, 1) - taken)
-    return np.diag(own) + np.outer(grown, grown) + np.outer(moved, moved)
+    return np.diag(own) + jitter @ jitter.T + np.outer(grown, grown) + np.outer(moved, moved)

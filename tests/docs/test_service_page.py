@@ -79,6 +79,6 @@ def test_the_example_client_shows_a_feed_and_a_run(served: Server) -> None:
         check=True,
     )
     feed, size, run = done.stdout.splitlines()
-    assert re.fullmatch(r"ROUGH THE FACE: 222\.1 mm/min, tool deflection .*", feed)
+    assert re.fullmatch(r"ROUGH THE FACE: 164\.6 mm/min, tool deflection .*", feed)
     assert size.startswith("optimised program: ")
     assert re.fullmatch(r"simulated: 95\.\d s, 252\.\d kJ, told in \d+ events", run)
