@@ -17,11 +17,10 @@ from simulator.physics import flank
 from simulator.physics.flutes import CuttingEdges, Law
 from simulator.physics.tooth_forces import (
     Places,
-    Runout,
-    eccentric_runout,
     forces,
     wall_force,
 )
+from simulator.physics.uneven_teeth import Runout, eccentric_runout
 from simulator.removal.stations import CutKind, Stations, single_arcs
 
 DIGITS = 3

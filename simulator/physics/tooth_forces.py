@@ -21,15 +21,17 @@ References
    data", Int. J. Mach. Tools Manuf. 36(9), 1996: constant lead, forces by slices.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
-from math import ceil, pi, sin
+from math import pi, sin
 
 import numpy as np
 from numpy.typing import NDArray
 
-from simulator.physics.domain import require_teeth
+from simulator.physics import even_teeth, uneven_teeth
+from simulator.physics.even_teeth import Bands
 from simulator.physics.flutes import WALL, CuttingEdges, Law
+from simulator.physics.uneven_teeth import Runout
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -45,9 +47,6 @@ ROUGH_STEPS = 2
 
 STRAIGHT = 1e-7
 """rad, the least lag of a band: a straight edge is one of almost no helix"""
-
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
-_NODES, _WEIGHTS = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -104,30 +103,6 @@ class Forces:
         return across
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Runout:
-    """Unequal teeth."""
-
-    offsets: Floats
-    """(z,) mm, ρ: radius of each tooth over the nominal one"""
-    feed_per_tooth: Floats
-    """(M,) f_z, mm"""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class _Band:
-    """A stretch of the edge by its height, as seen at M places."""
-
-    low: Floats
-    """(M, 1) rad, lag of its lower end"""
-    high: Floats
-    """(M, 1) rad"""
-    weight: Floats
-    """(M, 1) mm, ∫sin^(q−1) κ dy"""
-    sine: Floats
-    """(M, 1) mean sin κ: the radial force acts in the plane by it"""
-
-
 def one_place(entry_angle: float, exit_angle: float, *, axial_depth: float) -> Places:
     """A single engagement, rad and mm."""
     return Places(
@@ -151,32 +126,6 @@ def arcs_of(entry_angle: Floats, exit_angle: Floats) -> ArcIntegrals:
     )
 
 
-def eccentric_runout(eccentricity: float, teeth: int) -> Floats:
-    """Radius of each tooth over the nominal one when a cutter's axis is off the spindle's.
-
-    ``ρ_j = ρ·cos(2π·j/z)``, tooth 0 the highest.
-
-    Parameters
-    ----------
-    eccentricity : float, mm
-        ρ; 0.005 to 0.01 mm as a rule.
-    teeth : int
-
-    Returns
-    -------
-    (z,) array, mm
-
-    Raises
-    ------
-    ValueError
-        When the eccentricity is negative or there is no tooth.
-    """
-    if not eccentricity >= 0.0:
-        raise ValueError(f"eccentricity {eccentricity:g} mm must not be negative")
-    require_teeth(teeth)
-    return eccentricity * np.cos(2.0 * pi / teeth * np.arange(teeth, dtype=np.float64))
-
-
 def forces(
     edges: CuttingEdges,
     places: Places,
@@ -187,8 +136,8 @@ def forces(
 ) -> Forces:
     """Forces while the cutter turns.
 
-    The edges in the cut are integrated by Gauss between the ends of the arc: exact but for the
-    root of sin φ at its ends and the corners that runout makes.
+    Equal teeth are summed in closed form. With runout the edges in the cut are integrated by
+    Gauss: exact but for the root of sin φ at the ends of the arc and corners of the chip.
 
     Parameters
     ----------
@@ -223,52 +172,14 @@ def forces(
     if runout is not None and runout.offsets.shape != (edges.teeth,):
         shape = runout.offsets.shape
         raise ValueError(f"runout has shape {shape} and must have ({edges.teeth},)")
-    bands = list(_bands(edges, places.axial_depth, law.exponent))
-    turns = ceil((pi + max(float(band.high.max(initial=0.0)) for band in bands)) / (2.0 * pi))
-    tooth = np.repeat(np.arange(edges.teeth), turns)
-    tip = np.mod(rotation[..., None] - tooth * edges.pitch, 2.0 * pi)
-    tip += 2.0 * pi * np.tile(np.arange(turns), edges.teeth)
-    entry, exit_ = places.entry_angle[:, None, None], places.exit_angle[:, None, None]
-    totals = np.zeros((3, rotation.size))
-    for band in bands:
-        bottom = np.maximum(tip - band.high[..., None], entry)
-        length = np.minimum(tip - band.low[..., None], exit_) - bottom
-        at = np.nonzero(length > 0.0)
-        row, within = at[0], length[at]
-        angle = bottom[at][:, None] + within[:, None] * _NODES
-        sine, cosine = np.sin(angle), np.cos(angle)
-        chip = np.maximum(sine, 0.0)
-        if runout is not None:
-            chip = _uneven(sine, runout, row=row, tooth=tooth[at[2]])
-        share = (band.weight / (band.high - band.low))[row, 0] * within
-        shear = share[:, None] * chip**law.exponent
-        radial = law.radial_share * band.sine[row]
-        # Several teeth may be in the cut at one rotation.
-        target = np.ravel_multi_index(at[:2], rotation.shape)
-        parts = (
-            shear,
-            shear * (cosine + radial * sine),
-            shear * (sine - radial * cosine),
-        )
-        for index, part in enumerate(parts):
-            totals[index] += np.bincount(target, part @ _WEIGHTS, minlength=rotation.size)
-    tangential, feed, normal = totals.reshape(3, *rotation.shape)
-    return Forces(tangential=tangential, feed=feed, normal=normal)
-
-
-def _uneven(sine: Floats, runout: Runout, *, row: Ints, tooth: Ints) -> Floats:
-    """Chips of N stretches of edge over f_z on the surface that the teeth before them left.
-
-    ``h_j = max(0, min over k = 1…z of k·f_z·sin φ + ρ_j − ρ_{j−k})``: a low tooth cuts less or
-    nothing, and the next one cuts what it left, so that the chips of a revolution always add
-    up to ``z·f_z·sin φ``.
-    """
-    offsets = runout.offsets
-    chip = np.full(sine.shape, np.inf)
-    for before in range(1, len(offsets) + 1):
-        higher = (offsets - np.roll(offsets, before))[tooth] / runout.feed_per_tooth[row]
-        np.minimum(chip, before * sine + higher[:, None], out=chip)
-    return chip.clip(min=0.0)
+    arc = places.entry_angle, places.exit_angle
+    bands = _bands(edges, places.axial_depth, law)
+    if runout is None:
+        teeth = edges.teeth
+        found = even_teeth.sums(rotation, arc, bands, teeth=teeth, exponent=law.exponent)
+    else:
+        found = uneven_teeth.sums(rotation, arc, bands, runout, exponent=law.exponent)
+    return Forces(tangential=found[0], feed=found[1], normal=found[2])
 
 
 def peak_resultant(
@@ -352,37 +263,26 @@ def _greatest(of: Callable[[Floats], Floats], corners: Floats, *, is_rough: bool
     return greatest
 
 
-def _bands(edges: CuttingEdges, depth: Floats, exponent: float) -> Iterator[_Band]:
+def _bands(edges: CuttingEdges, depth: Floats, law: Law) -> Bands:
     """Bands of the edges down to which each place reaches, rounded end first."""
     corner = np.minimum(depth, edges.corner_radius)
+    heights, weights, sines = [np.zeros_like(depth)], [], []
     if edges.corner_radius > 0.0:
         # By the angle of the edge, so that bands are finest where it is flattest.
         steepest = np.arccos(1.0 - corner / edges.corner_radius)
         for band in range(CORNER_BANDS):
             ends = steepest * band / CORNER_BANDS, steepest * (band + 1) / CORNER_BANDS
             sine = np.sin(0.5 * (ends[0] + ends[1]))
-            yield _band(
-                edges,
-                *(edges.corner_radius * (1.0 - np.cos(end)) for end in ends),
-                weight=edges.corner_radius * (ends[1] - ends[0]) * sine**exponent,
-                sine=sine,
-            )
+            heights.append(edges.corner_radius * (1.0 - np.cos(ends[1])))
+            weights.append(edges.corner_radius * (ends[1] - ends[0]) * sine**law.exponent)
+            sines.append(sine)
     slope = sin(edges.cutting_edge_angle)
-    rest = depth - corner
-    yield _band(
-        edges,
-        corner,
-        depth,
-        weight=rest * slope ** (exponent - 1.0),
-        sine=np.full(len(depth), slope),
-    )
-
-
-def _band(
-    edges: CuttingEdges, bottom: Floats, top: Floats, *, weight: Floats, sine: Floats
-) -> _Band:
-    low = edges.lag * bottom
-    high = np.maximum(edges.lag * top, low + STRAIGHT)
-    return _Band(
-        low=low[:, None], high=high[:, None], weight=weight[:, None], sine=sine[:, None]
-    )
+    heights.append(depth)
+    weights.append((depth - corner) * slope ** (law.exponent - 1.0))
+    sines.append(np.full(len(depth), slope))
+    lag = edges.lag * np.stack(heights, axis=1)
+    low = np.ascontiguousarray(lag[:, :-1])
+    high = np.maximum(lag[:, 1:], low + STRAIGHT)
+    # The radial force acts in the plane by the slope of the edge.
+    radial = law.radial_share * np.stack(sines, axis=1)
+    return Bands(low=low, high=high, weight=np.stack(weights, axis=1), radial=radial)

@@ -15,13 +15,12 @@ from simulator.motion.segments import Floats
 from simulator.physics.flutes import CuttingEdges, Law
 from simulator.physics.tooth_forces import (
     Places,
-    Runout,
-    eccentric_runout,
     forces,
     one_place,
     peak_resultant,
     wall_force,
 )
+from simulator.physics.uneven_teeth import Runout, eccentric_runout
 
 SAMPLES = 8
 """of a tooth period"""

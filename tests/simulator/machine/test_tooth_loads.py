@@ -21,7 +21,7 @@ from simulator.physics.engagement import Engagement, mean_chip_ratio
 from simulator.physics.flutes import CuttingEdges
 from simulator.physics.milling import MillingCut
 from simulator.physics.strength import end_mill
-from simulator.physics.tooth_forces import eccentric_runout
+from simulator.physics.uneven_teeth import eccentric_runout
 from simulator.removal.stations import CutKind, Stations
 from simulator.spec import Kienzle
 from tests.simulator.physics.discs import Mill

@@ -8,8 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from simulator.physics.flutes import CuttingEdges, Law
-from simulator.physics.tooth_forces import Runout, eccentric_runout, forces, one_place
+from simulator.physics.tooth_forces import forces, one_place
 from simulator.physics.tooth_means import LOST, Arcs, Floats, periods, tooth_means
+from simulator.physics.uneven_teeth import Runout, eccentric_runout
 
 EXPONENT = 0.75
 FEED = 0.04
