@@ -7,6 +7,7 @@ k_c. Of all pairs a plan at the quantile q passes 1 - q, if plan and run agree.
 """
 
 import argparse
+from functools import partial
 from math import log
 from pathlib import Path
 
@@ -16,6 +17,7 @@ from optimiser.advice import Advice, Plan, Status
 from optimiser.formulate import Task
 from optimiser.limit import SCALES_WITH_FORCE, LimitName
 from optimiser.optimise import optimise
+from optimiser.source import along_paths
 from service.confirm import confirm
 from service.confirmation import Confirmation
 from service.records import changes_of
@@ -65,7 +67,7 @@ def _plan_and_run(safety: float) -> tuple[Plan, Confirmation]:
         program,
         machine=load_machine("vmc15"),
         material=match_material(["C45"]),
-        task=Task(safety=safety),
+        task=Task(safety=safety, source=partial(along_paths, is_run=True)),
     )
     data = writeback.write(program, changes_of(plan), Profile.OPTIMISATION)
     advised = Program(Part21File.from_bytes(data, name="bracket"), name="bracket")

@@ -31,7 +31,7 @@ from optimiser.plunge import (
     way_in_of,
 )
 from optimiser.problem import Setting
-from optimiser.reached import Ride, with_reached
+from optimiser.reached import Ride, with_power, with_reached
 from optimiser.seen import Seen, Trace
 from optimiser.side_by_side import Result, one_by_one, side_by_side
 from optimiser.turned import turned_of
@@ -63,13 +63,29 @@ class MeasuredCuts:
     """A source of cuts along real paths. Running state: what is left of each stock.
 
     The stock goes on to the next workingstep as the path that was asked for last leaves it.
+
+    Parameters
+    ----------
+    program : Program
+    machine : Machine
+    material : Material
+    is_run : bool
+        Whether a run will stand beside the plan: then cuts tell what the axes reach, too.
     """
 
-    def __init__(self, program: Program, machine: Machine, material: Material) -> None:
+    def __init__(
+        self,
+        program: Program,
+        machine: Machine,
+        material: Material,
+        *,
+        is_run: bool = False,
+    ) -> None:
         self.program = program
         self.machine = machine
         self.material = material
         self.kienzle = material.kienzle
+        self._with_loads = with_reached if is_run else with_power
         self.control, self.limits = usual_motion(machine)
         self.stocks = ClampedStocks(program, machine)
         self._left_out: dict[int, str] = {}
@@ -339,7 +355,7 @@ class MeasuredCuts:
                 spindle=given.speed * pace.speed,
             )
             along = seen.along.on(run, seen.run) if cut.kind.is_turned else seen.along
-            cut = with_reached(cut, along, seen.bent, ride, exponent=self.kienzle.m_c)
+            cut = self._with_loads(cut, along, seen.bent, ride, exponent=self.kienzle.m_c)
             cut = self._with_ramp_reached(cut, seen, ride)
         return replace(
             cut,
@@ -358,7 +374,7 @@ class MeasuredCuts:
         if slope is None or cut.way_in is None or ramp is None:
             return cut
         down = replace(ride, feed=float(ride.run.segments.speed[plunges(ride.run)][0]))
-        ramp = with_reached(ramp, slope.met, slope.bent, down, exponent=self.kienzle.m_c)
+        ramp = self._with_loads(ramp, slope.met, slope.bent, down, exponent=self.kienzle.m_c)
         return replace(cut, way_in=replace(cut.way_in, ramp=ramp))
 
     def _warning(self, step: Workingstep, text: str) -> Finding:

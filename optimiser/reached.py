@@ -49,8 +49,8 @@ class _Loads:
     """(3,) greatest with the chip of the technology's feed, as limits have them"""
 
 
-def with_reached(cut: Cut, met: Met, bent: Bending, ride: Ride, *, exponent: float) -> Cut:
-    """A cut with what its greatest loads become along its path.
+def with_power(cut: Cut, met: Met, bent: Bending, ride: Ride, *, exponent: float) -> Cut:
+    """A cut with what its limits need of the whole path: where power is greatest.
 
     Parameters
     ----------
@@ -63,30 +63,35 @@ def with_reached(cut: Cut, met: Met, bent: Bending, ride: Ride, *, exponent: flo
     exponent : float
         m_c.
     """
-    stations = met.stations
-    rows = (stations.kind == KINDS[cut.kind]) & (stations.section > 0.0)
-    rows &= ~ride.run.segments.is_rapid[stations.segment]
-    rows &= ride.run.spindle[stations.segment] > 0.0
-    if not rows.any():
+    loads = None if cut.kind is CutKind.MILLING else _loads(cut, met, bent, ride, exponent)
+    if loads is None:
         return cut
-    loads = _loads(cut, met, bent, ride, np.flatnonzero(rows), exponent)
-    if cut.kind.is_turned:
-        at = met.stations.segment[loads.rows[loads.programmed[1].argmax()]]
-        return replace(
-            cut,
-            power_diameter=_power_diameter(loads, ride),
-            power_speed=float(ride.run.spindle[at]) / ride.spindle,
-        )
     if cut.kind is CutKind.DRILLING:
         # The limits hold against what is programmed, whatever the strategy of the hole.
-        most, force = loads.programmed.max(axis=1), float(loads.nominal[0])
-        thickest = max(float(most[0]) / force, 1.0)
-        cut = replace(
+        ratio = max(float(loads.programmed[0].max() / loads.nominal[0]), 1.0)
+        return replace(
             cut,
-            thickest=thickest ** (1.0 / (1.0 - exponent)),
-            power_diameter=_power_diameter(loads, ride) / thickest,
+            thickest=ratio ** (1.0 / (1.0 - exponent)),
+            power_diameter=_power_diameter(loads, ride) / ratio,
         )
-        loads = replace(loads, nominal=np.array([thickest * force, most[1], 0.0]))
+    at = met.stations.segment[loads.rows[loads.programmed[1].argmax()]]
+    return replace(
+        cut,
+        power_diameter=_power_diameter(loads, ride),
+        power_speed=float(ride.run.spindle[at]) / ride.spindle,
+    )
+
+
+def with_reached(cut: Cut, met: Met, bent: Bending, ride: Ride, *, exponent: float) -> Cut:
+    """A cut with what its greatest loads become along its path, too; as :func:`with_power`."""
+    cut = with_power(cut, met, bent, ride, exponent=exponent)
+    loads = None if cut.kind.is_turned else _loads(cut, met, bent, ride, exponent)
+    if loads is None:
+        return cut
+    if cut.kind is CutKind.DRILLING:
+        ratio = cut.thickest ** (1.0 - exponent)
+        most = ratio * loads.nominal[0], loads.programmed[1].max(), 0.0
+        loads = replace(loads, nominal=np.array(most))
     hard = (loads.programmed >= HARD * loads.nominal[:, None]) & (loads.programmed > 0.0)
     found = _shares(met, ride, loads, np.any(hard, axis=0), exponent)
     if found.min() < HARD:
@@ -95,11 +100,15 @@ def with_reached(cut: Cut, met: Met, bent: Bending, ride: Ride, *, exponent: flo
     return replace(cut, reached=Reached(force=force, power=power, wall=wall))
 
 
-def _loads(
-    cut: Cut, met: Met, bent: Bending, ride: Ride, rows: Ints, exponent: float
-) -> _Loads:
-    """What the stations take."""
-    stations, segment = met.stations, met.stations.segment[rows]
+def _loads(cut: Cut, met: Met, bent: Bending, ride: Ride, exponent: float) -> _Loads | None:
+    """What the stations take that cut at a feed; None: there are none."""
+    stations, run = met.stations, ride.run
+    is_cut = (stations.kind == KINDS[cut.kind]) & (stations.section > 0.0)
+    is_cut &= ~run.segments.is_rapid[stations.segment] & (run.spindle[stations.segment] > 0.0)
+    if not is_cut.any():
+        return None
+    rows = np.flatnonzero(is_cut)
+    segment = stations.segment[rows]
     ratio, diameter = stations.chip_ratio[rows].clip(LEAST_RATIO), stations.diameter[rows]
     if cut.kind.is_turned:
         force = stations.axial_depth[rows] * ratio**-exponent

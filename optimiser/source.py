@@ -70,11 +70,16 @@ class WithWipers:
         return replace(cut, tool=replace(cut.tool, has_wiper=True))
 
 
-def along_paths(program: Program, machine: Machine, material: Material) -> CutSource:
-    """Cuts as the real tool path makes them in the stock that is left, timed by the machine."""
+def along_paths(
+    program: Program, machine: Machine, material: Material, *, is_run: bool = False
+) -> CutSource:
+    """Cuts as the real tool path makes them in the stock that is left, timed by the machine.
+
+    Where a run will stand beside the plan, they tell what the axes reach, too.
+    """
     from optimiser.measured import MeasuredCuts  # noqa: PLC0415 (numpy)
 
-    return MeasuredCuts(program, machine, material)
+    return MeasuredCuts(program, machine, material, is_run=is_run)
 
 
 def from_features(program: Program, machine: Machine, material: Material) -> CutSource:

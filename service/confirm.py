@@ -26,6 +26,8 @@ def confirm(plan: Plan, program: Program, *, tell: Tell = silent) -> Confirmatio
     Parameters
     ----------
     plan : Plan
+        Of cuts that tell what the axes reach (``along_paths(…, is_run=True)``); the figures of
+        others are those at the feed of the technology everywhere.
     program : Program
         With the advice of the plan in it.
     tell : callable

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,6 +11,7 @@ from optimiser.formulate import Task
 from optimiser.modes import Free, Mode
 from optimiser.optimise import optimise as advise
 from optimiser.safety import USUAL_QUANTILE, require_quantile
+from optimiser.source import along_paths
 from service.chosen import machine_for, material_for, require_axes, with_holding
 from service.files import (
     beside,
@@ -238,6 +240,7 @@ def _task(request: Request) -> Task:
         safety=request.safety,
         centre_cutting={**request.centre_cutting, **_centre_cutting(table)},
         allow_plunge=request.allow_plunge,
+        source=partial(along_paths, is_run=request.confirm),
     )
 
 
