@@ -81,4 +81,4 @@ def test_the_example_client_shows_a_feed_and_a_run(served: Server) -> None:
     feed, size, run = done.stdout.splitlines()
     assert re.fullmatch(r"ROUGH THE FACE: 164\.6 mm/min, tool deflection .*", feed)
     assert size.startswith("optimised program: ")
-    assert re.fullmatch(r"simulated: 95\.\d s, 252\.\d kJ, told in \d+ events", run)
+    assert re.fullmatch(r"simulated: 127\.\d s, 319\.\d kJ, told in \d+ events", run)

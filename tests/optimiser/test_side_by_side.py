@@ -22,6 +22,9 @@ from simulator.matching import match_material
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program, Workingstep
 
+FEW = 8
+"""workingsteps of a half that go to another process in a program that is really planned"""
+
 pytestmark = pytest.mark.filterwarnings("ignore:.*fork:DeprecationWarning")
 
 
@@ -173,8 +176,9 @@ def test_a_program_whose_workingsteps_meet_here_and_there(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Pockets of 60 mm every 70 mm; every third of the second half lies on two of the first."""
-    text = plate(2 * LEAST + 4)
-    for number in range(LEAST + 4, 2 * LEAST + 4, 3):
+    monkeypatch.setattr(module, "LEAST", FEW)
+    text = plate(2 * FEW + 4)
+    for number in range(FEW + 4, 2 * FEW + 4, 3):
         x, y = text.split(f"#{1000 + 10 * (number - 7) + 3}=CARTESIAN_POINT('',(")[1].split(
             ","
         )[:2]
