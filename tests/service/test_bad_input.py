@@ -218,7 +218,7 @@ def test_a_feed_that_cannot_be_is_refused(
         (".TCP.,0.583333333333333", ".TCP.,0.", "#41 MILLING_TECHNOLOGY.cutspeed: cutting sp"),
         (".TCP.,0.583333333333333", ".TCP.,-0.5", "cutting speed -0.5 cuts nothing"),
         (".TCP.,0.583333333333333", ".TCP.,1.E400", "cutspeed: inf is no finite number"),
-        (".TCP.,0.583333333333333", ".TCP.,35.", "cutting speed 35 m/s exceeds 10 m/s"),
+        (".TCP.,0.583333333333333", ".TCP.,35.", "cutting speed 35 m/s exceeds 25 m/s"),
         ("DIMENSION(18.", "DIMENSION(0.", "line 62: #52 MILLING_TOOL_DIMENSION"),
         ("DIMENSION(18.", "DIMENSION(-18.", "diameter -18.0 mm: it must be positive"),
         ("DIMENSION(18.", "DIMENSION(1.E400", "diameter: inf is no finite number"),

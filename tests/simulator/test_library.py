@@ -21,6 +21,7 @@ from simulator.library import (
 from simulator.matching import match_material
 from simulator.spec import CuttingMaterial, ToolBody, ToolKind
 from simulator.toml_file import read_toml
+from stepnc_model.plausibility import MAX_CUTTING_SPEED
 from stepnc_model.units import m_min_from_speed
 
 TABLE = Path(__file__).parents[3] / "shared" / "data" / "materials.csv"
@@ -145,6 +146,13 @@ def test_the_other_window_serves_where_a_source_gives_only_one() -> None:
 
 def test_a_material_without_a_window_says_so() -> None:
     assert find_window(load_material("hardened_60hrc"), ToolKind.ENDMILL, HSS) is None
+
+
+def test_no_speed_that_a_window_allows_is_implausible_in_a_file() -> None:
+    """What is advised once is read again."""
+    windows = [window for name in material_names() for window in load_material(name).windows]
+    fastest = max(window.max_cutting_speed or 0.0 for window in windows)
+    assert 10_000.0 < fastest <= MAX_CUTTING_SPEED
 
 
 def rows() -> list[dict[str, str]]:

@@ -63,7 +63,7 @@ class TestNumbers:
         ("technology", "attribute", "message"),
         [
             ("0.02,.TCP.,$,-301.,$,.F.,.F.,.F.", "spindle", "301 rev/s exceeds 300 rev/s"),
-            ("$,.TCP.,10.1,$,0.1,.F.,.F.,.F.", "cutspeed", "10.1 m/s exceeds 10 m/s"),
+            ("$,.TCP.,25.1,$,0.1,.F.,.F.,.F.", "cutspeed", "25.1 m/s exceeds 25 m/s"),
             ("$,.TCP.,$,-20.,5.1,.F.,.F.,.F.", "feedrate_per_tooth", "exceeds the radius 5 mm"),
             ("1.,.TCP.,$,-20.,$,.F.,.F.,.F.", "feedrate", "25 mm exceeds the radius 5 mm"),
             ("$,.TCP.,$,-20.,0.0004,.F.,.F.,.F.", "feedrate_per_tooth", "below 0.0005 mm"),
