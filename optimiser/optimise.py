@@ -102,7 +102,9 @@ def optimise(
         # Workingsteps that share a tool are told the same of it.
         findings += [finding for finding in found if finding not in findings]
     findings += _estimates(program, advices)
-    findings += holding_findings(program, advices, machine)
+    if task.free:
+        # Where nothing may change, the loads are those of the run, not of an estimate.
+        findings += holding_findings(program, advices, machine)
     return Plan(
         program=program.name,
         mode=task.mode,
