@@ -26,8 +26,9 @@ from simulator.spec import Kienzle, ToolKind
 LEAST_RATIO = 0.01
 """mean chip over the feed; the power of what is thinner is not to be told"""
 
-LIKELY = 0.4
-"""of the roughly greatest force: what is less is no candidate, whatever it is exactly"""
+LIKELY = 0.65
+"""of the roughly greatest force: what is less is no candidate, as a rough force is above 0.7 of
+the exact one"""
 
 DIGITS = 3
 """to which engagements are told apart: µm, mrad"""

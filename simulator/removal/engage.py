@@ -59,7 +59,7 @@ WINDOW = 10.0
 STEP_SHARE = 0.25
 """of the tool's radius: the longest stretch between two stations"""
 
-LEAST_SHARE = 0.02
+LEAST_SHARE = 0.05
 """of the tool's radius: the shortest one"""
 
 _CHUNK = 16_384  # rows that are marched in one go

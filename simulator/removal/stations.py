@@ -22,7 +22,7 @@ SINGLE = 0.02
 THICKEST = 2.3311
 """rad, length of the arc at a wall whose mean chip is greatest: tan(β/2) = β"""
 
-HALVINGS = 40
+HALVINGS = 32
 
 
 class CutKind(IntEnum):

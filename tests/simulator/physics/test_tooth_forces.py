@@ -9,6 +9,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
+from optimiser.hardest import LIKELY
 from simulator.physics import engagement
 from simulator.physics.engagement import Engagement
 from simulator.physics.flutes import WALL, CuttingEdges, Law
@@ -28,6 +29,7 @@ from simulator.spec import Kienzle
 from tests.simulator.physics.discs import RADIAL, Mill
 
 LINEAR = Law(exponent=1.0)
+STEEL_LAW = Law(exponent=0.78)
 STEEL = Kienzle(k_c11=1500.0, m_c=0.22)
 ARCS = [
     engagement.full_immersion(),
@@ -366,6 +368,28 @@ def test_places_together_are_as_each_by_itself() -> None:
     for of in (peak_resultant, wall_force):
         together = of(edges, whole, law)
         assert together == pytest.approx([float(of(edges, one, law)[0]) for one in each])
+
+
+@settings(max_examples=40)
+@given(
+    teeth=st.integers(1, 6),
+    helix=st.floats(0.0, 0.9),
+    exit_=st.floats(0.1, pi),
+    contact=st.floats(0.05, pi),
+    depth=st.floats(0.1, 60.0),
+)
+def test_a_rough_look_is_never_above_and_finds_most(
+    teeth: int, helix: float, exit_: float, contact: float, depth: float
+) -> None:
+    """What is less than a share of the roughly greatest is not looked at again."""
+    edges = CuttingEdges(teeth=teeth, diameter=20.0, helix_angle=helix)
+    for end in (exit_, pi):
+        at = place(max(end - contact, 0.0), end, depth)
+        for of in (peak_resultant, wall_force):
+            rough, exact = (
+                float(of(edges, at, STEEL_LAW, is_rough=r)[0]) for r in (True, False)
+            )
+            assert LIKELY * exact <= rough <= exact * (1.0 + 1e-9)
 
 
 def test_a_helix_out_of_range_is_refused() -> None:

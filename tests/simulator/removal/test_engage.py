@@ -112,11 +112,14 @@ def test_peak_in_a_corner_of_a_pocket() -> None:
 
 @pytest.mark.parametrize("cell", [0.1, 0.25, 0.4])
 def test_the_peak_of_a_corner_is_that_of_its_end_whatever_the_cells(cell: float) -> None:
-    """0.3 mm head-on into a wall: a chord of ``2√(2Re − e²)``, however the stations fall."""
+    """0.3 mm head-on into a wall: a chord of ``2√(2Re − e²)``, however the stations fall.
+
+    The volume of so short an entry is that of one or two stretches, as of trapezia.
+    """
     chord = 2.0 * sqrt(2.0 * 5.0 * 0.3 - 0.3**2)
     found = stock(cell).cut(feed((-8.0, 20.0, -2.0), (-4.7, 20.0, -2.0)), FLAT)
     assert found.peak_section.max() == pytest.approx(2.0 * chord, rel=1e-3)
-    assert volume(found) == pytest.approx(2.0 * segment_area(5.0, 0.3), rel=0.05)
+    assert volume(found) == pytest.approx(2.0 * segment_area(5.0, 0.3), rel=0.1)
 
 
 @pytest.mark.parametrize("cell", [0.1, 0.3])
