@@ -1,4 +1,4 @@
-"""What each limit on the advice costs or gives: the bracket, one limit after the other.
+"""Cost or gain of each limit on the advice: the bracket, one limit after the other.
 
 The first row has none of them: straight edges, the catalogue's feeds at any engagement, an end
 mill that may bend 0.05 mm in a finish and 0.1 mm elsewhere, nominal k_c. Each row adds one.
@@ -15,16 +15,23 @@ from unittest.mock import patch
 from optimiser import optimise as advising
 from optimiser.advice import Plan
 from optimiser.conditions import PermittedDeflection
-from optimiser.formulate import Task
+from optimiser.formulate import OptimisationTask
 from optimiser.modes import Free
 from simulator import library
 from simulator.library import load_machine
 from simulator.matching import match_material
-from simulator.spec import Direction, Grade, Machine, ToolKind, VibratingPart, VibrationMode
+from simulator.spec import (
+    Machine,
+    ModeDirection,
+    ToolGrade,
+    ToolKind,
+    VibratingPart,
+    VibrationMode,
+)
 from stepnc_model.entities.milling import BottomAndSideFinishMilling, SideFinishMilling
 from stepnc_model.errors import Finding
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program, Workingstep
+from stepnc_model.program import Program, ResolvedWorkingstep
 
 BRACKET = Path(__file__).parents[1] / "examples" / "parts" / "bracket.stpnc"
 FINISHES = (SideFinishMilling, BottomAndSideFinishMilling)
@@ -32,7 +39,7 @@ FINISHES = (SideFinishMilling, BottomAndSideFinishMilling)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Row:
-    """Which limits hold."""
+    """Limits that hold in a row."""
 
     name: str
     has_helix: bool = False
@@ -77,11 +84,11 @@ def main(arguments: list[str] | None = None) -> None:
 def plan_with(row: Row) -> Plan:
     """The bracket's plan under the limits of a row."""
     with _grades(row), _tolerances(row):
-        return advising.optimise(
+        return advising.optimise_program(
             Program(Part21File.from_bytes(BRACKET.read_bytes()), name="bracket"),
             machine=_machine(row),
             material=match_material(["C45"]),
-            task=Task(safety=row.safety, free=row.free),
+            task=OptimisationTask(safety=row.safety, free=row.free),
         )
 
 
@@ -90,7 +97,7 @@ def _grades(row: Row) -> Iterator[None]:
     """Tool grades without what a row does not have."""
     usual = library._grades
 
-    def without(kind: ToolKind) -> tuple[Grade, ...]:
+    def without(kind: ToolKind) -> tuple[ToolGrade, ...]:
         return tuple(
             replace(
                 grade,
@@ -112,7 +119,7 @@ def _tolerances(row: Row) -> Iterator[None]:
     """Deflection by custom instead of by the drawing."""
 
     def by_custom(
-        _program: Program, step: Workingstep
+        _program: Program, step: ResolvedWorkingstep
     ) -> tuple[PermittedDeflection, list[Finding]]:
         is_finish = isinstance(step.operation, FINISHES)
         return PermittedDeflection(value=0.05 if is_finish else 0.1), []
@@ -129,7 +136,7 @@ def _machine(row: Row) -> Machine:
     machine = load_machine("vmc15")
     mode = VibrationMode(
         part=VibratingPart.TOOL,
-        direction=Direction.XY,
+        direction=ModeDirection.XY,
         natural_frequency=1200.0,
         damping_ratio=0.04,
         stiffness=40_000.0,

@@ -6,7 +6,8 @@ is known of the cutter: at any time with chips, up to 150 revolutions after that
 corners included; in the first six revolutions only; within three revolutions of a change of the
 arc of contact by more than 0.1 rad only. Draws go on until as many teeth were cutting as asked
 for. A tooth that takes less than a tenth of the feed per tooth in any of the three revolutions
-after its loss, by runout or because the cut ends, is undecidable. All is seeded.
+after its loss, by runout or because the cut ends, is undecidable, and so is one in a revolution
+with less force than the loop takes for chips. All is seeded.
 ``python -m benchmarks.breakage``
 """
 
@@ -22,9 +23,10 @@ from typing import Any
 
 import numpy as np
 
-from service.control.run import ControlRequest, prepare
+from service.control.run import prepare
 from service.control.setup import steps_of
-from service.simulation.run import SimulationRequest
+from service.requests.runs import ControlRequest
+from service.simulation.run import RunFiles
 from simulator.motion.segments import Bools, Floats, Ints
 from tests.closed_loop.teeth import AFTER, WITHIN, Found, Healthy, Job, Loss, healthy, lost
 
@@ -63,7 +65,7 @@ Mapped = Callable[[Callable[[int], Any], Iterable[int]], Iterable[Any]]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Kind:
-    """Where losses are drawn."""
+    """Kind of place at which losses are drawn."""
 
     name: str
     is_corner: bool = False
@@ -130,14 +132,16 @@ def main(arguments: list[str] | None = None) -> None:
 @cache
 def bracket() -> Bracket:
     """The bracket; once in each process."""
-    session = prepare(ControlRequest(simulation=SimulationRequest(file=BRACKET)))
+    session = prepare(ControlRequest(has_preview=False), RunFiles(file=BRACKET))
     steps = steps_of(session.planned, session.advices)
     course = session.machine.course
     rough = {
         name: np.flatnonzero(course.workingstep == session.workingsteps.index(name) + 1)
         for name in ROUGHING
     }
-    return Bracket(job=Job(course=course, steps=steps, aims=session.loop.aims), rough=rough)
+    return Bracket(
+        job=Job(course=course, steps=steps, settings=session.loop.state.settings), rough=rough
+    )
 
 
 def healthy_run(seed: int, *, is_whole: bool) -> Healthy:

@@ -14,9 +14,9 @@ import numpy as np
 from benchmarks.control_step import step_cost
 from controller.laws.choice import LawName
 from controller.preview import LOOK_AHEAD
-from simulator.plant.controlled import Bench
+from simulator.plant.controlled import Instrumentation
 from simulator.plant.dynamometer import Instrument
-from simulator.plant.hidden import Hidden
+from simulator.plant.hidden import HiddenTruth
 from tests.closed_loop.trials import (
     GUARDED,
     KNOWN,
@@ -43,7 +43,7 @@ LAGS = (1.5, 3.0, 6.0)
 OVERLOAD = 1.5
 """of the set point"""
 NAMES = {trial: title for title, trial in TRIALS.items()}
-PERFECT = Bench(dynamometer=Instrument(), power_meter=Instrument())
+PERFECT = Instrumentation(dynamometer=Instrument(), power_meter=Instrument())
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -169,7 +169,7 @@ def _try(look_ahead: int) -> None:
 
 
 def _noise(look_ahead: int) -> None:
-    """What the instrument does to a revolution's mean, and that to the force."""
+    """Effect of the instrument on a revolution's mean, and of that on the force."""
     print("\nStandard deviations of the mean of a revolution at rest, log-pi with preview\n")
     _head("trial", "measured over true %", "true %")
     for trial in (KNOWN, LOST):
@@ -181,7 +181,7 @@ def _noise(look_ahead: int) -> None:
 
 
 def _look_ahead() -> None:
-    """How far the default law has to see, and MPC."""
+    """Look-ahead that the default law needs, and MPC."""
     for name in (LawName.LOG_PI, LawName.MPC):
         print(f"\n{name}: nominal, then hidden factors {FACTORS} × lags {LAGS} revolutions\n")
         _head(
@@ -214,7 +214,9 @@ def _varied(name: LawName, trial: Trial) -> list[Score]:
         score(
             run(
                 name,
-                replace(trial, hidden=Hidden(force_factor=factor, servo_lag=lag * REVOLUTION)),
+                replace(
+                    trial, hidden=HiddenTruth(force_factor=factor, servo_lag=lag * REVOLUTION)
+                ),
             )
         )
         for factor in FACTORS
@@ -223,7 +225,7 @@ def _varied(name: LawName, trial: Trial) -> list[Score]:
 
 
 def _guard(look_ahead: int) -> None:
-    """What the guard adds where nobody knows what comes."""
+    """Effect of the guard in an unknown cut."""
     print(f"\nTrial (b): the law alone → with the guard's hold at {OVERLOAD:g} × set point\n")
     over = f"revs above {OVERLOAD:g} ×"
     _head("law", "preview", "peak %", "excess N·s", "mean feed %", over, "holds", "stopped")

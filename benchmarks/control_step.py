@@ -1,4 +1,4 @@
-"""What a control step costs: by law, by cycle of the whole loop, and for a whole program.
+"""Cost of a control step: by law, by cycle of the whole loop, and for a whole program.
 
 Laws answer again what they were asked in a trial of ``tests/closed_loop/trials.py``; a cycle of
 the loop is one tooth period, timed without the virtual machine that it waits for. A revolution
@@ -16,12 +16,13 @@ from typing import Any
 
 import numpy as np
 
-from controller.law import Law, Situation
+from controller.law import ControlLaw, Situation
 from controller.laws.choice import LawName
 from controller.ports import Reading
 from controller.preview import LOOK_AHEAD
-from service.control.run import ControlRequest, prepare
-from service.simulation.run import SimulationRequest
+from service.control.run import prepare
+from service.requests.runs import ControlRequest
+from service.simulation.run import RunFiles
 from simulator.plant.controlled import ControlledMachine
 from tests.closed_loop.trials import KNOWN, LAWS, Trial, law_of, loop, machine, run
 
@@ -34,7 +35,7 @@ NS_PER_US = 1000.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Cost:
+class StepCost:
     """Of one step, µs: CPU time is the step's own, the wall clock also waits for others."""
 
     cpu: float
@@ -107,7 +108,7 @@ def main(arguments: list[str] | None = None) -> None:
         _program(has_preview=has_preview)
 
 
-def step_cost(name: LawName, trial: Trial, *, rounds: int = ROUNDS) -> Cost:
+def step_cost(name: LawName, trial: Trial, *, rounds: int = ROUNDS) -> StepCost:
     """Of a law alone."""
     asked, law = run(name, trial).situations, law_of(name, trial)
     gc.disable()  # as timeit does
@@ -116,7 +117,7 @@ def step_cost(name: LawName, trial: Trial, *, rounds: int = ROUNDS) -> Cost:
     return _cost(taken)
 
 
-def cycle_cost(name: LawName, trial: Trial) -> Cost:
+def cycle_cost(name: LawName, trial: Trial) -> StepCost:
     """Of the whole loop, without the machine."""
     clocks = _Clocks()
     taken: list[tuple[int, int]] = []
@@ -131,7 +132,7 @@ def cycle_cost(name: LawName, trial: Trial) -> Cost:
         clocks.wall = clocks.cpu = 0
 
 
-def _steps(law: Law[Any], asked: Sequence[Situation]) -> list[tuple[int, int]]:
+def _steps(law: ControlLaw[Any], asked: Sequence[Situation]) -> list[tuple[int, int]]:
     """Ns of each step by the wall clock and of CPU time."""
     state, taken = law.begin(1.0), []
     for at in asked:
@@ -143,10 +144,10 @@ def _steps(law: Law[Any], asked: Sequence[Situation]) -> list[tuple[int, int]]:
     return taken
 
 
-def _cost(taken: Sequence[tuple[int, int]]) -> Cost:
+def _cost(taken: Sequence[tuple[int, int]]) -> StepCost:
     """Of steps that took so many ns by the wall clock and of CPU time."""
     wall, cpu = np.array(taken).T / NS_PER_US
-    return Cost(
+    return StepCost(
         cpu=float(cpu.mean()),
         cpu_p99=float(np.quantile(cpu, 0.99)),
         wall=float(wall.mean()),
@@ -156,10 +157,7 @@ def _cost(taken: Sequence[tuple[int, int]]) -> Cost:
 
 def _program(*, has_preview: bool) -> None:
     """One line: the bracket under control, after everything is prepared."""
-    request = ControlRequest(
-        simulation=SimulationRequest(file=BRACKET), has_preview=has_preview
-    )
-    session = prepare(request)
+    session = prepare(ControlRequest(has_preview=has_preview), RunFiles(file=BRACKET))
     start, cpu = time.perf_counter(), time.process_time()
     cycles = sum(1 for _ in session.cycles())
     taken, cpu = time.perf_counter() - start, time.process_time() - cpu

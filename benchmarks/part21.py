@@ -30,7 +30,7 @@ FOOTER = "ENDSEC;\nEND-ISO-10303-21;\n"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Run:
-    """What one reader needed."""
+    """Time and memory of one reader."""
 
     reader: str
     megabytes: float

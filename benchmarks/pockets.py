@@ -16,7 +16,7 @@ from random import Random
 import pyclipper
 
 from stepnc_model.toolpath.milling.contour import (
-    Edge,
+    ContourEdge,
     Loop,
     circle,
     clockwise,
@@ -34,7 +34,7 @@ SCALE = 1e5
 
 
 @dataclass(frozen=True, slots=True)
-class Pocket:
+class StarPocket:
     """Walls, cutter and step."""
 
     walls: tuple[Loop, ...]
@@ -42,7 +42,7 @@ class Pocket:
     step: float
 
 
-def pockets(count: int) -> Iterator[Pocket]:
+def pockets(count: int) -> Iterator[StarPocket]:
     """Star-shaped pockets with rounded corners and round islands, always the same ones."""
     random = Random(14649)
     while count:
@@ -58,17 +58,17 @@ def pockets(count: int) -> Iterator[Pocket]:
             for k in range(random.randint(1, 2))
         ]
         step = random.uniform(0.4, 1.4) * radius
-        yield Pocket((outline[0], *islands), radius, step)
+        yield StarPocket((outline[0], *islands), radius, step)
         count -= 1
 
 
-def by_arcs(pocket: Pocket) -> list[str]:
+def by_arcs(pocket: StarPocket) -> list[str]:
     """Rings of lines and arcs."""
     passes = rings(pocket.walls, distance=pocket.radius, radius=pocket.radius, step=pocket.step)
     return [code(edge) for each in passes for edge in each.chain]
 
 
-def code(edge: Edge) -> str:
+def code(edge: ContourEdge) -> str:
     """One line of G code."""
     end = edge.end
     if edge.centre is None:
@@ -78,7 +78,7 @@ def code(edge: Edge) -> str:
     return f"{word} X{end.real:.4f} Y{end.imag:.4f} I{to_centre.real:.4f} J{to_centre.imag:.4f}"
 
 
-def by_clipper(pocket: Pocket) -> list[str]:
+def by_clipper(pocket: StarPocket) -> list[str]:
     """Rings of chords."""
     offset = pyclipper.PyclipperOffset(2.0, CHORD * SCALE)
     for wall in pocket.walls:

@@ -22,7 +22,8 @@ from stepnc_model.post.blocks import (
     SpindleOn,
     ToolChange,
 )
-from stepnc_model.post.controls import Control, read, write
+from stepnc_model.post.dialect import Dialect
+from stepnc_model.post.dialects import read, write
 
 
 def generate(count: int) -> Iterator[Block]:
@@ -64,7 +65,7 @@ def main(arguments: list[str] | None = None) -> None:
     count = parser.parse_args(arguments).blocks
     blocks = list(generate(count))
     print(f"{'control':12}{'lines':>9}{'MB':>7}{'written/s':>12}{'read/s':>12}")
-    for control in Control:
+    for control in Dialect:
         lines = list(write(blocks, control))
         written = seconds(partial(write, blocks, control))
         taken = seconds(partial(read, lines, control))

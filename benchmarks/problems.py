@@ -5,12 +5,11 @@ from dataclasses import dataclass, replace
 from math import pi
 from random import Random
 
-from optimiser.cut import Place
-from optimiser.limit import Limit, LimitName, Monomial, Sense
-from optimiser.loads import DepthCurve, Force
-from optimiser.problem import Cost, Problem, Setting
+from optimiser.cut import CriticalPlace
+from optimiser.loads import DepthCurve, ForceKind
+from optimiser.problem import BoundSide, Cost, Limit, LimitName, Monomial, Problem, Setting
 from simulator.physics.engagement import unidirectional
-from simulator.physics.flutes import CuttingEdges, Law
+from simulator.physics.flutes import CuttingEdges, ForceLaw
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -126,7 +125,7 @@ def _random_limits(random: Random, cut: _Cut) -> tuple[Limit, ...]:
             load=Monomial(coefficient=cut.chip, feed_exponent=1.0),
             bound=random.uniform(0.0005, 0.004),
             unit="mm",
-            sense=Sense.AT_LEAST,
+            sense=BoundSide.AT_LEAST,
         ),
         Limit(
             name=LimitName.ROUGHNESS,
@@ -164,15 +163,15 @@ def _bending(random: Random, cut: _Cut) -> Iterator[Limit]:
         corner_radius=random.choice((0.0, 0.0, 0.1, 0.5)) * cut.diameter,
     )
     arc = unidirectional(cut.chip * cut.diameter, cut.diameter)
-    place = Place(engagement=arc, depth_share=random.choice((1.0, 1.2)))
-    law = Law(exponent=1.0 - cut.m_c)
+    place = CriticalPlace(engagement=arc, depth_share=random.choice((1.0, 1.2)))
+    law = ForceLaw(exponent=1.0 - cut.m_c)
     k_c11 = random.uniform(600.0, 3500.0)
     core = 0.8 * cut.diameter
     deflection = 576.0 * cut.diameter**3 / (pi * 600_000.0 * core**4)
     stress = 96.0 * cut.diameter / (pi * core**3)
     for name, force, by_force, bound, unit in (
-        (LimitName.TOOL_DEFLECTION, Force.AT_WALL, deflection, 0.02, "mm"),
-        (LimitName.SHANK_STRENGTH, Force.ACROSS, stress, 300.0, "N/mm²"),
+        (LimitName.TOOL_DEFLECTION, ForceKind.AT_WALL, deflection, 0.02, "mm"),
+        (LimitName.SHANK_STRENGTH, ForceKind.ACROSS, stress, 300.0, "N/mm²"),
     ):
         yield Limit(
             name=name,

@@ -23,7 +23,7 @@ BRACKET = Path(__file__).parents[1] / "examples" / "parts" / "bracket.stpnc"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Usage:
-    """What one process took."""
+    """Time and memory of one process."""
 
     cpu: float
     """s, user and system"""
@@ -84,7 +84,7 @@ def _print_growth(command: str, counts: list[int], folder: Path) -> None:
 
 
 def _usage(command: list[str]) -> Usage:
-    """What one run takes."""
+    """Time and memory of one run."""
     start = time.perf_counter()
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     _, status, used = os.wait4(process.pid, 0)

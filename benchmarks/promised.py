@@ -1,4 +1,4 @@
-"""What plans promise beside what the virtual machine finds, and the worst ratio of each figure.
+"""Promised figures beside those that the virtual machine finds, and the worst ratio of each.
 
 The bracket, the shaft, and example 1 of ISO 14649-11 where it lies beside the project; its file
 draws no raw part, so that a block of 100 × 120 mm from 30 mm under to 5 mm above zero is taken.
@@ -9,15 +9,16 @@ from dataclasses import replace
 from pathlib import Path
 
 from service.confirmation import Confirmation, Figure
-from service.usecases import Request, optimise
+from service.requests.advice import AdviceRequest
+from service.usecases import AdviceFiles, optimise
 
 ROOT = Path(__file__).parents[1]
 EX1 = ROOT.parent / "shared" / "corpus" / "iso14649" / "ex1.stp"
 
 PARTS = (
-    Request(file=ROOT / "examples" / "parts" / "bracket.stpnc", machine="vmc15"),
-    Request(file=ROOT / "examples" / "parts" / "shaft.stpnc", machine="lathe22"),
-    Request(file=EX1, machine="vmc15", material="C45", stock="0,0,-30,100,120,5"),
+    (ROOT / "examples" / "parts" / "bracket.stpnc", AdviceRequest(machine="vmc15")),
+    (ROOT / "examples" / "parts" / "shaft.stpnc", AdviceRequest(machine="lathe22")),
+    (EX1, AdviceRequest(machine="vmc15", material="C45", stock="0,0,-30,100,120,5")),
 )
 
 
@@ -25,16 +26,17 @@ def main(arguments: list[str] | None = None) -> None:
     """Print a row for each workingstep of each part."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.parse_args(arguments)
-    for part in PARTS:
-        if part.file.exists():
-            _print(part.file.name, confirmed(part))
+    for file, request in PARTS:
+        if file.exists():
+            _print(file.name, confirmed(file, request))
         else:
-            print(f"{part.file} is not there: left out")
+            print(f"{file} is not there: left out")
 
 
-def confirmed(part: Request) -> Confirmation:
+def confirmed(file: Path, request: AdviceRequest) -> Confirmation:
     """A plan beside its run; nothing is written."""
-    found = optimise(replace(part, dry_run=True, confirm=True)).confirmation
+    files = AdviceFiles(file=file, dry_run=True)
+    found = optimise(replace(request, is_confirmed=True), files).confirmation
     if found is None:
         raise ValueError("a plan that is to be confirmed has its confirmation")
     return found

@@ -29,7 +29,7 @@ PATIENCE = 120.0
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Load:
-    """What wrk saw."""
+    """Result of wrk."""
 
     rate: float
     """requests a second"""

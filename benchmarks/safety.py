@@ -1,4 +1,4 @@
-"""How often a plan passes its bounds when k_c is not what the catalogue says.
+"""Share of plans that pass their bounds when k_c is not that of the catalogue.
 
 The bracket is planned at several quantiles of k_c and run on the virtual machine, which finds
 each load at the catalogue's k_c. Then k_c is drawn from its spread: loads are in proportion to
@@ -13,10 +13,10 @@ from pathlib import Path
 
 import numpy as np
 
-from optimiser.advice import Advice, Plan, Status
-from optimiser.formulate import Task
-from optimiser.limit import SCALES_WITH_FORCE, LimitName
-from optimiser.optimise import optimise
+from optimiser.advice import Advice, AdviceStatus, Plan
+from optimiser.formulate import OptimisationTask
+from optimiser.optimise import optimise_program
+from optimiser.problem import SCALES_WITH_FORCE, LimitName
 from optimiser.source import along_paths
 from service.confirm import confirm
 from service.confirmation import Confirmation
@@ -24,9 +24,9 @@ from service.records import changes_of
 from simulator.library import load_machine
 from simulator.matching import match_material
 from stepnc_model import writeback
+from stepnc_model.file_profile import FileProfile
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
-from stepnc_model.writeback import Profile
 
 BRACKET = Path(__file__).parents[1] / "examples" / "parts" / "bracket.stpnc"
 
@@ -63,13 +63,13 @@ def main(arguments: list[str] | None = None) -> None:
 def _plan_and_run(safety: float) -> tuple[Plan, Confirmation]:
     """A plan of the bracket at a quantile, and what the machine finds of it."""
     program = Program(Part21File.from_bytes(BRACKET.read_bytes()), name="bracket")
-    plan = optimise(
+    plan = optimise_program(
         program,
         machine=load_machine("vmc15"),
         material=match_material(["C45"]),
-        task=Task(safety=safety, source=partial(along_paths, is_run=True)),
+        task=OptimisationTask(safety=safety, source=partial(along_paths, is_run=True)),
     )
-    data = writeback.write(program, changes_of(plan), Profile.OPTIMISATION)
+    data = writeback.write(program, changes_of(plan), FileProfile.OPTIMISATION)
     advised = Program(Part21File.from_bytes(data, name="bracket"), name="bracket")
     return plan, confirm(plan, advised)
 
@@ -82,7 +82,7 @@ def _shares(plan: Plan, confirmation: Confirmation | None) -> np.ndarray:
         _share(advice)
         * (ratios.get((advice.workingstep.id, FIGURES.get(advice.active, ""))) or 1.0)
         for advice in plan.advices
-        if advice.status is Status.ADVISED and advice.active in SCALES_WITH_FORCE
+        if advice.status is AdviceStatus.ADVISED and advice.active in SCALES_WITH_FORCE
     ])
 
 

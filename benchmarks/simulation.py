@@ -16,8 +16,10 @@ from pathlib import Path
 
 from pyarrow import parquet
 
-from service.simulation.run import SimulationRequest, simulate
+from service.requests.runs import SimulationRequest
+from service.simulation.run import RunFiles, simulate
 from service.simulation.setup import CodeRequest
+from simulator.motion.model_name import ControlModelName
 
 SPEED = 20.0
 """mm/s of the long program"""
@@ -42,7 +44,9 @@ def main(arguments: list[str] | None = None) -> None:
         _long_run(options.child)
         return
     part = Path(__file__).parent.parent / "examples" / "parts" / "bracket.stpnc"
-    simulate(SimulationRequest(file=part))  # what is compiled and read once does not count
+    simulate(
+        SimulationRequest(), RunFiles(file=part)
+    )  # what is compiled and read once does not count
     header = f"{'simulated s/s':>13}  {'samples/s':>10}  bytes/sample"
     print(f"{'bracket, samples at':>22}  {header}")
     for rate in (10.0, 1000.0):
@@ -59,7 +63,7 @@ def _speed(part: Path, rate: float) -> None:
     with tempfile.TemporaryDirectory() as folder:
         output = Path(folder) / "run.parquet"
         start = time.perf_counter()
-        run = simulate(SimulationRequest(file=part, rate=rate, output=output))
+        run = simulate(SimulationRequest(rate_hz=rate), RunFiles(file=part, output=output))
         taken = time.perf_counter() - start
         start = time.perf_counter()
         parquet.read_table(output)
@@ -81,14 +85,14 @@ def _long_run(hours: float) -> None:
             file.writelines(islice(_lines(), blocks))
             file.write("M2\n")
         request = SimulationRequest(
+            machine="vmc15", material="c45", control=ControlModelName.JUNCTION, rate_hz=10.0
+        )
+        files = RunFiles(
             code=CodeRequest(code=code, tools=tools, stock="0,0,-20,120,100,0"),
-            machine="vmc15",
-            material="c45",
-            control="junction",
             output=Path(folder) / "run.parquet",
         )
         start = time.perf_counter()
-        simulate(request)
+        simulate(request, files)
         taken = time.perf_counter() - start
     status = Path("/proc/self/status").read_text().splitlines()
     peak = next(int(line.split()[1]) for line in status if line.startswith("VmHWM"))

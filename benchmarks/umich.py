@@ -15,25 +15,30 @@ from pathlib import Path
 
 import numpy as np
 
-from simulator.calibration.cycle_time import (
+from benchmarks.logged_path.cycle_time import (
     NO_PAUSES,
-    Observed,
+    ObservedTime,
     Pauses,
     ProgramRun,
     fitted_pauses,
 )
-from simulator.calibration.estimates import Calibration, Prior
-from simulator.calibration.features import Parameter, RunFeatures, design, powers
+from benchmarks.logged_path.rebuild import Rebuilt, rebuilt
+from benchmarks.logged_path.sampled_path import shifted, stations
+from benchmarks.logged_path.smart_mill import RAPID, SAMPLE_TIME, SmartRun, read_smart_run
+from simulator.calibration.features import (
+    Calibration,
+    Parameter,
+    ParameterPrior,
+    RunFeatures,
+    design,
+    powers,
+)
 from simulator.calibration.fit import fitted
 from simulator.calibration.measured_run import Component
-from simulator.calibration.rebuild import Rebuilt, rebuilt
 from simulator.calibration.skill import Skill, compared, estimated_lag, mean_power, skill
-from simulator.calibration.smart_mill import RAPID, SAMPLE_TIME, SmartRun, read_smart_run
-from simulator.calibration.thread import shifted, stations
 from simulator.machine.spindle_course import SpindleCourse, ramped, standing
-from simulator.motion.exact_stop import ExactStop
-from simulator.motion.motion import AxisLimits
-from simulator.motion.segments import Floats, Ints
+from simulator.motion.control import ExactStop
+from simulator.motion.segments import AxisLimits, Floats, Ints
 
 DATA = Path(__file__).parents[2] / "shared" / "data" / "umich_smart"
 MEASURED = (Component.SPINDLE, Component.X, Component.Y)
@@ -43,16 +48,20 @@ CUTTING_ENERGY = 0.25  # J per mm of path in wax: some 1.5 W at 6 mm/s, an estim
 EFFICIENCY = 1.0
 """of the spindle; unknown, and idle power and inertia are as seen from the mains"""
 PRIORS = {
-    Parameter.BASE: Prior(value=0.0, scale=500.0),
-    Parameter.COOLANT: Prior(value=0.0, scale=500.0),
-    Parameter.IDLE: Prior(value=0.0, scale=100.0),
-    Parameter.IDLE_PER_SPEED: Prior(value=0.0, scale=10.0),
-    Parameter.IDLE_PER_SPEED_SQUARED: Prior(value=0.0, scale=0.05),
-    Parameter.INERTIA: Prior(value=0.0, scale=0.01),
-    Parameter.CUTTING: Prior(value=1.0, scale=0.5),
-    **{name: Prior(value=0.0, scale=500.0) for name in Parameter if name.endswith(" friction")},
-    **{name: Prior(value=0.0, scale=5.0) for name in Parameter if "viscous" in name},
-    **{name: Prior(value=0.0, scale=100.0) for name in Parameter if "mass" in name},
+    Parameter.BASE: ParameterPrior(value=0.0, scale=500.0),
+    Parameter.COOLANT: ParameterPrior(value=0.0, scale=500.0),
+    Parameter.IDLE: ParameterPrior(value=0.0, scale=100.0),
+    Parameter.IDLE_PER_SPEED: ParameterPrior(value=0.0, scale=10.0),
+    Parameter.IDLE_PER_SPEED_SQUARED: ParameterPrior(value=0.0, scale=0.05),
+    Parameter.INERTIA: ParameterPrior(value=0.0, scale=0.01),
+    Parameter.CUTTING: ParameterPrior(value=1.0, scale=0.5),
+    **{
+        name: ParameterPrior(value=0.0, scale=500.0)
+        for name in Parameter
+        if name.endswith(" friction")
+    },
+    **{name: ParameterPrior(value=0.0, scale=5.0) for name in Parameter if "viscous" in name},
+    **{name: ParameterPrior(value=0.0, scale=100.0) for name in Parameter if "mass" in name},
 }
 """wide: what a small mill might have"""
 
@@ -98,7 +107,7 @@ class Mill:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Prediction:
+class PredictedRun:
     """One held-out run."""
 
     name: str
@@ -183,7 +192,7 @@ def logged(run: SmartRun, program: Rebuilt, feed: float) -> Log:
     return Log(name=run.name, feed=feed, rows=rows[order], station=station[order], run=run)
 
 
-def predict(mill: Mill, name: str, feed: float, data: Path) -> Prediction:
+def predict(mill: Mill, name: str, feed: float, data: Path) -> PredictedRun:
     """Time and energy of a run of which only its feed and what part it did are looked at."""
     log = logged(read_smart_run(data / f"{name}.csv"), mill.program, feed)
     program = _run(mill, feed)
@@ -212,7 +221,7 @@ def predict(mill: Mill, name: str, feed: float, data: Path) -> Prediction:
         )
         for part in (*MEASURED, Component.TOTAL)
     }
-    return Prediction(
+    return PredictedRun(
         name=name,
         feed=feed,
         measured_time=log.seconds,
@@ -235,11 +244,11 @@ def _run(mill: Mill, feed: float) -> ProgramRun:
     )
 
 
-def _observed(mill: Mill, log: Log) -> Observed:
+def _observed(mill: Mill, log: Log) -> ObservedTime:
     """Measured time of a run beside that of its motion."""
     program = _run(mill, log.feed)
     begin, end = float(log.station[0]), float(log.station[-1])
-    return Observed(
+    return ObservedTime(
         seconds=log.seconds,
         motion=program.time_at(end) - program.time_at(begin),
         blocks=program.blocks_before(end) - program.blocks_before(begin),
@@ -302,7 +311,7 @@ def _mean(logs: Sequence[Log], parts: Sequence[Component]) -> float:
 
 
 def _print_mill(mill: Mill) -> None:
-    """What was fitted."""
+    """Print the fitted parameters."""
     segments = mill.program.segments
     print(f"calibration runs: {', '.join(mill.runs)}")
     arcs = int((segments.turn != 0.0).sum())
@@ -322,7 +331,7 @@ def _print_mill(mill: Mill) -> None:
         print(f"{each.parameter:34}{each.value:10.4g}{span:>24} {each.unit:10} {each.reason}")
 
 
-def _print_predictions(predictions: Sequence[Prediction]) -> None:
+def _print_predictions(predictions: Sequence[PredictedRun]) -> None:
     """Errors on runs that were not fitted, model and baseline side by side."""
     print(
         f"\n{'held-out run':16}{'feed':>6}{'measured s':>12}{'predicted s':>12}{'error %':>9}"

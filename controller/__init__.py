@@ -1,1 +1,1 @@
-"""What to do now: the feed override from the measured force."""
+"""Control of the feed override by the measured force."""

@@ -36,7 +36,7 @@ from controller.offsets import (
 from controller.ports import Floats
 from controller.preview import Expected
 from controller.signal import Revolution
-from controller.tooth_shares import Shares, force_ratio, shares_of
+from controller.tooth_shares import ToothShares, force_ratio, shares_of
 
 EVIDENCE = 10.0
 """of ln(likelihood) by which two revolutions must speak for a lost tooth"""
@@ -74,7 +74,7 @@ NOTABLE = 2.0
 class _Turn:
     """A revolution, and what was known before it."""
 
-    shares: Shares
+    shares: ToothShares
     before: Offsets
     misfit: float
     """with all teeth"""
@@ -84,7 +84,7 @@ class _Turn:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Breakage:
-    """What was learnt of the teeth, and whether one is broken. A new one for a new tool."""
+    """State of the breakage detector of a tool. A new one for a new tool."""
 
     offsets: Offsets | None = None
     """None: nothing was learnt yet"""
@@ -115,7 +115,7 @@ def inspected(
     *,
     exponent: float = 0.8,
 ) -> Breakage:
-    """What is known of the teeth after one more revolution.
+    """Update the detector with one more revolution.
 
     A revolution in which a tooth, the feed or the arc of contact is missing is not judged.
 
@@ -148,7 +148,7 @@ def inspected(
     return _verdict(_seen(breakage, shares, ratio))
 
 
-def _seen(breakage: Breakage, shares: Shares, ratio: float) -> Breakage:
+def _seen(breakage: Breakage, shares: ToothShares, ratio: float) -> Breakage:
     """With one more revolution, whose teeth are taken for whole."""
     before = breakage.offsets or unknown(len(shares.taken))
     every = misfits(before, shares)
@@ -191,7 +191,7 @@ def _suspects(turns: Sequence[_Turn], known: Offsets) -> list[int]:
     return suspects
 
 
-def _is_lost(tooth: int, known: Offsets, last: Sequence[Shares]) -> bool:
+def _is_lost(tooth: int, known: Offsets, last: Sequence[ToothShares]) -> bool:
     """Whether two revolutions together speak for a lost tooth."""
     without = _judged_all(known, last, lost=tooth)
     whole, other = _judged_all(known, last), _judged_all(unknown(len(known.mean)), last)
@@ -204,7 +204,7 @@ def _is_lost(tooth: int, known: Offsets, last: Sequence[Shares]) -> bool:
 
 
 def _reason(turn: _Turn, known: Offsets) -> str:
-    """Which tooth period of the last revolution is farthest from what whole teeth take."""
+    """Tooth period of the last revolution that is farthest from that of whole teeth."""
     whole = turn.shares.of(known.mean[None])[0]
     at = int(np.abs(turn.shares.taken - whole).argmax())
     return (
@@ -214,7 +214,7 @@ def _reason(turn: _Turn, known: Offsets) -> str:
 
 
 def _judged_all(
-    offsets: Offsets, shares: Sequence[Shares], *, lost: int | None = None
+    offsets: Offsets, shares: Sequence[ToothShares], *, lost: int | None = None
 ) -> list[Judged]:
     """Revolutions one after another, each with what those before it taught."""
     found = []

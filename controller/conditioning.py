@@ -33,7 +33,7 @@ _NMM_S_PER_WATT = 1000.0  # 1 W = 1000 N·mm/s
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Tare:
-    """What an instrument shows while nothing is cut."""
+    """Reading of an instrument while nothing is cut."""
 
     offset: float = 0.0
     """N or W"""
@@ -44,7 +44,7 @@ class Tare:
 
     @property
     def is_known(self) -> bool:
-        """Whether anything was learnt."""
+        """Whether a value has been learnt."""
         return self.seconds > 0.0
 
 

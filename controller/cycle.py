@@ -6,19 +6,19 @@ weight they are those that really were.
 
 from dataclasses import dataclass
 
-from controller.guard import Allowed
-from controller.orders import Event
+from controller.guard import AllowedOverride
+from controller.orders import LoopEvent
 from controller.signal import Revolution
 from simulator.reading import Reading
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Cycle:
-    """What happened in one cycle."""
+class LoopCycle:
+    """Results of one control cycle."""
 
     reading: Reading
     """as it was acted upon"""
-    allowed: Allowed
+    allowed: AllowedOverride
     """the override that was commanded, and what held it"""
     set_point: float
     """N; infinite: none"""
@@ -30,7 +30,7 @@ class Cycle:
     """ln(measured / expected force); None: not to be compared"""
     weight: float = 1.0
     """equivalent over real force"""
-    events: tuple[Event, ...]
+    events: tuple[LoopEvent, ...]
 
     @property
     def bound(self) -> float:

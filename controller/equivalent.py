@@ -13,31 +13,33 @@ from dataclasses import replace
 
 import numpy as np
 
-from controller.aims import Aims, Step
+from controller.loop_settings import LoopSettings, LoopStep
 from controller.preview import Preview
 from simulator.reading import Floats, Reading
 
 
-def equivalent(plain: Preview, steps: Sequence[Step], aims: Aims) -> Preview:
+def equivalent(plain: Preview, steps: Sequence[LoopStep], settings: LoopSettings) -> Preview:
     """A preview of equivalent forces.
 
     Parameters
     ----------
     plain : Preview
         Forces as they are.
-    steps : sequence of Step
+    steps : sequence of LoopStep
         By the number of the workingstep, from 1.
-    aims : Aims
+    settings : LoopSettings
         With a set point of the user's own forces count as they are.
     """
-    if plain.peak is None or plain.workingstep is None or aims.set_point is not None:
+    if plain.peak is None or plain.workingstep is None or settings.set_point is not None:
         return plain
     weight: Floats = np.ones(len(plain.until))
     for number, step in enumerate(steps, 1):
         rows = plain.workingstep == number
         peak = np.asarray(plain.peak[rows], dtype=np.float64)
         wall = None if plain.wall is None else np.asarray(plain.wall[rows], dtype=np.float64)
-        weight[rows] = step.reference.weights(peak, wall=wall, power_factor=aims.power_factor)
+        weight[rows] = step.reference.weights(
+            peak, wall=wall, power_factor=settings.power_factor
+        )
     land = None if plain.land_force is None else plain.land_force * weight
     return replace(plain, force=plain.force * weight, weight=weight, land_force=land)
 

@@ -1,4 +1,4 @@
-"""How the cutting force that is measured compares with the one that is expected.
+"""Estimate of the ratio of measured to expected cutting force.
 
 Their ratio is what the knowledge base learns k_c from. Statistics are of its logarithm, because
 the ratio is a product of factors, each as likely to be a tenth too high as a tenth too low.
@@ -74,7 +74,7 @@ def counted(estimate: RatioEstimate, ratio: float) -> RatioEstimate:
 
 
 def force_ratio(estimate: RatioEstimate) -> ForceRatio | None:
-    """What the outcome of a workingstep tells; None before there are two readings.
+    """Ratio of a workingstep, as its outcome reports it; None before there are two readings.
 
     Revolutions in a row err alike, so that the mean is known less well than the deviation over
     the root of their number.

@@ -47,7 +47,7 @@ NOTICED = 1e-3
 """of the threshold, below which a force bounds no override"""
 
 
-class Holding(StrEnum):
+class OverrideReason(StrEnum):
     """Why the law does not have its way."""
 
     NOTHING = "nothing"
@@ -62,7 +62,7 @@ class Holding(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Band:
+class OverrideBand:
     """Within which the override may move.
 
     Raises
@@ -77,7 +77,7 @@ class Band:
     """greatest rise in one revolution, as a share; falling is free: it is the safe side"""
     safe: float = 0.5
     """override without force readings"""
-    silence: float = 0.5
+    sensor_timeout: float = 0.5
     """s without a reading after which it holds"""
     overload_ratio: float = OVERLOAD_RATIO
     holds: int = 3
@@ -89,15 +89,17 @@ class Band:
                 f"override band {self.floor:g} to {self.ceiling:g}: it must hold 0 < floor ≤ 1 "
                 "and floor ≤ ceiling"
             )
-        if not self.rise > 0.0 or not self.silence > 0.0 or not 0.0 < self.safe <= 1.0:
-            raise ValueError("rise and silence must be positive, the safe override in (0, 1]")
+        if not self.rise > 0.0 or not self.sensor_timeout > 0.0 or not 0.0 < self.safe <= 1.0:
+            raise ValueError(
+                "rise and sensor timeout must be positive, the safe override in (0, 1]"
+            )
         if not self.overload_ratio > 1.0 or self.holds < 1:
             raise ValueError("the overload ratio must be above 1, holds at least 1")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Keeping:
-    """What holds in the workingstep that runs."""
+class WorkingstepBounds:
+    """Bounds of the workingstep that runs."""
 
     set_point: float
     """N; infinite: nothing bounds the force"""
@@ -110,23 +112,25 @@ class Keeping:
     settled: float = 0.0
     """N, greatest set point that the force had the time to follow: one that falls at once makes
     no overload of a force that was none"""
+    cap: float = inf
+    """override that a hold has taught, :func:`taught`"""
 
     @property
     def strength(self) -> float:
         """N that a tooth may take, so that a sudden rise does not break the tool."""
         return self.breakage / SUDDEN_RATIO
 
-    def threshold(self, band: Band) -> float:
+    def threshold(self, band: OverrideBand) -> float:
         """N at which the feed is held."""
         overload = band.overload_ratio * max(self.set_point, self.settled)
         return min(overload, self.strength)
 
-    def load(self, band: Band, *, level: float, force: float) -> float:
-        """What a tooth period counts against the threshold, N.
+    def load(self, band: OverrideBand, *, level: float, force: float) -> float:
+        """Load of a tooth period as the threshold counts it, N.
 
         Parameters
         ----------
-        band : Band
+        band : OverrideBand
         level : float, N
             Its force as if all teeth were alike, to be compared with the set point.
         force : float, N
@@ -138,11 +142,11 @@ class Keeping:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Allowed:
+class AllowedOverride:
     """The override that goes to the machine, and what held it."""
 
     override: float
-    holding: Holding = Holding.NOTHING
+    holding: OverrideReason = OverrideReason.NOTHING
 
 
 def aimed(set_point: float, reference: Reference) -> float:
@@ -150,76 +154,58 @@ def aimed(set_point: float, reference: Reference) -> float:
     return min(set_point, AIMED * reference.breakage / SUDDEN_RATIO)
 
 
-def keeping(
-    band: Band, reference: Reference, *, set_point: float, exponent: float, most: float = inf
-) -> Keeping:
-    """The band of a workingstep: the user's, narrowed by what the workingstep allows.
-
-    Parameters
-    ----------
-    band : Band
-    reference : Reference
-    set_point : float, N
-        Infinite: none.
-    exponent : float
-        p of force over feed.
-    most : float
-        Override that the mode allows.
-    """
-    # What is programmed may pass the plan's limits by far: the band's floor is kept.
-    ceiling = max(min(band.ceiling, reference.ceiling, most), band.floor)
-    return Keeping(
-        set_point=set_point,
-        breakage=reference.breakage,
-        floor=min(max(band.floor, reference.floor), ceiling),
-        ceiling=ceiling,
-        exponent=exponent,
-    )
-
-
 def allowed(
-    wanted: float, band: Band, keep: Keeping, *, last: float, actual: float, force: float
-) -> Allowed:
-    """What a law gets of what it wants, in a revolution with chips.
+    wanted: float,
+    band: OverrideBand,
+    keep: WorkingstepBounds,
+    *,
+    last: float,
+    actual: float,
+    force: float,
+) -> AllowedOverride:
+    """Override that the guard allows a law, in a revolution with chips.
 
     Parameters
     ----------
     wanted : float
         Any number; what is none counts as the floor.
-    band : Band
-    keep : Keeping
+    band : OverrideBand
+    keep : WorkingstepBounds
     last : float
         Override that was commanded last.
     actual : float
         Override that the axes ran in the last revolution.
     force : float, N
-        Greatest load of a tooth period (:meth:`Keeping.load`), or mean of the revolution.
+        Greatest load of a tooth period (:meth:`WorkingstepBounds.load`), or mean of the
+        revolution.
     """
     is_wish = isfinite(wanted) and wanted >= keep.floor
     override = wanted if is_wish else keep.floor
-    holding = Holding.NOTHING if is_wish else Holding.BAND
+    holding = OverrideReason.NOTHING if is_wish else OverrideReason.BAND
     for name, bound in (
-        (Holding.RATE, last * (1.0 + band.rise)),
-        (Holding.BAND, keep.ceiling),
-        (Holding.FORCE, _by_force(band, keep, actual=actual, force=force)),
+        (OverrideReason.RATE, last * (1.0 + band.rise)),
+        (OverrideReason.BAND, keep.ceiling),
+        (OverrideReason.FORCE, _by_force(band, keep, actual=actual, force=force)),
     ):
         if override > bound:
             override, holding = bound, name
-    return Allowed(override=max(override, 0.0), holding=holding)
+    return AllowedOverride(override=max(override, 0.0), holding=holding)
 
 
-def in_air(keep: Keeping, *, last: float) -> Allowed:
+def in_air(keep: WorkingstepBounds, *, last: float) -> AllowedOverride:
     """The override without chips: the last, at most the programmed feed."""
-    return Allowed(override=min(max(last, keep.floor), keep.ceiling, 1.0))
+    return AllowedOverride(override=min(max(last, keep.floor), keep.ceiling, 1.0))
 
 
-def after_hold(keep: Keeping, *, override: float, force: float) -> float:
+def after_hold(keep: WorkingstepBounds, *, override: float, force: float) -> float:
     """Override to go on with after a force, N, has held the feed."""
     share = (RESUMED * keep.set_point / force) ** (1.0 / keep.exponent)
     return float(min(max(override * share, LEAST_RESUMED), keep.ceiling, 1.0))
 
 
-def taught(band: Band, keep: Keeping, *, override: float, force: float) -> float:
+def taught(
+    band: OverrideBand, keep: WorkingstepBounds, *, override: float, force: float
+) -> float:
     """Override at which the force, N, that has held the feed would have been let through.
 
     What was met once may be met again in the same workingstep: without it, a program whose
@@ -230,7 +216,9 @@ def taught(band: Band, keep: Keeping, *, override: float, force: float) -> float
     return float(max(override * (threshold / believed) ** (1.0 / keep.exponent), keep.floor))
 
 
-def _by_force(band: Band, keep: Keeping, *, actual: float, force: float) -> float:
+def _by_force(
+    band: OverrideBand, keep: WorkingstepBounds, *, actual: float, force: float
+) -> float:
     """Override at which the force measured now would reach the margin of the threshold."""
     threshold = MARGIN * keep.threshold(band)
     if not force > NOTICED * threshold or not actual > 0.0:

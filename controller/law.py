@@ -1,4 +1,4 @@
-"""What every control law is: a function of its state and the situation.
+"""Interface of control laws: functions of a state and a situation.
 
 Cutting force over feed is a power law, ``F = K·g·u^p`` with the override u, the expected
 force g at u = 1, a factor K that nobody knows, and p = 1 − m_c: in logarithms a linear,
@@ -19,7 +19,7 @@ S = TypeVar("S")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Situation:
-    """What a law may know when it decides: one revolution of the spindle."""
+    """Input of a law's decision: one revolution of the spindle."""
 
     force: float
     """N, mean of the last revolution, above 0"""
@@ -42,7 +42,7 @@ class Situation:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Plant:
-    """What a law may know of the process when it is tuned."""
+    """Process model that a law is tuned for."""
 
     exponent: float = 0.8
     """p = 1 − m_c, of force over feed"""
@@ -50,7 +50,7 @@ class Plant:
     """of the feed drives, revolutions"""
 
 
-class Law(Protocol[S]):
+class ControlLaw(Protocol[S]):
     """A control law. The object holds what was tuned; all that changes is in the state."""
 
     def begin(self, override: float) -> S:

@@ -1,17 +1,19 @@
-"""What is watched besides the feed: warnings, broken teeth, wear, a jump in hardness.
+"""Monitor of the run: warnings, broken teeth, wear, jumps in hardness.
 
-Running state: the states of the functions that look at each revolution. Units N, s.
+A state, and what revolutions with chips make of it. Units N, s.
 """
 
-from collections.abc import Iterator
+from collections.abc import Mapping
 from math import expm1, inf
+from types import MappingProxyType
+from typing import NamedTuple
 
 from controller.breakage import Breakage, inspected
-from controller.guard import Keeping
-from controller.orders import Event, EventKind
+from controller.guard import WorkingstepBounds
+from controller.orders import EventKind, LoopEvent
 from controller.preview import Expected
 from controller.signal import Revolution
-from controller.threshold import Level, Watch, reason, watched
+from controller.threshold import AlarmLevel, ThresholdWatch, reason, watched
 from controller.tool_life import ToolLife, compared_anew, lived, new_tool
 
 STEADY = 0.02
@@ -35,64 +37,68 @@ ABOVE = 1.05
 """times the set point, and times the floor: what is nearer is at it"""
 
 _KINDS = {
-    Level.SAFE: EventKind.SAFE,
-    Level.WARNING: EventKind.WARNING,
-    Level.OVER: EventKind.OVER,
+    AlarmLevel.SAFE: EventKind.SAFE,
+    AlarmLevel.WARNING: EventKind.WARNING,
+    AlarmLevel.OVER: EventKind.OVER,
 }
 _RANKS = {level: rank for rank, level in enumerate(_KINDS)}
 
 
-class Monitor:
-    """Looks at each revolution with chips. Running state."""
+class Monitor(NamedTuple):
+    """What the revolutions so far have taught."""
 
-    def __init__(self) -> None:
-        self.level = Level.SAFE
-        """that was told last"""
-        self.is_broken = False
-        self.lives: dict[str, ToolLife] = {}
-        """by the tool's id"""
-        self._tool = ""
-        self._watch = Watch()
-        self._breakage = Breakage()
-        self._override = 1.0
-        self._has_chips = False
-        self._since = -inf
-        """s, when the level was last as high as was told"""
-        self._changed = -inf
-        """s, when a change of the work was told"""
-        self._worn: set[str] = set()
-        """tools of which it was told"""
-        self._at_floor = 0
-        """revolutions; negative: it was told"""
+    tool: str = ""
+    """its id"""
+    lives: Mapping[str, ToolLife] = MappingProxyType({})
+    """by the tool's id"""
+    worn: frozenset[str] = frozenset()
+    """tools of which it was told"""
+    breakage: Breakage = Breakage()
+    watch: ThresholdWatch = ThresholdWatch()
+    override: float = 1.0
+    """of the last revolution"""
+    level: AlarmLevel = AlarmLevel.SAFE
+    """that was told last"""
+    since: float = -inf
+    """s, when the level was last as high as was told"""
+    changed: float = -inf
+    """s, when a change of the work was told"""
+    at_floor: int = 0
+    """revolutions; negative: it was told"""
+    events: tuple[LoopEvent, ...] = ()
+    """of the last revolution"""
 
-    def begin(self, tool: str) -> None:
-        """A workingstep begins: its cut may err otherwise than the last one's."""
-        self._breakage = self._breakage.paused() if tool == self._tool else Breakage()
-        self._tool, self._watch, self._has_chips = tool, Watch(), False
-        self._at_floor = 0
+    def begun(self, tool: str) -> "Monitor":
+        """In a new workingstep: its errors may differ from those of the last one."""
         life = self.lives.get(tool)
-        self.lives[tool] = new_tool() if life is None else compared_anew(life)
+        begun = new_tool() if life is None else compared_anew(life)
+        return self._replace(
+            tool=tool,
+            lives={**self.lives, tool: begun},
+            breakage=self.breakage.paused() if tool == self.tool else Breakage(),
+            watch=ThresholdWatch(),
+            at_floor=0,
+        )
 
-    def out_of_cut(self) -> None:
+    def out_of_cut(self) -> "Monitor":
         """Without chips. The ways out and in look alike, and each like a broken tooth."""
-        self._has_chips = False
-        self._breakage = self._breakage.paused()
+        return self._replace(watch=ThresholdWatch(), breakage=self.breakage.paused())
 
     def seen(
         self,
         revolution: Revolution,
-        keep: Keeping,
+        keep: WorkingstepBounds,
         *,
         ratio: float | None,
         land_share: float = 0.0,
         expected: Expected | None = None,
-    ) -> Iterator[Event]:
-        """What one more revolution with chips tells.
+    ) -> "Monitor":
+        """After one more revolution with chips.
 
         Parameters
         ----------
         revolution : Revolution
-        keep : Keeping
+        keep : WorkingstepBounds
             What holds in the workingstep.
         ratio : float, optional
             ln(measured / expected); None: not to be compared.
@@ -101,74 +107,84 @@ class Monitor:
         expected : Expected, optional
             What equal teeth would take in it; None: teeth are not compared.
         """
-        if not self._has_chips:
-            self._watch = Watch()
-        is_steady = abs(revolution.override - self._override) <= STEADY * self._override
-        self._has_chips, self._override = True, revolution.override
+        monitor = self._replace(events=())
         if keep.set_point < inf:
-            yield from self._warned(revolution, keep.set_point, is_steady=is_steady)
-            yield from self._reached(revolution, keep)
-        yield from self._inspected(revolution, expected, keep.exponent)
-        if ratio is not None:
-            yield from self._lived(revolution, ratio, land_share)
+            monitor = _reached(_warned(monitor, revolution, keep.set_point), revolution, keep)
+        monitor = _inspected(monitor, revolution, expected, keep.exponent)
+        return monitor if ratio is None else _lived(monitor, revolution, ratio, land_share)
 
-    def _warned(
-        self, revolution: Revolution, set_point: float, *, is_steady: bool
-    ) -> Iterator[Event]:
-        """A higher level at once, a lower one when it has lasted."""
-        before, force = self._watch, revolution.force
-        self._watch = watched(before, revolution, set_point=set_point, is_steady=is_steady)
-        level, now = self._watch.level, revolution.time
-        if _RANKS[level] >= _RANKS[self.level]:
-            self._since = now
-        if _RANKS[level] > _RANKS[self.level] or now - self._since > CALM:
-            self.level, self._since = level, now
-            text = reason(before, level, force, set_point=set_point)
-            yield Event(time=now, kind=_KINDS[level], text=text)
+    def teeth_seen(
+        self, revolution: Revolution, keep: WorkingstepBounds, *, expected: Expected | None
+    ) -> "Monitor":
+        """After a revolution while the feed is held: that the force is too great was told."""
+        return _inspected(self._replace(events=()), revolution, expected, keep.exponent)
 
-    def _reached(self, revolution: Revolution, keep: Keeping) -> Iterator[Event]:
-        """Once in a workingstep: the force stays above its set point whatever the override."""
-        is_over = revolution.force > ABOVE * keep.set_point
-        is_at_floor = revolution.override <= ABOVE * keep.floor
-        if self._at_floor < 0 or not (is_over and is_at_floor):
-            self._at_floor = min(self._at_floor, 0)
-            return
-        self._at_floor += 1
-        if self._at_floor < REACH:
-            return
-        self._at_floor = -1
-        text = (
-            f"{revolution.force:.4g} N at an override of {100.0 * revolution.override:.3g} %: "
-            f"the set point of {keep.set_point:.4g} N cannot be reached within the band"
-        )
-        yield Event(time=revolution.time, kind=EventKind.UNREACHABLE, text=text)
 
-    def _inspected(
-        self, revolution: Revolution, expected: Expected | None, exponent: float
-    ) -> Iterator[Event]:
-        """A tooth that has broken."""
-        self._breakage = inspected(self._breakage, revolution, expected, exponent=exponent)
-        if self._breakage.broken is not None and not self.is_broken:
-            self.is_broken = True
-            text = f"tooth {self._breakage.broken + 1} of {revolution.teeth} takes no chip: "
-            text += self._breakage.reason
-            yield Event(time=revolution.time, kind=EventKind.BREAKAGE, text=text)
+def _told(monitor: Monitor, kind: EventKind, time: float, text: str) -> Monitor:
+    event = LoopEvent(time=time, kind=kind, text=text)
+    return monitor._replace(events=(*monitor.events, event))
 
-    def _lived(
-        self, revolution: Revolution, ratio: float, land_share: float
-    ) -> Iterator[Event]:
-        """A sudden change of the work, or the end of a tool's life."""
-        before = self.lives[self._tool]
-        life = self.lives[self._tool] = lived(before, ratio, land_share=land_share)
-        is_new = len(life.changes) > len(before.changes)
-        is_due = revolution.time - self._changed > PAUSE
-        if is_new and is_due and abs(life.changes[-1]) > NOTABLE:
-            self._changed = revolution.time
-            percent = 100.0 * expm1(life.changes[-1])
-            way = "harder or deeper" if percent > 0.0 else "softer or shallower"
-            text = f"force {percent:+.0f} % against what is expected: {way}"
-            yield Event(time=revolution.time, kind=EventKind.HARDNESS, text=text)
-        if life.is_worn_out and self._tool not in self._worn:
-            self._worn.add(self._tool)
-            text = f"tool '{self._tool}': flank wear {life.flank_wear:.2f} mm by the force"
-            yield Event(time=revolution.time, kind=EventKind.WEAR, text=text)
+
+def _warned(monitor: Monitor, revolution: Revolution, set_point: float) -> Monitor:
+    """A higher level at once, a lower one when it has lasted."""
+    before, force, now = monitor.watch, revolution.force, revolution.time
+    is_steady = abs(revolution.override - monitor.override) <= STEADY * monitor.override
+    watch = watched(before, revolution, set_point=set_point, is_steady=is_steady)
+    rise = _RANKS[watch.level] - _RANKS[monitor.level]
+    since = now if rise >= 0 else monitor.since
+    monitor = monitor._replace(watch=watch, since=since)
+    if rise <= 0 and now - since <= CALM:
+        return monitor
+    text = reason(before, watch.level, force, set_point=set_point)
+    monitor = monitor._replace(level=watch.level, since=now)
+    return _told(monitor, _KINDS[watch.level], now, text)
+
+
+def _reached(monitor: Monitor, revolution: Revolution, keep: WorkingstepBounds) -> Monitor:
+    """Once in a workingstep: the force stays above its set point whatever the override."""
+    is_above = revolution.force > ABOVE * keep.set_point
+    is_at_floor = revolution.override <= ABOVE * keep.floor
+    if monitor.at_floor < 0 or not (is_above and is_at_floor):
+        return monitor._replace(at_floor=min(monitor.at_floor, 0))
+    if monitor.at_floor + 1 < REACH:
+        return monitor._replace(at_floor=monitor.at_floor + 1)
+    text = (
+        f"{revolution.force:.4g} N at an override of {100.0 * revolution.override:.3g} %: "
+        f"the set point of {keep.set_point:.4g} N cannot be reached within the band"
+    )
+    monitor = monitor._replace(at_floor=-1)
+    return _told(monitor, EventKind.UNREACHABLE, revolution.time, text)
+
+
+def _inspected(
+    monitor: Monitor, revolution: Revolution, expected: Expected | None, exponent: float
+) -> Monitor:
+    """A tooth that has broken."""
+    before = monitor.breakage
+    breakage = inspected(before, revolution, expected, exponent=exponent)
+    monitor = monitor._replace(breakage=breakage, override=revolution.override)
+    if breakage.broken is None or before.is_broken:
+        return monitor
+    text = f"tooth {breakage.broken + 1} of {revolution.teeth} takes no chip: "
+    return _told(monitor, EventKind.BREAKAGE, revolution.time, text + breakage.reason)
+
+
+def _lived(
+    monitor: Monitor, revolution: Revolution, ratio: float, land_share: float
+) -> Monitor:
+    """A sudden change of the work, or the end of a tool's life."""
+    tool, now = monitor.tool, revolution.time
+    before = monitor.lives.get(tool) or new_tool()
+    life = lived(before, ratio, land_share=land_share)
+    monitor = monitor._replace(lives={**monitor.lives, tool: life})
+    is_new = len(life.changes) > len(before.changes)
+    if is_new and now - monitor.changed > PAUSE and abs(life.changes[-1]) > NOTABLE:
+        percent = 100.0 * expm1(life.changes[-1])
+        way = "harder or deeper" if percent > 0.0 else "softer or shallower"
+        text = f"force {percent:+.0f} % against what is expected: {way}"
+        monitor = _told(monitor._replace(changed=now), EventKind.HARDNESS, now, text)
+    if life.is_worn_out and tool not in monitor.worn:
+        text = f"tool '{tool}': flank wear {life.flank_wear:.2f} mm by the force"
+        monitor = monitor._replace(worn=monitor.worn | {tool})
+        monitor = _told(monitor, EventKind.WEAR, now, text)
+    return monitor

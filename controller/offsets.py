@@ -18,7 +18,7 @@ from math import inf, pi
 import numpy as np
 
 from controller.ports import Floats
-from controller.tooth_shares import Shares
+from controller.tooth_shares import ToothShares
 from simulator.physics.tooth_means import LOST
 
 ECCENTRICITY = 0.02
@@ -51,7 +51,7 @@ _RADII = (0.01, 0.025)  # mm
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Offsets:
-    """What is known of the teeth: a normal distribution."""
+    """Estimate of the offsets of the teeth: a normal distribution."""
 
     mean: Floats
     """(z,) mm"""
@@ -80,7 +80,7 @@ def unknown(teeth: int) -> Offsets:
     return Offsets(mean=np.zeros(teeth), covariance=eccentric + SINGLE**2 * np.eye(teeth))
 
 
-def misfits(offsets: Offsets, shares: Shares) -> Floats:
+def misfits(offsets: Offsets, shares: ToothShares) -> Floats:
     """Misfit of a revolution to the offsets as they are, with all teeth and without each.
 
     Returns
@@ -94,13 +94,13 @@ def misfits(offsets: Offsets, shares: Shares) -> Floats:
     return _square(shares.taken - shares.of(guesses), _scaled(shares, offsets.mean).noise)
 
 
-def judged(offsets: Offsets, shares: Shares, *, lost: int | None = None) -> Judged:
-    """How well a revolution fits what is known.
+def judged(offsets: Offsets, shares: ToothShares, *, lost: int | None = None) -> Judged:
+    """Likelihood of a revolution under a hypothesis.
 
     Parameters
     ----------
     offsets : Offsets
-    shares : Shares
+    shares : ToothShares
     lost : int, optional
         Tooth that takes no chip.
     """
@@ -119,14 +119,14 @@ def judged(offsets: Offsets, shares: Shares, *, lost: int | None = None) -> Judg
     return Judged(log_likelihood=found.log_likelihood, misfit=found.misfit, offsets=offsets)
 
 
-def _scaled(shares: Shares, offsets: Floats, lost: int | None = None) -> Shares:
+def _scaled(shares: ToothShares, offsets: Floats, lost: int | None = None) -> ToothShares:
     """With the errors of chips that are all thicker or thinner: offsets count less or more."""
     pair = shares.of(_without(np.vstack((offsets, (1.0 + SCALE) * offsets)), lost))
     error = pair[1] - pair[0]
     return replace(shares, noise=shares.noise + np.outer(error, error))
 
 
-def _start(known: Offsets, shares: Shares, lost: int | None) -> Floats:
+def _start(known: Offsets, shares: ToothShares, lost: int | None) -> Floats:
     """Likeliest of some eccentricities beside what is known."""
     teeth = len(known.mean)
     angles = 2.0 * pi * np.arange(_ANGLES) / _ANGLES
@@ -138,7 +138,7 @@ def _start(known: Offsets, shares: Shares, lost: int | None) -> Floats:
     return start
 
 
-def _fitted(known: Offsets, shares: Shares, lost: int | None, *, start: Floats) -> Judged:
+def _fitted(known: Offsets, shares: ToothShares, lost: int | None, *, start: Floats) -> Judged:
     """Gauss-Newton, [1]_; a step that makes the fit worse is halved."""
     at, covariance = start, known.covariance
     precision, certainty = np.linalg.inv(shares.noise), np.linalg.inv(covariance)

@@ -1,4 +1,4 @@
-"""What the operator may switch while the program runs, and what the loop tells.
+"""Orders of the operator to the running loop, and events that the loop reports.
 
 The switches of the simulator in [1]_, Fig. 9: ON/OFF, TC/QC, and the motor power.
 
@@ -14,7 +14,7 @@ from math import inf
 
 
 class Criterion(StrEnum):
-    """What the override is chosen for."""
+    """Criterion by which the override is chosen."""
 
     TC = "TC"
     """time-critical: as fast as the force bound and the chip load allow"""
@@ -57,7 +57,7 @@ Order = SwitchTo | CriterionTo | MotorPowerTo
 
 
 class EventKind(StrEnum):
-    """What the loop tells."""
+    """Kind of event."""
 
     WORKINGSTEP = "workingstep"
     ORDER = "order"
@@ -77,7 +77,7 @@ class EventKind(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Event:
+class LoopEvent:
     """One thing that happened."""
 
     time: float

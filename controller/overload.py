@@ -29,8 +29,8 @@ LEAST, MOST = 0.4, 2.5
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Shares:
-    """What each tooth takes over the mean of a revolution."""
+class UsualShares:
+    """Share of each tooth in the mean force of a revolution."""
 
     usual: tuple[float, ...]
     seen: tuple[float, ...]
@@ -56,17 +56,17 @@ def mean(force: Floats) -> float:
     return float(np.interp(at, at[~lost], force[~lost]).mean())
 
 
-def fresh(teeth: int) -> Shares:
+def fresh(teeth: int) -> UsualShares:
     """A cutter of which nothing is known: all teeth alike."""
-    return Shares(usual=(1.0,) * teeth, seen=(0.0,) * teeth)
+    return UsualShares(usual=(1.0,) * teeth, seen=(0.0,) * teeth)
 
 
-def noted(shares: Shares, tooth: int, force: float) -> Shares:
+def noted(shares: UsualShares, tooth: int, force: float) -> UsualShares:
     """One tooth period more, of which nothing is to be learnt: air, and the way into the work.
 
     Parameters
     ----------
-    shares : Shares
+    shares : UsualShares
     tooth : int
     force : float, N
         Mean of the period; NaN: lost, the tooth's last one stays.
@@ -74,15 +74,15 @@ def noted(shares: Shares, tooth: int, force: float) -> Shares:
     if isnan(force):
         return shares
     last = (*shares.seen[:tooth], force, *shares.seen[tooth + 1 :])
-    return Shares(usual=shares.usual, seen=last, mean=shares.mean, steady=shares.steady)
+    return UsualShares(usual=shares.usual, seen=last, mean=shares.mean, steady=shares.steady)
 
 
-def seen(shares: Shares, tooth: int, force: float) -> Shares:
+def seen(shares: UsualShares, tooth: int, force: float) -> UsualShares:
     """One tooth period in the cut more; the last of a steady revolution teaches the shares.
 
     Parameters
     ----------
-    shares : Shares
+    shares : UsualShares
     tooth : int
     force : float, N
         Mean of the period; NaN: lost, the tooth's last one stays.
@@ -100,10 +100,10 @@ def seen(shares: Shares, tooth: int, force: float) -> Shares:
             min(max(old + LEARNING * (new / average - old), LEAST), MOST)
             for old, new in zip(usual, last, strict=True)
         )
-    return Shares(usual=usual, seen=last, mean=max(average, 0.0), steady=steady)
+    return UsualShares(usual=usual, seen=last, mean=max(average, 0.0), steady=steady)
 
 
-def level(shares: Shares, tooth: int, force: float) -> float:
+def level(shares: UsualShares, tooth: int, force: float) -> float:
     """Force of a tooth period, less what runout gives the tooth, N.
 
     Teeth that take little count as they are: they would turn small forces into overloads.

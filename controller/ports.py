@@ -11,7 +11,7 @@ __all__ = ["Floats", "Override", "Reading", "Sensor"]
 
 
 class Sensor(Protocol):
-    """Where readings come from."""
+    """Source of readings."""
 
     def read(self) -> Reading | None:
         """The next reading, waiting for it; None: the program has ended.

@@ -1,4 +1,4 @@
-"""What the program says of the cut ahead: the expected force at an override of 1.
+"""Preview of the cut ahead: the force that the program expects at an override of 1.
 
 No law that only feeds back can avoid the doubled force where the depth doubles, but the program
 knows it before. What it knows is not exact in time, so that each look ahead takes the greatest
@@ -20,7 +20,7 @@ LOOK_AHEAD = 8
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Expected:
-    """What the program expects in the periods of a revolution's teeth, by their number."""
+    """Expected values in the periods of a revolution's teeth, by their number."""
 
     force: NDArray[np.float64]
     """(z,) N at an override of 1"""
@@ -78,7 +78,7 @@ class Preview:
         return float(self.land_force[first:beyond].mean())
 
     def expected(self, begin: float, end: float, *, teeth: int, first: int) -> Expected | None:
-        """What is expected in each tooth period of a revolution; None: no arc is known.
+        """Expected values in each tooth period of a revolution; None: no arc is known.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""What a run under control amounts to, workingstep by workingstep: the last step of the loop.
+"""Summary of a run under control, workingstep by workingstep.
 
 Running state. Units mm, s, N.
 """
@@ -6,13 +6,13 @@ Running state. Units mm, s, N.
 from dataclasses import dataclass, field
 from math import inf, isfinite
 
-from controller.cycle import Cycle
+from controller.cycle import LoopCycle
 from controller.estimate import RatioEstimate, counted
 from controller.signal import Revolution
 
 
 @dataclass(kw_only=True)
-class Record:
+class RunRecord:
     """One workingstep, or what stands before them. Running state."""
 
     workingstep: int
@@ -69,7 +69,7 @@ LASTING = 0.2
 FREE = 1e9
 """N, in place of no bound"""
 
-OVER = 1.05
+EXCESS_RATIO = 1.05
 """times the set point, from which a force counts as over it: its noise is not"""
 
 
@@ -83,21 +83,21 @@ class Recorder:
     """
 
     def __init__(self, chips: float) -> None:
-        self.records: dict[int, Record] = {}
+        self.records: dict[int, RunRecord] = {}
         """by the workingstep's number, in the order of their beginning"""
         self._chips = chips
 
-    def add(self, cycle: Cycle) -> None:
+    def add(self, cycle: LoopCycle) -> None:
         """One more cycle."""
         number = cycle.reading.workingstep
         record = self.records.get(number)
         if record is None:
-            record = self.records[number] = Record(workingstep=number)
+            record = self.records[number] = RunRecord(workingstep=number)
         record.time += cycle.reading.period
         if cycle.revolution is not None:
             self._add(record, cycle, cycle.revolution)
 
-    def _add(self, record: Record, cycle: Cycle, revolution: Revolution) -> None:
+    def _add(self, record: RunRecord, cycle: LoopCycle, revolution: Revolution) -> None:
         if not revolution.is_covered:
             record.lost += 1
             return
@@ -123,4 +123,4 @@ class Recorder:
             record.ratio = counted(record.ratio, cycle.ratio)
         if isfinite(bound):
             record.excess += max(force - bound, 0.0) * period
-            record.over_time += period * (force > OVER * bound)
+            record.over_time += period * (force > EXCESS_RATIO * bound)

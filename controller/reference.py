@@ -1,4 +1,4 @@
-"""What the plan allows in a workingstep, as the loop needs it: a force and a band of overrides.
+"""Force bound and override band of a workingstep, from the plan.
 
 Every limit that rises with the force is brought to the cutting force at which it is reached;
 every limit on the feed to the override at which it is reached. Units N, mm, rad.
@@ -11,10 +11,10 @@ from math import inf
 import numpy as np
 
 from optimiser import loads
-from optimiser.advice import Advice, Load, State
+from optimiser.advice import Advice, EvaluatedSetting, LimitLoad
 from optimiser.cut import Cut
-from optimiser.limit import LimitName, Sense
 from optimiser.limits import STRAIGHT_DOWN
+from optimiser.problem import BoundSide, LimitName
 from simulator.reading import Floats
 from simulator.spec import Kienzle
 
@@ -54,13 +54,13 @@ class ForceBound:
 
     @property
     def is_mean(self) -> bool:
-        """Whether it is the mean force that is bounded."""
+        """Whether the bound is on the mean force."""
         return self.peak == 0.0 and self.wall == 0.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reference:
-    """What the loop is to keep in one workingstep.
+    """Reference of the loop in one workingstep.
 
     Raises
     ------
@@ -78,7 +78,7 @@ class Reference:
     breakage: float = inf
     """N that the tool bears"""
     inhibition: str = ""
-    """why nobody may touch the feed; empty: the loop may"""
+    """why the feed is locked; empty: the loop may change it"""
 
     def __post_init__(self) -> None:
         if not (self.ceiling > 0.0 and self.breakage > 0.0 and self.floor >= 0.0):
@@ -94,7 +94,7 @@ class Reference:
     def weights(
         self, peak: Floats, *, wall: Floats | None = None, power_factor: float = 1.0
     ) -> Floats:
-        """What a mean force counts at other places than the plan's hardest, as a factor.
+        """Factor on a mean force at other places than the plan's hardest.
 
         ``w = F_bound · max(1/F_mean, ρ/F_peak, σ/F_wall)``, the F the least bounds on the mean,
         the greatest force and that at the wall, ρ and σ these over the mean there: forces that
@@ -141,7 +141,7 @@ class Reference:
 
 
 def reference_of(advice: Advice) -> Reference:
-    """What a workingstep allows around the feed that the program gives it.
+    """Reference of a workingstep around the feed that the program gives it.
 
     Parameters
     ----------
@@ -155,7 +155,7 @@ def reference_of(advice: Advice) -> Reference:
     if state is None or advice.cut is None:
         return Reference(workingstep=name, inhibition=inhibition)
     bounds = sorted(_force_bounds(advice.cut, state), key=lambda bound: bound.force)
-    rubbing = max(_overrides(state, Sense.AT_LEAST), default=0.0)
+    rubbing = max(_overrides(state, BoundSide.AT_LEAST), default=0.0)
     ceiling = _ceiling(state, rubbing)
     strengths = [
         RUPTURE_RATIO * each.force for each in bounds if each.name is LimitName.SHANK_STRENGTH
@@ -171,18 +171,18 @@ def reference_of(advice: Advice) -> Reference:
     )
 
 
-def _ceiling(state: State, rubbing: float) -> float:
+def _ceiling(state: EvaluatedSetting, rubbing: float) -> float:
     """Override that all limits on the feed allow.
 
     A roughness that no feed attains, or none at which the edge still cuts, bounds nothing: the
     plan says so, and feeds that only rub make it worse.
     """
-    ceiling = min(_overrides(state, Sense.AT_MOST), default=inf)
+    ceiling = min(_overrides(state, BoundSide.AT_MOST), default=inf)
     ceiling = ceiling if ceiling > rubbing else max(rubbing, 1.0)
     return min(ceiling, max(1.0, min(_plunge_overrides(state), default=inf)))
 
 
-def _plunge_overrides(state: State) -> Iterator[float]:
+def _plunge_overrides(state: EvaluatedSetting) -> Iterator[float]:
     """Overrides that the ways down allow; one override holds for them and for the passes.
 
     Forces down a ramp are bounded as those of a pass are, so that the loop keeps them; the
@@ -195,7 +195,7 @@ def _plunge_overrides(state: State) -> Iterator[float]:
             yield load.limit.feed_at_bound(at.depth, at.speed) / at.plunge_feed
 
 
-def _force_bounds(cut: Cut, state: State) -> Iterator[ForceBound]:
+def _force_bounds(cut: Cut, state: EvaluatedSetting) -> Iterator[ForceBound]:
     """Loads that rise with the force, at the force that makes them reach their bounds."""
     shares = _shares(cut, state)
     for load in state.loads:
@@ -216,8 +216,8 @@ def _force_bounds(cut: Cut, state: State) -> Iterator[ForceBound]:
             )
 
 
-def _over_mean(cut: Cut, load: Load, depth: float) -> float:
-    """What loads the tool over the mean force, in the part of the cut that is loaded.
+def _over_mean(cut: Cut, load: LimitLoad, depth: float) -> float:
+    """Loads of the tool over the mean force, in the part of the cut that is loaded.
 
     0 for what the mean loads.
     """
@@ -237,13 +237,13 @@ def _over_mean(cut: Cut, load: Load, depth: float) -> float:
     return loads.over_mean(force.curve, depth)
 
 
-def _constant(load: Load, state: State) -> float:
+def _constant(load: LimitLoad, state: EvaluatedSetting) -> float:
     """Part of a load that is there whatever the feed: of a thrust, that of the chisel edge."""
     by, at = load.limit.load, state.setting
     return float(by.offset * by.depth_factor(at.depth) * at.speed**by.speed_exponent)
 
 
-def _shares(cut: Cut, state: State) -> dict[tuple[str, float], float]:
+def _shares(cut: Cut, state: EvaluatedSetting) -> dict[tuple[str, float], float]:
     """Force of each part of the cut over that of the hardest, by their torques.
 
     Walls, the floor that is swept with them and a plunge take different forces with the same
@@ -260,20 +260,20 @@ def _shares(cut: Cut, state: State) -> dict[tuple[str, float], float]:
     return {part: force / greatest for part, force in forces.items() if force > 0.0}
 
 
-def _part(load: Load) -> tuple[str, float]:
-    """What tells the parts of a cut: how they are labelled, and how they know their depth."""
+def _part(load: LimitLoad) -> tuple[str, float]:
+    """Key of a part of a cut: its label, and how its depth is known."""
     label = load.limit.label.removeprefix(load.limit.name.words)
     return label, float(load.limit.load.knows_depth)
 
 
-def _overrides(state: State, sense: Sense) -> Iterator[float]:
+def _overrides(state: EvaluatedSetting, sense: BoundSide) -> Iterator[float]:
     """Overrides at which limits on the feed are reached."""
-    names = FEED_LIMITS if sense is Sense.AT_MOST else {LimitName.CHIP_THICKNESS}
+    names = FEED_LIMITS if sense is BoundSide.AT_MOST else {LimitName.CHIP_THICKNESS}
     for load in state.loads:
         if load.limit.name in names and load.limit.sense is sense:
             yield _override(load, state)
 
 
-def _override(load: Load, state: State) -> float:
+def _override(load: LimitLoad, state: EvaluatedSetting) -> float:
     at = state.setting
     return load.limit.feed_at_bound(at.depth, at.speed) / at.feed

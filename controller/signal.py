@@ -30,7 +30,7 @@ NOT_A_TOOTH = 0.5
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Revolution:
-    """What the sensors showed in one revolution of the spindle."""
+    """Sensor values of one revolution of the spindle."""
 
     time: float
     """s, at its end"""
@@ -179,7 +179,7 @@ def _follows(last: Reading, reading: Reading) -> bool:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _Shown:
-    """What a revolution's samples show, teeth in the order of time."""
+    """Revolution made of samples, with teeth in the order of time."""
 
     force: float
     peak: float

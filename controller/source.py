@@ -1,4 +1,4 @@
-"""Where the force comes from: a dynamometer, or the power of the main drive, which is cheap.
+"""Sources of the force: a dynamometer, or the power of the main drive, which is cheap.
 
 Running state: the zero of the instrument. Units mm, N, W.
 """
@@ -19,7 +19,7 @@ from simulator.reading import Reading
 
 
 class Source(Protocol):
-    """What makes a force of a reading."""
+    """Converter from readings to forces."""
 
     def conditioned(
         self, reading: Reading, diameter: float, *, is_air: bool = False

@@ -21,8 +21,8 @@ from controller.signal import Revolution
 from simulator.physics.domain import require_positive
 
 
-class Level(StrEnum):
-    """How far the force is from what it may be."""
+class AlarmLevel(StrEnum):
+    """Level of the force relative to its bound."""
 
     SAFE = "safe"
     WARNING = "warning"
@@ -33,7 +33,7 @@ class Level(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Thresholds:
-    """When to warn.
+    """Settings of the warning thresholds.
 
     Raises
     ------
@@ -66,10 +66,10 @@ USUAL = Thresholds()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Watch:
-    """What was learnt, and the level. A new one learns anew."""
+class ThresholdWatch:
+    """Learnt threshold and the level. A new one learns anew."""
 
-    level: Level = Level.SAFE
+    level: AlarmLevel = AlarmLevel.SAFE
     log_mean: float = 0.0
     """of ln(F / 1 N)"""
     log_variance: float = 0.0
@@ -86,22 +86,23 @@ class Watch:
 
 
 def watched(
-    watch: Watch,
+    watch: ThresholdWatch,
     revolution: Revolution,
     *,
     set_point: float,
     is_steady: bool = True,
     by: Thresholds = USUAL,
-) -> Watch:
+) -> ThresholdWatch:
     """The watch after one more revolution.
 
     Another workingstep is learnt anew; for any other change that is known of, entry into the
-    work above all, pass a new ``Watch()``. A revolution that is out of the ordinary counts as
-    if it lay at the threshold: what stays is learnt in the end, what passes teaches little.
+    work above all, pass a new ``ThresholdWatch()``. A revolution that is out of the ordinary
+    counts as if it lay at the threshold: what stays is learnt in the end, what passes teaches
+    little.
 
     Parameters
     ----------
-    watch : Watch
+    watch : ThresholdWatch
     revolution : Revolution
         Without a mean force, or with none above 0, it changes nothing.
     set_point : float, N
@@ -118,45 +119,50 @@ def watched(
     """
     require_positive(set_point, "set point", "N")
     if watch.workingstep != revolution.workingstep:
-        watch = Watch(workingstep=revolution.workingstep)
+        watch = ThresholdWatch(workingstep=revolution.workingstep)
     force = revolution.force
     if not force > 0.0:
         return watch
     if not is_steady:
-        is_over = force > (1.0 + by.margin) * set_point
-        return replace(watch, level=Level.OVER if is_over else Level.SAFE)
+        is_above = force > (1.0 + by.margin) * set_point
+        return replace(watch, level=AlarmLevel.OVER if is_above else AlarmLevel.SAFE)
     level = _level(watch, force, set_point=set_point, by=by)
     return replace(_learnt(watch, log(force), by), level=level)
 
 
 def reason(
-    watch: Watch, level: Level, force: float, *, set_point: float, by: Thresholds = USUAL
+    watch: ThresholdWatch,
+    level: AlarmLevel,
+    force: float,
+    *,
+    set_point: float,
+    by: Thresholds = USUAL,
 ) -> str:
-    """Which rule gave a force its level, with its numbers: the words of every warning.
+    """Reason of a force's level, with its numbers: the words of every warning.
 
     Parameters
     ----------
-    watch : Watch
+    watch : ThresholdWatch
         Before the revolution of that force.
-    level : Level
+    level : AlarmLevel
     force : float, N
     set_point : float, N
     by : Thresholds
 
     Examples
     --------
-    >>> reason(Watch(), Level.OVER, 492.0, set_point=400.0)
+    >>> reason(ThresholdWatch(), AlarmLevel.OVER, 492.0, set_point=400.0)
     'force 1.23 times the set point of 400 N: 492 N, from 1.2 times on'
     """
     threshold = watch.threshold(by)
-    if level is Level.WARNING and threshold is not None:
+    if level is AlarmLevel.WARNING and threshold is not None:
         mean = exp(watch.log_mean)
         count = min(watch.revolutions, by.memory)
         return (
             f"force {force / mean:.3g} times the mean of the last {count} revolutions: "
             f"{force:.4g} N, from {threshold / mean:.3g} times on"
         )
-    if level is Level.OVER:
+    if level is AlarmLevel.OVER:
         return (
             f"force {force / set_point:.3g} times the set point of {set_point:.4g} N: "
             f"{force:.4g} N, from {1.0 + by.margin:.3g} times on"
@@ -164,17 +170,19 @@ def reason(
     return f"force {force:.4g} N, {force / set_point:.3g} times the set point"
 
 
-def _level(watch: Watch, force: float, *, set_point: float, by: Thresholds) -> Level:
+def _level(
+    watch: ThresholdWatch, force: float, *, set_point: float, by: Thresholds
+) -> AlarmLevel:
     """Level of a force in a steady cut, before it is learnt."""
     if force > (1.0 + by.margin) * set_point:
-        return Level.OVER
+        return AlarmLevel.OVER
     threshold = watch.threshold(by)
     if threshold is not None and force > max(threshold, by.share * set_point):
-        return Level.WARNING
-    return Level.SAFE
+        return AlarmLevel.WARNING
+    return AlarmLevel.SAFE
 
 
-def _learnt(watch: Watch, value: float, by: Thresholds) -> Watch:
+def _learnt(watch: ThresholdWatch, value: float, by: Thresholds) -> ThresholdWatch:
     """Mean and variance with one more value, [2]_; the plain ones until the memory is full."""
     count = watch.revolutions + 1
     away = value - watch.log_mean if watch.revolutions else 0.0
@@ -190,6 +198,6 @@ def _learnt(watch: Watch, value: float, by: Thresholds) -> Watch:
     )
 
 
-def _reach(watch: Watch, by: Thresholds) -> float:
+def _reach(watch: ThresholdWatch, by: Thresholds) -> float:
     """Of the threshold above the mean, in ln F."""
     return by.deviations * max(sqrt(watch.log_variance), by.least_deviation)

@@ -8,7 +8,7 @@ more for thin chips (:mod:`simulator.physics.flank`). After a sudden change what
 with is learnt anew, and the wear goes on from where it was. Units mm of flank wear,
 dimensionless ratios.
 
-A change of less than ``Watchfulness.allowance`` is not seen and does count as wear: 4 % of
+A change of less than ``WearMonitorSettings.allowance`` is not seen and counts as wear: 4 % of
 force are 0.02 mm where a chip of 0.1 mm is cut in steel. Wear that is quicker than the
 allowance over the memory (0.04 in 200 revolutions) is taken for a change. So is an error of the
 expected force that lasts some revolutions: noise may be large, but it must not be of one sign
@@ -31,8 +31,8 @@ _LEAST_SHARP = 0.05  # of the force, that a chip takes however worn the tool beg
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Watchfulness:
-    """How wear is told from a change of the work, in ln(ratio) and revolutions.
+class WearMonitorSettings:
+    """Settings for telling wear from a change of the work, in ln(ratio) and revolutions.
 
     Raises
     ------
@@ -55,11 +55,11 @@ class Watchfulness:
             require_positive(getattr(self, name), name, "")
 
 
-USUAL = Watchfulness()
+USUAL = WearMonitorSettings()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Drift:
+class CumulativeSum:
     """A one-sided cumulative sum, [1]_."""
 
     total: float = 0.0
@@ -69,7 +69,7 @@ class Drift:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ToolLife:
-    """What the force has told of a tool. A new one for a new tool: :func:`new_tool`."""
+    """Estimated wear of a tool. A new one for a new tool: :func:`new_tool`."""
 
     log_ratio: float = 0.0
     """slowly moving mean of ln(measured / expected)"""
@@ -83,8 +83,8 @@ class ToolLife:
     """mm of flank wear when comparing began"""
     readings: int = 0
     """revolutions since then"""
-    above: Drift = Drift()
-    below: Drift = Drift()
+    above: CumulativeSum = CumulativeSum()
+    below: CumulativeSum = CumulativeSum()
     changes: tuple[float, ...] = ()
     """sudden changes of ln(ratio) so far, as first seen"""
 
@@ -128,7 +128,7 @@ def compared_anew(life: ToolLife) -> ToolLife:
 
 
 def lived(
-    life: ToolLife, ratio: float, *, land_share: float, by: Watchfulness = USUAL
+    life: ToolLife, ratio: float, *, land_share: float, by: WearMonitorSettings = USUAL
 ) -> ToolLife:
     """The tool after one more revolution.
 
@@ -139,7 +139,7 @@ def lived(
         ln(measured / expected) of :func:`controller.estimate.log_ratio`.
     land_share : float, 1/mm
         What 1 mm of flank wear adds to the ratio; 0: not known, and then no wear is told.
-    by : Watchfulness
+    by : WearMonitorSettings
     """
     readings = life.readings + 1
     away = ratio - life.log_ratio if life.readings else 0.0
@@ -173,13 +173,19 @@ def _sharp(life: ToolLife) -> float:
     return life.log_ratio + log(max(1.0 - share, _LEAST_SHARP))
 
 
-def _summed(drift: Drift, step: float) -> Drift:
+def _summed(drift: CumulativeSum, step: float) -> CumulativeSum:
     """The sum with one more step; it never is below 0."""
     total = drift.total + step
-    return Drift(total=total, revolutions=drift.revolutions + 1) if total > 0.0 else Drift()
+    return (
+        CumulativeSum(total=total, revolutions=drift.revolutions + 1)
+        if total > 0.0
+        else CumulativeSum()
+    )
 
 
-def _changed(life: ToolLife, change: float, drift: Drift, by: Watchfulness) -> ToolLife:
+def _changed(
+    life: ToolLife, change: float, drift: CumulativeSum, by: WearMonitorSettings
+) -> ToolLife:
     """The tool in work that takes about e^change times the force, its wear as it was before."""
     # The mean has followed the change a little while it added up.
     followed = change * drift.revolutions / by.memory

@@ -1,4 +1,4 @@
-"""What each tooth of a revolution took of its force, and how far that may be trusted.
+"""Share of each tooth in the force of a revolution, and its error.
 
 Shares know neither depth nor k_c: both act on all teeth alike. Units mm, s, N, rad, rev/s.
 """
@@ -48,8 +48,8 @@ _LEAST = 1e-9  # N, so that no force at all divides
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Shares:
-    """What the teeth of a revolution took."""
+class ToothShares:
+    """Shares of the teeth in a revolution."""
 
     taken: Floats
     """(z,) mean force in the period of each tooth over the mean of all"""
@@ -86,8 +86,8 @@ def force_ratio(revolution: Revolution, expected: Expected | None) -> float | No
 
 def shares_of(
     revolution: Revolution, expected: Expected, *, exponent: float, change: float | None
-) -> Shares:
-    """What the teeth of a revolution took.
+) -> ToothShares:
+    """Shares of the teeth in a revolution.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ def shares_of(
     # The mean of samples that are taken at the ends of their intervals is early by half of one.
     delay = max(LAG - 0.5 * revolution.period / (teeth * revolution.samples), 0.0)
     drift = ENTRY if change is None else max(DRIFT, abs(change))
-    return Shares(
+    return ToothShares(
         taken=taken,
         noise=_noise(revolution, expected, taken, drift=drift),
         expected=expected.force * revolution.tooth_overrides**exponent,

@@ -12,18 +12,17 @@ import numpy as np
 from matplotlib.figure import Figure
 from pyarrow import parquet
 
-from service.simulation.run import SimulationRequest, simulate
+from service.requests.runs import SimulationRequest
+from service.simulation.run import RunFiles, simulate
+from simulator.motion.model_name import ControlModelName
 
 PART = Path(__file__).parent / "parts" / "paper000.stpnc"
 
 with TemporaryDirectory() as folder:
-    output = Path(folder) / "run.parquet"
-    simulate(
-        SimulationRequest(
-            file=PART, machine="paper000", rate=100.0, control="exact-stop", output=output
-        )
-    )
-    table = parquet.read_table(output)
+    files = RunFiles(file=PART, output=Path(folder) / "run.parquet")
+    stops = ControlModelName.EXACT_STOP
+    simulate(SimulationRequest(machine="paper000", rate_hz=100.0, control=stops), files)
+    table = parquet.read_table(files.output)
 run = {name: table[name].to_numpy() for name in table.column_names}
 time, total, spindle = run["time_s"], run["electric_wattage"], run["c_axis_wattage"]
 

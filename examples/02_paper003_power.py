@@ -12,7 +12,9 @@ import numpy as np
 from matplotlib.figure import Figure
 from pyarrow import parquet
 
-from service.simulation.run import SimulationRequest, simulate
+from service.requests.runs import SimulationRequest
+from service.simulation.run import RunFiles, simulate
+from simulator.motion.model_name import ControlModelName
 
 PARTS = Path(__file__).parent / "parts"
 
@@ -21,12 +23,8 @@ def run(name: str) -> dict[str, np.ndarray]:
     with TemporaryDirectory() as folder:
         output = Path(folder) / "run.parquet"
         simulate(
-            SimulationRequest(
-                file=PARTS / f"{name}.stpnc",
-                machine="paper003",
-                control="exact-stop",
-                output=output,
-            )
+            SimulationRequest(machine="paper003", control=ControlModelName.EXACT_STOP),
+            RunFiles(file=PARTS / f"{name}.stpnc", output=output),
         )
         table = parquet.read_table(output)
     return {name: table[name].to_numpy() for name in table.column_names}

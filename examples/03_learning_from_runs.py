@@ -10,12 +10,15 @@ from math import exp
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+from controller.laws.choice import LawName
 from service.control.record import control_recorded
-from service.control.run import ControlRequest
-from service.knowledge.review import ReviewRequest, review
+from service.knowledge.review import review
 from service.knowledge.verbs import accept
-from service.simulation.run import SimulationRequest
-from service.usecases import Request, optimise
+from service.requests.advice import AdviceRequest
+from service.requests.knowledge import ReviewRequest
+from service.requests.runs import ControlRequest
+from service.simulation.run import RunFiles
+from service.usecases import AdviceFiles, optimise
 
 PART = Path(__file__).parent / "parts" / "paper002.stpnc"
 TRUTH = float(sys.argv[1]) if len(sys.argv) > 1 else 1.35
@@ -30,18 +33,17 @@ with TemporaryDirectory() as folder:
         known = place if number > 1 else ""
         # Seven runs in ten need no more force than a plan at the 70 % quantile expects.
         plan = optimise(
-            Request(file=PART, output=planned, knowledge=known, safety=0.7, **SHOP)
+            AdviceRequest(safety=0.7, **SHOP),
+            AdviceFiles(file=PART, output=planned, knowledge=known),
         ).plan
         run = control_recorded(
             ControlRequest(
-                simulation=SimulationRequest(file=planned, **SHOP),
-                law="none",
-                disturbances=(f"kc:{TRUTH}",),
-                seed=number,
-                knowledge=place,
-            )
+                law=LawName.NONE, disturbances=(f"kc:{TRUTH}",), seed=number, **SHOP
+            ),
+            RunFiles(file=planned),
+            knowledge=place,
         )
-        (found,) = review(place, ReviewRequest(by="the planner"))
+        (found,) = review(place, ReviewRequest())
         accept(place, [found.entry.id], by="the planner")
         (advice,) = plan.advices
         record = next(record for advised, record in run.steps if advised)

@@ -12,7 +12,9 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from pyarrow import parquet
 
-from service.simulation.run import SimulationRequest, simulate
+from service.requests.runs import SimulationRequest
+from service.simulation.run import RunFiles, simulate
+from simulator.motion.model_name import ControlModelName
 
 SLOT = (Path(__file__).parent / "parts" / "paper003_case1.stpnc").read_text(encoding="utf-8")
 MIDDLE = 50.8
@@ -32,8 +34,9 @@ def run(feed: float, speed: float, depth: float, folder: Path) -> dict[str, np.n
     part.write_text(text, encoding="utf-8")
     simulate(
         SimulationRequest(
-            file=part, machine="paper003", control="exact-stop", rate=1000.0, output=output
-        )
+            machine="paper003", control=ControlModelName.EXACT_STOP, rate_hz=1000.0
+        ),
+        RunFiles(file=part, output=output),
     )
     table = parquet.read_table(output)
     return {name: table[name].to_numpy() for name in table.column_names}

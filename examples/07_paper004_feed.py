@@ -10,9 +10,9 @@ from math import asin
 import numpy as np
 
 from simulator.library import load_machine
-from simulator.motion.control import Control, control_model
-from simulator.motion.motion import axis_limits
-from simulator.motion.segments import lines
+from simulator.motion.control import control_model
+from simulator.motion.model_name import ControlModelName
+from simulator.motion.segments import axis_limits, lines
 
 SPACINGS = np.array([0.0001, 0.00025, 0.0005, 0.00075, 0.001, 0.0025, 0.005, 0.0075, 0.01])
 """in"""
@@ -24,7 +24,7 @@ INCH, COUNT = 25.4, 400
 LIMITS = replace(axis_limits(load_machine("vmc15")), block_time=60.0 / SLOPE)
 
 
-def feed(spacing: float, control: Control) -> float:
+def feed(spacing: float, control: ControlModelName) -> float:
     """in/min in the middle of points on a circle of 1 in, 200 in/min commanded."""
     angles = 2.0 * asin(0.5 * spacing) * np.arange(COUNT + 1)
     points = INCH * np.stack((np.cos(angles), np.sin(angles), 0.0 * angles), axis=1)
@@ -39,8 +39,8 @@ for spacing, printed in zip(SPACINGS, FEEDS, strict=True):
     law = SLOPE * spacing
     print(
         f"{spacing:7} {printed:13} {60e3 * spacing / printed:11.3f} {law:7.2f} "
-        f"{law / printed:10.3f} {feed(spacing, Control.FIR):7.2f} "
-        f"{feed(spacing, Control.JUNCTION):9.2f}"
+        f"{law / printed:10.3f} {feed(spacing, ControlModelName.FIR):7.2f} "
+        f"{feed(spacing, ControlModelName.JUNCTION):9.2f}"
     )
 s, v = SPACINGS[1:], FEEDS[1:]
 for words, slope in (("print", SLOPE), ("least squares without row 1", s @ v / (s @ s))):

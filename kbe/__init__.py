@@ -1,1 +1,1 @@
-"""What was: outcomes, evaluation tables, corrections."""
+"""Knowledge base: outcomes of runs, evaluation tables, corrections."""

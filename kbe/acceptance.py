@@ -1,26 +1,26 @@
-"""Whether a proposed correction may be accepted without a person, and if not, why."""
+"""Conditions on which a proposed correction is accepted without a person, and objections."""
 
 from dataclasses import dataclass
 from enum import StrEnum
 from math import exp, log
 
-from stepnc_model.outcome import Correction
+from stepnc_model.outcome import LearnedCorrection
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Bounds:
-    """What a proposal must keep to be accepted by itself."""
+class AcceptanceBounds:
+    """Conditions on which a proposal is accepted automatically."""
 
     least_confidence: float = 0.8
     fewest_outcomes: int = 3
     greatest_change: float = 0.25
-    """of the factor, up or down, from the one that was accepted last"""
+    """Greatest change of the factor, up or down, from the one that was accepted last"""
     least_factor: float = 0.5
     greatest_factor: float = 2.0
 
 
-class Ground(StrEnum):
-    """What an objection is about."""
+class ObjectionGround(StrEnum):
+    """Subject of an objection."""
 
     CONFIDENCE = "confidence"
     OUTCOMES = "outcomes"
@@ -32,7 +32,7 @@ class Ground(StrEnum):
 class Objection:
     """A bound that a proposal does not keep."""
 
-    ground: Ground
+    ground: ObjectionGround
     message: str
     """with value and bound"""
 
@@ -41,17 +41,20 @@ class Objection:
 
 
 def objections(
-    proposed: Correction, accepted: Correction | None, *, bounds: Bounds | None = None
+    proposed: LearnedCorrection,
+    accepted: LearnedCorrection | None,
+    *,
+    bounds: AcceptanceBounds | None = None,
 ) -> tuple[Objection, ...]:
     """Why a proposal must not be accepted by itself; empty: it may.
 
     Parameters
     ----------
-    proposed : Correction
-    accepted : Correction or None
+    proposed : LearnedCorrection
+    accepted : LearnedCorrection or None
         The one in force; None: none was accepted yet, and only the range bounds the change
         from the catalogue.
-    bounds : Bounds, optional
+    bounds : AcceptanceBounds, optional
 
     Raises
     ------
@@ -60,19 +63,19 @@ def objections(
     """
     if accepted is not None and accepted.context != proposed.context:
         raise ValueError(f"{accepted.context} is not {proposed.context}")
-    keep = bounds or Bounds()
+    keep = bounds or AcceptanceBounds()
     factor = exp(proposed.log_centre)
     grounds = {
-        Ground.CONFIDENCE: ""
+        ObjectionGround.CONFIDENCE: ""
         if proposed.confidence >= keep.least_confidence
         else f"confidence {proposed.confidence:.3f} below {keep.least_confidence:g}",
-        Ground.OUTCOMES: ""
+        ObjectionGround.OUTCOMES: ""
         if proposed.outcomes >= keep.fewest_outcomes
         else f"learned from {proposed.outcomes} outcomes, fewer than {keep.fewest_outcomes}",
-        Ground.CHANGE: ""
+        ObjectionGround.CHANGE: ""
         if accepted is None
         else _leap(factor, exp(accepted.log_centre), keep.greatest_change),
-        Ground.RANGE: ""
+        ObjectionGround.RANGE: ""
         if keep.least_factor <= factor <= keep.greatest_factor
         else f"factor {factor:.2f} outside {keep.least_factor:g} to {keep.greatest_factor:g}",
     }

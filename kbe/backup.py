@@ -28,14 +28,14 @@ from kbe.errors import (
     StoreUnavailable,
 )
 from kbe.faults import translated
-from kbe.place import Place, parsed_place, require_openable
 from kbe.schema import TABLES
 from kbe.store import AT_ONCE, Store, open_place, open_store
+from kbe.store_location import StoreLocation, parsed_place, require_openable
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Content:
-    """What a store holds, as numbers of rows, and as one fingerprint of all of them."""
+    """Content of a store: numbers of rows, and one fingerprint of all of them."""
 
     outcomes: int
     corrections: int
@@ -95,12 +95,12 @@ def restore(path: str, url_or_path: str) -> Content:
 
 
 def content(store: Store) -> Content:
-    """What a store holds at one moment."""
+    """Content of a store at one moment."""
     with snapshot(store.engine, store.place) as connection:
         return _content(connection)
 
 
-def _file(path: str) -> Place:
+def _file(path: str) -> StoreLocation:
     """The file of a backup."""
     place = parsed_place(path)
     if not place.file:
@@ -108,14 +108,14 @@ def _file(path: str) -> Place:
     return place
 
 
-def _moved(place: Place, file: str) -> Place:
+def _moved(place: StoreLocation, file: str) -> StoreLocation:
     """Another file that stands in for a place, and is called like it."""
     url = URL.create("sqlite+pysqlite", database=file)
-    return Place(url=url, shown=place.shown, file=file)
+    return StoreLocation(url=url, shown=place.shown, file=file)
 
 
 @contextmanager
-def _new_file(place: Place) -> Iterator[Place]:
+def _new_file(place: StoreLocation) -> Iterator[StoreLocation]:
     """A place beside, that takes the name when all went well and nobody else took it."""
     folder, name = os.path.split(os.path.abspath(place.file))
     if os.path.lexists(place.file):
@@ -131,7 +131,7 @@ def _new_file(place: Place) -> Iterator[Place]:
         _sync(folder)
 
 
-def _take_name(fresh: str, place: Place) -> None:
+def _take_name(fresh: str, place: StoreLocation) -> None:
     """Give a file its name, unless another has it."""
     try:
         os.link(fresh, place.file)
@@ -153,7 +153,7 @@ def _sync(path: str) -> None:
         os.close(handle)
 
 
-def _copied(store: Store, fresh: Place) -> Content:
+def _copied(store: Store, fresh: StoreLocation) -> Content:
     """Copy a store to a file and read the copy to its last page."""
     if store.place.file:
         _copy_pages(store.place.file, fresh)
@@ -172,7 +172,7 @@ def _copied(store: Store, fresh: Place) -> Content:
         return content(copy)
 
 
-def _copy_pages(file: str, fresh: Place) -> None:
+def _copy_pages(file: str, fresh: StoreLocation) -> None:
     """Copy a file of SQLite as it is at one moment; those who write to it need not wait."""
     address = f"file:{quote(os.path.abspath(file))}?mode=ro"
     with (
@@ -182,7 +182,7 @@ def _copy_pages(file: str, fresh: Place) -> None:
         source.backup(target)
 
 
-def _require_one_file(fresh: Place) -> None:
+def _require_one_file(fresh: StoreLocation) -> None:
     """Put what is in the log beside it into the file itself, and keep no log any more."""
     with closing(sqlite3.connect(fresh.file)) as connection:
         connection.execute("PRAGMA journal_mode = DELETE")
@@ -202,7 +202,7 @@ def _readable(path: str) -> Iterator[Store]:
 
 
 def _keep_others_out(connection: Connection) -> None:
-    """Let nobody write between the look whether a store is empty and the last row."""
+    """Lock the store between the check that it is empty and the last row."""
     if connection.dialect.name == "postgresql":
         names = ", ".join(table.name for table in TABLES)
         connection.execute(text(f"LOCK TABLE {names} IN SHARE ROW EXCLUSIVE MODE"))
@@ -219,14 +219,14 @@ def _copy_rows(source: Connection, target: Connection) -> None:
 
 
 def _count_on(connection: Connection, table: Table) -> None:
-    """Let PostgreSQL number the next row behind those that came with their ids."""
+    """Set PostgreSQL's sequences behind the ids of the restored rows."""
     last = connection.execute(select(func.max(table.c.id))).scalar_one()
     if last is not None:
         sequence = func.pg_get_serial_sequence(table.name, "id")
         connection.execute(select(func.setval(sequence, last)))
 
 
-def _require_same(connection: Connection, wanted: Content, place: Place) -> None:
+def _require_same(connection: Connection, wanted: Content, place: StoreLocation) -> None:
     """Refuse a copy that is not what it was made from."""
     if _content(connection) != wanted:
         raise BackupDiffers(place.shown)

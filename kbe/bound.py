@@ -1,4 +1,4 @@
-"""How the measured force used the bound that it was to keep."""
+"""Use of the force bound: how the measured force compares with it."""
 
 from dataclasses import dataclass, replace
 
@@ -23,7 +23,7 @@ class BoundUse:
     highest: float | None = None
     """greatest measured force over its bound"""
     time_to_win: float = 0.0
-    """s, of all wasted outcomes together"""
+    """Time to win, s, of all wasted outcomes together"""
 
 
 def used(sum_before: BoundUse, outcome: ProcessOutcome) -> BoundUse:
@@ -52,7 +52,7 @@ def share_of(outcome: ProcessOutcome) -> float | None:
 
 
 def is_wasted(outcome: ProcessOutcome) -> bool:
-    """Whether force was left unused that the plan meant to use.
+    """Whether force was left unused that the plan intended to use.
 
     A plan that itself stays far below its bound is held back by something else (power, chip
     load, roughness), which is no waste.

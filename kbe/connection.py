@@ -14,7 +14,7 @@ from sqlalchemy.engine import Engine
 
 from kbe.errors import DriverMissing, StoreDamaged
 from kbe.faults import translated
-from kbe.place import Place
+from kbe.store_location import StoreLocation
 
 PATIENCE = 30.0
 """s that a writer waits for others"""
@@ -32,7 +32,7 @@ PRAGMAS = (
 )
 
 
-def connected(place: Place, *, patience: float = PATIENCE) -> Engine:
+def connected(place: StoreLocation, *, patience: float = PATIENCE) -> Engine:
     """The engine of a place; nothing is opened yet.
 
     Raises
@@ -54,7 +54,7 @@ def connected(place: Place, *, patience: float = PATIENCE) -> Engine:
 
 
 def _prepare(connection: sqlite3.Connection, _record: object) -> None:
-    """What holds for one connection of SQLite only."""
+    """Settings of one SQLite connection."""
     # Python's module would begin transactions by itself, too late and not before DDL.
     connection.isolation_level = None
     for pragma in PRAGMAS:
@@ -68,7 +68,7 @@ def _begin(connection: Connection) -> None:
 
 
 @contextmanager
-def reading(engine: Engine, place: Place) -> Iterator[Connection]:
+def reading(engine: Engine, place: StoreLocation) -> Iterator[Connection]:
     """A transaction that reads.
 
     Raises
@@ -84,7 +84,7 @@ def reading(engine: Engine, place: Place) -> Iterator[Connection]:
 
 
 @contextmanager
-def snapshot(engine: Engine, place: Place) -> Iterator[Connection]:
+def snapshot(engine: Engine, place: StoreLocation) -> Iterator[Connection]:
     """A transaction that sees one moment throughout, whatever others write."""
     with reading(engine, place) as connection:
         if not place.file:
@@ -93,7 +93,7 @@ def snapshot(engine: Engine, place: Place) -> Iterator[Connection]:
 
 
 @contextmanager
-def writing(engine: Engine, place: Place) -> Iterator[Connection]:
+def writing(engine: Engine, place: StoreLocation) -> Iterator[Connection]:
     """A transaction that writes: all of it, or nothing when an error leaves it."""
     with (
         translated(place),

@@ -40,7 +40,7 @@ from kbe.regression import (
     updated,
 )
 from kbe.student import StudentT
-from stepnc_model.outcome import Context, Correction, ForceRatio, ProcessOutcome
+from stepnc_model.outcome import Context, ForceRatio, LearnedCorrection, ProcessOutcome
 
 NEAR = 0.1
 """of the factor: a correction's confidence is that the factor lies no farther off"""
@@ -51,8 +51,8 @@ ONE = np.ones(1)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Prior:
-    """What is believed of a factor before the first run."""
+class FactorPrior:
+    """Prior belief about a factor before the first run."""
 
     deviation: float = 0.2
     """of ln factor about 0: catalogue forces are ±20 % until calibrated (README)"""
@@ -79,7 +79,7 @@ class Forgetting:
     days: float = 180.0
 
     def share(self, *, runs: float, days: float) -> float:
-        """What is kept after some runs and days; a clock set back counts as none."""
+        """Share of knowledge kept after some runs and days; time never runs back."""
         return float(0.5 ** (runs / self.runs + max(days, 0.0) / self.days))
 
 
@@ -88,7 +88,7 @@ NEVER = Forgetting(runs=inf, days=inf)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Admission:
-    """Which outcomes are learned from, and what their readings are worth."""
+    """Admission of outcomes to learning, and the weight of their readings."""
 
     fewest_readings: int = 20
     wildest: float = 5.0
@@ -97,7 +97,7 @@ class Admission:
     """ρ of neighbouring revolutions; a guess on the safe side"""
 
 
-class Reason(StrEnum):
+class ExclusionReason(StrEnum):
     """Why an outcome was left out."""
 
     NO_RATIO = "no force ratio"
@@ -108,21 +108,21 @@ class Reason(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Learning:
-    """How to learn."""
+    """Settings of the learning."""
 
-    prior: Prior = field(default_factory=Prior)
+    prior: FactorPrior = field(default_factory=FactorPrior)
     forgetting: Forgetting = field(default_factory=Forgetting)
     admission: Admission = field(default_factory=Admission)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LearningReport:
-    """What a correction rests on."""
+    """Data that a correction rests on."""
 
     runs: int
     used: int
     """outcomes"""
-    left_out: Mapping[Reason, int]
+    left_out: Mapping[ExclusionReason, int]
     effective_runs: float
     """what the runs are worth after forgetting"""
     scatter: float
@@ -130,11 +130,11 @@ class LearningReport:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Learned:
-    """What is believed of one context."""
+class LearnedFactor:
+    """Result of the learning for one context."""
 
     context: Context
-    correction: Correction | None
+    correction: LearnedCorrection | None
     """a proposal; None: no outcome could be used"""
     mean: StudentT
     """of ln factor, over many runs; narrower than the correction, which is for one run"""
@@ -143,7 +143,7 @@ class Learned:
 
 def learned(
     outcomes: Iterable[ProcessOutcome], *, at: datetime, learning: Learning | None = None
-) -> tuple[Learned, ...]:
+) -> tuple[LearnedFactor, ...]:
     """Corrections that outcomes propose, one for each context, in the order of their names.
 
     Parameters
@@ -163,16 +163,16 @@ def learned(
     return tuple(_learned(by_context[each], at=at, learning=how) for each in ordered)
 
 
-def refusal(ratio: ForceRatio | None, admission: Admission) -> Reason | None:
+def refusal(ratio: ForceRatio | None, admission: Admission) -> ExclusionReason | None:
     """Why nothing is learned from a ratio; None: it is used."""
     if ratio is None:
-        return Reason.NO_RATIO
+        return ExclusionReason.NO_RATIO
     if not (isfinite(ratio.log_mean) and isfinite(ratio.log_deviation)):
-        return Reason.NOT_FINITE
+        return ExclusionReason.NOT_FINITE
     if ratio.readings < admission.fewest_readings:
-        return Reason.FEW_READINGS
+        return ExclusionReason.FEW_READINGS
     if abs(ratio.log_mean) > log(admission.wildest):
-        return Reason.WILD
+        return ExclusionReason.WILD
     return None
 
 
@@ -185,29 +185,29 @@ def own_variance(ratio: ForceRatio, admission: Admission) -> float:
 
 def _learned(
     outcomes: Sequence[ProcessOutcome], *, at: datetime, learning: Learning
-) -> Learned:
-    """What the outcomes of one context teach."""
-    left_out: Counter[Reason] = Counter()
+) -> LearnedFactor:
+    """Learn a factor from the outcomes of one context."""
+    left_out: Counter[ExclusionReason] = Counter()
     runs: dict[str, list[ForceRatio]] = defaultdict(list)
     began: dict[str, datetime] = {}
     for outcome in sorted(outcomes, key=_in_time):
         reason = refusal(outcome.force_ratio, learning.admission)
         if reason is not None or outcome.force_ratio is None:
-            left_out[reason or Reason.NO_RATIO] += 1
+            left_out[reason or ExclusionReason.NO_RATIO] += 1
             continue
         runs[outcome.run].append(outcome.force_ratio)
         began.setdefault(outcome.run, outcome.recorded_at)
     belief = _belief(list(runs.values()), times=[*began.values(), at], learning=learning)
     used = sum(map(len, runs.values()))
     context = outcomes[0].context
-    return Learned(
+    return LearnedFactor(
         context=context,
         correction=_correction(belief, context, outcomes=used, at=at) if used else None,
         mean=expected(belief, ONE),
         report=LearningReport(
             runs=len(runs),
             used=used,
-            left_out={each: left_out[each] for each in Reason if left_out[each]},
+            left_out={each: left_out[each] for each in ExclusionReason if left_out[each]},
             effective_runs=2.0 * belief.shape - learning.prior.degrees,
             scatter=belief.scatter,
         ),
@@ -248,11 +248,11 @@ def _observations(
 
 def _correction(
     belief: NormalInverseGamma, context: Context, *, outcomes: int, at: datetime
-) -> Correction:
+) -> LearnedCorrection:
     """The proposal: the next run's true factor, hence without the error of readings."""
     coming = predicted(belief, ONE)
     low, high = coming.centre + log(1.0 - NEAR), coming.centre + log(1.0 + NEAR)
-    return Correction(
+    return LearnedCorrection(
         context=context,
         log_centre=coming.centre,
         log_scale=coming.scale,

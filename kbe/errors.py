@@ -38,7 +38,7 @@ class KnowledgeError(StepNcError):
 
 
 class StoreDamaged(KnowledgeError):
-    """What is stored cannot be read any more."""
+    """Stored data that can no longer be read."""
 
     def __init__(self, place: str, *, reason: str) -> None:
         super().__init__(

@@ -19,14 +19,14 @@ from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
 
-from kbe.grade import Grade
+from kbe.grade import EvaluationGrade
 from kbe.side import Knowledge, Side, SideTally
 from kbe.statistics import Evaluated
 from stepnc_model.outcome import FeatureFacts, ProcessOutcome
 
 
 class Grouping(StrEnum):
-    """What a row is for."""
+    """Subject of a row."""
 
     FEATURE = "feature"
     """each feature of each program"""
@@ -35,7 +35,7 @@ class Grouping(StrEnum):
 
 
 class RowFilter(StrEnum):
-    """Which rows to keep: those with at least one such side."""
+    """Filter of rows: those with at least one such side."""
 
     ALL = "all"
     VIOLATED = "violated"
@@ -46,7 +46,7 @@ class RowFilter(StrEnum):
 
 
 class SortKey(StrEnum):
-    """What comes first; ties in the order of machine, feature, material and tools."""
+    """Order of the rows; ties in the order of machine, feature, material and tools."""
 
     NAME = "name"
     GRADE = "grade"
@@ -66,7 +66,7 @@ class SortKey(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GroupKey:
-    """What the outcomes of a row have in common; order by machine, feature, material."""
+    """Common attributes of the outcomes of a row; order by machine, feature, material."""
 
     machine: str
     program: str
@@ -103,14 +103,14 @@ class EvaluationRow:
         return tuple(side for side in (self.roughing, self.finishing) if side is not None)
 
     @property
-    def grade(self) -> Grade:
+    def grade(self) -> EvaluationGrade:
         """The worse of its sides'."""
-        return min((side.grade for side in self.sides), key=list(Grade).index)
+        return min((side.grade for side in self.sides), key=list(EvaluationGrade).index)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _SideKey:
-    """Which side of a group."""
+    """Key of a side of a group."""
 
     is_finishing: bool
     tool: str
@@ -232,7 +232,7 @@ def _key(outcome: ProcessOutcome, grouping: Grouping) -> GroupKey:
 
 
 def _common(first: FeatureFacts, second: FeatureFacts) -> FeatureFacts:
-    """What two features have in common."""
+    """Facts that two features have in common."""
     if first == second:
         return first
     return FeatureFacts(
@@ -258,8 +258,8 @@ def _has_trend(side: Side) -> bool:
 
 _FILTERS: Mapping[RowFilter, Callable[[Side], bool]] = {
     RowFilter.ALL: lambda _: True,
-    RowFilter.VIOLATED: lambda side: side.grade is Grade.VIOLATED,
-    RowFilter.WASTED: lambda side: side.grade is Grade.WASTED,
+    RowFilter.VIOLATED: lambda side: side.grade is EvaluationGrade.VIOLATED,
+    RowFilter.WASTED: lambda side: side.grade is EvaluationGrade.WASTED,
     RowFilter.WITH_REMARKS: lambda side: bool(side.remarks),
     RowFilter.WITH_TREND: _has_trend,
     RowFilter.FACTOR_PENDING: lambda side: side.is_pending,
@@ -284,7 +284,7 @@ def _age(row: EvaluationRow) -> float:
 
 _KEYS: Mapping[SortKey, Callable[[EvaluationRow], float]] = {
     SortKey.NAME: lambda _: 0.0,
-    SortKey.GRADE: lambda row: list(Grade).index(row.grade),
+    SortKey.GRADE: lambda row: list(EvaluationGrade).index(row.grade),
     SortKey.RUNS: lambda row: -max(side.runs for side in row.sides),
     SortKey.LATEST: _age,
     SortKey.FORCE: _largest(Evaluated.FORCE),

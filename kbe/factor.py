@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from math import exp
 
 from kbe.student import StudentT
-from stepnc_model.outcome import Correction
+from stepnc_model.outcome import LearnedCorrection
 
 SAFE = 0.9
 """quantile that a plan takes: one run in ten needs more force"""
@@ -17,14 +17,14 @@ COVERAGE = 0.9
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FactorInterval:
-    """Where the next run's factor lies, with probability 0.9, and the centre."""
+    """Interval of the next run's factor with probability 0.9, and its centre."""
 
     low: float
     centre: float
     high: float
 
 
-def factor_at(correction: Correction, *, quantile: float = SAFE) -> float:
+def factor_at(correction: LearnedCorrection, *, quantile: float = SAFE) -> float:
     """Factor on k_c that the next run exceeds with probability 1 − quantile.
 
     ``exp(centre + scale·t_q)``; at 0.5 the centre. A plan that keeps a force bound takes more.
@@ -32,7 +32,7 @@ def factor_at(correction: Correction, *, quantile: float = SAFE) -> float:
     return exp(distribution(correction).quantile(quantile))
 
 
-def interval(correction: Correction) -> FactorInterval:
+def interval(correction: LearnedCorrection) -> FactorInterval:
     """Centre, and the interval with as much probability below as above."""
     return FactorInterval(
         low=factor_at(correction, quantile=0.5 - 0.5 * COVERAGE),
@@ -41,8 +41,8 @@ def interval(correction: Correction) -> FactorInterval:
     )
 
 
-def distribution(correction: Correction) -> StudentT:
-    """What the next run is expected to show of ln factor."""
+def distribution(correction: LearnedCorrection) -> StudentT:
+    """Predictive distribution of ln factor for the next run."""
     return StudentT(
         centre=correction.log_centre, scale=correction.log_scale, degrees=correction.degrees
     )

@@ -1,4 +1,4 @@
-"""What a database reports, as an error of the project that says what to do.
+"""Translation of database errors into errors of the project that say what to do.
 
 References
 ----------
@@ -23,14 +23,14 @@ from kbe.errors import (
     StoreReadOnly,
     StoreUnavailable,
 )
-from kbe.place import Place
+from kbe.store_location import StoreLocation
 
 SHARED_MEMORY = sqlite3.SQLITE_IOERR_SHMSIZE, sqlite3.SQLITE_IOERR_SHMOPEN
 """no room for the index of the log"""
 
 
 @contextmanager
-def translated(place: Place) -> Iterator[None]:
+def translated(place: StoreLocation) -> Iterator[None]:
     """Turn what the database raises into the error tree.
 
     Raises
@@ -53,14 +53,14 @@ def translated(place: Place) -> Iterator[None]:
         raise StoreUnavailable(place.shown, reason=reason) from error
 
 
-def fault(error: BaseException, place: Place) -> KnowledgeError:
+def fault(error: BaseException, place: StoreLocation) -> KnowledgeError:
     """The error of the project for one of a database."""
     if isinstance(error, sqlite3.Error):
         return _sqlite_fault(error, place)
     return _postgresql_fault(error, place)
 
 
-def _sqlite_fault(error: sqlite3.Error, place: Place) -> KnowledgeError:
+def _sqlite_fault(error: sqlite3.Error, place: StoreLocation) -> KnowledgeError:
     """By result code, [1]_."""
     code = getattr(error, "sqlite_errorcode", sqlite3.SQLITE_ERROR)
     shown = place.shown
@@ -83,7 +83,7 @@ def _sqlite_fault(error: sqlite3.Error, place: Place) -> KnowledgeError:
     return KnowledgeError(f"{error} (SQLite {code}); please report this", place=shown)
 
 
-def _disk_fault(code: int, place: Place) -> KnowledgeError:
+def _disk_fault(code: int, place: StoreLocation) -> KnowledgeError:
     """A failed write is nearly always a limit (quota, size of a file); the rest is the disk."""
     if code in {sqlite3.SQLITE_IOERR_WRITE, *SHARED_MEMORY}:
         return StoreFull(place.shown)
@@ -91,7 +91,7 @@ def _disk_fault(code: int, place: Place) -> KnowledgeError:
     return StoreUnavailable(place.shown, reason=reason)
 
 
-def _postgresql_fault(error: BaseException, place: Place) -> KnowledgeError:
+def _postgresql_fault(error: BaseException, place: StoreLocation) -> KnowledgeError:
     """By class of the code, [2]_; no code: there was no answer at all."""
     state = getattr(error, "sqlstate", None) or ""
     shown, said = place.shown, _first_line(error, place)
@@ -113,8 +113,8 @@ def _postgresql_fault(error: BaseException, place: Place) -> KnowledgeError:
     return KnowledgeError(f"{said} (PostgreSQL {state}); please report this", place=shown)
 
 
-def _first_line(error: BaseException, place: Place) -> str:
-    """What the server said, without the password, should it be in it."""
+def _first_line(error: BaseException, place: StoreLocation) -> str:
+    """Message of the server, without the password, should it be in it."""
     line = next(iter(str(error).splitlines()), type(error).__name__)
     secrets = [place.url.password, *place.url.normalized_query.get("password", ())]
     for secret in filter(None, map(str, secrets)):

@@ -1,4 +1,4 @@
-"""How well a group of outcomes met its plan, in a word, and what to do, in a sentence each.
+"""Grade of a group of outcomes against its plan, with a sentence on what to do.
 
 The letter is of the prediction: root mean square of the deviations, bias and scatter together,
 of the quantity that deviates most. Roughness counts only above the plan. Two words go before
@@ -17,7 +17,7 @@ LETTERS = ((0.05, "A"), (0.10, "B"), (0.20, "C"))
 """greatest root mean square deviation of each letter"""
 
 
-class Grade(StrEnum):
+class EvaluationGrade(StrEnum):
     """From worst to best, and nothing to judge by."""
 
     VIOLATED = "violated"
@@ -29,7 +29,9 @@ class Grade(StrEnum):
     UNKNOWN = "unknown"
 
 
-def grade(deviations: Mapping[Evaluated, DeviationStatistics], bound: BoundUse) -> Grade:
+def grade(
+    deviations: Mapping[Evaluated, DeviationStatistics], bound: BoundUse
+) -> EvaluationGrade:
     """The grade of a group.
 
     Parameters
@@ -39,15 +41,18 @@ def grade(deviations: Mapping[Evaluated, DeviationStatistics], bound: BoundUse) 
         One violation is enough; wasted is a group when at least half of its outcomes are.
     """
     if bound.violated:
-        return Grade.VIOLATED
+        return EvaluationGrade.VIOLATED
     if bound.wasted and 2 * bound.wasted >= bound.known:
-        return Grade.WASTED
+        return EvaluationGrade.WASTED
     sizes = [_size(which, each) for which, each in deviations.items()]
     known = [size for size in sizes if size is not None]
     if not known:
-        return Grade.UNKNOWN
+        return EvaluationGrade.UNKNOWN
     worst = max(known)
-    return next((Grade(letter) for most, letter in LETTERS if worst <= most), Grade.D)
+    return next(
+        (EvaluationGrade(letter) for most, letter in LETTERS if worst <= most),
+        EvaluationGrade.D,
+    )
 
 
 def _size(which: Evaluated, statistics: DeviationStatistics) -> float | None:

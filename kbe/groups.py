@@ -38,7 +38,7 @@ class Spread:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Group:
-    """What the outcomes of one context and kind of feature have in common."""
+    """Statistics of the outcomes of one context and kind of feature."""
 
     context: Context
     feature_kind: str

@@ -14,11 +14,11 @@ from sqlalchemy import Select, func, select
 
 from kbe.rows import CORRECTION
 from kbe.schema import DECIDED, correction, decision
-from stepnc_model.outcome import Context, Correction
+from stepnc_model.outcome import Context, LearnedCorrection
 
 
 class Standing(StrEnum):
-    """What was decided last about a correction."""
+    """State of a correction: the last decision about it."""
 
     PROPOSED = "proposed"
     ACCEPTED = "accepted"
@@ -26,15 +26,15 @@ class Standing(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Entry:
+class StoredCorrection:
     """A correction as the knowledge base has it."""
 
     id: int
-    correction: Correction
+    correction: LearnedCorrection
     """with who accepted it and when, while it is accepted"""
     standing: Standing
     decided_by: str
-    """who accepted or withdrew it last; empty: nobody yet"""
+    """person who accepted or withdrew it last; empty: none yet"""
     decided_at: datetime | None
 
 
@@ -72,7 +72,7 @@ def in_force(context: Context) -> "Select[Any]":
     )
 
 
-def entry(row: Sequence[Any]) -> Entry:
+def entry(row: Sequence[Any]) -> StoredCorrection:
     """The entry of a row of :func:`entries`."""
     id_, kind, by, at, *stored = row
     standing = Standing(kind or Standing.PROPOSED)
@@ -80,7 +80,7 @@ def entry(row: Sequence[Any]) -> Entry:
     columns = [*stored, by if is_accepted else "", at if is_accepted else None]
     learned = CORRECTION.noun(columns)
     _require_sound(id_, learned)
-    return Entry(
+    return StoredCorrection(
         id=id_,
         correction=learned,
         standing=standing,
@@ -89,7 +89,7 @@ def entry(row: Sequence[Any]) -> Entry:
     )
 
 
-def _require_sound(id_: int, learned: Correction) -> None:
+def _require_sound(id_: int, learned: LearnedCorrection) -> None:
     """Refuse what no learning proposes: somebody else has written it.
 
     Raises
@@ -104,4 +104,4 @@ def _require_sound(id_: int, learned: Correction) -> None:
         and 0.0 <= learned.confidence <= 1.0
     )
     if not is_sound:
-        raise ValueError(f"correction {id_} is none that was learned: {learned}")
+        raise ValueError(f"correction {id_} was not proposed by a review: {learned}")

@@ -13,8 +13,8 @@ from sqlalchemy.schema import Column
 from kbe.connection import PATIENCE, reading, writing
 from kbe.errors import StoreBusy, StoreDamaged, StoreTooNew, StoreUnavailable
 from kbe.faults import translated
-from kbe.place import Place
 from kbe.schema import VERSION, VERSION_TABLE
+from kbe.store_location import StoreLocation
 
 MIGRATIONS = Path(__file__).parent / "migrations"
 
@@ -24,7 +24,7 @@ LOCK = 0x53544E43
 _version = Table(VERSION_TABLE, MetaData(), Column("version_num", Text()))
 
 
-def migrate(engine: Engine, place: Place, *, is_new_allowed: bool) -> None:
+def migrate(engine: Engine, place: StoreLocation, *, is_new_allowed: bool) -> None:
     """Make or upgrade the tables of a store.
 
     Raises
@@ -49,7 +49,7 @@ def migrate(engine: Engine, place: Place, *, is_new_allowed: bool) -> None:
             _upgrade(connection)
 
 
-def _found(connection: Connection, place: Place, *, is_new_allowed: bool) -> str:
+def _found(connection: Connection, place: StoreLocation, *, is_new_allowed: bool) -> str:
     """Version of the schema; empty when there is none yet."""
     tables = inspect(connection).get_table_names()
     if VERSION_TABLE in tables:
@@ -74,7 +74,7 @@ def _known_versions() -> set[str]:
     return {path.name[: len(VERSION)] for path in (MIGRATIONS / "versions").glob("[0-9]*.py")}
 
 
-def _write_ahead(engine: Engine, place: Place) -> None:
+def _write_ahead(engine: Engine, place: StoreLocation) -> None:
     """Set the mode that the file keeps; SQLite does not wait for others when it does."""
     deadline = time.monotonic() + PATIENCE
     while True:
@@ -97,7 +97,7 @@ def _set_write_ahead(engine: Engine) -> None:
         raw.close()
 
 
-def _require_unicode(connection: Connection, place: Place) -> None:
+def _require_unicode(connection: Connection, place: StoreLocation) -> None:
     """Refuse a database that cannot hold every name of a tool."""
     encoding = connection.execute(text("SHOW server_encoding")).scalar_one()
     if encoding != "UTF8":

@@ -19,7 +19,7 @@ SIGNIFICANT = 0.01
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Trend:
-    """How a value changes from run to run, by least squares, [2]_.
+    """Trend of a value from run to run, by least squares, [2]_.
 
     Runs are taken as independent.
     """
@@ -33,7 +33,7 @@ class Trend:
 
     @property
     def is_significant(self) -> bool:
-        """Whether chance is no good explanation."""
+        """Whether the trend is significant."""
         return self.chance < SIGNIFICANT
 
 

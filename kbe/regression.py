@@ -35,9 +35,9 @@ class NormalInverseGamma:
     """``β | σ² ~ N(mean, σ² precision⁻¹)`` and ``σ² ~ inverse gamma(shape, rate)``, [2]_."""
 
     mean: Floats
-    """(P,)"""
+    """Mean, (P,)"""
     precision: Floats
-    """(P, P), in units of 1/σ²; symmetric, positive definite"""
+    """Precision, (P, P), in units of 1/σ²; symmetric, positive definite"""
     shape: float
     """half the degrees of freedom, above 0"""
     rate: float
@@ -59,14 +59,14 @@ class NormalInverseGamma:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Observations:
-    """What was seen."""
+    """Observations of a linear model."""
 
     design: Floats
-    """(N, P): x of each"""
+    """Design, (N, P): x of each"""
     values: Floats
-    """(N,): y of each"""
+    """Values, (N,): y of each"""
     weights: Floats
-    """(N,): w, σ² over the variance of each; above 0"""
+    """Weights, (N,): w, σ² over the variance of each; above 0"""
     counts: Floats
     """(N,): power of its likelihood, [4]_. 1: one of its own; 1/n: n that err together are
     worth one"""
@@ -85,7 +85,7 @@ class Observations:
 
 
 def updated(belief: NormalInverseGamma, seen: Observations) -> NormalInverseGamma:
-    """What is believed after observations, [2]_ eqs. (7.70) to (7.73).
+    """Posterior after observations, [2]_ eqs. (7.70) to (7.73).
 
     The rate is written with residuals, where [2]_ subtracts squares of near numbers.
     """
@@ -106,7 +106,7 @@ def updated(belief: NormalInverseGamma, seen: Observations) -> NormalInverseGamm
 def forgotten(
     belief: NormalInverseGamma, prior: NormalInverseGamma, *, share: float
 ) -> NormalInverseGamma:
-    """What is left when only a share of what was learned is still held to be true.
+    """Prior when only a share of what was learned still counts.
 
     Proportional to ``belief^share · prior^(1 − share)``, [3]_. With the same prior this is the
     belief from the same observations with all their counts times ``share``.
@@ -136,12 +136,12 @@ def forgotten(
 
 
 def expected(belief: NormalInverseGamma, row: Floats) -> StudentT:
-    """Where ``x·β`` lies for a (P,) row x: the mean of many observations, [2]_ §7.6.3."""
+    """Distribution of ``x·β`` for a (P,) row x: the mean of many observations, [2]_ §7.6.3."""
     return _student(belief, row, own=0.0)
 
 
 def predicted(belief: NormalInverseGamma, row: Floats, *, weight: float = 1.0) -> StudentT:
-    """What the next observation at a (P,) row x shows, [2]_ eq. (7.76)."""
+    """Distribution of the next observation at a (P,) row x, [2]_ eq. (7.76)."""
     return _student(belief, row, own=1.0 / weight)
 
 

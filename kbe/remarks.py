@@ -1,4 +1,4 @@
-"""What a group of outcomes gives reason to do, in words with numbers.
+"""Recommendations for a group of outcomes, in words with numbers.
 
 References
 ----------
@@ -11,22 +11,22 @@ from dataclasses import dataclass
 from enum import StrEnum
 from math import sqrt
 
-from kbe.acceptance import Bounds
+from kbe.acceptance import AcceptanceBounds
 from kbe.bound import PASSED, UNUSED, BoundUse
 from kbe.factor import factor_at, interval
 from kbe.statistics import DeviationStatistics, Evaluated
-from stepnc_model.outcome import Correction
+from stepnc_model.outcome import LearnedCorrection
 
 NOTABLE = 0.05
 """deviation, or change of the factor, from which something is said"""
 STEEP = 0.005
 """of the plan a run, from which a significant trend is told"""
-ENOUGH = Bounds().fewest_outcomes
+ENOUGH = AcceptanceBounds().fewest_outcomes
 """outcomes from which a factor is recommended"""
 
 
 class Action(StrEnum):
-    """What a remark asks for."""
+    """Action that a remark recommends."""
 
     ACCEPT_FACTOR = "accept factor"
     WAIT = "wait for more runs"
@@ -42,19 +42,19 @@ class Action(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Evidence:
-    """What is known of a group."""
+    """Facts about a group that remarks rest on."""
 
     deviations: Mapping[Evaluated, DeviationStatistics]
     bound: BoundUse
-    proposed: Correction | None
+    proposed: LearnedCorrection | None
     """that the outcomes of the context teach"""
-    accepted: Correction | None
+    accepted: LearnedCorrection | None
     """that plans take now; None: the catalogue's k_c"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Remark:
-    """What was seen, and what to do."""
+    """Observation and recommendation."""
 
     about: Evaluated
     action: Action
@@ -124,7 +124,7 @@ def _violated(bound: BoundUse) -> Remark | None:
     )
 
 
-def _factor(evidence: Evidence, proposed: Correction) -> Remark:
+def _factor(evidence: Evidence, proposed: LearnedCorrection) -> Remark:
     """The factor that was learned is not the one that plans take."""
     seen = interval(proposed)
     factor = f"the k_c factor {seen.centre:.2f} ({seen.low:.2f} to {seen.high:.2f})"
@@ -208,7 +208,7 @@ def _feed(evidence: Evidence) -> Remark | None:
 
 
 def _bolder(evidence: Evidence) -> str:
-    """How a plan takes more: with less caution, or at all."""
+    """Recommendation to plan with more force: with a smaller margin, or at all."""
     if evidence.accepted is None:
         return "optimise the program: it leaves room for more feed"
     return "plan with a lower quantile of the k_c factor"

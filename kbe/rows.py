@@ -15,7 +15,7 @@ from math import isfinite
 from types import NoneType
 from typing import Any, Generic, TypeVar, cast, get_args, get_type_hints
 
-from stepnc_model.outcome import Correction, ProcessOutcome
+from stepnc_model.outcome import LearnedCorrection, ProcessOutcome
 
 T = TypeVar("T")
 Value = str | float | int | bool | datetime | None
@@ -47,19 +47,19 @@ GREATEST_DEVIATION = 1e100
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Leaf:
+class AttributeColumn:
     """One attribute that becomes one column."""
 
     path: tuple[str, ...]
     """names of the attributes that lead to it"""
     name: str
-    """of the column"""
+    """Name of the column"""
     kind: type
     """str, float, int, bool or datetime"""
     is_optional: bool
 
 
-class Layout(Generic[T]):
+class RowLayout(Generic[T]):
     """A noun as columns, and back.
 
     Examples
@@ -94,7 +94,7 @@ def outcome_row(outcome: ProcessOutcome) -> dict[str, Value]:
     Raises
     ------
     ValueError
-        As :meth:`Layout.row`, and for a deviation that no measurement can have.
+        As :meth:`RowLayout.row`, and for a deviation that no measurement can have.
     """
     row = OUTCOME.row(outcome)
     for name in EVALUATED:
@@ -111,7 +111,9 @@ def _plain(hint: Any) -> tuple[Any, bool]:
     return (options[0], True) if options else (hint, False)
 
 
-def _leaves(noun: type, *, path: tuple[str, ...], is_optional: bool) -> Iterator[Leaf]:
+def _leaves(
+    noun: type, *, path: tuple[str, ...], is_optional: bool
+) -> Iterator[AttributeColumn]:
     """Attributes of a noun, and of the nouns within it, in order."""
     hints = get_type_hints(noun)
     for field in fields(cast(Any, noun)):
@@ -121,7 +123,7 @@ def _leaves(noun: type, *, path: tuple[str, ...], is_optional: bool) -> Iterator
             yield from _leaves(cast(type, kind), path=below, is_optional=lacks)
         else:
             stored = str if issubclass(kind, StrEnum) else kind
-            yield Leaf(path=below, name=_name(below), kind=stored, is_optional=lacks)
+            yield AttributeColumn(path=below, name=_name(below), kind=stored, is_optional=lacks)
 
 
 def _name(path: tuple[str, ...]) -> str:
@@ -131,8 +133,8 @@ def _name(path: tuple[str, ...]) -> str:
     return "_".join(part for part in parts + units if part)
 
 
-def _writer(leaf: Leaf) -> Callable[[object], Value]:
-    """What takes the value of a column from a noun."""
+def _writer(leaf: AttributeColumn) -> Callable[[object], Value]:
+    """Getter of a column's value from a dataclass."""
     check = CHECKS[leaf.kind]
 
     def write(noun: object) -> Value:
@@ -147,7 +149,7 @@ def _writer(leaf: Leaf) -> Callable[[object], Value]:
 
 
 def _reader(noun: type, columns: Iterator[int]) -> Callable[[Sequence[Any]], object]:
-    """What makes a noun from a row; takes its columns in order."""
+    """Constructor of a dataclass from a row; takes its columns in order."""
     hints = get_type_hints(noun)
     readers: dict[str, Callable[[Sequence[Any]], object]] = {}
     for field in fields(cast(Any, noun)):
@@ -185,7 +187,7 @@ def storable_text(name: str, value: Any) -> str:
 
 
 def _has_surrogate(text: str) -> bool:
-    """Whether UTF-8 has no form for it."""
+    """Whether the text has no form in UTF-8."""
     return any("\ud800" <= letter <= "\udfff" for letter in text)
 
 
@@ -237,5 +239,5 @@ CHECKS: Mapping[type, Callable[[str, Any], Value]] = {
     datetime: _time,
 }
 
-OUTCOME = Layout(ProcessOutcome)
-CORRECTION = Layout(Correction)
+OUTCOME = RowLayout(ProcessOutcome)
+CORRECTION = RowLayout(LearnedCorrection)

@@ -29,7 +29,7 @@ from sqlalchemy import (
 )
 from sqlalchemy.types import TypeDecorator, TypeEngine
 
-from kbe.rows import CORRECTION, EVALUATED, OUTCOME, Leaf
+from kbe.rows import CORRECTION, EVALUATED, OUTCOME, AttributeColumn
 
 VERSION = "0001"
 """of the schema: the newest file of ``migrations/versions``"""
@@ -64,7 +64,7 @@ TYPES: dict[type, TypeEngine[Any]] = {
 }
 
 
-def _column(leaf: Leaf) -> "Column[Any]":
+def _column(leaf: AttributeColumn) -> "Column[Any]":
     """Column of an attribute."""
     return Column(leaf.name, TYPES[leaf.kind], nullable=leaf.is_optional)
 

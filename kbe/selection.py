@@ -1,4 +1,4 @@
-"""Which outcomes are meant."""
+"""Selection of outcomes."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -32,7 +32,7 @@ NAMES = ("machine", "material", "tool", "feature_kind", "program", "run")
 
 
 def conditions(selection: Selection) -> list[ColumnElement[bool]]:
-    """What must hold for a row of ``outcome``.
+    """Conditions on a row of ``outcome``.
 
     Raises
     ------

@@ -15,12 +15,12 @@ from datetime import datetime
 
 from kbe.bound import BoundUse, used
 from kbe.factor import FactorInterval, interval
-from kbe.grade import Grade, grade
+from kbe.grade import EvaluationGrade, grade
 from kbe.moments import Moments
 from kbe.remarks import Evidence, Remark, is_pending, remarks
 from kbe.statistics import DeviationStatistics, DeviationTally, Evaluated, quantity_of
 from stepnc_model.entities.optimisation import FaceMillingImmersion
-from stepnc_model.outcome import Context, Correction, ProcessOutcome, Quantity
+from stepnc_model.outcome import Context, EvaluatedQuantity, LearnedCorrection, ProcessOutcome
 
 TYPES = {
     FaceMillingImmersion.FULL_IMMERSION: "d_s1",
@@ -34,8 +34,8 @@ TYPES = {
 class Knowledge:
     """Corrections of the contexts that a table shows."""
 
-    proposed: Mapping[Context, Correction] = field(default_factory=dict)
-    accepted: Mapping[Context, Correction] = field(default_factory=dict)
+    proposed: Mapping[Context, LearnedCorrection] = field(default_factory=dict)
+    accepted: Mapping[Context, LearnedCorrection] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,9 +47,9 @@ class Side:
     """k_c1.1 of the catalogue, N/mm²"""
     cutting_speed: float | None
     """V_c, mm/s"""
-    step_depth: Quantity
+    step_depth: EvaluatedQuantity
     """a_s, mm"""
-    feed_per_tooth: Quantity
+    feed_per_tooth: EvaluatedQuantity
     """f_z, mm: predicted and evaluated"""
     immersions: tuple[FaceMillingImmersion, ...]
     strategies: tuple[str, ...]
@@ -59,7 +59,7 @@ class Side:
     latest: datetime
     deviations: Mapping[Evaluated, DeviationStatistics]
     bound: BoundUse
-    grade: Grade
+    grade: EvaluationGrade
     remarks: tuple[Remark, ...]
     factor: FactorInterval | None
     """on k_c that was learned; None: nothing was"""
@@ -107,7 +107,7 @@ class SideTally:
         self._bound = used(self._bound, outcome)
 
     def side(self, knowledge: Knowledge) -> Side:
-        """What the outcomes say; there must have been one."""
+        """Evaluation of the outcomes so far; there must have been one."""
         if self._latest is None:
             raise ValueError("a side needs an outcome")
         deviations = {which: each.statistics() for which, each in self._deviations.items()}
@@ -161,17 +161,17 @@ class QuantityTally:
         self._paired = (Moments(), Moments())
         self._single = (Moments(), Moments())
 
-    def add(self, quantity: Quantity) -> None:
+    def add(self, quantity: EvaluatedQuantity) -> None:
         """One more outcome."""
         values = (quantity.predicted, quantity.measured)
         into = self._single if None in values else self._paired
         for moments, value in zip(into, values, strict=True):
             _add(moments, value)
 
-    def quantity(self) -> Quantity:
+    def quantity(self) -> EvaluatedQuantity:
         """Means."""
         predicted, measured = self._paired if self._paired[0].count else self._single
-        return Quantity(predicted=_mean(predicted), measured=_mean(measured))
+        return EvaluatedQuantity(predicted=_mean(predicted), measured=_mean(measured))
 
 
 def _add(moments: Moments, value: float | None) -> None:

@@ -14,7 +14,6 @@ References
    time and surface quality.
 """
 
-from collections.abc import Iterable
 from copy import copy
 from dataclasses import dataclass
 from enum import StrEnum
@@ -22,7 +21,7 @@ from math import isfinite, sqrt
 
 from kbe.moments import Moments, Trend
 from kbe.reservoir import Reservoir
-from stepnc_model.outcome import ProcessOutcome, Quantity
+from stepnc_model.outcome import EvaluatedQuantity, ProcessOutcome
 
 HIGH = 0.95
 """share of outcomes that deviate no farther up"""
@@ -49,7 +48,7 @@ class DeviationStatistics:
     deviation: float | None
     """standard deviation of one outcome; from 2 outcomes"""
     standard_error: float | None
-    """of the mean of runs; from 2 runs"""
+    """Standard error of the mean of runs; from 2 runs"""
     median: float | None
     high: float | None
     """95th of 100"""
@@ -86,7 +85,7 @@ class DeviationTally:
         self._sample.add(value)
 
     def statistics(self) -> DeviationStatistics:
-        """What the stream says until now."""
+        """Statistics of the stream so far."""
         runs, above = self._with_last()
         scatter = runs.deviation
         return DeviationStatistics(
@@ -111,7 +110,7 @@ class DeviationTally:
         return runs, self._above + (self._in_run.mean > 0.0)
 
 
-def quantity_of(outcome: ProcessOutcome, which: Evaluated) -> Quantity:
+def quantity_of(outcome: ProcessOutcome, which: Evaluated) -> EvaluatedQuantity:
     """One of the four quantities of an outcome."""
     quantities = {
         Evaluated.ROUGHNESS: outcome.roughness,
@@ -120,18 +119,3 @@ def quantity_of(outcome: ProcessOutcome, which: Evaluated) -> Quantity:
         Evaluated.FEED: outcome.feed,
     }
     return quantities[which]
-
-
-def statistics(outcomes: Iterable[ProcessOutcome], which: Evaluated) -> DeviationStatistics:
-    """Deviations of one quantity over outcomes of one machine, in the order of time.
-
-    A run is new when its id is not that of the outcome before: on one machine one run follows
-    the other.
-    """
-    tally = DeviationTally()
-    number, last = -1, None
-    for outcome in outcomes:
-        number += outcome.run != last
-        last = outcome.run
-        tally.add(quantity_of(outcome, which).deviation, run=number)
-    return tally.statistics()

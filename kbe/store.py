@@ -21,13 +21,13 @@ from sqlalchemy.engine import Engine
 from kbe.connection import connected, reading, writing
 from kbe.errors import StoreDamaged, UnknownCorrection
 from kbe.groups import Group, group, grouped
-from kbe.ledger import Entry, Standing, entries, entry, in_force
+from kbe.ledger import Standing, StoredCorrection, entries, entry, in_force
 from kbe.migrate import migrate
-from kbe.place import Place, parsed_place, require_openable
 from kbe.rows import CORRECTION, OUTCOME, outcome_row, storable_text, utc
 from kbe.schema import DECIDED, TABLES, correction, decision, outcome
 from kbe.selection import EVERYTHING, Selection, conditions
-from stepnc_model.outcome import Context, Correction, ProcessOutcome
+from kbe.store_location import StoreLocation, parsed_place, require_openable
+from stepnc_model.outcome import Context, LearnedCorrection, ProcessOutcome
 
 AT_ONCE = 1000
 """rows that are fetched together"""
@@ -36,7 +36,7 @@ AT_ONCE = 1000
 class Store:
     """An open knowledge base; :func:`open_store` makes it, ``with`` or ``close`` ends it."""
 
-    def __init__(self, engine: Engine, place: Place) -> None:
+    def __init__(self, engine: Engine, place: StoreLocation) -> None:
         self.engine = engine
         self.place = place
 
@@ -88,7 +88,7 @@ class Store:
                 yield OUTCOME.noun(row)
 
     def count(self, selection: Selection = EVERYTHING) -> int:
-        """How many outcomes there are."""
+        """Number of outcomes."""
         query = select(func.count()).select_from(outcome).where(*conditions(selection))
         with reading(self.engine, self.place) as connection:
             return connection.execute(query).scalar_one()
@@ -107,7 +107,7 @@ class Store:
             rows = sorted(connection.execute(query), key=lambda row: row[:4])
         return tuple(group(row) for row in rows)
 
-    def propose(self, proposed: Correction) -> int:
+    def propose(self, proposed: LearnedCorrection) -> int:
         """Keep a correction for a person to decide about; its id.
 
         Raises
@@ -142,7 +142,7 @@ class Store:
     def _decide(self, id_: int, standing: Standing, *, by: str, at: datetime) -> None:
         """Keep a decision."""
         if not by.strip():
-            raise ValueError("a decision is somebody's; name who decides")
+            raise ValueError("a decision needs the name of the person who decides")
         row = {
             "correction_id": id_,
             "kind": standing.value,
@@ -155,12 +155,12 @@ class Store:
                 raise UnknownCorrection(self.place.shown, id=id_)
             connection.execute(insert(decision), row)
 
-    def corrections(self) -> tuple[Entry, ...]:
+    def corrections(self) -> tuple[StoredCorrection, ...]:
         """All corrections, whatever was decided about them."""
         with reading(self.engine, self.place) as connection:
             return tuple(entry(row) for row in connection.execute(entries()))
 
-    def accepted(self, context: Context) -> Correction | None:
+    def accepted(self, context: Context) -> LearnedCorrection | None:
         """The correction in force for a context, if there is one."""
         with reading(self.engine, self.place) as connection:
             row = connection.execute(in_force(context)).first()
@@ -184,7 +184,7 @@ class Store:
                 deque(connection.execute(query), maxlen=0)
 
 
-def require_whole(connection: Connection, place: Place) -> None:
+def require_whole(connection: Connection, place: StoreLocation) -> None:
     """Refuse a file of SQLite whose pages, indexes or references do not agree.
 
     Raises
@@ -220,7 +220,7 @@ def open_store(url_or_path: str, *, is_new_allowed: bool = True) -> Store:
     return open_place(parsed_place(url_or_path), is_new_allowed=is_new_allowed)
 
 
-def open_place(place: Place, *, is_new_allowed: bool) -> Store:
+def open_place(place: StoreLocation, *, is_new_allowed: bool) -> Store:
     """Open the store of a place; errors as :func:`open_store`."""
     require_openable(place, is_new_allowed=is_new_allowed)
     engine = connected(place)

@@ -1,1 +1,1 @@
-"""What should be: the best feed within the physics."""
+"""Optimiser: the best feed within the limits of physics and machine."""

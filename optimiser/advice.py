@@ -1,4 +1,4 @@
-"""What the optimiser says of a workingstep, and of a whole program."""
+"""Results of the optimiser: the advice for a workingstep, and the plan of a whole program."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,20 +6,19 @@ from enum import StrEnum
 
 from optimiser.cut import Cut
 from optimiser.holding import HoldingLoad
-from optimiser.limit import Limit, LimitName, Sense
 from optimiser.modes import Mode
-from optimiser.problem import Setting
+from optimiser.problem import BoundSide, Limit, LimitName, Setting
 from optimiser.safety import USUAL_QUANTILE
 from optimiser.stability import Stability
 from simulator.spec import Machine, MaterialMatch
 from stepnc_model.errors import Finding
-from stepnc_model.program import Workingstep
+from stepnc_model.program import ResolvedWorkingstep
 from stepnc_model.technology import Programmed
 from stepnc_model.tool import Tool
 
 
-class Status(StrEnum):
-    """What became of a workingstep."""
+class AdviceStatus(StrEnum):
+    """Outcome of the optimisation of a workingstep."""
 
     ADVISED = "advised"
     UNTOUCHED = "untouched"
@@ -28,7 +27,7 @@ class Status(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Load:
+class LimitLoad:
     """One limit at one setting."""
 
     limit: Limit
@@ -40,36 +39,36 @@ class Load:
     @property
     def margin(self) -> float:
         """Share of the bound that is left, after the safety factor; negative: passed."""
-        sign = 1.0 if self.limit.sense is Sense.AT_MOST else -1.0
+        sign = 1.0 if self.limit.sense is BoundSide.AT_MOST else -1.0
         return sign * (self.bound - self.limit.safety_factor * self.value) / self.bound
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class State:
+class EvaluatedSetting:
     """A setting and what it does."""
 
     setting: Setting
     feed: float
-    """mm/s"""
+    """Feed, mm/s"""
     time: float
-    """s"""
+    """Time, s"""
     energy: float
-    """J"""
+    """Energy, J"""
     motor_power: float
-    """W"""
+    """Motor power, W"""
     cutting_force: float
-    """N, mean of a revolution; of a mill along its passes"""
+    """Cutting force, N, mean of a revolution; of a mill along its passes"""
     thrust: float
-    """N, along the axis, of a drill or of a mill that goes straight down; 0: of none"""
+    """Thrust, N, along the axis, of a drill or of a mill that goes straight down; 0: of none"""
     roughness: float | None
     """Ra in mm; ``None`` where the feed does not describe it"""
-    loads: tuple[Load, ...]
-    plunge_loads: tuple[Load, ...] = ()
+    loads: tuple[LimitLoad, ...]
+    plunge_loads: tuple[LimitLoad, ...] = ()
     """at the plunge feed, on the ways down that have one of their own"""
     ramp_force: float = 0.0
     """N, mean of a revolution, of a mill down a ramp at the plunge feed; 0: of none"""
     plunge_power: float = 0.0
-    """W of the motor at the plunge feed; 0: of none"""
+    """Plunge power, W of the motor at the plunge feed; 0: of none"""
 
     @property
     def plunge_feed(self) -> float | None:
@@ -79,10 +78,10 @@ class State:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Point:
+class ParetoPoint:
     """One point of the front between time, roughness and energy."""
 
-    state: State
+    state: EvaluatedSetting
     roughness_bound: float | None
     """Ra in mm that this point had to keep"""
 
@@ -91,39 +90,39 @@ class Point:
 class Advice:
     """Advice for one workingstep."""
 
-    workingstep: Workingstep
+    workingstep: ResolvedWorkingstep
     tool: Tool
     programmed: Programmed
-    status: Status
+    status: AdviceStatus
     reason: str
     """one sentence: what holds the feed, why it was not touched, or what conflicts"""
     cut: Cut | None
-    before: State | None
-    after: State | None
+    before: EvaluatedSetting | None
+    after: EvaluatedSetting | None
     force_factor: float = 1.0
     """accepted correction of k_c that the loads were told with"""
     active: LimitName | None = None
     active_words: str = ""
     """the same as the user reads it"""
     saving_of_one_more: float = 0.0
-    """s saved by one more step of the active limit"""
+    """Saving of one more, s saved by one more step of the active limit"""
     safety_factor: float = 1.0
     """k_c at the quantile that is planned with, over the nominal one"""
     saving_of_free_speed: float = 0.0
     """s saved if the spindle speed were free, on the path of the advice"""
     cost_of_safety: float = 0.0
-    """s that planning with that quantile costs"""
+    """Cost of safety, s that planning with that quantile costs"""
     deepest_first_time: float | None = None
-    """s with the fewest passes"""
+    """Deepest first time, s with the fewest passes"""
     prices: tuple[tuple[LimitName, float], ...] = ()
     """relative fall of the cost for a relative rise of the bound"""
-    front: tuple[Point, ...] = ()
+    front: tuple[ParetoPoint, ...] = ()
     plunge_reason: str = ""
     """one sentence: what holds the plunge feed; empty where there is none of its own"""
     plunge_fault: str = ""
     """why the tool may not go straight down here; empty where it may"""
     speed_fault: str = ""
-    """which bound a speed passes that nobody may touch; empty where none"""
+    """bound that a locked speed exceeds; empty where none"""
     holding_load: HoldingLoad | None = None
     """what is asked of chuck, vice or clamps; None: nothing, or of a drill on a mill"""
     stability: Stability | None = None
@@ -146,7 +145,7 @@ class Plan:
     @property
     def is_infeasible(self) -> bool:
         """Whether some workingstep has no feasible setting."""
-        return any(advice.status is Status.INFEASIBLE for advice in self.advices)
+        return any(advice.status is AdviceStatus.INFEASIBLE for advice in self.advices)
 
     @property
     def faults(self) -> tuple[str, ...]:
@@ -180,20 +179,20 @@ class Plan:
 
     @property
     def left_out(self) -> str:
-        """What the totals do not count."""
+        """Remarks on what the totals leave out."""
         unknown = sum(advice.before is None for advice in self.advices)
         rest = "tool changes and moves between workingsteps"
         return f"{unknown} of the workingsteps (no feed is chosen), {rest}" if unknown else rest
 
     @property
-    def _final(self) -> list[State]:
+    def _final(self) -> list[EvaluatedSetting]:
         states = (advice.after or advice.before for advice in self.advices)
         return [state for state in states if state]
 
 
-def tightest(loads: Sequence[Load]) -> list[Load]:
+def tightest(loads: Sequence[LimitLoad]) -> list[LimitLoad]:
     """One load for each limit and sense: the one that is nearest to its bound."""
-    worst: dict[tuple[LimitName, Sense], Load] = {}
+    worst: dict[tuple[LimitName, BoundSide], LimitLoad] = {}
     for load in loads:
         key = (load.limit.name, load.limit.sense)
         if key not in worst or load.margin < worst[key].margin:

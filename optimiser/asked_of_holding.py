@@ -1,11 +1,11 @@
-"""Which work-holding a workingstep has; and where it has none, what the setup asks of it."""
+"""Work-holding of a workingstep; without one, the loads that the setup must hold."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 from optimiser.advice import Advice
-from optimiser.conditions import Conditions
-from optimiser.grip import Grip, grip_of, holding_of, setup_id
+from optimiser.bar_grip import BarGrip, grip_of, holding_of, setup_id
+from optimiser.conditions import CuttingConditions
 from optimiser.holding import HoldingLoad
 from optimiser.tolerance import permitted_bar_deflection
 from simulator.spec import (
@@ -19,12 +19,12 @@ from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.turning import Contouring, Grooving
 from stepnc_model.errors import Finding, Severity
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program, Workingstep
+from stepnc_model.program import Program, ResolvedWorkingstep
 
 
 def with_holding(
-    at: Conditions, program: Program, step: Workingstep
-) -> tuple[Conditions, list[Finding]]:
+    at: CuttingConditions, program: Program, step: ResolvedWorkingstep
+) -> tuple[CuttingConditions, list[Finding]]:
     """Conditions with what holds the workpiece, and what was assumed of its tolerances.
 
     Raises
@@ -104,8 +104,8 @@ def _greatest(held: Sequence[Advice], of: Callable[[HoldingLoad], float], unit: 
     return f"{value:.4g} {unit} ({name})" if value > 0.0 else ""
 
 
-def _told(grip: Grip) -> str:
-    """Where the program says that a bar is held."""
+def _told(grip: BarGrip) -> str:
+    """Position of the chuck's jaws as the program states it."""
     centre = ", with a tailstock" if grip.has_tailstock else ""
     return (
         f"the program has it grip {grip.size.length:.4g} mm on Ø{grip.size.diameter:.4g} mm, "

@@ -6,10 +6,10 @@ chips stay longer in the cut and leave a slot badly, and the feed falls, in a fu
 catalogue's own factor.
 """
 
-from optimiser.conditions import Conditions
+from optimiser.conditions import CuttingConditions
 from optimiser.cut import Cut, CutKind
 from simulator.physics.engagement import conventional
-from simulator.spec import CuttingMaterial, FeedWindow, Grade, ToolKind
+from simulator.spec import CuttingMaterial, FeedWindow, ToolGrade, ToolKind
 
 GREATEST_THINNING = 4.0
 """factor on the catalogue's feed: beyond, a wall that comes nearer is met at many times the
@@ -24,20 +24,20 @@ ROUGH_NOSE_FEED = 2.0 / 3.0
 (C, S) and 1/2.5 of weak ones (D, T) are printed too"""
 
 
-def _factor(cut: Cut, at: Conditions) -> float:
+def _factor(cut: Cut, at: CuttingConditions) -> float:
     """Factor on the catalogue's feed per tooth by the engagement."""
     if at.grade is None or at.machine.only_stated_limits:
         return 1.0
     return engagement_factor(cut, at.grade)
 
 
-def feed_origin(cut: Cut, at: Conditions) -> str:
-    """How the engagement moved the catalogue's feed; empty where it did not."""
+def feed_origin(cut: Cut, at: CuttingConditions) -> str:
+    """Note on how the engagement changed the catalogue's feed; empty where it did not."""
     factor = _factor(cut, at)
     return "" if factor == 1.0 else f"{factor:.3g} of the catalogue's at this engagement"
 
 
-def least_feed(cut: Cut, at: Conditions) -> float | None:
+def least_feed(cut: Cut, at: CuttingConditions) -> float | None:
     """Least feed per tooth that material or grade recommend, mm: below it edges rub."""
     bounds: list[float | None] = []
     if at.grade is not None:
@@ -54,13 +54,13 @@ def least_feed(cut: Cut, at: Conditions) -> float | None:
     return None if lowest is None else lowest * min(1.0, _factor(cut, at))
 
 
-def greatest_feed(cut: Cut, at: Conditions) -> float | None:
+def greatest_feed(cut: Cut, at: CuttingConditions) -> float | None:
     """Greatest feed per tooth that material and grade allow at this engagement, mm."""
     feed = catalogue_feed(cut, at)
     return None if feed is None else feed * _factor(cut, at)
 
 
-def catalogue_feed(cut: Cut, at: Conditions) -> float | None:
+def catalogue_feed(cut: Cut, at: CuttingConditions) -> float | None:
     """Greatest feed per tooth that material and grade allow at their own engagement, mm."""
     bounds = [at.material.max_feed_per_tooth]
     grade = at.grade
@@ -83,7 +83,7 @@ def catalogue_feed(cut: Cut, at: Conditions) -> float | None:
     return min(known) if known else None
 
 
-def engagement_factor(cut: Cut, grade: Grade) -> float:
+def engagement_factor(cut: Cut, grade: ToolGrade) -> float:
     """Factor on the feed per tooth of a catalogue where the path meets most; 1: no data."""
     window = grade.feed_window
     if cut.kind is not CutKind.MILLING or window is None or cut.engagement is None:

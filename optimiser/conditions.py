@@ -1,9 +1,9 @@
-"""Everything besides the cut that sets its limits."""
+"""Conditions of a cut: machine, material, tool grade and permitted values."""
 
 from dataclasses import dataclass
 
-from optimiser.grip import Grip
-from simulator.spec import CuttingMaterial, Grade, Machine, Material
+from optimiser.bar_grip import BarGrip
+from simulator.spec import CuttingMaterial, Machine, ToolGrade, WorkMaterial
 from simulator.work_holding import Holding
 
 GREATEST_DEFLECTION = 0.1
@@ -13,22 +13,22 @@ customary"""
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PermittedDeflection:
-    """How far an end mill may bend."""
+    """Permitted deflection of an end mill."""
 
     value: float = GREATEST_DEFLECTION
-    """mm at its tip"""
+    """Value, mm at its tip"""
     origin: str = ""
     """where the value comes from, as a sentence goes on; empty: custom"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Conditions:
-    """Everything besides the cut that sets its limits."""
+class CuttingConditions:
+    """Conditions of a cut: machine, material, tool grade and permitted values."""
 
     machine: Machine
-    material: Material
+    material: WorkMaterial
     cutting_material: CuttingMaterial
-    grade: Grade | None
+    grade: ToolGrade | None
     """``None``: the material carries no tool limits"""
     roughness: float | None
     """Ra in mm that this surface must keep"""
@@ -37,12 +37,12 @@ class Conditions:
     force_factor: float = 1.0
     """accepted correction of k_c from measurements"""
     centre_cutting: bool | None = None
-    """whether the edges of a mill reach its axis; None: nobody says"""
+    """whether the edges of a mill reach its axis; None: unknown"""
     safety_factor: float = 1.0
     """k_c at the quantile that is planned with, over the nominal one"""
     holding: Holding | None = None
     """what holds the workpiece; None: nothing of it is bounded"""
-    grip: Grip | None = None
+    grip: BarGrip | None = None
     """where a bar is held; None: not turned, or nothing says it"""
     bar_deflection: PermittedDeflection | None = None
     """how far a bar may bend; None: as far as it does"""

@@ -20,7 +20,7 @@ LEAST_VOLUME = 1e-3
 
 
 class CutKind(StrEnum):
-    """Which physics applies."""
+    """Process of a cut, which selects its physics."""
 
     MILLING = "milling"
     DRILLING = "drilling"
@@ -34,7 +34,7 @@ class CutKind(StrEnum):
 
 
 class Texture(StrEnum):
-    """How the feed marks the finished surface."""
+    """Texture that the feed leaves on the finished surface."""
 
     CORNER_PER_REVOLUTION = "corner, one high tooth"
     """a turning insert, or the highest insert of a face mill"""
@@ -46,7 +46,7 @@ class Texture(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Place:
+class CriticalPlace:
     """A place of the path where a milling cutter cuts hard."""
 
     engagement: Engagement
@@ -57,8 +57,8 @@ class Place:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class WayIn:
-    """What a mill meets on its ways down into the material, which have a feed of their own."""
+class PlungeEngagement:
+    """Engagement of a mill on its ways down into the material, with a feed of their own."""
 
     drilled: "tuple[Cut, ...]" = ()
     """straight down, as a drill would make it: where thrust and where power is greatest"""
@@ -71,8 +71,8 @@ class WayIn:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Reached:
-    """What the axes leave of the greatest loads at the programmed feed; no limit counts on it.
+class ReachedLoads:
+    """Share of the greatest loads that the axes let happen; no limit counts on it.
 
     Axes that are slower at the hardest place thin its chip.
     """
@@ -80,21 +80,21 @@ class Reached:
     force: float = 1.0
     power: float = 1.0
     wall: float = 1.0
-    """of the force normal to the wall"""
+    """Wall of the force normal to the wall"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Turned:
-    """What a turning path makes of its bar, along z of the setup."""
+class TurnedBar:
+    """Shape that a turning path leaves of its bar, along z of the setup."""
 
     sections: tuple[BarSection, ...]
-    """of the bar as it is left, from the chuck's end on; mm from that end"""
+    """Sections of the bar as it is left, from the chuck's end on; mm from that end"""
     back: float
-    """mm, z of the chuck's end"""
+    """Back, mm, z of the chuck's end"""
     low: float
-    """mm, z of the cut that is nearest to the chuck"""
+    """Low, mm, z of the cut that is nearest to the chuck"""
     high: float
-    """mm, z of the cut that is farthest from it"""
+    """High, mm, z of the cut that is farthest from it"""
     speed_ratio: float = 1.0
     """spindle speed where the cut is narrowest over that where the bar is widest …"""
     greatest_speed: float = inf
@@ -107,7 +107,7 @@ class Turned:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cut:
-    """What one workingstep cuts."""
+    """Cut of one workingstep."""
 
     kind: CutKind
     tool: Tool
@@ -116,13 +116,13 @@ class Cut:
     """mm at which the cutting speed is taken: of the tool, or mean one of the workpiece"""
     programmed: Setting
     length: float
-    """mm at cutting feed in one pass, approach and overrun included"""
+    """Length, mm at cutting feed in one pass, approach and overrun included"""
     total_depth: float
-    """mm to remove, all passes together"""
+    """Total depth, mm to remove, all passes together"""
     is_depth_free: bool
     """whether another number of passes would make the same part"""
     engagement: Engagement | None = None
-    """of a milling cutter"""
+    """Engagement of a milling cutter"""
     radial_width: float = 0.0
     """a_e of a milling cutter, width of a grooving insert"""
     depth_share: float = 1.0
@@ -135,12 +135,12 @@ class Cut:
     """greatest a_e/D along the path; None: where a milling cutter is engaged most"""
     chip_sine: float | None = None
     """greatest chip thickness over feed per tooth along the path; likewise"""
-    shank: Place | None = None
+    shank: CriticalPlace | None = None
     """where the force across an end mill's axis is greatest; None: where it is engaged most"""
-    wall: Place | None = None
+    wall: CriticalPlace | None = None
     """where the force normal to the wall that it makes is; None: where it is engaged most"""
     helix_angle: float = 0.0
-    """rad, of a milling cutter's edges"""
+    """Helix angle, rad, of a milling cutter's edges"""
     power_diameter: float | None = None
     """mm at which the force, at the spindle speed of the cut, takes the greatest power: the
     spindle may follow the tip, and the force acts in the middle of the cut; None: its own"""
@@ -148,29 +148,29 @@ class Cut:
     """spindle speed there over that of the cut"""
     thickest: float = 1.0
     """greatest chip of a drill over that of the feed: a strategy may slow the spindle alone"""
-    reached: Reached = Reached()
+    reached: ReachedLoads = ReachedLoads()
     load_share: float = 1.0
     """mean load over the length at cutting feed, air included, over the greatest"""
     previous_diameter: float = 0.0
-    """mm, of the hole before a drill, reamer or boring bar"""
+    """Previous diameter, mm, of the hole before a drill, reamer or boring bar"""
     widest_drilled: float | None = None
     """mm, of the hole that the lips of a drill make where they cut most; None: its own"""
     link_length: float = 0.0
-    """mm at rapid in one pass"""
+    """Link length, mm at rapid in one pass"""
     rest_time: float = 0.0
     """s in one pass beside the length at cutting feed: ramps, rapids, own feeds, waits"""
     air_length: float = 0.0
-    """mm of the length that removes nothing"""
+    """Air length, mm of the length that removes nothing"""
     volume: float | None = None
-    """mm³ that are removed; None: not known"""
+    """Volume, mm³ that are removed; None: not known"""
     texture: Texture = Texture.NONE
     corner_radius: float = 0.0
-    """mm, the radius that marks the surface"""
+    """Corner radius, mm, the radius that marks the surface"""
     parallel_land: float = 0.0
-    """mm of edge that smooths the surface instead; 0: none"""
+    """Parallel land, mm of edge that smooths the surface instead; 0: none"""
     is_fed_inwards: bool = False
     """an insert is fed towards the axis: its feed force bends the bar, not its back force"""
-    turned: Turned | None = None
+    turned: TurnedBar | None = None
     """what a turning path makes of the bar; None: not known"""
     is_finishing: bool = False
     """this workingstep leaves the surface"""
@@ -182,7 +182,7 @@ class Cut:
     """the floor that is swept once, at its own depth, by an operation that cuts walls"""
     plunge: "Cut | None" = None
     """what a mill drills where it goes straight down into the solid at the feed of the cut"""
-    way_in: WayIn | None = None
+    way_in: PlungeEngagement | None = None
     """ways down that a feed of their own may run; None: none meets material"""
 
     @property
@@ -196,7 +196,7 @@ class Cut:
             depth_share=1.0,
             fill=1.0,
             chip_ratio=None,
-            reached=Reached(),
+            reached=ReachedLoads(),
             texture=Texture.NONE,
             floor=None,
             plunge=None,
@@ -210,11 +210,13 @@ class Cut:
         return replace(self.bare, kind=CutKind.DRILLING, tool=tool)
 
     @property
-    def hardest(self) -> Place | None:
-        """Where a milling cutter is engaged most."""
+    def hardest(self) -> CriticalPlace | None:
+        """Places of the path where a milling cutter is engaged most."""
         if self.engagement is None:
             return None
-        return Place(engagement=self.engagement, depth_share=self.depth_share, fill=self.fill)
+        return CriticalPlace(
+            engagement=self.engagement, depth_share=self.depth_share, fill=self.fill
+        )
 
     @property
     def mean_chip_ratio(self) -> float:

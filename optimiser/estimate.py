@@ -1,36 +1,77 @@
 """Cuts estimated from features: what is known of a cut before its path is made.
 
 Radial width from the strategy's overlap, axial depth and passes from the feature's depth, path
-length from area over step-over plus approach and overrun. Milling; holes are in
-:mod:`optimiser.estimate_hole`, turning is in :mod:`optimiser.estimate_turning`.
+length from area over step-over plus approach and overrun; of an explicit tool path, by the
+corner points of its curves. Cuts of drills, reamers and boring bars follow from the hole.
+Turning is in :mod:`optimiser.estimate_turning`.
 """
 
 from dataclasses import dataclass, replace
-from math import ceil
+from itertools import pairwise
+from math import ceil, dist
 
 from optimiser.cut import Cut, CutKind, Texture
-from optimiser.limit import ROUNDING
-from optimiser.path_length import path_length
-from optimiser.problem import Setting
-from optimiser.region import Region, region_of
+from optimiser.problem import ROUNDING, Setting
+from optimiser.region import FeatureRegion, pattern_count, points_of, region_of
 from simulator.physics.engagement import Engagement, bilateral, full_immersion, unidirectional
-from simulator.physics.travel import centred_approach, one_sided_approach
+from simulator.physics.travel import centred_approach, drill_point_length, one_sided_approach
 from simulator.spec import ToolKind
 from stepnc_model.entities.entity import Entity
+from stepnc_model.entities.features import (
+    CircularPattern,
+    CompoundFeature,
+    GeneralPattern,
+    RectangularPattern,
+    ReplicateFeature,
+)
 from stepnc_model.entities.milling import (
+    BackBoring,
+    Boring,
     BottomAndSideFinishMilling,
     BottomAndSideMilling,
+    CenterDrilling,
+    CenterMilling,
+    CounterSinking,
+    DrillingTypeOperation,
     FreeformOperation,
     PlaneFinishMilling,
     PlaneMilling,
+    Reaming,
     SideFinishMilling,
     SideMilling,
+    Two5dMillingStrategy,
 )
-from stepnc_model.entities.operations import MachiningOperation
-from stepnc_model.entities.strategies import CenterMilling, Two5dMillingStrategy
-from stepnc_model.errors import Finding, Severity
-from stepnc_model.program import Program, Workingstep
-from stepnc_model.tool import Tool
+from stepnc_model.entities.operations import (
+    CutterLocationTrajectory,
+    MachiningOperation,
+    ToolpathList,
+)
+from stepnc_model.entities.profiles import ThroughBottomCondition
+from stepnc_model.errors import Finding, SchemaError, Severity
+from stepnc_model.outline import known_depth
+from stepnc_model.part21.values import Ref
+from stepnc_model.program import Program, ResolvedWorkingstep
+from stepnc_model.tool import Tool, tool_of
+
+
+def path_length(program: Program, ref: Ref[ToolpathList]) -> float:
+    """Length in mm of the trajectories of a list that are not run at rapid.
+
+    Curves of a kind that cannot be measured count nothing; 0 when there is no other.
+    """
+    return sum(_moves_length(program, path) for path in program.get(ref).its_list)
+
+
+def _moves_length(program: Program, ref: Ref[Entity]) -> float:
+    path = program.model.entity(int(ref))
+    if not isinstance(path, CutterLocationTrajectory) or str(path.its_speed) == "RAPID":
+        return 0.0
+    try:
+        points = list(points_of(program, path.basiccurve))
+    except SchemaError:
+        return 0.0
+    return sum(dist(one, other) for one, other in pairwise(points))
+
 
 DEFAULT_SIDE_ALLOWANCE = 0.5
 """mm that a finish pass takes off a wall when no roughing operation says how much it left"""
@@ -51,14 +92,14 @@ FIXED_DEPTH = (FreeformOperation, SideFinishMilling, BottomAndSideFinishMilling)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sweep:
-    """How a milling operation sweeps its region."""
+    """Sweep of a region by a milling operation."""
 
     radial_width: float
     """a_e, mm"""
     total_depth: float
-    """mm"""
+    """Total depth, mm"""
     axial_depth: float
-    """mm of one pass as programmed"""
+    """Axial depth, mm of one pass as programmed"""
     is_wall: bool
     """only the wall is cut"""
     is_centred: bool
@@ -66,14 +107,14 @@ class Sweep:
 
 
 def milling_cut(
-    program: Program, step: Workingstep, tool: Tool, *, speed: float, feed: float
+    program: Program, step: ResolvedWorkingstep, tool: Tool, *, speed: float, feed: float
 ) -> tuple[Cut, tuple[Finding, ...]]:
     """Cut of a milling workingstep.
 
     Parameters
     ----------
     program : Program
-    step : Workingstep
+    step : ResolvedWorkingstep
     tool : Tool
     speed : float, rev/s
         Programmed spindle speed.
@@ -124,7 +165,9 @@ def milling_cut(
     return replace(cut, floor=_floor(program, step, region, cut)), tuple(findings)
 
 
-def _floor(program: Program, step: Workingstep, region: Region, wall: Cut) -> Cut | None:
+def _floor(
+    program: Program, step: ResolvedWorkingstep, region: FeatureRegion, wall: Cut
+) -> Cut | None:
     """The floor that a bottom and side finish sweeps once, or None."""
     operation = step.operation
     if not isinstance(operation, BottomAndSideFinishMilling) or region.area <= 0.0:
@@ -162,14 +205,14 @@ def passes_for(total: float, depth: float) -> int:
 
 
 def earlier_operations(
-    program: Program, step: Workingstep
-) -> list[tuple[Workingstep, MachiningOperation]]:
+    program: Program, step: ResolvedWorkingstep
+) -> list[tuple[ResolvedWorkingstep, MachiningOperation]]:
     """Workingsteps on the same feature that run before this one, in order."""
     return [(other, other.operation) for other in program.before(step)]
 
 
 def _sweep(
-    program: Program, step: Workingstep, region: Region, tool: Tool
+    program: Program, step: ResolvedWorkingstep, region: FeatureRegion, tool: Tool
 ) -> tuple[Sweep, list[Finding]]:
     """Width, depth and passes of an operation."""
     operation = step.operation
@@ -205,7 +248,7 @@ def _sweep(
     return sweep, findings
 
 
-def _total_depth(program: Program, step: Workingstep, region: Region) -> float:
+def _total_depth(program: Program, step: ResolvedWorkingstep, region: FeatureRegion) -> float:
     """Depth that this operation removes, all passes together, mm."""
     operation = step.operation
     left = getattr(operation, "allowance_bottom", None) or 0.0
@@ -226,7 +269,7 @@ def _total_depth(program: Program, step: Workingstep, region: Region) -> float:
     return total
 
 
-def _left_on_side(program: Program, step: Workingstep) -> float:
+def _left_on_side(program: Program, step: ResolvedWorkingstep) -> float:
     """Thickness in mm that earlier operations left on the wall."""
     left = [
         earlier.allowance_side
@@ -236,7 +279,9 @@ def _left_on_side(program: Program, step: Workingstep) -> float:
     return left[-1] if left else DEFAULT_SIDE_ALLOWANCE
 
 
-def _radial_width(program: Program, operation: Entity, region: Region, tool: Tool) -> float:
+def _radial_width(
+    program: Program, operation: Entity, region: FeatureRegion, tool: Tool
+) -> float:
     """``a_e = D·(1 − overlap)``, at most the programmed radial depth and the feature."""
     reference = getattr(operation, "its_machining_strategy", None)
     strategy = program.model.entity(int(reference)) if reference is not None else None
@@ -259,7 +304,7 @@ def ratio(written: float) -> float:
 
 
 def _texture(sweep: Sweep, tool: Tool, kind: ToolKind) -> tuple[Texture, float]:
-    """How the feed marks the surface, and the radius in mm that marks it."""
+    """Texture of the finished surface, and the radius in mm that makes it."""
     if sweep.is_wall:
         return Texture.WALL, 0.0
     if not tool.corner_radius:
@@ -278,7 +323,7 @@ def _engagement(sweep: Sweep, tool: Tool) -> Engagement:
     return unidirectional(sweep.radial_width, tool.diameter)
 
 
-def _length(region: Region, sweep: Sweep, tool: Tool) -> float:
+def _length(region: FeatureRegion, sweep: Sweep, tool: Tool) -> float:
     """Length at cutting feed of one pass over one region, mm."""
     width = sweep.radial_width
     if sweep.is_wall:
@@ -288,3 +333,122 @@ def _length(region: Region, sweep: Sweep, tool: Tool) -> float:
         return swept
     strokes = max(1, ceil(region.width / width - ROUNDING))
     return swept + strokes * 2.0 * centred_approach(tool.diameter, width)
+
+
+CLEARANCE = 2.0
+"""mm between the start of the feed and the surface, customary"""
+
+INTO_SOLID = "no earlier hole is known: the tool is taken to cut into the solid"
+
+TOOL_KINDS: tuple[tuple[type[Entity], ToolKind], ...] = (
+    (CenterDrilling, ToolKind.CENTER_DRILL),
+    (CounterSinking, ToolKind.COUNTERSINK),
+    (Reaming, ToolKind.REAMER),
+    (Boring, ToolKind.BORING_BAR),
+    (BackBoring, ToolKind.BORING_BAR),
+)
+"""kind of tool that an operation is done with"""
+
+TOOL_BODIES = {
+    "TWIST_DRILL": ToolKind.DRILL,
+    "TAPERED_DRILL": ToolKind.DRILL,
+    "SPADE_DRILL": ToolKind.DRILL,
+    "CENTER_DRILL": ToolKind.CENTER_DRILL,
+    "COUNTERSINK": ToolKind.COUNTERSINK,
+    "COUNTERBORE": ToolKind.COUNTERSINK,
+    "REAMER": ToolKind.REAMER,
+    "TAPERED_REAMER": ToolKind.REAMER,
+    "BORING_TOOL": ToolKind.BORING_BAR,
+}
+"""kind of tool by its body, where the operation does not tell; a drill for all others"""
+
+
+def hole_cut(
+    program: Program, step: ResolvedWorkingstep, tool: Tool, *, speed: float, feed: float
+) -> tuple[Cut, tuple[Finding, ...]]:
+    """Cut of a drilling workingstep; parameters as :func:`milling_cut`."""
+    operation = step.operation
+    kind = _tool_kind(operation, tool)
+    depth, count = _depth_and_count(program, step, operation)
+    previous, findings = _previous_diameter(program, step, operation, tool)
+    length = depth + CLEARANCE + (getattr(operation, "overcut_length", None) or 0.0)
+    if kind is ToolKind.DRILL and tool.point_angle and _is_through(program, step):
+        length += drill_point_length(tool.diameter, tool.point_angle)
+    cut = Cut(
+        kind=CutKind.DRILLING,
+        tool=tool,
+        tool_kind=kind,
+        diameter=tool.diameter,
+        programmed=Setting(feed=feed, depth=depth, passes=1, speed=speed),
+        length=count * length,
+        total_depth=depth,
+        is_depth_free=False,
+        previous_diameter=previous,
+        link_length=count * (length + 2.0 * (operation.retract_plane or 0.0)),
+        texture=Texture.NONE,
+        is_finishing=step.is_last_on_feature,
+    )
+    return cut, findings
+
+
+def is_hole_making(operation: MachiningOperation, tool: Tool) -> bool:
+    """Whether an operation drills: by its kind, or along a given path by its tool."""
+    return isinstance(operation, DrillingTypeOperation) or (
+        isinstance(operation, FreeformOperation) and tool.keyword in TOOL_BODIES
+    )
+
+
+def _tool_kind(operation: MachiningOperation, tool: Tool) -> ToolKind:
+    """Kind of tool by the operation, or by its body where the path is given."""
+    by_operation = (kind for cls, kind in TOOL_KINDS if isinstance(operation, cls))
+    return next(by_operation, TOOL_BODIES.get(tool.keyword, ToolKind.DRILL))
+
+
+def _depth_and_count(
+    program: Program, step: ResolvedWorkingstep, operation: MachiningOperation
+) -> tuple[float, int]:
+    """Depth of the hole in mm, and how many of them a pattern makes."""
+    if not step.features:
+        raise program.error("has no feature: nothing tells how deep to drill", step.ref)
+    reference: Ref[Entity] = step.features[0]
+    feature: Entity = program.get(reference)
+    count = 1
+    if isinstance(feature, GeneralPattern | RectangularPattern | CircularPattern):
+        count = pattern_count(feature)
+        reference = feature.replicate_base_feature
+        feature = program.get(reference)
+    if isinstance(feature, CompoundFeature):
+        reference = feature.elements[0]
+    given = getattr(operation, "cutting_depth", None)
+    if given:
+        return float(given), count
+    return known_depth(program, reference), count
+
+
+def _is_through(program: Program, step: ResolvedWorkingstep) -> bool:
+    """Whether the hole has no bottom."""
+    feature: Entity = program.get(step.features[0])
+    if isinstance(feature, ReplicateFeature):
+        feature = program.get(feature.replicate_base_feature)
+    bottom = getattr(feature, "bottom_condition", None)
+    return bottom is not None and isinstance(program.get(bottom), ThroughBottomCondition)
+
+
+def _previous_diameter(
+    program: Program, step: ResolvedWorkingstep, operation: MachiningOperation, tool: Tool
+) -> tuple[float, tuple[Finding, ...]]:
+    """Diameter of the hole that is already there, mm."""
+    given = getattr(operation, "previous_diameter", None)
+    if given and given < tool.diameter:
+        return given, ()
+    earlier = [
+        tool_of(program, other.tool_ref).diameter
+        for other, done in earlier_operations(program, step)
+        if is_hole_making(done, tool) and not isinstance(done, CenterDrilling)
+    ]
+    smaller = [diameter for diameter in earlier if 0.0 < diameter < tool.diameter]
+    if smaller:
+        return max(smaller), ()
+    if isinstance(operation, (Reaming, Boring, BackBoring)):
+        return 0.0, (program.finding(Severity.WARNING, INTO_SOLID, step.operation_ref),)
+    return 0.0, ()

@@ -9,8 +9,8 @@ from math import hypot
 
 from optimiser.cut import Cut, CutKind, Texture
 from optimiser.estimate import LEAST_DEPTH, earlier_operations, passes_for
-from optimiser.outline import points_of, size
 from optimiser.problem import Setting
+from optimiser.region import points_of
 from simulator.spec import ToolKind
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.geometry import RightCircularCylinder
@@ -22,19 +22,18 @@ from stepnc_model.entities.turning import (
     CuttingIn,
     Facing,
     FacingFinish,
-    Grooving,
-    TurningMachiningOperation,
-)
-from stepnc_model.entities.turning_features import (
     GeneralRevolution,
     Groove,
+    Grooving,
     OuterDiameter,
     OuterDiameterToShoulder,
     RevolvedFlat,
+    TurningMachiningOperation,
 )
 from stepnc_model.errors import Finding, Severity
+from stepnc_model.outline import size
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program, Workingstep
+from stepnc_model.program import Program, ResolvedWorkingstep
 from stepnc_model.tool import Tool
 
 CLEARANCE = 2.0
@@ -53,14 +52,14 @@ class Revolved:
     length: float
 
 
-def mean_diameter(program: Program, step: Workingstep) -> float:
+def mean_diameter(program: Program, step: ResolvedWorkingstep) -> float:
     """Diameter in mm at which the cutting speed of a turning workingstep is taken."""
     shape = _shape(program, step)
     return shape.inner_radius + shape.outer_radius
 
 
 def turning_cut(
-    program: Program, step: Workingstep, tool: Tool, *, speed: float, feed: float
+    program: Program, step: ResolvedWorkingstep, tool: Tool, *, speed: float, feed: float
 ) -> tuple[Cut, tuple[Finding, ...]]:
     """Cut of a turning workingstep; parameters as :func:`optimiser.estimate.milling_cut`."""
     operation = step.operation
@@ -100,7 +99,7 @@ def turning_cut(
 
 
 def _grooving_cut(
-    program: Program, step: Workingstep, tool: Tool, *, speed: float, feed: float
+    program: Program, step: ResolvedWorkingstep, tool: Tool, *, speed: float, feed: float
 ) -> Cut:
     """A groove made by plunging, or a cut-off."""
     shape = _shape(program, step)
@@ -128,7 +127,10 @@ def _grooving_cut(
 
 
 def _depths(
-    program: Program, step: Workingstep, operation: TurningMachiningOperation, shape: Revolved
+    program: Program,
+    step: ResolvedWorkingstep,
+    operation: TurningMachiningOperation,
+    shape: Revolved,
 ) -> tuple[float, float, tuple[Finding, ...]]:
     """Total depth and programmed depth of one pass, mm."""
     allowance = getattr(operation, "allowance", None) or 0.0
@@ -143,7 +145,7 @@ def _depths(
     elif isinstance(operation, Facing):
         total = _stock_in_front(program) - allowance
     else:
-        total = _bar_radius(program, shape) - shape.inner_radius - allowance
+        total = _bar_radius_or(program, shape.outer_radius) - shape.inner_radius - allowance
     findings: tuple[Finding, ...] = ()
     if total <= 0.0:
         total = written[0] if written else FALLBACK_DEPTH
@@ -175,11 +177,6 @@ def _bar(program: Program) -> RightCircularCylinder | None:
     return bounding if isinstance(bounding, RightCircularCylinder) else None
 
 
-def _bar_radius(program: Program, shape: Revolved) -> float:
-    """Radius of the bar, or of the feature's own outside when there is none."""
-    return _bar_radius_or(program, shape.outer_radius)
-
-
 def _bar_radius_or(program: Program, radius: float) -> float:
     """Radius of the bar, or a radius when there is no bar."""
     bar = _bar(program)
@@ -195,7 +192,7 @@ def _stock_in_front(program: Program) -> float:
     return float(start + bar.height)
 
 
-def _shape(program: Program, step: Workingstep) -> Revolved:
+def _shape(program: Program, step: ResolvedWorkingstep) -> Revolved:
     """All features of the workingstep together."""
     if not step.features:
         raise program.error("has no feature: nothing tells what to turn", step.ref)
@@ -215,11 +212,11 @@ def _revolved(program: Program, ref: Ref[Entity]) -> Revolved:
     """Radii and length of one feature."""
     feature = program.get(ref)
     if isinstance(feature, OuterDiameter):
-        radius = 0.5 * size(program, feature.diameter_at_placement)
-        length = size(program, feature.feature_length)
+        radius = 0.5 * size(program, feature.diameter_at_placement, ref)
+        length = size(program, feature.feature_length, ref)
         return Revolved(inner_radius=radius, outer_radius=radius, length=length)
     if isinstance(feature, OuterDiameterToShoulder):
-        radius = 0.5 * size(program, feature.diameter_at_placement)
+        radius = 0.5 * size(program, feature.diameter_at_placement, ref)
         length = _shoulder_distance(program, feature)
         return Revolved(inner_radius=radius, outer_radius=radius, length=length)
     if isinstance(feature, RevolvedFlat):
@@ -261,12 +258,12 @@ def _groove(program: Program, feature: Groove) -> Revolved:
     if not isinstance(profile, SquareUProfile):
         raise program.error("a groove of this profile cannot be estimated", feature.sweep)
     radii = [
-        0.5 * size(program, other.diameter_at_placement)
-        for _, other in program.model.of_type(OuterDiameter)
+        0.5 * size(program, other.diameter_at_placement, of)
+        for of, other in program.model.of_type(OuterDiameter)
     ]
     above = [radius for radius in radii if radius > feature.radius]
     return Revolved(
         inner_radius=feature.radius,
         outer_radius=min(above, default=_bar_radius_or(program, feature.radius)),
-        length=size(program, profile.width),
+        length=size(program, profile.width, feature.sweep),
     )

@@ -8,17 +8,16 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 from optimiser.cut import Cut, CutKind, Texture
-from optimiser.estimate import FULL_LOAD, milling_cut
-from optimiser.estimate_hole import INTO_SOLID, hole_cut, is_hole_making
+from optimiser.estimate import FULL_LOAD, INTO_SOLID, hole_cut, is_hole_making, milling_cut
 from optimiser.estimate_turning import mean_diameter, turning_cut
 from optimiser.problem import Setting
 from optimiser.side_by_side import Result, one_by_one
 from simulator.edge_material import edge_material
 from simulator.library import grade_for
-from simulator.spec import CuttingMaterial, Machine, Material
+from simulator.spec import CuttingMaterial, Machine, WorkMaterial
 from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import Finding, Severity
-from stepnc_model.program import Program, Workingstep
+from stepnc_model.program import Program, ResolvedWorkingstep
 from stepnc_model.technology import programmed
 from stepnc_model.tool import tool_of
 
@@ -29,40 +28,40 @@ GUESSES = frozenset({FULL_LOAD, INTO_SOLID})
 class Estimates:
     """A source of cuts that looks at features only."""
 
-    def __init__(self, program: Program, machine: Machine, material: Material) -> None:
+    def __init__(self, program: Program, machine: Machine, material: WorkMaterial) -> None:
         self.program = program
         self.machine = machine
         self.material = material
 
-    def cut(self, step: Workingstep) -> tuple[Cut, list[Finding]]:
+    def cut(self, step: ResolvedWorkingstep) -> tuple[Cut, list[Finding]]:
         """The cut of a workingstep as programmed, and what was assumed."""
         return estimated_cut(self.program, step, self.machine, self.material)
 
-    def at(self, _step: Workingstep, cut: Cut, _setting: Setting) -> Cut:
+    def at(self, _step: ResolvedWorkingstep, cut: Cut, _setting: Setting) -> Cut:
         """The same cut: an estimate knows one length of pass."""
         return cut
 
-    def leave_out(self, step: Workingstep) -> None:
+    def leave_out(self, step: ResolvedWorkingstep) -> None:
         """Nothing: no workingstep knows of another."""
 
     def each(
-        self, steps: Sequence[Workingstep], do: Callable[[Workingstep], Result]
+        self, steps: Sequence[ResolvedWorkingstep], do: Callable[[ResolvedWorkingstep], Result]
     ) -> Iterator[Result]:
         """Results of workingsteps in their order."""
         return one_by_one(steps, do)
 
 
 def estimated_cut(
-    program: Program, step: Workingstep, machine: Machine, material: Material
+    program: Program, step: ResolvedWorkingstep, machine: Machine, material: WorkMaterial
 ) -> tuple[Cut, list[Finding]]:
     """The cut of a workingstep as estimated from its feature, and what was assumed.
 
     Parameters
     ----------
     program : Program
-    step : Workingstep
+    step : ResolvedWorkingstep
     machine : Machine
-    material : Material
+    material : WorkMaterial
         Of the workpiece: helix and parallel land of a cutter are those of its grade, unless the
         machine has the stated limits alone.
 

@@ -7,16 +7,15 @@ from math import inf, isfinite, pi
 from types import MappingProxyType
 
 from optimiser import workingstep as exact
-from optimiser.advice import Load, State
-from optimiser.conditions import Conditions
+from optimiser.advice import EvaluatedSetting, LimitLoad
+from optimiser.conditions import CuttingConditions
 from optimiser.cut import Cut, CutKind
-from optimiser.held_speed import held_speed
 from optimiser.holding import chuck_limits, holding_limits
-from optimiser.limit import Limit, LimitName, Monomial, Sense
 from optimiser.limits import (
     drill_point,
     force_factor,
     force_load,
+    held_speed,
     limits_of,
     power_load,
     speed_range,
@@ -25,7 +24,7 @@ from optimiser.limits import (
 from optimiser.loads import scaled, thrust
 from optimiser.modes import Free, Mode
 from optimiser.plunge_feed import plunge_limits
-from optimiser.problem import Cost, Problem, Setting
+from optimiser.problem import BoundSide, Cost, Limit, LimitName, Monomial, Problem, Setting
 from optimiser.roughness import roughness_load
 from optimiser.safety import USUAL_QUANTILE, require_quantile, safety_factor
 from optimiser.source import Source, along_paths
@@ -33,7 +32,7 @@ from optimiser.speed_stretch import segment_within, stretch_ends
 from optimiser.stability import stability_limits
 from simulator.library import find_window
 from simulator.physics.tool_life import tool_life
-from simulator.spec import Machine, Material
+from simulator.spec import Machine, WorkMaterial
 
 LEAST_DEPTH = 0.05
 """mm, no pass is planned shallower"""
@@ -43,15 +42,15 @@ LEAST_SPEED_RATIO = 0.1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Task:
-    """What is asked of the optimiser."""
+class OptimisationTask:
+    """Task of the optimiser: mode, freedom, margin."""
 
     mode: Mode = Mode.TC
     free: frozenset[Free] = frozenset({Free.FEED, Free.DEPTH})
     roughness: float | None = None
     """Ra in mm for all finished surfaces, instead of what the file says"""
     tool_change: float = 0.0
-    """s to change a worn tool; 0: tool life does not count"""
+    """Tool change, s to change a worn tool; 0: tool life does not count"""
     force_factors: Mapping[str, float] = field(default_factory=dict, hash=False)
     """accepted corrections of k_c by the id of the tool; a tool that is not named has none"""
     front: bool = False
@@ -83,7 +82,7 @@ class Task:
         """Accepted correction of k_c for a tool, by its id."""
         return self.force_factors.get(tool, 1.0)
 
-    def safety_factor(self, tool: str, machine: Machine, material: Material) -> float:
+    def safety_factor(self, tool: str, machine: Machine, material: WorkMaterial) -> float:
         """k_c at the quantile over the nominal one, for a tool by its id."""
         if tool in self.learned_safety_factors:
             return self.learned_safety_factors[tool]
@@ -92,13 +91,13 @@ class Task:
         return safety_factor(material.spread, self.safety)
 
 
-def problem_of(cut: Cut, at: Conditions, task: Task) -> Problem:
+def problem_of(cut: Cut, at: CuttingConditions, task: OptimisationTask) -> Problem:
     """The mathematical problem of a cut."""
     limits = limits_of(cut, at) + stability_limits(cut, at) + holding_limits(cut, at)
     limits = _safe(limits, at)
     given = cut.programmed
     if Free.FEED not in task.free:
-        limits += tuple(_held_feed(given.feed, sense) for sense in Sense)
+        limits += tuple(_held_feed(given.feed, sense) for sense in BoundSide)
     passes = (given.passes, given.passes)
     if Free.DEPTH in task.free and cut.is_depth_free:
         passes = (1, max(given.passes, int(cut.total_depth / LEAST_DEPTH)))
@@ -114,12 +113,12 @@ def problem_of(cut: Cut, at: Conditions, task: Task) -> Problem:
     )
 
 
-def _safe(limits: tuple[Limit, ...], at: Conditions) -> tuple[Limit, ...]:
+def _safe(limits: tuple[Limit, ...], at: CuttingConditions) -> tuple[Limit, ...]:
     """Limits at the quantile of k_c that is planned with."""
     return tuple(limit.with_safety(at.safety_factor) for limit in limits)
 
 
-def _held_feed(feed: float, sense: Sense) -> Limit:
+def _held_feed(feed: float, sense: BoundSide) -> Limit:
     """The programmed feed as a limit, when it is not free."""
     return Limit(
         name=LimitName.PROGRAMMED_FEED,
@@ -132,7 +131,7 @@ def _held_feed(feed: float, sense: Sense) -> Limit:
 
 
 def _stretches(
-    cut: Cut, at: Conditions, task: Task
+    cut: Cut, at: CuttingConditions, task: OptimisationTask
 ) -> tuple[tuple[float, ...], tuple[tuple[Limit, ...], ...]]:
     """Speeds that may be chosen, and the spindle's limits on each stretch of its curve."""
     speed = held_speed(cut, at)
@@ -143,13 +142,13 @@ def _stretches(
     return ends, tuple(_between(cut, at, slow, fast) for slow, fast in pairwise(ends))
 
 
-def _between(cut: Cut, at: Conditions, slow: float, fast: float) -> tuple[Limit, ...]:
-    """What spindle and chuck allow on a stretch of speeds."""
+def _between(cut: Cut, at: CuttingConditions, slow: float, fast: float) -> tuple[Limit, ...]:
+    """Limits of spindle and chuck on a range of speeds."""
     spindle = spindle_limits(cut, at, segment_within(cut, at, slow, fast))
     return _safe((*spindle, *chuck_limits(cut, at, slow, fast)), at)
 
 
-def _cost(cut: Cut, at: Conditions, task: Task) -> Cost:
+def _cost(cut: Cut, at: CuttingConditions, task: OptimisationTask) -> Cost:
     """Time and energy of the cut on this machine."""
     machine = at.machine
     spindle = machine.spindle
@@ -169,7 +168,7 @@ def _cost(cut: Cut, at: Conditions, task: Task) -> Cost:
     )
 
 
-def _wear_rate(cut: Cut, at: Conditions) -> Monomial | None:
+def _wear_rate(cut: Cut, at: CuttingConditions) -> Monomial | None:
     """Tool lives used in one second: ``1/T = (v_c/C)^(1/n)``; None when no life is known."""
     window = find_window(at.material, cut.tool_kind, at.cutting_material)
     if window is None or window.taylor is None:
@@ -179,8 +178,10 @@ def _wear_rate(cut: Cut, at: Conditions) -> Monomial | None:
     return Monomial(coefficient=1.0 / life, speed_exponent=exponent)
 
 
-def state_of(cut: Cut, problem: Problem, at: Conditions, setting: Setting) -> State:
-    """Everything about a cut at one setting."""
+def state_of(
+    cut: Cut, problem: Problem, at: CuttingConditions, setting: Setting
+) -> EvaluatedSetting:
+    """Evaluation of a cut at one setting."""
     point = (setting.feed, setting.depth, setting.speed)
     passes, ways_in = list(_passes(cut, setting)), list(_ways_in(cut, setting))
     parts = passes + ways_in
@@ -190,7 +191,7 @@ def state_of(cut: Cut, problem: Problem, at: Conditions, setting: Setting) -> St
         for each in (cut, cut.floor)
         if each is not None and (load := roughness_load(each)) is not None
     ]
-    return State(
+    return EvaluatedSetting(
         setting=setting,
         feed=setting.feed * cut.tool.teeth * setting.speed,
         time=problem.cost.time(setting),
@@ -206,7 +207,7 @@ def state_of(cut: Cut, problem: Problem, at: Conditions, setting: Setting) -> St
     )
 
 
-def _plunge_loads(cut: Cut, at: Conditions, setting: Setting) -> tuple[Load, ...]:
+def _plunge_loads(cut: Cut, at: CuttingConditions, setting: Setting) -> tuple[LimitLoad, ...]:
     """Loads at the plunge feed, where there is one."""
     if setting.plunge_feed is None:
         return ()
@@ -214,10 +215,14 @@ def _plunge_loads(cut: Cut, at: Conditions, setting: Setting) -> tuple[Load, ...
     return _loads(plunge_limits(cut, at, setting.speed), point)
 
 
-def _loads(limits: tuple[Limit, ...], point: tuple[float, float, float]) -> tuple[Load, ...]:
+def _loads(
+    limits: tuple[Limit, ...], point: tuple[float, float, float]
+) -> tuple[LimitLoad, ...]:
     """Limits at one feed per tooth, depth and spindle speed."""
     return tuple(
-        Load(limit=limit, value=limit.load.value(*point), bound=limit.full_bound_at(point[2]))
+        LimitLoad(
+            limit=limit, value=limit.load.value(*point), bound=limit.full_bound_at(point[2])
+        )
         for limit in limits
     )
 
@@ -228,9 +233,9 @@ class _Part:
 
     cut: Cut
     feed: float
-    """mm per tooth"""
+    """Feed, mm per tooth"""
     depth: float
-    """mm"""
+    """Depth, mm"""
 
 
 def _passes(cut: Cut, setting: Setting) -> Iterator[_Part]:
@@ -247,7 +252,7 @@ def _passes(cut: Cut, setting: Setting) -> Iterator[_Part]:
 
 
 def _ways_in(cut: Cut, setting: Setting) -> Iterator[_Part]:
-    """What is met on the ways down, at the plunge feed."""
+    """Loads on the ways down, at the plunge feed."""
     way_in, feed = cut.way_in, setting.plunge_feed
     if way_in is None or feed is None:
         return
@@ -262,15 +267,15 @@ def _across(cut: Cut, parts: Iterable[_Part]) -> list[_Part]:
     return [part for part in parts if part.cut.kind is cut.kind]
 
 
-def _thrust_load(cut: Cut, at: Conditions) -> Monomial:
+def _thrust_load(cut: Cut, at: CuttingConditions) -> Monomial:
     """Force along the axis of what is drilled, N."""
     return thrust(cut, at.material.kienzle, force_factor(at), drill_point(at))
 
 
 def _greatest(
-    load: Callable[[Cut, Conditions], Monomial],
+    load: Callable[[Cut, CuttingConditions], Monomial],
     parts: Iterable[_Part],
-    at: Conditions,
+    at: CuttingConditions,
     speed: float,
 ) -> float:
     """A load of the part that has most of it; 0 of none."""

@@ -7,25 +7,24 @@ for. What another point beats in all three is left out.
 from dataclasses import replace
 
 from optimiser import workingstep as exact
-from optimiser.advice import Point, State
-from optimiser.conditions import Conditions
+from optimiser.advice import EvaluatedSetting, ParetoPoint
+from optimiser.conditions import CuttingConditions
 from optimiser.cut import Cut
 from optimiser.errors import Infeasible
 from optimiser.formulate import state_of
-from optimiser.limit import Limit, LimitName, Sense
 from optimiser.modes import Mode
-from optimiser.problem import Problem, Setting
+from optimiser.problem import BoundSide, Limit, LimitName, Problem, Setting
 from optimiser.roughness import roughness_limit, roughness_load
 
 POINTS = 15
 """levels of roughness between the finest that cuts and the one that costs nothing"""
 
 
-def front_of(problem: Problem, cut: Cut, at: Conditions) -> tuple[Point, ...]:
+def front_of(problem: Problem, cut: Cut, at: CuttingConditions) -> tuple[ParetoPoint, ...]:
     """Points of the front, the fastest first."""
     free = replace(problem, limits=_without_roughness(problem.limits))
     best = [state_of(cut, free, at, _best(free, mode)) for mode in (Mode.TC, Mode.EC)]
-    points = [Point(state=state, roughness_bound=None) for state in best]
+    points = [ParetoPoint(state=state, roughness_bound=None) for state in best]
     roughest = max(best, key=lambda state: state.roughness or 0.0)
     for level in _levels(free, cut, roughest):
         bounded = replace(free, limits=(*free.limits, roughness_limit(cut, level)))
@@ -35,7 +34,7 @@ def front_of(problem: Problem, cut: Cut, at: Conditions) -> tuple[Point, ...]:
             except Infeasible:
                 continue
             state = state_of(cut, bounded, at, setting)
-            points.append(Point(state=state, roughness_bound=level))
+            points.append(ParetoPoint(state=state, roughness_bound=level))
     return tuple(sorted(_undominated(points), key=lambda point: point.state.time))
 
 
@@ -53,7 +52,7 @@ def _without_roughness(limits: tuple[Limit, ...]) -> tuple[Limit, ...]:
     return tuple(limit for limit in limits if limit.name is not LimitName.ROUGHNESS)
 
 
-def _levels(problem: Problem, cut: Cut, roughest: State) -> list[float]:
+def _levels(problem: Problem, cut: Cut, roughest: EvaluatedSetting) -> list[float]:
     """Ra in mm from what the roughest optimum leaves down to what the thinnest chip leaves."""
     load = roughness_load(cut)
     if load is None or roughest.roughness is None:
@@ -63,7 +62,7 @@ def _levels(problem: Problem, cut: Cut, roughest: State) -> list[float]:
         (
             limit.feed_at_bound(setting.depth, setting.speed)
             for limit in problem.limits
-            if limit.sense is Sense.AT_LEAST and limit.load.feed_exponent > 0.0
+            if limit.sense is BoundSide.AT_LEAST and limit.load.feed_exponent > 0.0
         ),
         default=setting.feed / POINTS,
     )
@@ -72,9 +71,9 @@ def _levels(problem: Problem, cut: Cut, roughest: State) -> list[float]:
     return [load.value(feed, setting.depth, setting.speed) for feed in feeds]
 
 
-def _undominated(points: list[Point]) -> list[Point]:
+def _undominated(points: list[ParetoPoint]) -> list[ParetoPoint]:
     """Points that no other equals or beats in time, roughness and energy."""
-    kept: list[Point] = []
+    kept: list[ParetoPoint] = []
     for point in sorted(points, key=lambda point: _measures(point.state)):
         mine = _measures(point.state)
         if not any(_beats(_measures(other.state), mine) for other in kept):
@@ -82,7 +81,7 @@ def _undominated(points: list[Point]) -> list[Point]:
     return kept
 
 
-def _measures(state: State) -> tuple[float, float, float]:
+def _measures(state: EvaluatedSetting) -> tuple[float, float, float]:
     return state.time, state.roughness or 0.0, state.energy
 
 

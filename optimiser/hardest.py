@@ -4,23 +4,26 @@ Loads are those of the virtual machine: the mean force follows from the section 
 the mean chip, forces along the helix from the arc of contact, and from the depth that the
 section fills there. Every station is tried: a place that is worst for the mean force need not
 be worst for the shank. Units mm, rad.
+
+Of a turning path the shape of the bar is told, for its bending, and the speeds it turns at.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields, replace
-from math import pi, sin
+from math import ceil, inf, pi, sin
 
 import numpy as np
 
-from optimiser.cut import Cut, CutKind, Place
+from optimiser.cut import CriticalPlace, Cut, CutKind, TurnedBar
 from simulator.motion.segments import Bools, Floats, Ints
-from simulator.motion.tool_path import Run
+from simulator.motion.tool_path import PIECE, ToolPathRun
 from simulator.physics import drilling
 from simulator.physics.engagement import Engagement
-from simulator.physics.flutes import CuttingEdges, Law
+from simulator.physics.flutes import CuttingEdges, ForceLaw
+from simulator.physics.slender_bar import BarSection
 from simulator.physics.tooth_forces import Places, peak_resultant, wall_force
-from simulator.removal.stations import CutKind as StationKind
-from simulator.removal.stations import SingleArcs, Stations, single_arcs
+from simulator.removal.lathe import BarRadii, TurningStock
+from simulator.removal.stations import SingleArcs, StationKind, Stations, single_arcs
 from simulator.spec import Kienzle, ToolKind
 
 LEAST_RATIO = 0.01
@@ -43,26 +46,26 @@ KINDS = {
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Met:
-    """What the tool met along a path."""
+class PathContacts:
+    """Contacts of a tool along a path."""
 
     stations: Stations
     length: Floats
-    """(M,) mm, stretch for which each station holds"""
+    """Length, (M,) mm, stretch for which each station holds"""
     cell: float
-    """mm: sections of shorter stretches are noise"""
+    """Cell, mm: sections of shorter stretches are noise"""
 
     @property
     def volume(self) -> float:
         """Removed, mm³."""
         return float((self.stations.section * self.length).sum())
 
-    def where(self, rows: Bools) -> "Met":
+    def where(self, rows: Bools) -> "PathContacts":
         """The same of some stations only."""
         kept = {each.name: getattr(self.stations, each.name)[rows] for each in fields(Stations)}
         return replace(self, stations=Stations(**kept), length=self.length[rows])
 
-    def on(self, run: Run, other: Run) -> "Met":
+    def on(self, run: ToolPathRun, other: ToolPathRun) -> "PathContacts":
         """The same, met on a path, on one that is the same way in other pieces."""
         length = other.segments.length
         before = (np.cumsum(length) - length)[self.stations.segment]
@@ -76,15 +79,15 @@ class Bending:
     """Forces along the helix at the stations that mill, over ``K·k_c1.1·f_z^q``, mm."""
 
     at: Ints
-    """(K,) rows of the stations"""
+    """At, (K,) rows of the stations"""
     shank: Floats
-    """(K,) greatest across the axis"""
+    """Shank, (K,) greatest across the axis"""
     wall: Floats
-    """(K,) greatest normal to the wall that is made"""
+    """Wall, (K,) greatest normal to the wall that is made"""
 
 
 def bending(cut: Cut, stations: Stations, kienzle: Kienzle) -> Bending:
-    """What bends an end mill along a path; nothing bends other tools."""
+    """Bending of an end mill along a path; None for other tools."""
     at = _milled_rows(stations)
     if cut.tool_kind is not ToolKind.ENDMILL or not len(at):
         return Bending(at=at[:0], shank=np.empty(0), wall=np.empty(0))
@@ -93,7 +96,7 @@ def bending(cut: Cut, stations: Stations, kienzle: Kienzle) -> Bending:
     keys = np.round(np.stack([column[at] for column in columns]), DIGITS)
     told, row = np.unique(keys, axis=1, return_inverse=True)
     places = Places(entry_angle=told[0], exit_angle=told[1], axial_depth=told[2])
-    law, fill = Law(exponent=1.0 - kienzle.m_c), np.zeros(told.shape[1])
+    law, fill = ForceLaw(exponent=1.0 - kienzle.m_c), np.zeros(told.shape[1])
     np.maximum.at(fill, row.ravel(), arcs.fill[at])
     forces = (
         _where_hard(each, cut.edges, places, law, fill)[row.ravel()]
@@ -107,7 +110,7 @@ def _where_hard(
     greatest: Callable[..., Floats],
     edges: CuttingEdges,
     places: Places,
-    law: Law,
+    law: ForceLaw,
     fill: Floats,
 ) -> Floats:
     """Forces at places, exact where they may be among the greatest: there are thousands."""
@@ -117,7 +120,9 @@ def _where_hard(
     return found
 
 
-def with_hardest(cut: Cut, met: Met, kienzle: Kienzle, *, depth: float, bent: Bending) -> Cut:
+def with_hardest(
+    cut: Cut, met: PathContacts, kienzle: Kienzle, *, depth: float, bent: Bending
+) -> Cut:
     """A cut with its engagement as met in passes of a nominal depth, where anything was met."""
     rows = met.stations.kind == KINDS[cut.kind]
     if cut.kind is not CutKind.MILLING:
@@ -132,7 +137,7 @@ def with_hardest(cut: Cut, met: Met, kienzle: Kienzle, *, depth: float, bent: Be
     return _turned(cut, met.stations, np.flatnonzero(rows), kienzle, nominal=depth)
 
 
-def weighted_volume(met: Met, exponent: float) -> float:
+def weighted_volume(met: PathContacts, exponent: float) -> float:
     """``Σ V·χ^(−m)``: what the energy of the cut is in proportion to; χ is the chip ratio."""
     rows = met.stations.section > 0.0
     volume = met.stations.section[rows] * met.length[rows]
@@ -184,7 +189,9 @@ def _turned(cut: Cut, stations: Stations, at: Ints, kienzle: Kienzle, *, nominal
     return replace(cut, depth_share=share, chip_ratio=float(ratio[row]))
 
 
-def _milled(cut: Cut, met: Met, kienzle: Kienzle, *, nominal: float, bent: Bending) -> Cut:
+def _milled(
+    cut: Cut, met: PathContacts, kienzle: Kienzle, *, nominal: float, bent: Bending
+) -> Cut:
     """A milling cut with the places of its greatest forces: mean, across it, at the wall."""
     stations = met.stations
     at = _milled_rows(stations)
@@ -194,8 +201,8 @@ def _milled(cut: Cut, met: Met, kienzle: Kienzle, *, nominal: float, bent: Bendi
     mean = stations.peak_section[at] * stations.chip_ratio[at].clip(LEAST_RATIO) ** -kienzle.m_c
     hardest = at[(mean / stations.diameter[at]).argmax()]
 
-    def place(row: np.int64) -> Place:
-        return Place(
+    def place(row: np.int64) -> CriticalPlace:
+        return CriticalPlace(
             engagement=Engagement(
                 entry_angle=max(float(arcs.entry_angle[row]), 0.0),
                 exit_angle=min(float(arcs.exit_angle[row]), pi),
@@ -246,3 +253,64 @@ def _chip_sine(arcs: SingleArcs, at: Ints) -> Floats:
 def _within(arcs: SingleArcs, at: Ints) -> tuple[Floats, Floats]:
     """Entry and exit angles of stations on the side where chips are made."""
     return arcs.entry_angle[at].clip(0.0, pi), arcs.exit_angle[at].clip(0.0, pi)
+
+
+SAME_SPEED = 1e-6
+"""share by which speeds differ that are one"""
+
+MOST_SECTIONS = 200
+"""that a bar is told by; each is as thin as it is anywhere within"""
+
+
+def turned_of(
+    cut: Cut, met: PathContacts, run: ToolPathRun, stock: TurningStock, after: BarRadii
+) -> TurnedBar | None:
+    """The bar after a path, and where the path cuts it; None where it cuts nothing.
+
+    Parameters
+    ----------
+    cut : Cut
+        With the programmed speed where the bar is widest.
+    met : PathContacts
+        What its path met.
+    run : ToolPathRun
+        The path as programmed.
+    stock : TurningStock
+        What it found.
+    after : BarRadii
+        What it left.
+    """
+    stations = met.stations
+    rows = stations.section > 0.0
+    if not rows.any():
+        return None
+    z = run.segments.position(stations.segment[rows], stations.station[rows])[:, 2]
+    speeds = run.spindle[stations.segment[rows]]
+    fastest = float(speeds.max())
+    ratio = 1.0
+    if fastest > (1.0 + SAME_SPEED) * float(speeds.min()):
+        ratio = cut.diameter / max(float(stations.diameter[rows].min()), met.cell)
+    is_clamped = fastest < (1.0 - PIECE) * ratio * cut.programmed.speed
+    return TurnedBar(
+        sections=tuple(_sections(stock.cell, after)),
+        back=float(stock.z[0]) - 0.5 * stock.cell,
+        low=float(z.min()),
+        high=float(z.max()),
+        speed_ratio=ratio,
+        greatest_speed=fastest if is_clamped else inf,
+    )
+
+
+def _sections(cell: float, bar: BarRadii) -> Iterator[BarSection]:
+    """Stretches of a bar up to where nothing is left of it, mm from its first end."""
+    is_left = bar.outer > bar.inner
+    count = len(is_left) if is_left.all() else int(is_left.argmin())
+    step = max(1, ceil(count / MOST_SECTIONS))
+    for first in range(0, count, step):
+        last = min(first + step, count)
+        yield BarSection(
+            start=first * cell,
+            end=last * cell,
+            outer=2.0 * float(bar.outer[first:last].min()),
+            inner=2.0 * float(bar.inner[first:last].max()),
+        )

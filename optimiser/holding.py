@@ -13,11 +13,10 @@ from dataclasses import dataclass, replace
 from math import hypot, log, sin, tan
 
 from optimiser import loads
-from optimiser.conditions import Conditions
+from optimiser.conditions import CuttingConditions
 from optimiser.cut import Cut, CutKind
-from optimiser.limit import Limit, LimitName, Monomial
 from optimiser.limits import drill_point, force_factor, force_load
-from optimiser.problem import Setting
+from optimiser.problem import Limit, LimitName, Monomial, Setting
 from optimiser.speed_stretch import powers_of_speed
 from simulator.physics.holding import (
     LEAST_LEFT,
@@ -47,16 +46,16 @@ NM, UM = 1e-3, 1e3
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HoldingLoad:
-    """What a cut asks of what holds its workpiece."""
+    """Loads of a cut on the work-holding."""
 
     torque: float = 0.0
     """N·mm about the spindle's axis, of a bar; with the axial force that slips as it does"""
     moment: float = 0.0
-    """N·mm about the jaws, across the axis; 0 where nothing says where they are"""
+    """Moment, N·mm about the jaws, across the axis; 0 where nothing says where they are"""
     force: float = 0.0
-    """N across the axis of a mill, the greatest"""
+    """Force, N across the axis of a mill, the greatest"""
     lift: float = 0.0
-    """N along it, that pulls the workpiece towards the spindle"""
+    """Lift, N along it, that pulls the workpiece towards the spindle"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,7 +67,7 @@ class _Forces:
     radial: float
 
 
-def holding_limits(cut: Cut, at: Conditions) -> tuple[Limit, ...]:
+def holding_limits(cut: Cut, at: CuttingConditions) -> tuple[Limit, ...]:
     """Limits of a vice, clamps and a slender bar, which know no spindle speed."""
     if isinstance(at.holding, Clamp):
         return tuple(_clamp_limits(cut, at, at.holding))
@@ -88,7 +87,9 @@ def holding_limits(cut: Cut, at: Conditions) -> tuple[Limit, ...]:
     )
 
 
-def chuck_limits(cut: Cut, at: Conditions, slow: float, fast: float) -> tuple[Limit, ...]:
+def chuck_limits(
+    cut: Cut, at: CuttingConditions, slow: float, fast: float
+) -> tuple[Limit, ...]:
     """Torque and tilting moment that a chuck holds between two spindle speeds.
 
     What counts is the greatest speed on the path.
@@ -139,8 +140,8 @@ def chuck_limits(cut: Cut, at: Conditions, slow: float, fast: float) -> tuple[Li
     return tuple(found)
 
 
-def holding_load(cut: Cut, at: Conditions, setting: Setting) -> HoldingLoad | None:
-    """What a cut at a setting asks of what holds its workpiece; None of a cut in air."""
+def holding_load(cut: Cut, at: CuttingConditions, setting: Setting) -> HoldingLoad | None:
+    """Loads of a cut at a setting on the work-holding; None for a cut in air."""
     if cut.is_air or at.machine.only_stated_limits:
         return None
     point = (setting.feed, setting.depth, setting.speed)
@@ -158,7 +159,7 @@ def holding_load(cut: Cut, at: Conditions, setting: Setting) -> HoldingLoad | No
     )
 
 
-def _clamp_limits(cut: Cut, at: Conditions, clamp: Clamp) -> Iterator[Limit]:
+def _clamp_limits(cut: Cut, at: CuttingConditions, clamp: Clamp) -> Iterator[Limit]:
     """Greatest force across the axis of a mill, and what pulls the workpiece upwards."""
     if cut.kind is not CutKind.MILLING:
         return
@@ -178,19 +179,19 @@ def _clamp_limits(cut: Cut, at: Conditions, clamp: Clamp) -> Iterator[Limit]:
             yield swept.at_depth(cut.floor.total_depth)
 
 
-def _across(cut: Cut, at: Conditions) -> Monomial:
+def _across(cut: Cut, at: CuttingConditions) -> Monomial:
     """Greatest force of a mill across its axis within a revolution, N."""
     return loads.shank_force(cut, at.material.kienzle, force_factor(at))
 
 
-def _lift(cut: Cut, at: Conditions) -> Monomial | None:
+def _lift(cut: Cut, at: CuttingConditions) -> Monomial | None:
     """Force with which helical edges pull the workpiece out, N; None of straight ones."""
     if cut.helix_angle <= 0.0:
         return None
     return loads.scaled(force_load(cut, at), tan(cut.helix_angle))
 
 
-def _torque(cut: Cut, at: Conditions) -> Monomial:
+def _torque(cut: Cut, at: CuttingConditions) -> Monomial:
     """Torque of a cut, with its axial force where it is known what holds that."""
     arm = 0.5 * cut.force_diameter
     grip = at.grip
@@ -201,7 +202,7 @@ def _torque(cut: Cut, at: Conditions) -> Monomial:
     )
 
 
-def _moment(cut: Cut, at: Conditions) -> Monomial | None:
+def _moment(cut: Cut, at: CuttingConditions) -> Monomial | None:
     """Moment of a cut about the jaws; None where they are not known, or of a tool on the axis.
 
     In the plane of the tool feed and back force turn against each other: the greater counts.
@@ -219,7 +220,7 @@ def _moment(cut: Cut, at: Conditions) -> Monomial | None:
     )
 
 
-def _bar_compliance(cut: Cut, at: Conditions) -> float:
+def _bar_compliance(cut: Cut, at: CuttingConditions) -> float:
     """Greatest deflection of a bar under 1 N at the tool, mm/N; 0 where it is not judged."""
     grip, turned, modulus = at.grip, cut.turned, at.material.youngs_modulus
     if grip is None or turned is None or modulus is None or grip.has_rest:
@@ -245,7 +246,7 @@ def _bar_compliance(cut: Cut, at: Conditions) -> float:
     )
 
 
-def _load(cut: Cut, at: Conditions, of: Callable[[_Forces], float]) -> Monomial:
+def _load(cut: Cut, at: CuttingConditions, of: Callable[[_Forces], float]) -> Monomial:
     """A positive load of the forces on a bar, as the power of the feed through two feeds."""
     depth = 0.0 if cut.kind is not CutKind.TURNING else 1.0
     low, high = (of(_forces(cut, at, feed / cut.tool.teeth)) for feed in FEEDS)
@@ -259,7 +260,7 @@ def _load(cut: Cut, at: Conditions, of: Callable[[_Forces], float]) -> Monomial:
     )
 
 
-def _forces(cut: Cut, at: Conditions, feed: float) -> _Forces:
+def _forces(cut: Cut, at: CuttingConditions, feed: float) -> _Forces:
     """Forces on a bar at a feed per edge, at 1 mm of depth where they know it."""
     cutting = force_load(cut, at).value(feed, 1.0, 1.0)
     if cut.kind is CutKind.DRILLING:

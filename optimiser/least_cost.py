@@ -4,9 +4,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from math import inf
 
-from optimiser.limit import Limit, Sense
 from optimiser.modes import Mode
-from optimiser.problem import Problem
+from optimiser.problem import BoundSide, Limit, Problem
 
 
 def least_cost(problem: Problem, mode: Mode) -> Callable[[int], float]:
@@ -57,7 +56,7 @@ def _greatest(problem: Problem, *, per_tooth: bool) -> float:
             for limit in limits
             if limit.load.feed_exponent > 0.0
             and not limit.load.knows_depth
-            and limit.sense is Sense.AT_MOST
+            and limit.sense is BoundSide.AT_MOST
         )
         return min(each, default=inf)
 

@@ -2,6 +2,11 @@
 
 A value that a source does not give does not limit. All loads come from
 :mod:`optimiser.loads`; nothing here knows how a problem is solved.
+
+Where the spindle speed is not free it is as programmed, but never beyond tool and machine. A
+speed below the recommended window costs time and wears an edge by other ways; one above it
+burns the edge. So a speed is lowered to its bound and never raised, except to the least that
+the spindle turns.
 """
 
 from collections.abc import Iterator
@@ -10,18 +15,29 @@ from math import inf, pi
 
 from optimiser import loads
 from optimiser.chip_load import catalogue_feed, feed_origin, greatest_feed, least_feed
-from optimiser.conditions import Conditions, PermittedDeflection
+from optimiser.conditions import CuttingConditions, PermittedDeflection
 from optimiser.cut import Cut, CutKind
-from optimiser.limit import Limit, LimitName, Monomial, Sense
+from optimiser.problem import BoundSide, Limit, LimitName, Monomial
 from optimiser.roughness import surface_limits
-from simulator.edge_material import correction_of
-from simulator.library import find_window
+from optimiser.workingstep import told
+from simulator.edge_material import correction_of, edge_material
+from simulator.library import find_window, grade_for
 from simulator.physics.drilling import LIPS_ONLY
 from simulator.physics.holding import usable_speed
 from simulator.physics.spindle import CurveSegment, curve_segments
 from simulator.physics.strength import end_mill
-from simulator.spec import DrillPoint, Grade, ToolKind
+from simulator.spec import (
+    CuttingMaterial,
+    DrillPoint,
+    Machine,
+    ToolGrade,
+    ToolKind,
+    WorkMaterial,
+)
 from simulator.work_holding import Chuck
+from stepnc_model.technology import Programmed
+from stepnc_model.tool import Tool
+from stepnc_model.units import m_min_from_speed, rpm_from_rev_s
 
 PLUNGE_FEED_RATIO = 0.5
 """greatest feed per tooth straight down over that along the pass, customary: near the axis the
@@ -35,28 +51,28 @@ KW, NM, MM_MIN, M_MIN, RPM = 1e-3, 1e-3, 60.0, 0.06, 60.0
 """user's number per canonical unit"""
 
 
-def force_factor(at: Conditions) -> float:
+def force_factor(at: CuttingConditions) -> float:
     """K = K_γ·K_v times the accepted correction; 1 for a material of constant k_s."""
     correction = correction_of(at.material, at.grade, at.cutting_material)
     return at.force_factor * correction.factor
 
 
-def force_load(cut: Cut, at: Conditions) -> Monomial:
+def force_load(cut: Cut, at: CuttingConditions) -> Monomial:
     """Tangential force of this cut, N."""
     return loads.cutting_force(cut, at.material.kienzle, force_factor(at), drill_point(at))
 
 
-def drill_point(at: Conditions) -> DrillPoint:
+def drill_point(at: CuttingConditions) -> DrillPoint:
     """Point of the tool where it cuts on its end."""
     return (at.grade.point if at.grade is not None else None) or LIPS_ONLY
 
 
-def power_load(cut: Cut, at: Conditions) -> Monomial:
+def power_load(cut: Cut, at: CuttingConditions) -> Monomial:
     """Motor power of this cut, W."""
     return loads.motor_power(cut, force_load(cut, at), at.machine.spindle.efficiency)
 
 
-def limits_of(cut: Cut, at: Conditions) -> tuple[Limit, ...]:
+def limits_of(cut: Cut, at: CuttingConditions) -> tuple[Limit, ...]:
     """All limits that hold at every spindle speed."""
     return (
         *_load_limits(cut, at),
@@ -67,7 +83,7 @@ def limits_of(cut: Cut, at: Conditions) -> tuple[Limit, ...]:
     )
 
 
-def _load_limits(cut: Cut, at: Conditions) -> Iterator[Limit]:
+def _load_limits(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
     """Limits on what cuts, of the walls and of the floor that is swept at its own depth."""
     yield from machine_limits(cut, at)
     yield from tool_limits(cut, at)
@@ -81,7 +97,7 @@ def _load_limits(cut: Cut, at: Conditions) -> Iterator[Limit]:
         yield from map(straight_down, _plunge_limits(cut, cut.plunge, at))
 
 
-def _plunge_limits(cut: Cut, plunge: Cut, at: Conditions) -> Iterator[Limit]:
+def _plunge_limits(cut: Cut, plunge: Cut, at: CuttingConditions) -> Iterator[Limit]:
     """Feed per tooth and thrust where a mill goes straight down.
 
     Where nothing says what feed the mill bears along the pass, the programmed one is all that
@@ -114,7 +130,7 @@ def straight_down(limit: Limit) -> Limit:
     return replace(limit, label=f"{limit.words} {STRAIGHT_DOWN}")
 
 
-def spindle_limits(cut: Cut, at: Conditions, segment: CurveSegment) -> tuple[Limit, ...]:
+def spindle_limits(cut: Cut, at: CuttingConditions, segment: CurveSegment) -> tuple[Limit, ...]:
     """Motor power and torque on one stretch of the spindle's curve."""
     limits = _spindle_limits(cut, at, segment)
     if cut.plunge is not None:
@@ -126,7 +142,9 @@ def spindle_limits(cut: Cut, at: Conditions, segment: CurveSegment) -> tuple[Lim
     return (*limits, *(limit.at_depth(floor.total_depth) for limit in swept))
 
 
-def _spindle_limits(cut: Cut, at: Conditions, segment: CurveSegment) -> tuple[Limit, ...]:
+def _spindle_limits(
+    cut: Cut, at: CuttingConditions, segment: CurveSegment
+) -> tuple[Limit, ...]:
     """Motor power and torque of one cut."""
     force = force_load(cut, at)
     power = Limit(
@@ -151,8 +169,8 @@ def _spindle_limits(cut: Cut, at: Conditions, segment: CurveSegment) -> tuple[Li
     return power, torque
 
 
-def _power_origin(at: Conditions) -> str:
-    """What the bound of the power leaves out; empty where the machine's power is all of it."""
+def _power_origin(at: CuttingConditions) -> str:
+    """Note on what the power bound leaves out; empty where it is the machine's whole power."""
     spindle = at.machine.spindle
     idles = spindle.idle_power or spindle.idle_power_per_speed
     if at.machine.only_stated_limits or not idles:
@@ -160,25 +178,25 @@ def _power_origin(at: Conditions) -> str:
     return "what the idling spindle leaves of its drive's"
 
 
-def segment_at(at: Conditions, speed: float) -> CurveSegment:
+def segment_at(at: CuttingConditions, speed: float) -> CurveSegment:
     """Stretch of the spindle's curve that holds at a speed, the nearest beyond its ends."""
     segments = curve_segments(at.machine.spindle)
     return next((part for part in segments if speed <= part.max_speed), segments[-1])
 
 
-def speed_range(cut: Cut, at: Conditions) -> tuple[float, float]:
+def speed_range(cut: Cut, at: CuttingConditions) -> tuple[float, float]:
     """Least and greatest spindle speed that machine and tool allow, rev/s."""
     low, high = 0.0, inf
     for limit in speed_limits(cut, at):
         bound = limit.bound / limit.load.coefficient
-        if limit.sense is Sense.AT_MOST:
+        if limit.sense is BoundSide.AT_MOST:
             high = min(high, bound)
         else:
             low = max(low, bound)
     return low, high
 
 
-def machine_limits(cut: Cut, at: Conditions) -> Iterator[Limit]:
+def machine_limits(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
     """Cutting force and feed mechanism."""
     machine = at.machine
     if machine.max_cutting_force is not None:
@@ -203,7 +221,7 @@ def machine_limits(cut: Cut, at: Conditions) -> Iterator[Limit]:
         )
 
 
-def tool_limits(cut: Cut, at: Conditions) -> Iterator[Limit]:
+def tool_limits(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
     """Feed per tooth, chip thickness, deflection and strength of the shank."""
     highest = greatest_feed(cut, at)
     feed = Monomial(coefficient=1.0, feed_exponent=1.0)
@@ -228,7 +246,7 @@ def tool_limits(cut: Cut, at: Conditions) -> Iterator[Limit]:
             load=feed,
             bound=lowest,
             unit="mm",
-            sense=Sense.AT_LEAST,
+            sense=BoundSide.AT_LEAST,
             step=0.01,
         )
     yield Limit(
@@ -236,14 +254,14 @@ def tool_limits(cut: Cut, at: Conditions) -> Iterator[Limit]:
         load=Monomial(coefficient=_chip_ratio(cut), feed_exponent=1.0),
         bound=at.grade.min_chip_thickness,
         unit="mm",
-        sense=Sense.AT_LEAST,
+        sense=BoundSide.AT_LEAST,
         step=0.001,
     )
     if is_bent(cut):
         yield from _bending_limits(cut, at, at.grade)
 
 
-def _bending_limits(cut: Cut, at: Conditions, grade: Grade) -> Iterator[Limit]:
+def _bending_limits(cut: Cut, at: CuttingConditions, grade: ToolGrade) -> Iterator[Limit]:
     """Deflection and bending stress of an end mill clamped at one end."""
     shank = end_mill(
         cut.tool.diameter,
@@ -275,7 +293,7 @@ def is_bent(cut: Cut) -> bool:
     return cut.kind is CutKind.MILLING and cut.tool_kind is ToolKind.ENDMILL
 
 
-def _depth_limits(cut: Cut, at: Conditions) -> Iterator[Limit]:
+def _depth_limits(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
     """Depth of one pass that machine, tool and grade allow."""
     grade = at.grade
     bounds = [at.machine.max_axial_depth, cut.depth_bound]
@@ -292,18 +310,18 @@ def _depth_limits(cut: Cut, at: Conditions) -> Iterator[Limit]:
         )
 
 
-def speed_limits(cut: Cut, at: Conditions) -> Iterator[Limit]:
+def speed_limits(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
     """Window of the cutting speed, and what the spindle turns."""
     low, high = cutting_speed_window(at)
     spindle = at.machine.spindle
     velocity = Monomial(coefficient=pi * cut.diameter, speed_exponent=1.0)
     turning = Monomial(coefficient=1.0, speed_exponent=1.0)
     for name, load, bound, sense in (
-        (LimitName.CUTTING_SPEED, velocity, high, Sense.AT_MOST),
-        (LimitName.CUTTING_SPEED, velocity, low, Sense.AT_LEAST),
-        (LimitName.SPINDLE_SPEED, turning, spindle.max_speed, Sense.AT_MOST),
-        (LimitName.SPINDLE_SPEED, turning, spindle.min_speed, Sense.AT_LEAST),
-        (LimitName.SPINDLE_SPEED, turning, _chuck_speed(at), Sense.AT_MOST),
+        (LimitName.CUTTING_SPEED, velocity, high, BoundSide.AT_MOST),
+        (LimitName.CUTTING_SPEED, velocity, low, BoundSide.AT_LEAST),
+        (LimitName.SPINDLE_SPEED, turning, spindle.max_speed, BoundSide.AT_MOST),
+        (LimitName.SPINDLE_SPEED, turning, spindle.min_speed, BoundSide.AT_LEAST),
+        (LimitName.SPINDLE_SPEED, turning, _chuck_speed(at), BoundSide.AT_MOST),
     ):
         if bound is None or bound <= 0.0:
             continue
@@ -319,7 +337,7 @@ def speed_limits(cut: Cut, at: Conditions) -> Iterator[Limit]:
         )
 
 
-def _chuck_speed(at: Conditions) -> float | None:
+def _chuck_speed(at: CuttingConditions) -> float | None:
     """Speed above which a chuck holds too little to be used, rev/s; None of another one."""
     if not isinstance(at.holding, Chuck):
         return None
@@ -327,7 +345,7 @@ def _chuck_speed(at: Conditions) -> float | None:
     return None if speed == inf else speed
 
 
-def cutting_speed_window(at: Conditions) -> tuple[float | None, float | None]:
+def cutting_speed_window(at: CuttingConditions) -> tuple[float | None, float | None]:
     """Cutting speeds that the grade, else the material, recommends, mm/s."""
     grade = at.grade
     if grade is None:
@@ -345,3 +363,88 @@ def _chip_ratio(cut: Cut) -> float:
     if cut.kind is CutKind.MILLING and cut.engagement is not None:
         return cut.mean_chip_ratio
     return 1.0
+
+
+WRITTEN = 1e-6
+"""relative excess that is the rounding of a number in a file"""
+
+
+def held_speed(cut: Cut, at: CuttingConditions) -> float:
+    """Spindle speed of a workingstep whose speed is not free, rev/s."""
+    passed = {
+        limit.sense: limit.bound / limit.load.coefficient
+        for limit in sorted(_passed(cut, at), key=_greatest_speed, reverse=True)
+    }
+    low, high = (passed.get(sense) for sense in (BoundSide.AT_LEAST, BoundSide.AT_MOST))
+    return high or low or cut.programmed.speed
+
+
+def why_too_fast(cut: Cut, at: CuttingConditions) -> str:
+    """Name of the limit that the programmed speed exceeds; empty where it keeps all."""
+    speed = cut.programmed.speed
+    passed = min(_passed(cut, at), key=_greatest_speed, default=None)
+    return "" if passed is None else told(passed, passed.load.value(1.0, 1.0, speed), speed)
+
+
+def why_thread_too_fast(
+    tool: Tool,
+    conditions: Programmed,
+    machine: Machine,
+    material: WorkMaterial,
+    *,
+    diameter: float,
+) -> str:
+    """Name of the limit that the speed of a thread exceeds; else empty.
+
+    Parameters
+    ----------
+    tool : Tool
+    conditions : Programmed
+    machine : Machine
+    material : WorkMaterial
+    diameter : float
+        Of the thread, mm; 0: not known, so nothing is.
+    """
+    if diameter <= 0.0:
+        return ""
+    spindle = conditions.spindle_speed(diameter)
+    highest = machine.spindle.max_speed
+    if highest is not None and spindle > highest * (1.0 + WRITTEN):
+        return (
+            f"spindle speed {rpm_from_rev_s(spindle):.4g} rpm exceeds "
+            f"{rpm_from_rev_s(highest):.4g} rpm"
+        )
+    edge = edge_material(tool.edge_material) or CuttingMaterial.CARBIDE
+    kind = ToolKind.TAP if tool.keyword == "TAP" else ToolKind.THREADING
+    at = CuttingConditions(
+        machine=machine,
+        material=material,
+        cutting_material=edge,
+        grade=grade_for(kind, edge, material),
+        roughness=None,
+    )
+    high = cutting_speed_window(at)[1]
+    velocity = pi * diameter * spindle
+    if high is None or velocity <= high * (1.0 + WRITTEN):
+        return ""
+    return (
+        f"cutting speed {m_min_from_speed(velocity):.4g} m/min exceeds "
+        f"{m_min_from_speed(high):.4g} m/min"
+    )
+
+
+def _passed(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
+    """Limits that the programmed speed passes; below the window of the tool it may be."""
+    speed = cut.programmed.speed
+    for limit in speed_limits(cut, at):
+        is_most = limit.sense is BoundSide.AT_MOST
+        if not is_most and limit.name is LimitName.CUTTING_SPEED:
+            continue
+        ratio = limit.load.value(1.0, 1.0, speed) / limit.bound
+        if ratio > 1.0 + WRITTEN if is_most else ratio < 1.0 - WRITTEN:
+            yield limit
+
+
+def _greatest_speed(limit: Limit) -> float:
+    """Spindle speed at the bound of a limit, rev/s."""
+    return limit.bound / limit.load.coefficient

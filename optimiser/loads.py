@@ -9,18 +9,18 @@ from enum import Enum, auto
 from functools import lru_cache
 from math import pi
 
-from optimiser.cut import Cut, CutKind, Place
-from optimiser.limit import Monomial
+from optimiser.cut import CriticalPlace, Cut, CutKind
+from optimiser.problem import Monomial
 from simulator.physics import drilling, kinematics, milling, power, turning
-from simulator.physics.flutes import WALL, CuttingEdges, Law
+from simulator.physics.flutes import WALL, CuttingEdges, ForceLaw
 from simulator.spec import DrillPoint, Kienzle
 
 LEAST = 1e-9
 """mm; a straight edge makes its wall where it has no chip, and a load must be positive"""
 
 
-class Force(Enum):
-    """Which force along the helix a curve tells."""
+class ForceKind(Enum):
+    """Force along the helix that a curve gives."""
 
     ACROSS = auto()
     """greatest across the axis within a revolution"""
@@ -64,7 +64,7 @@ def cutting_force(
 
 def shank_force(cut: Cut, kienzle: Kienzle, factor: float) -> Monomial:
     """Greatest force across the axis of an end mill within a revolution, N."""
-    return _along_helix(cut, cut.shank or cut.hardest, kienzle, factor, Force.ACROSS)
+    return _along_helix(cut, cut.shank or cut.hardest, kienzle, factor, ForceKind.ACROSS)
 
 
 def wall_force(cut: Cut, kienzle: Kienzle, factor: float) -> Monomial | None:
@@ -72,16 +72,16 @@ def wall_force(cut: Cut, kienzle: Kienzle, factor: float) -> Monomial | None:
     place = cut.wall or cut.hardest
     if place is None or not _reaches_wall(place):
         return None
-    return _along_helix(cut, place, kienzle, factor, Force.AT_WALL)
+    return _along_helix(cut, place, kienzle, factor, ForceKind.AT_WALL)
 
 
-def _reaches_wall(place: Place) -> bool:
+def _reaches_wall(place: CriticalPlace) -> bool:
     arc = place.engagement
     return arc.entry_angle <= WALL or arc.exit_angle >= pi - WALL
 
 
 def _along_helix(
-    cut: Cut, place: Place | None, kienzle: Kienzle, factor: float, force: Force
+    cut: Cut, place: CriticalPlace | None, kienzle: Kienzle, factor: float, force: ForceKind
 ) -> Monomial:
     """A load that is integrated along the edges in the cut."""
     if place is None:
@@ -90,7 +90,9 @@ def _along_helix(
     return Monomial(
         coefficient=factor * kienzle.k_c11,
         feed_exponent=exponent,
-        curve=DepthCurve(edges=cut.edges, place=place, law=Law(exponent=exponent), force=force),
+        curve=DepthCurve(
+            edges=cut.edges, place=place, law=ForceLaw(exponent=exponent), force=force
+        ),
     )
 
 
@@ -99,9 +101,9 @@ class DepthCurve:
     """Integral of the forces at one place as a function of the depth of a pass, mm."""
 
     edges: CuttingEdges
-    place: Place
-    law: Law
-    force: Force
+    place: CriticalPlace
+    law: ForceLaw
+    force: ForceKind
 
     def __call__(self, depth: float) -> float:
         """Integral at a depth in mm."""
@@ -116,7 +118,7 @@ def _integral(curve: DepthCurve, depth: float) -> float:
     place = tooth_forces.one_place(
         arc.entry_angle, arc.exit_angle, axial_depth=depth * curve.place.depth_share
     )
-    is_peak = curve.force is Force.ACROSS
+    is_peak = curve.force is ForceKind.ACROSS
     greatest = tooth_forces.peak_resultant if is_peak else tooth_forces.wall_force
     integral = float(greatest(curve.edges, place, curve.law)[0])
     return max(curve.place.fill * integral, LEAST)
@@ -187,7 +189,7 @@ def _monomial(value: float, kienzle: Kienzle, *, depth: float) -> Monomial:
     )
 
 
-def _milling_cut(cut: Cut, place: Place | None) -> milling.MillingCut:
+def _milling_cut(cut: Cut, place: CriticalPlace | None) -> milling.MillingCut:
     """The cut at one place, at the reference feed and unit depth of a pass."""
     if place is None:
         raise ValueError("a milling cut needs its engagement")

@@ -5,24 +5,30 @@ what the tool meets come the hardest places, for the limits, and the mean load, 
 from the motion of the axes comes the time. What lasts as long as the feed says counts as
 length, in mm at the programmed feed, with ratios of it and a spindle that follows the radius.
 The rest counts as time: ramps, rapids, moves with a feed of their own, waits.
+
+Paths are tried with other depths of passes, too: those of the program as
+:mod:`stepnc_model.writeback` would write it, without writing it.
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
+from copy import copy
+from dataclasses import dataclass, field, replace
+from typing import Any
 
-from optimiser.clamped import ClampedStocks, Meeting, Place, StockMap, met_by
+from optimiser.clamped import Change, ClampedStocks, StockMap, StockPlace, TrialContacts, met_by
 from optimiser.cut import Cut, CutKind
 from optimiser.estimated import GUESSES, estimated_cut
 from optimiser.hardest import (
-    Met,
+    Bending,
+    PathContacts,
     bending,
     greatest_section,
+    turned_of,
     weighted_volume,
     with_hardest,
 )
-from optimiser.other_depth import with_depth
 from optimiser.plunge import (
-    Slope,
+    PlungeCuts,
     along_passes,
     down_ramps,
     is_fed,
@@ -31,14 +37,12 @@ from optimiser.plunge import (
     way_in_of,
 )
 from optimiser.problem import Setting
-from optimiser.reached import Ride, with_power, with_reached
-from optimiser.seen import Seen, Trace
+from optimiser.reached import MachineRun, with_power, with_reached
 from optimiser.side_by_side import Result, one_by_one, side_by_side
-from optimiser.turned import turned_of
 from simulator.motion.segments import Bools
 from simulator.motion.tool_path import (
-    Pace,
-    Run,
+    SpeedRatios,
+    ToolPathRun,
     duration,
     paced,
     plunges,
@@ -46,17 +50,96 @@ from simulator.motion.tool_path import (
     usual_motion,
 )
 from simulator.removal.engage import MillingStock
-from simulator.removal.lathe import Bar, TurningStock
-from simulator.removal.stations import CutKind as StationKind
-from simulator.removal.trial import do_overlap, is_remembered_alike, renumbered
-from simulator.spec import Machine, MachineKind, Material
-from stepnc_model.errors import Finding, PostError, SchemaError, Severity
-from stepnc_model.post.blocks import Machine as PostMachine
-from stepnc_model.post.conditions import Conditions, conditions
-from stepnc_model.program import Program, Workingstep
+from simulator.removal.lathe import BarRadii, TurningStock
+from simulator.removal.stations import StationKind
+from simulator.removal.trial import PathTrial, do_overlap, is_remembered_alike, renumbered
+from simulator.spec import Machine, MachineKind, WorkMaterial
+from stepnc_model.binding import Model
+from stepnc_model.entities.entity import Entity
+from stepnc_model.errors import Finding, PathError, PostError, SchemaError, Severity
+from stepnc_model.part21.values import Ref
+from stepnc_model.post.blocks import MachineType as PostMachine
+from stepnc_model.post.modal_state import ModalState, conditions
+from stepnc_model.program import Program, ResolvedWorkingstep
 from stepnc_model.technology import programmed
 from stepnc_model.toolpath.generate import require_ready, workingstep_path
 from stepnc_model.toolpath.path import Feed, ToolPath
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TriedPath:
+    """A path that was tried, and what it met."""
+
+    path: ToolPath
+    run: ToolPathRun
+    """as programmed"""
+    cut: Cut
+    """with the engagement as met"""
+    passes: int
+    weighted: float
+    """weighted volume over that of the hardest place, mm"""
+    air: float
+    """share of the length that removes nothing"""
+    meeting: TrialContacts
+    along: PathContacts | None
+    """what was met along the passes; None: nothing is known of it"""
+    bent: Bending | None
+    """by that"""
+    slope: PlungeCuts | None
+    """what was met down ramps; None: nothing"""
+    times: dict[tuple[float, float, float | None], Cut] = field(default_factory=dict)
+    """the cut as timed already, by the ratios of feed and speed and the plunge feed; filled
+    when asked for"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class SearchTrace:
+    """Trace of a workingstep's search: what it read and changed."""
+
+    place: StockPlace | None = None
+    """which stock"""
+    change: Change | None = None
+    trial: PathTrial | None = None
+    """that of the change; None: not of a mill"""
+    trials: tuple[PathTrial, ...] = ()
+    """Trials of all paths that were tried"""
+    left_out: dict[int, str] = field(default_factory=dict)
+    """features whose path could not be made, with the workingstep"""
+
+
+def with_depth(
+    program: Program, step: ResolvedWorkingstep, depth: float
+) -> tuple[Program, ResolvedWorkingstep]:
+    """A program and its workingstep as if it were programmed in passes of another depth.
+
+    Raises
+    ------
+    PathError
+        When the file leaves no depth to choose.
+    """
+    operation: Any = step.operation
+    if hasattr(operation, "axial_cutting_depth") and not operation.its_toolpath:
+        other = replace(operation, axial_cutting_depth=depth)
+        return program, replace(step, operation=other)
+    strategy: Ref[Entity] | None = getattr(operation, "its_machining_strategy", None)
+    entity: Any = None if strategy is None else program.get(strategy)
+    if strategy is None or not hasattr(entity, "cutting_depth") or operation.its_toolpath:
+        raise PathError("the depth of its passes is not programmed", entity=str(step.ref))
+    changed = copy(program)
+    changed.model = _Changed(program.model, strategy, replace(entity, cutting_depth=(depth,)))
+    return changed, step
+
+
+class _Changed(Model):
+    """The entities of a program, one of them another one."""
+
+    def __init__(self, model: Model, ref: Ref[Entity], entity: Entity) -> None:
+        super().__init__(model.file)
+        self._model, self._number, self._entity = model, int(ref), entity
+
+    def entity(self, id: int, /) -> Entity | None:
+        """The entity of an instance."""
+        return self._entity if id == self._number else self._model.entity(id)
 
 
 class MeasuredCuts:
@@ -68,7 +151,7 @@ class MeasuredCuts:
     ----------
     program : Program
     machine : Machine
-    material : Material
+    material : WorkMaterial
     is_run : bool
         Whether a run will stand beside the plan: then cuts tell what the axes reach, too.
     """
@@ -77,7 +160,7 @@ class MeasuredCuts:
         self,
         program: Program,
         machine: Machine,
-        material: Material,
+        material: WorkMaterial,
         *,
         is_run: bool = False,
     ) -> None:
@@ -93,13 +176,13 @@ class MeasuredCuts:
         self._estimate: Cut | None = None
         self._found: StockMap | None = None
         """what the workingstep finds"""
-        self._seen: dict[int, Seen] = {}
+        self._seen: dict[int, TriedPath] = {}
         """paths of the workingstep, by the number of passes"""
-        self._trace = Trace()
-        self._numbers: dict[Place, dict[int, int]] = {}
+        self._trace = SearchTrace()
+        self._numbers: dict[StockPlace, dict[int, int]] = {}
         """new numbers of the first moves of workingsteps that are repeated, by the old ones"""
 
-    def cut(self, step: Workingstep) -> tuple[Cut, list[Finding]]:
+    def cut(self, step: ResolvedWorkingstep) -> tuple[Cut, list[Finding]]:
         """The cut of a workingstep as programmed, and what was assumed.
 
         Where no path can be made, or what it meets is not known, the estimate from the feature
@@ -111,7 +194,7 @@ class MeasuredCuts:
             When the workingstep lacks what a cut needs.
         """
         self._seen = {}
-        self._trace = Trace(place=self.stocks.place(step))
+        self._trace = SearchTrace(place=self.stocks.place(step))
         cut, findings = estimated_cut(self.program, step, self.machine, self.material)
         self._estimate, self._found = cut, self.stocks.before(step)
         try:
@@ -128,7 +211,7 @@ class MeasuredCuts:
             findings.append(self._warning(step, text))
         return self._timed(step, seen, seen.cut.programmed), findings
 
-    def at(self, step: Workingstep, cut: Cut, setting: Setting) -> Cut:
+    def at(self, step: ResolvedWorkingstep, cut: Cut, setting: Setting) -> Cut:
         """The same cut as the path of another setting makes it.
 
         Where a path in other passes cannot be made, all passes are taken to be alike.
@@ -150,19 +233,19 @@ class MeasuredCuts:
         passes, depth = estimate.programmed.passes, estimate.programmed.depth
         return replace(timed, programmed=replace(timed.programmed, passes=passes, depth=depth))
 
-    def leave_out(self, step: Workingstep) -> None:
+    def leave_out(self, step: ResolvedWorkingstep) -> None:
         """Cut the stock as a workingstep does that is not advised but is run."""
         stock = self.stocks.before(step)
-        self._trace = Trace(place=self.stocks.place(step))
+        self._trace = SearchTrace(place=self.stocks.place(step))
         try:
-            run = self._run(self._path(step), Pace(technology=step.technology_ref))
+            run = self._run(self._path(step), SpeedRatios(technology=step.technology_ref))
         except (SchemaError, PostError):
             self._leave_out(step)
             return
         self._leave(step, met_by(self.program, step, run, stock))
 
     def each(
-        self, steps: Sequence[Workingstep], do: Callable[[Workingstep], Result]
+        self, steps: Sequence[ResolvedWorkingstep], do: Callable[[ResolvedWorkingstep], Result]
     ) -> Iterator[Result]:
         """Results of workingsteps in their order; of a mill on two cores."""
         if self.machine.kind is MachineKind.LATHE:
@@ -173,11 +256,13 @@ class MeasuredCuts:
         """Prepare to repeat what a copy does from now on."""
         self._numbers = {}
 
-    def trace(self) -> Trace:
-        """Where the last workingstep looked, and what it changed."""
+    def trace(self) -> SearchTrace:
+        """Place of the stock that the last workingstep read and changed."""
         return self._trace
 
-    def is_apart(self, step: Workingstep, trace: Trace, others: Sequence[Trace]) -> bool:
+    def is_apart(
+        self, step: ResolvedWorkingstep, trace: SearchTrace, others: Sequence[SearchTrace]
+    ) -> bool:
         """Whether a workingstep would have met the same after others."""
         features = {int(feature) for feature in step.features}
         if any(features & other.left_out.keys() for other in others):
@@ -193,7 +278,7 @@ class MeasuredCuts:
             for trial in trace.trials
         )
 
-    def repeat(self, step: Workingstep, trace: Trace) -> None:
+    def repeat(self, step: ResolvedWorkingstep, trace: SearchTrace) -> None:
         """Change the stock as a workingstep has changed a copy of it."""
         self._left_out |= trace.left_out
         stock, change = self.stocks.before(step), trace.change
@@ -203,8 +288,8 @@ class MeasuredCuts:
             change = renumbered(trace.trial, stock.next_move, numbers)
         self.stocks.leave(step, change)
 
-    def _leave(self, step: Workingstep, meeting: Meeting) -> None:
-        """What the next workingstep finds, and what is told of it."""
+    def _leave(self, step: ResolvedWorkingstep, meeting: TrialContacts) -> None:
+        """Stock before the next workingstep, with the findings on it."""
         self.stocks.leave(step, meeting.change)
         trials = self._trace.trials
         if meeting.trial is not None and meeting.trial not in trials:
@@ -213,30 +298,30 @@ class MeasuredCuts:
             self._trace, change=meeting.change, trial=meeting.trial, trials=trials
         )
 
-    def _leave_out(self, step: Workingstep) -> None:
+    def _leave_out(self, step: ResolvedWorkingstep) -> None:
         """Without its path, what comes after it on its features would meet too much."""
         without = {int(feature): step.id for feature in step.features}
         self._left_out |= without
         self._trace = replace(self._trace, left_out=without)
 
-    def _path(self, step: Workingstep) -> ToolPath:
+    def _path(self, step: ResolvedWorkingstep) -> ToolPath:
         """Path of a workingstep as programmed."""
         require_ready(self.program, step, self._left_out)
         return workingstep_path(self.program, step)
 
-    def _run(self, path: ToolPath, pace: Pace) -> Run:
-        """What the axes run; each feed is looked up once."""
+    def _run(self, path: ToolPath, pace: SpeedRatios) -> ToolPathRun:
+        """Tool path as the axes run it; each feed is looked up once."""
         is_lathe = path.is_turning or self.machine.kind is MachineKind.LATHE
         kind = PostMachine.LATHE if is_lathe else PostMachine.MILL
-        known: dict[Feed, Conditions] = {}
+        known: dict[Feed, ModalState] = {}
 
-        def look_up(feed: Feed) -> Conditions:
+        def look_up(feed: Feed) -> ModalState:
             with self.program.using(feed.technology):
                 return conditions(self.program, feed, path.tool_ref, kind)
 
         at_pace = paced(look_up, pace)
 
-        def known_at_pace(feed: Feed) -> Conditions:
+        def known_at_pace(feed: Feed) -> ModalState:
             if feed not in known:
                 known[feed] = at_pace(feed)
             return known[feed]
@@ -244,9 +329,11 @@ class MeasuredCuts:
         with self.program.using(path.operation_ref):
             return run_of(path, known_at_pace, self.machine.spindle)
 
-    def _see(self, step: Workingstep, path: ToolPath, cut: Cut, *, passes: int) -> Seen:
+    def _see(
+        self, step: ResolvedWorkingstep, path: ToolPath, cut: Cut, *, passes: int
+    ) -> TriedPath:
         """Try a path in the stock that the workingstep finds."""
-        run = self._run(path, Pace(technology=step.technology_ref))
+        run = self._run(path, SpeedRatios(technology=step.technology_ref))
         meeting = met_by(self.program, step, run, self._found)
         met = meeting.met
         weighted, air, along, bent, slope = 0.0, 0.0, None, None, None
@@ -262,10 +349,10 @@ class MeasuredCuts:
             weighted = weighted_volume(met, self.kienzle.m_c)
             weighted /= section * ratio**-self.kienzle.m_c
             air = _air_share(run, met, is_fed(run, step.technology_ref, cut))
-            if isinstance(self._found, TurningStock) and isinstance(meeting.change, Bar):
+            if isinstance(self._found, TurningStock) and isinstance(meeting.change, BarRadii):
                 turned = turned_of(cut, met, run, self._found, meeting.change)
                 cut = replace(cut, turned=turned)
-        self._seen[passes] = seen = Seen(
+        self._seen[passes] = seen = TriedPath(
             path=path,
             run=run,
             cut=cut,
@@ -282,12 +369,12 @@ class MeasuredCuts:
 
     def _engaged(
         self,
-        step: Workingstep,
+        step: ResolvedWorkingstep,
         cut: Cut,
-        met: Met,
-        run: Run,
+        met: PathContacts,
+        run: ToolPathRun,
         *,
-        slope: Slope | None,
+        slope: PlungeCuts | None,
         depth: float,
     ) -> Cut:
         """The cut with its ways down; turning is told where the programmed path is widest."""
@@ -302,7 +389,7 @@ class MeasuredCuts:
             cut = replace(cut, way_in=way_in, programmed=given)
         return replace(cut, plunge=plunge_of(cut, met, is_fed(run, step.technology_ref, cut)))
 
-    def _widest(self, met: Met, run: Run) -> float:
+    def _widest(self, met: PathContacts, run: ToolPathRun) -> float:
         """Diameter of the bar where it is cut, mm: the same in however many passes."""
         stations, stock = met.stations, self._found
         if not isinstance(stock, TurningStock):
@@ -314,7 +401,7 @@ class MeasuredCuts:
             return float(stations.diameter.max())
         return 2.0 * float(stock.outer[inside].max())
 
-    def _at_widest(self, step: Workingstep, cut: Cut, diameter: float) -> Cut:
+    def _at_widest(self, step: ResolvedWorkingstep, cut: Cut, diameter: float) -> Cut:
         """Speeds and loads of turning are those at its greatest diameter: nothing is harder."""
         found = programmed(self.program, step.technology_ref)
         speed = found.spindle_speed(diameter)
@@ -322,7 +409,7 @@ class MeasuredCuts:
         given = replace(cut.programmed, speed=speed, feed=feed)
         return replace(cut, diameter=diameter, programmed=given)
 
-    def _timed(self, step: Workingstep, seen: Seen, setting: Setting) -> Cut:
+    def _timed(self, step: ResolvedWorkingstep, seen: TriedPath, setting: Setting) -> Cut:
         """The cut of a path, run so much faster than programmed."""
         given, plunge = seen.cut.programmed, setting.plunge_feed
         feed, speed = setting.feed / given.feed, setting.speed / given.speed
@@ -330,15 +417,19 @@ class MeasuredCuts:
             plunge = None
         if (feed, speed, plunge) not in seen.times:
             per_turn = None if plunge is None else plunge * seen.cut.tool.teeth
-            pace = Pace(technology=step.technology_ref, feed=feed, speed=speed, plunge=per_turn)
+            pace = SpeedRatios(
+                technology=step.technology_ref, feed=feed, speed=speed, plunge=per_turn
+            )
             seen.times[feed, speed, plunge] = self._run_through(step, seen, pace)
         return seen.times[feed, speed, plunge]
 
-    def _run_through(self, step: Workingstep, seen: Seen, pace: Pace) -> Cut:
+    def _run_through(
+        self, step: ResolvedWorkingstep, seen: TriedPath, pace: SpeedRatios
+    ) -> Cut:
         """The same, with the motion of the axes."""
         cut, given = seen.cut, seen.cut.programmed
         run = seen.run
-        if pace != Pace(technology=step.technology_ref):
+        if pace != SpeedRatios(technology=step.technology_ref):
             run = self._run(seen.path, pace)
         seconds = run.segments.length / run.segments.speed
         fed = float(seconds[is_fed(run, step.technology_ref, cut)].sum())
@@ -347,7 +438,7 @@ class MeasuredCuts:
         length = fed * per_second
         known = not seen.meeting.why and length > 0.0
         if seen.along is not None and seen.bent is not None:
-            ride = Ride(
+            ride = MachineRun(
                 run=run,
                 control=self.control,
                 limits=self.limits,
@@ -367,7 +458,7 @@ class MeasuredCuts:
             air_length=seen.air * length / seen.passes,
         )
 
-    def _with_ramp_reached(self, cut: Cut, seen: Seen, ride: Ride) -> Cut:
+    def _with_ramp_reached(self, cut: Cut, seen: TriedPath, ride: MachineRun) -> Cut:
         """The cut with what the axes make of the loads down its ramps."""
         ramp = None if cut.way_in is None else cut.way_in.ramp
         slope = seen.slope
@@ -377,11 +468,11 @@ class MeasuredCuts:
         ramp = self._with_loads(ramp, slope.met, slope.bent, down, exponent=self.kienzle.m_c)
         return replace(cut, way_in=replace(cut.way_in, ramp=ramp))
 
-    def _warning(self, step: Workingstep, text: str) -> Finding:
+    def _warning(self, step: ResolvedWorkingstep, text: str) -> Finding:
         return self.program.finding(Severity.WARNING, text, step.operation_ref)
 
 
-def _air_share(run: Run, met: Met, is_bound: Bools) -> float:
+def _air_share(run: ToolPathRun, met: PathContacts, is_bound: Bools) -> float:
     """Share of the time at the programmed feed in which nothing is removed."""
     row = met.stations.segment
     seconds = met.length / run.segments.speed[row]

@@ -1,9 +1,9 @@
-"""Which of a machine's measured modes hold for a cut."""
+"""Selection of the measured modes of a machine that apply to a cut."""
 
 from dataclasses import dataclass
 
 from optimiser.cut import Cut, CutKind
-from simulator.spec import Direction, Machine, VibratingPart, VibrationMode
+from simulator.spec import Machine, ModeDirection, VibratingPart, VibrationMode
 from stepnc_model.tool import Tool
 
 SAME_DIAMETER = 1e-3
@@ -38,9 +38,9 @@ def measured_modes(cut: Cut, machine: Machine) -> MeasuredModes | None:
     work = [mode for mode in machine.modes if mode.part is VibratingPart.WORKPIECE]
     kept = (*(named or fitting), *work)
     found = MeasuredModes(
-        x=tuple(mode for mode in kept if mode.direction in {Direction.X, Direction.XY}),
-        y=tuple(mode for mode in kept if mode.direction in {Direction.Y, Direction.XY}),
-        z=tuple(mode for mode in kept if mode.direction is Direction.Z),
+        x=tuple(mode for mode in kept if mode.direction in {ModeDirection.X, ModeDirection.XY}),
+        y=tuple(mode for mode in kept if mode.direction in {ModeDirection.Y, ModeDirection.XY}),
+        z=tuple(mode for mode in kept if mode.direction is ModeDirection.Z),
     )
     felt = found.in_plane if cut.kind is CutKind.MILLING else found.along_axis
     return found if felt else None
@@ -57,7 +57,7 @@ def _is_of(mode: VibrationMode, tool: Tool) -> bool:
 
 
 def what_is_measured(cut: Cut, measured: MeasuredModes) -> str:
-    """How many modes, and what counts as rigid."""
+    """Number of modes, and the directions that are taken as rigid."""
     modes = measured.in_plane if cut.kind is CutKind.MILLING else measured.along_axis
     text = f"{len(modes)} measured mode{'' if len(modes) == 1 else 's'}"
     if not any(mode.part is VibratingPart.TOOL for mode in modes):

@@ -1,4 +1,4 @@
-"""What time-critical, quality-critical and energy-critical mean, spelled out once.
+"""Definitions of the modes time-critical, quality-critical and energy-critical.
 
 TC
     Least machining time. A roughness stated for the surface is kept.
@@ -17,7 +17,7 @@ from enum import StrEnum
 
 
 class Mode(StrEnum):
-    """What is to be best."""
+    """Objective of the optimisation."""
 
     TC = "TC"
     QC = "QC"
@@ -25,7 +25,7 @@ class Mode(StrEnum):
 
 
 class Free(StrEnum):
-    """What the optimiser may change."""
+    """Variables that the optimiser may change."""
 
     FEED = "feed"
     DEPTH = "depth"

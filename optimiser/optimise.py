@@ -13,35 +13,33 @@ from dataclasses import replace
 from math import isfinite
 
 from optimiser import workingstep as exact
-from optimiser.advice import Advice, Plan, State, Status
+from optimiser.advice import Advice, AdviceStatus, EvaluatedSetting, Plan
 from optimiser.asked_of_holding import holding_findings, with_holding
-from optimiser.centre_cutting import plunge_fault, plunge_findings
-from optimiser.conditions import Conditions, PermittedDeflection
+from optimiser.conditions import CuttingConditions, PermittedDeflection
 from optimiser.cut import Cut
 from optimiser.errors import Infeasible, OptimisationError
 from optimiser.estimate_turning import mean_diameter
-from optimiser.formulate import Task, problem_of, state_of
+from optimiser.formulate import OptimisationTask, problem_of, state_of
 from optimiser.front import front_of
-from optimiser.held_speed import why_thread_too_fast, why_too_fast
 from optimiser.holding import holding_load
-from optimiser.limits import is_bent
+from optimiser.limits import is_bent, why_thread_too_fast, why_too_fast
 from optimiser.modes import Free, Mode
-from optimiser.passes import Asked, best_of
+from optimiser.passes import AdviceContext, best_of
+from optimiser.plunge_feed import plunge_fault, plunge_findings
 from optimiser.problem import Problem
 from optimiser.reasons import passed_limits, plunge_reason, reason_of
 from optimiser.requirement import required_roughness
 from optimiser.roughness import LAND_SHARE, roughness_load
-from optimiser.source import CutSource, WithWipers
+from optimiser.source import CutSource, WiperCutSource, why_elsewhere
 from optimiser.stability import estimate_texts, stability_of
 from optimiser.tolerance import permitted_deflection
 from simulator.edge_material import edge_material
 from simulator.errors import LibraryError
 from simulator.library import find_grade
-from simulator.spec import CuttingMaterial, Grade, Machine, MachineKind, MaterialMatch
-from stepnc_model.entities.milling import MillingTypeOperation
+from simulator.spec import CuttingMaterial, Machine, MachineKind, MaterialMatch, ToolGrade
 from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import Finding, SchemaError, Severity
-from stepnc_model.program import Program, Workingstep
+from stepnc_model.program import Program, ResolvedWorkingstep
 from stepnc_model.technology import programmed
 from stepnc_model.tool import Tool, tool_of
 
@@ -49,13 +47,13 @@ DEFAULT_QUALITY = 3.2e-3
 """mm, Ra that QC keeps where neither user nor file asks for one: ISO 1302 general machining"""
 
 
-def optimise(
+def optimise_program(
     program: Program,
     *,
     machine: Machine,
     material: MaterialMatch,
-    task: Task,
-    selected: Callable[[Workingstep], bool] = lambda _: True,
+    task: OptimisationTask,
+    selected: Callable[[ResolvedWorkingstep], bool] = lambda _: True,
     progress: Callable[[], None] = lambda: None,
 ) -> Plan:
     """Advise every selected workingstep of a program.
@@ -65,7 +63,7 @@ def optimise(
     program : Program
     machine : Machine
     material : MaterialMatch
-    task : Task
+    task : OptimisationTask
     selected : callable
         Which workingsteps are wanted.
     progress : callable
@@ -84,10 +82,10 @@ def optimise(
     advices = []
     cuts = task.source(program, machine, material.material)
     if task.wipers:
-        cuts = WithWipers(cuts, task.wipers)
+        cuts = WiperCutSource(cuts, task.wipers)
     last = max((step.index for step in program.workingsteps if selected(step)), default=-1)
 
-    def do(step: Workingstep) -> tuple[Advice | None, list[Finding]]:
+    def do(step: ResolvedWorkingstep) -> tuple[Advice | None, list[Finding]]:
         if not selected(step):
             cuts.leave_out(step)
             return None, []
@@ -118,12 +116,12 @@ def optimise(
 
 def advise(
     program: Program,
-    step: Workingstep,
+    step: ResolvedWorkingstep,
     cuts: CutSource,
     *,
     machine: Machine,
     material: MaterialMatch,
-    task: Task,
+    task: OptimisationTask,
 ) -> tuple[Advice, list[Finding]]:
     """Advice for one workingstep, with what was assumed on the way."""
     tool = tool_of(program, step.tool_ref)
@@ -132,7 +130,7 @@ def advise(
         workingstep=step,
         tool=tool,
         programmed=conditions,
-        status=Status.UNTOUCHED,
+        status=AdviceStatus.UNTOUCHED,
         reason=conditions.inhibition,
         cut=None,
         before=None,
@@ -147,10 +145,10 @@ def advise(
         )
         kept = _kept(untouched, reason, too_fast)
         return kept, _too_fast(program, kept)
-    elsewhere = _why_elsewhere(step, machine)
+    elsewhere = why_elsewhere(step, machine)
     if elsewhere:
         cuts.leave_out(step)
-        return replace(untouched, status=Status.INFEASIBLE, reason=elsewhere), []
+        return replace(untouched, status=AdviceStatus.INFEASIBLE, reason=elsewhere), []
     cut, findings = cuts.cut(step)
     at, found = _conditions(program, step, cut, machine=machine, material=material, task=task)
     at, held = with_holding(at, program, step)
@@ -175,16 +173,18 @@ def advise(
         return replace(untouched, reason=idle, before=state, after=state), findings
     advice = untouched
     if conditions.inhibition:
-        reason = f"{conditions.inhibition}: nobody may touch this feed"
+        reason = f"{conditions.inhibition}: the program locks this feed"
         advice = _kept(untouched, reason, why_too_fast(cut, at))
         findings += _too_fast(program, advice)
     else:
         try:
-            asked = Asked(step=step, at=at, task=task, cuts=cuts)
+            asked = AdviceContext(step=step, at=at, task=task, cuts=cuts)
             advice = _solved(untouched, cut, problem, asked)
         except Infeasible as conflict:
             reason = str(conflict)
-            advice = replace(untouched, status=Status.INFEASIBLE, reason=reason, after=None)
+            advice = replace(
+                untouched, status=AdviceStatus.INFEASIBLE, reason=reason, after=None
+            )
         except OptimisationError as error:
             raise OptimisationError(f"{program.label(step.operation_ref)}: {error}") from error
     may, used = task.allow_plunge, advice.cut
@@ -196,7 +196,7 @@ def advise(
     return advice, findings + passed_limits(program, advice)
 
 
-def _thread_diameter(program: Program, step: Workingstep, tool: Tool) -> float:
+def _thread_diameter(program: Program, step: ResolvedWorkingstep, tool: Tool) -> float:
     """Diameter of a thread in mm; 0 where its feature does not tell."""
     if not isinstance(step.operation, TurningMachiningOperation):
         return tool.diameter
@@ -207,21 +207,21 @@ def _thread_diameter(program: Program, step: Workingstep, tool: Tool) -> float:
 
 
 def _kept(untouched: Advice, reason: str, too_fast: str) -> Advice:
-    """A workingstep that nobody may touch, with what its speed passes."""
+    """A workingstep that is locked, with the limit that its speed exceeds."""
     told = f"{reason}, and {too_fast}" if too_fast else reason
     return replace(untouched, reason=told, speed_fault=too_fast)
 
 
 def _too_fast(program: Program, advice: Advice) -> list[Finding]:
-    """That a speed passes its bound and nobody may touch it."""
+    """Finding on a speed that exceeds its bound and must not be changed."""
     if not advice.speed_fault:
         return []
-    text = f"nobody may touch the speed, and {advice.speed_fault}"
+    text = f"the program locks the speed, and {advice.speed_fault}"
     return [program.finding(Severity.ERROR, text, advice.workingstep.technology_ref)]
 
 
 def _estimates(program: Program, advices: Sequence[Advice]) -> list[Finding]:
-    """What is estimated of the stability of tools without measured modes, once a tool."""
+    """Notes on the estimated stability of tools without measured modes, one a tool."""
     told = [
         (advice.tool, advice.stability, state.setting.depth)
         for advice in advices
@@ -233,16 +233,6 @@ def _estimates(program: Program, advices: Sequence[Advice]) -> list[Finding]:
     ]
 
 
-def _why_elsewhere(step: Workingstep, machine: Machine) -> str:
-    """Why this machine cannot do it at all; empty where it can."""
-    is_lathe = machine.kind is MachineKind.LATHE
-    if isinstance(step.operation, TurningMachiningOperation) and not is_lathe:
-        return f"{step.operation_type} needs a lathe, and '{machine.name}' is a mill"
-    if isinstance(step.operation, MillingTypeOperation) and is_lathe:
-        return f"{step.operation_type} needs a mill, and '{machine.name}' is a lathe"
-    return ""
-
-
 def _why_idle(cut: Cut) -> str:
     """Why no feed is to be chosen; empty where one is."""
     if cut.is_air:
@@ -252,12 +242,12 @@ def _why_idle(cut: Cut) -> str:
     return ""
 
 
-def _in_air(state: State) -> State:
+def _in_air(state: EvaluatedSetting) -> EvaluatedSetting:
     """A state that loads nothing."""
     return replace(state, motor_power=0.0, cutting_force=0.0, roughness=None, loads=())
 
 
-def _solved(untouched: Advice, cut: Cut, problem: Problem, asked: Asked) -> Advice:
+def _solved(untouched: Advice, cut: Cut, problem: Problem, asked: AdviceContext) -> Advice:
     """Advice from the best setting."""
     at, task = asked.at, asked.task
     told = best_of(cut, problem, asked)
@@ -272,7 +262,7 @@ def _solved(untouched: Advice, cut: Cut, problem: Problem, asked: Asked) -> Advi
         untouched,
         cut=told.cut,
         stability=stability_of(told.cut, at),
-        status=Status.ADVISED,
+        status=AdviceStatus.ADVISED,
         reason=reason_of(after, solution.holding),
         plunge_reason=plunge_reason(after),
         after=after,
@@ -288,7 +278,7 @@ def _solved(untouched: Advice, cut: Cut, problem: Problem, asked: Asked) -> Advi
 
 
 def _saving_of_free_speed(
-    cut: Cut, at: Conditions, task: Task, solution: exact.Solution
+    cut: Cut, at: CuttingConditions, task: OptimisationTask, solution: exact.Solution
 ) -> float:
     """Seconds that a free spindle speed would save, on the same path."""
     if Free.SPEED in task.free:
@@ -300,20 +290,20 @@ def _saving_of_free_speed(
         return 0.0
 
 
-def _is_cut_with_feed(step: Workingstep) -> bool:
+def _is_cut_with_feed(step: ResolvedWorkingstep) -> bool:
     """Whether the feed may be chosen at all: a thread's feed is its pitch."""
     return not any(word in step.operation_type for word in ("tapping", "thread"))
 
 
 def _conditions(
     program: Program,
-    step: Workingstep,
+    step: ResolvedWorkingstep,
     cut: Cut,
     *,
     machine: Machine,
     material: MaterialMatch,
-    task: Task,
-) -> tuple[Conditions, list[Finding]]:
+    task: OptimisationTask,
+) -> tuple[CuttingConditions, list[Finding]]:
     """Grade, cutting material, roughness and permitted deflection of a cut."""
     findings: list[Finding] = []
     cutting_material = edge_material(cut.tool.edge_material)
@@ -322,7 +312,7 @@ def _conditions(
         text = f"tool '{cut.tool.id}' names no cutting material: carbide assumed"
         findings.append(program.finding(Severity.NOTE, text, step.tool_ref))
     work = material.material
-    grade: Grade | None = None
+    grade: ToolGrade | None = None
     if work.iso_group:
         try:
             grade = find_grade(cut.tool_kind, cutting_material, work.iso_group)
@@ -342,7 +332,7 @@ def _conditions(
         text = f"k_c × {factor:.4g} for tool '{cut.tool.id}'"
         findings.append(program.finding(Severity.NOTE, text, step.tool_ref))
     return (
-        Conditions(
+        CuttingConditions(
             machine=machine,
             material=work,
             cutting_material=cutting_material,
@@ -358,7 +348,11 @@ def _conditions(
 
 
 def _roughness(
-    program: Program, step: Workingstep, cut: Cut, task: Task, findings: list[Finding]
+    program: Program,
+    step: ResolvedWorkingstep,
+    cut: Cut,
+    task: OptimisationTask,
+    findings: list[Finding],
 ) -> float | None:
     """Ra in mm that this workingstep must keep: asked for, in the file, or QC's default."""
     if not cut.is_finishing:

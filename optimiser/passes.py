@@ -8,16 +8,15 @@ from dataclasses import dataclass, replace
 from math import inf
 
 from optimiser import workingstep as exact
-from optimiser.conditions import Conditions
+from optimiser.conditions import CuttingConditions
 from optimiser.cut import Cut
 from optimiser.errors import Infeasible
-from optimiser.formulate import Task, problem_of
-from optimiser.limit import LimitName
+from optimiser.formulate import OptimisationTask, problem_of
 from optimiser.modes import Free
 from optimiser.plunge_feed import with_plunge_feed
-from optimiser.problem import Problem, Setting
+from optimiser.problem import LimitName, Problem, Setting
 from optimiser.source import CutSource
-from stepnc_model.program import Workingstep
+from stepnc_model.program import ResolvedWorkingstep
 
 ROUNDS = 4
 """greatest number of paths tried for the depth of one workingstep"""
@@ -31,12 +30,12 @@ limits stands, for a path of hundreds of levels takes seconds and nobody asked f
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Asked:
+class AdviceContext:
     """One workingstep and everything that its advice hangs on besides its cut."""
 
-    step: Workingstep
-    at: Conditions
-    task: Task
+    step: ResolvedWorkingstep
+    at: CuttingConditions
+    task: OptimisationTask
     cuts: CutSource
 
 
@@ -49,7 +48,7 @@ class Optimum:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Told:
+class PassCountOptimum:
     """The best of a number of passes; the cut's numbers are those of the path that results."""
 
     cut: Cut
@@ -57,14 +56,14 @@ class Told:
     optimum: Optimum
 
 
-def best_of(cut: Cut, problem: Problem, asked: Asked) -> Told:
+def best_of(cut: Cut, problem: Problem, asked: AdviceContext) -> PassCountOptimum:
     """The best number of passes, each told by its own path.
 
     The optimum of what was told last says which number to try next, until it says one that was
     tried, or one that by its own word is no better than the best so far: that path is not made.
     The programmed number is tried first, so that advice that was taken is given again.
     """
-    told: dict[int, Told] = {}
+    told: dict[int, PassCountOptimum] = {}
     tried: set[int] = set()
     given = problem.programmed.passes
     passes = given
@@ -98,12 +97,12 @@ def best_of(cut: Cut, problem: Problem, asked: Asked) -> Told:
     return best
 
 
-def _cost(told: Told, task: Task) -> float:
+def _cost(told: PassCountOptimum, task: OptimisationTask) -> float:
     """Seconds or joules of a number of passes, by its own path."""
     return exact.cost_function(told.problem, task.mode)(told.optimum.solution.setting)
 
 
-def _told(cut: Cut, problem: Problem, passes: int, asked: Asked) -> Told:
+def _told(cut: Cut, problem: Problem, passes: int, asked: AdviceContext) -> PassCountOptimum:
     """The best setting in a number of passes: limits first, then the time at that feed."""
     given, step, task = cut.programmed, asked.step, asked.task
     depth = given.depth if passes == given.passes else problem.depth_at(passes)
@@ -117,17 +116,17 @@ def _told(cut: Cut, problem: Problem, passes: int, asked: Asked) -> Told:
     if task.tool_change or again.solution.setting != setting:
         again = replace(optimum, solution=exact.settled(problem, setting))
     again = replace(again, solution=replace(again.solution, setting=plunging))
-    return Told(cut=cut, problem=problem, optimum=again)
+    return PassCountOptimum(cut=cut, problem=problem, optimum=again)
 
 
-def _with_plunge(cut: Cut, setting: Setting, asked: Asked) -> Setting:
+def _with_plunge(cut: Cut, setting: Setting, asked: AdviceContext) -> Setting:
     """The setting with the best plunge feed, where feeds are free."""
     if Free.FEED not in asked.task.free:
         return replace(setting, plunge_feed=cut.programmed.plunge_feed)
     return with_plunge_feed(cut, asked.at, setting)
 
 
-def _with_passes(problem: Problem, passes: int, task: Task) -> Optimum:
+def _with_passes(problem: Problem, passes: int, task: OptimisationTask) -> Optimum:
     """The optimum in a number of passes."""
     free = _optimum(problem, task)
     given = problem.programmed
@@ -140,7 +139,7 @@ def _with_passes(problem: Problem, passes: int, task: Task) -> Optimum:
     return _optimum(held, task)
 
 
-def _optimum(problem: Problem, task: Task) -> Optimum:
+def _optimum(problem: Problem, task: OptimisationTask) -> Optimum:
     """The exact optimum, or that of the geometric program when tools wear out."""
     if task.tool_change == 0.0:
         return Optimum(solution=exact.solve(problem, task.mode))

@@ -1,8 +1,8 @@
-"""What a mill meets where it goes down into the material: straight, or on a slant.
+"""Engagement of a mill that goes down into the material: straight, or on a slant.
 
-A way down that the path makes itself may run at a feed of its own (:class:`WayIn`). A way down
-that the file draws runs as the file says, at the feed of the cut, so what it takes holds for
-the whole cut (:func:`plunge_of`).
+A way down that the path makes itself may run at a feed of its own
+(:class:`PlungeEngagement`). A way down that the file draws runs as the file says, at the feed
+of the cut, so what it takes holds for the whole cut (:func:`plunge_of`).
 
 Straight down the mill cuts as a drill does, with lips square to its axis, in the section that
 was met. On a ramp, a helix or a zigzag it mills as along a pass. Units mm.
@@ -13,12 +13,11 @@ from math import pi
 
 import numpy as np
 
-from optimiser.cut import Cut, CutKind, WayIn
-from optimiser.hardest import Bending, Met, bending, with_hardest
+from optimiser.cut import Cut, CutKind, PlungeEngagement
+from optimiser.hardest import Bending, PathContacts, bending, with_hardest
 from simulator.motion.segments import Bools, Floats, Ints, Segments
-from simulator.motion.tool_path import Run, follows, plunges
-from simulator.removal.stations import CutKind as StationKind
-from simulator.removal.stations import Stations
+from simulator.motion.tool_path import ToolPathRun, follows, plunges
+from simulator.removal.stations import StationKind, Stations
 from simulator.spec import Kienzle
 from stepnc_model.entities.entity import Entity
 from stepnc_model.part21.values import Ref
@@ -33,63 +32,65 @@ LEAST_SHARE = 0.02
 """of the tool's section, over a stretch that begins above the material; less is a sliver"""
 
 
-def is_fed(run: Run, technology: Ref[Entity], cut: Cut) -> Bools:
+def is_fed(run: ToolPathRun, technology: Ref[Entity], cut: Cut) -> Bools:
     """(N,) which segments run at the feed of the cut, and none of its own."""
     bound = follows(run, technology)
     return bound if cut.way_in is None else bound & ~plunges(run)
 
 
-def plunge_feed_of(run: Run, cut: Cut) -> float:
+def plunge_feed_of(run: ToolPathRun, cut: Cut) -> float:
     """Feed per tooth on the ways down as the file has it, mm."""
     own = [move.feed.per_revolution for move in run.moves if move.feed and move.feed.is_plunge]
     per_turn = own[0] if own else None
     return cut.programmed.feed if per_turn is None else per_turn / cut.tool.teeth
 
 
-def along_passes(run: Run, met: Met) -> Met:
-    """What was met besides the ways down that may have a feed of their own."""
+def along_passes(run: ToolPathRun, met: PathContacts) -> PathContacts:
+    """Contacts without those on ways down that may have a feed of their own."""
     down = plunges(run)
     return met.where(~down[met.stations.segment]) if down.any() else met
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Slope:
-    """What was milled on ways down that may have a feed of their own."""
+class PlungeCuts:
+    """Milling contacts on ways down that may have a feed of their own."""
 
-    met: Met
+    met: PathContacts
     bent: Bending
     """by that"""
 
 
-def down_ramps(cut: Cut, run: Run, met: Met, kienzle: Kienzle) -> Slope | None:
-    """What was milled down ramps of a path; None: nothing."""
+def down_ramps(
+    cut: Cut, run: ToolPathRun, met: PathContacts, kienzle: Kienzle
+) -> PlungeCuts | None:
+    """Milling contacts on the ramps of a path; None: there are none."""
     stations = met.stations
     rows = plunges(run)[stations.segment] & (stations.kind == StationKind.MILLING)
     if not rows.any():
         return None
     down = met.where(rows)
-    return Slope(met=down, bent=bending(cut, down.stations, kienzle))
+    return PlungeCuts(met=down, bent=bending(cut, down.stations, kienzle))
 
 
 def way_in_of(
     cut: Cut,
-    met: Met,
-    run: Run,
+    met: PathContacts,
+    run: ToolPathRun,
     *,
-    slope: Slope | None,
+    slope: PlungeCuts | None,
     kienzle: Kienzle,
     depth: float,
-) -> WayIn | None:
-    """What is met on the ways down whose feed may be their own; None where nothing is.
+) -> PlungeEngagement | None:
+    """Engagement on ways down that may have a feed of their own; None where there is none.
 
     Parameters
     ----------
     cut : Cut
-    met : Met
+    met : PathContacts
         What its path met.
-    run : Run
+    run : ToolPathRun
         Of its path.
-    slope : Slope or None
+    slope : PlungeCuts or None
         Of :func:`down_ramps`.
     kienzle : Kienzle
     depth : float, mm
@@ -106,7 +107,7 @@ def way_in_of(
         as_met = replace(cut.bare, is_depth_free=False)
         ramp = with_hardest(as_met, slope.met, kienzle, depth=depth, bent=slope.bent)
         sine = float(_sine(run.segments)[slope.met.stations.segment].max())
-    return WayIn(
+    return PlungeEngagement(
         drilled=tuple(_drilled(cut, stations, row) for row in _hardest(stations, straight)),
         ramp=ramp,
         sine=sine,
@@ -151,13 +152,13 @@ def _is_core(cut: Cut, stations: Stations) -> Bools:
     return core
 
 
-def plunge_of(cut: Cut, met: Met, is_bound: Bools) -> Cut | None:
+def plunge_of(cut: Cut, met: PathContacts, is_bound: Bools) -> Cut | None:
     """The hardest plunge of a milling cut, as a drill would make it; None where there is none.
 
     Parameters
     ----------
     cut : Cut
-    met : Met
+    met : PathContacts
         What its path met.
     is_bound : (N,) array
         Which segments of the path run at the feed of the cut.

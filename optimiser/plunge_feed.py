@@ -2,12 +2,16 @@
 
 Straight down the mill is a drill with flat lips: thrust, torque and power are those of a drill,
 and the feed per tooth is a share of the catalogue's, since near the axis the edges hardly move.
-A cutter whose edges reach the axis takes half of it; one of which nobody says so a quarter.
+A cutter whose edges reach the axis takes half of it, one of which this is unknown a quarter.
 
 On a ramp at the angle α the part ``f·sin α`` along the axis is a plunge, and the rest mills as
 a pass does, at the engagement that is met. Time and energy fall with the feed, so at a spindle
 speed the best plunge feed is the least of its caps in every mode: a plunge leaves no surface.
 The speed is chosen for the passes.
+
+Whether a mill may go straight down into the solid depends on its edges: where they end short of
+the axis they leave a core that its face presses on. ISO 14649-111 has no attribute for it, so a
+tool table says it; of some bodies their form does.
 
 References
 ----------
@@ -20,9 +24,8 @@ from dataclasses import replace
 
 from optimiser import loads
 from optimiser.chip_load import catalogue_feed
-from optimiser.conditions import Conditions
+from optimiser.conditions import CuttingConditions
 from optimiser.cut import Cut
-from optimiser.limit import Limit, LimitName, Monomial, Sense
 from optimiser.limits import (
     PLUNGE_FEED_RATIO,
     drill_point,
@@ -33,22 +36,24 @@ from optimiser.limits import (
     straight_down,
     tool_limits,
 )
-from optimiser.problem import Setting
+from optimiser.problem import BoundSide, Limit, LimitName, Monomial, Setting
+from stepnc_model.errors import Finding, Severity
+from stepnc_model.program import Program, ResolvedWorkingstep
 
 CAUTIOUS_FEED_RATIO = 0.25
-"""the same for a cutter of which nobody says that it cuts over centre, [1]"""
+"""the same where it is unknown whether the cutter cuts over centre, [1]"""
 
 DOWN_A_RAMP = "down the ramp"
 """how limits of a ramp are told from those of a pass"""
 
 
-def plunge_limits(cut: Cut, at: Conditions, speed: float) -> tuple[Limit, ...]:
+def plunge_limits(cut: Cut, at: CuttingConditions, speed: float) -> tuple[Limit, ...]:
     """Limits of the plunge feed at one spindle speed in rev/s; none where nothing is met."""
     found = (*_straight(cut, at, speed), *_ramp(cut, at, speed))
     return tuple(
         limit.with_safety(at.safety_factor)
         for limit in found
-        if limit.sense is Sense.AT_MOST and limit.load.feed_exponent > 0.0
+        if limit.sense is BoundSide.AT_MOST and limit.load.feed_exponent > 0.0
     )
 
 
@@ -57,7 +62,7 @@ def holding(limits: tuple[Limit, ...], setting: Setting) -> Limit:
     return min(limits, key=lambda each: each.feed_at_bound(setting.depth, setting.speed))
 
 
-def with_plunge_feed(cut: Cut, at: Conditions, setting: Setting) -> Setting:
+def with_plunge_feed(cut: Cut, at: CuttingConditions, setting: Setting) -> Setting:
     """A setting with the greatest plunge feed, where the cut has one of its own."""
     limits = plunge_limits(cut, at, setting.speed)
     if not limits:
@@ -66,7 +71,7 @@ def with_plunge_feed(cut: Cut, at: Conditions, setting: Setting) -> Setting:
     return replace(setting, plunge_feed=best)
 
 
-def _straight(cut: Cut, at: Conditions, speed: float) -> Iterator[Limit]:
+def _straight(cut: Cut, at: CuttingConditions, speed: float) -> Iterator[Limit]:
     """Limits of what is drilled."""
     if cut.way_in is None or not cut.way_in.drilled:
         return
@@ -77,7 +82,7 @@ def _straight(cut: Cut, at: Conditions, speed: float) -> Iterator[Limit]:
             yield straight_down(limit)
 
 
-def _ramp(cut: Cut, at: Conditions, speed: float) -> Iterator[Limit]:
+def _ramp(cut: Cut, at: CuttingConditions, speed: float) -> Iterator[Limit]:
     """Limits of what a ramp mills, and of the plunge in it."""
     if cut.way_in is None or cut.way_in.ramp is None:
         return
@@ -91,16 +96,16 @@ def _ramp(cut: Cut, at: Conditions, speed: float) -> Iterator[Limit]:
         yield replace(limit, label=f"{limit.words} {DOWN_A_RAMP}")
 
 
-def _spindle_limits(cut: Cut, at: Conditions, speed: float) -> tuple[Limit, ...]:
+def _spindle_limits(cut: Cut, at: CuttingConditions, speed: float) -> tuple[Limit, ...]:
     return spindle_limits(cut, at, segment_at(at, speed))
 
 
-def _feed_ratio(at: Conditions) -> float:
+def _feed_ratio(at: CuttingConditions) -> float:
     """Feed per tooth along the axis over that of the catalogue."""
     return PLUNGE_FEED_RATIO if at.centre_cutting else CAUTIOUS_FEED_RATIO
 
 
-def _feed_limit(cut: Cut, at: Conditions, *, ratio: float, share: float) -> Limit:
+def _feed_limit(cut: Cut, at: CuttingConditions, *, ratio: float, share: float) -> Limit:
     """Feed per tooth along the axis, which is a share of that along the path.
 
     Where nothing says what feed the mill bears along the pass, the programmed one is all that
@@ -121,7 +126,7 @@ def _feed_limit(cut: Cut, at: Conditions, *, ratio: float, share: float) -> Limi
     )
 
 
-def _thrust_limits(cut: Cut, at: Conditions, sine: float) -> Iterator[Limit]:
+def _thrust_limits(cut: Cut, at: CuttingConditions, sine: float) -> Iterator[Limit]:
     """Thrust of a plunge into the solid at the part of the feed along the axis."""
     if at.machine.max_cutting_force is None:
         return
@@ -135,3 +140,45 @@ def _thrust_limits(cut: Cut, at: Conditions, sine: float) -> Iterator[Limit]:
         unit="N",
         step=100.0,
     )
+
+
+RAMPS = "plunge_ramp, plunge_helix or plunge_zigzag"
+
+
+def goes_into_solid(cut: Cut | None) -> bool:
+    """Whether material under the axis of a mill is met straight down."""
+    if cut is None:
+        return False
+    return cut.plunge is not None or (cut.way_in is not None and cut.way_in.reaches_axis)
+
+
+def plunge_fault(cut: Cut | None, at: CuttingConditions, *, is_allowed: bool) -> str:
+    """Why a cut may not go straight down as it does; empty where it may."""
+    if is_allowed or at.centre_cutting is not False or not goes_into_solid(cut):
+        return ""
+    return "goes straight down into the solid with a tool that does not cut over centre"
+
+
+def plunge_findings(
+    program: Program,
+    step: ResolvedWorkingstep,
+    cut: Cut | None,
+    at: CuttingConditions,
+    *,
+    is_allowed: bool,
+) -> list[Finding]:
+    """Finding on a plunge into the solid; the same words for every unknown tool."""
+    if cut is None or not goes_into_solid(cut):
+        return []
+    tool = f"tool '{cut.tool.id}'"
+    if at.centre_cutting is None:
+        text = (
+            f"{tool} goes straight down into the solid, and nothing says whether it cuts over "
+            f"centre: a ramp ({RAMPS}) spares it, centre_cutting in a tool table settles it"
+        )
+        return [program.finding(Severity.WARNING, text, step.tool_ref)]
+    if at.centre_cutting:
+        return []
+    severity = Severity.WARNING if is_allowed else Severity.ERROR
+    text = f"{tool} does not cut over centre and goes straight down into the solid: take a ramp"
+    return [program.finding(severity, f"{text} ({RAMPS})", step.operation_ref, "approach")]

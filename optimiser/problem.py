@@ -2,14 +2,271 @@
 
 Choose the feed per tooth f, the integer number of passes k (depth of one pass a = H/k) and,
 when it is free, the spindle speed n. Units: mm, s, W, J, rev/s.
+
+A limit of the cut is all that the mathematics sees of machining. Its load is ``(c·f^α + e) ·
+g(a) · n^γ``, where f is the feed per tooth (per revolution when nothing has teeth), a the depth
+of one pass and n the spindle speed. Kienzle forces give ``e = 0``; the edge term of the
+linear-edge model and the empirical floor of the roughness are ``e``. A limit holds a load below
+(or above) ``b·n^δ``; a stretch of the spindle's power curve gives ``δ``. A bound that is no
+power of the speed (the lobes of stability) is ``b`` times a :class:`SpeedCurve`; only a load of
+the depth alone may have one.
+
+The load has the limit's own canonical unit.
 """
 
-from collections.abc import Iterator
+from bisect import bisect_right
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from enum import StrEnum
 from itertools import pairwise
 from math import ceil, inf
 
-from optimiser.limit import ROUNDING, Limit, Monomial
+
+class LimitName(StrEnum):
+    """The names by which a limit is told to the user."""
+
+    MOTOR_POWER = "motor_power"
+    SPINDLE_TORQUE = "spindle_torque"
+    CUTTING_FORCE = "cutting_force"
+    TOOL_DEFLECTION = "tool_deflection"
+    SHANK_STRENGTH = "shank_strength"
+    FEED_PER_TOOTH = "feed_per_tooth"
+    CHIP_THICKNESS = "chip_thickness"
+    CUTTING_SPEED = "cutting_speed"
+    FEED_MECHANISM = "feed_mechanism"
+    SPINDLE_SPEED = "spindle_speed"
+    AXIAL_DEPTH = "axial_depth"
+    STABILITY = "stability"
+    CHUCK_TORQUE = "chuck_torque"
+    TILTING_MOMENT = "tilting_moment"
+    BAR_DEFLECTION = "bar_deflection"
+    HOLDING_FORCE = "holding_force"
+    ROUGHNESS = "roughness"
+    PROGRAMMED_FEED = "programmed_feed"
+
+    @property
+    def words(self) -> str:
+        """The name as a sentence uses it."""
+        return self.value.replace("_", " ")
+
+
+class BoundSide(StrEnum):
+    """On which side of its bound a load must stay."""
+
+    AT_MOST = "at most"
+    AT_LEAST = "at least"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Monomial:
+    """``(c·f^α + e) · g(a) · n^γ`` with c > 0, e ≥ 0, α ≥ 0; g(a) is a^β, β ≥ 0, or a curve."""
+
+    coefficient: float
+    offset: float = 0.0
+    feed_exponent: float = 0.0
+    depth_exponent: float = 0.0
+    speed_exponent: float = 0.0
+    curve: Callable[[float], float] | None = None
+    """Curve, g where it is no power of the depth, as along a helix; positive"""
+
+    def depth_factor(self, depth: float) -> float:
+        """``g(a)`` at a depth in mm."""
+        return depth**self.depth_exponent if self.curve is None else self.curve(depth)
+
+    @property
+    def knows_depth(self) -> bool:
+        """Whether the load changes with the depth."""
+        return self.depth_exponent != 0.0 or self.curve is not None
+
+    def value(self, feed: float, depth: float, speed: float) -> float:
+        """Value at one feed per tooth (mm), depth (mm) and spindle speed (rev/s)."""
+        return float(
+            (self.coefficient * feed**self.feed_exponent + self.offset)
+            * self.depth_factor(depth)
+            * speed**self.speed_exponent
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SpeedCurve:
+    """A bound by spindle speed: straight between its points, none below the first."""
+
+    speeds: tuple[float, ...]
+    """Speeds, rev/s, ascending, at least two"""
+    bounds: tuple[float, ...]
+    """positive; the last one holds above the last speed"""
+
+    def at(self, speed: float) -> float:
+        """Bound at a speed; infinite below the first point."""
+        if speed < self.speeds[0]:
+            return inf
+        row = bisect_right(self.speeds, speed) - 1
+        if row + 1 >= len(self.speeds):
+            return self.bounds[-1]
+        return self._between(row, speed)
+
+    def peak(self, low: float, high: float) -> float:
+        """Speed of the greatest bound in a range, rev/s."""
+        inner = [speed for speed in self.speeds if low < speed < high]
+        return max((low, *inner, high), key=self.at)
+
+    def allowing(self, load: float, low: float, high: float) -> Iterator[tuple[float, float]]:
+        """Ranges of speed within a range whose bound is at least a load, ascending."""
+        inner = [speed for speed in self.speeds if low < speed < high]
+        start: float | None = low if self.at(low) >= load else None
+        for slower, faster in pairwise((low, *inner, high)):
+            before, after = self.at(slower), self.at(faster)
+            if before >= load > after:
+                # Below its first point the curve has no bound, up to a step.
+                end = faster if before == inf else _met(slower, faster, before, after, load)
+                yield (slower if start is None else start), end
+                start = None
+            elif after >= load > before:
+                start = _met(slower, faster, before, after, load)
+        if start is not None:
+            yield start, high
+
+    def _between(self, row: int, speed: float) -> float:
+        """Bound on the straight line behind a point."""
+        low, high = self.speeds[row], self.speeds[row + 1]
+        share = (speed - low) / (high - low)
+        return self.bounds[row] + share * (self.bounds[row + 1] - self.bounds[row])
+
+
+def _met(slower: float, faster: float, before: float, after: float, load: float) -> float:
+    """Speed at which a straight bound equals a load."""
+    return slower + (faster - slower) * (load - before) / (after - before)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Limit:
+    """A load at most (or at least) ``b·n^δ``, b > 0."""
+
+    name: LimitName
+    load: Monomial
+    bound: float
+    """Bound of the nominal load: what must not be passed, over the safety factor"""
+    unit: str
+    """unit in which the user reads load and bound"""
+    scale: float = 1.0
+    """user's number = canonical number · scale"""
+    step: float = 1.0
+    """what "one more" of the bound means to the user, in the user's unit"""
+    sense: BoundSide = BoundSide.AT_MOST
+    bound_speed_exponent: float = 0.0
+    label: str = ""
+    """what the user reads instead of the name"""
+    origin: str = ""
+    """where the bound comes from, as a sentence goes on; empty where the name tells"""
+    curve: SpeedCurve | None = None
+    """factor on the bound by spindle speed"""
+    safety_factor: float = 1.0
+    """load at the quantile of k_c that is planned with, over the nominal load"""
+
+    @property
+    def words(self) -> str:
+        """The limit as a sentence uses it."""
+        return self.label or self.name.words
+
+    def bound_at(self, speed: float) -> float:
+        """Bound at one spindle speed, canonical unit; infinite where its curve has none."""
+        factor = 1.0 if self.curve is None else self.curve.at(speed)
+        return float(factor * self.bound * speed**self.bound_speed_exponent)
+
+    def full_bound_at(self, speed: float) -> float:
+        """Bound at one spindle speed, canonical unit."""
+        return self.safety_factor * self.bound_at(speed)
+
+    def told(self, load: float) -> str:
+        """A nominal load as a sentence uses it."""
+        words = f" ({self.safety_words})" if self.safety_words else ""
+        return f"{load * self.scale:.4g} {self.unit}{words}"
+
+    @property
+    def safety_words(self) -> str:
+        """By what a nominal load is raised before it meets its bound; empty for nothing."""
+        if self.safety_factor == 1.0:
+            return ""
+        return f"× {self.safety_factor:.4g} for the spread of k_c"
+
+    def told_bound(self, speed: float) -> str:
+        """Bound as part of a sentence."""
+        return f"{self.full_bound_at(speed) * self.scale:.4g} {self.unit}"
+
+    def with_safety(self, factor: float) -> "Limit":
+        """The same limit with a safety factor, where its load scales with k_c."""
+        if self.name not in SCALES_WITH_FORCE:
+            return self
+        return replace(self, bound=self.bound / factor, safety_factor=factor)
+
+    @property
+    def without_safety(self) -> "Limit":
+        """The same limit of the nominal load."""
+        return replace(self, bound=self.bound * self.safety_factor, safety_factor=1.0)
+
+    @property
+    def is_of_depth(self) -> bool:
+        """Whether it bounds the depth of a pass and nothing else."""
+        return self.load.feed_exponent == 0.0 and self.load.depth_exponent > 0.0
+
+    def greatest_depth(self, speed: float) -> float:
+        """Depth at which the load of a depth limit reaches its bound, mm."""
+        ratio = self.bound_at(speed) / self.load.coefficient
+        return float(ratio ** (1.0 / self.load.depth_exponent))
+
+    def feed_at_bound(self, depth: float, speed: float) -> float:
+        """Feed per tooth at which load and bound are equal, mm.
+
+        ``f = ((b·n^δ / (a^β·n^γ) − e) / c)^(1/α)``; infinite when the load does not depend on
+        the feed, zero when the offset alone passes the bound.
+        """
+        load = self.load
+        if load.feed_exponent == 0.0:
+            return inf
+        rest = (
+            self.bound
+            * speed ** (self.bound_speed_exponent - load.speed_exponent)
+            / load.depth_factor(depth)
+            - load.offset
+        ) / load.coefficient
+        return float(rest ** (1.0 / load.feed_exponent)) if rest > 0.0 else 0.0
+
+    def at_depth(self, depth: float) -> "Limit":
+        """The same limit for a cut whose depth is given and not chosen."""
+        factor = self.load.depth_factor(depth)
+        load = replace(
+            self.load,
+            coefficient=self.load.coefficient * factor,
+            offset=self.load.offset * factor,
+            depth_exponent=0.0,
+            curve=None,
+        )
+        return replace(self, load=load)
+
+    def holds(self, feed: float, depth: float, speed: float) -> bool:
+        """Whether the load keeps its bound, up to rounding."""
+        load, bound = self.load.value(feed, depth, speed), self.bound_at(speed)
+        slack = bound - load if self.sense is BoundSide.AT_MOST else load - bound
+        return slack >= -ROUNDING * bound
+
+
+SCALES_WITH_FORCE = frozenset({
+    LimitName.MOTOR_POWER,
+    LimitName.SPINDLE_TORQUE,
+    LimitName.CUTTING_FORCE,
+    LimitName.TOOL_DEFLECTION,
+    LimitName.SHANK_STRENGTH,
+    LimitName.STABILITY,
+    LimitName.CHUCK_TORQUE,
+    LimitName.TILTING_MOMENT,
+    LimitName.BAR_DEFLECTION,
+    LimitName.HOLDING_FORCE,
+})
+"""limits that k_c moves: loads in proportion to it, and the stable depth that falls with it"""
+
+ROUNDING = 1e-9
+"""relative slack within which a load counts as being at its bound"""
+
 
 DIGITS = 12
 """significant digits of a depth"""
@@ -20,15 +277,15 @@ INSIDE = 1e-6
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Setting:
-    """What a workingstep runs with."""
+    """Setting of a workingstep: feed, depth, passes and speed."""
 
     feed: float
-    """mm per tooth, or per revolution when the tool has no teeth to count"""
+    """Feed, mm per tooth, or per revolution when the tool has no teeth to count"""
     depth: float
-    """mm, one pass"""
+    """Depth, mm, one pass"""
     passes: int
     speed: float
-    """rev/s"""
+    """Speed, rev/s"""
     plunge_feed: float | None = None
     """mm per tooth on the way down into the material; None: there is none of its own. No cost
     and no limit of the problem knows it: it is the best for the speed"""
@@ -45,20 +302,20 @@ class Cost:
     """
 
     length: float
-    """mm at cutting feed in one pass, approach and overrun included"""
+    """Length, mm at cutting feed in one pass, approach and overrun included"""
     teeth: int
     motor_power: Monomial
-    """W drawn by the cut"""
+    """Motor power, W drawn by the cut"""
     once_length: float = 0.0
-    """mm at cutting feed whatever the number of passes"""
+    """Once length, mm at cutting feed whatever the number of passes"""
     link_time: float = 0.0
-    """s in one pass not at cutting feed"""
+    """Link time, s in one pass not at cutting feed"""
     standby_power: float = 0.0
-    """W while the workingstep runs"""
+    """Standby power, W while the workingstep runs"""
     standby_power_per_speed: float = 0.0
-    """W per rev/s, while cutting"""
+    """Standby power per speed, W per rev/s, while cutting"""
     tool_change: float = 0.0
-    """s for one change of a worn tool"""
+    """Tool change, s for one change of a worn tool"""
     wear_rate: Monomial | None = None
     """tool lives used in one second of cutting"""
 

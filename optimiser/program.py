@@ -19,9 +19,8 @@ import cvxpy as cp
 
 from optimiser.errors import Infeasible, OptimisationError, SolverFailed
 from optimiser.least_cost import least_cost
-from optimiser.limit import Limit, LimitName, Monomial, Sense
 from optimiser.modes import Mode
-from optimiser.problem import Problem, Setting
+from optimiser.problem import BoundSide, Limit, LimitName, Monomial, Problem, Setting
 from optimiser.workingstep import TIE, conflict, is_posynomial, limits_at
 
 ROWS = (8, 24)
@@ -41,18 +40,18 @@ TERMS = 4
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Optimum:
-    """What the solver found for one number of passes."""
+class SolverOptimum:
+    """Optimum of the solver for one number of passes."""
 
     setting: Setting
     cost: float
-    """s or J"""
+    """Cost, s or J"""
     prices: dict[LimitName, float]
     """−d ln(cost) / d ln(bound) of each limit, dimensionless; zero when it does not bind"""
 
 
 @dataclass(frozen=True, slots=True)
-class _Row:
+class _LimitRow:
     """Parameters of one limit: ``c·f^α·n^γ + e·n^γ ≤ 1``."""
 
     coefficient: cp.Parameter
@@ -63,7 +62,7 @@ class _Row:
 
 @dataclass(frozen=True, slots=True)
 class _Unit:
-    """What one of the program's variables stands for, mm and rev/s, so that it is of order one.
+    """Units of the program's variables, in mm and rev/s, which make them of order one.
 
     A fixed speed leaves the program by exponents of zero: an interior point needs an inside.
     """
@@ -85,7 +84,9 @@ class GeometricProgram:
             (cp.Parameter(pos=True), cp.Parameter(), cp.Parameter()) for _ in range(TERMS)
         ]
         self._rows = [
-            _Row(cp.Parameter(pos=True), cp.Parameter(pos=True), cp.Parameter(), cp.Parameter())
+            _LimitRow(
+                cp.Parameter(pos=True), cp.Parameter(pos=True), cp.Parameter(), cp.Parameter()
+            )
             for _ in range(rows)
         ]
         cost = sum(
@@ -109,7 +110,7 @@ class GeometricProgram:
 
     def solve(
         self, problem: Problem, mode: Mode, *, passes: int, depth: float, stretch: int = 0
-    ) -> Optimum:
+    ) -> SolverOptimum:
         """Optimum for one number of passes on one stretch of the spindle's curve.
 
         Parameters
@@ -124,7 +125,7 @@ class GeometricProgram:
 
         Returns
         -------
-        Optimum
+        SolverOptimum
 
         Raises
         ------
@@ -162,7 +163,7 @@ class GeometricProgram:
             limit.name: float(held.dual_value) / rest * programmed / cost
             for limit, held, rest in zip(limits, self._held, rests, strict=False)
         }
-        return Optimum(setting=setting, cost=cost, prices=prices)
+        return SolverOptimum(setting=setting, cost=cost, prices=prices)
 
     def _attempt(self) -> str:
         """Solve what the parameters say; the solver's own word for the outcome."""
@@ -188,7 +189,7 @@ class GeometricProgram:
         """
         rests = []
         for row, limit in zip(self._rows, limits, strict=False):
-            load, sign = limit.load, 1.0 if limit.sense is Sense.AT_MOST else -1.0
+            load, sign = limit.load, 1.0 if limit.sense is BoundSide.AT_MOST else -1.0
             exponent = load.speed_exponent - limit.bound_speed_exponent
             scale = load.depth_factor(depth) * unit.speed**exponent / limit.bound
             chip = unit.feed**load.feed_exponent
@@ -256,7 +257,7 @@ def _rows_of(problem: Problem, stretch: int) -> list[Limit]:
     ]
 
 
-def solve(problem: Problem, mode: Mode) -> Optimum:
+def solve(problem: Problem, mode: Mode) -> SolverOptimum:
     """Optimum over all numbers of passes and all stretches of the spindle's curve.
 
     Where the cost is convex in the logarithm of the number of passes the search ends at the
@@ -269,14 +270,14 @@ def solve(problem: Problem, mode: Mode) -> Optimum:
 
     Returns
     -------
-    Optimum
+    SolverOptimum
 
     Raises
     ------
     Infeasible
         When no number of passes keeps all limits.
     """
-    best: Optimum | None = None
+    best: SolverOptimum | None = None
     is_convex = is_posynomial(problem) and not problem.is_branched
     bound = least_cost(problem, mode)
     for passes in range(problem.deepest(), problem.passes[1] + 1):
@@ -296,21 +297,23 @@ def solve(problem: Problem, mode: Mode) -> Optimum:
     return best
 
 
-def snapped(problem: Problem, optimum: Optimum) -> Setting:
+def snapped(problem: Problem, optimum: SolverOptimum) -> Setting:
     """The solver's setting with its feed put on the nearest cap: feasible to the last digit."""
     at = optimum.setting
     speed = min(max(at.speed, problem.speeds[0]), problem.speeds[-1])
     caps = [
         limit.feed_at_bound(at.depth, speed)
         for limit in limits_at(problem, speed)
-        if limit.sense is Sense.AT_MOST
+        if limit.sense is BoundSide.AT_MOST
     ]
     return replace(at, feed=min(caps), speed=speed)
 
 
-def _best_stretch(problem: Problem, mode: Mode, *, passes: int, depth: float) -> Optimum | None:
+def _best_stretch(
+    problem: Problem, mode: Mode, *, passes: int, depth: float
+) -> SolverOptimum | None:
     """Best of the stretches of the spindle's curve, or None when none is feasible."""
-    best: Optimum | None = None
+    best: SolverOptimum | None = None
     parts = [problem] if len(problem.speeds) == 1 else problem.parts(depth)
     for part in parts:
         try:

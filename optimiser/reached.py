@@ -1,4 +1,4 @@
-"""What the greatest forces of a path become because its axes are slower there than the feed.
+"""Greatest forces of a path where its axes stay below the programmed feed.
 
 Limits are held against the programmed feed: another control may not brake in a corner. What a
 run on this machine shows is less where the hardest place is a corner, an end, or a way down
@@ -9,12 +9,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from optimiser.cut import Cut, CutKind, Reached
-from optimiser.hardest import KINDS, LEAST_RATIO, Bending, Met
-from simulator.motion.motion import AxisLimits, ControlModel
-from simulator.motion.reached import reached_speeds
-from simulator.motion.segments import Bools, Floats, Ints
-from simulator.motion.tool_path import Run
+from optimiser.cut import Cut, CutKind, ReachedLoads
+from optimiser.hardest import KINDS, LEAST_RATIO, Bending, PathContacts
+from simulator.motion.passing import reached_speeds
+from simulator.motion.segments import AxisLimits, Bools, ControlModel, Floats, Ints
+from simulator.motion.tool_path import ToolPathRun
 from simulator.removal.stations import Stations
 
 INSIDE = np.array([1e-6, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0 - 1e-6])
@@ -25,16 +24,16 @@ HARD = 0.5
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Ride:
-    """How the axes run a path."""
+class MachineRun:
+    """Run of a path by the axes."""
 
-    run: Run
+    run: ToolPathRun
     control: ControlModel
     limits: AxisLimits
     feed: float
-    """mm/s, of the technology"""
+    """Feed, mm/s, of the technology"""
     spindle: float
-    """rev/s at the diameter of the cut"""
+    """Spindle, rev/s at the diameter of the cut"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -42,24 +41,26 @@ class _Loads:
     """Force, power and force at the wall, in proportion."""
 
     rows: Ints
-    """(K,) stations that cut at a feed"""
+    """Rows, (K,) stations that cut at a feed"""
     programmed: Floats
-    """(3, K) with the chip that is programmed there"""
+    """Programmed, (3, K) with the chip that is programmed there"""
     nominal: Floats
-    """(3,) greatest with the chip of the technology's feed, as limits have them"""
+    """Nominal, (3,) greatest with the chip of the technology's feed, as limits have them"""
 
 
-def with_power(cut: Cut, met: Met, bent: Bending, ride: Ride, *, exponent: float) -> Cut:
+def with_power(
+    cut: Cut, met: PathContacts, bent: Bending, ride: MachineRun, *, exponent: float
+) -> Cut:
     """A cut with what its limits need of the whole path: where power is greatest.
 
     Parameters
     ----------
     cut : Cut
-    met : Met
+    met : PathContacts
         What the path met.
     bent : Bending
         By the same stations.
-    ride : Ride
+    ride : MachineRun
     exponent : float
         m_c.
     """
@@ -82,7 +83,9 @@ def with_power(cut: Cut, met: Met, bent: Bending, ride: Ride, *, exponent: float
     )
 
 
-def with_reached(cut: Cut, met: Met, bent: Bending, ride: Ride, *, exponent: float) -> Cut:
+def with_reached(
+    cut: Cut, met: PathContacts, bent: Bending, ride: MachineRun, *, exponent: float
+) -> Cut:
     """A cut with what its greatest loads become along its path, too; as :func:`with_power`."""
     cut = with_power(cut, met, bent, ride, exponent=exponent)
     loads = None if cut.kind.is_turned else _loads(cut, met, bent, ride, exponent)
@@ -97,11 +100,13 @@ def with_reached(cut: Cut, met: Met, bent: Bending, ride: Ride, *, exponent: flo
     if found.min() < HARD:
         found = _shares(met, ride, loads, np.ones(len(loads.rows), dtype=np.bool_), exponent)
     force, power, wall = found.tolist()
-    return replace(cut, reached=Reached(force=force, power=power, wall=wall))
+    return replace(cut, reached=ReachedLoads(force=force, power=power, wall=wall))
 
 
-def _loads(cut: Cut, met: Met, bent: Bending, ride: Ride, exponent: float) -> _Loads | None:
-    """What the stations take that cut at a feed; None: there are none."""
+def _loads(
+    cut: Cut, met: PathContacts, bent: Bending, ride: MachineRun, exponent: float
+) -> _Loads | None:
+    """Loads at the cutting stations for a feed; None: no station cuts."""
     stations, run = met.stations, ride.run
     is_cut = (stations.kind == KINDS[cut.kind]) & (stations.section > 0.0)
     is_cut &= ~run.segments.is_rapid[stations.segment] & (run.spindle[stations.segment] > 0.0)
@@ -131,12 +136,14 @@ def _loads(cut: Cut, met: Met, bent: Bending, ride: Ride, exponent: float) -> _L
     )
 
 
-def _power_diameter(loads: _Loads, ride: Ride) -> float:
+def _power_diameter(loads: _Loads, ride: MachineRun) -> float:
     """Diameter, mm, at which the greatest force takes the greatest power."""
     return float(loads.programmed[1].max() / (loads.nominal[0] * ride.spindle))
 
 
-def _shares(met: Met, ride: Ride, loads: _Loads, at: Bools, exponent: float) -> Floats:
+def _shares(
+    met: PathContacts, ride: MachineRun, loads: _Loads, at: Bools, exponent: float
+) -> Floats:
     """(3,) what the axes leave of the nominal loads; 1 of nothing."""
     rows = loads.rows[at]
     if not len(rows):
@@ -149,7 +156,7 @@ def _shares(met: Met, ride: Ride, loads: _Loads, at: Bools, exponent: float) -> 
     return np.where(is_some, reached.max(axis=1) / whole, 1.0)
 
 
-def _speeds(met: Met, ride: Ride, rows: Ints) -> Floats:
+def _speeds(met: PathContacts, ride: MachineRun, rows: Ints) -> Floats:
     """(K, P) mm/s at the places in K stretches."""
     places = met.stations.station[rows, None] - met.length[rows, None] * (1.0 - INSIDE)
     speeds = reached_speeds(

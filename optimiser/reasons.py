@@ -1,22 +1,22 @@
 """Sentences on limits: which holds a feed, and which a program passes."""
 
 from optimiser import workingstep as exact
-from optimiser.advice import Advice, Load, State, Status
-from optimiser.limit import ROUNDING, Limit, LimitName
+from optimiser.advice import Advice, AdviceStatus, EvaluatedSetting, LimitLoad
 from optimiser.limits import STRAIGHT_DOWN
 from optimiser.plunge_feed import DOWN_A_RAMP
+from optimiser.problem import ROUNDING, Limit, LimitName
 from stepnc_model.errors import Finding, Severity
 from stepnc_model.program import Program
 from stepnc_model.units import rpm_from_rev_s
 
 
-def reason_of(state: State, limit: Limit) -> str:
+def reason_of(state: EvaluatedSetting, limit: Limit) -> str:
     """Sentence that names the limit that holds the feed."""
     load = next(load for load in state.loads if load.limit is limit)
     return _reached(load, state.setting.speed)
 
 
-def _reached(load: Load, speed: float) -> str:
+def _reached(load: LimitLoad, speed: float) -> str:
     """Sentence of a load that is at its bound."""
     limit = load.limit
     origin = f", {limit.origin}" if limit.origin else ""
@@ -26,7 +26,7 @@ def _reached(load: Load, speed: float) -> str:
     )
 
 
-def plunge_reason(state: State) -> str:
+def plunge_reason(state: EvaluatedSetting) -> str:
     """Sentence that names the limit that holds the plunge feed; empty where there is none."""
     tight = min(state.plunge_loads, key=lambda load: load.margin, default=None)
     return "" if tight is None else _reached(tight, state.setting.speed)
@@ -37,7 +37,7 @@ def passed_limits(program: Program, advice: Advice) -> list[Finding]:
     if advice.before is None:
         return []
     still = set()
-    if advice.status is Status.ADVISED and advice.after is not None:
+    if advice.status is AdviceStatus.ADVISED and advice.after is not None:
         still = {_kind(load) for load in _passed_loads(advice.after)}
     found = {}
     for load in _passed_loads(advice.before):
@@ -49,18 +49,18 @@ def passed_limits(program: Program, advice: Advice) -> list[Finding]:
     return list(found.values())
 
 
-def _passed_loads(state: State) -> list[Load]:
+def _passed_loads(state: EvaluatedSetting) -> list[LimitLoad]:
     """Loads beyond their bounds, by more than rounding."""
     return [each for each in (*state.loads, *state.plunge_loads) if each.margin < -ROUNDING]
 
 
-def _kind(load: Load) -> tuple[LimitName, bool]:
-    """What tells loads of which one is told: name, and whether it is one of a way down."""
+def _kind(load: LimitLoad) -> tuple[LimitName, bool]:
+    """Key by which loads are grouped: limit name, and whether it belongs to a way down."""
     return load.limit.name, load.limit.words.endswith((STRAIGHT_DOWN, DOWN_A_RAMP))
 
 
 def _brought_within(limit: Limit, advice: Advice) -> str:
-    """To which speed a programmed one was brought; empty where the limit is of no speed."""
+    """Speed to which a programmed one was changed; empty for limits that are not on speed."""
     is_speed = limit.name in {LimitName.CUTTING_SPEED, LimitName.SPINDLE_SPEED}
     if not is_speed or advice.before is None or advice.after is None:
         return ""

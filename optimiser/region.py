@@ -1,4 +1,4 @@
-"""What a milling feature asks to be removed, read off its entities.
+"""Region that a milling feature removes, with areas and lengths of its boundaries.
 
 ISO 14649-10 features in their own coordinates. Arcs of composite curves count by their chords
 here; the tool path, which keeps arcs, replaces this estimate.
@@ -6,18 +6,9 @@ here; the tool path, which keeps arcs, replaces this estimate.
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from math import hypot
+from itertools import pairwise
+from math import hypot, pi, sin, tan
 
-from optimiser.outline import (
-    Outline,
-    circle_outline,
-    closed_outline,
-    open_outline,
-    parameter,
-    size,
-    swept_width,
-    travel_length,
-)
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.features import (
     Boss,
@@ -36,37 +27,182 @@ from stepnc_model.entities.features import (
 )
 from stepnc_model.entities.geometry import (
     Block,
+    CartesianPoint,
+    CompositeCurve,
+    Polyline,
+    TrimmedCurve,
 )
 from stepnc_model.entities.profiles import (
+    CircularClosedProfile,
+    CompleteCircularPath,
+    GeneralClosedProfile,
+    GeneralPath,
     GeneralProfile,
+    LinearPath,
     LinearProfile,
+    NgonClosedProfile,
     OpenSlotEndType,
+    PartialCircularPath,
     PartialCircularProfile,
+    RectangularClosedProfile,
+    RoundedUProfile,
     SquareUProfile,
+    VeeProfile,
 )
+from stepnc_model.outline import boundary_of, known_depth, parameter, size, vee_angle
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
+from stepnc_model.units import rad_from_deg
+
+Point = tuple[float, float, float]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Region:
+class BoundarySize:
+    """Area and length of a boundary."""
+
+    area: float
+    length: float
+    width: float
+
+
+def closed_outline(program: Program, ref: Ref[Entity]) -> BoundarySize:
+    """Outline of a closed profile."""
+    profile = program.get(ref)
+    if isinstance(profile, RectangularClosedProfile):
+        width, length = (
+            size(program, profile.profile_width, ref),
+            size(program, profile.profile_length, ref),
+        )
+        return BoundarySize(
+            area=width * length, length=2.0 * (width + length), width=min(width, length)
+        )
+    if isinstance(profile, CircularClosedProfile):
+        return circle_outline(size(program, profile.diameter, ref))
+    if isinstance(profile, NgonClosedProfile):
+        return _ngon(program, ref, profile)
+    if isinstance(profile, GeneralClosedProfile):
+        return _polygon(list(points_of(program, profile.closed_profile_shape)))
+    raise program.error("is no closed profile", ref)
+
+
+def open_outline(program: Program, ref: Ref[Entity]) -> BoundarySize:
+    """Outline of an open profile, closed by the straight line between its ends."""
+    profile = program.get(ref)
+    if isinstance(profile, GeneralProfile):
+        points = list(points_of(program, profile.its_profile))
+        closed = _polygon(points)
+        gap = hypot(points[0][0] - points[-1][0], points[0][1] - points[-1][1])
+        return BoundarySize(area=closed.area, length=closed.length - gap, width=closed.width)
+    if isinstance(profile, PartialCircularProfile):
+        radius = size(program, profile.radius, ref)
+        sweep = rad_from_deg(profile.sweep_angle)
+        area = 0.5 * radius**2 * (sweep - sin(sweep))
+        return BoundarySize(area=area, length=radius * sweep, width=radius)
+    if isinstance(profile, LinearProfile):
+        length = parameter(program, profile.profile_length)
+        return BoundarySize(area=0.0, length=length, width=length)
+    width = swept_width(program, ref, 0.0)
+    return BoundarySize(area=0.0, length=width, width=width)
+
+
+def circle_outline(diameter: float) -> BoundarySize:
+    """Outline of a circle."""
+    return BoundarySize(area=0.25 * pi * diameter**2, length=pi * diameter, width=diameter)
+
+
+def _ngon(program: Program, ref: Ref[Entity], profile: NgonClosedProfile) -> BoundarySize:
+    """Regular polygon by its circumscribed circle or its width across flats."""
+    sides, half = profile.number_of_sides, 0.5 * size(program, profile.diameter, ref)
+    angle = pi / sides
+    edge = 2.0 * half * (sin(angle) if profile.circumscribed_or_across_flats else tan(angle))
+    inner = 0.5 * edge / tan(angle)
+    return BoundarySize(area=0.5 * sides * edge * inner, length=sides * edge, width=2.0 * inner)
+
+
+def _polygon(points: list[Point]) -> BoundarySize:
+    """Area by the shoelace formula, length and narrower extent of a closed polygon."""
+    ring = [*points, points[0]]
+    twice = sum(a[0] * b[1] - b[0] * a[1] for a, b in pairwise(ring))
+    length = sum(hypot(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(ring))
+    extents = [max(p[axis] for p in points) - min(p[axis] for p in points) for axis in (0, 1)]
+    return BoundarySize(area=0.5 * abs(twice), length=length, width=min(extents))
+
+
+def points_of(program: Program, ref: Ref[Entity]) -> Iterator[Point]:
+    """Corner points of a bounded curve, arcs by their ends."""
+    curve = program.get(ref)
+    if isinstance(curve, Polyline):
+        for point in curve.points:
+            yield _point(program, point)
+    elif isinstance(curve, CompositeCurve):
+        for segment in curve.segments:
+            yield from points_of(program, program.get(segment).parent_curve)
+    elif isinstance(curve, TrimmedCurve):
+        for trims in (curve.trim_1, curve.trim_2):
+            for trim in trims:
+                if isinstance(trim, Ref):
+                    yield _point(program, trim)
+    else:
+        raise program.error("a curve of this kind cannot be measured yet", ref)
+
+
+def _point(program: Program, ref: Ref[Entity]) -> Point:
+    point = program.get(ref)
+    if not isinstance(point, CartesianPoint):
+        raise program.error("is no point", ref)
+    x, y, z = (*point.coordinates, 0.0, 0.0)[:3]
+    return float(x), float(y), float(z)
+
+
+def travel_length(program: Program, ref: Ref[Entity]) -> float:
+    """Length of a travel path, mm."""
+    path = program.get(ref)
+    if isinstance(path, LinearPath):
+        return size(program, path.distance, ref)
+    if isinstance(path, CompleteCircularPath):
+        return 2.0 * pi * size(program, path.radius, ref)
+    if isinstance(path, PartialCircularPath):
+        return size(program, path.radius, ref) * rad_from_deg(path.sweep_angle)
+    if isinstance(path, GeneralPath):
+        points = list(points_of(program, path.swept_path))
+        return sum(hypot(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(points))
+    raise program.error("is no course of travel", ref)
+
+
+def swept_width(program: Program, ref: Ref[Entity], depth: float) -> float:
+    """Width at the top of a slot's profile, mm."""
+    profile = program.get(ref)
+    if isinstance(profile, (SquareUProfile, RoundedUProfile)):
+        return size(program, profile.width, ref)
+    if isinstance(profile, VeeProfile):
+        return 2.0 * depth * tan(0.5 * vee_angle(profile.profile_angle))
+    if isinstance(profile, PartialCircularProfile):
+        return 2.0 * size(program, profile.radius, ref)
+    if isinstance(profile, GeneralProfile):
+        return _polygon(list(points_of(program, profile.its_profile))).width
+    raise program.error("its width cannot be told from a profile of this kind", ref)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FeatureRegion:
     """A feature seen along the tool's axis."""
 
     area: float
-    """mm² of floor to sweep; 0 when only walls are cut"""
+    """Area, mm² of floor to sweep; 0 when only walls are cut"""
     perimeter: float
-    """mm of wall to follow"""
+    """Perimeter, mm of wall to follow"""
     width: float
-    """mm, extent across the strokes"""
+    """Width, mm, extent across the strokes"""
     depth: float
-    """mm along the axis"""
+    """Depth, mm along the axis"""
     is_open: bool
     """the tool may enter and leave through the side"""
     count: int = 1
     """equal regions that a pattern repeats"""
 
 
-def region_of(program: Program, ref: Ref[Entity]) -> Region:
+def region_of(program: Program, ref: Ref[Entity]) -> FeatureRegion:
     """Region of one feature.
 
     Parameters
@@ -77,7 +213,7 @@ def region_of(program: Program, ref: Ref[Entity]) -> Region:
 
     Returns
     -------
-    Region
+    FeatureRegion
 
     Raises
     ------
@@ -90,7 +226,7 @@ def region_of(program: Program, ref: Ref[Entity]) -> Region:
         return replace(base, count=pattern_count(feature))
     if isinstance(feature, CompoundFeature):
         return region_of(program, feature.elements[0])
-    depth = feature_depth(program, ref)
+    depth = known_depth(program, ref)
     if isinstance(feature, PlanarFace):
         return _face(program, feature, depth)
     if isinstance(feature, ClosedPocket):
@@ -104,9 +240,9 @@ def region_of(program: Program, ref: Ref[Entity]) -> Region:
     if isinstance(feature, Step):
         return _step(program, feature, depth)
     if isinstance(feature, RoundHole):
-        diameter = size(program, feature.diameter)
+        diameter = size(program, feature.diameter, ref)
         outline = circle_outline(diameter)
-        return Region(
+        return FeatureRegion(
             area=outline.area,
             perimeter=outline.length,
             width=diameter,
@@ -114,27 +250,16 @@ def region_of(program: Program, ref: Ref[Entity]) -> Region:
             is_open=False,
         )
     outline = _profile_boundary(program, ref, feature)
-    return Region(
+    return FeatureRegion(
         area=0.0, perimeter=outline.length, width=outline.width, depth=depth, is_open=True
     )
 
 
-def feature_depth(program: Program, ref: Ref[Entity]) -> float:
-    """Depth of a feature along its own axis, mm: where its depth plane lies."""
-    feature = program.get(ref)
-    plane = getattr(feature, "depth", None)
-    if plane is None:
-        raise program.error("has no depth", ref, "depth")
-    placement = program.get(program.get(plane).position)
-    depth = abs(float(program.get(placement.location).coordinates[2]))
-    if depth <= 0.0:
-        raise program.error(f"depth {depth:g} mm removes nothing", ref, "depth")
-    return depth
-
-
-def _face(program: Program, feature: PlanarFace, depth: float) -> Region:
+def _face(program: Program, feature: PlanarFace, depth: float) -> FeatureRegion:
     """Length of travel times profile length, less the bosses."""
-    length = size(program, program.get(feature.course_of_travel).distance)
+    length = size(
+        program, program.get(feature.course_of_travel).distance, feature.course_of_travel
+    )
     profile = program.get(feature.removal_boundary)
     width = (
         parameter(program, profile.profile_length)
@@ -142,7 +267,7 @@ def _face(program: Program, feature: PlanarFace, depth: float) -> Region:
         else open_outline(program, feature.removal_boundary).width
     )
     islands = list(_islands(program, feature.its_boss))
-    return Region(
+    return FeatureRegion(
         area=max(0.0, length * width - sum(island.area for island in islands)),
         perimeter=sum(island.length for island in islands),
         width=width,
@@ -153,15 +278,15 @@ def _face(program: Program, feature: PlanarFace, depth: float) -> Region:
 
 def _pocket(
     program: Program,
-    outline: Outline,
+    outline: BoundarySize,
     bosses: tuple[Ref[Boss], ...],
     *,
     depth: float,
     is_open: bool,
-) -> Region:
+) -> FeatureRegion:
     """Boundary less islands; island walls count as walls."""
     islands = list(_islands(program, bosses))
-    return Region(
+    return FeatureRegion(
         area=max(0.0, outline.area - sum(island.area for island in islands)),
         perimeter=outline.length + sum(island.length for island in islands),
         width=outline.width,
@@ -170,12 +295,12 @@ def _pocket(
     )
 
 
-def _slot(program: Program, feature: Slot, depth: float) -> Region:
+def _slot(program: Program, feature: Slot, depth: float) -> FeatureRegion:
     """Width of the swept shape along the course of travel."""
     length = travel_length(program, feature.course_of_travel)
     width = swept_width(program, feature.swept_shape, depth)
     ends = [program.get(end) for end in feature.end_conditions]
-    return Region(
+    return FeatureRegion(
         area=length * width,
         perimeter=2.0 * length,
         width=width,
@@ -184,15 +309,17 @@ def _slot(program: Program, feature: Slot, depth: float) -> Region:
     )
 
 
-def _step(program: Program, feature: Step, depth: float) -> Region:
+def _step(program: Program, feature: Step, depth: float) -> FeatureRegion:
     """From the edge to the side of the stock, which lies to the right of the edge's sense."""
     path = program.get(feature.open_boundary)
-    length = size(program, path.distance)
+    length = size(program, path.distance, feature.open_boundary)
     placement = program.get(feature.feature_placement)
     at = program.get(placement.location).coordinates
     along = program.get(path.its_direction).direction_ratios
     width = _distance_to_side(program, at=at, along=along)
-    return Region(area=length * width, perimeter=length, width=width, depth=depth, is_open=True)
+    return FeatureRegion(
+        area=length * width, perimeter=length, width=width, depth=depth, is_open=True
+    )
 
 
 def _distance_to_side(
@@ -218,21 +345,15 @@ DEFAULT_STEP_WIDTH = 10.0
 """mm, of a step when the file gives no stock to measure it by"""
 
 
-def _islands(program: Program, bosses: tuple[Ref[Boss], ...]) -> Iterator[Outline]:
+def _islands(program: Program, bosses: tuple[Ref[Boss], ...]) -> Iterator[BoundarySize]:
     """Outlines of the bosses that stay."""
     return (closed_outline(program, program.get(boss).its_boundary) for boss in bosses)
 
 
-def _profile_boundary(program: Program, ref: Ref[Entity], feature: Entity) -> Outline:
+def _profile_boundary(program: Program, ref: Ref[Entity], feature: Entity) -> BoundarySize:
     """Outline that an outside profile or a boss is cut along."""
-    if isinstance(feature, GeneralOutsideProfile):
-        boundary = feature.feature_boundary
-    elif isinstance(feature, Boss):
-        boundary = feature.its_boundary
-    elif isinstance(feature, ShapeProfile):
-        name = "open_boundary" if hasattr(feature, "open_boundary") else "closed_boundary"
-        boundary = getattr(feature, name)
-    else:
+    boundary = boundary_of(feature)
+    if boundary is None or not isinstance(feature, (GeneralOutsideProfile, Boss, ShapeProfile)):
         raise program.error(
             "its path length cannot be estimated from a feature of this kind", ref
         )

@@ -7,12 +7,12 @@ to the reader; profiles are told in micrometres everywhere, so the value is read
 from simulator.physics.surface import RZ_PER_RA
 from stepnc_model.entities.enums import BottomOrSide
 from stepnc_model.entities.milling import PlaneMilling, SideMilling
-from stepnc_model.entities.surfaces import SurfaceTextureParameter
-from stepnc_model.program import Program, Workingstep
+from stepnc_model.entities.profiles import SurfaceTextureParameter
+from stepnc_model.program import Program, ResolvedWorkingstep
 from stepnc_model.units import mm_from_um
 
 
-def required_roughness(program: Program, step: Workingstep) -> float | None:
+def required_roughness(program: Program, step: ResolvedWorkingstep) -> float | None:
     """Smallest Ra in mm asked of a surface that this workingstep leaves, or None."""
     asked = [
         _arithmetic(texture)
@@ -35,7 +35,7 @@ def _arithmetic(texture: SurfaceTextureParameter) -> float | None:
     return mm_from_um(value) / RZ_PER_RA if name == "RZ" else None
 
 
-def _leaves(step: Workingstep, element: BottomOrSide | None) -> bool:
+def _leaves(step: ResolvedWorkingstep, element: BottomOrSide | None) -> bool:
     """Whether the operation makes the bottom or the side that is meant."""
     if isinstance(step.operation, PlaneMilling):
         return element is not BottomOrSide.SIDE

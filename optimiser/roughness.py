@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 from dataclasses import replace
 
-from optimiser.conditions import Conditions
+from optimiser.conditions import CuttingConditions
 from optimiser.cut import Cut, Texture
-from optimiser.limit import Limit, LimitName, Monomial
+from optimiser.problem import Limit, LimitName, Monomial
 from simulator.physics.surface import RA_FLOOR, corner_coefficient, wall_coefficient
 from stepnc_model.units import UM_PER_MM
 
@@ -18,7 +18,7 @@ WIPER_FEED = 2.0
 selection for steel, WP and WQ: double feed rate while maintaining a smooth finish"""
 
 
-def surface_limits(cut: Cut, at: Conditions) -> Iterator[Limit]:
+def surface_limits(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
     """Roughness, where the feed describes it."""
     if at.roughness is None:
         return

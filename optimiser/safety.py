@@ -1,4 +1,4 @@
-"""How much more than nominal a force may be: the quantile of k_c at which bounds are kept.
+"""Margin on forces: the quantile of k_c at which bounds are kept.
 
 k_c of a catalogue is a median that real material scatters around, by a factor as often up as
 down: ln k_c is normal with ``σ = ln(1 + s)``, s the relative spread. Loads are in proportion to
@@ -11,7 +11,7 @@ USUAL_QUANTILE = 0.9
 """one cut in ten may need more force than was planned for"""
 
 LEAST_QUANTILE, GREATEST_QUANTILE = 0.5, 0.999
-"""nominal; beyond the other the tail of a distribution decides that nobody has seen"""
+"""nominal; above the other, results would depend on an unknown tail of the distribution"""
 
 
 def require_quantile(quantile: float) -> None:

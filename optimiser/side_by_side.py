@@ -21,7 +21,7 @@ from select import select
 from tempfile import TemporaryFile
 from typing import Generic, Protocol, TypeVar
 
-from stepnc_model.program import Workingstep
+from stepnc_model.program import ResolvedWorkingstep
 
 LEAST = 16
 """workingsteps for each process that are worth a second one"""
@@ -38,7 +38,7 @@ Result = TypeVar("Result")
 Trace = TypeVar("Trace")
 
 
-class Traced(Protocol[Trace]):
+class SplittableState(Protocol[Trace]):
     """A state that workingsteps change, each in a place of its own."""
 
     def split(self) -> None:
@@ -46,36 +46,40 @@ class Traced(Protocol[Trace]):
         ...
 
     def trace(self) -> Trace:
-        """Where the last workingstep looked, and what it changed."""
+        """Place that the last workingstep read and changed."""
         ...
 
-    def is_apart(self, step: Workingstep, trace: Trace, others: Sequence[Trace]) -> bool:
+    def is_apart(
+        self, step: ResolvedWorkingstep, trace: Trace, others: Sequence[Trace]
+    ) -> bool:
         """Whether a workingstep would have done the same after others."""
         ...
 
-    def repeat(self, step: Workingstep, trace: Trace) -> None:
+    def repeat(self, step: ResolvedWorkingstep, trace: Trace) -> None:
         """Change the state as a workingstep has changed a copy of it."""
         ...
 
 
 def one_by_one(
-    steps: Sequence[Workingstep], do: Callable[[Workingstep], Result]
+    steps: Sequence[ResolvedWorkingstep], do: Callable[[ResolvedWorkingstep], Result]
 ) -> Iterator[Result]:
     """Results of workingsteps, each after the one before."""
     return map(do, steps)
 
 
 def side_by_side(
-    steps: Sequence[Workingstep], do: Callable[[Workingstep], Result], state: Traced[Trace]
+    steps: Sequence[ResolvedWorkingstep],
+    do: Callable[[ResolvedWorkingstep], Result],
+    state: SplittableState[Trace],
 ) -> Iterator[Result]:
     """Results of workingsteps in their order, on two cores where these are free.
 
     Parameters
     ----------
-    steps : sequence of Workingstep
+    steps : sequence of ResolvedWorkingstep
     do : callable
         Does one of them; a result that can be sent from process to process.
-    state : Traced
+    state : SplittableState
         What ``do`` changes besides.
 
     Yields
@@ -108,10 +112,10 @@ def _is_possible() -> bool:
 
 
 def _halves(
-    first: Sequence[Workingstep],
-    second: Sequence[Workingstep],
-    do: Callable[[Workingstep], Result],
-    state: Traced[Trace],
+    first: Sequence[ResolvedWorkingstep],
+    second: Sequence[ResolvedWorkingstep],
+    do: Callable[[ResolvedWorkingstep], Result],
+    state: SplittableState[Trace],
 ) -> Generator[Result, None, int]:
     """Both halves at once; gives how much of the second could be kept."""
     kept = 0
@@ -147,9 +151,9 @@ class _Second(Generic[Result, Trace]):
 
     def __init__(
         self,
-        steps: Sequence[Workingstep],
-        do: Callable[[Workingstep], Result],
-        state: Traced[Trace],
+        steps: Sequence[ResolvedWorkingstep],
+        do: Callable[[ResolvedWorkingstep], Result],
+        state: SplittableState[Trace],
     ) -> None:
         self._file = TemporaryFile(buffering=0)  # noqa: SIM115 (closed at the end of ``with``)
         self._ends = [0]

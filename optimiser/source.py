@@ -1,4 +1,4 @@
-"""Where the optimiser takes its cuts from: the real tool paths, or the features."""
+"""Sources of cuts for the optimiser: real tool paths, or features."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
@@ -8,38 +8,50 @@ from optimiser.cut import Cut, CutKind
 from optimiser.estimated import Estimates
 from optimiser.problem import Setting
 from optimiser.side_by_side import Result
-from simulator.spec import Machine, Material
+from simulator.spec import Machine, MachineKind, WorkMaterial
+from stepnc_model.entities.milling import MillingTypeOperation
+from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import Finding
-from stepnc_model.program import Program, Workingstep
+from stepnc_model.program import Program, ResolvedWorkingstep
+
+
+def why_elsewhere(step: ResolvedWorkingstep, machine: Machine) -> str:
+    """Reason why a machine cannot run a workingstep at all; empty where it can."""
+    is_lathe = machine.kind is MachineKind.LATHE
+    if isinstance(step.operation, TurningMachiningOperation) and not is_lathe:
+        return f"{step.operation_type} needs a lathe, and '{machine.name}' is a mill"
+    if isinstance(step.operation, MillingTypeOperation) and is_lathe:
+        return f"{step.operation_type} needs a mill, and '{machine.name}' is a lathe"
+    return ""
 
 
 class CutSource(Protocol):
     """Cuts of a program's workingsteps, asked for in their order. May keep a state."""
 
-    def cut(self, step: Workingstep) -> tuple[Cut, list[Finding]]:
+    def cut(self, step: ResolvedWorkingstep) -> tuple[Cut, list[Finding]]:
         """The cut of a workingstep as programmed, and what was assumed."""
         ...
 
-    def at(self, step: Workingstep, cut: Cut, setting: Setting) -> Cut:
+    def at(self, step: ResolvedWorkingstep, cut: Cut, setting: Setting) -> Cut:
         """The same cut with length and time as they are at another setting."""
         ...
 
-    def leave_out(self, step: Workingstep) -> None:
+    def leave_out(self, step: ResolvedWorkingstep) -> None:
         """Go past a workingstep that is not advised but is run."""
         ...
 
     def each(
-        self, steps: Sequence[Workingstep], do: Callable[[Workingstep], Result]
+        self, steps: Sequence[ResolvedWorkingstep], do: Callable[[ResolvedWorkingstep], Result]
     ) -> Iterator[Result]:
         """Results of workingsteps in their order, each of which asks for its cuts."""
         ...
 
 
-Source = Callable[[Program, Machine, Material], CutSource]
+Source = Callable[[Program, Machine, WorkMaterial], CutSource]
 """what makes the source of a program's cuts"""
 
 
-class WithWipers:
+class WiperCutSource:
     """A source of cuts, some of whose turning inserts have a wiper.
 
     Parameters
@@ -55,12 +67,12 @@ class WithWipers:
         self._cuts = cuts
         self._wipers = wipers
 
-    def cut(self, step: Workingstep) -> tuple[Cut, list[Finding]]:
+    def cut(self, step: ResolvedWorkingstep) -> tuple[Cut, list[Finding]]:
         """The cut of a workingstep as programmed, and what was assumed."""
         cut, findings = self._cuts.cut(step)
         return self._with_wiper(cut), findings
 
-    def at(self, step: Workingstep, cut: Cut, setting: Setting) -> Cut:
+    def at(self, step: ResolvedWorkingstep, cut: Cut, setting: Setting) -> Cut:
         """The same cut with length and time as they are at another setting."""
         return self._with_wiper(self._cuts.at(step, cut, setting))
 
@@ -71,7 +83,7 @@ class WithWipers:
 
 
 def along_paths(
-    program: Program, machine: Machine, material: Material, *, is_run: bool = False
+    program: Program, machine: Machine, material: WorkMaterial, *, is_run: bool = False
 ) -> CutSource:
     """Cuts as the real tool path makes them in the stock that is left, timed by the machine.
 
@@ -82,6 +94,6 @@ def along_paths(
     return MeasuredCuts(program, machine, material, is_run=is_run)
 
 
-def from_features(program: Program, machine: Machine, material: Material) -> CutSource:
+def from_features(program: Program, machine: Machine, material: WorkMaterial) -> CutSource:
     """Cuts estimated from features: quick, and blind to what the path really does."""
     return Estimates(program, machine, material)

@@ -11,7 +11,7 @@ from dataclasses import replace
 from itertools import pairwise
 from math import ceil, inf, log, sqrt
 
-from optimiser.conditions import Conditions
+from optimiser.conditions import CuttingConditions
 from optimiser.cut import Cut
 from optimiser.limits import segment_at
 from simulator.physics.holding import permitted_speed
@@ -42,7 +42,7 @@ def powers_of_speed(
     return low / slow**exponent, exponent
 
 
-def stretch_ends(cut: Cut, at: Conditions, low: float, high: float) -> tuple[float, ...]:
+def stretch_ends(cut: Cut, at: CuttingConditions, low: float, high: float) -> tuple[float, ...]:
     """Speeds between which bounds are powers of the speed, ascending from least to greatest."""
     inner = {part.max_speed for part in curve_segments(at.machine.spindle)}
     if not at.machine.only_stated_limits:
@@ -61,7 +61,7 @@ def _parts(slow: float, fast: float) -> Iterator[float]:
     return (slow * (fast / slow) ** (row / count) for row in range(count))
 
 
-def _chuck_ends(cut: Cut, at: Conditions) -> Iterator[float]:
+def _chuck_ends(cut: Cut, at: CuttingConditions) -> Iterator[float]:
     """Speeds at which a chuck has lost more and more of its force."""
     if isinstance(at.holding, Chuck) and (limit := permitted_speed(at.holding)) < inf:
         ratio = cut.turned.speed_ratio if cut.turned is not None else 1.0
@@ -70,7 +70,7 @@ def _chuck_ends(cut: Cut, at: Conditions) -> Iterator[float]:
             yield limit * sqrt(share) / ratio
 
 
-def segment_within(cut: Cut, at: Conditions, slow: float, fast: float) -> CurveSegment:
+def segment_within(cut: Cut, at: CuttingConditions, slow: float, fast: float) -> CurveSegment:
     """The spindle's curve on a stretch: what idling leaves of its power on the whole path."""
     segment = segment_at(at, sqrt(slow * fast))
     if at.machine.only_stated_limits:

@@ -14,18 +14,18 @@ from math import inf, sin, sqrt
 from typing import TYPE_CHECKING
 
 from optimiser.chip_load import least_feed
-from optimiser.conditions import Conditions
+from optimiser.conditions import CuttingConditions
 from optimiser.cut import Cut, CutKind
-from optimiser.limit import Limit, LimitName, Monomial, SpeedCurve
 from optimiser.limits import force_factor, speed_range
 from optimiser.measured_modes import MeasuredModes, measured_modes, what_is_measured
+from optimiser.problem import Limit, LimitName, Monomial, SpeedCurve
 from simulator.physics.cutting import chip_stiffness
 from simulator.physics.engagement import mean_chip_ratio
 from simulator.physics.milling import RADIAL_SHARE
 from simulator.physics.strength import STICK_OUT, deflection, equivalent_diameter
 from simulator.spec import (
-    Direction,
-    Grade,
+    ModeDirection,
+    ToolGrade,
     ToolKind,
     VibratingPart,
     VibrationMode,
@@ -34,7 +34,7 @@ from stepnc_model.tool import Tool
 from stepnc_model.units import n_um_from_n_mm, rpm_from_rev_s
 
 if TYPE_CHECKING:
-    from simulator.physics.receptance import Structure
+    from simulator.physics.receptance import ModalStructure
     from simulator.physics.stability import DynamicCut
 
 FREQUENCY_TOLERANCE = 0.01
@@ -59,7 +59,7 @@ much as the tool"""
 
 
 class Basis(StrEnum):
-    """What a statement on stability rests on."""
+    """Basis of a statement on stability."""
 
     MEASURED = "measured"
     """modes of a tap test: the depth is bounded"""
@@ -71,18 +71,18 @@ class Basis(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stability:
-    """What is known of the stability of a cut."""
+    """Stability of a cut."""
 
     basis: Basis
     reason: str
     """what was measured or assumed, or why the model is not used"""
     least: float | None = None
-    """mm of one pass, stable at any speed"""
+    """Least, mm of one pass, stable at any speed"""
     band: tuple[float, float] | None = None
-    """mm, of an estimate"""
+    """Band, mm, of an estimate"""
 
 
-def stability_limits(cut: Cut, at: Conditions) -> tuple[Limit, ...]:
+def stability_limits(cut: Cut, at: CuttingConditions) -> tuple[Limit, ...]:
     """The depth of one pass that measured modes allow; none where nothing is measured."""
     measured = measured_modes(cut, at.machine)
     if measured is None or _why_not_used(cut, at, measured):
@@ -93,8 +93,8 @@ def stability_limits(cut: Cut, at: Conditions) -> tuple[Limit, ...]:
     return (_limit(cut, bound=1.0, curve=_lobes(cut, at, measured)),)
 
 
-def stability_of(cut: Cut, at: Conditions) -> Stability | None:
-    """What is known of a cut's stability; None where chatter is no matter of its depth."""
+def stability_of(cut: Cut, at: CuttingConditions) -> Stability | None:
+    """Stability of a cut; None where chatter does not depend on its depth."""
     if cut.kind not in {CutKind.MILLING, CutKind.TURNING} or cut.is_air:
         return None
     measured = measured_modes(cut, at.machine)
@@ -156,7 +156,7 @@ def _limit(cut: Cut, *, bound: float, curve: SpeedCurve | None) -> Limit:
     )
 
 
-def _why_not_used(cut: Cut, at: Conditions, measured: MeasuredModes) -> str:
+def _why_not_used(cut: Cut, at: CuttingConditions, measured: MeasuredModes) -> str:
     """Why measured modes bound nothing; empty where they do."""
     if cut.kind is CutKind.MILLING:
         why = _why_thin(cut)
@@ -188,7 +188,7 @@ def _why_thin(cut: Cut) -> str:
     return f"a_e/D {immersion:.2g} is below {LEAST_IMMERSION:g}, where zero order is not used"
 
 
-def _cutting_stiffness(cut: Cut, at: Conditions) -> tuple[float, float]:
+def _cutting_stiffness(cut: Cut, at: CuttingConditions) -> tuple[float, float]:
     """K_t in N/mm² and K_r: what a wave adds to the force, so without the edge's rubbing.
 
     From the linear-edge law where it was measured, else the slope of Kienzle's force at the
@@ -215,7 +215,7 @@ def _chip_ratio(cut: Cut) -> float:
     return mean_chip_ratio(cut.engagement, cutting_edge_angle=cut.tool.cutting_edge_angle)
 
 
-def _speeds(cut: Cut, at: Conditions) -> tuple[float, float]:
+def _speeds(cut: Cut, at: CuttingConditions) -> tuple[float, float]:
     """Speeds that lobes are drawn for: those that may be chosen, and the programmed one."""
     given = cut.programmed.speed
     low, high = speed_range(cut, at)
@@ -225,27 +225,27 @@ def _speeds(cut: Cut, at: Conditions) -> tuple[float, float]:
     return min(low, given), max(high, given)
 
 
-def _lobes(cut: Cut, at: Conditions, measured: MeasuredModes) -> SpeedCurve:
+def _lobes(cut: Cut, at: CuttingConditions, measured: MeasuredModes) -> SpeedCurve:
     """Greatest stable depth by speed, from where the flank stops damping."""
-    from simulator.physics.receptance import Structure  # noqa: PLC0415 (numpy)
+    from simulator.physics.receptance import ModalStructure  # noqa: PLC0415 (numpy)
     from simulator.physics.stability import damped_speed  # noqa: PLC0415 (numpy)
 
     low, high = _speeds(cut, at)
     low = max(low, damped_speed(measured.in_plane, cut.diameter))
-    structure = Structure(x=measured.x, y=measured.y)
+    structure = ModalStructure(x=measured.x, y=measured.y)
     return _drawn(_dynamic_cut(cut, at), structure, low, high)
 
 
-def _least_measured(cut: Cut, at: Conditions, measured: MeasuredModes) -> float:
+def _least_measured(cut: Cut, at: CuttingConditions, measured: MeasuredModes) -> float:
     """Depth that is stable at any speed, mm."""
-    from simulator.physics.receptance import Structure  # noqa: PLC0415 (numpy)
+    from simulator.physics.receptance import ModalStructure  # noqa: PLC0415 (numpy)
 
     if cut.kind is CutKind.TURNING:
         return _turning_depth(cut, at, measured)
-    return _least(_dynamic_cut(cut, at), Structure(x=measured.x, y=measured.y))
+    return _least(_dynamic_cut(cut, at), ModalStructure(x=measured.x, y=measured.y))
 
 
-def _turning_depth(cut: Cut, at: Conditions, measured: MeasuredModes) -> float:
+def _turning_depth(cut: Cut, at: CuttingConditions, measured: MeasuredModes) -> float:
     """Depth of cut in turning that is stable at any speed, mm."""
     from simulator.physics.stability import MOST_DEPTH  # noqa: PLC0415 (numpy)
     from simulator.physics.turning_stability import orthogonal_limit  # noqa: PLC0415 (numpy)
@@ -261,8 +261,8 @@ def _turning_depth(cut: Cut, at: Conditions, measured: MeasuredModes) -> float:
     return depth if depth < MOST_DEPTH else inf
 
 
-def _dynamic_cut(cut: Cut, at: Conditions) -> "DynamicCut":
-    """What a milling cut does with a wave where it is engaged most."""
+def _dynamic_cut(cut: Cut, at: CuttingConditions) -> "DynamicCut":
+    """Dynamic milling cut at the place of greatest engagement."""
     from simulator.physics.stability import DynamicCut  # noqa: PLC0415 (numpy)
 
     if cut.engagement is None:
@@ -277,7 +277,9 @@ def _dynamic_cut(cut: Cut, at: Conditions) -> "DynamicCut":
 
 
 @lru_cache(maxsize=256)
-def _drawn(cut: "DynamicCut", structure: "Structure", low: float, high: float) -> SpeedCurve:
+def _drawn(
+    cut: "DynamicCut", structure: "ModalStructure", low: float, high: float
+) -> SpeedCurve:
     """Lobes between two speeds; kept, for a workingstep asks for the same ones many times."""
     from simulator.physics.stability import lobes  # noqa: PLC0415 (numpy)
 
@@ -288,15 +290,15 @@ def _drawn(cut: "DynamicCut", structure: "Structure", low: float, high: float) -
 
 
 @lru_cache(maxsize=256)
-def _least(cut: "DynamicCut", structure: "Structure") -> float:
+def _least(cut: "DynamicCut", structure: "ModalStructure") -> float:
     """Depth that is stable at any speed, mm."""
     from simulator.physics.stability import least_stable_depth  # noqa: PLC0415 (numpy)
 
     return least_stable_depth(cut, structure)
 
 
-def _estimated(cut: Cut, at: Conditions, grade: Grade) -> Stability:
-    """What the overhang of the tool lets expect, the same along x and y."""
+def _estimated(cut: Cut, at: CuttingConditions, grade: ToolGrade) -> Stability:
+    """Compliance estimated from the overhang of the tool, the same along x and y."""
     diameter, softest, stiffest = cut.tool.diameter, *STIFFNESS_BAND
     stiffness, of = sqrt(softest * stiffest), "usual tools"
     if cut.tool_kind is ToolKind.ENDMILL:
@@ -326,18 +328,18 @@ def _estimated(cut: Cut, at: Conditions, grade: Grade) -> Stability:
     )
 
 
-def _expected(cut: Cut, at: Conditions, *, stiffness: float, damping: float) -> float:
+def _expected(cut: Cut, at: CuttingConditions, *, stiffness: float, damping: float) -> float:
     """Depth of one pass that is stable at any speed, mm, for one mode along x and y."""
-    from simulator.physics.receptance import Structure  # noqa: PLC0415 (numpy)
+    from simulator.physics.receptance import ModalStructure  # noqa: PLC0415 (numpy)
 
     mode = VibrationMode(
         part=VibratingPart.TOOL,
-        direction=Direction.XY,
+        direction=ModeDirection.XY,
         # The least of all lobes does not depend on it.
         natural_frequency=1_000.0,
         damping_ratio=damping,
         stiffness=stiffness,
         source="estimate",
     )
-    structure = Structure(x=(mode,), y=(mode,))
+    structure = ModalStructure(x=(mode,), y=(mode,))
     return _least(_dynamic_cut(cut, at), structure) / cut.depth_share

@@ -1,4 +1,4 @@
-"""How far an end mill may bend: what the tolerance or the allowance of its wall permits.
+"""Permitted deflection, from the tolerance or the allowance of the wall.
 
 The operation that leaves a wall must keep its tolerance. Its bending counts twice, as the walls
 on both sides of a size move alike, and may use half of the deviation that is permitted; the
@@ -6,30 +6,177 @@ rest is for machine, clamping, heat, wear and measuring. So the bound is a quart
 half-width. An earlier operation may bend into its allowance: a third of it, so that two thirds
 are left to clean up, and the finish never meets more than four thirds of what it was planned
 for. Lengths in mm.
+
+A mill bends across its axis, so it moves walls and leaves depths alone. Widths, lengths and
+diameters say where walls stand. Radii of corners and the length of a way that ends in the open
+do not: there the tool or the edge of the part makes the shape.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from math import hypot
 
 from optimiser.conditions import GREATEST_DEFLECTION, PermittedDeflection
 from optimiser.estimate import DEFAULT_SIDE_ALLOWANCE, FINISHING
-from optimiser.wall import WallSize, bar_sizes, wall_sizes
-from stepnc_model.entities.drilling import Boring, Reaming
-from stepnc_model.entities.features import PlanarFace
+from optimiser.region import closed_outline, points_of, region_of
+from stepnc_model.entities.entity import Entity
+from stepnc_model.entities.features import (
+    CompoundFeature,
+    PlanarFace,
+    ReplicateFeature,
+    RoundHole,
+    Slot,
+)
+from stepnc_model.entities.measures import TolerancedLengthMeasure
 from stepnc_model.entities.milling import (
+    Boring,
     BottomAndSideMilling,
     FreeformOperation,
     PlaneMilling,
+    Reaming,
     SideMilling,
 )
-from stepnc_model.entities.turning import TurningMachiningOperation
+from stepnc_model.entities.profiles import (
+    CircularClosedProfile,
+    FlatSlotEndType,
+    NgonClosedProfile,
+    PartialCircularProfile,
+    RadiusedSlotEndType,
+    RectangularClosedProfile,
+    RoundedUProfile,
+    SquareUProfile,
+    TeeProfile,
+)
+from stepnc_model.entities.turning import (
+    GeneralRevolution,
+    Groove,
+    OuterRound,
+    TurningMachiningOperation,
+)
 from stepnc_model.errors import Finding, Severity
-from stepnc_model.program import Program, Workingstep
+from stepnc_model.part21.values import Ref
+from stepnc_model.program import Program, ResolvedWorkingstep
 from stepnc_model.tolerance import (
+    FileTolerance,
     Tolerance,
-    Written,
     general_tolerance,
     written_tolerance,
 )
+
+BOUNDARIES = (
+    "feature_boundary",
+    "open_boundary",
+    "closed_boundary",
+    "profile_boundary",
+    "partial_circular_boundary",
+    "swept_shape",
+    "its_boundary",
+)
+"""attributes of features that hold the profile of their walls"""
+
+SIZES: dict[type[Entity], tuple[str, ...]] = {
+    RoundHole: ("diameter",),
+    RectangularClosedProfile: ("profile_width", "profile_length"),
+    CircularClosedProfile: ("diameter",),
+    NgonClosedProfile: ("diameter",),
+    SquareUProfile: ("width",),
+    RoundedUProfile: ("width",),
+    TeeProfile: ("width", "cross_bar_width"),
+    PartialCircularProfile: ("radius",),
+}
+"""toleranced lengths that place a wall"""
+
+CLOSED_ENDS = (RadiusedSlotEndType, FlatSlotEndType)
+"""ends of a slot that are walls as well"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WallSize:
+    """A size between walls, or of one."""
+
+    name: str
+    size: float
+    """Size, mm, nominal"""
+    ref: Ref[TolerancedLengthMeasure] | None
+    """None: measured on a shape that has no toleranced length"""
+
+
+def wall_sizes(program: Program, ref: Ref[Entity]) -> list[WallSize]:
+    """Sizes of the walls of a feature, those of its bosses included; none of a bare face.
+
+    Raises
+    ------
+    SchemaError
+        When the feature lacks a size.
+    """
+    feature = program.get(ref)
+    if isinstance(feature, ReplicateFeature):
+        return wall_sizes(program, feature.replicate_base_feature)
+    if isinstance(feature, CompoundFeature):
+        first, *others = feature.elements
+        written = (size for other in others for size in _written(program, program.get(other)))
+        return [*wall_sizes(program, first), *written]
+    own = list(_written(program, feature))
+    if not own and not isinstance(feature, PlanarFace):
+        own = [WallSize(name="width", size=region_of(program, ref).width, ref=None)]
+    return own + _boss_sizes(program, feature)
+
+
+def bar_sizes(program: Program, ref: Ref[Entity]) -> list[WallSize]:
+    """Diameters of a turning feature; none of a face, which a bar that bends leaves alone."""
+    feature = program.get(ref)
+    if isinstance(feature, OuterRound):
+        return list(_size(program, "diameter", feature.diameter_at_placement))
+    if isinstance(feature, Groove):
+        return [WallSize(name="diameter", size=2.0 * feature.radius, ref=None)]
+    if not isinstance(feature, GeneralRevolution):
+        return []
+    points = points_of(program, program.get(feature.outer_edge_profile).its_profile)
+    radii = {feature.radius + hypot(point[0], point[1]) for point in points}
+    return [WallSize(name="diameter", size=2.0 * radius, ref=None) for radius in radii]
+
+
+def _written(program: Program, feature: Entity) -> Iterator[WallSize]:
+    """Toleranced lengths of a feature and of the profile of its walls."""
+    yield from _of(program, feature)
+    for name in BOUNDARIES:
+        boundary = getattr(feature, name, None)
+        if boundary is not None:
+            yield from _of(program, program.get(boundary))
+    if isinstance(feature, Slot):
+        ends = [program.get(end) for end in feature.end_conditions]
+        if any(isinstance(end, CLOSED_ENDS) for end in ends):
+            course = program.get(feature.course_of_travel)
+            yield from _size(program, "length", getattr(course, "distance", None))
+
+
+def _of(program: Program, entity: Entity) -> Iterator[WallSize]:
+    """Toleranced lengths of one entity."""
+    for attribute in SIZES.get(type(entity), ()):
+        name = attribute.removeprefix("profile_").replace("_", " ")
+        yield from _size(program, name, getattr(entity, attribute))
+
+
+def _size(
+    program: Program, name: str, ref: Ref[TolerancedLengthMeasure] | None
+) -> Iterator[WallSize]:
+    """One toleranced length, unless it has no size."""
+    length = program.model.entity(int(ref)) if ref is not None else None
+    if isinstance(length, TolerancedLengthMeasure) and (length.theoretical_size or 0.0) > 0.0:
+        yield WallSize(name=name, size=length.theoretical_size, ref=ref)
+
+
+def _boss_sizes(program: Program, feature: Entity) -> list[WallSize]:
+    """Sizes of the bosses that stay within a feature."""
+    found: list[WallSize] = []
+    for boss in map(program.get, getattr(feature, "its_boss", ())):
+        own = list(_written(program, boss))
+        if not own:
+            outline = closed_outline(program, boss.its_boundary)
+            own = [WallSize(name="width of a boss", size=outline.width, ref=None)]
+        found += own
+    return found
+
 
 SHARE_OF_TOLERANCE = 0.25
 """deflection over the half-width of the tolerance; why is told above"""
@@ -53,14 +200,14 @@ class _Toleranced:
 
 
 def permitted_deflection(
-    program: Program, step: Workingstep
+    program: Program, step: ResolvedWorkingstep
 ) -> tuple[PermittedDeflection, list[Finding]]:
-    """How far the end mill of a milling workingstep may bend, and what was assumed.
+    """Permitted deflection of the end mill of a workingstep, and the assumptions behind it.
 
     Parameters
     ----------
     program : Program
-    step : Workingstep
+    step : ResolvedWorkingstep
         One that mills.
 
     Returns
@@ -76,9 +223,9 @@ def permitted_deflection(
 
 
 def permitted_bar_deflection(
-    program: Program, step: Workingstep
+    program: Program, step: ResolvedWorkingstep
 ) -> tuple[PermittedDeflection, list[Finding]]:
-    """How far the bar of a turning workingstep may bend, and what was assumed.
+    """Permitted deflection of the bar of a turning workingstep, and the assumptions.
 
     A bar that gives way is thicker by twice as much. Parameters, result and errors as those of
     :func:`permitted_deflection`.
@@ -89,9 +236,9 @@ def permitted_bar_deflection(
 
 
 def _permitted(
-    program: Program, step: Workingstep, walls: list[WallSize], allowance: float
+    program: Program, step: ResolvedWorkingstep, walls: list[WallSize], allowance: float
 ) -> tuple[PermittedDeflection, list[Finding]]:
-    """What sizes, and the thickness that is left on them, permit."""
+    """Permitted deflection for sizes and the allowance that is left on them."""
     forgiven = SHARE_OF_ALLOWANCE * allowance
     if not walls or forgiven >= GREATEST_DEFLECTION:
         return PermittedDeflection(), []
@@ -113,7 +260,7 @@ def _tightest(program: Program, walls: list[WallSize]) -> tuple[_Toleranced, lis
     toleranced = []
     findings: list[Finding] = []
     for wall in walls:
-        written = Written(tolerance=None)
+        written = FileTolerance(tolerance=None)
         if wall.ref is not None:
             written = written_tolerance(program, wall.ref)
         if written.finding is not None and written.finding not in findings:
@@ -123,7 +270,7 @@ def _tightest(program: Program, walls: list[WallSize]) -> tuple[_Toleranced, lis
     return min(toleranced, key=lambda each: each.tolerance.half_width), findings
 
 
-def _walls(program: Program, step: Workingstep) -> list[WallSize]:
+def _walls(program: Program, step: ResolvedWorkingstep) -> list[WallSize]:
     """Sizes of the walls that an operation cuts; a face has none but those of its bosses."""
     if not step.features:
         return []
@@ -134,7 +281,7 @@ def _walls(program: Program, step: Workingstep) -> list[WallSize]:
     return wall_sizes(program, feature)
 
 
-def _allowance(program: Program, step: Workingstep) -> float:
+def _allowance(program: Program, step: ResolvedWorkingstep) -> float:
     """Thickness in mm that is left on the wall for a later operation; 0: this one leaves it."""
     operation = step.operation
     written: float | None = getattr(operation, "allowance_side", None)

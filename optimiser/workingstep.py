@@ -11,20 +11,99 @@ first rise. Along a helix loads are curves of the depth, and where lobes bound t
 speeds are a union of ranges, the vertices of each of which are tried: then all k are tried up
 to the one at which limits that know no depth, and the ways between passes, cost more than the
 best so far. All of it is exact, no rounding of a relaxed answer. Ties keep what was programmed.
+
+At one spindle speed the limits are reduced to what a number of passes still has to look at.
+Without an offset a limit caps the feed at ``f = ((b/c)·n^(δ−γ))^(1/α) · a^(−β/α)``: one power
+of the depth. Caps that do not depend on the depth are one number, however many there are.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from itertools import combinations
 from math import exp, inf, log
 
-from optimiser.caps import Caps, caps_at
 from optimiser.errors import Infeasible, OptimisationError
 from optimiser.least_cost import least_cost
-from optimiser.limit import ROUNDING, Limit, LimitName, Sense
 from optimiser.modes import Mode
-from optimiser.problem import Problem, Setting
+from optimiser.problem import ROUNDING, BoundSide, Limit, LimitName, Problem, Setting
 from stepnc_model.units import rpm_from_rev_s
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FeedCaps:
+    """Greatest and least feed per tooth as functions of the depth."""
+
+    constant: float
+    """Constant, mm, the least of the caps that know no depth"""
+    powers: tuple[tuple[float, float], ...]
+    """(factor, exponent) of the caps that do"""
+    others: tuple[Limit, ...]
+    """limits that depend on the depth, but by no power of it"""
+    floor: float
+    """Floor, mm, the greatest of the limits from below that know no depth"""
+    floors: tuple[Limit, ...]
+    """limits from below that do"""
+    deepest: float
+    """Deepest, mm, the greatest depth that the depth limits allow"""
+    speed: float
+    """Speed, rev/s"""
+
+    def greatest(self, depth: float) -> float:
+        """Greatest feed per tooth at a depth, mm; infinite when nothing caps it.
+
+        Zero at a depth that is itself not allowed.
+        """
+        if depth > self.deepest * (1.0 + ROUNDING):
+            return 0.0
+        feed = self.constant
+        for factor, exponent in self.powers:
+            feed = min(feed, factor * depth**exponent)
+        for limit in self.others:
+            feed = min(feed, limit.feed_at_bound(depth, self.speed))
+        return feed
+
+    def least(self, depth: float) -> float:
+        """Least feed per tooth at a depth, mm."""
+        feed = self.floor
+        for limit in self.floors:
+            feed = max(feed, limit.feed_at_bound(depth, self.speed))
+        return feed
+
+
+def caps_at(limits: Iterable[Limit], speed: float) -> FeedCaps:
+    """Caps of all limits that bound the feed, at one spindle speed in rev/s."""
+    constant, floor, deepest = inf, 0.0, inf
+    powers: list[tuple[float, float]] = []
+    others: list[Limit] = []
+    floors: list[Limit] = []
+    for limit in limits:
+        load = limit.load
+        if load.feed_exponent == 0.0:
+            if limit.is_of_depth:
+                deepest = min(deepest, limit.greatest_depth(speed))
+            continue
+        if limit.sense is BoundSide.AT_LEAST:
+            if not load.knows_depth:
+                floor = max(floor, limit.feed_at_bound(1.0, speed))
+            else:
+                floors.append(limit)
+        elif not load.knows_depth:
+            constant = min(constant, limit.feed_at_bound(1.0, speed))
+        elif load.offset == 0.0 and load.curve is None:
+            exponent = -load.depth_exponent / load.feed_exponent
+            powers.append((limit.feed_at_bound(1.0, speed), exponent))
+        else:
+            others.append(limit)
+    return FeedCaps(
+        constant=constant,
+        powers=tuple(powers),
+        others=tuple(others),
+        floor=floor,
+        deepest=deepest,
+        floors=tuple(floors),
+        speed=speed,
+    )
+
 
 TIE = 1e-9
 """relative difference of cost below which two settings are equally good"""
@@ -39,9 +118,9 @@ class Solution:
 
     setting: Setting
     time: float
-    """s"""
+    """Time, s"""
     energy: float
-    """J"""
+    """Energy, J"""
     active: LimitName
     """name of the limit that holds the feed"""
     holding: Limit
@@ -122,8 +201,8 @@ def conflict(problem: Problem) -> Infeasible:
     passes, speed = problem.passes[1], problem.programmed.speed
     depth = problem.depth_at(passes)
     limits = limits_at(problem, speed)
-    caps = [limit for limit in limits if limit.sense is Sense.AT_MOST]
-    floors = [limit for limit in limits if limit.sense is Sense.AT_LEAST]
+    caps = [limit for limit in limits if limit.sense is BoundSide.AT_MOST]
+    floors = [limit for limit in limits if limit.sense is BoundSide.AT_LEAST]
     for limit in caps:
         if limit.is_of_depth and not limit.holds(1.0, depth, speed):
             is_fixed = problem.passes[0] == problem.passes[1]
@@ -156,7 +235,7 @@ def conflict(problem: Problem) -> Infeasible:
 
 
 def _with_safety(limit: Limit) -> str:
-    """What is added for the spread of k_c; empty for nothing."""
+    """Part of a bound that covers the spread of k_c; empty for nothing."""
     return f", {limit.safety_words}" if limit.safety_words else ""
 
 
@@ -191,7 +270,7 @@ def told(limit: Limit, load: float, speed: float) -> str:
             f"{limit.words} allows {limit.told_bound(speed)} "
             f"at {rpm_from_rev_s(speed):.0f} rpm, not {limit.told(load)}"
         )
-    verb = "exceeds" if limit.sense is Sense.AT_MOST else "is below"
+    verb = "exceeds" if limit.sense is BoundSide.AT_MOST else "is below"
     return f"{limit.words} {limit.told(load)} {verb} {limit.told_bound(speed)}"
 
 
@@ -273,7 +352,7 @@ def at_depth(problem: Problem, depth: float) -> Problem:
 def _search(
     problem: Problem, cost: Callable[[Setting], float]
 ) -> Callable[..., Setting | None]:
-    """What finds the best setting of a number of passes, None where none keeps all limits."""
+    """Solver for a number of passes; None where no setting keeps all limits."""
     caps = _fixed_caps(problem)
 
     def best(passes: int, depth: float | None = None) -> Setting | None:
@@ -291,17 +370,17 @@ def _search(
     return best
 
 
-def _fixed_caps(problem: Problem) -> Caps | None:
+def _fixed_caps(problem: Problem) -> FeedCaps | None:
     """Caps at the only speed there is, or None when the speed may be chosen."""
     return _caps(problem, problem.speeds[0]) if len(problem.speeds) == 1 else None
 
 
-def _caps(problem: Problem, speed: float) -> Caps:
+def _caps(problem: Problem, speed: float) -> FeedCaps:
     """Caps of all limits at one speed."""
     return caps_at(limits_at(problem, speed), speed)
 
 
-def _setting(caps: Caps, passes: int, depth: float) -> Setting | None:
+def _setting(caps: FeedCaps, passes: int, depth: float) -> Setting | None:
     """The greatest feed at one depth and speed, or None when none keeps all limits."""
     highest, lowest = caps.greatest(depth), caps.least(depth)
     if highest == inf:
@@ -359,7 +438,7 @@ def settled(problem: Problem, best: Setting, first: Setting | None = None) -> So
     """Solution at a setting: the limit that holds its feed, and what it costs."""
     limits = limits_at(problem, best.speed)
     active = min(
-        (limit for limit in limits if limit.sense is Sense.AT_MOST),
+        (limit for limit in limits if limit.sense is BoundSide.AT_MOST),
         key=lambda limit: limit.feed_at_bound(best.depth, best.speed),
     )
     time = problem.cost.time(best)

@@ -1,1 +1,1 @@
-"""Who asks: the command line and its wiring."""
+"""Command line, REST service and dashboard."""

@@ -1,4 +1,4 @@
-"""What plots need of a run, in bounded memory: least, mean and greatest by time.
+"""Curves of a run for plots, in bounded memory: least, mean and greatest by time.
 
 Values fall into buckets of one width. When the run outgrows them, neighbours are merged and
 the width doubles, so that a run of a second and one of a hundred hours take the same room and
@@ -20,31 +20,31 @@ FINEST = 2.0**-14
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Curve:
+class BucketCurve:
     """One signal in each bucket; NaN where all its samples are missing."""
 
     low: Floats
-    """(B,)"""
+    """Low, (B,)"""
     mean: Floats
-    """(B,)"""
+    """Mean, (B,)"""
     high: Floats
-    """(B,)"""
+    """High, (B,)"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Trace:
+class BucketedRun:
     """A run in B buckets that hold samples, ascending in time."""
 
     width: float
-    """s"""
+    """Width, s"""
     begin: Floats
-    """(B,) s, first sample of each bucket"""
+    """Begin, (B,) s, first sample of each bucket"""
     end: Floats
-    """(B,) s, last one"""
-    curves: tuple[Curve, ...]
+    """End, (B,) s, last one"""
+    curves: tuple[BucketCurve, ...]
     """by the number of the signal"""
 
-    def curve(self, signal: int) -> Curve:
+    def curve(self, signal: int) -> BucketCurve:
         """One signal."""
         return self.curves[signal]
 
@@ -83,7 +83,7 @@ class Buckets:
             if len(time):
                 self._widen()
 
-    def trace(self) -> Trace:
+    def trace(self) -> BucketedRun:
         """The run so far."""
         held = np.isfinite(self._begin)
         is_known = self._count[held] > 0.0
@@ -91,12 +91,12 @@ class Buckets:
         low = np.where(is_known, self._low[held], np.nan)
         mean = self._sum[held] / counts
         high = np.where(is_known, self._high[held], np.nan)
-        return Trace(
+        return BucketedRun(
             width=self._width,
             begin=self._begin[held],
             end=self._end[held],
             curves=tuple(
-                Curve(low=low[:, row], mean=mean[:, row], high=high[:, row])
+                BucketCurve(low=low[:, row], mean=mean[:, row], high=high[:, row])
                 for row in range(self._signals)
             ),
         )

@@ -7,7 +7,7 @@ from simulator.errors import SimulationError
 from simulator.holding_file import read_holding_file
 from simulator.library import load_machine, load_material, machine_names, material_names
 from simulator.matching import match_material
-from simulator.spec import Certainty, Machine, MachineKind, Material, MaterialMatch
+from simulator.spec import Certainty, Machine, MachineKind, MaterialMatch, WorkMaterial
 from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import StepNcError
 from stepnc_model.program import Program
@@ -16,14 +16,14 @@ DEFAULT_MILL, DEFAULT_LATHE = "vmc15", "lathe22"
 """machines taken when none is named"""
 
 
-def library_entries(kind: str) -> tuple[Machine | Material, ...]:
+def library_entries(kind: str) -> tuple[Machine | WorkMaterial, ...]:
     """All machines or materials."""
     if kind == "machines":
         return tuple(load_machine(name) for name in machine_names())
     return tuple(load_material(name) for name in material_names())
 
 
-def library_entry(kind: str, name: str) -> Machine | Material:
+def library_entry(kind: str, name: str) -> Machine | WorkMaterial:
     """One machine or material, by name or file."""
     if kind == "machines":
         return load_machine(name)

@@ -8,9 +8,9 @@ drills and plunges; cutting power at the edge; drive power while there are chips
 from collections.abc import Iterable, Iterator
 from math import inf
 
-from optimiser.advice import Advice, Load, Plan, State
-from optimiser.cut import CutKind, Reached
-from optimiser.limit import LimitName, Sense
+from optimiser.advice import Advice, EvaluatedSetting, LimitLoad, Plan
+from optimiser.cut import CutKind, ReachedLoads
+from optimiser.problem import BoundSide, LimitName
 from service.confirmation import Confirmation, ConfirmedStep, Figure
 from service.reading import Tell, silent
 from service.simulation.run import run_of_program
@@ -50,14 +50,16 @@ def confirm(plan: Plan, program: Program, *, tell: Tell = silent) -> Confirmatio
     return Confirmation(steps=tuple(steps))
 
 
-def _figures(advice: Advice, state: State, total: Total, machine: Machine) -> Iterator[Figure]:
+def _figures(
+    advice: Advice, state: EvaluatedSetting, total: Total, machine: Machine
+) -> Iterator[Figure]:
     """Promises of one workingstep."""
     efficiency, speed = machine.spindle.efficiency, state.setting.speed
     if advice.cut is not None:
         speed *= advice.cut.power_speed
-    reached = Reached() if advice.cut is None else advice.cut.reached
+    reached = ReachedLoads() if advice.cut is None else advice.cut.reached
     way_in = None if advice.cut is None else advice.cut.way_in
-    sloped = Reached() if way_in is None or way_in.ramp is None else way_in.ramp.reached
+    sloped = ReachedLoads() if way_in is None or way_in.ramp is None else way_in.ramp.reached
     is_drill = advice.cut is not None and advice.cut.kind is CutKind.DRILLING
     drive = max(reached.power * state.motor_power, state.plunge_power)
     cutting = drive * efficiency
@@ -107,18 +109,18 @@ def _figures(advice: Advice, state: State, total: Total, machine: Machine) -> It
     )
 
 
-def _values(loads: Iterable[Load], name: LimitName) -> list[float]:
+def _values(loads: Iterable[LimitLoad], name: LimitName) -> list[float]:
     """Loads of the limits of a name, in canonical units."""
     return [load.value for load in loads if load.limit.name is name]
 
 
-def _bound(state: State, name: LimitName) -> float:
+def _bound(state: EvaluatedSetting, name: LimitName) -> float:
     """Least bound of the limits of a name, in canonical units."""
     return min(
         (
             load.bound
             for load in state.loads
-            if load.limit.name is name and load.limit.sense is Sense.AT_MOST
+            if load.limit.name is name and load.limit.sense is BoundSide.AT_MOST
         ),
         default=inf,
     )

@@ -25,7 +25,7 @@ class Figure:
 
     @property
     def is_passed(self) -> bool:
-        """Whether what was found is above its bound."""
+        """Whether the found value is above its bound."""
         return self.found > PASSED * self.bound
 
 

@@ -1,4 +1,4 @@
-"""What is in a file, and what is wrong with it: the verb ``check``."""
+"""Content of a file and its faults: the verb ``check``."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,7 +14,7 @@ from stepnc_model.tolerance import tolerance_findings
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Contents:
-    """What ``check`` shows of a file."""
+    """Result of ``check``."""
 
     name: str
     schemas: tuple[str, ...]
@@ -24,14 +24,14 @@ class Contents:
 
     @property
     def is_usable(self) -> bool:
-        """Whether the program can be worked with."""
+        """Whether the program is usable."""
         return self.program is not None and not any(
             finding.severity is Severity.ERROR for finding in self.findings
         )
 
 
 def check(path: Path, *, units: str = "iso", name: str = "") -> Contents:
-    """What is in a file, and what is wrong with it."""
+    """Content of a file and its faults."""
     profile, called = unit_profile(units), name or path.name
     file = Part21File.from_bytes(read_bytes(path), name=called)
     try:

@@ -1,4 +1,4 @@
-"""What a client of the service can do wrong, or meet.
+"""Errors of the service's clients, and of its environment.
 
 ::
 
@@ -39,11 +39,11 @@ class NotFound(ServiceError):
 
 
 class Conflict(ServiceError):
-    """What is asked does not go with the state that something is in."""
+    """Request that conflicts with the state of a resource."""
 
 
 class PreconditionFailed(Conflict):
-    """It is not any more what the client has seen, and may be changed only if it were."""
+    """The resource has changed since the client read it (If-Match)."""
 
 
 class TooLarge(ServiceError):

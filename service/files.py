@@ -155,5 +155,5 @@ def _mode(path: Path) -> int:
 
 
 def _reason(error: OSError) -> str:
-    """What the operating system says, without its number."""
+    """Message of the operating system, without its number."""
     return error.strerror or str(error)

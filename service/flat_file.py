@@ -30,7 +30,7 @@ AT_ONCE = 10_000
 
 
 class Format(StrEnum):
-    """How rows are written."""
+    """Format of a file of rows."""
 
     CSV = "csv"
     JSON = "json"
@@ -38,7 +38,7 @@ class Format(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Field:
+class FileColumn:
     """One column."""
 
     name: str
@@ -48,7 +48,7 @@ class Field:
 
 
 def write_rows(
-    path: Path, fields: Sequence[Field], rows: Iterable[Row], *, form: Format
+    path: Path, fields: Sequence[FileColumn], rows: Iterable[Row], *, form: Format
 ) -> int:
     """Write rows; how many there were.
 
@@ -67,7 +67,7 @@ def write_rows(
     return counted.count
 
 
-def csv_lines(fields: Sequence[Field], rows: Iterable[Row]) -> Iterator[str]:
+def csv_lines(fields: Sequence[FileColumn], rows: Iterable[Row]) -> Iterator[str]:
     """Header and rows; numbers with all their digits, times in ISO 8601."""
     names = [field.name for field in fields]
     yield _csv_line(names)
@@ -75,7 +75,7 @@ def csv_lines(fields: Sequence[Field], rows: Iterable[Row]) -> Iterator[str]:
         yield _csv_line([_csv_cell(row[name]) for name in names])
 
 
-def json_lines(fields: Sequence[Field], rows: Iterable[Row]) -> Iterator[str]:
+def json_lines(fields: Sequence[FileColumn], rows: Iterable[Row]) -> Iterator[str]:
     """One array of objects, an object in each line."""
     names = [field.name for field in fields]
     yield "["
@@ -90,7 +90,7 @@ def json_lines(fields: Sequence[Field], rows: Iterable[Row]) -> Iterator[str]:
     yield "]"
 
 
-LINES: Mapping[Format, Callable[[Sequence[Field], Iterable[Row]], Iterator[str]]] = {
+LINES: Mapping[Format, Callable[[Sequence[FileColumn], Iterable[Row]], Iterator[str]]] = {
     Format.CSV: csv_lines,
     Format.JSON: json_lines,
 }
@@ -134,7 +134,7 @@ def _json_value(value: Value) -> Value:
     return value.isoformat() if isinstance(value, datetime) else value
 
 
-def _write_parquet(path: Path, fields: Sequence[Field], rows: Iterable[Row]) -> int:
+def _write_parquet(path: Path, fields: Sequence[FileColumn], rows: Iterable[Row]) -> int:
     """Groups of rows, as they come."""
     from service.run_file import RunFile  # noqa: PLC0415 (pyarrow)
 
@@ -163,7 +163,7 @@ def _write_groups(
         write([pa.array([row[each.name] for row in group], type=each.type) for each in schema])
 
 
-def _schema(fields: Sequence[Field]) -> "pa.Schema":
+def _schema(fields: Sequence[FileColumn]) -> "pa.Schema":
     """Types that keep every value."""
     import pyarrow as pa  # noqa: PLC0415 (slow to import)
 

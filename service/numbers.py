@@ -3,7 +3,7 @@
 from math import isfinite
 
 from stepnc_model.errors import StepNcError
-from stepnc_model.stock import Stock
+from stepnc_model.program import Stock
 from stepnc_model.toolpath.path import FARTHEST
 
 LEAST_SIZE = 0.01

@@ -12,7 +12,7 @@ from html import escape
 import numpy as np
 import plotly.graph_objects as go
 
-from service.buckets import Trace
+from service.buckets import BucketedRun
 from simulator.motion.segments import Floats
 
 GREY, SKY, ORANGE, GREEN, PINK, BLUE, RED = (
@@ -43,20 +43,20 @@ MINUTES, HOURS = 900.0, 3.0 * 3600.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Stretch:
+class TimeSpan:
     """A workingstep on the axis of time."""
 
     name: str
     begin: float
-    """s"""
+    """Begin, s"""
     duration: float
-    """s"""
+    """Duration, s"""
 
 
 class Panels:
     """A figure that grows panel by panel. Running state."""
 
-    def __init__(self, trace: Trace) -> None:
+    def __init__(self, trace: BucketedRun) -> None:
         last = float(trace.end[-1]) if len(trace.end) else 0.0
         self.second, self.unit = _clock(last)
         self.end = last * self.second
@@ -78,7 +78,7 @@ class Panels:
         number = len(self._heights)
         self.figure.add_trace(drawn.update(xaxis=_name("x", number), yaxis=_name("y", number)))
 
-    def strip(self, stretches: Sequence[Stretch]) -> None:
+    def strip(self, stretches: Sequence[TimeSpan]) -> None:
         """The first panel: the names of the workingsteps where they run."""
         hidden = {"showticklabels": False, "showgrid": False, "zeroline": False}
         self.begin(
@@ -112,8 +112,8 @@ class Panels:
         at, shown = times[~is_point] * self.second, values[~is_point] * scale
         self.add(line(name, colour, at, shown))
 
-    def done(self, stretches: Sequence[Stretch]) -> go.Figure:
-        """Everything in its place."""
+    def done(self, stretches: Sequence[TimeSpan]) -> go.Figure:
+        """Figure with all panels laid out."""
         figure, last = self.figure, _name("x", len(self._heights))
         inside = self._stack()
         figure.update_xaxes(
@@ -153,7 +153,7 @@ class Panels:
             top += height + GAP
         return inside
 
-    def _bands(self, stretches: Sequence[Stretch], axis: str) -> list[dict[str, object]]:
+    def _bands(self, stretches: Sequence[TimeSpan], axis: str) -> list[dict[str, object]]:
         """Every second workingstep, behind all panels."""
         if len(stretches) > MOST_BANDS:
             return []

@@ -1,7 +1,6 @@
 """An error of the project as a problem body after RFC 9457, for jobs and for REST."""
 
 import re
-from collections.abc import Mapping
 from typing import Any
 
 from kbe.errors import KnowledgeError, StoreBusy, StoreFull, StoreUnavailable, UnknownCorrection
@@ -109,7 +108,7 @@ def _words(name: str) -> str:
 
 
 def _is_plain(value: object) -> bool:
-    """Whether it goes into JSON as it is."""
+    """Whether the value can be written as JSON unchanged."""
     if isinstance(value, tuple):
         return all(isinstance(each, str) for each in value)
     return isinstance(value, str | int | float) and not isinstance(value, bool)
@@ -123,8 +122,3 @@ def _hidden(value: Any, folder: str) -> Any:
 
 def _without(text: str, folder: str) -> str:
     return text.replace(f"{folder}/", "").replace(folder, "") if folder else text
-
-
-def title_and_detail(problem: Mapping[str, Any]) -> str:
-    """A problem in a line, for logs and terminals."""
-    return f"{problem['title']}: {problem['detail']}"

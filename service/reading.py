@@ -1,4 +1,4 @@
-"""What every verb begins with: a file becomes a program, a word becomes a choice."""
+"""Reading of programs, and of words that choose one of several options."""
 
 from collections.abc import Callable
 from enum import StrEnum
@@ -9,9 +9,9 @@ from service.files import read_bytes
 from service.numbers import stock_in
 from stepnc_model.errors import StepNcError
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
-from stepnc_model.toolpath.job import drawn_stock
-from stepnc_model.unit_profiles import PROFILES, UnitProfile
+from stepnc_model.program import Program, ResolvedWorkingstep
+from stepnc_model.toolpath.task import drawn_stock
+from stepnc_model.units import PROFILES, UnitProfile
 
 E = TypeVar("E", bound=StrEnum)
 
@@ -52,3 +52,24 @@ def one_of(kinds: type[E], word: str, what: str) -> E:
     except ValueError:
         known = ", ".join(kind.value for kind in kinds)
         raise StepNcError(f"unknown {what} '{word}'; known: {known}") from None
+
+
+def selected(program: Program, wanted: tuple[str, ...]) -> tuple[ResolvedWorkingstep, ...]:
+    """Workingsteps by id or #instance; all when none is named.
+
+    Raises
+    ------
+    StepNcError
+        When there is no such workingstep.
+    """
+    if not wanted:
+        return program.workingsteps
+    found = tuple(
+        step for step in program.workingsteps if step.id in wanted or str(step.ref) in wanted
+    )
+    names = {step.id for step in found} | {str(step.ref) for step in found}
+    missing = [name for name in wanted if name not in names]
+    if missing:
+        known = ", ".join(f"'{step.id}' ({step.ref})" for step in program.workingsteps)
+        raise StepNcError(f"no workingstep '{missing[0]}'; known: {known}")
+    return found

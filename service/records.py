@@ -3,24 +3,24 @@
 from dataclasses import dataclass
 from math import isclose, pi
 
-from optimiser.advice import Advice, Plan, State, Status
+from optimiser.advice import Advice, AdviceStatus, EvaluatedSetting, Plan
 from optimiser.cut import Cut, CutKind
 from simulator.physics.engagement import Engagement
-from stepnc_model.record import GENERATOR, Record
-from stepnc_model.technology import Quantity
+from stepnc_model.record import GENERATOR, AdviceRecord
+from stepnc_model.technology import ProgrammedQuantity
 from stepnc_model.units import deg_from_rad, kw_from_watts, um_from_mm
-from stepnc_model.writeback import Change, rounded
+from stepnc_model.writeback import WorkingstepUpdate, rounded
 
 UNCHANGED = 1e-9
 """relative difference below which a number counts as the programmed one"""
 
 
-def changes_of(plan: Plan) -> list[Change]:
+def changes_of(plan: Plan) -> list[WorkingstepUpdate]:
     """Changes of all workingsteps that were advised."""
     return [
         _change(plan, _Advised(each, each.cut, each.before, each.after))
         for each in plan.advices
-        if each.status is Status.ADVISED and each.cut and each.before and each.after
+        if each.status is AdviceStatus.ADVISED and each.cut and each.before and each.after
     ]
 
 
@@ -30,18 +30,18 @@ class _Advised:
 
     advice: Advice
     cut: Cut
-    before: State
-    after: State
+    before: EvaluatedSetting
+    after: EvaluatedSetting
 
 
-def _change(plan: Plan, advised: _Advised) -> Change:
+def _change(plan: Plan, advised: _Advised) -> WorkingstepUpdate:
     """Numbers for the file, in the units of its attributes."""
     advice, cut = advised.advice, advised.cut
     conditions, before, after = advice.programmed, advised.before, advised.after
     given, best = before.setting, after.setting
     is_speed_new = not isclose(given.speed, best.speed, rel_tol=UNCHANGED)
     is_depth_new = not isclose(given.depth, best.depth, rel_tol=UNCHANGED)
-    return Change(
+    return WorkingstepUpdate(
         workingstep=advice.workingstep,
         programmed=conditions,
         record=_record(plan, advised),
@@ -51,8 +51,8 @@ def _change(plan: Plan, advised: _Advised) -> Change:
     )
 
 
-def _record(plan: Plan, advised: _Advised) -> Record:
-    """Everything worth keeping beside the numbers themselves."""
+def _record(plan: Plan, advised: _Advised) -> AdviceRecord:
+    """Description of the advice for its record."""
     advice, cut = advised.advice, advised.cut
     before, after = advised.before, advised.after
     spindle = plan.machine.spindle
@@ -63,10 +63,10 @@ def _record(plan: Plan, advised: _Advised) -> Record:
     removal = _removal_rate(cut, after)
     feed, speed = advice.programmed.feed, advice.programmed.speed
     raw_feed, raw_speed = feed.in_file(feed.value), speed.in_file(speed.value)
-    is_feed = feed.quantity is Quantity.FEED
-    is_spindle = speed.quantity is Quantity.SPINDLE_SPEED
+    is_feed = feed.quantity is ProgrammedQuantity.FEED
+    is_spindle = speed.quantity is ProgrammedQuantity.SPINDLE_SPEED
     engagement = cut.engagement
-    return Record(
+    return AdviceRecord(
         mode=plan.mode.value,
         id=advice.workingstep.operation.its_id,
         description=advice.reason,
@@ -97,7 +97,7 @@ def _record(plan: Plan, advised: _Advised) -> Record:
     )
 
 
-def _removal_rate(cut: Cut, after: State) -> float:
+def _removal_rate(cut: Cut, after: EvaluatedSetting) -> float:
     """Material removed in mm³/s while the tool cuts."""
     best = after.setting
     if cut.kind is CutKind.MILLING:

@@ -55,7 +55,7 @@ class RunFile:
 
     @property
     def partial(self) -> Path:
-        """Where a broken-off run is left."""
+        """Name of the file that an interrupted run leaves."""
         return self.path.with_suffix(f".partial{self.path.suffix}")
 
     def write(self, columns: Sequence[pa.Array]) -> None:

@@ -1,4 +1,4 @@
-"""What goes to a person's terminal."""
+"""Output to the user's terminal."""
 
 import sys
 

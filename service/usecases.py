@@ -1,16 +1,14 @@
 """One function per verb. Packages meet here; the command line and REST are skins over it."""
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from optimiser.advice import Plan, Status
-from optimiser.formulate import Task
-from optimiser.modes import Free, Mode
-from optimiser.optimise import optimise as advise
-from optimiser.safety import USUAL_QUANTILE, require_quantile
+from optimiser.advice import AdviceStatus, Plan
+from optimiser.formulate import OptimisationTask
+from optimiser.optimise import optimise_program
 from optimiser.source import along_paths
 from service.chosen import machine_for, material_for, require_axes, with_holding
 from service.files import (
@@ -23,69 +21,53 @@ from service.files import (
 from service.knowledge.corrected import factors_for, finding_of, with_corrections
 from service.knowledge.place import named_place, require_apart
 from service.progress import Progress
-from service.reading import Tell, one_of, read_program, silent
+from service.reading import Tell, read_program, selected, silent
 from service.records import changes_of
+from service.requests.advice import AdviceRequest
+from service.requests.fields import require_bounds
 from simulator.spec import Certainty, Machine, MaterialMatch
 from stepnc_model import writeback
 from stepnc_model.errors import Finding, SchemaError, Severity, StepNcError, WriteError
+from stepnc_model.file_profile import FileProfile
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.plausibility import refusal
-from stepnc_model.program import Program, Workingstep
-from stepnc_model.toolpath.job import stock_of
+from stepnc_model.post.dialect import Dialect
+from stepnc_model.program import Program, ResolvedWorkingstep
+from stepnc_model.toolpath.task import stock_of
 from stepnc_model.units import mm_from_um
-from stepnc_model.writeback import Profile
 
 if TYPE_CHECKING:
     from service.confirmation import Confirmation
+    from service.knowledge.verbs import AcceptedFactor
     from simulator.tool_table import TableTool
 
 NOTHING_WRITTEN = "nothing was written: no workingstep was advised"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Request:
-    """What the user asks of ``optimise``, in the user's units."""
+class AdviceFiles:
+    """Files that ``optimise`` reads and writes."""
 
     file: Path
     name: str = ""
-    """what the program is called; as its file when empty"""
-    mode: str = "TC"
-    machine: str = ""
-    material: str = ""
-    units: str = "iso"
-    roughness_um: float | None = None
-    free: str = "feed,depth"
-    profile: str = "optimisation"
+    """name of the program; that of its file when empty"""
     output: Path | None = None
     in_place: bool = False
-    workingsteps: tuple[str, ...] = ()
-    pareto: bool = False
-    tool_change: float = 0.0
+    """whether the input file is overwritten"""
     dry_run: bool = False
+    """whether no STEP-NC file is written"""
     report: Path | None = None
-    control: str = ""
-    """for which NC code is written too; none when empty"""
+    holding: Path | None = None
+    """work-holding, instead of that of the machine's file"""
+    tools: Path | None = None
+    """tool table: which of the program's tools cut over centre or have wipers"""
     knowledge: str = ""
     """knowledge base with accepted corrections; that of the environment when empty"""
-    confirm: bool = False
-    """whether the virtual machine runs the advised program"""
-    stock: str = ""
-    """raw part of a file that draws none, in mm: ``x0,y0,z0,x1,y1,z1`` or ``diameter,z0,z1``"""
-    holding: Path | None = None
-    """how the workpiece is held, instead of what the machine's file says"""
-    safety: float = USUAL_QUANTILE
-    """quantile of k_c at which loads keep their bounds"""
-    tools: Path | None = None
-    """tool table that says which of the program's tools cut over centre or have wipers"""
-    centre_cutting: Mapping[str, bool] = field(default_factory=dict, hash=False)
-    """the same without a table; the table goes first"""
-    allow_plunge: bool = False
-    """whether tools that do not cut over centre may go straight down into the solid"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Outcome:
-    """What ``optimise`` did."""
+class OptimiseResult:
+    """Result of ``optimise``."""
 
     plan: Plan
     written: Path | None
@@ -94,7 +76,9 @@ class Outcome:
     """None: not asked for"""
 
 
-def optimise(request: Request, *, tell: Tell = silent) -> Outcome:
+def optimise(
+    request: AdviceRequest, files: AdviceFiles, *, tell: Tell = silent
+) -> OptimiseResult:
     """Read, optimise, write back.
 
     Raises
@@ -102,31 +86,34 @@ def optimise(request: Request, *, tell: Tell = silent) -> Outcome:
     StepNcError
         For everything that is wrong with file, names, limits or output; nothing is written.
     """
-    task = _task(request)
-    profile = one_of(Profile, request.profile, "profile")
-    output = _output(request)
-    nc_place = _nc_place(request, output)
-    require_apart(named_place(request.knowledge), output, request.report, nc_place)
+    require_bounds(request)
+    task = _task(request, _table(files.tools))
+    profile = request.profile
+    output = _output(files)
+    nc_place = _nc_place(request, files, output)
+    require_apart(named_place(files.knowledge), output, files.report, nc_place)
     program = read_program(
-        request.file, units=request.units, name=request.name, stock=request.stock
+        files.file, units=request.units, name=files.name, stock=request.stock
     )
-    chosen = _selected(program, request.workingsteps)
+    chosen = selected(program, request.workingsteps)
     findings = program.file.findings + program.model.findings()
     _require_usable(program, chosen, findings)
-    machine = with_holding(machine_for(request.machine, program), request.holding)
-    if request.confirm:
+    machine = with_holding(machine_for(request.machine, program), files.holding)
+    if request.is_confirmed:
         _require_run(program, chosen, machine)
     match = material_for(request.material, program)
     tell(f"material: {match.reason}")
-    known, safety = request.knowledge, request.safety
-    factors = factors_for(
-        known, program, chosen, machine=machine, material=match, safety=safety
-    )
+    safety = request.safety
+    factors: tuple[AcceptedFactor, ...] = ()
+    if request.has_corrections:
+        factors = factors_for(
+            files.knowledge, program, chosen, machine=machine, material=match, safety=safety
+        )
     notes = tuple(finding_of(each, safety=safety) for each in factors)
     for note in notes:
         tell(note.message)
     wanted = {int(step.ref) for step in chosen}
-    plan = advise(
+    plan = optimise_program(
         program,
         machine=machine,
         material=match,
@@ -141,34 +128,36 @@ def optimise(request: Request, *, tell: Tell = silent) -> Outcome:
     plan = _with_file_findings(plan, (*findings, *notes), match)
     changes = changes_of(plan)
     data = writeback.write(program, changes, profile) if changes else program.file.data
-    if changes and factors and profile is Profile.OPTIMISATION:
+    if changes and factors and profile is FileProfile.OPTIMISATION:
         data = with_corrections(_read_again(program, data), factors)
     confirmation = None
-    if request.confirm:
+    if request.is_confirmed:
         from service.confirm import confirm  # noqa: PLC0415 (numba takes a second)
 
         confirmation = confirm(plan, _read_again(program, data), tell=tell)
-    if nc_place is not None:
+    if request.nc_control is not None and nc_place is not None:
         # NC code first: where it cannot be made, nothing is written.
-        code = _nc_code(program, data, request.control, tell)
-        if not request.dry_run:
+        code = _nc_code(program, data, request.nc_control, tell)
+        if not files.dry_run:
             tell(f"NC code: {nc_place} ({write_lines(nc_place, code)} lines)")
     written = None
-    if changes and not request.dry_run:
+    if changes and not files.dry_run:
         write_atomically(output, data)
         written = output
-    if not request.dry_run:
+    if not files.dry_run:
         tell(f"written: {output}" if changes else NOTHING_WRITTEN)
-    if request.report is not None:
-        from service.report import report_page  # noqa: PLC0415 (plotly takes a second)
+    if files.report is not None:
+        from service.plan_output import report_page  # noqa: PLC0415 (plotly takes a second)
 
-        write_atomically(request.report, report_page(plan).encode())
-        tell(f"report: {request.report}")
+        write_atomically(files.report, report_page(plan).encode())
+        tell(f"report: {files.report}")
     _tell_conflicts(plan, tell)
-    return Outcome(plan=plan, written=written, confirmation=confirmation)
+    return OptimiseResult(plan=plan, written=written, confirmation=confirmation)
 
 
-def _require_run(program: Program, chosen: tuple[Workingstep, ...], machine: Machine) -> None:
+def _require_run(
+    program: Program, chosen: tuple[ResolvedWorkingstep, ...], machine: Machine
+) -> None:
     """Refuse to confirm what cannot be run: before all, not after the plan."""
     require_axes(machine)
     for step in chosen:
@@ -178,74 +167,57 @@ def _require_run(program: Program, chosen: tuple[Workingstep, ...], machine: Mac
 
 
 def _tell_conflicts(plan: Plan, tell: Tell) -> None:
-    conflicts = [each for each in plan.advices if each.status is Status.INFEASIBLE]
+    conflicts = [each for each in plan.advices if each.status is AdviceStatus.INFEASIBLE]
     if conflicts:
         names = ", ".join(f"'{each.workingstep.id}'" for each in conflicts)
         tell(f"infeasible, left as programmed: {names}")
 
 
-def convert(path: Path, *, profile: str, output: Path) -> None:
+def convert(path: Path, *, profile: FileProfile, output: Path) -> None:
     """Move the optimisation records of a file into another profile."""
-    wanted = one_of(Profile, profile, "profile")
     require_place(output, apart_from=path)
     program = read_program(path, units="iso")
-    write_atomically(output, writeback.convert(program, wanted))
+    write_atomically(output, writeback.convert(program, profile))
 
 
-def _require_positive(value: float | None, what: str, unit: str) -> None:
-    """A number that is given must be positive and finite."""
-    if value is not None and not 0.0 < value < float("inf"):
-        raise StepNcError(f"{what} {value:g} {unit}: it must be positive")
-
-
-def _output(request: Request) -> Path:
-    """Where the optimised program goes: never over the input unless asked."""
-    if request.in_place:
-        if request.output is not None:
+def _output(files: AdviceFiles) -> Path:
+    """Output path of the optimised program: never the input unless asked."""
+    if files.in_place:
+        if files.output is not None:
             raise StepNcError("--in-place and --output exclude each other")
-        output = request.file
+        output = files.file
     else:
-        output = request.output or beside(request.file, ".optimised.stpnc")
-        if is_same(request.file, output):
+        output = files.output or beside(files.file, ".optimised.stpnc")
+        if is_same(files.file, output):
             message = "is the input file; use --in-place to overwrite it"
             raise WriteError(message, path=str(output))
-        if not request.dry_run:
-            require_place(output, apart_from=request.file)
-    if request.report is not None:
-        require_place(request.report, apart_from=request.file)
-        require_place(request.report, apart_from=output)
+        if not files.dry_run:
+            require_place(output, apart_from=files.file)
+    if files.report is not None:
+        require_place(files.report, apart_from=files.file)
+        require_place(files.report, apart_from=output)
     return output
 
 
-def _task(request: Request) -> Task:
-    """What is asked, in the units inside."""
-    mode = one_of(Mode, request.mode.upper(), "mode")
-    free = frozenset(one_of(Free, word.strip(), "free") for word in request.free.split(","))
-    _require_positive(request.roughness_um, "roughness", "µm")
-    if request.tool_change:
-        _require_positive(request.tool_change, "tool change", "s")
+def _task(request: AdviceRequest, tools: "tuple[TableTool, ...]") -> OptimisationTask:
+    """Task of the optimiser, in the units inside."""
     roughness = request.roughness_um
-    try:
-        require_quantile(request.safety)
-    except ValueError as error:
-        raise StepNcError(str(error)) from error
-    table = _table(request.tools)
-    return Task(
-        mode=mode,
-        free=free,
+    return OptimisationTask(
+        mode=request.mode,
+        free=frozenset(request.free),
         roughness=None if roughness is None else mm_from_um(roughness),
-        tool_change=request.tool_change,
-        wipers=frozenset(tool.id for tool in table if tool.has_wiper),
-        front=request.pareto,
+        tool_change=request.tool_change_s,
+        wipers=frozenset(tool.id for tool in tools if tool.has_wiper),
+        front=request.has_pareto,
         safety=request.safety,
-        centre_cutting={**request.centre_cutting, **_centre_cutting(table)},
+        centre_cutting={**request.centre_cutting, **_centre_cutting(tools)},
         allow_plunge=request.allow_plunge,
-        source=partial(along_paths, is_run=request.confirm),
+        source=partial(along_paths, is_run=request.is_confirmed),
     )
 
 
 def _centre_cutting(tools: tuple["TableTool", ...]) -> dict[str, bool]:
-    """Which tools of a table cut over centre, by their ids; none where there is no table."""
+    """Tools of a table that cut over centre, by their ids; empty without a table."""
     said = {tool.id: tool.centre_cutting for tool in tools}
     return {name: does for name, does in said.items() if does is not None}
 
@@ -259,27 +231,23 @@ def _table(tools: Path | None) -> tuple["TableTool", ...]:
     return read_tool_table(tools)
 
 
-def _nc_place(request: Request, output: Path) -> Path | None:
-    """Where NC code goes: beside the optimised program."""
-    if not request.control:
+def _nc_place(request: AdviceRequest, files: AdviceFiles, output: Path) -> Path | None:
+    """Output path of NC code: beside the optimised program."""
+    if request.nc_control is None:
         return None
-    from stepnc_model.post.controls import Control  # noqa: PLC0415 (all dialects)
-
-    control = one_of(Control, request.control.lower(), "control")
-    place = beside(output, control.suffix)
-    for other in (request.file, output, request.report):
+    place = beside(output, request.nc_control.suffix)
+    for other in (files.file, output, files.report):
         if other is not None:
             require_place(place, apart_from=other)
     return place
 
 
-def _nc_code(program: Program, data: bytes, control: str, tell: Tell) -> Iterator[str]:
+def _nc_code(program: Program, data: bytes, control: Dialect, tell: Tell) -> Iterator[str]:
     """NC code of the program as it is after optimisation."""
     from service.paths.toolpaths import nc_lines, paths_of, with_feeds  # noqa: PLC0415 (numpy, shapely)
-    from stepnc_model.post.controls import Control  # noqa: PLC0415 (all dialects)
 
     paths = with_feeds(paths_of(_read_again(program, data), tell=tell), keep_going=False)
-    return nc_lines(paths, Control(control.lower()))
+    return nc_lines(paths, control)
 
 
 def _read_again(program: Program, data: bytes) -> Program:
@@ -288,23 +256,8 @@ def _read_again(program: Program, data: bytes) -> Program:
     return Program(file, units=program.units, name=program.name, stock=program.stock)
 
 
-def _selected(program: Program, wanted: tuple[str, ...]) -> tuple[Workingstep, ...]:
-    """Workingsteps by id or #instance; all when none is named."""
-    if not wanted:
-        return program.workingsteps
-    found = tuple(
-        step for step in program.workingsteps if step.id in wanted or str(step.ref) in wanted
-    )
-    names = {step.id for step in found} | {str(step.ref) for step in found}
-    missing = [name for name in wanted if name not in names]
-    if missing:
-        known = ", ".join(f"'{step.id}' ({step.ref})" for step in program.workingsteps)
-        raise StepNcError(f"no workingstep '{missing[0]}'; known: {known}")
-    return found
-
-
 def _require_usable(
-    program: Program, chosen: tuple[Workingstep, ...], findings: tuple[Finding, ...]
+    program: Program, chosen: tuple[ResolvedWorkingstep, ...], findings: tuple[Finding, ...]
 ) -> None:
     """Refuse a program with errors, or with numbers that are in other units.
 

@@ -1,1 +1,1 @@
-"""What is: what the cut and the machine do."""
+"""Simulation of the cut and of the machine."""

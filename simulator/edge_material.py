@@ -1,9 +1,9 @@
-"""What a cutting edge is made of, and its factor on the specific cutting force."""
+"""Material of a cutting edge, and its factor on the specific cutting force."""
 
 from collections.abc import Sequence
 
 from simulator.physics.cutting import ForceCorrection, rake_factor, speed_factor
-from simulator.spec import CuttingMaterial, Grade, Material
+from simulator.spec import CuttingMaterial, ToolGrade, WorkMaterial
 
 WORDS = (
     (CuttingMaterial.CERAMIC, ("ceramic",)),
@@ -14,7 +14,7 @@ WORDS = (
 
 
 def edge_material(texts: Sequence[str]) -> CuttingMaterial | None:
-    """What the edge is made of, by the words that a file has for it; None: not said."""
+    """Material of the edge, from the words of a file; None: not stated."""
     words = " ".join(texts).lower()
     for material, names in WORDS:
         if any(name in words for name in names):
@@ -23,7 +23,7 @@ def edge_material(texts: Sequence[str]) -> CuttingMaterial | None:
 
 
 def correction_of(
-    material: Material, grade: Grade | None, cutting_material: CuttingMaterial
+    material: WorkMaterial, grade: ToolGrade | None, cutting_material: CuttingMaterial
 ) -> ForceCorrection:
     """K_γ and K_v of an edge in a material; all 1 without a grade, or for a constant k_s."""
     if grade is None:

@@ -5,7 +5,7 @@ one ``[[grade]]`` row per cutting material and ISO group for its windows.
 """
 
 from simulator.material_file import ISO_GROUPS, RAKE, speed_window
-from simulator.spec import CuttingMaterial, DrillPoint, FeedWindow, Grade, ToolKind
+from simulator.spec import CuttingMaterial, DrillPoint, FeedWindow, ToolGrade, ToolKind
 from simulator.toml_file import Range, Table
 from stepnc_model.units import rad_from_deg
 
@@ -27,7 +27,7 @@ SLOT_FACTOR = Range(low=0.1, high=1)
 LAND = Range(low=0.1, high=20, unit="mm")
 
 
-def read_grades(table: Table, kind: ToolKind) -> tuple[Grade, ...]:
+def read_grades(table: Table, kind: ToolKind) -> tuple[ToolGrade, ...]:
     """Grades of a file's root table, in canonical units.
 
     Raises
@@ -50,7 +50,7 @@ def read_grades(table: Table, kind: ToolKind) -> tuple[Grade, ...]:
     return tuple(grades)
 
 
-def _grade(row: Table, *, edge: Table, kind: ToolKind, material: CuttingMaterial) -> Grade:
+def _grade(row: Table, *, edge: Table, kind: ToolKind, material: CuttingMaterial) -> ToolGrade:
     """One ``[[grade]]`` row with what its tool has in common."""
     group = _group(row)
     low_ratio, high_ratio = row.window("min_feed_ratio", "max_feed_ratio", allowed=FEED_RATIO)
@@ -59,7 +59,7 @@ def _grade(row: Table, *, edge: Table, kind: ToolKind, material: CuttingMaterial
     if (low_speed is None) != (high_speed is None):
         raise row.error("", "a cutting-speed window that replaces the material's has two ends")
     rake = edge.optional_number("rake_angle_deg", RAKE)
-    return Grade(
+    return ToolGrade(
         name=f"{material} {kind.replace('_', ' ')} {group}",
         tool_kind=kind,
         cutting_material=material,

@@ -1,4 +1,4 @@
-"""How workpieces are held: ``[[holding]]`` tables of a machine's file, or of one of their own.
+"""Work-holding: ``[[holding]]`` tables of a machine's file, or of one of their own.
 
 Each holds one setup, by the id that the program gives it, or any. What is absent of a chuck's
 grip follows from the bar and the clamping positions of the program.
@@ -34,7 +34,7 @@ THREE_JAWS = 3
 
 
 class HoldingKind(StrEnum):
-    """What holds the workpiece."""
+    """Kind of work-holding."""
 
     CHUCK = "chuck"
     VICE = "vice"

@@ -17,11 +17,11 @@ from simulator.material_file import read_material
 from simulator.spec import (
     CuttingMaterial,
     CuttingWindow,
-    Grade,
     Machine,
-    Material,
-    ToolBody,
+    ToolConstruction,
+    ToolGrade,
     ToolKind,
+    WorkMaterial,
 )
 from simulator.toml_file import read_toml
 
@@ -86,7 +86,7 @@ def load_machine(name_or_path: str) -> Machine:
     return read_machine(read_toml(DATA / "machines" / f"{name}.toml"), name=name)
 
 
-def load_material(name_or_path: str) -> Material:
+def load_material(name_or_path: str) -> WorkMaterial:
     """A work material of the library, or the user's own file.
 
     Parameters
@@ -117,14 +117,14 @@ def load_material(name_or_path: str) -> Material:
 
 
 def find_window(
-    material: Material, tool_kind: ToolKind, cutting_material: CuttingMaterial
+    material: WorkMaterial, tool_kind: ToolKind, cutting_material: CuttingMaterial
 ) -> CuttingWindow | None:
     """Cutting-speed window of a tool in a material; ``None`` when the source gives none.
 
     Carbide has two windows in most materials, of solid tools and of inserts. Where the source
     gives only the other one, that one serves.
     """
-    body = ToolBody.SOLID if tool_kind in SOLID_TOOLS else ToolBody.INDEXABLE
+    body = ToolConstruction.SOLID if tool_kind in SOLID_TOOLS else ToolConstruction.INDEXABLE
     windows = [
         window for window in material.windows if window.cutting_material is cutting_material
     ]
@@ -132,7 +132,9 @@ def find_window(
     return next(iter(fitting or windows), None)
 
 
-def find_grade(tool_kind: ToolKind, cutting_material: CuttingMaterial, iso_group: str) -> Grade:
+def find_grade(
+    tool_kind: ToolKind, cutting_material: CuttingMaterial, iso_group: str
+) -> ToolGrade:
     """Grade of a kind of tool for an ISO group, or else the one that serves every group.
 
     Parameters
@@ -161,8 +163,8 @@ def find_grade(tool_kind: ToolKind, cutting_material: CuttingMaterial, iso_group
 
 
 def grade_for(
-    tool_kind: ToolKind, cutting_material: CuttingMaterial, material: Material
-) -> Grade | None:
+    tool_kind: ToolKind, cutting_material: CuttingMaterial, material: WorkMaterial
+) -> ToolGrade | None:
     """Grade of a kind of tool for a material; None where there is none."""
     if not material.iso_group:
         return None
@@ -173,7 +175,7 @@ def grade_for(
 
 
 @cache
-def _grades(kind: ToolKind) -> tuple[Grade, ...]:
+def _grades(kind: ToolKind) -> tuple[ToolGrade, ...]:
     """Grades of one kind; kept, since every workingstep asks and the files do not change."""
     return read_grades(read_toml(_grade_path(kind)), kind)
 

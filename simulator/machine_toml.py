@@ -225,7 +225,7 @@ def _clamp(clamp: Clamp) -> list[str]:
 
 
 def _held(kind: HoldingKind, holding: Holding) -> list[str]:
-    """What a row begins with."""
+    """First lines of a ``[[holding]]`` table."""
     setup = [f"setup = {_text(holding.setup)}"] if holding.setup else []
     return ["", "[[holding]]", f"kind = {_text(kind.value)}", *setup]
 

@@ -63,7 +63,7 @@ UNUSED = {
     "rotorLength": Range(low=0, high=1e4, unit="mm"),
     "frictionCoefficient": Range(low=0, high=1e4, unit="N·s/mm²"),
 }
-"""numbers that are checked but that no model of ours asks for"""
+"""numbers that are checked but used by no model yet"""
 
 DRIVE = {
     "pitchFeedScrew": Range(low=1e-4, high=0.5, unit="m/rev"),

@@ -1,4 +1,4 @@
-"""Which material of the library a STEP-NC program means.
+"""Match of the material of a STEP-NC program with the library.
 
 Programs name their material freely: a standard number, a grade of another country, a brand, or
 just "steel". Names are compared without blanks, hyphens, dots, accents and capitals. An exact
@@ -37,7 +37,7 @@ LONGEST_NAME = 40
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Guess:
+class MaterialGuess:
     """A material that a name may mean."""
 
     material: str
@@ -128,7 +128,7 @@ def _candidates(texts: tuple[str, ...]) -> Iterator[str]:
             yield f"{first} {second}"
 
 
-def _by_family(texts: tuple[str, ...], guesses: Table) -> Guess | None:
+def _by_family(texts: tuple[str, ...], guesses: Table) -> MaterialGuess | None:
     """The nearest number of the first family that a piece of the texts belongs to."""
     families = guesses.tables("family")
     for candidate in _candidates(texts):
@@ -139,18 +139,18 @@ def _by_family(texts: tuple[str, ...], guesses: Table) -> Guess | None:
     return None
 
 
-def _nearest(candidate: str, family: Table, *, number: int) -> Guess:
+def _nearest(candidate: str, family: Table, *, number: int) -> MaterialGuess:
     """The member of a family whose number is nearest."""
     members = family.tables("members")
     nearest = min(members, key=lambda row: abs(row.number("number", GRADE_NUMBER) - number))
-    return Guess(
+    return MaterialGuess(
         material=nearest.text("material"),
         reason=f"'{candidate}' is not in the library; of the family {family.text('meaning')} "
         "this one is the nearest",
     )
 
 
-def _by_kind(texts: tuple[str, ...], guesses: Table) -> Guess | None:
+def _by_kind(texts: tuple[str, ...], guesses: Table) -> MaterialGuess | None:
     """The material that stands for a kind of metal which the texts name."""
     for text in texts:
         whole = normalised(text)
@@ -159,7 +159,7 @@ def _by_kind(texts: tuple[str, ...], guesses: Table) -> Guess | None:
             if words.intersection(kind.texts("equals")) or any(
                 part in whole for part in kind.texts("contains")
             ):
-                return Guess(
+                return MaterialGuess(
                     material=kind.text("material"),
                     reason=f"'{text}' says no more than {kind.text('meaning')}, for which this "
                     "one stands",

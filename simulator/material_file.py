@@ -16,9 +16,9 @@ from simulator.spec import (
     CuttingWindow,
     Kienzle,
     LinearEdge,
-    Material,
     Taylor,
-    ToolBody,
+    ToolConstruction,
+    WorkMaterial,
 )
 from simulator.toml_file import Range, Table
 from stepnc_model.units import rad_from_deg, speed_from_m_min
@@ -52,7 +52,7 @@ and stainless steel, aluminium and titanium (Machinery's Handbook, 29th ed., mec
 properties), grey iron GJL-200 (EN 1561, annex)"""
 
 
-def read_material(table: Table, *, name: str) -> Material:
+def read_material(table: Table, *, name: str) -> WorkMaterial:
     """Material of a file's root table, in canonical units.
 
     Raises
@@ -64,7 +64,7 @@ def read_material(table: Table, *, name: str) -> Material:
     cutting = _kienzle(kienzle)
     low, high, greatest = _feed_window(table)
     sides = _sides(table, cutting)
-    material = Material(
+    material = WorkMaterial(
         name=name,
         title=table.text("title"),
         iso_group=iso_group(table),
@@ -177,7 +177,7 @@ def _window(table: Table, lives: Mapping[CuttingMaterial, Taylor]) -> CuttingWin
     table.text("source")
     return CuttingWindow(
         cutting_material=cutting_material,
-        tool_body=table.choice("tool_body", ToolBody) if "tool_body" in table else None,
+        tool_body=table.choice("tool_body", ToolConstruction) if "tool_body" in table else None,
         min_cutting_speed=low,
         max_cutting_speed=high,
         taylor=lives.get(cutting_material),

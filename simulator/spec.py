@@ -11,7 +11,7 @@ from simulator.work_holding import Holding
 
 
 class MachineKind(StrEnum):
-    """What turns: the tool or the workpiece."""
+    """Kind of machine by what turns: the tool or the workpiece."""
 
     MILL = "mill"
     LATHE = "lathe"
@@ -22,7 +22,7 @@ class SpindlePoint:
     """One point of the spindle's power and torque curve (continuous duty, S1)."""
 
     speed: float
-    """rev/s, positive"""
+    """Speed, rev/s, positive"""
     power: float
     """motor power available at that speed, W"""
     torque: float | None = None
@@ -44,23 +44,23 @@ class Spindle:
     efficiency: float
     """cutting power over motor power, 0 < η ≤ 1"""
     min_speed: float | None
-    """rev/s"""
+    """Min speed, rev/s"""
     max_speed: float | None
-    """rev/s"""
+    """Max speed, rev/s"""
     acceleration: float | None
-    """rev/s²"""
+    """Acceleration, rev/s²"""
     inertia: float | None = None
-    """kg·m², at the spindle; ``None``: ramps draw no power of their own"""
+    """Inertia, kg·m², at the spindle; ``None``: ramps draw no power of their own"""
     idle_power: float = 0.0
     """motor power in W, turning without cutting, independent of speed"""
     idle_power_per_speed: float = 0.0
-    """W per rev/s: friction of constant torque"""
+    """Idle power per speed, W per rev/s: friction of constant torque"""
     idle_power_per_speed_squared: float = 0.0
-    """W per (rev/s)²: viscous friction"""
+    """Idle power per speed squared, W per (rev/s)²: viscous friction"""
     regeneration: float = 0.0
     """share of the braking power that returns to the mains; 0: a braking resistor"""
     delay: float | None = None
-    """s, time constant with which the power follows the cut; ``None``: not known"""
+    """Delay, s, time constant with which the power follows the cut; ``None``: not known"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,25 +71,25 @@ class AxisDrive:
     """
 
     lead: float
-    """mm per revolution of the screw"""
+    """Lead, mm per revolution of the screw"""
     table_mass: float
-    """kg, all that the axis moves apart from the workpiece"""
+    """Table mass, kg, all that the axis moves apart from the workpiece"""
     workpiece_mass: float = 0.0
-    """kg, 0 where the workpiece does not ride on the axis"""
+    """Workpiece mass, kg, 0 where the workpiece does not ride on the axis"""
     screw_mass: float = 0.0
-    """kg"""
+    """Screw mass, kg"""
     screw_diameter: float = 0.0
-    """mm"""
+    """Screw diameter, mm"""
     coupling_inertia: float = 0.0
-    """kg·m², on the motor's shaft"""
+    """Coupling inertia, kg·m², on the motor's shaft"""
     motor_inertia: float = 0.0
-    """kg·m²"""
+    """Motor inertia, kg·m²"""
     guide_friction: float = 0.0
     """coefficient of the guide"""
     bearing_friction: float = 0.0
     """coefficient of the screw's bearing, at the screw's diameter"""
     preload: float = 0.0
-    """N, in the bearing"""
+    """Preload, N, in the bearing"""
     viscous: float = 0.0
     """N·mm·s/rad, on the motor's shaft"""
     gear_ratio: float = 1.0
@@ -107,20 +107,20 @@ class Axis:
     name: str
     """X, Y or Z"""
     travel: tuple[float, float]
-    """mm; an end that the source does not give is infinite"""
+    """Travel, mm; an end that the source does not give is infinite"""
     rapid: float
-    """mm/s"""
+    """Rapid, mm/s"""
     max_feed: float
-    """mm/s"""
+    """Max feed, mm/s"""
     acceleration: float
-    """mm/s²"""
+    """Acceleration, mm/s²"""
     jerk: float | None = None
-    """mm/s³"""
+    """Jerk, mm/s³"""
     drive: AxisDrive | None = None
     """``None``: unknown; the axis draws no power of its own"""
 
 
-class Direction(StrEnum):
+class ModeDirection(StrEnum):
     """Axis of the machine along which a structure gives."""
 
     X = "x"
@@ -131,7 +131,7 @@ class Direction(StrEnum):
 
 
 class VibratingPart(StrEnum):
-    """What was hit in the tap test."""
+    """Part of the machine that was hit in the tap test."""
 
     TOOL = "tool"
     WORKPIECE = "workpiece"
@@ -145,9 +145,9 @@ class VibrationMode:
     """
 
     part: VibratingPart
-    direction: Direction
+    direction: ModeDirection
     natural_frequency: float
-    """Hz"""
+    """Natural frequency, Hz"""
     damping_ratio: float
     """ζ, share of the critical damping, 0 < ζ < 1"""
     stiffness: float
@@ -156,7 +156,7 @@ class VibrationMode:
     tool: str = ""
     """id of the tool as programs name it; empty: any tool of the diameter"""
     tool_diameter: float | None = None
-    """mm; ``None``: whatever the tool's diameter is"""
+    """Tool diameter, mm; ``None``: whatever the tool's diameter is"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -169,21 +169,21 @@ class Machine:
     spindle: Spindle
     axes: tuple[Axis, ...]
     rapid: float | None
-    """mm/s, of the slowest axis; ``None``: not limited"""
+    """Rapid, mm/s, of the slowest axis; ``None``: not limited"""
     max_feed: float | None
-    """mm/s, the feed mechanism"""
+    """Max feed, mm/s, the feed mechanism"""
     max_cutting_force: float | None
-    """N"""
+    """Max cutting force, N"""
     max_axial_depth: float | None
-    """mm, depth of cut that the machine permits"""
+    """Max axial depth, mm, depth of cut that the machine permits"""
     block_time: float | None
-    """s, the control's processing time of one block"""
+    """Block time, s, the control's processing time of one block"""
     base_power: float
-    """W, whatever the machine does"""
+    """Base power, W, whatever the machine does"""
     coolant_power: float
-    """W"""
+    """Coolant power, W"""
     tool_change: float
-    """s, chip to chip"""
+    """Tool change, s, chip to chip"""
     source: str
     remarks: tuple[str, ...] = ()
     modes: tuple[VibrationMode, ...] = ()
@@ -200,7 +200,7 @@ class Kienzle:
     """k_c = k_c1.1 · h^(−m_c)."""
 
     k_c11: float
-    """N/mm²"""
+    """K c11, N/mm²"""
     m_c: float
     """0 ≤ m_c < 1; 0 is the constant k_s of El-Hofy"""
     rake_angle: float | None = None
@@ -212,9 +212,9 @@ class LinearEdge:
     """F_t = K_tc·b·h + K_te·b and likewise radial and axial."""
 
     k_tc: float
-    """N/mm²"""
+    """K tc, N/mm²"""
     k_te: float
-    """N/mm"""
+    """K te, N/mm"""
     k_rc: float = 0.0
     k_re: float = 0.0
     k_ac: float = 0.0
@@ -232,15 +232,15 @@ class Taylor:
 
 
 class CuttingMaterial(StrEnum):
-    """What the cutting edge is made of."""
+    """Material of the cutting edge."""
 
     HSS = "hss"
     CARBIDE = "carbide"
     CERAMIC = "ceramic"
 
 
-class ToolBody(StrEnum):
-    """How the cutting edge is held; the speeds of carbide differ with it."""
+class ToolConstruction(StrEnum):
+    """Mounting of the cutting edge; the speeds of carbide differ with it."""
 
     SOLID = "solid"
     INDEXABLE = "indexable"
@@ -248,20 +248,20 @@ class ToolBody(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CuttingWindow:
-    """What a cutting material may do in a work material."""
+    """Permitted speeds and feeds of a cutting material in a work material."""
 
     cutting_material: CuttingMaterial
     min_cutting_speed: float | None
-    """mm/s"""
+    """Min cutting speed, mm/s"""
     max_cutting_speed: float | None
-    """mm/s"""
+    """Max cutting speed, mm/s"""
     taylor: Taylor | None
-    tool_body: ToolBody | None = None
+    tool_body: ToolConstruction | None = None
     """``None``: the window serves both"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Material:
+class WorkMaterial:
     """One work material."""
 
     name: str
@@ -276,7 +276,7 @@ class Material:
     density: float | None
     """g/cm³"""
     tensile_strength: float | None
-    """N/mm²"""
+    """Tensile strength, N/mm²"""
     kienzle: Kienzle
     linear_edge: LinearEdge | None
     windows: tuple[CuttingWindow, ...]
@@ -284,7 +284,7 @@ class Material:
     """f_z over the cutter's diameter, end mills"""
     max_feed_per_tooth_ratio: float | None
     max_feed_per_tooth: float | None
-    """mm, absolute, where the source gives one"""
+    """Max feed per tooth, mm, absolute, where the source gives one"""
     source: str
     remarks: tuple[str, ...] = ()
     feed_force: Kienzle | None = None
@@ -294,7 +294,7 @@ class Material:
     spread: float | None = None
     """of k_c: σ of ln k_c is ln(1 + spread); ``None``: k_c is taken to be exact"""
     youngs_modulus: float | None = None
-    """N/mm², of a bar that bends; ``None``: not known"""
+    """Youngs modulus, N/mm², of a bar that bends; ``None``: not known"""
 
 
 class ToolKind(StrEnum):
@@ -334,7 +334,7 @@ class FeedWindow:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Grade:
+class ToolGrade:
     """Feed windows and strength of one kind of tool in one cutting material and ISO group.
 
     Feeds are per tooth for milling, per revolution for everything else.
@@ -349,25 +349,25 @@ class Grade:
     """least feed per tooth (or revolution) over the tool's diameter"""
     max_feed_ratio: float | None
     min_feed: float | None
-    """mm, absolute"""
+    """Min feed, mm, absolute"""
     max_feed: float | None
-    """mm, absolute"""
+    """Max feed, mm, absolute"""
     min_cutting_speed: float | None
-    """mm/s; overrides the material's window"""
+    """Min cutting speed, mm/s; overrides the material's window"""
     max_cutting_speed: float | None
-    """mm/s"""
+    """Max cutting speed, mm/s"""
     max_depth_ratio: float | None
     """greatest axial depth over the tool's diameter"""
     max_depth: float | None
-    """mm, absolute"""
+    """Max depth, mm, absolute"""
     min_chip_thickness: float
-    """mm, below which the edge rubs"""
+    """Min chip thickness, mm, below which the edge rubs"""
     youngs_modulus: float
-    """N/mm²"""
+    """Youngs modulus, N/mm²"""
     bending_strength: float
-    """N/mm², permissible bending stress of the shank"""
+    """Bending strength, N/mm², permissible bending stress of the shank"""
     rake_angle: float | None
-    """rad"""
+    """Rake angle, rad"""
     source: str
     helix_angle: float = 0.0
     """λ_s, rad; 0: straight edges"""
@@ -380,7 +380,7 @@ class Grade:
 
 
 class Certainty(StrEnum):
-    """How a material was found."""
+    """Certainty with which a material was matched."""
 
     EXACT = "exact"
     GUESS = "guess"
@@ -390,7 +390,7 @@ class Certainty(StrEnum):
 class MaterialMatch:
     """A material and how it was found."""
 
-    material: Material
+    material: WorkMaterial
     certainty: Certainty
     reason: str
     """one sentence for the user: "'ST-50' read as E295 / St50-2 by its equivalent name" """

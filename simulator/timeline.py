@@ -13,7 +13,7 @@ RPM = 60.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Column:
+class DataItem:
     """One data item."""
 
     name: str
@@ -21,7 +21,7 @@ class Column:
     """attribute of the samples"""
     unit: str = ""
     scale: float = 1.0
-    """the outside's units in one of ours"""
+    """external units per internal unit"""
     axis: int | None = None
     """which column of an array of three"""
     words: tuple[str, ...] | None = None
@@ -30,55 +30,55 @@ class Column:
 
 def _axes(
     suffix: str, source: str, unit: str = "", words: tuple[str, ...] | None = None
-) -> tuple[Column, ...]:
+) -> tuple[DataItem, ...]:
     return tuple(
-        Column(name=f"{name}_axis_{suffix}", source=source, unit=unit, axis=row, words=words)
+        DataItem(name=f"{name}_axis_{suffix}", source=source, unit=unit, axis=row, words=words)
         for row, name in enumerate("xyz")
     )
 
 
 COLUMNS = (
-    Column(name="time_s", source="time", unit="s"),
+    DataItem(name="time_s", source="time", unit="s"),
     *_axes("position_actual", "position", "mm"),
     *_axes("velocity_actual", "velocity", "mm/s"),
     *_axes("wattage", "axis_power", "W"),
-    Column(name="c_axis_wattage", source="spindle_power", unit="W"),
-    Column(name="coolant_wattage", source="coolant_power", unit="W"),
-    Column(name="load_wattage", source="base_power", unit="W"),
-    Column(name="electric_wattage", source="total_power", unit="W"),
-    Column(name="path_feedrate_programmed", source="feed_programmed", unit="mm/s"),
-    Column(name="path_feedrate_actual", source="path_speed", unit="mm/s"),
-    Column(
+    DataItem(name="c_axis_wattage", source="spindle_power", unit="W"),
+    DataItem(name="coolant_wattage", source="coolant_power", unit="W"),
+    DataItem(name="load_wattage", source="base_power", unit="W"),
+    DataItem(name="electric_wattage", source="total_power", unit="W"),
+    DataItem(name="path_feedrate_programmed", source="feed_programmed", unit="mm/s"),
+    DataItem(name="path_feedrate_actual", source="path_speed", unit="mm/s"),
+    DataItem(
         name="rotary_velocity_programmed", source="spindle_programmed", unit="rpm", scale=RPM
     ),
-    Column(name="rotary_velocity_actual", source="spindle_speed", unit="rpm", scale=RPM),
-    Column(name="cutting_wattage", source="cutting_power", unit="W"),
-    Column(name="cutting_force", source="cutting_force", unit="N"),
-    Column(name="feed_force", source="feed_force", unit="N"),
-    Column(name="back_force", source="back_force", unit="N"),
-    Column(name="removal_rate", source="removal_rate", unit="mm³/s"),
-    Column(name="chip_thickness", source="chip_thickness", unit="mm"),
-    Column(name="thrust", source="thrust", unit="N"),
-    Column(name="tool_deflection", source="deflection", unit="mm"),
-    Column(name="axial_depth", source="axial_depth", unit="mm"),
-    Column(name="radial_width", source="radial_width", unit="mm"),
-    Column(
+    DataItem(name="rotary_velocity_actual", source="spindle_speed", unit="rpm", scale=RPM),
+    DataItem(name="cutting_wattage", source="cutting_power", unit="W"),
+    DataItem(name="cutting_force", source="cutting_force", unit="N"),
+    DataItem(name="feed_force", source="feed_force", unit="N"),
+    DataItem(name="back_force", source="back_force", unit="N"),
+    DataItem(name="removal_rate", source="removal_rate", unit="mm³/s"),
+    DataItem(name="chip_thickness", source="chip_thickness", unit="mm"),
+    DataItem(name="thrust", source="thrust", unit="N"),
+    DataItem(name="tool_deflection", source="deflection", unit="mm"),
+    DataItem(name="axial_depth", source="axial_depth", unit="mm"),
+    DataItem(name="radial_width", source="radial_width", unit="mm"),
+    DataItem(
         name="execution",
         source="execution",
         words=("READY", "ACTIVE", "WAIT", "PROGRAM_STOPPED", "PROGRAM_COMPLETED"),
     ),
-    Column(name="path_mode", source="path_mode", words=("NONE", "RAPID", "FEED")),
+    DataItem(name="path_mode", source="path_mode", words=("NONE", "RAPID", "FEED")),
     *_axes("direction", "direction", words=("NEGATIVE", "NONE", "POSITIVE")),
-    Column(
+    DataItem(
         name="rotary_direction",
         source="rotation",
         words=("COUNTER_CLOCKWISE", "NONE", "CLOCKWISE"),
     ),
-    Column(name="coolant", source="coolant", words=("OFF", "ON")),
-    Column(name="overload", source="overload", words=("NORMAL", "WARNING", "FAULT")),
-    Column(name="program", source="program"),
-    Column(name="line", source="line"),
-    Column(name="tool_number", source="tool"),
-    Column(name="workingstep", source="workingstep"),
+    DataItem(name="coolant", source="coolant", words=("OFF", "ON")),
+    DataItem(name="overload", source="overload", words=("NORMAL", "WARNING", "FAULT")),
+    DataItem(name="program", source="program"),
+    DataItem(name="line", source="line"),
+    DataItem(name="tool_number", source="tool"),
+    DataItem(name="workingstep", source="workingstep"),
 )
 """in the order of the file; the words of program and workingstep are those of the run"""

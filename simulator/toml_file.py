@@ -39,7 +39,7 @@ class Range:
         return f"{value:g} {self.unit}".rstrip()
 
     def complaint(self, value: float) -> str:
-        """What is wrong with ``value``; empty when nothing is."""
+        """Fault of ``value`` in words; empty when there is none."""
         if not isfinite(value):
             return f"{value} is no finite number; expected {self}"
         if value < self.low:
@@ -70,6 +70,8 @@ class Table:
         self._children: list[Table] = []
 
     def __contains__(self, key: str) -> bool:
+        if key not in self._content:
+            self._read.add(key)  # named among the known ones
         return key in self._content
 
     def error(self, key: str, message: str) -> LibraryError:
@@ -159,7 +161,7 @@ class Table:
         )
 
     def finish(self) -> None:
-        """Refuse what nobody asked for, here and in the tables below."""
+        """Refuse unknown keys, here and in the tables below."""
         for key in self._content:
             if key not in self._read:
                 known = ", ".join(sorted(self._read))

@@ -31,7 +31,7 @@ TURNED = {ToolKind.TURNING, ToolKind.GROOVING, ToolKind.THREADING}
 CUSTOMARY_POINT_DEG = {ToolKind.DRILL: 118.0, ToolKind.COUNTERSINK: 90.0}
 
 
-class Hand(StrEnum):
+class TurningHand(StrEnum):
     """Hands of turning tools as the file spells them."""
 
     RIGHT = "right"
@@ -50,7 +50,7 @@ class TableTool:
     teeth: int
     shape: Cutter | Insert
     helix_angle: float | None = None
-    """rad; None: that of the grade"""
+    """Helix angle, rad; None: that of the grade"""
     centre_cutting: bool | None = None
     """whether the edges of a mill reach its axis; None: not said"""
     has_wiper: bool = False
@@ -118,7 +118,7 @@ def _insert(row: Table, kind: ToolKind) -> Insert:
     width = row.optional_number("width_mm", DIAMETER)
     if kind is ToolKind.GROOVING and width is None:
         raise row.error("width_mm", "missing; a grooving blade has a width")
-    hand = row.choice("hand", Hand) if "hand" in row else Hand.RIGHT
+    hand = row.choice("hand", TurningHand) if "hand" in row else TurningHand.RIGHT
     try:
         return Insert(
             nose_radius=row.optional_number("nose_radius_mm", LENGTH) or 0.0,

@@ -1,4 +1,4 @@
-"""What holds a workpiece, as parameters without behaviour; units mm, N, kg, rev/s."""
+"""Parameters of work-holding, without behaviour; units mm, N, kg, rev/s."""
 
 from dataclasses import dataclass
 
@@ -18,7 +18,7 @@ class Chuck:
     """
 
     clamping_force: float
-    """N, of all jaws together, at rest"""
+    """Clamping force, N, of all jaws together, at rest"""
     friction: float
     """coefficient between jaws and bar"""
     source: str
@@ -26,15 +26,15 @@ class Chuck:
     """id of the setup it holds; empty: any"""
     jaws: int = 3
     grip_diameter: float | None = None
-    """mm; ``None``: that of the bar"""
+    """Grip diameter, mm; ``None``: that of the bar"""
     grip_length: float | None = None
     """mm; ``None``: from the clamping position that is farthest in front to the bar's end"""
     jaw_face: float | None = None
-    """mm along z in the setup, where the jaws end; ``None``: as just said"""
+    """Jaw face, mm along z in the setup, where the jaws end; ``None``: as just said"""
     jaw_mass: float = 0.0
-    """kg, of one jaw, its base included"""
+    """Jaw mass, kg, of one jaw, its base included"""
     jaw_radius: float = 0.0
-    """mm, of the jaw's centre of gravity"""
+    """Jaw radius, mm, of the jaw's centre of gravity"""
     lost_force: float = 0.0
     """N that the chuck loses besides, or all that it loses where no mass is given …"""
     lost_at: float = 0.0
@@ -52,7 +52,7 @@ class Clamp:
     """A vice or clamps that hold a workpiece on a mill by friction in one setup."""
 
     holding_force: float
-    """N, all forces normal to the faces that hold, together"""
+    """Holding force, N, all forces normal to the faces that hold, together"""
     friction: float
     """coefficient between the workpiece and these faces"""
     source: str

@@ -10,17 +10,48 @@ from dataclasses import dataclass
 from itertools import chain, islice
 from typing import Any, TypeVar, cast
 
-from stepnc_model.circles import circles
 from stepnc_model.entities.catalogue import BY_ARITY, class_of, classes
-from stepnc_model.entities.conversion import Remark, give, take, take_missing
+from stepnc_model.entities.conversion import (
+    AttributeSlot,
+    ConversionRemark,
+    give,
+    slots_of,
+    take,
+    take_missing,
+)
 from stepnc_model.entities.entity import Entity, attributes
 from stepnc_model.entities.operations import MachiningOperation
-from stepnc_model.entities.slots import Slot, slots_of
-from stepnc_model.errors import Finding, Part21Error, SchemaError, Severity
-from stepnc_model.finding_list import MOST_FINDINGS, FindingList
-from stepnc_model.paper002 import PRINTED, Reading, read_printed
+from stepnc_model.errors import (
+    MOST_FINDINGS,
+    Finding,
+    FindingList,
+    Part21Error,
+    SchemaError,
+    Severity,
+)
+from stepnc_model.paper002 import PRINTED, ConsistentRecord, read_printed
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref, Value
+
+
+def circles(edges: Mapping[int, tuple[int, ...]]) -> Iterator[tuple[int, int]]:
+    """First and last instance of each circle; no recursion, for files may nest deeply."""
+    done: set[int] = set()
+    for root in edges:
+        path: dict[int, Iterator[int]] = {}
+        current = None if root in done else root
+        while current is not None:
+            pending = path.setdefault(current, iter(edges.get(current, ())))
+            step = next((id for id in pending if id not in done), None)
+            if step is None:
+                path.pop(current)
+                done.add(current)
+                current = next(reversed(path), None)
+            elif step in path:
+                yield step, current
+            else:
+                current = step
+
 
 T = TypeVar("T")
 
@@ -29,34 +60,29 @@ OPTIMISATION_POSITION = 8
 """where Fig. 11 of paper 002 prints the surplus attribute: behind its_machine_functions"""
 
 _PARTS = {
-    "approach": "ISO 14649-11",
-    "drilling": "ISO 14649-11",
     "geometry": "ISO 10303-42",
     "milling": "ISO 14649-11",
     "optimisation": "optimisation.exp",
-    "strategies": "ISO 14649-11",
     "technology": "ISO 14649-11",
     "tools": "ISO 14649-111",
     "turning": "ISO 14649-12",
-    "turning_features": "ISO 14649-12",
-    "turning_strategies": "ISO 14649-12",
     "turning_tools": "ISO 14649-121",
 }
 """standard that a module of entities speaks for; all others speak for ISO 14649-10"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Bound:
+class BoundEntity:
     """An entity, and what was odd about its instance."""
 
     entity: Entity
-    remarks: tuple[tuple[str, Remark], ...]
+    remarks: tuple[tuple[str, ConversionRemark], ...]
     """by attribute; an empty name means the whole instance"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Inspection:
-    """What a look at one instance finds."""
+    """Result of the inspection of one instance."""
 
     findings: tuple[Finding, ...]
     references: tuple[int, ...]
@@ -130,7 +156,7 @@ class Model:
         return index + 1 if surplus is not None and surplus <= index else index
 
     def findings(self) -> tuple[Finding, ...]:
-        """What deviates from the schema, in file order; binds every instance.
+        """Deviations from the schema, in file order; binds every instance.
 
         Of many findings the first are told, and how many more there are.
         """
@@ -178,7 +204,7 @@ class Model:
 
 def bind(
     cls: type[Entity], values: tuple[Value, ...], *, file: Part21File | None = None
-) -> Bound:
+) -> BoundEntity:
     """Entity of a class from its parameters.
 
     Parameters
@@ -191,7 +217,7 @@ def bind(
     slots = slots_of(cls)
     given, optimisation = _without_optimisation(file, cls, values)
     bound: dict[str, object] = {}
-    remarks: list[tuple[str, Remark]] = []
+    remarks: list[tuple[str, ConversionRemark]] = []
     for index, (name, slot) in enumerate(slots.items()):
         taken = take(slot, given[index]) if index < len(given) else take_missing(slot)
         bound[name], remark = taken
@@ -199,10 +225,10 @@ def bind(
             remarks.append((name, remark))
     if len(given) > len(slots):
         text = f"{len(given)} attributes, {len(slots)} expected: the surplus is kept, not read"
-        remarks.append(("", Remark(Severity.WARNING, text)))
+        remarks.append(("", ConversionRemark(Severity.WARNING, text)))
     if optimisation is not None:
         bound[OPTIMISATION] = optimisation
-    return Bound(entity=cls(**bound), remarks=tuple(remarks))
+    return BoundEntity(entity=cls(**bound), remarks=tuple(remarks))
 
 
 def to_parameters(entity: Entity) -> tuple[Value, ...]:
@@ -216,11 +242,6 @@ def to_parameters(entity: Entity) -> tuple[Value, ...]:
     return (*values, optimisation) if optimisation is not None else tuple(values)
 
 
-def keyword_of(entity: Entity) -> str:
-    """Name of an entity in a Part 21 file."""
-    return entity.keyword
-
-
 def _entity_of(file: Part21File, id: int) -> Entity | None:
     """Entity of one instance, or None."""
     printed = _printed(file, id)
@@ -230,7 +251,7 @@ def _entity_of(file: Part21File, id: int) -> Entity | None:
     return None if found is None else bind(*found, file=file).entity
 
 
-def _printed(file: Part21File, id: int) -> Reading | None:
+def _printed(file: Part21File, id: int) -> ConsistentRecord | None:
     """A record in the form of paper 002's Fig. 11, or None for every other instance."""
     if id not in file or file.keyword(id) not in PRINTED:
         return None
@@ -315,7 +336,7 @@ def _inspect(file: Part21File, id: int) -> Inspection | None:
     findings += islice(chain.from_iterable(faults), MOST_FINDINGS)
     if optimisation is not None:
         findings += _reference_findings(
-            file, id, OPTIMISATION, ref=optimisation, slot=Slot(references=(Entity,))
+            file, id, OPTIMISATION, ref=optimisation, slot=AttributeSlot(references=(Entity,))
         )
     return Inspection(
         findings=tuple(findings),
@@ -325,7 +346,7 @@ def _inspect(file: Part21File, id: int) -> Inspection | None:
 
 def _references(
     cls: type[Entity], values: tuple[Value, ...]
-) -> Iterator[tuple[str, Ref[object], Slot]]:
+) -> Iterator[tuple[str, Ref[object], AttributeSlot]]:
     """References of an instance with their attributes, those in lists as well."""
     for (name, slot), value in zip(slots_of(cls).items(), values, strict=False):
         if isinstance(value, Ref):
@@ -335,18 +356,20 @@ def _references(
 
 
 def _reference_findings(
-    file: Part21File, id: int, name: str, *, ref: Ref[object], slot: Slot
+    file: Part21File, id: int, name: str, *, ref: Ref[object], slot: AttributeSlot
 ) -> Iterator[Finding]:
     """A reference that leads nowhere, or to the wrong kind of instance."""
     if int(ref) not in file:
-        remark = Remark(Severity.ERROR, f"{ref} is no instance of this file")
+        remark = ConversionRemark(Severity.ERROR, f"{ref} is no instance of this file")
         yield _finding(file, id, name, remark=remark, rule="ISO 10303-21")
         return
     target = classes().get(file.keyword(int(ref)))
     if target is None or not slot.references or issubclass(target, slot.references):
         return
     wanted = " or ".join(cls.__name__ for cls in slot.references)
-    remark = Remark(Severity.ERROR, f"{file.label(int(ref))} stands where {wanted} belongs")
+    remark = ConversionRemark(
+        Severity.ERROR, f"{file.label(int(ref))} stands where {wanted} belongs"
+    )
     yield _finding(file, id, name, remark=remark, rule=_rule(target))
 
 
@@ -355,7 +378,7 @@ def _cycle_findings(
 ) -> Iterator[Finding]:
     """Instances that contain themselves: ISO 14649 nests, it never goes in circles."""
     for id, last in circles(edges):
-        remark = Remark(Severity.ERROR, f"contains itself: #{last} refers back to it")
+        remark = ConversionRemark(Severity.ERROR, f"contains itself: #{last} refers back to it")
         yield _finding(file, id, "", remark=remark, rule="ISO 14649-10")
 
 
@@ -369,11 +392,13 @@ def _unknown_findings(file: Part21File) -> Iterator[Finding]:
     for keyword, ids in unknown.items():
         count = f" ({len(ids)} instances)" if len(ids) > 1 else ""
         text = f"{keyword or 'a complex instance'}{count} is not read, and kept as it is"
-        yield _finding(file, ids[0], "", remark=Remark(Severity.NOTE, text), rule="ISO 14649")
+        yield _finding(
+            file, ids[0], "", remark=ConversionRemark(Severity.NOTE, text), rule="ISO 14649"
+        )
 
 
 def _finding(
-    file: Part21File, id: int, attribute: str, *, remark: Remark, rule: str
+    file: Part21File, id: int, attribute: str, *, remark: ConversionRemark, rule: str
 ) -> Finding:
     """A remark with its place."""
     return Finding(

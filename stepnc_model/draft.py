@@ -95,7 +95,7 @@ class Draft:
     def _unshared(
         self, owner: Ref[Any], attribute: str, reference: Ref[Any], *, at: Ref[Any]
     ) -> Ref[Any]:
-        """The same instance when nobody else uses it, else a copy that the holder gets."""
+        """The same instance when nothing else refers to it, else a copy for the holder."""
         uses = self._use_counts()
         if uses[int(reference)] < 2:
             return reference
@@ -109,7 +109,7 @@ class Draft:
         return copy
 
     def _use_counts(self) -> Counter[int]:
-        """How many references each instance has in the file."""
+        """Number of references to each instance in the file."""
         if self._uses is None:
             file = self.program.file
             self._uses = Counter(

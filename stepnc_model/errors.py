@@ -25,9 +25,12 @@
         └── Unauthorised, Forbidden, TooMany(wait), StorageFull, Unavailable
 
 A caller's mistake is a ``ValueError`` or ``TypeError``; a bad file or an impossible cut is in
-this tree. What is no failure (a deviation from the schema, a guess) is a :class:`Finding`.
+this tree. What is no failure (a deviation from the schema, a guess) is a :class:`Finding`; a
+:class:`FindingList` keeps the first of each severity, and how many more there are.
 """
 
+from collections import Counter
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -117,10 +120,10 @@ class WriteError(StepNcError):
 
 
 class Severity(StrEnum):
-    """How much a finding matters."""
+    """Severity of a finding."""
 
     NOTE = "note"
-    """Said so that nobody is surprised: a guess, a default, an older name."""
+    """For information: a guess, a default, an older name."""
     WARNING = "warning"
     """A deviation from the standard that a machinist would want to see."""
     ERROR = "error"
@@ -146,3 +149,47 @@ class Finding:
         name = f"{self.entity}.{self.attribute}" if self.attribute else self.entity
         rule = f" ({self.rule})" if self.rule else ""
         return f"{self.severity}: {place}{name + ': ' if name else ''}{self.message}{rule}"
+
+
+MOST_FINDINGS = 1000
+"""findings of one severity that are listed at most; a file could hold millions"""
+
+
+class FindingList:
+    """Findings of one file. Running state."""
+
+    def __init__(self) -> None:
+        self._kept: list[Finding] = []
+        self._counts: Counter[Severity] = Counter()
+
+    def add(self, finding: Finding) -> None:
+        """Take one."""
+        if self.has_room(finding.severity):
+            self._kept.append(finding)
+        self._counts[finding.severity] += 1
+
+    def extend(self, findings: Iterable[Finding]) -> None:
+        """Take several in their order."""
+        for finding in findings:
+            self.add(finding)
+
+    def has_room(self, severity: Severity) -> bool:
+        """Whether one more of a severity would be listed."""
+        return self._counts[severity] < MOST_FINDINGS
+
+    def count(self, severity: Severity, number: int = 1) -> None:
+        """Count findings that are not described."""
+        self._counts[severity] += number
+
+    def all(self) -> tuple[Finding, ...]:
+        """Those kept, by line, and a last one for each severity that was cut."""
+        listed = Counter(finding.severity for finding in self._kept)
+        rest = (
+            Finding(
+                severity=severity,
+                message=f"{count - listed[severity]} more {severity}s are not listed here",
+            )
+            for severity, count in self._counts.items()
+            if count > listed[severity]
+        )
+        return (*sorted(self._kept, key=lambda finding: finding.line), *rest)

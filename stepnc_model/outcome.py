@@ -1,4 +1,4 @@
-"""What a machine answered: one workingstep of one run, as predicted and as measured.
+"""Outcomes: one workingstep of one run, as predicted and as measured.
 
 The nouns of process control and knowledge base. The attributes are the columns of [1]_,
 Table 1, and the four quantities that it evaluates: surface quality, machining time, actual
@@ -19,7 +19,7 @@ from stepnc_model.entities.optimisation import FaceMillingImmersion
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Context:
-    """What a correction holds for."""
+    """Context that a correction applies to."""
 
     machine: str
     material: str
@@ -27,7 +27,7 @@ class Context:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Quantity:
+class EvaluatedQuantity:
     """One evaluated quantity, as planned and as it was."""
 
     predicted: float | None = None
@@ -87,22 +87,22 @@ class ProcessOutcome:
     """k_c1.1 of the catalogue, N/mm²"""
     cutting_speed: float | None
     """V_c, mm/s"""
-    step_depth: Quantity
+    step_depth: EvaluatedQuantity
     """a_s, mm"""
-    feed_per_tooth: Quantity
+    feed_per_tooth: EvaluatedQuantity
     """f_z, mm"""
     immersion: FaceMillingImmersion | None
     """type of face milling, d_s1 to d_s3; None: no milling"""
     strategy: str
     """EXPRESS name of the machining strategy; empty when there is none"""
-    roughness: Quantity
-    time: Quantity
-    force: Quantity
+    roughness: EvaluatedQuantity
+    time: EvaluatedQuantity
+    force: EvaluatedQuantity
     """greatest mean of a revolution, N"""
-    feed: Quantity
+    feed: EvaluatedQuantity
     """mean while it cut, mm/s"""
     force_bound: float | None
-    """N that this workingstep was to keep"""
+    """Force bound, N that this workingstep was to keep"""
     force_ratio: ForceRatio | None
     trace: str
     """where the samples are kept; empty: nowhere"""
@@ -114,8 +114,8 @@ class ProcessOutcome:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Correction:
-    """What was learned from outcomes: a factor on k_c.
+class LearnedCorrection:
+    """Correction learned from outcomes: a factor on k_c.
 
     ``ln factor`` follows Student's t with the given centre, scale and degrees of freedom: what
     the next run is expected to show, not only where the mean lies.

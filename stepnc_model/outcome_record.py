@@ -1,4 +1,4 @@
-"""What a machine answered, and what was learned from it, in the program itself.
+"""Outcomes and corrections as entities of the program itself.
 
 Outcomes and corrections become the entities ``outcome`` and ``correction`` of
 ``schemas/optimisation.exp``, appended to the file; every other byte stays. They have no other
@@ -6,42 +6,204 @@ form: profile ``standard`` promises a file that every ISO 14649 reader takes, so
 refused.
 
 An outcome is a measurement: later ones are appended, none is ever changed, and one that is in
-the file already is not written again. The newest correction of a tool stands
-(:mod:`stepnc_model.correction_record`).
+the file already is not written again. The entities say less than the nouns: prediction, context
+and statistics of an outcome stay in the knowledge base.
 
-The entities say less than the nouns: prediction, context and statistics of an outcome stay in
-the knowledge base.
+Two corrections for one machine, material and tool would leave a reader to guess which of them
+holds, so a newer one takes the place of the older, in its instance; a proposal leaves what was
+accepted. What was believed before is history, and the knowledge base keeps it, as it keeps the
+distribution of a correction: the file has the factor at its centre.
+
+Numbers and times are checked on their way in, and taken as found out.
 """
 
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import UTC, datetime
+from math import exp, inf, isfinite
 
 from stepnc_model.binding import to_parameters
-from stepnc_model.correction_record import (
-    RecordedCorrection,
-    correction_entity,
-    recorded_correction,
-    supersede,
-)
 from stepnc_model.entities import optimisation as entities
 from stepnc_model.entities.operations import MachiningOperation
 from stepnc_model.errors import SchemaError
-from stepnc_model.outcome import Correction, ProcessOutcome
+from stepnc_model.outcome import Context, LearnedCorrection, ProcessOutcome
 from stepnc_model.part21.values import Ref
 from stepnc_model.part21.writer import Edits
 from stepnc_model.program import Program
 from stepnc_model.record_edit import has_parameters
-from stepnc_model.recorded_value import (
-    instant,
-    known,
-    measured_or_none,
-    positive_or_none,
-    written,
-)
 from stepnc_model.units import m_s_from_speed, mm_from_um, speed_from_m_s, um_from_mm
-from stepnc_model.writeback import SCHEMA
+from stepnc_model.writeback import SCHEMA, rounded
+
+
+def written(time: datetime) -> str:
+    """A time as ISO 8601 with its zone."""
+    if time.utcoffset() is None:
+        raise ValueError(f"{time.isoformat()} has no time zone")
+    return time.isoformat()
+
+
+def measured_or_none(value: float | None, name: str, unit: str) -> float | None:
+    """A number that may be 0; None when it was not measured."""
+    return 0.0 if value == 0.0 else positive_or_none(value, name, unit)
+
+
+def positive_or_none(value: float | None, name: str, unit: str) -> float | None:
+    """A number above 0; None when it was not measured."""
+    return None if value is None else positive(value, name, unit)
+
+
+def positive(value: float, name: str, unit: str) -> float:
+    """A number above 0 as it is written."""
+    number = rounded(value)
+    if not 0.0 < number < inf:
+        raise ValueError(f"a {name} of {value:g} {unit}".rstrip())
+    return number
+
+
+def known(value: object) -> float | None:
+    """A number of the file that is one; the binding is tolerant."""
+    return float(value) if isinstance(value, int | float) and isfinite(value) else None
+
+
+def instant(text: object) -> datetime | None:
+    """A time of the file, where it is one and has a zone."""
+    if not isinstance(text, str):
+        return None
+    try:
+        time = datetime.fromisoformat(text)
+    except ValueError:
+        return None
+    return None if time.utcoffset() is None else time
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RecordedCorrection:
+    """One factor on k_c as the file has it."""
+
+    context: Context
+    factor: float
+    confidence: float
+    """0…1"""
+    accepted_by: str
+    """empty: a proposal only"""
+    valid_from: datetime | None
+    """with zone"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Standing:
+    """A correction of the file, or one to come."""
+
+    ref: Ref[entities.Correction] | None
+    entity: entities.Correction
+
+    @property
+    def since(self) -> datetime:
+        """From when it holds; what says no time is older than all that do."""
+        return instant(self.entity.valid_from) or datetime.min.replace(tzinfo=UTC)
+
+
+def correction_entity(correction: LearnedCorrection) -> entities.Correction:
+    """Date of a correction in the file: when it was accepted, or else proposed."""
+    try:
+        factor = exp(correction.log_centre)
+    except OverflowError:
+        factor = inf
+    confidence = correction.confidence
+    if not 0.0 <= confidence <= 1.0:
+        raise ValueError(f"a confidence of {confidence:g}: it lies within 0 and 1")
+    context = correction.context
+    if not (context.machine and context.material and context.tool):
+        raise ValueError("a correction holds for a machine, a material and a tool, all named")
+    return entities.Correction(
+        machine=context.machine,
+        material=context.material,
+        tool=context.tool,
+        specific_force_factor=positive(factor, "factor on k_c", ""),
+        confidence=rounded(confidence),
+        accepted_by=correction.accepted_by or None,
+        valid_from=written(correction.accepted_at or correction.proposed_at),
+    )
+
+
+def supersede(program: Program, edits: Edits, learned: Sequence[entities.Correction]) -> None:
+    """Keep only the newest correction of each machine, material and tool."""
+    there: dict[Context, list[_Standing]] = {}
+    for ref, entity in program.model.of_type(entities.Correction):
+        there.setdefault(_context(entity), []).append(_Standing(ref=ref, entity=entity))
+    for entity in learned:
+        there.setdefault(_context(entity), []).append(_Standing(ref=None, entity=entity))
+    for context in dict.fromkeys(map(_context, learned)):
+        _settle(edits, there[context])
+
+
+def recorded_correction(entity: entities.Correction) -> RecordedCorrection | None:
+    """A correction of the file; None for one that is not complete."""
+    factor, confidence = known(entity.specific_force_factor), known(entity.confidence)
+    is_named = entity.machine and entity.material and entity.tool
+    if factor is None or factor <= 0.0 or confidence is None or not is_named:
+        return None
+    return RecordedCorrection(
+        context=_context(entity),
+        factor=factor,
+        confidence=confidence,
+        accepted_by=entity.accepted_by or "",
+        valid_from=instant(entity.valid_from),
+    )
+
+
+def _settle(edits: Edits, standing: Sequence[_Standing]) -> None:
+    """Write what holds of one context over what does not.
+
+    What comes last wins among equally new ones. A proposal stays only while it is newer than
+    what was accepted.
+    """
+    accepted = [each for each in standing if each.entity.accepted_by]
+    proposed = [each for each in standing if not each.entity.accepted_by]
+    held: list[_Standing] = []
+    for kind in (accepted, proposed):
+        newest = _newest(kind)
+        if newest is not None and not (held and held[0].since >= newest.since):
+            held.append(newest)
+    free = [each for each in standing if each.ref is not None and each not in held]
+    for each in held:
+        if each.ref is None:
+            _put(edits, each.entity, free.pop() if free else None)
+    for each in free:
+        if each.ref is not None:
+            edits.remove(int(each.ref))
+
+
+def _newest(standing: Sequence[_Standing]) -> "_Standing | None":
+    """The newest correction, the last of those that are equally new; what is there stays."""
+    newest: _Standing | None = None
+    for each in standing:
+        is_same = newest is not None and each.entity == newest.entity
+        if newest is None or (each.since >= newest.since and not is_same):
+            newest = each
+    return newest
+
+
+def _put(edits: Edits, entity: entities.Correction, old: _Standing | None) -> None:
+    """Write a correction, in the instance of an older one where there is one."""
+    values = to_parameters(entity)
+    if old is None or old.ref is None:
+        edits.add(entity.keyword, values)
+        return
+    before = edits.file.parameters(int(old.ref))
+    if len(before) != len(values):
+        edits.remove(int(old.ref))
+        edits.add(entity.keyword, values)
+        return
+    for place, value in enumerate(values):
+        if value != before[place]:
+            edits.replace_parameter(int(old.ref), place, value)
+
+
+def _context(entity: entities.Correction) -> Context:
+    """Context of a correction of the file."""
+    return Context(machine=entity.machine, material=entity.material, tool=entity.tool)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,11 +216,11 @@ class RecordedOutcome:
     measured_at: datetime | None
     """with zone"""
     time: float | None
-    """s"""
+    """Time, s"""
     force: float | None
-    """N"""
+    """Force, N"""
     feed: float | None
-    """mm/s"""
+    """Feed, mm/s"""
     roughness: float | None
     """Ra, mm"""
     trace: str
@@ -66,8 +228,8 @@ class RecordedOutcome:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Recorded:
-    """Everything that a program holds of what was measured and learned, in the file's order."""
+class RecordedOutcomes:
+    """All outcomes and corrections that a program holds, in the file's order."""
 
     outcomes: tuple[RecordedOutcome, ...]
     corrections: tuple[RecordedCorrection, ...]
@@ -76,7 +238,7 @@ class Recorded:
 def write_outcomes(
     program: Program,
     outcomes: Sequence[ProcessOutcome],
-    corrections: Sequence[Correction] = (),
+    corrections: Sequence[LearnedCorrection] = (),
 ) -> bytes:
     """The file with outcomes and corrections in it.
 
@@ -86,7 +248,7 @@ def write_outcomes(
         As it was read.
     outcomes : sequence of ProcessOutcome
         Of workingsteps of this program, named by id or by instance, ``#16``.
-    corrections : sequence of Correction
+    corrections : sequence of LearnedCorrection
 
     Returns
     -------
@@ -118,20 +280,20 @@ def write_outcomes(
     return edits.apply()
 
 
-def read_outcomes(program: Program) -> Recorded:
+def read_outcomes(program: Program) -> RecordedOutcomes:
     """Outcomes and corrections that a program holds, without those that are not complete."""
     measured = program.model.of_type(entities.Outcome)
     learned = program.model.of_type(entities.Correction)
     outcomes = (_recorded_outcome(program, each) for _, each in measured)
     corrections = (recorded_correction(each) for _, each in learned)
-    return Recorded(
+    return RecordedOutcomes(
         outcomes=tuple(each for each in outcomes if each is not None),
         corrections=tuple(each for each in corrections if each is not None),
     )
 
 
 def _outcome_entity(program: Program, outcome: ProcessOutcome) -> entities.Outcome:
-    """What the file says of an outcome."""
+    """Entity of an outcome."""
     time, force = outcome.time.measured, outcome.force.measured
     feed, roughness = outcome.feed.measured, outcome.roughness.measured
     return entities.Outcome(

@@ -46,7 +46,7 @@ MAX_SPINDLE_SPEED = 300.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Reading:
+class ConsistentRecord:
     """One record in the consistent form."""
 
     entity: Entity
@@ -77,7 +77,7 @@ class _Record:
 
 def read_printed(
     keyword: str, values: tuple[Value, ...], *, label: str = "", line: int = 0
-) -> Reading | None:
+) -> ConsistentRecord | None:
     """Read a record in the form of Fig. 11.
 
     Parameters
@@ -93,7 +93,7 @@ def read_printed(
 
     Returns
     -------
-    Reading or None
+    ConsistentRecord or None
         None for any other form, which is for the generic binding.
     """
     record = _Record(values=values, label=label, line=line)
@@ -110,21 +110,21 @@ def read_printed(
             return None
 
 
-def _machine_power(record: _Record) -> Reading | None:
+def _machine_power(record: _Record) -> ConsistentRecord | None:
     """('MACHINE POWER', 0.29, 'kW')."""
     if len(record.values) != 3:
         return None
     parameter = _numeric_parameter(*record.values)
     if parameter is None:
         return None
-    return Reading(
+    return ConsistentRecord(
         entity=MachinePower(its_power_property=INLINED),
         inlined=parameter,
         findings=(_inlining(record),),
     )
 
 
-def _main_cutting_power(record: _Record) -> Reading | None:
+def _main_cutting_power(record: _Record) -> ConsistentRecord | None:
     """('CUTTING POWER', $, 'kW', #203, 35): the last is Table 2's cutting speed in m/min."""
     if len(record.values) != 5:
         return None
@@ -140,7 +140,7 @@ def _main_cutting_power(record: _Record) -> Reading | None:
         "the paper's 35 is the cutting speed of its Table 2 in m/min"
     )
     findings.append(record.slip(text, "spindle_speed"))
-    return Reading(
+    return ConsistentRecord(
         entity=MainCuttingPower(
             its_power_property=INLINED, its_cutting_force=Ref(force), spindle_speed=number
         ),
@@ -149,7 +149,7 @@ def _main_cutting_power(record: _Record) -> Reading | None:
     )
 
 
-def _cutting_force(record: _Record) -> Reading | None:
+def _cutting_force(record: _Record) -> ConsistentRecord | None:
     """(1000, #204, 500, $, 0.5, 5): resistance, type, speed, nothing, feed, depth."""
     if len(record.values) != 6:
         return None
@@ -172,7 +172,7 @@ def _cutting_force(record: _Record) -> Reading | None:
         text = f"no spindle turns at {speed:g} rev/s: read as {speed:g} rpm"
         findings.append(record.slip(text, "spindle_speed"))
         speed = rev_s_from_rpm(speed)
-    return Reading(
+    return ConsistentRecord(
         entity=CuttingForce(
             its_face_milling_type=None if face is None else Ref(face),
             spindle_speed=speed,
@@ -185,7 +185,7 @@ def _cutting_force(record: _Record) -> Reading | None:
     )
 
 
-def _face_milling_type(record: _Record) -> Reading | None:
+def _face_milling_type(record: _Record) -> ConsistentRecord | None:
     """(180.0, "FULL_IMMERSION")."""
     if len(record.values) != 2:
         return None
@@ -195,7 +195,7 @@ def _face_milling_type(record: _Record) -> Reading | None:
     if immersion.upper() not in FaceMillingImmersion.__members__:
         return None
     name = immersion.upper()
-    return Reading(
+    return ConsistentRecord(
         entity=FaceMillingType(zeta=angle, immersion_type=FaceMillingImmersion[name]),
         inlined=None,
         findings=(record.slip(f"{name} is a text; the schema has .{name}.", "immersion_type"),),

@@ -7,11 +7,12 @@ findings, and the unit profiles that would make them plausible are named.
 from collections.abc import Iterator, Sequence
 from math import pi
 
+from stepnc_model.entities.enums import Hand
 from stepnc_model.errors import Finding, SchemaError, Severity
-from stepnc_model.program import Program, Workingstep
-from stepnc_model.technology import Number, Programmed, Quantity, programmed
-from stepnc_model.tool import tool_of
-from stepnc_model.unit_profiles import PROFILES, UnitProfile
+from stepnc_model.program import Program, ResolvedWorkingstep
+from stepnc_model.technology import Number, Programmed, ProgrammedQuantity, programmed
+from stepnc_model.tool import hand_of, tool_of
+from stepnc_model.units import PROFILES, UnitProfile
 
 MAX_SPINDLE_SPEED = 300.0
 """rev/s; faster spindles are those of dental and circuit-board machines"""
@@ -38,7 +39,7 @@ def implausible(program: Program) -> tuple[Finding, ...]:
     return tuple(found.values())
 
 
-def refusal(program: Program, steps: Sequence[Workingstep]) -> SchemaError | None:
+def refusal(program: Program, steps: Sequence[ResolvedWorkingstep]) -> SchemaError | None:
     """Error that names the first implausible number, and the profiles that would do."""
     for step in steps:
         for finding in _findings(program, step):
@@ -63,13 +64,13 @@ def refusal(program: Program, steps: Sequence[Workingstep]) -> SchemaError | Non
 RULE = "ISO 14649-10 4.2.1"
 
 
-def _findings(program: Program, step: Workingstep) -> Iterator[Finding]:
-    """What is odd about the numbers of one workingstep."""
+def _findings(program: Program, step: ResolvedWorkingstep) -> Iterator[Finding]:
+    """Findings on implausible numbers of one workingstep."""
     try:
         with program.using(step.operation_ref):
             conditions = programmed(program, step.technology_ref)
             oddities = list(_oddities(program, step, conditions))
-            is_left = _is_left_handed(program, step)
+            is_left = hand_of(program, step.tool_ref) is Hand.LEFT
     except SchemaError as error:
         yield Finding(
             severity=Severity.ERROR,
@@ -100,11 +101,11 @@ def _findings(program: Program, step: Workingstep) -> Iterator[Finding]:
 
 
 def _oddities(
-    program: Program, step: Workingstep, conditions: Programmed
+    program: Program, step: ResolvedWorkingstep, conditions: Programmed
 ) -> Iterator[tuple[Number, str]]:
     """Numbers that cannot be meant, with the reason."""
     speed = conditions.speed
-    is_spindle = speed.quantity is Quantity.SPINDLE_SPEED
+    is_spindle = speed.quantity is ProgrammedQuantity.SPINDLE_SPEED
     if is_spindle and speed.value > MAX_SPINDLE_SPEED:
         yield speed, f"spindle {speed.value:g} rev/s exceeds {MAX_SPINDLE_SPEED:g} rev/s"
     if not is_spindle and speed.value > MAX_CUTTING_SPEED:
@@ -116,7 +117,7 @@ def _oddities(
         return
     tool = tool_of(program, step.tool_ref)
     if tool.diameter <= 0.0:
-        is_per_turn = conditions.feed.quantity is Quantity.FEED_PER_REVOLUTION
+        is_per_turn = conditions.feed.quantity is ProgrammedQuantity.FEED_PER_REVOLUTION
         if is_per_turn and conditions.feed.value > MAX_TURNING_FEED:
             yield conditions.feed, f"feed {conditions.feed.value:g} mm per revolution"
         return
@@ -133,7 +134,9 @@ def _oddities(
         yield conditions.feed, text
 
 
-def _all_fit(program: Program, steps: Sequence[Workingstep], units: UnitProfile) -> bool:
+def _all_fit(
+    program: Program, steps: Sequence[ResolvedWorkingstep], units: UnitProfile
+) -> bool:
     """Whether another profile makes the numbers of all workingsteps plausible."""
     other = Program(program.file, units=units, name=program.name)
     for step in steps:
@@ -146,10 +149,3 @@ def _all_fit(program: Program, steps: Sequence[Workingstep], units: UnitProfile)
         if oddities:
             return False
     return True
-
-
-def _is_left_handed(program: Program, step: Workingstep) -> bool:
-    """Whether the tool's hand asks for a counter-clockwise spindle."""
-    body = getattr(program.get(step.tool_ref), "its_tool_body", None)
-    hand = getattr(program.get(body), "hand_of_cut", None) if body is not None else None
-    return str(hand) == "LEFT"

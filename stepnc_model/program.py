@@ -18,22 +18,31 @@ from stepnc_model.entities.executables import (
     MachiningWorkingstep,
     NonSequential,
     Parallel,
+    Project,
     Selective,
+    Setup,
     TurningWorkingstep,
     WhileStatement,
     Workplan,
 )
 from stepnc_model.entities.operations import MachiningOperation
-from stepnc_model.entities.project import Project
-from stepnc_model.entities.setup import Setup
-from stepnc_model.entities.surfaces import MachinedSurface, SurfaceTextureParameter
+from stepnc_model.entities.profiles import MachinedSurface, SurfaceTextureParameter
 from stepnc_model.entities.workpiece import Material, Workpiece
-from stepnc_model.errors import Finding, SchemaError, Severity
-from stepnc_model.finding_list import FindingList
+from stepnc_model.errors import Finding, FindingList, PathError, SchemaError, Severity
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
-from stepnc_model.stock import Stock
-from stepnc_model.unit_profiles import ISO, UnitProfile
+from stepnc_model.units import ISO, UnitProfile
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stock:
+    """Raw part in the coordinates of the setup: a box, or a bar about an axis along z."""
+
+    low: tuple[float, float, float]
+    high: tuple[float, float, float]
+    radius: float | None = None
+    """Radius, mm, of a bar; its axis is in the middle of the box"""
+
 
 T = TypeVar("T")
 
@@ -45,7 +54,7 @@ AIM_KEYWORDS = ("PRODUCT_DEFINITION", "MACHINING_WORKPLAN", "MACHINING_PROJECT")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Executable:
+class ProgramLine:
     """One line of the program as it is shown: a structure, a function or a workingstep."""
 
     ref: Ref[Entity]
@@ -59,7 +68,7 @@ class Executable:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Workingstep:
+class ResolvedWorkingstep:
     """One workingstep with what it refers to."""
 
     ref: Ref[Entity]
@@ -116,7 +125,7 @@ class Program:
         self._textures: (
             dict[int, list[tuple[SurfaceTextureParameter, MachinedSurface]]] | None
         ) = None
-        self._by_feature: dict[int, list[Workingstep]] = {}
+        self._by_feature: dict[int, list[ResolvedWorkingstep]] = {}
         for step in self.workingsteps:
             for feature in step.features:
                 self._by_feature.setdefault(int(feature), []).append(step)
@@ -145,6 +154,12 @@ class Program:
     def error(self, message: str, ref: Ref[Entity], attribute: str = "") -> SchemaError:
         """An error at one instance."""
         return SchemaError(
+            message, entity=self.label(ref), attribute=attribute, line=self.line(ref)
+        )
+
+    def path_error(self, message: str, ref: Ref[Entity], attribute: str = "") -> PathError:
+        """Reason why no tool path can be made, at one instance."""
+        return PathError(
             message, entity=self.label(ref), attribute=attribute, line=self.line(ref)
         )
 
@@ -191,7 +206,7 @@ class Program:
         return self._faults.get(int(ref))
 
     def findings(self) -> tuple[Finding, ...]:
-        """Everything noticed: syntax, schema, and the walk of the program."""
+        """All findings: syntax, schema, and the walk of the program."""
         faults = FindingList()
         faults.extend(
             Finding(
@@ -205,15 +220,15 @@ class Program:
         )
         return self.file.findings + self.model.findings() + faults.all()
 
-    def before(self, step: Workingstep) -> list[Workingstep]:
+    def before(self, step: ResolvedWorkingstep) -> list[ResolvedWorkingstep]:
         """Workingsteps on the same features that run before this one, in order."""
         return [other for other in self._on_features_of(step) if other.index < step.index]
 
-    def after(self, step: Workingstep) -> list[Workingstep]:
+    def after(self, step: ResolvedWorkingstep) -> list[ResolvedWorkingstep]:
         """Workingsteps on the same features that run after this one, in order."""
         return [other for other in self._on_features_of(step) if other.index > step.index]
 
-    def _on_features_of(self, step: Workingstep) -> list[Workingstep]:
+    def _on_features_of(self, step: ResolvedWorkingstep) -> list[ResolvedWorkingstep]:
         """Workingsteps on the features of one, in order."""
         features = (self._by_feature[int(feature)] for feature in step.features)
         found = {int(other.ref): other for each in features for other in each}
@@ -279,9 +294,9 @@ class Program:
             )
         return outer[0]
 
-    def _walk(self) -> Iterator[Executable]:
+    def _walk(self) -> Iterator[ProgramLine]:
         """Executables in order, structures before what they contain; no recursion."""
-        stack: list[_Visit] = [_Visit(self._main_workplan(), 0, None)]
+        stack: list[_WalkVisit] = [_WalkVisit(self._main_workplan(), 0, None)]
         open_ones: set[int] = set()
         count = 0
         while stack:
@@ -304,7 +319,7 @@ class Program:
             setup = visit.setup
             if isinstance(entity, Workplan):
                 setup = entity.its_setup or setup
-            yield Executable(
+            yield ProgramLine(
                 ref=visit.ref,
                 keyword=self.file.keyword(number),
                 id=str(getattr(entity, "its_id", "")),
@@ -314,13 +329,15 @@ class Program:
             children = _children(entity)
             if children:
                 open_ones.add(number)
-                stack.append(_Visit(visit.ref, visit.level, setup, is_leaving=True))
-            stack.extend(_Visit(child, visit.level + 1, setup) for child in reversed(children))
+                stack.append(_WalkVisit(visit.ref, visit.level, setup, is_leaving=True))
+            stack.extend(
+                _WalkVisit(child, visit.level + 1, setup) for child in reversed(children)
+            )
 
-    def _workingsteps(self) -> Iterator[Workingstep]:
+    def _workingsteps(self) -> Iterator[ResolvedWorkingstep]:
         """Workingsteps in order; what is wrong with one becomes a fault."""
         last: dict[int, int] = {}
-        found: list[Workingstep] = []
+        found: list[ResolvedWorkingstep] = []
         for executable in self.executables:
             try:
                 step = self._workingstep(executable)
@@ -336,7 +353,7 @@ class Program:
             is_last = any(last[int(feature)] == index for feature in step.features)
             yield replace(step, index=index, is_last_on_feature=is_last)
 
-    def _workingstep(self, executable: Executable) -> Workingstep | None:
+    def _workingstep(self, executable: ProgramLine) -> ResolvedWorkingstep | None:
         """One workingstep, or None when the executable machines nothing."""
         entity = self.model.entity(int(executable.ref))
         if isinstance(entity, MachiningWorkingstep):
@@ -357,7 +374,7 @@ class Program:
             raise self.error("has no technology", entity.its_operation, "its_technology")
         for ref in (operation.its_tool, operation.its_technology, *features):
             self.get(ref)
-        return Workingstep(
+        return ResolvedWorkingstep(
             ref=executable.ref,
             id=entity.its_id,
             operation_ref=entity.its_operation,
@@ -373,7 +390,7 @@ class Program:
 
 
 @dataclass(frozen=True, slots=True)
-class _Visit:
+class _WalkVisit:
     """A place of the walk: going into an executable, or leaving it."""
 
     ref: Ref[Entity]

@@ -48,8 +48,8 @@ def _unit(unit: str) -> Any:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Record:
-    """What was advised for one operation, and why."""
+class AdviceRecord:
+    """Advice for one operation, with its reasons."""
 
     mode: str
     """TC, QC or EC"""
@@ -89,7 +89,7 @@ MODES: dict[str, type[Entity]] = {
 }
 
 
-def write_entities(record: Record, edits: Edits) -> Ref[Entity]:
+def write_entities(record: AdviceRecord, edits: Edits) -> Ref[Entity]:
     """Add the entities of a record; the reference to the optimisation."""
 
     def add(entity: Entity) -> Ref[Any]:
@@ -145,7 +145,7 @@ def write_entities(record: Record, edits: Edits) -> Ref[Entity]:
     return add(_optimisation(record, available, details))
 
 
-def read_entities(model: Model, ref: Ref[Entity]) -> Record | None:
+def read_entities(model: Model, ref: Ref[Entity]) -> AdviceRecord | None:
     """Record behind an operation's optimisation; None for one that is not complete."""
     try:
         return _checked(_from_entities(model, ref))
@@ -154,7 +154,7 @@ def read_entities(model: Model, ref: Ref[Entity]) -> Record | None:
         return None
 
 
-def _from_entities(model: Model, ref: Ref[Entity]) -> Record | None:
+def _from_entities(model: Model, ref: Ref[Entity]) -> AdviceRecord | None:
     """Collect what the entities of a record say."""
     optimum: Any = model.entity(int(ref))
     if not isinstance(optimum, Optimisation) or getattr(optimum, "its_record", None) is None:
@@ -169,7 +169,7 @@ def _from_entities(model: Model, ref: Ref[Entity]) -> Record | None:
     immersion = model.get(face) if face is not None else None
     predicted, programmed = model.get(details.predicted), model.get(details.programmed)
     available = model.get(model.get(named.main_drive_motor_power).its_power_property)
-    return Record(
+    return AdviceRecord(
         mode=mode,
         id=named.its_id,
         description=named.process_description or "",
@@ -200,7 +200,7 @@ def _from_entities(model: Model, ref: Ref[Entity]) -> Record | None:
     )
 
 
-def parameters_of(record: Record) -> Iterator[PropertyParameter]:
+def parameters_of(record: AdviceRecord) -> Iterator[PropertyParameter]:
     """The same record as prefixed parameters, one for each number or word."""
     for each in fields(record):
         value = getattr(record, each.name)
@@ -217,20 +217,20 @@ def parameters_of(record: Record) -> Iterator[PropertyParameter]:
             )
 
 
-def read_parameters(values: Mapping[str, float | str]) -> Record | None:
+def read_parameters(values: Mapping[str, float | str]) -> AdviceRecord | None:
     """Record from its parameters by name, or None when they are not all there."""
-    known = {each.name for each in fields(Record)}
+    known = {each.name for each in fields(AdviceRecord)}
     found: dict[str, Any] = {name: value for name, value in values.items() if name in known}
     count = found.get("number_of_passes")
     if isinstance(count, float) and count.is_integer():
         found["number_of_passes"] = int(count)
     try:
-        return _checked(Record(**found))
+        return _checked(AdviceRecord(**found))
     except TypeError:
         return None
 
 
-def _checked(record: Record | None) -> Record | None:
+def _checked(record: AdviceRecord | None) -> AdviceRecord | None:
     """The record if every value is of its kind, else None."""
     if record is None or record.mode not in MODES:
         return None
@@ -247,8 +247,8 @@ def _checked(record: Record | None) -> Record | None:
     return record
 
 
-def _predicted(record: Record) -> PredictedValues:
-    """What is expected."""
+def _predicted(record: AdviceRecord) -> PredictedValues:
+    """Expected results of the advice."""
     return PredictedValues(
         machining_time=record.machining_time,
         motor_power=record.motor_power,
@@ -258,8 +258,8 @@ def _predicted(record: Record) -> PredictedValues:
     )
 
 
-def _programmed(record: Record) -> ProgrammedValues:
-    """What the file said first."""
+def _programmed(record: AdviceRecord) -> ProgrammedValues:
+    """Original values of the file."""
     return ProgrammedValues(
         feedrate=record.programmed_feedrate,
         feedrate_per_tooth=record.programmed_feedrate_per_tooth,
@@ -270,7 +270,7 @@ def _programmed(record: Record) -> ProgrammedValues:
 
 
 def _optimisation(
-    record: Record, power: Ref[MachinePower], details: Ref[OptimisationRecord]
+    record: AdviceRecord, power: Ref[MachinePower], details: Ref[OptimisationRecord]
 ) -> Entity:
     """The entity of the record's mode."""
     suffix = "_max" if record.mode == "TC" else ""

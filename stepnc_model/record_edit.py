@@ -12,11 +12,11 @@ from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.measures import DescriptiveParameter, NumericParameter
 from stepnc_model.entities.technology import MachineFunctions, ProcessModel, ProcessModelList
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program, Workingstep
+from stepnc_model.program import Program, ResolvedWorkingstep
 from stepnc_model.record import (
     GENERATOR,
     PREFIX,
-    Record,
+    AdviceRecord,
     parameters_of,
     read_entities,
     read_parameters,
@@ -42,8 +42,8 @@ RECORD_KEYWORDS = frozenset({
 """instances that a record is made of"""
 
 
-def find_record(program: Program, step: Workingstep) -> Record | None:
-    """Record of a workingstep in either profile; None when there is none that is ours."""
+def find_record(program: Program, step: ResolvedWorkingstep) -> AdviceRecord | None:
+    """Record of a workingstep in either profile; None when there is none."""
     reference = step.operation.its_optimisation
     if reference is not None:
         return read_entities(program.model, reference)
@@ -55,7 +55,7 @@ def has_parameters(program: Program) -> bool:
     return any(_parameter_record(program, step) is not None for step in program.workingsteps)
 
 
-def take_out(draft: Draft, step: Workingstep) -> None:
+def take_out(draft: Draft, step: ResolvedWorkingstep) -> None:
     """Remove what an operation carries of an optimum, whatever its form."""
     program = draft.program
     reference = step.operation.its_optimisation
@@ -75,12 +75,12 @@ def take_out(draft: Draft, step: Workingstep) -> None:
     draft.remove([*ours, *_own_models(program, functions), int(step.functions_ref)])
 
 
-def put_entities(draft: Draft, step: Workingstep, record: Record) -> None:
+def put_entities(draft: Draft, step: ResolvedWorkingstep, record: AdviceRecord) -> None:
     """Profile ``optimisation``."""
     draft.append_surplus(step.operation_ref, write_entities(record, draft.edits))
 
 
-def put_parameters(draft: Draft, step: Workingstep, record: Record) -> None:
+def put_parameters(draft: Draft, step: ResolvedWorkingstep, record: AdviceRecord) -> None:
     """Profile ``standard``; SchemaError when the operation has no machine functions."""
     program = draft.program
     original = _original_functions(program, step) or step.functions_ref
@@ -104,7 +104,7 @@ def put_parameters(draft: Draft, step: Workingstep, record: Record) -> None:
     draft.put(step.operation_ref, "its_machine_functions", copy)
 
 
-def _parameter_record(program: Program, step: Workingstep) -> Record | None:
+def _parameter_record(program: Program, step: ResolvedWorkingstep) -> AdviceRecord | None:
     """Record written as parameters of the machine functions."""
     if _original_functions(program, step) is None or step.functions_ref is None:
         return None
@@ -117,7 +117,7 @@ def _parameter_record(program: Program, step: Workingstep) -> Record | None:
     return read_parameters(values)
 
 
-def _original_functions(program: Program, step: Workingstep) -> Ref[Any] | None:
+def _original_functions(program: Program, step: ResolvedWorkingstep) -> Ref[Any] | None:
     """Machine functions that an operation's copy was made of; None when it has no copy."""
     if step.functions_ref is None:
         return None
@@ -133,7 +133,7 @@ def _original_functions(program: Program, step: Workingstep) -> Ref[Any] | None:
     return None
 
 
-def _process_model(draft: Draft, record: Record) -> Ref[Any]:
+def _process_model(draft: Draft, record: AdviceRecord) -> Ref[Any]:
     """A process model that says which model the record comes from."""
     model = draft.add(ProcessModel(ini_data_file=record.machine, its_type=GENERATOR))
     return draft.add(ProcessModelList(its_list=(model,)))

@@ -1,4 +1,4 @@
-"""What a technology entity programs, in canonical units, and where it stands in the file.
+"""Technology of a workingstep in canonical units, and its place in the file.
 
 Milling: ISO 14649-11 ``milling_technology`` (rules WR1 and WR2: exactly one of cutspeed and
 spindle, exactly one of feedrate and feedrate_per_tooth), also in the form that NIST proposed in
@@ -24,11 +24,11 @@ from stepnc_model.entities.turning import (
 )
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
-from stepnc_model.unit_profiles import FeedUnit
+from stepnc_model.units import FeedUnit
 
 
-class Quantity(StrEnum):
-    """What a programmed number is."""
+class ProgrammedQuantity(StrEnum):
+    """Quantity that a number programs."""
 
     FEED = "feed"
     FEED_PER_TOOTH = "feed per tooth"
@@ -44,9 +44,9 @@ class Number:
     ref: Ref[Entity]
     """instance that holds it"""
     attribute: str
-    quantity: Quantity
+    quantity: ProgrammedQuantity
     value: float
-    """mm, mm/s or rev/s; never negative"""
+    """Value, mm, mm/s or rev/s; never negative"""
     scale: float
     """canonical number per number in the file; negative for a clockwise spindle"""
 
@@ -62,9 +62,9 @@ class Programmed:
     feed: Number
     speed: Number
     max_spindle_speed: float | None = None
-    """rev/s, a lathe's limit at constant cutting speed"""
+    """Max spindle speed, rev/s, a lathe's limit at constant cutting speed"""
     inhibition: str = ""
-    """why nobody may touch the feed; empty when one may"""
+    """why the feed is locked; empty when it is not"""
     is_synchronised: bool = False
     """feed bound to the spindle by a pitch"""
     has_both_speeds: bool = False
@@ -72,7 +72,7 @@ class Programmed:
 
     def spindle_speed(self, diameter: float) -> float:
         """Spindle speed in rev/s at a diameter in mm: as programmed, else v_c/(π·D)."""
-        if self.speed.quantity is Quantity.SPINDLE_SPEED:
+        if self.speed.quantity is ProgrammedQuantity.SPINDLE_SPEED:
             return self.speed.value
         speed = self.speed.value / (pi * diameter)
         return min(speed, self.max_spindle_speed) if self.max_spindle_speed else speed
@@ -80,23 +80,23 @@ class Programmed:
     def feed_per_tooth(self, speed: float, teeth: int) -> float:
         """Feed per tooth in mm at a spindle speed in rev/s."""
         value = self.feed.value
-        if self.feed.quantity is Quantity.FEED_PER_TOOTH:
+        if self.feed.quantity is ProgrammedQuantity.FEED_PER_TOOTH:
             return value
-        if self.feed.quantity is Quantity.FEED_PER_REVOLUTION:
+        if self.feed.quantity is ProgrammedQuantity.FEED_PER_REVOLUTION:
             return value / teeth
         return value / (speed * teeth)
 
     def feed_number(self, feed_per_tooth: float, *, speed: float, teeth: int) -> float:
-        """What the file's feed attribute must hold for a feed per tooth in mm."""
+        """Value of the file's feed attribute for a feed per tooth in mm."""
         factor = {
-            Quantity.FEED_PER_TOOTH: 1.0,
-            Quantity.FEED_PER_REVOLUTION: teeth,
+            ProgrammedQuantity.FEED_PER_TOOTH: 1.0,
+            ProgrammedQuantity.FEED_PER_REVOLUTION: teeth,
         }.get(self.feed.quantity, teeth * speed)
         return self.feed.in_file(feed_per_tooth * factor)
 
     def speed_number(self, speed: float, diameter: float) -> float:
-        """What the file's speed attribute must hold for a spindle speed in rev/s."""
-        is_spindle = self.speed.quantity is Quantity.SPINDLE_SPEED
+        """Value of the file's speed attribute for a spindle speed in rev/s."""
+        is_spindle = self.speed.quantity is ProgrammedQuantity.SPINDLE_SPEED
         return self.speed.in_file(speed if is_spindle else speed * pi * diameter)
 
 
@@ -123,12 +123,14 @@ def _milling(program: Program, ref: Ref[Entity], technology: MillingTechnology) 
     units = program.units
     quantity = _feed_quantity(units.feed)
     feed = _number(program, ref, "feedrate", quantity, scale=units.feed_scale) or _number(
-        program, ref, "feedrate_per_tooth", Quantity.FEED_PER_TOOTH, scale=1.0
+        program, ref, "feedrate_per_tooth", ProgrammedQuantity.FEED_PER_TOOTH, scale=1.0
     )
     cutspeed = _number(
-        program, ref, "cutspeed", Quantity.CUTTING_SPEED, scale=units.cutting_speed
+        program, ref, "cutspeed", ProgrammedQuantity.CUTTING_SPEED, scale=units.cutting_speed
     )
-    spindle = _number(program, ref, "spindle", Quantity.SPINDLE_SPEED, scale=units.spindle)
+    spindle = _number(
+        program, ref, "spindle", ProgrammedQuantity.SPINDLE_SPEED, scale=units.spindle
+    )
     speed = spindle or cutspeed
     if feed is None:
         raise program.error(
@@ -161,14 +163,14 @@ def _adaptive(
         program,
         technology.its_speed,
         "value",
-        Quantity.CUTTING_SPEED if is_cutting else Quantity.SPINDLE_SPEED,
+        ProgrammedQuantity.CUTTING_SPEED if is_cutting else ProgrammedQuantity.SPINDLE_SPEED,
         scale=units.cutting_speed if is_cutting else units.spindle,
     )
     feed = _number(
         program,
         technology.its_feed,
         "value",
-        Quantity.FEED_PER_TOOTH if is_per_tooth else _feed_quantity(units.feed),
+        ProgrammedQuantity.FEED_PER_TOOTH if is_per_tooth else _feed_quantity(units.feed),
         scale=1.0 if is_per_tooth else units.feed_scale,
     )
     if feed is None or speed is None:
@@ -189,7 +191,7 @@ def _turning(program: Program, ref: Ref[Entity], technology: TurningTechnology) 
     units = program.units
     quantity = _feed_quantity(units.feed)
     feed = _number(program, ref, "feedrate", quantity, scale=units.feed_scale) or _number(
-        program, ref, "feed_per_revolution", Quantity.FEED_PER_REVOLUTION, scale=1.0
+        program, ref, "feed_per_revolution", ProgrammedQuantity.FEED_PER_REVOLUTION, scale=1.0
     )
     if feed is None:
         raise program.error("has neither feedrate nor feed_per_revolution", ref, "feedrate")
@@ -204,7 +206,7 @@ def _turning(program: Program, ref: Ref[Entity], technology: TurningTechnology) 
         program,
         spindle,
         "rot_speed" if is_constant else "speed",
-        Quantity.SPINDLE_SPEED if is_constant else Quantity.CUTTING_SPEED,
+        ProgrammedQuantity.SPINDLE_SPEED if is_constant else ProgrammedQuantity.CUTTING_SPEED,
         scale=units.spindle if is_constant else units.cutting_speed,
     )
     if speed is None:
@@ -219,22 +221,27 @@ def _turning(program: Program, ref: Ref[Entity], technology: TurningTechnology) 
     )
 
 
-def _feed_quantity(unit: FeedUnit) -> Quantity:
-    """What ``feedrate`` holds in a unit profile."""
+def _feed_quantity(unit: FeedUnit) -> ProgrammedQuantity:
+    """Quantity of ``feedrate`` in a unit profile."""
     return {
-        FeedUnit.MM_PER_TOOTH: Quantity.FEED_PER_TOOTH,
-        FeedUnit.MM_PER_REVOLUTION: Quantity.FEED_PER_REVOLUTION,
-    }.get(unit, Quantity.FEED)
+        FeedUnit.MM_PER_TOOTH: ProgrammedQuantity.FEED_PER_TOOTH,
+        FeedUnit.MM_PER_REVOLUTION: ProgrammedQuantity.FEED_PER_REVOLUTION,
+    }.get(unit, ProgrammedQuantity.FEED)
 
 
 def _number(
-    program: Program, ref: Ref[Entity], attribute: str, quantity: Quantity, *, scale: float
+    program: Program,
+    ref: Ref[Entity],
+    attribute: str,
+    quantity: ProgrammedQuantity,
+    *,
+    scale: float,
 ) -> Number | None:
     """One number of an instance, which must cut something when it is given."""
     written = getattr(program.get(ref), attribute)
     if written is None:
         return None
-    size = abs(written) if quantity is Quantity.SPINDLE_SPEED else written
+    size = abs(written) if quantity is ProgrammedQuantity.SPINDLE_SPEED else written
     if not isfinite(size) or size <= 0.0:
         raise program.error(
             f"{quantity.value} {written:g} cuts nothing: it must be positive", ref, attribute

@@ -49,17 +49,17 @@ _GRADE = re.compile(r"(?:IT|([A-Z]{1,2}))? ?([0-9]{1,2})", re.IGNORECASE)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Tolerance:
-    """How far a length may be off."""
+    """Tolerance of a length."""
 
     half_width: float
-    """mm, half the difference between the limits of size"""
+    """Half width, mm, half the difference between the limits of size"""
     code: str
     """as a drawing writes it: ±0.1 mm, +0.2/-0.1 mm, IT7, ISO 2768-m"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Written:
-    """What a file says of the tolerance of a length."""
+class FileTolerance:
+    """Tolerance of a length as the file gives it."""
 
     tolerance: Tolerance | None
     """None where it gives none, or none that can be read"""
@@ -67,24 +67,24 @@ class Written:
     """why it cannot be read"""
 
 
-def written_tolerance(program: Program, ref: Ref[TolerancedLengthMeasure]) -> Written:
+def written_tolerance(program: Program, ref: Ref[TolerancedLengthMeasure]) -> FileTolerance:
     """Tolerance of a length as the file has it.
 
     Never fails: a tolerance that cannot be read is a warning that names its instance.
     """
     length = program.model.entity(int(ref))
     if not isinstance(length, TolerancedLengthMeasure) or length.implicit_tolerance is None:
-        return Written(tolerance=None)
+        return FileTolerance(tolerance=None)
     given = program.model.entity(int(length.implicit_tolerance))
     try:
-        return Written(tolerance=_read(given, length.theoretical_size))
+        return FileTolerance(tolerance=_read(given, length.theoretical_size))
     except ValueError as error:
         place: Ref[Entity] = Ref(int(length.implicit_tolerance))
         if int(place) not in program.file:
             place = Ref(int(ref))
         text = f"{error}: the tolerance is not read, ISO 2768-m holds instead"
         finding = program.finding(Severity.WARNING, text, place)
-        return Written(tolerance=None, finding=finding)
+        return FileTolerance(tolerance=None, finding=finding)
 
 
 def tolerance_findings(program: Program) -> tuple[Finding, ...]:
@@ -197,7 +197,7 @@ def _fit(given: LimitsAndFits, size: float) -> Tolerance:
 
 
 def _are_numbers(*values: object) -> bool:
-    """Whether the file gives them: the binding is tolerant, and what it lacks is None."""
+    """Whether the file gives both: the binding is tolerant, and a missing value is None."""
     return all(isinstance(value, float) for value in values)
 
 

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from math import pi
 
 from stepnc_model.entities.entity import Entity
+from stepnc_model.entities.enums import Hand
 from stepnc_model.entities.tools import BallEndmill, MillingCuttingTool, MillingToolBody
 from stepnc_model.entities.turning_tools import (
     GroovingTool,
@@ -44,7 +45,7 @@ CENTRE_CUTTING = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Tool:
-    """What the physics needs to know of a cutting tool.
+    """Cutting tool, as far as the physics needs it.
 
     A rotating tool has a diameter and teeth; a turning tool has ``diameter = 0`` and one
     tooth.
@@ -56,20 +57,20 @@ class Tool:
     edge_material: tuple[str, ...] = ()
     """names given for the cutting edge"""
     diameter: float = 0.0
-    """mm"""
+    """Diameter, mm"""
     teeth: int = 1
     has_teeth: bool = True
     """the file says how many"""
     corner_radius: float | None = None
-    """mm: end-mill corner, insert nose; half the diameter of a ball"""
+    """Corner radius, mm: end-mill corner, insert nose; half the diameter of a ball"""
     cutting_edge_length: float | None = None
-    """mm, or the greatest depth that an insert may take"""
+    """Cutting edge length, mm, or the greatest depth that an insert may take"""
     cutting_edge_angle: float = RIGHT_ANGLE
-    """rad, κ_r"""
+    """Cutting edge angle, rad, κ_r"""
     point_angle: float | None = None
-    """rad, included angle of a drill's point"""
+    """Point angle, rad, included angle of a drill's point"""
     width: float | None = None
-    """mm, of a grooving insert"""
+    """Width, mm, of a grooving insert"""
     centre_cutting: bool | None = None
     """whether the edges of a mill reach its axis; None: its form does not tell"""
     has_wiper: bool = False
@@ -90,6 +91,19 @@ def tool_of(program: Program, ref: Ref[Entity]) -> Tool:
     if isinstance(tool, TurningMachineCuttingTool):
         return _turning(program, ref, tool)
     raise program.error("is no milling, drilling or turning tool", ref)
+
+
+def body_of(program: Program, ref: Ref[Entity]) -> MillingToolBody | None:
+    """Body of a rotating tool; None of other tools, and where the file has none."""
+    ref_of_body = getattr(program.get(ref), "its_tool_body", None)
+    body = None if ref_of_body is None else program.get(ref_of_body)
+    return body if isinstance(body, MillingToolBody) else None
+
+
+def hand_of(program: Program, ref: Ref[Entity]) -> Hand | None:
+    """Hand of cut of a rotating tool, where the file gives one that matters."""
+    hand = getattr(body_of(program, ref), "hand_of_cut", None)
+    return None if hand is Hand.NEUTRAL else hand
 
 
 def _rotating(program: Program, ref: Ref[Entity], tool: MillingCuttingTool) -> Tool:

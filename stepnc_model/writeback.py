@@ -15,13 +15,13 @@ that are added or removed, differ from the file that was read. Outcomes and corr
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from enum import StrEnum
 
 from stepnc_model.draft import Draft
 from stepnc_model.entities.turning import TurningMachiningOperation
+from stepnc_model.file_profile import FileProfile
 from stepnc_model.part21.values import Real, Ref
-from stepnc_model.program import Program, Workingstep
-from stepnc_model.record import Record
+from stepnc_model.program import Program, ResolvedWorkingstep
+from stepnc_model.record import AdviceRecord
 from stepnc_model.record_edit import (
     RECORD_KEYWORDS,
     find_record,
@@ -40,29 +40,24 @@ DIGITS = 12
 """significant digits of a number written into the file"""
 
 
-class Profile(StrEnum):
-    """Where a record goes."""
-
-    OPTIMISATION = "optimisation"
-    STANDARD = "standard"
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Change:
-    """What is written for one workingstep."""
+class WorkingstepUpdate:
+    """Values that are written for one workingstep."""
 
-    workingstep: Workingstep
+    workingstep: ResolvedWorkingstep
     programmed: Programmed
-    record: Record
+    record: AdviceRecord
     feed: float
     """number for the file's feed attribute"""
     speed: float | None = None
     """number for the file's speed attribute; ``None``: unchanged"""
     depth: float | None = None
-    """mm of one pass; ``None``: unchanged"""
+    """Depth, mm of one pass; ``None``: unchanged"""
 
 
-def write(program: Program, changes: Sequence[Change], profile: Profile) -> bytes:
+def write(
+    program: Program, changes: Sequence[WorkingstepUpdate], profile: FileProfile
+) -> bytes:
     """The file with the advice in it.
 
     Several workingsteps may run one operation; it can hold one feed only, and gets the lowest,
@@ -72,8 +67,8 @@ def write(program: Program, changes: Sequence[Change], profile: Profile) -> byte
     ----------
     program : Program
         As it was read.
-    changes : sequence of Change
-    profile : Profile
+    changes : sequence of WorkingstepUpdate
+    profile : FileProfile
 
     Returns
     -------
@@ -85,7 +80,7 @@ def write(program: Program, changes: Sequence[Change], profile: Profile) -> byte
         When the profile has no form for what the program holds.
     """
     _require_form(program, profile)
-    chosen: dict[int, Change] = {}
+    chosen: dict[int, WorkingstepUpdate] = {}
     for change in changes:
         operation = int(change.workingstep.operation_ref)
         chosen[operation] = _slower(change, chosen.get(operation, change))
@@ -101,7 +96,7 @@ def write(program: Program, changes: Sequence[Change], profile: Profile) -> byte
     return _finished(draft)
 
 
-def _slower(one: Change, other: Change) -> Change:
+def _slower(one: WorkingstepUpdate, other: WorkingstepUpdate) -> WorkingstepUpdate:
     """The change with the lower feed, with the lower plunge feed of both."""
     slower = one if one.feed < other.feed else other
     feeds = [each.record.plunge_feed_per_tooth for each in (one, other)]
@@ -109,7 +104,7 @@ def _slower(one: Change, other: Change) -> Change:
     return replace(slower, record=replace(slower.record, plunge_feed_per_tooth=least))
 
 
-def convert(program: Program, profile: Profile) -> bytes:
+def convert(program: Program, profile: FileProfile) -> bytes:
     """The same program with all its records in one profile.
 
     Optima that are not complete records, as paper 002 prints them, stay as they are.
@@ -133,7 +128,7 @@ def convert(program: Program, profile: Profile) -> bytes:
     return _finished(draft)
 
 
-def records(program: Program) -> dict[int, Record]:
+def records(program: Program) -> dict[int, AdviceRecord]:
     """Records of a program, whatever their profile, by the id of their operation."""
     found = {
         int(step.operation_ref): find_record(program, step) for step in program.workingsteps
@@ -146,18 +141,20 @@ def rounded(value: float) -> float:
     return float(f"{value:.{DIGITS}g}")
 
 
-def _require_form(program: Program, profile: Profile) -> None:
+def _require_form(program: Program, profile: FileProfile) -> None:
     """Refuse profile ``standard`` where something would stay that a strict reader refuses."""
-    if profile is not Profile.STANDARD:
+    if profile is not FileProfile.STANDARD:
         return
     for keyword in ANSWERS:
         for number in program.file.ids_of(keyword):
             raise program.error("has no form in profile 'standard'", Ref(number))
 
 
-def _put_in(draft: Draft, step: Workingstep, record: Record, profile: Profile) -> None:
+def _put_in(
+    draft: Draft, step: ResolvedWorkingstep, record: AdviceRecord, profile: FileProfile
+) -> None:
     """Add a record in one of the profiles."""
-    if profile is Profile.OPTIMISATION:
+    if profile is FileProfile.OPTIMISATION:
         put_entities(draft, step, record)
         draft.edits.add_schema(SCHEMA)
     else:
@@ -180,7 +177,7 @@ def _finished(draft: Draft) -> bytes:
     return draft.edits.apply()
 
 
-def _edit_conditions(draft: Draft, change: Change) -> None:
+def _edit_conditions(draft: Draft, change: WorkingstepUpdate) -> None:
     """Feed, speed and depth of a workingstep."""
     step = change.workingstep
     _edit_number(draft, step, change.programmed.feed, change.feed)
@@ -190,7 +187,7 @@ def _edit_conditions(draft: Draft, change: Change) -> None:
         _edit_depth(draft, step, rounded(change.depth))
 
 
-def _edit_number(draft: Draft, step: Workingstep, number: Number, value: float) -> None:
+def _edit_number(draft: Draft, step: ResolvedWorkingstep, number: Number, value: float) -> None:
     """One programmed number, in an instance that only this operation uses."""
     if rounded(value) == rounded(number.in_file(number.value)):
         return
@@ -206,7 +203,7 @@ def _edit_number(draft: Draft, step: Workingstep, number: Number, value: float) 
     draft.put(number.ref, number.attribute, Real(rounded(value)), at=holder)
 
 
-def _edit_depth(draft: Draft, step: Workingstep, depth: float) -> None:
+def _edit_depth(draft: Draft, step: ResolvedWorkingstep, depth: float) -> None:
     """Depth of one pass: of the operation, or of a turning operation's strategy."""
     operation = step.operation
     if isinstance(operation, TurningMachiningOperation):
@@ -218,7 +215,7 @@ def _edit_depth(draft: Draft, step: Workingstep, depth: float) -> None:
         draft.put(step.operation_ref, "axial_cutting_depth", Real(depth))
 
 
-def _with_first_programmed(record: Record, old: Record | None) -> Record:
+def _with_first_programmed(record: AdviceRecord, old: AdviceRecord | None) -> AdviceRecord:
     """A new record that remembers what the file said before it was ever optimised."""
     if old is None:
         return record

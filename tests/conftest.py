@@ -4,6 +4,7 @@
 """
 
 import os
+import signal
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -19,12 +20,20 @@ from tests.slow import SLOW
 # each other, at full speed. Read when numpy is loaded, here and in what tests start.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+# readline, which pytest loads, tells its children the size of a terminal that they do not have.
+for name in ("COLUMNS", "LINES"):
+    os.environ.pop(name, None)
+
 # Where Python writes no bytecode, as in some containers, each process would compile all that it
 # loads, and each run of the tests all of them: it goes into the build folder then.
 if os.environ.pop("PYTHONDONTWRITEBYTECODE", None):
     folder = str(Path(__file__).parents[1] / "build" / "bytecode")
     sys.pycache_prefix = os.environ.setdefault("PYTHONPYCACHEPREFIX", folder)
     sys.dont_write_bytecode = False
+
+# A shell lets what it starts in the background ignore interrupts, and all that this starts too.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # How long an example takes says nothing on a machine that others use as well. Drawn anew, a
 # rare one would turn a run of CI red that has nothing to do with the change.

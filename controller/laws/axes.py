@@ -82,7 +82,7 @@ def shortfall(axes: Axes, at: Situation, *, exponent: float) -> float:
 
 
 def quickening(plant: Plant, closing: float) -> float:
-    """How many times the way to their goal the axes are sent, to be there sooner.
+    """Overshoot factor of the command, so that the axes reach their goal sooner.
 
     To approach with time constant T_c instead of the lag T, sampled once a revolution:
     ``κ = (1 − exp(−1/T_c)) / (1 − exp(−1/T))``.

@@ -3,7 +3,7 @@
 from enum import StrEnum
 from typing import Any
 
-from controller.law import Law, Plant
+from controller.law import ControlLaw, Plant
 from controller.laws.fuzzy import Fuzzy
 from controller.laws.log_pi import LogPI
 from controller.laws.model_reference import ModelReference
@@ -25,7 +25,7 @@ class LawName(StrEnum):
     NONE = "none"
 
 
-def law_named(name: LawName, plant: Plant, *, has_preview: bool) -> Law[Any]:
+def law_named(name: LawName, plant: Plant, *, has_preview: bool) -> ControlLaw[Any]:
     """A law, tuned for a plant; its state is of the law's own kind.
 
     Parameters
@@ -49,7 +49,7 @@ def law_named(name: LawName, plant: Plant, *, has_preview: bool) -> Law[Any]:
     return Previewed(law=law, plant=plant) if has_preview else law
 
 
-def _feedback(name: LawName, plant: Plant) -> Law[Any]:
+def _feedback(name: LawName, plant: Plant) -> ControlLaw[Any]:
     """A law that only feeds back."""
     match name:
         case LawName.PI:

@@ -56,7 +56,7 @@ RULES = (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FuzzyState:
-    """What the fuzzy law remembers."""
+    """State of the fuzzy law."""
 
     axes: Axes
     error: float
@@ -76,7 +76,7 @@ class Fuzzy:
         return FuzzyState(axes=resting(override), error=0.0)
 
     def decide(self, state: FuzzyState, at: Situation) -> tuple[FuzzyState, float]:
-        """See :class:`~controller.law.Law`."""
+        """See :class:`~controller.law.ControlLaw`."""
         axes = moved(state.axes, standing(at), lag=self.plant.lag)
         error = shortfall(axes, at, exponent=self.plant.exponent)
         step = inferred(error / UNIT, (error - state.error) / UNIT)
@@ -85,7 +85,7 @@ class Fuzzy:
 
 
 def inferred(error: float, change: float) -> float:
-    """What the rules make of an error and its change, in their units."""
+    """Output of the rules for an error and its change, in their units."""
     return sum(
         belongs * changes * rule
         for belongs, row in zip(memberships(error, ERRORS), RULES, strict=True)
@@ -95,7 +95,7 @@ def inferred(error: float, change: float) -> float:
 
 
 def memberships(value: float, peaks: tuple[float, ...]) -> list[float]:
-    """How far a value belongs to each of the triangular sets with these peaks; sum 1."""
+    """Membership of a value in each of the triangular sets with these peaks; sum 1."""
     held = min(max(value, peaks[0]), peaks[-1])
     below = min(bisect_right(peaks, held), len(peaks) - 1) - 1
     share = (held - peaks[below]) / (peaks[below + 1] - peaks[below])

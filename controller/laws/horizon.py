@@ -52,7 +52,7 @@ class Horizon:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Outlook:
-    """What one decision rests on; overrides in any one unit."""
+    """Input of one decision; overrides in any one unit."""
 
     axes: float
     """at the end of the last revolution"""
@@ -72,7 +72,7 @@ class Outlook:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Vectors:
-    """What changes in the program from one decision to the next."""
+    """Terms of the program that change from one decision to the next."""
 
     linear: Floats
     """(2H,) q"""

@@ -31,7 +31,7 @@ SURPRISE = 4.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Load:
+class LoadEstimate:
     """An estimate with its covariance."""
 
     log: float
@@ -44,8 +44,8 @@ class Load:
     covariance: float
 
 
-def first_load(force: float, *, way: float, exponent: float, noise: float) -> Load:
-    """What one force tells, with the exponent taken for granted.
+def first_load(force: float, *, way: float, exponent: float, noise: float) -> LoadEstimate:
+    """Load from one force, with the exponent taken for granted.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ def first_load(force: float, *, way: float, exponent: float, noise: float) -> Lo
     noise : float
         Standard deviation of ``force``.
     """
-    return Load(
+    return LoadEstimate(
         log=force - exponent * way,
         exponent=exponent,
         variance=noise**2 + EXPONENT_VARIANCE * way**2,
@@ -67,19 +67,19 @@ def first_load(force: float, *, way: float, exponent: float, noise: float) -> Lo
     )
 
 
-def learned(load: Load, *, force: float, way: float, noise: float) -> Load:
+def learned(load: LoadEstimate, *, force: float, way: float, noise: float) -> LoadEstimate:
     """Load and exponent after one more revolution in which the axes changed their speed."""
     prior = _forgotten(load, of_load=LOAD_FORGETTING, of_exponent=EXPONENT_FORGETTING)
     return _corrected(prior, force=force, way=way, noise=noise, share=1.0)
 
 
-def learned_load(load: Load, *, force: float, way: float, noise: float) -> Load:
+def learned_load(load: LoadEstimate, *, force: float, way: float, noise: float) -> LoadEstimate:
     """Load after one more revolution at nearly the same speed; the exponent stays."""
     prior = _forgotten(load, of_load=LOAD_FORGETTING, of_exponent=1.0)
     return _corrected(prior, force=force, way=way, noise=noise, share=0.0)
 
 
-def _forgotten(load: Load, *, of_load: float, of_exponent: float) -> Load:
+def _forgotten(load: LoadEstimate, *, of_load: float, of_exponent: float) -> LoadEstimate:
     """The estimate grown old, [1]_; scaled from both sides, its covariance stays positive."""
     wider = min(1.0 / of_load, LOAD_VARIANCE / max(load.variance, TINY))
     other = min(1.0 / of_exponent, EXPONENT_VARIANCE / max(load.exponent_variance, TINY))
@@ -91,7 +91,9 @@ def _forgotten(load: Load, *, of_load: float, of_exponent: float) -> Load:
     )
 
 
-def _corrected(prior: Load, *, force: float, way: float, noise: float, share: float) -> Load:
+def _corrected(
+    prior: LoadEstimate, *, force: float, way: float, noise: float, share: float
+) -> LoadEstimate:
     """One step of least squares, with so much of the exponent's gain."""
     innovation = force - prior.log - prior.exponent * way
     surprising = abs(innovation) > SURPRISE * sqrt(_spread(prior, way) + noise**2)
@@ -103,7 +105,7 @@ def _corrected(prior: Load, *, force: float, way: float, noise: float, share: fl
     # Joseph's form, (I − kφ')P(I − kφ')' + k·k'·noise², stays positive with any gain.
     a, b, c, d = 1.0 - gain, -gain * way, -other, 1.0 - other * way
     p, q, r = prior.variance, prior.covariance, prior.exponent_variance
-    return Load(
+    return LoadEstimate(
         log=prior.log + gain * innovation,
         exponent=prior.exponent + other * innovation,
         variance=a * a * p + 2.0 * a * b * q + b * b * r + (gain * noise) ** 2,
@@ -112,7 +114,7 @@ def _corrected(prior: Load, *, force: float, way: float, noise: float, share: fl
     )
 
 
-def _spread(load: Load, way: float) -> float:
+def _spread(load: LoadEstimate, way: float) -> float:
     """Variance of the predicted ln F."""
     known = load.variance + 2.0 * way * load.covariance + way**2 * load.exponent_variance
     # Rounding may leave less than nothing.

@@ -45,7 +45,7 @@ class LogPI:
         return resting(override)
 
     def decide(self, state: Axes, at: Situation) -> tuple[Axes, float]:
-        """See :class:`~controller.law.Law`."""
+        """See :class:`~controller.law.ControlLaw`."""
         axes = moved(state, standing(at), lag=self.plant.lag)
         error = shortfall(axes, at, exponent=self.plant.exponent)
         goal = axes.mean * exp(error / self.plant.exponent)

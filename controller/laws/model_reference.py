@@ -33,8 +33,8 @@ LEAK = 0.05
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Adapted:
-    """What the adaptive law remembers."""
+class ModelReferenceState:
+    """State of the model-reference law."""
 
     axes: Axes
     deviation: float
@@ -57,25 +57,31 @@ class ModelReference:
     adaptation: float = 0.9
     """γ, between 0 and 2"""
 
-    def begin(self, override: float) -> Adapted:
+    def begin(self, override: float) -> ModelReferenceState:
         """As though the force had been at its set point."""
         axes = resting(override)
         rest = log(axes.last)
-        return Adapted(axes=axes, deviation=0.0, bias=rest, gain=self._nominal(), wanted=rest)
+        return ModelReferenceState(
+            axes=axes, deviation=0.0, bias=rest, gain=self._nominal(), wanted=rest
+        )
 
-    def decide(self, state: Adapted, at: Situation) -> tuple[Adapted, float]:
-        """See :class:`~controller.law.Law`."""
+    def decide(
+        self, state: ModelReferenceState, at: Situation
+    ) -> tuple[ModelReferenceState, float]:
+        """See :class:`~controller.law.ControlLaw`."""
         override = standing(at)
         axes = moved(state.axes, override, lag=self.plant.lag)
         deviation = -shortfall(axes, at, exponent=self.plant.exponent)
         bias, gain = self._adapted(state, deviation, let_through=log(override))
         bias = log(within(exp(bias), at))
         wanted = bias - gain * deviation
-        found = Adapted(axes=axes, deviation=deviation, bias=bias, gain=gain, wanted=wanted)
+        found = ModelReferenceState(
+            axes=axes, deviation=deviation, bias=bias, gain=gain, wanted=wanted
+        )
         return found, within(exp(wanted), at)
 
     def _adapted(
-        self, state: Adapted, deviation: float, *, let_through: float
+        self, state: ModelReferenceState, deviation: float, *, let_through: float
     ) -> tuple[float, float]:
         """θ_0 and θ_1 after one more revolution."""
         sensitivity = self._sensitivity()

@@ -71,7 +71,7 @@ SETTINGS = {
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class MpcState:
-    """What a decision leaves to the next."""
+    """State that a decision leaves to the next."""
 
     log_factor: float | None
     """ln K; None: nothing was measured yet"""
@@ -113,7 +113,7 @@ class ModelPredictive:
         )
 
     def decide(self, state: MpcState, at: Situation) -> tuple[MpcState, float]:
-        """See :class:`~controller.law.Law`; what the situation tells must be finite."""
+        """See :class:`~controller.law.ControlLaw`; what the situation tells must be finite."""
         expected = at.expected if at.expected > 0.0 else state.expected
         factor = _learned(state, at, exponent=self.plant.exponent)
         outlook = _outlook(at, _needed(at, factor, expected=expected), plant=self.plant)
@@ -192,7 +192,7 @@ def _coming(at: Situation, expected: float) -> Floats:
 
 
 def _outlook(at: Situation, needed: Floats | None, *, plant: Plant) -> Outlook:
-    """What the program is to be stated with."""
+    """Matrices that the quadratic program is set up with."""
     floor = min(max(at.floor, LEAST), MOST / NARROWEST)
     ceiling = max(min(at.ceiling, MOST), NARROWEST * floor)
     command = min(max(at.override, floor), ceiling)

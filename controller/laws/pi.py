@@ -39,7 +39,7 @@ SLOWEST = 0.3
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PIState:
-    """What a PI law remembers."""
+    """State of a PI law."""
 
     axes: Axes
     error: float
@@ -59,7 +59,7 @@ class PI:
         return PIState(axes=resting(override), error=0.0)
 
     def decide(self, state: PIState, at: Situation) -> tuple[PIState, float]:
-        """See :class:`~controller.law.Law`."""
+        """See :class:`~controller.law.ControlLaw`."""
         plant = self.plant
         axes = moved(state.axes, standing(at), lag=plant.lag)
         error = max(1.0 - exp(-shortfall(axes, at, exponent=plant.exponent)), -GREATEST)

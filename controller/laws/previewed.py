@@ -29,7 +29,7 @@ from dataclasses import dataclass, field, replace
 from math import exp, log
 from typing import Generic, TypeVar
 
-from controller.law import Law, Plant, Situation
+from controller.law import ControlLaw, Plant, Situation
 from controller.laws.axes import Axes, moved, quickening, ran, resting, sent, standing, within
 
 S = TypeVar("S")
@@ -44,7 +44,7 @@ GREATEST_FALL = 0.15
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Factored(Generic[S]):
+class PreviewedState(Generic[S]):
     """The law inside and its share of the override."""
 
     inner: S
@@ -61,7 +61,7 @@ class Factored(Generic[S]):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Alone(Generic[S]):
+class PlainState(Generic[S]):
     """The law inside without preview."""
 
     inner: S
@@ -71,23 +71,23 @@ class Alone(Generic[S]):
 class Previewed(Generic[S]):
     """A law with preview, itself a law."""
 
-    law: Law[S]
+    law: ControlLaw[S]
     plant: Plant = field(default_factory=Plant)
     closing: float = 1.0
     """revolutions, time constant with which the axes are slowed before a load"""
 
-    def begin(self, override: float) -> Factored[S] | Alone[S]:
+    def begin(self, override: float) -> PreviewedState[S] | PlainState[S]:
         """The law inside alone, until something is known."""
-        return Alone(inner=self.law.begin(override))
+        return PlainState(inner=self.law.begin(override))
 
     def decide(
-        self, state: Factored[S] | Alone[S], at: Situation
-    ) -> tuple[Factored[S] | Alone[S], float]:
-        """See :class:`~controller.law.Law`."""
+        self, state: PreviewedState[S] | PlainState[S], at: Situation
+    ) -> tuple[PreviewedState[S] | PlainState[S], float]:
+        """See :class:`~controller.law.ControlLaw`."""
         if not at.ahead or at.expected <= 0.0 or max(at.ahead) <= 0.0:
             return self._alone(state, at)
         forward = self._forward(at)
-        if isinstance(state, Alone):
+        if isinstance(state, PlainState):
             state = self._factored(at, forward)
         axes = moved(state.axes, state.share, lag=self.plant.lag)
         through = moved(state.forward, standing(at) / state.share, lag=self.plant.lag)
@@ -95,7 +95,7 @@ class Previewed(Generic[S]):
         inner, share = self.law.decide(
             state.inner, self._inside(state, at, axes=axes, factor=factor, forward=forward)
         )
-        found = Factored(
+        found = PreviewedState(
             inner=inner,
             share=share,
             axes=axes,
@@ -105,16 +105,18 @@ class Previewed(Generic[S]):
         )
         return found, within(share * self._slowed(found, at, forward), at)
 
-    def _alone(self, state: Factored[S] | Alone[S], at: Situation) -> tuple[Alone[S], float]:
+    def _alone(
+        self, state: PreviewedState[S] | PlainState[S], at: Situation
+    ) -> tuple[PlainState[S], float]:
         """The law inside with the plant as it is."""
-        inner = state.inner if isinstance(state, Alone) else self.law.begin(standing(at))
+        inner = state.inner if isinstance(state, PlainState) else self.law.begin(standing(at))
         inner, override = self.law.decide(inner, replace(at, expected=0.0, ahead=()))
-        return Alone(inner=inner), override
+        return PlainState(inner=inner), override
 
-    def _factored(self, at: Situation, forward: float) -> Factored[S]:
+    def _factored(self, at: Situation, forward: float) -> PreviewedState[S]:
         """The law inside as it takes over, at the override that runs."""
         share = standing(at) / forward
-        return Factored(
+        return PreviewedState(
             inner=self.law.begin(share),
             share=share,
             axes=resting(share),
@@ -132,7 +134,7 @@ class Previewed(Generic[S]):
         """Logarithm of the force at override 1, N."""
         return log(at.force) - self.plant.exponent * log(ran(at))
 
-    def _factor(self, state: Factored[S], at: Situation) -> float:
+    def _factor(self, state: PreviewedState[S], at: Situation) -> float:
         """Logarithm of K: of those that the neighbours allow, the nearest to before."""
         near = [each for each in (state.expected, at.expected, at.ahead[0]) if each > 0.0]
         measured = self._measured(at)
@@ -140,9 +142,15 @@ class Previewed(Generic[S]):
         return _held(max(min(max(state.factor, low), high), state.factor - GREATEST_FALL))
 
     def _inside(
-        self, state: Factored[S], at: Situation, *, axes: Axes, factor: float, forward: float
+        self,
+        state: PreviewedState[S],
+        at: Situation,
+        *,
+        axes: Axes,
+        factor: float,
+        forward: float,
     ) -> Situation:
-        """What the law inside is shown: the constant plant."""
+        """Situation for the inner law: that of a constant plant."""
         low, high = LEAST_FREEDOM
         return Situation(
             force=exp(factor) * axes.mean**self.plant.exponent,
@@ -153,7 +161,7 @@ class Previewed(Generic[S]):
             ceiling=max(at.ceiling / forward, high),
         )
 
-    def _slowed(self, state: Factored[S], at: Situation, forward: float) -> float:
+    def _slowed(self, state: PreviewedState[S], at: Situation, forward: float) -> float:
         """The feed-forward; with lead where it slows the axes, for too slow does no harm."""
         late = max(1.0, ran(at) / (state.axes.mean * state.forward.mean))
         axes = replace(state.forward, last=state.forward.last * late)

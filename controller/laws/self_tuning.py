@@ -26,7 +26,7 @@ from controller.laws.axes import (
     standing,
     within,
 )
-from controller.laws.load import Load, first_load, learned, learned_load
+from controller.laws.load import LoadEstimate, first_load, learned, learned_load
 
 EXPONENT_BAND = (0.7, 1.2)
 """of p over that of the plant"""
@@ -35,13 +35,13 @@ EXCITATION = 0.03
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Tuned:
-    """What the self-tuning law remembers."""
+class SelfTuningState:
+    """State of the self-tuning law."""
 
     axes: Axes
     way: float
     """ln of the override that the axes ran in the revolution before"""
-    load: Load | None
+    load: LoadEstimate | None
     """None: no force was seen yet"""
 
 
@@ -55,13 +55,13 @@ class SelfTuning:
     noise: float = 0.03
     """of a force, relative standard deviation"""
 
-    def begin(self, override: float) -> Tuned:
+    def begin(self, override: float) -> SelfTuningState:
         """Nothing is known but the plant."""
         axes = resting(override)
-        return Tuned(axes=axes, way=log(axes.last), load=None)
+        return SelfTuningState(axes=axes, way=log(axes.last), load=None)
 
-    def decide(self, state: Tuned, at: Situation) -> tuple[Tuned, float]:
-        """See :class:`~controller.law.Law`."""
+    def decide(self, state: SelfTuningState, at: Situation) -> tuple[SelfTuningState, float]:
+        """See :class:`~controller.law.ControlLaw`."""
         axes = moved(state.axes, standing(at), lag=self.plant.lag)
         way = log(ran(at))
         load = self._learned(state, log(at.force), way)
@@ -69,9 +69,9 @@ class SelfTuning:
         farther = (log(at.set_point) - load.log - load.exponent * way) / load.exponent
         goal = way + min(max(farther, -FARTHEST), FARTHEST)
         override = sent(axes, exp(goal), quickening=quickening(self.plant, self.closing))
-        return Tuned(axes=axes, way=way, load=load), within(override, at)
+        return SelfTuningState(axes=axes, way=way, load=load), within(override, at)
 
-    def _learned(self, state: Tuned, force: float, way: float) -> Load:
+    def _learned(self, state: SelfTuningState, force: float, way: float) -> LoadEstimate:
         """The estimate after one more revolution; the exponent stays within its band."""
         known = {"force": force, "way": way, "noise": self.noise}
         if state.load is None:

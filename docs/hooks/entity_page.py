@@ -6,9 +6,8 @@ from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from pathlib import Path
 
-from docs.hooks.markdown import code, first_line, page, table
-from stepnc_model.express.reader import read_schemas
-from stepnc_model.express.schema import (
+from docs.hooks.express.reader import read_schemas
+from docs.hooks.express.schema import (
     AggregateType,
     AttributeType,
     EntityDefinition,
@@ -16,6 +15,7 @@ from stepnc_model.express.schema import (
     Schema,
     SelectType,
 )
+from docs.hooks.markdown import code, first_line, page, table
 
 SCHEMA = "stepnc_model/schemas/optimisation.exp"
 CLASSES = "stepnc_model/entities/optimisation.py"

@@ -62,7 +62,7 @@ def on_post_build(config: MkDocsConfig) -> None:
 
 
 def makers(docs: Path) -> dict[str, Callable[[], str]]:
-    """What makes a page, by the name that the page has in the site."""
+    """Functions that make a page, by the name of the page in the site."""
     found: dict[str, Callable[[], str]] = {
         "reference/commands.md": command_page,
         "reference/entities.md": partial(entity_page, ROOT),

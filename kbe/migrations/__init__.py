@@ -1,1 +1,1 @@
-"""How the tables of the knowledge base came about."""
+"""Migrations of the tables of the knowledge base."""

@@ -5,11 +5,10 @@ from pathlib import Path
 
 from service.files import require_place, write_atomically
 from service.reading import Tell, silent
-from service.simulation.run import SimulationRequest, waiting_machine
-from simulator.calibration.calibrated import calibrated, notes, priors
-from simulator.calibration.delay import Delay, fitted_delay
-from simulator.calibration.estimates import Calibration
-from simulator.calibration.features import Parameter
+from service.requests.runs import SimulationRequest
+from service.simulation.run import RunFiles, waiting_machine
+from simulator.calibration.calibrated import Delay, calibrated, fitted_delay, notes, priors
+from simulator.calibration.features import Calibration, Parameter
 from simulator.calibration.fit import fitted
 from simulator.calibration.held_out import HeldOut, held_out
 from simulator.calibration.measured_run import TIME, MeasuredRun, read_run, thinned
@@ -33,11 +32,13 @@ MOST_TIME_ERROR = 0.05
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CalibrationRequest:
-    """What the user asks of ``calibrate``."""
+    """Request of ``calibrate``."""
 
     runs: tuple[Path, ...]
     simulation: SimulationRequest
-    """what was run, and on which machine as far as it is known"""
+    """the machine as far as it is known, and how it ran"""
+    files: RunFiles
+    """what was run"""
     output: Path | None = None
 
 
@@ -47,9 +48,9 @@ class CycleTime:
 
     name: str
     measured: float
-    """s"""
+    """Measured, s"""
     simulated: float
-    """s"""
+    """Simulated, s"""
 
     @property
     def error(self) -> float:
@@ -59,13 +60,13 @@ class CycleTime:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CalibrationResult:
-    """What ``calibrate`` found."""
+    """Result of ``calibrate``."""
 
     machine: Machine
     """as calibrated"""
     calibration: Calibration
     delay: Delay
-    """of the main drive"""
+    """Delay of the main drive"""
     held_out: tuple[HeldOut, ...]
     times: tuple[CycleTime, ...]
     findings: tuple[Finding, ...]
@@ -124,12 +125,12 @@ def _require_output(request: CalibrationRequest, output: Path) -> None:
     """Refuse an output that could not be written, or is an input, before the long work."""
     if output.suffix.lower() != ".toml":
         raise WriteError("a machine is written as .toml", path=str(output))
-    asked = request.simulation
-    inputs: list[Path | None] = [*request.runs, asked.file]
+    asked, files = request.simulation, request.files
+    inputs: list[Path | None] = [*request.runs, files.file]
     # A name is one of the library's; what ends in a suffix is a file.
     inputs += [Path(name) for name in (asked.machine, asked.material) if Path(name).suffix]
-    if asked.code is not None:
-        inputs += [asked.code.code, asked.code.tools]
+    if files.code is not None:
+        inputs += [files.code.code, files.code.tools]
     for other in inputs:
         if other is not None:
             require_place(output, apart_from=other)
@@ -139,7 +140,7 @@ def _require_output(request: CalibrationRequest, output: Path) -> None:
 
 def _simulated(request: CalibrationRequest, tell: Tell) -> tuple[Samples, Machine]:
     """The program on the machine as it is."""
-    prepared, virtual = waiting_machine(request.simulation, tell=tell)
+    prepared, virtual = waiting_machine(request.simulation, request.files, tell=tell)
     sampler = Sampler(virtual.machine, rate=RATE)
     episodes = virtual.run(interpret(prepared.blocks, virtual.machine))
     parts = [part for episode in episodes for part in sampler.samples(episode)]

@@ -5,13 +5,12 @@ from pathlib import Path
 
 from service.files import require_place, write_atomically
 from service.reading import Tell, one_of, silent
-from simulator.calibration.frequency_response import read_response
-from simulator.calibration.modal_fit import ModalFit, fitted_modes
+from simulator.calibration.modal_fit import ModalFit, fitted_modes, read_response
 from simulator.errors import CalibrationError
 from simulator.library import load_machine
 from simulator.machine_file import DAMPING, FREQUENCY, MODE_DIAMETER, STIFFNESS
 from simulator.machine_toml import machine_toml
-from simulator.spec import Direction, Machine, VibratingPart, VibrationMode
+from simulator.spec import Machine, ModeDirection, VibratingPart, VibrationMode
 from stepnc_model.errors import Finding, Severity, StepNcError
 from stepnc_model.units import n_um_from_n_mm
 
@@ -21,7 +20,7 @@ MOST_UNEXPLAINED = 0.2
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TapTestRequest:
-    """What the user asks of ``taptest``, in the user's units."""
+    """Request of ``taptest``, in the user's units."""
 
     response: Path
     direction: str
@@ -38,7 +37,7 @@ class TapTestRequest:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TapTestResult:
-    """What ``taptest`` found."""
+    """Result of ``taptest``."""
 
     modes: tuple[VibrationMode, ...]
     fit: ModalFit
@@ -55,7 +54,7 @@ def tap_test(request: TapTestRequest, *, tell: Tell = silent) -> TapTestResult:
     StepNcError
         For everything that is wrong with response, words or output; nothing is written.
     """
-    direction = one_of(Direction, request.direction.lower(), "direction")
+    direction = one_of(ModeDirection, request.direction.lower(), "direction")
     _require_part(request)
     machine = _machine(request)
     path = str(request.response)
@@ -130,7 +129,7 @@ def _require_usual(mode: VibrationMode, path: str) -> None:
 
 
 def _left_of(old: VibrationMode, new: VibrationMode) -> VibrationMode | None:
-    """What stays of an old mode: all, or the direction in which nothing new was measured."""
+    """Old mode without the directions that were measured anew."""
     same = (new.part, new.tool.casefold(), new.tool_diameter) == (
         old.part,
         old.tool.casefold(),
@@ -139,11 +138,11 @@ def _left_of(old: VibrationMode, new: VibrationMode) -> VibrationMode | None:
     left = set(old.direction.value) - set(new.direction.value) if same else set()
     if not same or left == set(old.direction.value):
         return old
-    return replace(old, direction=Direction(left.pop())) if left else None
+    return replace(old, direction=ModeDirection(left.pop())) if left else None
 
 
 def _doubts(fit: ModalFit) -> list[Finding]:
-    """What somebody should know of a fit."""
+    """Findings on a fit."""
     if fit.unexplained <= MOST_UNEXPLAINED:
         return []
     text = (

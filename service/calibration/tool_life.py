@@ -10,7 +10,7 @@ from math import isfinite
 from pathlib import Path
 
 from service.files import open_lines, require_place, write_atomically
-from service.wire import dump
+from service.rendering.records import dump
 from simulator.calibration.tool_life import FittedTaylor, LifePair, fitted_taylor
 from simulator.physics.tool_life import speed_for_life
 from simulator.spec import CuttingMaterial
@@ -30,7 +30,7 @@ USUAL_LIFE = 15.0
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ToolLifeRequest:
-    """What the user asks of ``calibrate --life``."""
+    """Request of ``calibrate --life``."""
 
     pairs: tuple[str, ...] = ()
     """``120:25``, m/min and min"""
@@ -42,7 +42,7 @@ class ToolLifeRequest:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ToolLifeResult:
-    """What the pairs tell."""
+    """Result of ``calibrate --life``."""
 
     cutting_material: CuttingMaterial
     fitted: FittedTaylor

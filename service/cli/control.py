@@ -5,7 +5,7 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from service.cli.machine import add_what_runs, interruptible, what_runs
+from service.cli.machine import add_code, interruptible, run_files
 from service.cli.options import (
     LIMIT_EXCEEDED,
     OK,
@@ -16,7 +16,7 @@ from service.cli.options import (
 )
 
 if TYPE_CHECKING:
-    from service.control.run import ControlRequest
+    from service.requests.runs import ControlRequest
 
 EXAMPLES = """examples:
   stepnc control part.stpnc --machine vmc15 --material c45 --preview
@@ -47,49 +47,34 @@ def add_control_command(commands: Commands) -> None:
         description=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
+    parser.fill = _options
+
+
+def _options(parser: argparse.ArgumentParser) -> None:
+    from service.requests.fields import add_options
+    from service.requests.runs import ControlRequest
+
     parser._negative_number_matcher = re.compile(r"-[.\d]")
     add = parser.add_argument
     add("file", type=Path, nargs="?", metavar="FILE", help="a STEP-NC program (Part 21)")
-    add_what_runs(parser)
-    add("--mode", default="TC", help="TC (default) or QC")
-    add(
-        "--law",
-        default="log-pi",
-        help="log-pi (default), pi, fuzzy, self-tuning, mrac, mpc or none: the program's feed",
-    )
-    add("--preview", action="store_true", help="tell the law what the program knows ahead")
-    add(
-        "--look-ahead",
-        type=int,
-        default=8,
-        metavar="N",
-        help="revolutions that the preview reaches, 1 to 50 (default 8)",
-    )
-    add(
-        "--disturb",
-        action="append",
-        default=[],
-        metavar="WHAT:VALUE[@TIME]",
-        help="see above; repeatable",
-    )
-    add("--seed", type=int, default=0, help="of the instruments' noise (default 0)")
-    add(
-        "--force",
-        type=float,
-        metavar="N",
-        help="set point of the cutting force (default: what the plan's limits allow)",
-    )
+    add_options(parser, ControlRequest)
+    add_code(parser)
     add(
         "--band",
         default="20,120",
         metavar="LOW,HIGH",
-        help="of the override, %% (20,120); the guard goes below where the tool is in danger",
+        help="override band, %% (default 20,120); the guard goes lower to save the tool",
     )
-    add("--sensor", default="dynamometer", help="dynamometer (default), or power of the drive")
     add("-o", "--output", type=Path, metavar="FILE", help="write the run, .parquet or .csv")
     add("--report", type=Path, metavar="HTML", help="write a self-contained page with plots")
     add_knowledge(parser, "keep the outcomes there, take accepted corrections from it")
-    add("--by", type=text, default="", metavar="NAME", help="who records (the login name)")
+    add(
+        "--by",
+        type=text,
+        default="",
+        metavar="NAME",
+        help="author of the outcomes (default: login)",
+    )
     add_json(parser)
     parser.set_defaults(run=_control)
 
@@ -101,44 +86,38 @@ def _control(options: argparse.Namespace) -> int:
     from service.terminal import tell
 
     with interruptible():
-        run = control_recorded(_request(options), tell=tell)
+        run = control_recorded(
+            _request(options),
+            run_files(options, options.file),
+            knowledge=options.kb,
+            by=options.by,
+            tell=tell,
+        )
         if options.report is not None and run.trace is not None:
-            from service.control.report import control_page
+            from service.control.output import control_page
             from service.files import write_atomically
 
             page = control_page(run, run.trace).encode(errors="replace")
             write_atomically(options.report, page)
             tell(f"report: {options.report}")
     if options.json:
-        from service.control.wire import control_json
+        from service.control.output import control_json
         from service.terminal import write_out
 
         write_out(control_json(run))
     else:
-        from service.control.table import print_control
+        from service.control.output import print_control
 
         print_control(run)
     return LIMIT_EXCEEDED if exceeded(run, rows(run)) else OK
 
 
 def _request(options: argparse.Namespace) -> "ControlRequest":
-    from service.control.run import ControlRequest
     from service.numbers import numbers_in
+    from service.requests.fields import from_options
+    from service.requests.runs import ControlRequest
 
     low, high = numbers_in(options.band, "override band", counts=(2,))
-    return ControlRequest(
-        simulation=what_runs(options, options.file),
-        mode=options.mode,
-        law=options.law,
-        has_preview=options.preview,
-        look_ahead=options.look_ahead,
-        disturbances=tuple(options.disturb),
-        seed=options.seed,
-        set_point=options.force,
-        band=(low, high),
-        sensor=options.sensor,
-        output=options.output,
-        report=options.report,
-        knowledge=options.kb,
-        recorded_by=options.by,
+    return from_options(
+        ControlRequest, options, override_low_percent=low, override_high_percent=high
     )

@@ -19,6 +19,7 @@ from service.cli.kbe_verbs import (
     export_command,
     list_corrections_command,
     list_outcomes_command,
+    read_command,
     restore_command,
     review_command,
     show_command,
@@ -64,6 +65,7 @@ def add_knowledge_commands(commands: Commands) -> None:
     _add_decisions(verbs)
     _add_export(verbs)
     _add_write(verbs)
+    _add_read(verbs)
     _add_add(verbs)
     _add_copies(verbs)
 
@@ -116,7 +118,7 @@ def _add_table(verbs: Commands) -> None:
 
 
 def _add_table_options(parser: argparse.ArgumentParser) -> None:
-    """Which table."""
+    """Add the options of an evaluation table."""
     add = parser.add_argument
     add(
         "--by",
@@ -125,7 +127,7 @@ def _add_table_options(parser: argparse.ArgumentParser) -> None:
         help="a row for each feature of each program (default), or for each kind of feature",
     )
     add("--only", choices=ONLY, default="all", help="rows with at least one such side")
-    add("--sort", choices=SORT, default="name", help="what comes first (default: name)")
+    add("--sort", choices=SORT, default="name", help="order of the rows (default: name)")
     add(
         "--summary",
         action="store_true",
@@ -144,14 +146,20 @@ def _add_review(verbs: Commands) -> None:
         action="store_true",
         help="accept proposals that keep the three bounds; the others wait for a person",
     )
-    add("--least-confidence", type=share, default=0.8, metavar="P", help="default 0.8")
-    add("--fewest-outcomes", type=count, default=3, metavar="N", help="default 3")
+    add("--least-confidence", type=share, default=0.8, metavar="P", help="0 to 1 (default 0.8)")
+    add(
+        "--fewest-outcomes",
+        type=count,
+        default=3,
+        metavar="N",
+        help="behind a proposal (default 3)",
+    )
     add(
         "--greatest-change",
         type=share,
         default=0.25,
         metavar="SHARE",
-        help="of the factor in force, 0.25 or 25%% (default)",
+        help="from the factor in force, 0.25 or 25%% (default)",
     )
     _add_by(parser)
     add_filters(parser)
@@ -186,7 +194,7 @@ def _add_decisions(verbs: Commands) -> None:
 
 def _add_by(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "--by", type=text, default="", metavar="NAME", help="who decides (default: the login)"
+        "--by", type=text, default="", metavar="NAME", help="your name (default: the login)"
     )
 
 
@@ -215,6 +223,14 @@ def _add_write(verbs: Commands) -> None:
     add("file", type=Path, metavar="FILE", help="the program that was run")
     add("--run", type=text, default="", dest="of_run", metavar="ID", help="default: its newest")
     add("-o", "--output", type=Path, metavar="FILE", help="default: FILE.recorded.stpnc")
+
+
+def _add_read(verbs: Commands) -> None:
+    what = "list the outcomes and corrections that a program itself holds"
+    parser = verbs.add_parser("read", help=what, description=what)
+    parser.set_defaults(run=read_command)
+    parser.add_argument("file", type=Path, metavar="FILE", help="as `write` wrote it")
+    add_json(parser)
 
 
 def _add_add(verbs: Commands) -> None:

@@ -2,17 +2,20 @@
 
 import argparse
 from datetime import date, datetime, time, timedelta
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from service.cli.options import text
 from stepnc_model.errors import StepNcError
 
 if TYPE_CHECKING:
     from kbe.selection import Selection
+    from service.requests.knowledge import SelectionRequest
+
+S = TypeVar("S", bound="SelectionRequest")
 
 
 def add_place(parser: argparse.ArgumentParser) -> None:
-    """Which knowledge base."""
+    """Add the option that names a knowledge base."""
     parser.add_argument(
         "--kb",
         type=text,
@@ -24,7 +27,7 @@ def add_place(parser: argparse.ArgumentParser) -> None:
 
 
 def add_filters(parser: argparse.ArgumentParser) -> None:
-    """Which outcomes."""
+    """Add the options that select outcomes."""
     group = parser.add_argument_group("outcomes with all of these")
     add = group.add_argument
     for name, what in (
@@ -53,20 +56,18 @@ def add_filters(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def selection_of(options: argparse.Namespace) -> "Selection":
-    """The outcomes that are meant.
+def request_of(kind: "type[S]", options: argparse.Namespace) -> "S":
+    """A request with the outcomes that are meant.
 
     Raises
     ------
     StepNcError
         When no time lies between the two.
     """
-    from kbe.selection import Selection
-
     since, until = options.since, options.until
     if since is not None and until is not None and since >= until:
         raise StepNcError(f"--since {since} is not before --until {until}")
-    return Selection(
+    return kind(
         machine=options.machine,
         material=options.material,
         tool=options.tool,
@@ -76,6 +77,19 @@ def selection_of(options: argparse.Namespace) -> "Selection":
         since=since,
         until=until,
     )
+
+
+def selection_of(options: argparse.Namespace) -> "Selection":
+    """The outcomes that are meant.
+
+    Raises
+    ------
+    StepNcError
+        As :func:`request_of`.
+    """
+    from service.requests.knowledge import SelectionRequest
+
+    return request_of(SelectionRequest, options).selection
 
 
 def moment(word: str) -> datetime:

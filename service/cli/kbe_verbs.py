@@ -1,12 +1,13 @@
-"""What the commands ``stepnc kbe …`` do, once their options are read."""
+"""Commands ``stepnc kbe …``, run with their parsed options."""
 
 import argparse
 import getpass
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from service.cli.kbe_options import selection_of
+from service.cli.kbe_options import request_of, selection_of
 from service.cli.machine import interruptible
 from service.cli.options import OK
 from service.knowledge.place import usual_place
@@ -14,8 +15,8 @@ from stepnc_model.errors import StepNcError
 
 if TYPE_CHECKING:
     from kbe.backup import Content
-    from kbe.ledger import Entry
-    from service.knowledge.evaluated import TableRequest
+    from kbe.ledger import StoredCorrection
+    from service.requests.knowledge import EvaluationRequest
 
 SUFFIXES = {
     ".csv": "csv",
@@ -29,6 +30,7 @@ SUFFIXES = {
 
 def list_outcomes_command(options: argparse.Namespace) -> int:
     """``stepnc kbe list``."""
+    from service.knowledge import output
     from service.knowledge.verbs import newest
     from service.terminal import write_out
 
@@ -37,18 +39,15 @@ def list_outcomes_command(options: argparse.Namespace) -> int:
     if not listing.total:
         _tell_why_empty(place, options)
     if options.json:
-        from service.knowledge.wire import listing_json
-
-        write_out(listing_json(listing))
+        write_out(output.listing_json(listing))
     elif listing.total:
-        from service.knowledge.table import print_listing
-
-        print_listing(listing)
+        output.print_listing(listing)
     return OK
 
 
 def show_command(options: argparse.Namespace) -> int:
     """``stepnc kbe show``."""
+    from service.knowledge import output
     from service.knowledge import verbs as knowledge
     from service.terminal import write_out
 
@@ -56,13 +55,9 @@ def show_command(options: argparse.Namespace) -> int:
     outcomes = knowledge.outcomes_of_run(place, options.id)
     if outcomes:
         if options.json:
-            from service.knowledge.wire import run_json
-
-            write_out(run_json(outcomes))
+            write_out(output.run_json(outcomes))
         else:
-            from service.knowledge.table import print_run
-
-            print_run(outcomes)
+            output.print_run(outcomes)
         return OK
     entries = [each for each in knowledge.corrections(place) if str(each.id) == options.id]
     if not entries:
@@ -76,7 +71,7 @@ def show_command(options: argparse.Namespace) -> int:
 
 def table_command(options: argparse.Namespace) -> int:
     """``stepnc kbe table``."""
-    from service.knowledge.output import put_summary, put_table
+    from service.knowledge.evaluation_output import put_summary, put_table
 
     place, form = usual_place(options.kb), _format(options)
     with interruptible():
@@ -93,15 +88,15 @@ def table_command(options: argparse.Namespace) -> int:
     return _written(options.output)
 
 
-def _request(options: argparse.Namespace) -> "TableRequest":
+def _request(options: argparse.Namespace) -> "EvaluationRequest":
     from kbe.evaluation import Grouping, RowFilter, SortKey
-    from service.knowledge.evaluated import TableRequest
+    from service.requests.knowledge import EvaluationRequest
 
-    return TableRequest(
-        selection=selection_of(options),
+    return replace(
+        request_of(EvaluationRequest, options),
         grouping=Grouping(options.by),
-        keep=RowFilter(options.only.replace("-", " ")),
-        by=SortKey(options.sort.replace("-", " ")),
+        only=RowFilter(options.only.replace("-", " ")),
+        sort=SortKey(options.sort.replace("-", " ")),
     )
 
 
@@ -118,31 +113,27 @@ def _format(options: argparse.Namespace) -> str:
 
 def review_command(options: argparse.Namespace) -> int:
     """``stepnc kbe review``."""
-    from kbe.acceptance import Bounds
-    from service.knowledge.review import ReviewRequest, review
+    from kbe.acceptance import AcceptanceBounds
+    from service.knowledge.review import Acceptance, review
+    from service.knowledge.review_output import print_review, review_json
+    from service.requests.knowledge import ReviewRequest
     from service.terminal import write_out
 
     place = usual_place(options.kb)
-    request = ReviewRequest(
-        selection=selection_of(options),
+    acceptance = Acceptance(
         by=_decider(options) if options.auto_accept else "",
-        is_automatic=options.auto_accept,
-        bounds=Bounds(
+        bounds=AcceptanceBounds(
             least_confidence=options.least_confidence,
             fewest_outcomes=options.fewest_outcomes,
             greatest_change=options.greatest_change,
         ),
     )
-    found = review(place, request)
+    found = review(place, request_of(ReviewRequest, options), acceptance)
     if not found:
         _tell_why_empty(place, options)
     if options.json:
-        from service.knowledge.wire import review_json
-
         write_out(review_json(found))
     elif found:
-        from service.knowledge.review_table import print_review
-
         print_review(found)
     return OK
 
@@ -179,19 +170,18 @@ def list_corrections_command(options: argparse.Namespace) -> int:
     return OK
 
 
-def _show_corrections(entries: "Sequence[Entry]", *, is_json: bool) -> None:
-    from service.knowledge import table as knowledge_table
-    from service.knowledge import wire as knowledge_wire
+def _show_corrections(entries: "Sequence[StoredCorrection]", *, is_json: bool) -> None:
+    from service.knowledge.output import corrections_json, print_corrections
     from service.terminal import write_out
 
     if is_json:
-        write_out(knowledge_wire.corrections_json(entries))
+        write_out(corrections_json(entries))
     else:
-        knowledge_table.print_corrections(entries)
+        print_corrections(entries)
 
 
 def _decider(options: argparse.Namespace) -> str:
-    """Who decides; said, when nobody said it."""
+    """Person who decides; the user's name, with a message, when none is given."""
     from service.terminal import tell
 
     if options.by.strip():
@@ -200,7 +190,7 @@ def _decider(options: argparse.Namespace) -> str:
         name = getpass.getuser()
     except (KeyError, OSError) as error:
         raise StepNcError(
-            "nobody is logged in by a name; say who decides: --by NAME"
+            "no login name found: name the person who decides with --by NAME"
         ) from error
     tell(f"decided by {name}, the login; another: --by NAME")
     return name
@@ -238,6 +228,19 @@ def write_command(options: argparse.Namespace) -> int:
         f"written: {done.place} (outcomes {done.outcomes}, corrections {done.corrections}, "
         f"run {done.run})"
     )
+    return OK
+
+
+def read_command(options: argparse.Namespace) -> int:
+    """``stepnc kbe read``."""
+    from service.knowledge.recorded import print_recorded, recorded_in, recorded_json
+    from service.terminal import write_out
+
+    found = recorded_in(options.file)
+    if options.json:
+        write_out(recorded_json(found))
+    else:
+        print_recorded(found)
     return OK
 
 
@@ -283,15 +286,12 @@ def check_command(options: argparse.Namespace) -> int:
 
 
 def _show_content(content: "Content", *, place: str, is_json: bool) -> None:
+    from service.knowledge.output import content_json, print_content
     from service.terminal import write_out
 
     if is_json:
-        from service.knowledge.wire import content_json
-
         write_out(content_json(content, place=place))
     else:
-        from service.knowledge.table import print_content
-
         print_content(content, place=place)
 
 

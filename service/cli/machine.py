@@ -11,7 +11,11 @@ from typing import TYPE_CHECKING
 from service.cli.options import CONTROLS, LIMIT_EXCEEDED, OK, Commands, add_json
 
 if TYPE_CHECKING:
-    from service.simulation.run import SimulationRequest
+    from service.simulation.run import RunFiles
+
+
+USUAL_RATE = 10.0
+"""samples a second of a file"""
 
 
 def add_machine_commands(commands: Commands) -> None:
@@ -21,38 +25,17 @@ def add_machine_commands(commands: Commands) -> None:
     _add_tap_test(commands)
 
 
-def add_what_runs(parser: argparse.ArgumentParser) -> None:
-    """Machine, material, NC code, tools, stock and control."""
+def add_code(parser: argparse.ArgumentParser) -> None:
+    """NC code, and what it does not say."""
     add = parser.add_argument
-    add("--units", default="iso", help="units of feeds and speeds in the file (default: iso)")
-    add("--machine", default="", help="one of `stepnc machines`, or your own TOML or XML file")
-    add("--material", default="", help="one of `stepnc materials`, or your own TOML file")
     add("--nc", type=Path, metavar="CODE", help="run this NC code instead of the program's own")
-    add("--dialect", default="", metavar="NAME", help=f"of the NC code: {CONTROLS}")
+    add("--dialect", default="", metavar="NAME", help=f"dialect of the NC code: {CONTROLS}")
     add("--tools", type=Path, metavar="TOML", help="tool table, for NC code without a program")
     add(
         "--stock",
         default="",
         metavar="NUMBERS",
         help="stock for NC code without a program: x0,y0,z0,x1,y1,z1 or diameter,z0,z1 in mm",
-    )
-    add(
-        "--control",
-        default="fir",
-        help="how the control runs the path: exact-stop, junction or fir (default)",
-    )
-    add(
-        "--filter-s",
-        default="",
-        metavar="T1,T2",
-        help="times of the fir control in s (default: by the axes' acceleration and jerk)",
-    )
-    add(
-        "--deviation-mm",
-        type=float,
-        default=0.01,
-        metavar="MM",
-        help="of the junction control (default 0.01)",
     )
 
 
@@ -61,6 +44,13 @@ def _add_calibrate(commands: Commands) -> None:
         "calibrate",
         help="fit a machine file to measured runs of a program, or tool life to measured lives",
     )
+    parser.fill = _calibrate_options
+
+
+def _calibrate_options(parser: argparse.ArgumentParser) -> None:
+    from service.requests.fields import add_options
+    from service.requests.runs import RunRequest
+
     parser._negative_number_matcher = re.compile(r"-[.\d]")
     add = parser.add_argument
     add(
@@ -83,9 +73,10 @@ def _add_calibrate(commands: Commands) -> None:
         metavar="CSV",
         help="such pairs in a file with the columns speed_m_min and life_min",
     )
-    add("--edge", default="carbide", help="of the tool lives: hss, carbide (default), ceramic")
+    add("--edge", default="carbide", help="edge material: hss, carbide (default), ceramic")
     add("--program", type=Path, metavar="FILE", help="the STEP-NC program that was run")
-    add_what_runs(parser)
+    add_options(parser, RunRequest)
+    add_code(parser)
     add(
         "-o",
         "--output",
@@ -109,11 +100,15 @@ def _add_tap_test(commands: Commands) -> None:
         help="frequency_hz and real and imaginary part: real_um_n, imag_um_n "
         "(m_n, mm_n, um_n, or m_s2_n of an accelerometer)",
     )
-    add("--direction", required=True, help="of the tap: x, y, z, or xy for a round tool")
+    add(
+        "--direction",
+        required=True,
+        help="direction of the tap: x, y, z, or xy for a round tool",
+    )
     add("--tool", default="", metavar="ID", help="tool that was tapped, as programs name it")
-    add("--tool-diameter-mm", type=float, metavar="MM", help="of the tool that was tapped")
+    add("--tool-diameter-mm", type=float, metavar="MM", help="its diameter, for round tools")
     add("--workpiece", action="store_true", help="the workpiece was tapped")
-    add("--modes", type=int, metavar="N", help="how many (default: by the peaks)")
+    add("--modes", type=int, metavar="N", help="number of modes (default: by peaks)")
     add("--source", default="", help="who measured it, with which holder and overhang")
     add("--machine", default="", help="one of `stepnc machines`, or your own file")
     add("-o", "--output", type=Path, metavar="TOML", help="write the machine with its modes")
@@ -126,36 +121,35 @@ def _add_simulate(commands: Commands) -> None:
         "simulate",
         help="run a program on a virtual machine: time, force, power and energy",
     )
+    parser.fill = _simulate_options
+
+
+def _simulate_options(parser: argparse.ArgumentParser) -> None:
+    from service.requests.fields import add_options
+    from service.requests.runs import SimulationRequest
+
     # Coordinates may be negative: "-3,-3,-40,153,93,2" is no option.
     parser._negative_number_matcher = re.compile(r"-[.\d]")
     add = parser.add_argument
     add("file", type=Path, nargs="?", metavar="FILE", help="a STEP-NC program (Part 21)")
-    add_what_runs(parser)
-    add("--rate", type=float, default=10.0, metavar="HZ", help="samples a second, 1 to 10000")
-    add("--force", default="mean", help="mean of a revolution (default), or tooth by tooth")
-    add("--kc-factor", type=float, default=1.0, metavar="K", help="on k_c, from calibration")
-    add("--runout-um", type=float, default=0.0, metavar="UM", help="of the cutter, for teeth")
-    add("--wear", action="store_true", help="tools wear while they cut (Taylor)")
-    add("--lag", action="store_true", help="the main drive answers late and too far")
-    add("--noise", default="none", help="of the sensors: none (default), normal or uniform")
-    add("--missing", type=float, default=0.0, metavar="P", help="share of missing samples")
-    add("--carbon-g-kwh", type=float, metavar="G", help="grams of CO2 for a kWh (default 480)")
-    add("--seed", type=int, default=0, help="of noise and missing samples (default 0)")
-    add(
-        "--zero",
-        default="",
-        metavar="X,Y,Z",
-        help="place of the program's zero on the axes in mm (default: by the stock)",
-    )
+    add_options(parser, SimulationRequest, usual={"rate_hz": USUAL_RATE})
+    add_code(parser)
+    add("--carbon-g-kwh", type=float, metavar="G", help="grams of CO2 per kWh (default 480)")
     add("-o", "--output", type=Path, metavar="FILE", help="write the run, .parquet or .csv")
     add("--report", type=Path, metavar="HTML", help="write a self-contained page with plots")
     add_json(parser)
     parser.set_defaults(run=_simulate)
 
 
-def what_runs(options: argparse.Namespace, file: Path | None) -> "SimulationRequest":
-    """The request, as far as both commands share it."""
-    from service.simulation.run import SimulationRequest
+def run_files(options: argparse.Namespace, file: Path | None) -> "RunFiles":
+    """Files of a run, as typed.
+
+    Raises
+    ------
+    StepNcError
+        When something is said of NC code that is not named.
+    """
+    from service.simulation.run import RunFiles
     from service.simulation.setup import CodeRequest
     from stepnc_model.errors import StepNcError
 
@@ -169,47 +163,29 @@ def what_runs(options: argparse.Namespace, file: Path | None) -> "SimulationRequ
             tools=options.tools,
             stock=options.stock,
         )
-    return SimulationRequest(
+    return RunFiles(
         file=file,
         code=code,
-        machine=options.machine,
-        material=options.material,
-        units=options.units,
-        control=options.control,
-        filter_s=options.filter_s,
-        deviation=options.deviation_mm,
+        output=options.output,
+        report=getattr(options, "report", None),
     )
 
 
 def _simulate(options: argparse.Namespace) -> int:
     """``stepnc simulate``."""
-    from dataclasses import replace
-
+    from service.requests.fields import from_options
+    from service.requests.runs import SimulationRequest
     from service.simulation.carbon import WORLD, stated
     from service.simulation.run import simulate
     from service.terminal import tell
 
     carbon = WORLD if options.carbon_g_kwh is None else stated(options.carbon_g_kwh)
-    request = replace(
-        what_runs(options, options.file),
-        rate=options.rate,
-        zero=options.zero,
-        noise=options.noise,
-        missing=options.missing,
-        has_lag=options.lag,
-        has_wear=options.wear,
-        force=options.force,
-        kc_factor=options.kc_factor,
-        runout_um=options.runout_um,
-        seed=options.seed,
-        output=options.output,
-        report=options.report,
-    )
+    request = from_options(SimulationRequest, options, rate_hz=USUAL_RATE)
     with interruptible():
-        simulation = simulate(request, tell=tell)
+        simulation = simulate(request, run_files(options, options.file), tell=tell)
     if options.report is not None and simulation.trace is not None:
         from service.files import write_atomically
-        from service.simulation.report import simulation_page
+        from service.simulation.output import simulation_page
 
         page = simulation_page(
             simulation, simulation.trace, material=simulation.material, carbon=carbon
@@ -217,12 +193,12 @@ def _simulate(options: argparse.Namespace) -> int:
         write_atomically(options.report, page.encode())
         tell(f"report: {options.report}")
     if options.json:
-        from service.simulation.wire import simulation_json
+        from service.simulation.output import simulation_json
         from service.terminal import write_out
 
         write_out(simulation_json(simulation, carbon=carbon))
     else:
-        from service.simulation.table import print_simulation
+        from service.simulation.output import print_simulation
 
         print_simulation(simulation, carbon=carbon)
     return LIMIT_EXCEEDED if simulation.whole.overload_time > 0.0 else OK
@@ -234,23 +210,29 @@ def _calibrate(options: argparse.Namespace) -> int:
         return _calibrate_tool_life(options)
     if not options.runs:
         options.refuse("the following arguments are required: RUN.csv, or --life")
+    from dataclasses import replace
+
     from service.calibration.run import CalibrationRequest, calibrate
+    from service.requests.fields import from_options
+    from service.requests.runs import SimulationRequest
     from service.terminal import tell
 
+    files = replace(run_files(options, options.program), output=None)
     request = CalibrationRequest(
         runs=tuple(options.runs),
-        simulation=what_runs(options, options.program),
+        simulation=from_options(SimulationRequest, options),
+        files=files,
         output=options.output,
     )
     with interruptible():
         result = calibrate(request, tell=tell)
     if options.json:
-        from service.calibration.wire import calibration_json
+        from service.calibration.output import calibration_json
         from service.terminal import write_out
 
         write_out(calibration_json(result))
     else:
-        from service.calibration.table import print_calibration
+        from service.calibration.output import print_calibration
 
         print_calibration(result)
     return OK
@@ -285,7 +267,7 @@ def _calibrate_tool_life(options: argparse.Namespace) -> int:
 
 def _tap_test(options: argparse.Namespace) -> int:
     """``stepnc taptest``."""
-    from service.calibration.tap_table import print_tap_test, tap_test_json
+    from service.calibration.tap_output import print_tap_test, tap_test_json
     from service.calibration.tap_test import TapTestRequest, tap_test
     from service.terminal import tell, write_out
 

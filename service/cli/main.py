@@ -16,11 +16,11 @@ from service.cli.kbe import add_knowledge_commands
 from service.cli.machine import add_machine_commands
 from service.cli.options import (
     BAD_INPUT,
-    CONTROLS,
     INFEASIBLE,
     INTERRUPTED,
     LIMIT_EXCEEDED,
     OK,
+    CommandParser,
     Commands,
     add_file,
     add_json,
@@ -42,6 +42,14 @@ Optimise the feeds of a STEP-NC program and write them back as STEP-NC."""
 
 def parser() -> argparse.ArgumentParser:
     """All words that ``stepnc`` takes."""
+    top, commands = _commands()
+    for each in commands.choices.values():
+        each.complete()
+    return top
+
+
+def _commands() -> tuple[argparse.ArgumentParser, Commands]:
+    """The parser, whose commands have no options before they are used."""
     top = argparse.ArgumentParser(
         prog="stepnc",
         description=EXAMPLES,
@@ -52,14 +60,14 @@ def parser() -> argparse.ArgumentParser:
         choices=("bash", "zsh", "tcsh"),
         help="print a completion script for a shell",
     )
-    commands = top.add_subparsers(dest="command", metavar="COMMAND")
+    commands = top.add_subparsers(dest="command", metavar="COMMAND", parser_class=CommandParser)
     optimise = commands.add_parser(
         "optimise",
         help="optimise the feeds of a program and write them back",
         description=EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    add_optimise_options(optimise)
+    optimise.fill = add_optimise_options
     _add_check(commands)
     _add_convert(commands)
     add_path_commands(commands)
@@ -72,19 +80,19 @@ def parser() -> argparse.ArgumentParser:
         listing.add_argument("name", nargs="?", default="", help="show this one in full")
         add_json(listing)
         listing.set_defaults(run=_show_library)
-    return top
+    return top, commands
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run ``stepnc``."""
-    top = parser()
+    top, _ = _commands()
     options = top.parse_args(arguments)
     if options.print_completion:
         import shtab
 
         from service.terminal import write_out
 
-        write_out(shtab.complete(top, shell=options.print_completion))
+        write_out(shtab.complete(parser(), shell=options.print_completion))
     elif options.command is None:
         top.print_help()
         sys.exit(2)
@@ -104,56 +112,15 @@ def optimise_main(arguments: Sequence[str] | None = None) -> None:
 
 
 def add_optimise_options(parser: argparse.ArgumentParser) -> None:
-    """Options of ``optimise``."""
+    """Options of ``optimise``: those of its request, and its files."""
+    from service.requests.advice import AdviceRequest
+    from service.requests.fields import add_options
+
     add = parser.add_argument
-    add_file(parser)
-    add(
-        "--mode",
-        default="TC",
-        help="TC least time (default), QC fastest feed that keeps the roughness, EC energy",
-    )
-    add("--machine", default="", help="one of `stepnc machines`, or your own TOML or XML file")
-    add("--material", default="", help="one of `stepnc materials`, or your own TOML file")
-    add(
-        "--roughness",
-        type=float,
-        metavar="UM",
-        help="Ra in µm that finished surfaces must keep",
-    )
-    add(
-        "--free",
-        default="feed,depth",
-        metavar="WORDS",
-        help="what may change, of feed,depth,speed (default: feed,depth)",
-    )
-    add(
-        "--profile",
-        default="optimisation",
-        help="how records are written: optimisation (default) or standard",
-    )
+    add("file", type=Path, metavar="FILE", help="a STEP-NC program (Part 21)")
+    add_options(parser, AdviceRequest)
     add("-o", "--output", type=Path, metavar="FILE", help="default: FILE.optimised.stpnc")
     add("--in-place", action="store_true", help="overwrite the input file")
-    add(
-        "--workingstep",
-        action="append",
-        default=[],
-        metavar="ID",
-        help="only this one, by its id or #instance; repeatable",
-    )
-    add("--pareto", action="store_true", help="also the front of time, roughness and energy")
-    add(
-        "--tool-change-s",
-        type=float,
-        default=0.0,
-        metavar="S",
-        help="seconds to change a worn tool: tool life then counts",
-    )
-    add(
-        "--nc",
-        default="",
-        metavar="CONTROL",
-        help=f"also NC code with the advised feeds, for {CONTROLS}",
-    )
     add(
         "--holding",
         type=Path,
@@ -166,42 +133,11 @@ def add_optimise_options(parser: argparse.ArgumentParser) -> None:
         metavar="TOML",
         help="tool table that says which of the program's tools cut over centre or have wipers",
     )
-    add(
-        "--allow-plunge",
-        action="store_true",
-        help="let tools that do not cut over centre go straight down into the solid; exit 5 "
-        "without",
-    )
-    _add_learned(parser)
-    add(
-        "--confirm",
-        action="store_true",
-        help="run the advised program on the virtual machine and print what it finds beside "
-        "what was promised; exit 5 where a bound is passed",
-    )
-    add(
-        "--stock",
-        default="",
-        metavar="NUMBERS",
-        help="raw part, where the file draws none: x0,y0,z0,x1,y1,z1 or diameter,z0,z1 in mm",
-    )
+    add_knowledge(parser, "take accepted corrections of k_c from it")
     add("--dry-run", action="store_true", help="write no STEP-NC file")
     add("--report", type=Path, metavar="HTML", help="write a self-contained page with plots")
     add_json(parser)
     parser.set_defaults(run=_optimise)
-
-
-def _add_learned(parser: argparse.ArgumentParser) -> None:
-    """What a plan takes from the knowledge base."""
-    add_knowledge(parser, "take accepted corrections of k_c from it")
-    parser.add_argument(
-        "--safety",
-        type=float,
-        default=0.9,
-        metavar="Q",
-        help="quantile of k_c, by its spread in catalogues or as learned, at which loads keep "
-        "their bounds: 0.5 (nominal) to 0.999 (default 0.9)",
-    )
 
 
 def _add_check(commands: Commands) -> None:
@@ -260,43 +196,31 @@ def _exit_code(error: Exception) -> int:
 def _optimise(options: argparse.Namespace) -> int:
     """``optimise``."""
     from service import usecases
+    from service.requests.advice import AdviceRequest
+    from service.requests.fields import from_options
     from service.terminal import tell, write_out
 
     outcome = usecases.optimise(
-        usecases.Request(
+        from_options(AdviceRequest, options),
+        usecases.AdviceFiles(
             file=options.file,
-            mode=options.mode,
-            machine=options.machine,
-            material=options.material,
-            units=options.units,
-            roughness_um=options.roughness,
-            free=options.free,
-            profile=options.profile,
             output=options.output,
             in_place=options.in_place,
-            workingsteps=tuple(options.workingstep),
-            pareto=options.pareto,
-            tool_change=options.tool_change_s,
             dry_run=options.dry_run,
             report=options.report,
-            control=options.nc,
-            knowledge=options.kb,
-            safety=options.safety,
-            confirm=options.confirm,
             holding=options.holding,
             tools=options.tools,
-            allow_plunge=options.allow_plunge,
-            stock=options.stock,
+            knowledge=options.kb,
         ),
         tell=tell,
     )
     confirmation = outcome.confirmation
     if options.json:
-        from service.wire import plan_json
+        from service.plan_output import plan_json
 
         write_out(plan_json(outcome.plan, confirmation))
     else:
-        from service.tables import print_plan
+        from service.plan_output import print_plan
 
         print_plan(outcome.plan, confirmation)
     if outcome.plan.is_infeasible:
@@ -312,11 +236,11 @@ def _check(options: argparse.Namespace) -> int:
 
     contents = check(options.file, units=options.units)
     if options.json:
-        from service.wire import contents_json
+        from service.contents_output import contents_json
 
         write_out(contents_json(contents))
     else:
-        from service.tables import print_contents
+        from service.contents_output import print_contents
 
         print_contents(contents)
     return OK if contents.is_usable else BAD_INPUT
@@ -325,16 +249,19 @@ def _check(options: argparse.Namespace) -> int:
 def _convert(options: argparse.Namespace) -> int:
     """``stepnc convert``."""
     from service import usecases
+    from service.requests.fields import member_of
     from service.terminal import tell
+    from stepnc_model.file_profile import FileProfile
 
-    usecases.convert(options.file, profile=options.profile, output=options.output)
-    tell(f"{options.output}: records in profile '{options.profile}'")
+    profile = member_of(FileProfile, options.profile, "profile")
+    usecases.convert(options.file, profile=profile, output=options.output)
+    tell(f"{options.output}: records in profile '{profile.value}'")
     return OK
 
 
 def _show_library(options: argparse.Namespace) -> int:
     """``stepnc machines`` and ``stepnc materials``."""
-    from service import tables, wire
+    from service import library_output
     from service.chosen import library_entries, library_entry
     from service.terminal import write_out
 
@@ -342,12 +269,12 @@ def _show_library(options: argparse.Namespace) -> int:
     if name:
         entry = library_entry(kind, name)
         if options.json:
-            write_out(wire.entry_json(entry))
+            write_out(library_output.entry_json(entry))
         else:
-            tables.print_entry(entry)
+            library_output.print_entry(entry)
         return OK
     entries = library_entries(kind)
-    write_out(wire.entries_json(entries)) if options.json else tables.print_entries(
-        kind, entries
-    )
+    write_out(
+        library_output.entries_json(entries)
+    ) if options.json else library_output.print_entries(kind, entries)
     return OK

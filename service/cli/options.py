@@ -1,17 +1,36 @@
-"""What the commands of the command line share: exit codes and options. Imports nothing slow."""
+"""Exit codes and options that several commands share. Imports nothing slow."""
 
 import argparse
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 OK, BAD_INPUT, INFEASIBLE, LIMIT_EXCEEDED, INTERRUPTED = 0, 3, 4, 5, 130
 
 CONTROLS = "linuxcnc, fanuc, haas, sinumerik, heidenhain or canonical"
 
 if TYPE_CHECKING:
-    Commands = argparse._SubParsersAction[argparse.ArgumentParser]
+    Commands = argparse._SubParsersAction["CommandParser"]
 else:
     Commands = object
+
+
+class CommandParser(argparse.ArgumentParser):
+    """Parser of one command; its options are added at its first use, so that others start."""
+
+    fill: Callable[["CommandParser"], None] | None = None
+    """adds the options"""
+
+    def complete(self) -> None:
+        """Add the options, once."""
+        fill, self.fill = self.fill, None
+        if fill is not None:
+            fill(self)
+
+    def parse_known_args(self, *args: Any, **words: Any) -> Any:
+        """See the base class."""
+        self.complete()
+        return super().parse_known_args(*args, **words)
 
 
 def add_file(parser: argparse.ArgumentParser) -> None:

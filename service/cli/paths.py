@@ -75,11 +75,11 @@ def _toolpath(options: argparse.Namespace) -> int:
         toolpaths.plot(paths, options.file, options.plot)
         tell(f"picture: {options.plot}")
     if options.json:
-        from service.paths.wire import paths_json
+        from service.paths.output import paths_json
 
         write_out(paths_json(paths))
     else:
-        from service.paths.table import print_paths
+        from service.paths.output import print_paths
 
         print_paths(paths)
     return BAD_INPUT if paths.faults else OK

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from service.cli.options import OK, Commands, text
 
 if TYPE_CHECKING:
-    from service.depot.folder import Depot
+    from service.storage.folder import DataFolder
 
 VARIABLE = "STEPNC_DATA"
 """environment variable that names the data folder"""
@@ -57,9 +57,9 @@ def add_service_commands(commands: Commands) -> None:
         metavar="HOST",
         help="a name under which clients know this computer; repeatable",
     )
-    add("--keys", action="store_true", help="ask for keys on loopback too")
+    add("--keys", action="store_true", help="require keys on loopback too")
     add("--tls-cert", type=Path, metavar="FILE", help="certificate: serve https")
-    add("--tls-key", type=Path, metavar="FILE", help="its private key")
+    add("--tls-key", type=Path, metavar="FILE", help="private key of the certificate")
     add(
         "--upload-mb",
         type=int,
@@ -71,9 +71,9 @@ def add_service_commands(commands: Commands) -> None:
         "--rate",
         type=float,
         metavar="R",
-        help="requests a second of one client (default: 50, without bound on loopback)",
+        help="requests per second and client (default: 50, no limit on loopback)",
     )
-    add("--log-level", choices=LEVELS, default="info", help="of the JSON log on stderr")
+    add("--log-level", choices=LEVELS, default="info", help="level of the JSON log on stderr")
     parser.set_defaults(run=_serve)
     _add_keys(commands)
 
@@ -83,7 +83,7 @@ def _add_keys(commands: Commands) -> None:
         "keys", help="keys that open the service: create, list, revoke"
     )
     verbs = parser.add_subparsers(dest="verb", metavar="VERB", required=True)
-    create = verbs.add_parser("create", help="a new key; it is shown this once")
+    create = verbs.add_parser("create", help="create a key; it is shown only once")
     create.add_argument("--for", dest="who", type=text, required=True, metavar="NAME")
     create.add_argument(
         "--role",
@@ -92,8 +92,8 @@ def _add_keys(commands: Commands) -> None:
         default=[],
         help="viewer looks, planner plans, operator runs; repeatable (default: viewer)",
     )
-    listing = verbs.add_parser("list", help="all keys, without their secrets")
-    revoke = verbs.add_parser("revoke", help="make a key useless")
+    listing = verbs.add_parser("list", help="list the keys, without their secrets")
+    revoke = verbs.add_parser("revoke", help="revoke a key")
     revoke.add_argument("id", help="as listed")
     for verb, run in ((create, _create), (listing, _list), (revoke, _revoke)):
         _add_data(verb)
@@ -111,7 +111,7 @@ def _add_data(parser: argparse.ArgumentParser) -> None:
 
 
 def _serve(options: argparse.Namespace) -> int:
-    from service.rest.serve import Start, serve
+    from service.rest.serve import ServerOptions, serve
     from service.rest.settings import MIB, Settings
 
     _require(options)
@@ -129,7 +129,7 @@ def _serve(options: argparse.Namespace) -> int:
         level=options.log_level,
     )
     serve(
-        Start(
+        ServerOptions(
             settings=settings,
             workers=options.workers,
             jobs=options.jobs,
@@ -165,46 +165,49 @@ def _data(options: argparse.Namespace) -> Path:
     return Path(named) if named else usual_file().with_name("service")
 
 
-def _depot(options: argparse.Namespace, *, is_made: bool = False) -> "Depot":
+def _data_folder(options: argparse.Namespace, *, is_made: bool = False) -> "DataFolder":
     """The data folder; but for the first key it is there already."""
-    from service.depot.folder import DATABASE, open_depot
+    from service.storage.folder import DATABASE, open_data_folder
     from stepnc_model.errors import StepNcError
 
     folder = _data(options)
     if not is_made and not (folder / DATABASE).is_file():
         raise StepNcError(f"{folder}: no data folder of a service; --data names another")
-    return open_depot(folder)
+    return open_data_folder(folder)
 
 
 def _create(options: argparse.Namespace) -> int:
-    from service.depot import keys
-    from service.depot.keys import Role
+    from service.storage import keys
+    from service.storage.keys import Role
     from service.terminal import tell, write_out
     from stepnc_model.errors import StepNcError
 
     if not options.who.strip():
         raise StepNcError("--for is empty: say whose key it is")
     roles = frozenset(Role(word) for word in options.role)
-    write_out(keys.create(_depot(options, is_made=True), name=options.who, roles=roles))
+    write_out(keys.create(_data_folder(options, is_made=True), name=options.who, roles=roles))
     tell("keep it: it is not shown again. Send it as  Authorization: Bearer …")
     return OK
 
 
 def _list(options: argparse.Namespace) -> int:
-    from service.depot import keys
-    from service.tables import print_table
+    from service.rendering.columns import Column
+    from service.rendering.text import print_table
+    from service.storage import keys
 
-    rows = [
-        (
-            each.id,
-            each.name,
-            ", ".join(sorted(each.roles)),
-            _day(each.created),
-            "valid" if each.revoked is None else f"revoked {_day(each.revoked)}",
-        )
-        for each in keys.listed(_depot(options))
-    ]
-    print_table(("id", "for", "roles", "created", "state"), rows)
+    columns: tuple[Column[keys.Key], ...] = (
+        Column(heading="id", value=lambda key: key.id),
+        Column(heading="for", value=lambda key: key.name),
+        Column(heading="roles", value=lambda key: sorted(key.roles)),
+        Column(heading="created", value=lambda key: _day(key.created)),
+        Column(
+            heading="state",
+            value=lambda key: (
+                "valid" if key.revoked is None else f"revoked {_day(key.revoked)}"
+            ),
+        ),
+    )
+    print_table(columns, keys.listed(_data_folder(options)))
     return OK
 
 
@@ -215,9 +218,9 @@ def _day(seconds: float) -> str:
 
 
 def _revoke(options: argparse.Namespace) -> int:
-    from service.depot import keys
+    from service.storage import keys
     from service.terminal import tell
 
-    keys.revoke(_depot(options), options.id)
+    keys.revoke(_data_folder(options), options.id)
     tell(f"revoked: {options.id}")
     return OK

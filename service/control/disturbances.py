@@ -1,4 +1,4 @@
-"""What ``--disturb`` says: ``depth:+50%@12s``, one thing a word.
+"""Parser of ``--disturb``: ``depth:+50%@12s``, one disturbance a word.
 
 =================  =====================================================================
 word               meaning
@@ -29,8 +29,8 @@ from math import isfinite
 from typing import Any
 
 from controller.orders import Criterion, CriterionTo, MotorPowerTo, Order, SwitchTo
-from simulator.plant.controlled import Bench
-from simulator.plant.hidden import Change, Changed, Hidden
+from simulator.plant.controlled import Instrumentation
+from simulator.plant.hidden import HiddenChange, HiddenQuantity, HiddenTruth
 from stepnc_model.errors import StepNcError
 
 WORD = re.compile(r"(?P<what>[a-z]+):(?P<value>[^@]*)(?:@(?P<time>[^@]*))?")
@@ -46,7 +46,7 @@ MOST_TEETH = 100.0
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TimedOrder:
-    """What the operator does, and when."""
+    """Order of the operator at a time."""
 
     time: float
     """s of the run"""
@@ -57,8 +57,8 @@ class TimedOrder:
 class Disturbances:
     """All that the plan does not know."""
 
-    hidden: Hidden = field(default_factory=Hidden)
-    bench: Bench = field(default_factory=Bench)
+    hidden: HiddenTruth = field(default_factory=HiddenTruth)
+    bench: Instrumentation = field(default_factory=Instrumentation)
     orders: tuple[TimedOrder, ...] = ()
 
 
@@ -70,7 +70,7 @@ class _Word:
 
 
 def disturbances(words: Iterable[str], *, hardness: Callable[[str], float]) -> Disturbances:
-    """What the words say.
+    """Disturbances and orders of all words.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def disturbances(words: Iterable[str], *, hardness: Callable[[str], float]) -> D
 
 
 def time_of(word: str) -> float | None:
-    """When a word's disturbance comes, s; None: it holds from the start.
+    """Time of a word's disturbance, s; None: it holds from the start.
 
     Raises
     ------
@@ -111,10 +111,12 @@ def _with(found: Disturbances, text: str, hardness: Callable[[str], float]) -> D
         order = TimedOrder(time=_time(word), order=_ORDERS[what](word))
         return replace(found, orders=(*found.orders, order))
     if what == "material":
-        change = Change(time=_time(word), what=Changed.HARDNESS, value=hardness(word.value))
+        change = HiddenChange(
+            time=_time(word), what=HiddenQuantity.HARDNESS, value=hardness(word.value)
+        )
     elif what in _CHANGES:
         kind, value = _CHANGES[what]
-        change = Change(time=_time(word), what=kind, value=value(word))
+        change = HiddenChange(time=_time(word), what=kind, value=value(word))
     else:
         known = ", ".join(sorted({*_FROM_START, *_ORDERS, *_CHANGES, "material"}))
         raise StepNcError(f"disturbance '{text}': '{what}' is not one of {known}")
@@ -241,12 +243,15 @@ _FROM_START: dict[str, Callable[[Disturbances, _Word], Disturbances]] = {
     "drift": _instrument("drift", lambda word: _within(word, {"N/s": 1.0}, -1e3, 1e3)),
     "missing": _instrument("missing", _share),
 }
-_CHANGES: dict[str, tuple[Changed, Callable[[_Word], float]]] = {
-    "depth": (Changed.DEPTH, _factor),
-    "hardness": (Changed.HARDNESS, _factor),
-    "tooth": (Changed.TOOTH, _tooth),
-    "line": (Changed.LINE, _line),
-    "silence": (Changed.SILENCE, lambda word: _within(word, {"s": 1.0, "ms": 1e-3}, 1e-3, 1e4)),
+_CHANGES: dict[str, tuple[HiddenQuantity, Callable[[_Word], float]]] = {
+    "depth": (HiddenQuantity.DEPTH, _factor),
+    "hardness": (HiddenQuantity.HARDNESS, _factor),
+    "tooth": (HiddenQuantity.TOOTH, _tooth),
+    "line": (HiddenQuantity.LINE, _line),
+    "silence": (
+        HiddenQuantity.SILENCE,
+        lambda word: _within(word, {"s": 1.0, "ms": 1e-3}, 1e-3, 1e4),
+    ),
 }
 _ORDERS: dict[str, Callable[[_Word], Order]] = {
     "power": _power,

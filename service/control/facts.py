@@ -1,4 +1,4 @@
-"""What table, page and JSON of a run under control have in common. Units mm, s, N."""
+"""Figures of a run under control for table, page and JSON. Units mm, s, N."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from math import exp, isfinite
 
 from controller.orders import EventKind
-from controller.record import OVER, Record
+from controller.record import EXCESS_RATIO, RunRecord
 from optimiser.advice import Advice
 from service.control.disturbances import time_of
 from service.control.holding import ends_of
@@ -27,7 +27,7 @@ MOST_REASONS = 3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Row:
+class ControlRow:
     """One workingstep, what stands before them all, or the whole run."""
 
     id: str | None
@@ -36,20 +36,20 @@ class Row:
     """s of the run"""
     planned: float
     """s at an override of 1, of what was run of it"""
-    record: Record
+    record: RunRecord
     holds: int = 0
     blind: float = 0.0
     """s at feed without a force"""
     bound: str = ""
     """what the set point follows from; empty: there is none"""
     inhibition: str = ""
-    """why nobody might touch the feed"""
+    """why the feed was locked"""
     shares: tuple[tuple[str, float], ...] = ()
     """what held the override, and for which share of the time with chips"""
 
     @property
     def name(self) -> str:
-        """What a table calls it."""
+        """Name of the row in a table."""
         return "outside workingsteps" if self.id is None else self.id
 
     @property
@@ -80,7 +80,7 @@ class Row:
 
     @property
     def why(self) -> str:
-        """What held the override, in a sentence."""
+        """Reasons that held the override, in a sentence."""
         if self.inhibition:
             return f"feed left as it is: {self.inhibition}"
         if not self.shares:
@@ -94,7 +94,7 @@ class Row:
         return f"{override}, held by {words} of the cut"
 
 
-def rows(run: ControlRun) -> tuple[Row, ...]:
+def rows(run: ControlRun) -> tuple[ControlRow, ...]:
     """The run's workingsteps in their order; what is around them if it takes time."""
     found, left = [], run.progress
     for advice, record in run.steps:
@@ -105,31 +105,33 @@ def rows(run: ControlRun) -> tuple[Row, ...]:
     return tuple(found)
 
 
-def _row(run: ControlRun, advice: Advice | None, record: Record, planned: float) -> Row:
+def _row(
+    run: ControlRun, advice: Advice | None, record: RunRecord, planned: float
+) -> ControlRow:
     held = run.held[record.workingstep]
     ends = None if advice is None else ends_of(advice)
-    return Row(
+    return ControlRow(
         id=_id(advice, record),
         begin=held.begin,
         planned=planned,
         record=record,
         holds=held.holds,
         blind=held.blind,
-        bound="" if ends is None else ends.force_bound(run.aims),
+        bound="" if ends is None else ends.force_bound(run.settings),
         inhibition="" if ends is None else ends.reference.inhibition,
         shares=held.shares,
     )
 
 
-def _id(advice: Advice | None, record: Record) -> str | None:
+def _id(advice: Advice | None, record: RunRecord) -> str | None:
     if advice is not None:
         return advice.workingstep.id
     return f"workingstep {record.workingstep}" if record.workingstep else None
 
 
-def whole(run: ControlRun) -> Row:
+def whole(run: ControlRun) -> ControlRow:
     """All of it, without a factor on k_c: each tool has its own."""
-    total = Record(workingstep=0)
+    total = RunRecord(workingstep=0)
     for _, record in run.steps:
         for name in _ADDED:
             setattr(total, name, getattr(total, name) + getattr(record, name))
@@ -137,8 +139,8 @@ def whole(run: ControlRun) -> Row:
         total.least = min(total.least, record.least)
         total.greatest = max(total.greatest, record.greatest)
     held = run.held.values()
-    return Row(
-        id=None,
+    return ControlRow(
+        id="total",
         begin=0.0,
         planned=run.progress,
         record=total,
@@ -152,7 +154,7 @@ _ADDED = (
 )  # fmt: skip
 
 
-def exceeded(run: ControlRun, found: Sequence[Row]) -> tuple[str, ...]:
+def exceeded(run: ControlRun, found: Sequence[ControlRow]) -> tuple[str, ...]:
     """A sentence for each thing that makes the run a failure; none: it is good."""
     ends = {EventKind.STOP: "stopped", EventKind.LOST: "lost"}
     stops = [event for event in run.events if event.kind in ends]
@@ -160,7 +162,7 @@ def exceeded(run: ControlRun, found: Sequence[Row]) -> tuple[str, ...]:
         *(f"{ends[event.kind]} at {event.time:.2f} s: {event.text}" for event in stops),
         *(
             f"{row.name}: {row.record.over_time:.3g} s of {row.record.cutting_time:.3g} s with "
-            f"chips above {OVER:g} times the set point of {row.record.set_point:.4g} N"
+            f"chips above {EXCESS_RATIO:g} times the set point of {row.record.set_point:.4g} N"
             for row in found
             if row.has_stayed_over
         ),
@@ -174,7 +176,7 @@ def exceeded(run: ControlRun, found: Sequence[Row]) -> tuple[str, ...]:
 
 
 def event_counts(run: ControlRun) -> str:
-    """How often which event happened, but for the workingsteps' beginnings."""
+    """Number of events by kind, without the beginnings of workingsteps."""
     counts: Counter[EventKind] = Counter(
         event.kind for event in run.events if event.kind is not EventKind.WORKINGSTEP
     )
@@ -200,7 +202,7 @@ def law_words(run: ControlRun) -> str:
     """The law and what it knew."""
     if not run.has_preview:
         return run.law.value
-    return f"{run.law.value} with preview of {run.aims.look_ahead} revolutions"
+    return f"{run.law.value} with preview of {run.settings.look_ahead} revolutions"
 
 
 def mode_words(run: ControlRun) -> str:

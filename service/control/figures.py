@@ -16,12 +16,12 @@ from html import escape
 import numpy as np
 import plotly.graph_objects as go
 
-from controller.orders import Event, EventKind
-from service.buckets import Trace
+from controller.orders import EventKind, LoopEvent
+from service.buckets import BucketedRun
 from service.control.disturbances import time_of
-from service.control.facts import Row, disturbed
+from service.control.facts import ControlRow, disturbed
 from service.control.run import ControlRun
-from service.control.trace import Signal
+from service.control.trace import ControlSignal
 from service.panels import (
     BLUE,
     DIM,
@@ -32,7 +32,7 @@ from service.panels import (
     RED,
     SKY,
     Panels,
-    Stretch,
+    TimeSpan,
     key,
     line,
 )
@@ -63,15 +63,17 @@ FAR = 1.5
 """times the greatest force from which on a set point leaves the panel"""
 
 
-def control_figure(run: ControlRun, found: Sequence[Row], trace: Trace) -> go.Figure:
+def control_figure(
+    run: ControlRun, found: Sequence[ControlRow], trace: BucketedRun
+) -> go.Figure:
     """Workingsteps, events, feed, force, removal rate, override and more against time.
 
     Parameters
     ----------
     run : ControlRun
-    found : sequence of Row
+    found : sequence of ControlRow
         The run's workingsteps.
-    trace : Trace
+    trace : BucketedRun
         Of the same run.
 
     Returns
@@ -79,7 +81,7 @@ def control_figure(run: ControlRun, found: Sequence[Row], trace: Trace) -> go.Fi
     plotly.graph_objects.Figure
     """
     stretches = [
-        Stretch(name=row.name, begin=row.begin, duration=row.record.time) for row in found
+        TimeSpan(name=row.name, begin=row.begin, duration=row.record.time) for row in found
     ]
     panels = Panels(trace)
     panels.strip(stretches)
@@ -87,15 +89,15 @@ def control_figure(run: ControlRun, found: Sequence[Row], trace: Trace) -> go.Fi
     _feed(panels, trace)
     _force(panels, trace)
     panels.begin("<b>Removal rate</b>, cm³/min", height=130)
-    panels.peaks("cm³/min", GREEN, Signal.REMOVAL_RATE, scale=0.06)
+    panels.peaks("cm³/min", GREEN, ControlSignal.REMOVAL_RATE, scale=0.06)
     _override(panels, run)
     _ratio(panels, trace)
     _teeth(panels)
     panels.begin("<b>Spindle power</b>, kW", height=110)
-    panels.peaks("kW", BLUE, Signal.SPINDLE_POWER_TRUE, scale=1e-3)
-    if _greatest(trace.curve(Signal.FLANK_WEAR).high) > 0.0:
+    panels.peaks("kW", BLUE, ControlSignal.SPINDLE_POWER_TRUE, scale=1e-3)
+    if _greatest(trace.curve(ControlSignal.FLANK_WEAR).high) > 0.0:
         panels.begin("<b>Flank wear</b>, µm", height=90)
-        panels.peaks("µm", DIM, Signal.FLANK_WEAR, scale=1e3)
+        panels.peaks("µm", DIM, ControlSignal.FLANK_WEAR, scale=1e3)
     figure = panels.done(stretches)
     for time, _ in _interventions(run):
         figure.add_shape(
@@ -106,7 +108,7 @@ def control_figure(run: ControlRun, found: Sequence[Row], trace: Trace) -> go.Fi
     return figure
 
 
-def chosen_events(run: ControlRun, most: int) -> tuple[Event, ...]:
+def chosen_events(run: ControlRun, most: int) -> tuple[LoopEvent, ...]:
     """At most so many events in the order of time, grave ones first, beginnings last."""
     if len(run.events) <= most:
         return run.events
@@ -136,7 +138,7 @@ def _interventions(run: ControlRun) -> list[tuple[float, str]]:
 
 
 def _events(panels: Panels, run: ControlRun) -> None:
-    """What the loop told, and what was done to the run, as marks with their words."""
+    """Marks of events and disturbances, with their words."""
     keys = " ".join((
         key("grave", RED, "●"),
         key("to be looked at", ORANGE, "●"),
@@ -176,25 +178,25 @@ def _marks(times: Sequence[float], words: Sequence[str], colours: Sequence[str])
     )
 
 
-def _feed(panels: Panels, trace: Trace) -> None:
+def _feed(panels: Panels, trace: BucketedRun) -> None:
     """Feed as programmed and as it is; rapids are far above and leave the panel."""
     keys = f"{key('programmed', GREY)} {key('actual', BLUE)}"
-    most = 60.0 * _greatest(trace.curve(Signal.FEED_PROGRAMMED).high)
+    most = 60.0 * _greatest(trace.curve(ControlSignal.FEED_PROGRAMMED).high)
     title = f"<b>Feed rate</b>, mm/min<br>{keys} (rapids leave the frame)"
     # A band above 100 % lets the actual feed rise above the programmed.
     shown = [0.0, ROOM * 1.2 * most] if most > 0.0 else None
     panels.begin(title, height=150, range=shown)
-    panels.peaks("actual", BLUE, Signal.FEED_ACTUAL, scale=60.0)
-    panels.peaks("programmed", GREY, Signal.FEED_PROGRAMMED, scale=60.0)
+    panels.peaks("actual", BLUE, ControlSignal.FEED_ACTUAL, scale=60.0)
+    panels.peaks("programmed", GREY, ControlSignal.FEED_PROGRAMMED, scale=60.0)
 
 
-def _force(panels: Panels, trace: Trace) -> None:
+def _force(panels: Panels, trace: BucketedRun) -> None:
     """Force of each revolution, what is expected at the feed that was run, and the bound."""
     keys = " ".join((
         key("measured", RED), key("expected", SKY), key("set point", DIM, "━"),
     ))  # fmt: skip
-    force = _greatest(trace.curve(Signal.FORCE_MEASURED).high)
-    bounds = trace.curve(Signal.SET_POINT).mean
+    force = _greatest(trace.curve(ControlSignal.FORCE_MEASURED).high)
+    bounds = trace.curve(ControlSignal.SET_POINT).mean
     is_far = bounds > FAR * force
     top = ROOM * max(force, _greatest(bounds[~is_far]))
     title = f"<b>Cutting force</b>, tangential, mean of a revolution, N<br>{keys}"
@@ -203,15 +205,16 @@ def _force(panels: Panels, trace: Trace) -> None:
     panels.begin(title, height=210, range=[0.0, top] if top > 0.0 else None)
     middle = 0.5 * (trace.begin + trace.end) * panels.second
     for name, colour, signal in (
-        ("expected", SKY, Signal.FORCE_EXPECTED), ("set point", DIM, Signal.SET_POINT),
-    ):  # fmt: skip
+        ("expected", SKY, ControlSignal.FORCE_EXPECTED),
+        ("set point", DIM, ControlSignal.SET_POINT),
+    ):
         panels.add(line(name, colour, middle, trace.curve(signal).mean))
-    panels.peaks("measured", RED, Signal.FORCE_MEASURED)
+    panels.peaks("measured", RED, ControlSignal.FORCE_MEASURED)
 
 
 def _override(panels: Panels, run: ControlRun) -> None:
     """Override as commanded and as the axes ran it."""
-    band = run.aims.band
+    band = run.settings.band
     keys = f"{key('commanded', GREY)} {key('actual', BLUE)}"
     panels.begin(
         f"<b>Feed override</b>, %<br>{keys} (band {100 * band.floor:g} to "
@@ -219,14 +222,14 @@ def _override(panels: Panels, run: ControlRun) -> None:
         height=130,
         range=[0.0, 100.0 * ROOM * band.ceiling],
     )
-    panels.peaks("commanded", GREY, Signal.OVERRIDE_COMMANDED, scale=100.0)
-    panels.peaks("actual", BLUE, Signal.OVERRIDE_ACTUAL, scale=100.0)
+    panels.peaks("commanded", GREY, ControlSignal.OVERRIDE_COMMANDED, scale=100.0)
+    panels.peaks("actual", BLUE, ControlSignal.OVERRIDE_ACTUAL, scale=100.0)
 
 
-def _ratio(panels: Panels, trace: Trace) -> None:
-    """What the knowledge base learns from: measured force over that of the catalogue's k_c."""
+def _ratio(panels: Panels, trace: BucketedRun) -> None:
+    """Ratio for the knowledge base: measured force over that of the catalogue's k_c."""
     middle = 0.5 * (trace.begin + trace.end) * panels.second
-    mean = trace.curve(Signal.FORCE_RATIO).mean
+    mean = trace.curve(ControlSignal.FORCE_RATIO).mean
     known = mean[~np.isnan(mean)]
     usual = float(np.quantile(known, USUAL)) if len(known) else 1.0
     title = "<b>Measured over expected force</b>: the factor on k_c (spikes leave the frame)"
@@ -238,8 +241,8 @@ def _teeth(panels: Panels) -> None:
     """Amplitudes at the teeth's frequency and at the spindle's: runout, a broken tooth."""
     keys = f"{key('tooth passing', GREEN)} {key('once per revolution', ORANGE)}"
     panels.begin(f"<b>Pattern of the teeth</b>, amplitudes, N<br>{keys}", height=130)
-    panels.peaks("tooth passing", GREEN, Signal.TOOTH_PASSING)
-    panels.peaks("once per revolution", ORANGE, Signal.ONCE_PER_REVOLUTION)
+    panels.peaks("tooth passing", GREEN, ControlSignal.TOOTH_PASSING)
+    panels.peaks("once per revolution", ORANGE, ControlSignal.ONCE_PER_REVOLUTION)
 
 
 def _greatest(values: Floats) -> float:

@@ -3,102 +3,54 @@
 Running state; no wall time. Units s at the inside, the user's units in the status.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import inf, isfinite
+from typing import Any
 
-from controller.orders import Criterion, CriterionTo, Event, EventKind, MotorPowerTo, SwitchTo
-from service.control.disturbances import MOST_FACTOR
-from service.control.live_run import Taken
+from controller.orders import CriterionTo, EventKind, LoopEvent, MotorPowerTo, SwitchTo
 from service.control.run import ControlRun, Session
 from service.control.setup import hardness_against
-from service.control.tape import CM3_MIN, Tape, known
-from service.reading import one_of
+from service.requests.fields import loaded, require_bounds
+from service.requests.runs import ControlChanges
+from service.session.rows import CM3_MIN, LiveRows, RunUpdate, known
+from service.session.status import SessionStatus
 from simulator.library import material_names
 from simulator.physics.spindle import available_power
-from simulator.plant.hidden import Change, Changed
+from simulator.plant.hidden import HiddenChange, HiddenQuantity
 from stepnc_model.errors import StepNcError
 from stepnc_model.units import kw_from_watts, mm_min_from_speed
 
-MOST_PERCENT = 100.0 * MOST_FACTOR
+UNCHANGED = {"motor_power_percent": 100.0, "depth_percent": 100.0, "hardness_percent": 100.0}
+"""of a run of which nothing was asked yet"""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Changes:
-    """What is to be otherwise; None: as it is.
+def require_changes(changes: ControlChanges) -> None:
+    """Check that changes are within their bounds, and that the material is known.
 
     Raises
     ------
     StepNcError
-        When a percentage is beyond its bounds, or the material unknown.
+        When they are not.
     """
-
-    mode: str | None = None
-    """TC or QC"""
-    is_on: bool | None = None
-    """whether the loop acts"""
-    motor_power_percent: float | None = None
-    """of the machine's motor that the operator allows"""
-    depth_percent: float | None = None
-    """of the depth that the program knows; the loop is not told"""
-    hardness_percent: float | None = None
-    """k_c against the workpiece's; the loop is not told"""
-    material: str | None = None
-    """another workpiece, by its name in the library; the loop is not told"""
-
-    def __post_init__(self) -> None:
-        for words, value in (
-            ("motor power", self.motor_power_percent),
-            ("depth", self.depth_percent),
-            ("hardness", self.hardness_percent),
-        ):
-            if value is not None and not 0.0 < value <= MOST_PERCENT:
-                bound = f"above 0 to {MOST_PERCENT:g} %"
-                raise StepNcError(f"{words} {value:g} %: it must be {bound}")
-        if self.material is not None and self.material not in material_names():
-            known = ", ".join(material_names())
-            raise StepNcError(f"unknown material '{self.material}'; known: {known}")
+    require_bounds(changes)
+    if changes.material is not None and changes.material not in material_names():
+        known_ones = ", ".join(material_names())
+        raise StepNcError(f"unknown material '{changes.material}'; known: {known_ones}")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ControlStatus:
-    """How a program under control is."""
+class ControlStatus(SessionStatus):
+    """Status snapshot of a controlled run."""
 
-    time: float
-    """s"""
     progress: float
     """share of the program that is behind, 0 to 1"""
     workingstep: str
     """its id; empty: none"""
-    feed_programmed_mm_min: float
-    feed_advised_mm_min: float
-    """that the loop commands"""
-    feed_actual_mm_min: float
-    override_percent: float
-    """commanded"""
-    force_measured: float | None
-    """N, mean of the last revolution; None: there was none"""
-    set_point: float | None
-    """N; None: nothing bounds the force"""
     force_expected: float | None
     """N, with the catalogue's k_c; None: as the measured one"""
-    power_kw: float
-    """that the main drive really draws"""
-    motor_power_kw: float | None
-    """that the motor gives now, as far as the operator allows; None: the spindle stands"""
-    removal_rate_cm3_min: float
-    """that really is removed"""
     axial_depth_mm: float
     """that really is cut"""
-    is_over: bool
-    """power limit warning: the drive draws more than the motor has, or did a second ago"""
-    holding: str
-    """what holds the feed now"""
-    level: str
-    """of the force, as the loop sees it"""
-    criterion: Criterion
-    is_on: bool
-    is_stopped: bool
-    """the loop has stopped the program, or lost the machine"""
     is_done: bool
     """the program is through, or stopped"""
 
@@ -114,18 +66,20 @@ class LiveControl:
 
     def __init__(self, session: Session) -> None:
         self.session = session
-        self._tape = Tape(self._motor_power)
-        self._trace = session.trace(self._tape)
+        self._live_rows = LiveRows(self._motor_power)
+        self._trace = session.trace(self._live_rows)
         self._cycles = session.cycles([self._trace])
         self._told = 0
-        """events of the session that are on the tape"""
+        """events of the session that are among the live rows"""
+        self._asked: dict[str, Any] = {}
+        """changes that the run has taken"""
         self._hardness = self._material = 1.0
         """factors on k_c"""
         self._is_done = False
 
     @property
     def time(self) -> float:
-        """S of the machine."""
+        """Machine time, in seconds."""
         return self.session.machine.time
 
     def advance(self, until: float) -> bool:
@@ -134,23 +88,24 @@ class LiveControl:
             self._is_done = next(self._cycles, None) is None
         return not self._is_done
 
-    def taken(self) -> Taken:
+    def taken(self) -> RunUpdate:
         """Rows and events since it was asked last."""
         events = self.session.events
         for event in events[self._told :]:
-            self._tape.note(event)
+            self._live_rows.note(event)
         self._told = len(events)
-        return self._tape.taken()
+        return self._live_rows.taken()
 
-    def change(self, changes: Changes) -> None:
-        """Let something be otherwise from the next cycle on.
+    def change(self, changes: ControlChanges) -> None:
+        """Apply the requested changes from the next cycle on.
 
         Raises
         ------
         StepNcError
-            When the mode is unknown; nothing has changed then.
+            When one of them cannot be; nothing has changed then.
         """
-        mode = None if changes.mode is None else one_of(Criterion, changes.mode.upper(), "mode")
+        require_changes(changes)
+        mode = changes.mode
         hardness = hardness_against(self.session.plan.material)
         material = None if changes.material is None else hardness(changes.material)
         loop = self.session.loop
@@ -161,7 +116,7 @@ class LiveControl:
         if changes.motor_power_percent is not None:
             loop.order(MotorPowerTo(factor=0.01 * changes.motor_power_percent))
         if changes.depth_percent is not None:
-            self._hide(Changed.DEPTH, 0.01 * changes.depth_percent)
+            self._hide(HiddenQuantity.DEPTH, 0.01 * changes.depth_percent)
             self._say(f"depth {changes.depth_percent:g} % of the program's")
         if changes.hardness_percent is not None:
             self._hardness = 0.01 * changes.hardness_percent
@@ -170,12 +125,12 @@ class LiveControl:
             self._material = material
             self._say(f"workpiece {changes.material}: k_c {100.0 * material:.3g} %")
         if material is not None or changes.hardness_percent is not None:
-            self._hide(Changed.HARDNESS, self._hardness * self._material)
+            self._hide(HiddenQuantity.HARDNESS, self._hardness * self._material)
 
     def status(self) -> ControlStatus:
-        """How the run is now."""
-        session, row = self.session, self._tape.last
-        loop, machine, aims = session.loop, session.machine, session.loop.aims
+        """Status snapshot of the run."""
+        session, row = self.session, self._live_rows.last
+        loop, machine, settings = session.loop, session.machine, session.loop.state.settings
         power = self._motor_power()
         programmed = 0.0 if row is None else row.feed_programmed
         return ControlStatus(
@@ -183,9 +138,9 @@ class LiveControl:
             progress=machine.share,
             workingstep="" if row is None else row.workingstep,
             feed_programmed_mm_min=mm_min_from_speed(programmed),
-            feed_advised_mm_min=mm_min_from_speed(loop.override * programmed),
+            feed_advised_mm_min=mm_min_from_speed(loop.state.override * programmed),
             feed_actual_mm_min=0.0 if row is None else mm_min_from_speed(row.feed_actual),
-            override_percent=100.0 * loop.override,
+            override_percent=100.0 * loop.state.override,
             force_measured=None if row is None else known(row.force_measured),
             set_point=None if row is None else known(row.set_point),
             force_expected=None if row is None else known(row.force_expected),
@@ -193,14 +148,37 @@ class LiveControl:
             motor_power_kw=kw_from_watts(power) if isfinite(power) else None,
             removal_rate_cm3_min=0.0 if row is None else CM3_MIN * row.removal_rate,
             axial_depth_mm=0.0 if row is None else row.axial_depth,
-            is_over=not self._is_done and self._tape.is_over(machine.time),
+            is_overloaded=not self._is_done and self._live_rows.is_overloaded(machine.time),
             holding=session.holdings.words,
             level=session.holdings.level.value,
-            criterion=aims.criterion,
-            is_on=aims.is_on,
-            is_stopped=loop.is_stopped or session.is_lost,
+            criterion=settings.criterion,
+            is_on=settings.is_on,
+            is_stopped=loop.state.is_stopped or session.is_lost,
             is_done=self._is_done,
         )
+
+    @property
+    def is_waiting(self) -> bool:
+        """See :class:`service.session.runner.LiveSession`; what was stopped is over."""
+        return False
+
+    def obey(self, order: Mapping[str, Any]) -> None:
+        """See :class:`service.session.runner.LiveSession`: the changes of an order."""
+        if order:
+            self.change(loaded(ControlChanges, order))
+            self._asked |= order
+
+    def snapshot(self) -> dict[str, Any]:
+        """Status with the requested settings; the machine's truth may be another."""
+        status, session = self.status(), self.session
+        held = {"mode": status.criterion.value, "is_on": status.is_on}
+        usual = {**UNCHANGED, "material": session.plan.material.material.name}
+        tools = {each.workingstep.id: each.tool.id for each in session.advices if each}
+        return {
+            **status.as_json(),
+            "tool": tools.get(status.workingstep, ""),
+            "inputs": {**usual, **self._asked, **held},
+        }
 
     def finish(self) -> ControlRun:
         """Close what is written, and tell what was found, as ``control`` does; once.
@@ -215,13 +193,13 @@ class LiveControl:
         self._trace.close(is_whole=self._is_done)
         return self.session.result(self._trace)
 
-    def _hide(self, what: Changed, factor: float) -> None:
+    def _hide(self, what: HiddenQuantity, factor: float) -> None:
         """Change the machine, and tell the loop nothing."""
         machine = self.session.machine
-        machine.change(Change(time=machine.time, what=what, value=factor))
+        machine.change(HiddenChange(time=machine.time, what=what, value=factor))
 
     def _say(self, text: str) -> None:
-        event = Event(time=self.time, kind=EventKind.ORDER, text=text)
+        event = LoopEvent(time=self.time, kind=EventKind.ORDER, text=text)
         self.session.events.append(event)
         self._trace.note(event)
 
@@ -232,5 +210,5 @@ class LiveControl:
         speed = float(machine.course.spindle_speed[machine.truth.cell])
         if not speed > 0.0:
             return inf
-        factor = session.loop.aims.power_factor
+        factor = session.loop.state.settings.power_factor
         return factor * available_power(session.virtual.spindle, speed)

@@ -7,28 +7,28 @@ from math import isfinite, pi
 import numpy as np
 
 from controller.estimate import force_ratio
-from controller.record import Record
-from optimiser.advice import Advice, State
+from controller.record import RunRecord
+from optimiser.advice import Advice, EvaluatedSetting
 from optimiser.cut import Cut, CutKind
 from optimiser.region import region_of
 from optimiser.roughness import roughness_load
-from service.control.planned import Planned
+from service.control.planned import PlannedWorkingstep
 from service.control.run import ControlRun
 from service.records import immersion
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.optimisation import FaceMillingImmersion
 from stepnc_model.errors import SchemaError
-from stepnc_model.outcome import Context, FeatureFacts, ProcessOutcome, Quantity
+from stepnc_model.outcome import Context, EvaluatedQuantity, FeatureFacts, ProcessOutcome
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program, Workingstep
+from stepnc_model.program import Program, ResolvedWorkingstep
 
 INSPECTION = 0.05
 """standard deviation of an inspected roughness, as a share: a stylus instrument"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Recording:
-    """Who records what, and when."""
+class RecordingContext:
+    """Author, time and id under which outcomes are recorded."""
 
     run: str
     at: datetime
@@ -39,7 +39,7 @@ class Recording:
     """of the inspection of surfaces"""
 
 
-def outcomes_of(run: ControlRun, recording: Recording) -> tuple[ProcessOutcome, ...]:
+def outcomes_of(run: ControlRun, recording: RecordingContext) -> tuple[ProcessOutcome, ...]:
     """Outcomes of the workingsteps in which something was cut.
 
     The roughness is what the feed that was run leaves by the model, with the error of an
@@ -55,26 +55,26 @@ def outcomes_of(run: ControlRun, recording: Recording) -> tuple[ProcessOutcome, 
 
 
 @dataclass(frozen=True, slots=True)
-class _Step:
+class _CutStep:
     """A workingstep that was cut, with everything known of it."""
 
     advice: Advice
     cut: Cut
-    state: State
-    record: Record
-    planned: Planned
+    state: EvaluatedSetting
+    record: RunRecord
+    planned: PlannedWorkingstep
 
 
-def _cut_step(run: ControlRun, advice: Advice | None, record: Record) -> _Step | None:
+def _cut_step(run: ControlRun, advice: Advice | None, record: RunRecord) -> _CutStep | None:
     """None where nothing was cut, or nothing is known of the plan."""
     if advice is None or advice.cut is None or advice.before is None or not record.revolutions:
         return None
     planned = run.planned[record.workingstep]
-    return _Step(advice, advice.cut, advice.before, record, planned)
+    return _CutStep(advice, advice.cut, advice.before, record, planned)
 
 
 def _outcome(
-    run: ControlRun, step: _Step, recording: Recording, error: float
+    run: ControlRun, step: _CutStep, recording: RecordingContext, error: float
 ) -> ProcessOutcome:
     """One outcome; the error is that of the inspected surface, as a factor."""
     cut, setting, record = step.cut, step.state.setting, step.record
@@ -90,19 +90,19 @@ def _outcome(
         mode=run.criterion.value,
         specific_force=material.kienzle.k_c11,
         cutting_speed=pi * cut.diameter * setting.speed,
-        step_depth=Quantity(predicted=setting.depth),
-        feed_per_tooth=Quantity(predicted=setting.feed, measured=per_tooth),
+        step_depth=EvaluatedQuantity(predicted=setting.depth),
+        feed_per_tooth=EvaluatedQuantity(predicted=setting.feed, measured=per_tooth),
         immersion=_immersion(cut),
         strategy=_strategy(run.program, step.advice.workingstep),
-        roughness=Quantity(
+        roughness=EvaluatedQuantity(
             predicted=step.state.roughness,
             measured=None if roughness is None else roughness * error,
         ),
-        time=Quantity(predicted=step.planned.time, measured=record.time),
-        force=Quantity(
+        time=EvaluatedQuantity(predicted=step.planned.time, measured=record.time),
+        force=EvaluatedQuantity(
             predicted=step.planned.force * step.advice.force_factor, measured=record.peak
         ),
-        feed=Quantity(predicted=step.planned.feed, measured=record.feed),
+        feed=EvaluatedQuantity(predicted=step.planned.feed, measured=record.feed),
         force_bound=record.set_point if isfinite(record.set_point) else None,
         force_ratio=force_ratio(record.ratio),
         trace=recording.trace,
@@ -126,7 +126,7 @@ def _immersion(cut: Cut) -> FaceMillingImmersion | None:
     return FaceMillingImmersion(immersion(cut.engagement))
 
 
-def _feature(program: Program, step: Workingstep, cut: Cut) -> FeatureFacts:
+def _feature(program: Program, step: ResolvedWorkingstep, cut: Cut) -> FeatureFacts:
     """Id, kind and sizes; the length is that of a rectangle of the same area."""
     if not step.features:
         return FeatureFacts(id="", kind="", total_depth=cut.total_depth)
@@ -153,7 +153,7 @@ def _id(entity: Entity, ref: Ref[Entity]) -> str:
     return str(getattr(entity, "its_id", "")) or str(ref)
 
 
-def _strategy(program: Program, step: Workingstep) -> str:
+def _strategy(program: Program, step: ResolvedWorkingstep) -> str:
     """EXPRESS name of the machining strategy, if the operation has one."""
     ref = getattr(step.operation, "its_machining_strategy", None)
     return "" if ref is None else program.get(ref).express_name()

@@ -1,4 +1,4 @@
-"""What the virtual machine expects of each workingstep at an override of 1. Units mm, s, N."""
+"""Expected results of each workingstep at an override of 1. Units mm, s, N."""
 
 from dataclasses import dataclass, replace
 
@@ -9,7 +9,7 @@ from simulator.plant.course import NominalCourse
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Planned:
+class PlannedWorkingstep:
     """One workingstep as planned."""
 
     time: float = 0.0
@@ -26,7 +26,7 @@ class Planned:
     """mm at which the cutting speed drives the force; 0: nothing is cut"""
 
 
-def planned_steps(course: NominalCourse) -> dict[int, Planned]:
+def planned_steps(course: NominalCourse) -> dict[int, PlannedWorkingstep]:
     """By the workingstep's number, in the order of their beginning; 0: around them.
 
     What bounds the force is not known yet: the greatest counts as the nearest to its bound.
@@ -37,11 +37,11 @@ def planned_steps(course: NominalCourse) -> dict[int, Planned]:
     found = {}
     for number in numbers[np.argsort(first)].tolist():
         rows = course.workingstep == number
-        planned = Planned(time=float(widths[rows].sum()))
+        planned = PlannedWorkingstep(time=float(widths[rows].sum()))
         chips = np.flatnonzero(rows & cuts)
         if len(chips):
             seconds = float(widths[chips].sum())
-            planned = Planned(
+            planned = PlannedWorkingstep(
                 time=planned.time,
                 cutting_time=seconds,
                 feed=float(widths[chips] @ course.feed[chips]) / seconds,
@@ -54,13 +54,13 @@ def planned_steps(course: NominalCourse) -> dict[int, Planned]:
 
 
 def with_hardest(
-    planned: dict[int, Planned], course: NominalCourse, weight: Floats | None
-) -> dict[int, Planned]:
+    planned: dict[int, PlannedWorkingstep], course: NominalCourse, weight: Floats | None
+) -> dict[int, PlannedWorkingstep]:
     """The same with the force where it comes nearest to its bound.
 
     Parameters
     ----------
-    planned : dict of Planned
+    planned : dict of PlannedWorkingstep
     course : NominalCourse
     weight : (N,) array, optional
         What a force counts in each cell; None: all alike.

@@ -6,17 +6,25 @@ from datetime import UTC, datetime
 from uuid import uuid4
 
 from controller.orders import EventKind
-from kbe.place import parsed_place, require_openable
-from service.control.outcomes import Recording, outcomes_of
-from service.control.run import ControlRequest, ControlRun, Watcher, control
+from kbe.store_location import parsed_place, require_openable
+from service.control.outcomes import RecordingContext, outcomes_of
+from service.control.run import ControlRun, Watcher, control
 from service.knowledge.place import make_folder, named_place, require_apart
 from service.knowledge.verbs import record
 from service.reading import Tell, silent
+from service.requests.runs import ControlRequest
+from service.simulation.run import RunFiles
 from stepnc_model.errors import StepNcError
 
 
 def control_recorded(
-    request: ControlRequest, *, tell: Tell = silent, watchers: Sequence[Watcher] = ()
+    request: ControlRequest,
+    files: RunFiles,
+    *,
+    knowledge: str = "",
+    by: str = "",
+    tell: Tell = silent,
+    watchers: Sequence[Watcher] = (),
 ) -> ControlRun:
     """Run a program under the loop, and keep what came out where a knowledge base is named.
 
@@ -29,15 +37,15 @@ def control_recorded(
     StepNcError
         As :func:`service.control.run.control`, and when the knowledge base cannot take it.
     """
-    place = named_place(request.knowledge)
+    place = named_place(knowledge)
     if place is not None:
-        require_apart(place, request.output, request.report)
+        require_apart(place, files.output, files.report)
         make_folder(place)
         require_openable(parsed_place(place), is_new_allowed=True)
-    run = control(request, tell=tell, watchers=watchers)
+    run = control(request, files, knowledge=knowledge, tell=tell, watchers=watchers)
     if place is not None:
-        trace = "" if request.output is None else str(request.output.resolve())
-        keep(run, place, by=request.recorded_by or getpass.getuser(), trace=trace, tell=tell)
+        trace = "" if files.output is None else str(files.output.resolve())
+        keep(run, place, by=by or getpass.getuser(), trace=trace, tell=tell)
     return run
 
 
@@ -63,7 +71,7 @@ def keep(run: ControlRun, place: str, *, by: str, trace: str, tell: Tell = silen
     if run.is_stopped:
         return
     orders = any(event.kind is EventKind.ORDER for event in run.events)
-    recording = Recording(
+    recording = RecordingContext(
         run=uuid4().hex,
         at=datetime.now(UTC),
         by=", ".join((

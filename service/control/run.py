@@ -2,26 +2,23 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from math import inf
-from pathlib import Path
 
-from controller.aims import Aims
-from controller.cycle import Cycle
+from controller.cycle import LoopCycle
 from controller.equivalent import equivalent
 from controller.errors import MachineLost
-from controller.guard import Band
+from controller.guard import OverrideBand
 from controller.laws.choice import LawName, law_named
 from controller.loop import Loop
-from controller.orders import Criterion, Event, EventKind
-from controller.preview import LOOK_AHEAD
-from controller.record import Record, Recorder
+from controller.loop_settings import LoopSettings
+from controller.orders import Criterion, EventKind, LoopEvent
+from controller.record import Recorder, RunRecord
 from controller.source import DrivePower, Dynamometer, Source
 from optimiser.advice import Advice, Plan
 from optimiser.modes import Mode
-from service.buckets import Trace
+from service.buckets import BucketedRun
 from service.control.disturbances import TimedOrder, disturbances
-from service.control.holding import Held, Holdings
-from service.control.planned import Planned, planned_steps, with_hardest
+from service.control.holding import HoldTallies, HoldTally
+from service.control.planned import PlannedWorkingstep, planned_steps, with_hardest
 from service.control.setup import (
     hardness_against,
     plan_as_it_is,
@@ -30,54 +27,28 @@ from service.control.setup import (
     require_teeth,
     steps_of,
 )
-from service.control.trace import ControlTrace, Moment, control_schema
+from service.control.trace import ControlTrace, control_schema
 from service.progress import Ticker, bar
-from service.reading import Tell, one_of, silent
+from service.reading import Tell, silent
+from service.requests.fields import require_bounds
+from service.requests.runs import ControlRequest, SensorChoice, SimulationRequest
 from service.run_file import RunFile
-from service.simulation.run import SimulationRequest, waiting_machine
+from service.session.rows import Moment
+from service.simulation.run import RunFiles, waiting_machine
 from simulator.errors import MachineSilent
-from simulator.plant.controlled import ControlledMachine, Truth
+from simulator.plant.controlled import ControlledMachine, TrueState
 from simulator.reading import Reading
 from simulator.spec import Machine, MaterialMatch
 from stepnc_model.errors import Finding, StepNcError
 from stepnc_model.program import Program
 
-REVOLUTIONS = 50
-"""greatest look-ahead"""
-
-CHIP_FORCES = {"dynamometer": 10.0, "power": 60.0}
+CHIP_FORCES = {SensorChoice.DYNAMOMETER: 10.0, SensorChoice.POWER: 60.0}
 """N above which there are chips: several times the noise of either"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ControlRequest:
-    """What the user asks of ``control``, in the user's units."""
-
-    simulation: SimulationRequest
-    """program, machine, material and how the control runs the path"""
-    mode: str = Criterion.TC.value
-    law: str = LawName.LOG_PI.value
-    has_preview: bool = False
-    look_ahead: int = LOOK_AHEAD
-    disturbances: tuple[str, ...] = ()
-    seed: int = 0
-    set_point: float | None = None
-    """N; None: the plan's bounds"""
-    band: tuple[float, float] = (20.0, 120.0)
-    """%, of the override"""
-    sensor: str = "dynamometer"
-    output: Path | None = None
-    report: Path | None = None
-    knowledge: str = ""
-    """knowledge base: outcomes go there, accepted corrections come from there; that of the
-    environment when empty, and where there is none neither happens"""
-    recorded_by: str = ""
-    """who; the login name when empty"""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class ControlRun:
-    """What ``control`` found."""
+    """Result of ``control``."""
 
     program: Program
     machine: Machine
@@ -87,11 +58,11 @@ class ControlRun:
     criterion: Criterion
     plan: Plan
     """the program as it is, without any change"""
-    steps: tuple[tuple[Advice | None, Record], ...]
+    steps: tuple[tuple[Advice | None, RunRecord], ...]
     """in the order of their beginning; None: what belongs to no workingstep"""
-    planned: Mapping[int, Planned]
+    planned: Mapping[int, PlannedWorkingstep]
     """by the number of the workingstep"""
-    events: tuple[Event, ...]
+    events: tuple[LoopEvent, ...]
     findings: tuple[Finding, ...]
     time: float
     """s"""
@@ -101,26 +72,28 @@ class ControlRun:
     """whether the loop stopped the program, or lost the machine"""
     progress: float
     """s of the program at an override of 1 that are behind"""
-    aims: Aims
+    settings: LoopSettings
     """at the end"""
-    held: Mapping[int, Held]
+    held: Mapping[int, HoldTally]
     """what held the override, by the number of the workingstep"""
     disturbances: tuple[str, ...] = ()
     """as asked for"""
     seed: int = 0
     samples: int = 0
     """that were written"""
-    trace: Trace | None = None
+    trace: BucketedRun | None = None
     """for a report, when one was asked for"""
 
 
-Watcher = Callable[[Cycle, Truth], None]
+Watcher = Callable[[LoopCycle, TrueState], None]
 """who looks at the cycles besides the loop: a trace, a dashboard"""
 
 
 def control(
     request: ControlRequest,
+    files: RunFiles,
     *,
+    knowledge: str = "",
     tell: Tell = silent,
     watchers: Sequence[Watcher] = (),
 ) -> ControlRun:
@@ -131,7 +104,7 @@ def control(
     StepNcError
         For everything that is wrong with file, names, numbers or output.
     """
-    session = prepare(request, tell=tell)
+    session = prepare(request, files, knowledge=knowledge, tell=tell)
     trace = session.trace()
     looking: tuple[Watcher, ...] = (trace, *watchers)
     ticker = Ticker(tell)
@@ -149,19 +122,19 @@ def control(
     return session.result(trace)
 
 
-def prepare(request: ControlRequest, *, tell: Tell = silent) -> "Session":
-    """Everything plugged together, before the first cycle.
+def prepare(
+    request: ControlRequest, files: RunFiles, *, knowledge: str = "", tell: Tell = silent
+) -> "Session":
+    """Machine, loop and plan of a run, before the first cycle.
 
     Raises
     ------
     StepNcError
         As :func:`control`.
     """
-    law = one_of(LawName, request.law, "law")
-    criterion = one_of(Criterion, request.mode.upper(), "mode")
-    aims = _aims(request, criterion)
-    asked = replace(request.simulation, output=request.output, report=request.report)
-    prepared, virtual = waiting_machine(asked, tell=tell)
+    require_bounds(request)
+    law, settings = request.law, _settings(request)
+    prepared, virtual = waiting_machine(_plain_run(request), files, tell=tell)
     if prepared.material is None or prepared.program is None:
         raise StepNcError("control needs a STEP-NC program: it says what may be forced")
     found = disturbances(request.disturbances, hardness=hardness_against(prepared.material))
@@ -169,8 +142,8 @@ def prepare(request: ControlRequest, *, tell: Tell = silent) -> "Session":
         prepared.program,
         virtual.machine,
         material=prepared.material,
-        mode=Mode(criterion.value),
-        knowledge=request.knowledge,
+        mode=Mode(request.mode.value),
+        knowledge=knowledge if request.has_corrections else None,
     )
     course = planned_course(prepared, virtual, tell)
     require_teeth(found.hidden, course)
@@ -182,24 +155,25 @@ def prepare(request: ControlRequest, *, tell: Tell = silent) -> "Session":
     by_id = {advice.workingstep.id: advice for advice in plan.advices}
     advices = tuple(by_id.get(name) for name in virtual.workingsteps)
     steps, preview = steps_of(planned, advices), preview_of(course)
-    planned = with_hardest(planned, course, equivalent(preview, steps, aims).weight)
+    planned = with_hardest(planned, course, equivalent(preview, steps, settings).weight)
     loop = Loop(
-        Line(machine),
+        VirtualSensor(machine),
         machine,
-        source=_source(request.sensor, virtual.machine, aims.chips),
+        source=_source(request.sensor, virtual.machine, settings.chips),
         law=lambda plant: law_named(law, plant, has_preview=request.has_preview),
         steps=steps,
         preview=preview,
-        aims=aims,
+        settings=settings,
     )
     return Session(
         loop=loop,
         machine=machine,
-        recorder=Recorder(aims.chips),
-        holdings=Holdings(advices),
+        recorder=Recorder(settings.chips),
+        holdings=HoldTallies(advices),
         workingsteps=tuple(virtual.workingsteps),
         orders=list(found.orders),
         request=request,
+        files=files,
         law=law,
         program=prepared.program,
         plan=plan,
@@ -210,7 +184,7 @@ def prepare(request: ControlRequest, *, tell: Tell = silent) -> "Session":
     )
 
 
-class Line:
+class VirtualSensor:
     """The virtual machine as a sensor of the loop: its silence is the loop's loss."""
 
     def __init__(self, machine: ControlledMachine) -> None:
@@ -231,23 +205,24 @@ class Session:
     loop: Loop
     machine: ControlledMachine
     recorder: Recorder
-    holdings: Holdings
+    holdings: HoldTallies
     workingsteps: tuple[str, ...]
     """ids by their number, from 1"""
     orders: list[TimedOrder]
     request: ControlRequest
+    files: RunFiles
     law: LawName
     program: Program
     plan: Plan
     advices: tuple[Advice | None, ...]
-    planned: Mapping[int, Planned]
+    planned: Mapping[int, PlannedWorkingstep]
     findings: tuple[Finding, ...]
     virtual: Machine
-    events: list[Event] = field(default_factory=list)
+    events: list[LoopEvent] = field(default_factory=list)
     is_lost: bool = False
     """whether the machine does not answer any more"""
 
-    def cycles(self, watchers: Sequence[Watcher] = ()) -> Iterator[Cycle]:
+    def cycles(self, watchers: Sequence[Watcher] = ()) -> Iterator[LoopCycle]:
         """Run on, cycle by cycle, to the end or until the loop stops the program."""
         while True:
             while self.orders and self.orders[0].time <= self.machine.time:
@@ -260,41 +235,41 @@ class Session:
             if cycle is None:
                 return
             self.recorder.add(cycle)
-            self.holdings.add(cycle, self.loop.aims)
+            self.holdings.add(cycle, self.loop.state.settings)
             self.events += cycle.events
             for watcher in watchers:
                 watcher(cycle, self.machine.truth)
             yield cycle
-            if self.loop.is_stopped:
+            if self.loop.state.is_stopped:
                 return
 
     def _lose(self, lost: MachineLost) -> None:
         """Nothing more can be done: what was commanded last is the safe override."""
         override = 100.0 * self.machine.commanded
         text = f"{lost}; override {override:.4g} % was commanded"
-        self.events.append(Event(time=self.machine.time, kind=EventKind.LOST, text=text))
+        self.events.append(LoopEvent(time=self.machine.time, kind=EventKind.LOST, text=text))
         self.is_lost = True
 
     def trace(self, sink: Callable[[Moment], None] | None = None) -> ControlTrace:
-        """What writes the run to a file and keeps it for plots, as asked for.
+        """Sink that writes the run to a file and keeps it for plots, as requested.
 
         Parameters
         ----------
         sink : callable, optional
             Is given each row as well.
         """
-        output = self.request.output
+        output = self.files.output
         return ControlTrace(
             self.machine.course,
             self.holdings,
             workingsteps=self.workingsteps,
             file=None if output is None else RunFile(output, control_schema()),
-            has_trace=self.request.report is not None,
+            has_trace=self.files.report is not None,
             sink=sink,
         )
 
     def result(self, trace: ControlTrace | None = None) -> ControlRun:
-        """What was found so far, and what a trace has kept of it."""
+        """Result so far, with what a trace has kept of it."""
         records = self.recorder.records
         return ControlRun(
             program=self.program,
@@ -302,7 +277,7 @@ class Session:
             material=self.plan.material,
             law=self.law,
             has_preview=self.request.has_preview,
-            criterion=self.loop.aims.criterion,
+            criterion=self.loop.state.settings.criterion,
             plan=self.plan,
             steps=tuple(
                 (self.advices[number - 1] if number else None, record)
@@ -313,9 +288,9 @@ class Session:
             findings=self.findings,
             time=self.machine.time,
             time_planned=self.machine.course.duration,
-            is_stopped=self.loop.is_stopped or self.is_lost,
+            is_stopped=self.loop.state.is_stopped or self.is_lost,
             progress=self.machine.share * self.machine.course.duration,
-            aims=self.loop.aims,
+            settings=self.loop.state.settings,
             held=self.holdings.steps,
             disturbances=self.request.disturbances,
             seed=self.request.seed,
@@ -324,38 +299,42 @@ class Session:
         )
 
 
-def _told(event: Event) -> str:
+def _told(event: LoopEvent) -> str:
     return f"{event.time:9.2f} s  {event.kind.value}: {event.text}"
 
 
-def _aims(request: ControlRequest, criterion: Criterion) -> Aims:
-    floor, ceiling = request.band
-    if not 0.0 < floor <= 100.0 <= ceiling <= 200.0:
-        bound = "above 0 to 100, and 100 to 200"
-        raise StepNcError(f"override band {floor:g} to {ceiling:g} %: it must be {bound}")
-    if not 1 <= request.look_ahead <= REVOLUTIONS:
-        bound = f"1 to {REVOLUTIONS} revolutions"
-        raise StepNcError(f"look-ahead {request.look_ahead}: it must be {bound}")
-    if request.sensor not in CHIP_FORCES:
-        raise StepNcError(f"unknown sensor '{request.sensor}'; known: dynamometer, power")
-    if request.seed < 0:
-        raise StepNcError(f"seed {request.seed}: it must be at least 0")
-    least = CHIP_FORCES[request.sensor]
-    if request.set_point is not None and not least < request.set_point < inf:
-        bound = f"above {least:g} N, which is noise of the {request.sensor}"
-        raise StepNcError(f"force {request.set_point:g} N: it must be {bound}")
-    return Aims(
-        criterion=criterion,
-        is_on=request.law != LawName.NONE,
-        set_point=request.set_point,
-        band=Band(floor=0.01 * floor, ceiling=0.01 * ceiling),
-        look_ahead=request.look_ahead if request.has_preview else 0,
-        chips=CHIP_FORCES[request.sensor],
+def _plain_run(request: ControlRequest) -> SimulationRequest:
+    """The same program on the same machine, without the loop."""
+    return SimulationRequest(
+        machine=request.machine,
+        material=request.material,
+        units=request.units,
+        control=request.control,
+        filter_s=request.filter_s,
+        deviation_mm=request.deviation_mm,
     )
 
 
-def _source(sensor: str, machine: Machine, chips: float) -> Source:
-    if sensor == "power":
+def _settings(request: ControlRequest) -> LoopSettings:
+    least, set_point = CHIP_FORCES[request.sensor], request.force_set_point_n
+    if set_point is not None and not set_point > least:
+        bound = f"above {least:g} N, which is noise of the {request.sensor}"
+        raise StepNcError(f"force {set_point:g} N: it must be {bound}")
+    return LoopSettings(
+        criterion=request.mode,
+        is_on=request.law is not LawName.NONE,
+        set_point=set_point,
+        band=OverrideBand(
+            floor=0.01 * request.override_low_percent,
+            ceiling=0.01 * request.override_high_percent,
+        ),
+        look_ahead=request.look_ahead if request.has_preview else 0,
+        chips=least,
+    )
+
+
+def _source(sensor: SensorChoice, machine: Machine, chips: float) -> Source:
+    if sensor is SensorChoice.POWER:
         return DrivePower(machine.spindle.efficiency, chips)
     return Dynamometer(chips)
 
@@ -364,5 +343,5 @@ def _progress(session: Session) -> str:
     machine, loop = session.machine, session.loop
     return (
         f"{bar(machine.share)}  {machine.time:.0f} s  override "
-        f"{100.0 * loop.override:.0f} %  force {machine.truth.force:.0f} N"
+        f"{100.0 * loop.state.override:.0f} %  force {machine.truth.force:.0f} N"
     )

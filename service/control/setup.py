@@ -1,33 +1,33 @@
-"""What ``control`` plugs together: the course of the program, its plan, its workingsteps."""
+"""Setup of ``control``: the course of the program, its plan, its workingsteps."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from controller.aims import Step
+from controller.loop_settings import LoopStep
 from controller.preview import Preview
 from controller.reference import Reference, reference_of
 from optimiser.advice import Advice, Plan
 from optimiser.cut import CutKind
-from optimiser.formulate import Task
+from optimiser.formulate import OptimisationTask
 from optimiser.modes import Mode
-from optimiser.optimise import optimise as advise
+from optimiser.optimise import optimise_program
 from optimiser.safety import LEAST_QUANTILE
 from optimiser.source import from_features
 from service.chosen import load_material_named
-from service.control.planned import Planned
+from service.control.planned import PlannedWorkingstep
 from service.knowledge.corrected import factors_for
 from service.progress import Ticker, bar
 from service.reading import Tell
 from service.simulation.gathering import require_sense
 from service.simulation.run import place_in
-from service.simulation.setup import Prepared
+from service.simulation.setup import PreparedRun
 from simulator.errors import ProgramFault, SimulationError
-from simulator.machine.episode import Episode
 from simulator.machine.interpreter import interpret
+from simulator.machine.samples import Episode
 from simulator.machine.virtual import VirtualMachine
 from simulator.plant.course import NominalCourse, course_of
-from simulator.plant.hidden import Changed, Hidden
+from simulator.plant.hidden import HiddenQuantity, HiddenTruth
 from simulator.spec import Machine, MaterialMatch
 from stepnc_model.errors import StepNcError
 from stepnc_model.program import Program
@@ -39,8 +39,8 @@ CHIP = 0.1
 """mm, thickness of the chip for which materials are compared"""
 
 
-def planned_course(prepared: Prepared, virtual: VirtualMachine, tell: Tell) -> NominalCourse:
-    """What the program does at an override of 1."""
+def planned_course(prepared: PreparedRun, virtual: VirtualMachine, tell: Tell) -> NominalCourse:
+    """Course of the program at an override of 1."""
     ticker = Ticker(tell)
 
     def episodes() -> Iterator[Episode]:
@@ -58,7 +58,7 @@ def planned_course(prepared: Prepared, virtual: VirtualMachine, tell: Tell) -> N
         raise SimulationError(f"{place_in(prepared, virtual)}: {error}") from error
 
 
-def require_teeth(hidden: Hidden, course: NominalCourse) -> None:
+def require_teeth(hidden: HiddenTruth, course: NominalCourse) -> None:
     """Refuse a tooth that no cutter of the program has.
 
     Raises
@@ -68,13 +68,13 @@ def require_teeth(hidden: Hidden, course: NominalCourse) -> None:
     """
     most = int(course.teeth.max())
     for change in hidden.changes:
-        if change.what is Changed.TOOTH and change.value >= most:
+        if change.what is HiddenQuantity.TOOTH and change.value >= most:
             text = f"tooth {change.value + 1.0:g}: the cutters have {most} teeth at most"
             raise StepNcError(f"disturbance: {text}")
 
 
 def preview_of(course: NominalCourse) -> Preview:
-    """What the program expects: the force where the override acts."""
+    """Preview of the program: the expected force where the override acts."""
     force = np.where(course.can_override, course.force, np.float32(0.0))
     return Preview(
         until=course.until,
@@ -104,41 +104,47 @@ def plan_as_it_is(
     *,
     material: MaterialMatch,
     mode: Mode,
-    knowledge: str,
+    knowledge: str | None,
 ) -> Plan:
-    """What the limits say of the program as it is, with what was learned of its tools."""
-    factors = factors_for(
-        knowledge,
-        program,
-        program.workingsteps,
-        machine=machine,
-        material=material,
-        safety=LEAST_QUANTILE,
-        is_new_allowed=True,
+    """Advice for the program as it is, with the corrections of a knowledge base; None: none."""
+    factors = (
+        ()
+        if knowledge is None
+        else factors_for(
+            knowledge,
+            program,
+            program.workingsteps,
+            machine=machine,
+            material=material,
+            safety=LEAST_QUANTILE,
+            is_new_allowed=True,
+        )
     )
-    task = Task(
+    task = OptimisationTask(
         mode=mode,
         free=frozenset(),
         force_factors={each.tool: each.factor for each in factors},
         safety=LEAST_QUANTILE,
         source=from_features,
     )
-    return advise(program, machine=machine, material=material, task=task)
+    return optimise_program(program, machine=machine, material=material, task=task)
 
 
-def steps_of(planned: Mapping[int, Planned], advices: Sequence[Advice | None]) -> list[Step]:
+def steps_of(
+    planned: Mapping[int, PlannedWorkingstep], advices: Sequence[Advice | None]
+) -> list[LoopStep]:
     """Workingsteps with what is planned of their cuts."""
     return [
-        _step(planned.get(number, Planned()), advice)
+        _step(planned.get(number, PlannedWorkingstep()), advice)
         for number, advice in enumerate(advices, 1)
     ]
 
 
-def _step(planned: Planned, advice: Advice | None) -> Step:
+def _step(planned: PlannedWorkingstep, advice: Advice | None) -> LoopStep:
     if advice is None:
         inhibition = "the program says nothing of its limits"
-        return Step(reference=Reference(workingstep="", inhibition=inhibition))
-    return Step(
+        return LoopStep(reference=Reference(workingstep="", inhibition=inhibition))
+    return LoopStep(
         reference=_reference(planned, advice),
         tool=advice.tool.id,
         exponent=planned.exponent,
@@ -146,8 +152,8 @@ def _step(planned: Planned, advice: Advice | None) -> Step:
     )
 
 
-def _reference(planned: Planned, advice: Advice) -> Reference:
-    """What is to be kept, in forces as they are measured.
+def _reference(planned: PlannedWorkingstep, advice: Advice) -> Reference:
+    """Reference of a workingstep, in forces as they are measured.
 
     The plan tells the force of one lip of a drill at its rim; torque over the radius in the
     middle of the lips is that of all of them.

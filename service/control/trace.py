@@ -10,17 +10,17 @@ from dataclasses import dataclass
 from enum import IntEnum, StrEnum
 from math import inf, isfinite, nan
 from types import TracebackType
-from typing import NamedTuple
 
 import numpy as np
 import pyarrow as pa
 
-from controller.cycle import Cycle
-from controller.orders import Event
-from service.buckets import Buckets, Trace
-from service.control.holding import Holdings
+from controller.cycle import LoopCycle
+from controller.orders import LoopEvent
+from service.buckets import BucketedRun, Buckets
+from service.control.holding import HoldTallies
 from service.run_file import WORDS, RunFile
-from simulator.plant.controlled import Truth
+from service.session.rows import Moment
+from simulator.plant.controlled import TrueState
 from simulator.plant.course import NominalCourse
 
 ROWS = 8192
@@ -30,39 +30,8 @@ APART = 0.25
 """s between rows without a revolution, at least"""
 
 
-class Moment(NamedTuple):
-    """One row; NaN: not known, or there is none."""
-
-    time: float
-    progress: float
-    workingstep: str
-    x: float
-    y: float
-    z: float
-    feed_programmed: float
-    feed_actual: float
-    override_commanded: float
-    override_actual: float
-    set_point: float
-    force_measured: float
-    force_peak: float
-    force_true: float
-    force_expected: float
-    force_ratio: float
-    tooth_passing: float
-    once_per_revolution: float
-    spindle_power: float
-    spindle_power_true: float
-    removal_rate: float
-    axial_depth: float
-    flank_wear: float
-    level: str
-    holding: str
-    event: str | None
-
-
-class Kind(StrEnum):
-    """How a column is kept."""
+class ColumnKind(StrEnum):
+    """Storage type of a column."""
 
     EXACT = "64 bits"
     NUMBER = "32 bits"
@@ -70,47 +39,47 @@ class Kind(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class Column:
+class TraceColumn:
     """One column of the file."""
 
     name: str
     unit: str = ""
-    kind: Kind = Kind.NUMBER
+    kind: ColumnKind = ColumnKind.NUMBER
 
 
 COLUMNS = (
-    Column("time_s", "s", Kind.EXACT),
-    Column("progress_s", "s", Kind.EXACT),
-    Column("workingstep", kind=Kind.WORDS),
-    Column("x_axis_position_actual", "mm"),
-    Column("y_axis_position_actual", "mm"),
-    Column("z_axis_position_actual", "mm"),
-    Column("path_feedrate_programmed", "mm/s"),
-    Column("path_feedrate_actual", "mm/s"),
-    Column("override_commanded", "1"),
-    Column("override_actual", "1"),
-    Column("force_set_point", "N"),
-    Column("force_measured", "N"),
-    Column("force_peak", "N"),
-    Column("force_true", "N"),
-    Column("force_expected", "N"),
-    Column("force_ratio", "1"),
-    Column("force_tooth_passing", "N"),
-    Column("force_once_per_revolution", "N"),
-    Column("spindle_power", "W"),
-    Column("spindle_power_true", "W"),
-    Column("removal_rate", "mm³/s"),
-    Column("axial_depth", "mm"),
-    Column("flank_wear", "mm"),
-    Column("level", kind=Kind.WORDS),
-    Column("holding", kind=Kind.WORDS),
-    Column("event", kind=Kind.WORDS),
+    TraceColumn("time_s", "s", ColumnKind.EXACT),
+    TraceColumn("progress_s", "s", ColumnKind.EXACT),
+    TraceColumn("workingstep", kind=ColumnKind.WORDS),
+    TraceColumn("x_axis_position_actual", "mm"),
+    TraceColumn("y_axis_position_actual", "mm"),
+    TraceColumn("z_axis_position_actual", "mm"),
+    TraceColumn("path_feedrate_programmed", "mm/s"),
+    TraceColumn("path_feedrate_actual", "mm/s"),
+    TraceColumn("override_commanded", "1"),
+    TraceColumn("override_actual", "1"),
+    TraceColumn("force_set_point", "N"),
+    TraceColumn("force_measured", "N"),
+    TraceColumn("force_peak", "N"),
+    TraceColumn("force_true", "N"),
+    TraceColumn("force_expected", "N"),
+    TraceColumn("force_ratio", "1"),
+    TraceColumn("force_tooth_passing", "N"),
+    TraceColumn("force_once_per_revolution", "N"),
+    TraceColumn("spindle_power", "W"),
+    TraceColumn("spindle_power_true", "W"),
+    TraceColumn("removal_rate", "mm³/s"),
+    TraceColumn("axial_depth", "mm"),
+    TraceColumn("flank_wear", "mm"),
+    TraceColumn("level", kind=ColumnKind.WORDS),
+    TraceColumn("holding", kind=ColumnKind.WORDS),
+    TraceColumn("event", kind=ColumnKind.WORDS),
 )
 """in the order of :class:`Moment`"""
 
 
-class Signal(IntEnum):
-    """What plots need of a row; the number is its column in the trace."""
+class ControlSignal(IntEnum):
+    """Signals of a row that plots need; the number is its column in the trace."""
 
     FEED_PROGRAMMED = 0
     FEED_ACTUAL = 1
@@ -127,12 +96,16 @@ class Signal(IntEnum):
     FLANK_WEAR = 12
 
 
-_PLACES = [Moment._fields.index(signal.name.lower()) for signal in Signal]
+_PLACES = [Moment._fields.index(signal.name.lower()) for signal in ControlSignal]
 
 
 def control_schema() -> pa.Schema:
     """Names and types of the columns, each with its unit as metadata."""
-    kinds = {Kind.EXACT: pa.float64(), Kind.NUMBER: pa.float32(), Kind.WORDS: WORDS}
+    kinds = {
+        ColumnKind.EXACT: pa.float64(),
+        ColumnKind.NUMBER: pa.float32(),
+        ColumnKind.WORDS: WORDS,
+    }
     return pa.schema([
         pa.field(column.name, kinds[column.kind], metadata={"unit": column.unit})
         for column in COLUMNS
@@ -141,7 +114,7 @@ def control_schema() -> pa.Schema:
 
 @dataclass(slots=True)
 class _Sums:
-    """What was true since the last row. Running state."""
+    """Sums since the last row. Running state."""
 
     period: float = 0.0
     feed: float = 0.0
@@ -150,7 +123,7 @@ class _Sums:
     power: float = 0.0
     removal: float = 0.0
 
-    def add(self, cycle: Cycle, truth: Truth) -> None:
+    def add(self, cycle: LoopCycle, truth: TrueState) -> None:
         reading = cycle.reading
         period = reading.period
         self.period += period
@@ -167,7 +140,7 @@ class ControlTrace:
     Parameters
     ----------
     course : NominalCourse
-    holdings : Holdings
+    holdings : HoldTallies
         Which has seen each cycle before.
     workingsteps : sequence of str
         Ids by their number, from 1.
@@ -182,7 +155,7 @@ class ControlTrace:
     def __init__(
         self,
         course: NominalCourse,
-        holdings: Holdings,
+        holdings: HoldTallies,
         *,
         workingsteps: Sequence[str],
         file: RunFile | None = None,
@@ -193,11 +166,11 @@ class ControlTrace:
         self._sink = sink
         self._course, self._holdings = course, holdings
         self._names = ("", *workingsteps)
-        self._buckets = Buckets(len(Signal)) if has_trace else None
+        self._buckets = Buckets(len(ControlSignal)) if has_trace else None
         self._moments: list[Moment] = []
         self._sums = _Sums()
         self._events: list[str] = []
-        self._last: tuple[Cycle, Truth] | None = None
+        self._last: tuple[LoopCycle, TrueState] | None = None
         self._written = -inf
 
     def __enter__(self) -> "ControlTrace":
@@ -221,10 +194,10 @@ class ControlTrace:
 
     @property
     def rows(self) -> int:
-        """That are in the file."""
+        """Number of rows written."""
         return 0 if self.file is None else self.file.rows
 
-    def __call__(self, cycle: Cycle, truth: Truth) -> None:
+    def __call__(self, cycle: LoopCycle, truth: TrueState) -> None:
         """One more cycle, and what really was."""
         self._sums.add(cycle, truth)
         for event in cycle.events:
@@ -234,11 +207,11 @@ class ControlTrace:
         if is_due:
             self._add(cycle, truth)
 
-    def note(self, event: Event) -> None:
+    def note(self, event: LoopEvent) -> None:
         """Something that happened, for the row that is to come."""
         self._events.append(f"{event.kind.value}: {event.text}")
 
-    def trace(self) -> Trace | None:
+    def trace(self) -> BucketedRun | None:
         """The run for plots; None when none was asked for."""
         return None if self._buckets is None else self._buckets.trace()
 
@@ -248,7 +221,7 @@ class ControlTrace:
             self._add(*self._last)
         self._flush()
 
-    def _add(self, cycle: Cycle, truth: Truth) -> None:
+    def _add(self, cycle: LoopCycle, truth: TrueState) -> None:
         """One more row."""
         moment = self._moment(cycle, truth)
         self._moments.append(moment)
@@ -260,7 +233,7 @@ class ControlTrace:
         if len(self._moments) >= ROWS:
             self._flush()
 
-    def _moment(self, cycle: Cycle, truth: Truth) -> Moment:
+    def _moment(self, cycle: LoopCycle, truth: TrueState) -> Moment:
         reading, sums, turn, course = cycle.reading, self._sums, cycle.revolution, self._course
         x, y, z = course.position[truth.cell].tolist()
         period, weight = sums.period, cycle.weight
@@ -307,9 +280,9 @@ class ControlTrace:
             ])
 
 
-def _array(column: Column, values: Sequence[object]) -> pa.Array:
+def _array(column: TraceColumn, values: Sequence[object]) -> pa.Array:
     """One column of the file."""
-    if column.kind is Kind.WORDS:
+    if column.kind is ColumnKind.WORDS:
         return pa.array(values, pa.string()).dictionary_encode()
-    kind = pa.float64() if column.kind is Kind.EXACT else pa.float32()
+    kind = pa.float64() if column.kind is ColumnKind.EXACT else pa.float32()
     return pa.array(np.array(values), kind, from_pandas=True)

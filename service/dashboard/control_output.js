@@ -124,7 +124,7 @@ export class Output {
 
   showLamp(status, isAtRest) {
     const [tone, word] = !status ? ["idle", "NO RUN"] : isAtRest ? ["idle", "AT REST"]
-      : status.is_over ? ["over", "OVER"] : ["safe", "SAFE"];
+      : status.is_overloaded ? ["over", "OVER"] : ["safe", "SAFE"];
     if (this.lampWord.textContent === word) return;
     if (tone === "over" || this.lamp.classList.contains("over")) announce(`power limit: ${word}`);
     this.lampWord.textContent = word;

@@ -20,7 +20,7 @@ const PACES = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100];
 export function bookOf(document) {
   const { schemas } = document.components;
   const example = document.paths["/v1/trials"].post.requestBody.content["application/json"].example;
-  const usualRun = Object.fromEntries(Object.entries(schemas.ControlBody.properties)
+  const usualRun = Object.fromEntries(Object.entries(schemas.ControlRequest.properties)
     .map(([name, property]) => [name, property.default]));
   return { trial: schemas.TrialInputs, run: schemas.ControlChanges, usual: example.inputs, usualRun,
     milling: schemas.MillingType.enum, laws: schemas.LawName.enum,

@@ -1,4 +1,4 @@
-"""What all processes of jobs have in common: loaded once, where they are forked from."""
+"""Modules of all job processes: loaded once, in the process that they are forked from."""
 
 from importlib import import_module
 
@@ -9,7 +9,7 @@ for name in (
     "service.jobs.simulate",
     "service.jobs.steer",
     "service.paths.toolpaths",
-    "service.report",
-    "service.simulation.report",
+    "service.plan_output",
+    "service.simulation.output",
 ):
     import_module(name)

@@ -24,13 +24,13 @@ from typing import IO, Any
 import structlog
 
 from kbe.store import open_store
-from service.depot import jobs
-from service.depot.folder import Depot, known_depot
-from service.depot.jobs import Job, State
 from service.errors import Conflict, Unavailable
 from service.jobs import child
 from service.jobs.task import UNFINISHED, clear
 from service.problem import plain_problem
+from service.storage import jobs
+from service.storage.folder import DataFolder, known_data_folder
+from service.storage.jobs import Job, JobState
 
 LOOK = 0.05
 """s between two looks at the queue"""
@@ -42,7 +42,7 @@ GRACE = 5.0
 """s that a cancelled job has to end by itself"""
 
 LONGEST = 2 * 3600.0
-"""s of a job that waits for nobody: a program that takes longer is a slip, or an attack"""
+"""time limit of a job without user input, s: a longer one is a mistake, or an attack"""
 
 LONGEST_PACED = 12 * 3600.0
 """s of a job that waits for people or the clock: longer than a shift it was forgotten"""
@@ -66,11 +66,11 @@ class Running:
 
 
 @dataclass(frozen=True, kw_only=True)
-class End:
-    """What a job came to whose process said nothing."""
+class SilentEnd:
+    """End of a job whose process did not report one."""
 
     job: Job
-    state: State
+    state: JobState
     problem: Mapping[str, Any] | None
 
 
@@ -78,12 +78,12 @@ class End:
 class Runner:
     """Runs jobs until it is told to stop. Running state."""
 
-    depot: Depot
+    data_folder: DataFolder
     workers: int
     """jobs at once, paced ones aside"""
     is_stopping: bool = False
     running: dict[str, Running] = field(default_factory=dict)
-    _ends: list[End] = field(default_factory=list)
+    _ends: list[SilentEnd] = field(default_factory=list)
     """that are not in the database yet"""
     _has_recovered: bool = False
     _is_answered: bool = True
@@ -115,22 +115,22 @@ class Runner:
     def _turn(self, context: multiprocessing.context.ForkServerContext) -> None:
         """All that needs the database: what could not be done now is done in the next turn."""
         if not self._has_recovered:
-            jobs.recover(self.depot)
+            jobs.recover(self.data_folder)
             self._has_recovered = True
         if time.monotonic() - self._beaten_at > BEAT:
-            beat(self.depot)
+            beat(self.data_folder)
             self._beaten_at = time.monotonic()
         while self._ends:
             end = self._ends[0]
-            jobs.finish(self.depot, end.job, end.state, problem=end.problem)
+            jobs.finish(self.data_folder, end.job, end.state, problem=end.problem)
             del self._ends[0]
         if self.running:
-            for job in jobs.running(self.depot):
+            for job in jobs.running(self.data_folder):
                 if job.is_cancelling and job.id in self.running:
                     _ask_to_end(self.running[job.id])
         for is_paced in (False, True):
             if self._has_room(is_paced=is_paced):
-                claimed = jobs.claim(self.depot, is_paced=is_paced)
+                claimed = jobs.claim(self.data_folder, is_paced=is_paced)
                 if claimed is not None:
                     self._start(context, claimed)
 
@@ -141,13 +141,13 @@ class Runner:
 
     def _start(self, context: multiprocessing.context.ForkServerContext, job: Job) -> None:
         LOG.info("job started", job=job.id, kind=job.kind.value, attempt=job.attempt)
-        arguments = (str(self.depot.root), self.depot.knowledge, job.id)
+        arguments = (str(self.data_folder.root), self.data_folder.knowledge, job.id)
         process = context.Process(target=child.main, args=arguments, daemon=False)
         try:
             process.start()
         except (OSError, EOFError) as error:
             problem = jobs.lost(f"it could not be started: {error}")
-            self._ends.append(End(job=job, state=State.FAILED, problem=problem))
+            self._ends.append(SilentEnd(job=job, state=JobState.FAILED, problem=problem))
             return
         self.running[job.id] = Running(job=job, process=process)
 
@@ -165,13 +165,13 @@ class Runner:
         """A process has ended; one that said nothing of its job was lost."""
         job, code = each.job, each.process.exitcode
         each.process.close()
-        clear(self.depot.job_folder(job.id), UNFINISHED)
+        clear(self.data_folder.job_folder(job.id), UNFINISHED)
         if each.asked_at is not None:
-            end = End(job=job, state=State.CANCELLED, problem=None)
+            end = SilentEnd(job=job, state=JobState.CANCELLED, problem=None)
         elif each.is_overdue:
-            end = End(job=job, state=State.FAILED, problem=_too_long(job))
+            end = SilentEnd(job=job, state=JobState.FAILED, problem=_too_long(job))
         else:
-            end = End(job=job, state=State.FAILED, problem=jobs.lost(_why(code)))
+            end = SilentEnd(job=job, state=JobState.FAILED, problem=jobs.lost(_why(code)))
         self._ends.append(end)
         LOG.info("job ended", job=job.id, kind=job.kind.value, exit_code=code)
 
@@ -214,9 +214,9 @@ def _why(code: int | None) -> str:
     return f"exit code {code}"
 
 
-def beat(depot: Depot) -> None:
+def beat(data_folder: DataFolder) -> None:
     """A sign of life."""
-    with depot.database.writing() as connection:
+    with data_folder.database.writing() as connection:
         connection.execute(
             "INSERT INTO runner VALUES (1, ?, ?) "
             "ON CONFLICT (id) DO UPDATE SET pid = excluded.pid, seen = excluded.seen",
@@ -224,9 +224,9 @@ def beat(depot: Depot) -> None:
         )
 
 
-def is_alive(depot: Depot) -> bool:
-    """Whether a runner has given a sign of life lately."""
-    with depot.database.reading() as connection:
+def is_alive(data_folder: DataFolder) -> bool:
+    """Whether a runner has shown a heartbeat lately."""
+    with data_folder.database.reading() as connection:
         row = connection.execute("SELECT seen FROM runner").fetchone()
     return row is not None and time.time() - float(row["seen"]) < 5.0 * BEAT
 
@@ -256,11 +256,11 @@ def main(root: str, knowledge: str, workers: int, parent: int) -> None:
     ServiceError
         When the folder cannot be used.
     """
-    depot = known_depot(Path(root), knowledge=knowledge)
-    with locked(depot.root):
-        with open_store(depot.knowledge):
+    data_folder = known_data_folder(Path(root), knowledge=knowledge)
+    with locked(data_folder.root):
+        with open_store(data_folder.knowledge):
             """made when it is new"""
-        runner = Runner(depot=depot, workers=workers)
+        runner = Runner(data_folder=data_folder, workers=workers)
 
         def stop(_signal: int, _frame: FrameType | None) -> None:
             runner.is_stopping = True

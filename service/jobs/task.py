@@ -1,22 +1,29 @@
-"""What a job is given to work with: its request, its folder, and whom to tell."""
+"""Running job: its request, its folder, and its progress."""
 
 import time
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import orjson
 
-from service.depot import jobs
-from service.depot.folder import Depot
-from service.depot.jobs import Job, Kind
 from service.errors import NotFound, Unavailable
 from service.files import write_atomically
 from service.live.folder import LiveFolder
 from service.live.storage import storing
 from service.progress import share_in
+from service.requests.advice import AdviceRequest
+from service.requests.fields import R, loaded
+from service.requests.runs import RunRequest
+from service.storage import jobs
+from service.storage.folder import DataFolder
+from service.storage.jobs import Job, JobKind
+from service.storage.library import machine_word, material_word
+
+N = TypeVar("N", bound=AdviceRequest | RunRequest)
+"""names machine and material"""
 
 RESULT = "result.json"
 OPTIMISED = "optimised.stpnc"
@@ -35,26 +42,33 @@ APART = 0.5
 
 
 @dataclass(kw_only=True)
-class Task:
+class RunningJob:
     """A job that runs. Running state."""
 
-    depot: Depot
+    data_folder: DataFolder
     job: Job
     _said: float = field(default=0.0)
 
-    @property
-    def request(self) -> dict[str, Any]:
-        """As it was asked for."""
-        return dict(self.job.request)
+    def request(self, kind: type[R]) -> R:
+        """Request of the job."""
+        return loaded(kind, self.job.request)
+
+    def named(self, request: N) -> N:
+        """The request with machine and material of the shop by their files."""
+        return replace(
+            request,
+            machine=machine_word(self.data_folder, request.machine),
+            material=material_word(self.data_folder, request.material),
+        )
 
     @property
     def folder(self) -> Path:
-        """Where results go."""
-        return self.depot.job_folder(self.job.id)
+        """Folder of the results."""
+        return self.data_folder.job_folder(self.job.id)
 
     @property
     def live(self) -> LiveFolder:
-        """Where those look who watch it."""
+        """Folder of the live run."""
         return LiveFolder(path=self.folder)
 
     def tell(self, message: str) -> None:
@@ -64,12 +78,12 @@ class Task:
             self.progress(share, message.split("]", 1)[-1].strip())
 
     def progress(self, share: float, message: str) -> None:
-        """How far it is; the next word does when the database does not answer."""
+        """Report the progress; a report that fails is made up for by the next."""
         now = time.monotonic()
         if now - self._said >= APART:
             self._said = now
             with suppress(Unavailable):
-                jobs.tell(self.depot, self.job, share=min(share, 1.0), message=message)
+                jobs.tell(self.data_folder, self.job, share=min(share, 1.0), message=message)
 
     def keep(self, result: Any) -> None:
         """Write the result; numpy's arrays become lists, NaN becomes null."""
@@ -77,7 +91,7 @@ class Task:
         write_atomically(self.folder / RESULT, orjson.dumps(result, option=option))
 
     def make_folder(self) -> None:
-        """Where results go, without what another attempt has left half done."""
+        """Make the folder of the results, and clear what another attempt left half done."""
         with storing("folder of the job"):
             self.folder.mkdir(mode=0o700, exist_ok=True)
             clear(self.folder, UNFINISHED)
@@ -90,7 +104,7 @@ class Task:
         NotFound
             When it was deleted.
         """
-        return program_file(self.depot, program=self.job.program, source=self.job.source)
+        return program_file(self.data_folder, program=self.job.program, source=self.job.source)
 
 
 def clear(folder: Path, patterns: Sequence[str]) -> None:
@@ -101,7 +115,7 @@ def clear(folder: Path, patterns: Sequence[str]) -> None:
                 file.unlink()
 
 
-def program_file(depot: Depot, *, program: str, source: str) -> tuple[Path, str]:
+def program_file(data_folder: DataFolder, *, program: str, source: str) -> tuple[Path, str]:
     """The bytes of a program, or of what an advice made of it, and what it is called.
 
     Raises
@@ -109,18 +123,18 @@ def program_file(depot: Depot, *, program: str, source: str) -> tuple[Path, str]
     NotFound
         When there is none.
     """
-    from service.depot import programs  # noqa: PLC0415 (used by those who need a name)
+    from service.storage import programs  # noqa: PLC0415 (used by those who need a name)
 
-    name = programs.get(depot, program).name
+    name = programs.get(data_folder, program).name
     if not source:
-        return depot.program_file(program), name
-    jobs.get(depot, source, Kind.ADVICE)
-    file = depot.job_folder(source) / OPTIMISED
+        return data_folder.program_file(program), name
+    jobs.get(data_folder, source, JobKind.ADVICE)
+    file = data_folder.job_folder(source) / OPTIMISED
     if not file.is_file():
         raise NotFound("optimised program of advice", source)
     return file, optimised_name(name)
 
 
 def optimised_name(name: str) -> str:
-    """What a program is called once it is optimised."""
+    """File name of an optimised program."""
     return f"{Path(name).stem}.optimised.stpnc"

@@ -1,1 +1,1 @@
-"""What the user does with the knowledge base."""
+"""Verbs of the knowledge base."""

@@ -11,7 +11,7 @@ from math import isfinite
 from pathlib import Path
 from typing import Any
 
-from kbe.rows import OUTCOME, Leaf
+from kbe.rows import OUTCOME, AttributeColumn
 from service.files import read_bytes
 from service.knowledge.verbs import record
 from stepnc_model.errors import StepNcError
@@ -69,7 +69,7 @@ def _outcome(row: object, where: str) -> ProcessOutcome:
     return outcome
 
 
-def _value(leaf: Leaf, value: Any, where: str) -> Any:
+def _value(leaf: AttributeColumn, value: Any, where: str) -> Any:
     """The value of a key as the noun has it."""
     if value is None:
         if leaf.is_optional:
@@ -89,7 +89,7 @@ def _value(leaf: Leaf, value: Any, where: str) -> Any:
 
 
 def _is_too_large(value: object) -> bool:
-    """Whether it is an integer that no column holds."""
+    """Whether it is an integer that is too large for a column."""
     return isinstance(value, int) and abs(value) > LARGEST
 
 
@@ -104,7 +104,7 @@ def _number(value: Any) -> float | None:
     return number if isfinite(number) else None
 
 
-def _moment(leaf: Leaf, value: Any, where: str) -> datetime:
+def _moment(leaf: AttributeColumn, value: Any, where: str) -> datetime:
     try:
         moment = datetime.fromisoformat(value)
     except (ValueError, TypeError):

@@ -1,4 +1,4 @@
-"""What a plan takes from the knowledge base: accepted factors on k_c, by tool."""
+"""Corrections for a plan from the knowledge base: accepted factors on k_c, by tool."""
 
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from optimiser.safety import USUAL_QUANTILE
 from simulator.spec import Machine, MaterialMatch
 from stepnc_model.errors import Finding, Severity
-from stepnc_model.program import Program, Workingstep
+from stepnc_model.program import Program, ResolvedWorkingstep
 from stepnc_model.tool import tool_of
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 def factors_for(  # noqa: PLR0913 (all that a context is made of)
     place: str,
     program: Program,
-    steps: Iterable[Workingstep],
+    steps: Iterable[ResolvedWorkingstep],
     *,
     machine: Machine,
     material: MaterialMatch,
@@ -30,7 +30,7 @@ def factors_for(  # noqa: PLR0913 (all that a context is made of)
     place : str
         File or URL; when empty that of the environment, and where there is none: no factors.
     program : Program
-    steps : iterable of Workingstep
+    steps : iterable of ResolvedWorkingstep
     machine : Machine
     material : MaterialMatch
     safety : float
@@ -62,7 +62,7 @@ def factors_for(  # noqa: PLR0913 (all that a context is made of)
 
 
 def finding_of(factor: "AcceptedFactor", *, safety: float) -> Finding:
-    """What the user reads of a factor."""
+    """Note on a factor for the user."""
     when = factor.accepted_at.date().isoformat()
     text = (
         f"tool '{factor.tool}': learned k_c × {factor.centre:.3f} from {factor.outcomes} "

@@ -11,19 +11,17 @@ from datetime import UTC, datetime
 from kbe.corrections import learned
 from kbe.evaluation import (
     EvaluationRow,
-    Grouping,
-    RowFilter,
-    SortKey,
     evaluation,
     ordered,
     selected,
 )
 from kbe.groups import Group
-from kbe.selection import EVERYTHING, Selection
+from kbe.selection import Selection
 from kbe.side import Knowledge
 from kbe.store import Store
 from service.knowledge.verbs import readable, shown
 from service.reading import Tell, silent
+from service.requests.knowledge import EvaluationRequest
 from stepnc_model.outcome import Context
 
 MANY = 100_000
@@ -31,20 +29,10 @@ MANY = 100_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class TableRequest:
-    """Which table."""
-
-    selection: Selection = EVERYTHING
-    grouping: Grouping = Grouping.FEATURE
-    keep: RowFilter = RowFilter.ALL
-    by: SortKey = SortKey.NAME
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class EvaluationTable:
     """The table and what it was made from."""
 
-    request: TableRequest
+    request: EvaluationRequest
     place: str
     """as people may see it"""
     outcomes: int
@@ -65,7 +53,7 @@ class Summary:
     made_at: datetime
 
 
-def table(place: str, request: TableRequest, *, tell: Tell = silent) -> EvaluationTable:
+def table(place: str, request: EvaluationRequest, *, tell: Tell = silent) -> EvaluationTable:
     """Read the outcomes that are meant, and evaluate them.
 
     Factors are learned from all outcomes of a context, also from those that the selection
@@ -85,7 +73,7 @@ def table(place: str, request: TableRequest, *, tell: Tell = silent) -> Evaluati
             if outcomes > MANY:
                 tell(f"reading {outcomes} outcomes; --summary answers at once")
             rows = _rows(store, request, at=now)
-    kept = ordered(selected(rows, request.keep), request.by)
+    kept = ordered(selected(rows, request.only), request.sort)
     return EvaluationTable(
         request=request,
         place=shown(place),
@@ -103,7 +91,9 @@ def summary(place: str, selection: Selection) -> Summary:
     return Summary(place=shown(place), groups=groups, made_at=datetime.now(UTC))
 
 
-def _rows(store: Store, request: TableRequest, *, at: datetime) -> tuple[EvaluationRow, ...]:
+def _rows(
+    store: Store, request: EvaluationRequest, *, at: datetime
+) -> tuple[EvaluationRow, ...]:
     """The whole table."""
     present = {group.context for group in store.groups(request.selection)}
     return evaluation(
@@ -114,7 +104,7 @@ def _rows(store: Store, request: TableRequest, *, at: datetime) -> tuple[Evaluat
 
 
 def _knowledge(store: Store, contexts: Iterable[Context], *, at: datetime) -> Knowledge:
-    """What is learned and what is in force; one context after the other in memory."""
+    """Learned factors and those in force; one context after the other in memory."""
     proposed, accepted = {}, {}
     for context in contexts:
         within = Selection(

@@ -8,27 +8,27 @@ from datetime import datetime
 from pathlib import Path
 
 from kbe.factor import interval
-from kbe.ledger import Entry
+from kbe.ledger import StoredCorrection
 from kbe.rows import CORRECTION, OUTCOME
 from kbe.schema import DECIDED
 from kbe.selection import Selection
-from service.flat_file import Field, Format, Row, write_rows
+from service.flat_file import FileColumn, Format, Row, write_rows
 from service.knowledge.place import require_apart
 from service.knowledge.verbs import corrections, selected_outcomes
 from stepnc_model.outcome import ProcessOutcome
 
-OUTCOME_FIELDS = tuple(Field(name=leaf.name, kind=leaf.kind) for leaf in OUTCOME.leaves)
+OUTCOME_FIELDS = tuple(FileColumn(name=leaf.name, kind=leaf.kind) for leaf in OUTCOME.leaves)
 
 CORRECTION_FIELDS = (
-    Field(name="id", kind=int),
-    *(Field(name=leaf.name, kind=leaf.kind) for leaf in CORRECTION.leaves
+    FileColumn(name="id", kind=int),
+    *(FileColumn(name=leaf.name, kind=leaf.kind) for leaf in CORRECTION.leaves
       if leaf.name not in DECIDED),
-    Field(name="factor", kind=float),
-    Field(name="factor_low", kind=float),
-    Field(name="factor_high", kind=float),
-    Field(name="standing", kind=str),
-    Field(name="decided_by", kind=str),
-    Field(name="decided_at", kind=datetime),
+    FileColumn(name="factor", kind=float),
+    FileColumn(name="factor_low", kind=float),
+    FileColumn(name="factor_high", kind=float),
+    FileColumn(name="standing", kind=str),
+    FileColumn(name="decided_by", kind=str),
+    FileColumn(name="decided_at", kind=datetime),
 )  # fmt: skip
 
 
@@ -56,7 +56,7 @@ def outcome_rows(outcomes: Iterable[ProcessOutcome]) -> Iterator[Row]:
     return map(OUTCOME.row, outcomes)
 
 
-def correction_rows(entries: Sequence[Entry]) -> Iterator[Row]:
+def correction_rows(entries: Sequence[StoredCorrection]) -> Iterator[Row]:
     """Columns of the database, the factor with its 90 % interval, and the last decision."""
     for entry in entries:
         found = interval(entry.correction)

@@ -1,100 +1,243 @@
-"""The evaluation table and its summary in the form that was asked for, to stdout or a file."""
+"""Outcomes and corrections as text, in the user's units, and as JSON.
 
-import sys
-from collections.abc import Iterable, Sequence
-from pathlib import Path
+Keys of JSON carry their units, which are canonical as in the database and in exports; others
+parse them.
+"""
 
-from kbe.selection import Selection
-from service.files import write_atomically
-from service.flat_file import Field, Format, Row, csv_lines, write_rows
-from service.knowledge.evaluated import TableRequest, summary, table
-from service.knowledge.place import require_apart
-from service.reading import Tell
-from service.terminal import write_out
-from stepnc_model.errors import StepNcError
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict
+from math import exp
 
+from kbe.backup import Content
+from kbe.factor import interval
+from kbe.ledger import Standing, StoredCorrection
+from kbe.rows import OUTCOME
+from kbe.statistics import Evaluated, quantity_of
+from service.knowledge.evaluation_columns import factor
+from service.knowledge.export import correction_rows
+from service.knowledge.verbs import Listing
+from service.rendering.columns import Column, shown, visible
+from service.rendering.records import dump, plain
+from service.rendering.text import GREEN, one_line, print_line, print_table
+from stepnc_model.outcome import EvaluatedQuantity, ProcessOutcome
+from stepnc_model.units import m_min_from_speed, mm_min_from_speed, um_from_mm
 
-def put_table(
-    place: str, request: TableRequest, *, form: str, output: Path | None, tell: Tell
-) -> int:
-    """Make the table and put it where it is wanted; how many outcomes it is of.
+NOTHING = "–"
+"""not known"""
 
-    Raises
-    ------
-    KnowledgeError, WriteError
-        When it cannot be made, or not be written.
-    """
-    _require_output(form, output)
-    require_apart(place, output)
-    found = table(place, request, tell=tell)
-    if form in {Format.CSV, Format.PARQUET}:
-        from service.knowledge.evaluation_export import FIELDS, table_rows  # noqa: PLC0415
+Quantity = Callable[[ProcessOutcome], EvaluatedQuantity]
+"""of an outcome, in the user's unit"""
 
-        _put_rows(FIELDS, table_rows(found.rows), form=Format(form), output=output)
-    elif form == Format.JSON:
-        from service.knowledge.evaluation_export import table_json  # noqa: PLC0415
+EVALUATED: Mapping[str, Quantity] = {
+    "Ra µm": lambda each: _scaled(each.roughness, um_from_mm(1.0)),
+    "time s": lambda each: each.time,
+    "force N": lambda each: each.force,
+    "feed mm/min": lambda each: _scaled(each.feed, mm_min_from_speed(1.0)),
+}
+"""the four quantities that are evaluated, by their headings"""
 
-        _put(table_json(found), output)
-    elif form == "html":
-        from service.knowledge.evaluation_page import evaluation_page  # noqa: PLC0415 (plotly)
-
-        _put(evaluation_page(found), output)
-    elif found.outcomes or output is not None:
-        from service.knowledge.evaluation_table import (  # noqa: PLC0415
-            screen_width,
-            table_text,
-            wants_colours,
-        )
-
-        is_file = output is not None
-        width = sys.maxsize if is_file else screen_width()
-        _put(
-            table_text(found, width=width, is_coloured=not is_file and wants_colours()), output
-        )
-    return found.outcomes
+QUANTITIES: Mapping[str, Quantity] = {
+    **EVALUATED,
+    "feed per tooth mm": lambda each: each.feed_per_tooth,
+    "step depth mm": lambda each: each.step_depth,
+}
+"""all that has a plan and a measurement"""
 
 
-def put_summary(place: str, selection: Selection, *, form: str, output: Path | None) -> int:
-    """The same for the summary."""
-    _require_output(form, output)
-    require_apart(place, output)
-    if form == "html" or (form == "text" and output is not None):
-        raise StepNcError("a summary in a file is CSV, JSON or Parquet")
-    found = summary(place, selection)
-    if form in {Format.CSV, Format.PARQUET}:
-        from service.knowledge.evaluation_summary import SUMMARY_FIELDS, summary_rows  # noqa: PLC0415
-
-        rows = summary_rows(found.groups)
-        _put_rows(SUMMARY_FIELDS, rows, form=Format(form), output=output)
-    elif form == Format.JSON:
-        from service.knowledge.evaluation_summary import summary_json  # noqa: PLC0415
-
-        _put(summary_json(found), output)
-    elif found.groups:
-        from service.knowledge.evaluation_summary import print_summary  # noqa: PLC0415
-
-        print_summary(found)
-    return len(found.groups)
+def _scaled(quantity: EvaluatedQuantity, by: float) -> EvaluatedQuantity:
+    """In another unit."""
+    predicted, measured = quantity.predicted, quantity.measured
+    return EvaluatedQuantity(
+        predicted=None if predicted is None else predicted * by,
+        measured=None if measured is None else measured * by,
+    )
 
 
-def _require_output(form: str, output: Path | None) -> None:
-    """Bytes are not for a terminal."""
-    if form == Format.PARQUET and output is None:
-        raise StepNcError("Parquet goes to a file; name it: -o FILE.parquet")
+def told(quantity: EvaluatedQuantity) -> str:
+    """Planned, measured and deviation in a cell."""
+    values = (quantity.predicted, quantity.measured)
+    if values == (None, None):
+        return ""
+    share = quantity.deviation
+    pair = " -> ".join(shown(each, ".3g", nothing=NOTHING) for each in values)
+    return pair if share is None else f"{pair} ({100.0 * share:+.0f} %)"
 
 
-def _put(text: str, output: Path | None) -> None:
-    if output is None:
-        sys.stdout.write(text + "\n")
-    else:
-        write_atomically(output, f"{text}\n".encode())
+def _told(of: Quantity) -> Callable[[ProcessOutcome], str]:
+    return lambda outcome: told(of(outcome))
 
 
-def _put_rows(
-    fields: Sequence[Field], rows: Iterable[Row], *, form: Format, output: Path | None
-) -> None:
-    if output is not None:
-        write_rows(output, fields, rows, form=form)
-        return
-    for line in csv_lines(fields, rows):
-        write_out(line)
+LISTING: tuple[Column[ProcessOutcome], ...] = (
+    Column(heading="recorded", value=lambda each: each.recorded_at, is_key=True),
+    Column(heading="run", value=lambda each: each.run, is_key=True),
+    Column(heading="machine", value=lambda each: each.context.machine),
+    Column(heading="material", value=lambda each: each.context.material),
+    Column(heading="tool", value=lambda each: each.context.tool),
+    Column(heading="program", value=lambda each: each.program),
+    Column(heading="workingstep", value=lambda each: each.workingstep),
+    Column(heading="mode", value=lambda each: each.mode),
+    *(Column(heading=heading, value=_told(of)) for heading, of in EVALUATED.items()),
+)
+
+RUN: tuple[Column[tuple[str, EvaluatedQuantity]], ...] = (
+    Column(heading="quantity", value=lambda row: row[0]),
+    Column(heading="planned", form=".4g", value=lambda row: row[1].predicted),
+    Column(heading="measured", form=".4g", value=lambda row: row[1].measured),
+    Column(
+        heading="deviation %",
+        form="+.1f",
+        value=lambda row: None if row[1].deviation is None else 100.0 * row[1].deviation,
+    ),
+)
+
+
+def _feature(outcome: ProcessOutcome) -> str:
+    feature = outcome.feature
+    sizes = {"L": feature.length, "X": feature.width, "a_t": feature.total_depth}
+    size = ", ".join(
+        f"{name} {shown(value, '.3g', nothing=NOTHING)}" for name, value in sizes.items()
+    )
+    return f"{one_line(feature.id)}, {one_line(feature.kind)}: {size} mm"
+
+
+def _operation(outcome: ProcessOutcome) -> str:
+    return (
+        f"{'finishing' if outcome.is_finishing else 'roughing'}, mode "
+        f"{one_line(outcome.mode)}, strategy {one_line(outcome.strategy)}, "
+        f"immersion {outcome.immersion or NOTHING}"
+    )
+
+
+def _cutting_speed(outcome: ProcessOutcome) -> float | None:
+    speed = outcome.cutting_speed
+    return None if speed is None else m_min_from_speed(speed)
+
+
+def _force_ratio(outcome: ProcessOutcome) -> str | None:
+    ratio = outcome.force_ratio
+    if ratio is None:
+        return None
+    return (
+        f"{exp(ratio.log_mean):.3f} ± {100.0 * ratio.log_deviation:.1f} % a reading, "
+        f"{ratio.readings} readings"
+    )
+
+
+FACTS: tuple[Column[ProcessOutcome], ...] = (
+    Column(
+        heading="machine, material, tool",
+        value=lambda each: list(asdict(each.context).values()),
+    ),
+    Column(heading="feature", value=_feature),
+    Column(heading="operation", value=_operation),
+    Column(
+        heading="k_c1.1 of the catalogue, N/mm²",
+        form=".4g",
+        value=lambda each: each.specific_force,
+    ),
+    Column(heading="cutting speed, m/min", form=".3g", value=_cutting_speed),
+    Column(heading="force bound, N", form=".3g", value=lambda each: each.force_bound),
+    Column(heading="samples", value=lambda each: each.trace),
+    Column(heading="force, measured over expected", value=_force_ratio, is_optional=True),
+)
+"""all else that is known of an outcome"""
+
+
+def print_listing(listing: Listing) -> None:
+    """A line for each outcome, newest first."""
+    print_table(LISTING, listing.outcomes)
+    print_line(
+        f"{len(listing.outcomes)} of {listing.total} outcomes; planned -> measured, and "
+        "deviation"
+    )
+
+
+def listing_json(listing: Listing) -> str:
+    """Outcomes, newest first, and how many there are of which these are some."""
+    return dump({
+        "total": listing.total,
+        "outcomes": [plain(OUTCOME.row(each)) for each in listing.outcomes],
+    })
+
+
+def print_run(outcomes: Sequence[ProcessOutcome]) -> None:
+    """One run in full: every workingstep with all that was planned and measured."""
+    first = outcomes[0]
+    print_line(
+        f"run {one_line(first.run)}: {one_line(first.program)}, {len(outcomes)} workingsteps, "
+        f"recorded by {one_line(first.recorded_by)}"
+    )
+    for each in outcomes:
+        print_line("")
+        print_line(f"{one_line(each.workingstep)} ({shown(each.recorded_at)})", GREEN)
+        print_table(RUN, [(name, of(each)) for name, of in QUANTITIES.items()], nothing=NOTHING)
+        for fact in visible(FACTS, [each]):
+            print_line(f"  {fact.heading}: {one_line(fact.text(each))}")
+
+
+def run_json(outcomes: Sequence[ProcessOutcome]) -> str:
+    """One run in full, with the deviations."""
+    return dump({
+        "run": outcomes[0].run,
+        "outcomes": [
+            {
+                **plain(OUTCOME.row(each)),
+                "deviations": {
+                    which.value: quantity_of(each, which).deviation for which in Evaluated
+                },
+            }
+            for each in outcomes
+        ],
+    })
+
+
+def print_corrections(entries: Sequence[StoredCorrection]) -> None:
+    """A line for each correction."""
+    print_table(_correction_columns(_in_force(entries)), entries)
+
+
+def _correction_columns(in_force: frozenset[int]) -> tuple[Column[StoredCorrection], ...]:
+    return (
+        Column(heading="id", value=lambda entry: entry.id),
+        Column(
+            heading="standing",
+            value=lambda entry: "in force" if entry.id in in_force else entry.standing.value,
+        ),
+        Column(heading="machine", value=lambda entry: entry.correction.context.machine),
+        Column(heading="material", value=lambda entry: entry.correction.context.material),
+        Column(heading="tool", value=lambda entry: entry.correction.context.tool),
+        Column(heading="k_c factor", value=lambda entry: factor(interval(entry.correction))),
+        Column(
+            heading="confidence", form=".2f", value=lambda entry: entry.correction.confidence
+        ),
+        Column(heading="outcomes", value=lambda entry: entry.correction.outcomes),
+        Column(heading="proposed", value=lambda entry: entry.correction.proposed_at),
+        Column(heading="decided by", value=lambda entry: entry.decided_by),
+        Column(heading="decided", value=lambda entry: entry.decided_at),
+    )
+
+
+def _in_force(entries: Sequence[StoredCorrection]) -> frozenset[int]:
+    """Of each context the correction that was accepted last."""
+    accepted = [each for each in entries if each.standing is Standing.ACCEPTED]
+    accepted.sort(key=lambda each: each.decided_at or each.correction.proposed_at)
+    return frozenset({each.correction.context: each.id for each in accepted}.values())
+
+
+def corrections_json(entries: Sequence[StoredCorrection]) -> str:
+    """Corrections with what was decided last about them."""
+    return dump({"corrections": [plain(row) for row in correction_rows(entries)]})
+
+
+def print_content(content: Content, *, place: str) -> None:
+    """Content of a knowledge base."""
+    print_line(
+        f"{place}: {content.outcomes} outcomes, {content.corrections} corrections, "
+        f"{content.decisions} decisions"
+    )
+    print_line(f"fingerprint {content.fingerprint}")
+
+
+def content_json(content: Content, *, place: str) -> str:
+    """Content of a knowledge base."""
+    return dump({"place": place, **asdict(content)})

@@ -1,4 +1,4 @@
-"""Where the knowledge base is: what the user names, else the environment, else the usual file.
+"""Location of the knowledge base: from the user, the environment, or the default file.
 
 Knows no database, so that who has none does not load one.
 """
@@ -16,7 +16,7 @@ FOLDER, FILE = "stepnc", "knowledge.db"
 
 
 def named_place(option: str) -> str | None:
-    """What ``--kb`` or the environment names; None: neither does.
+    """Location named by ``--kb`` or the environment; None: neither names one.
 
     Parameters
     ----------
@@ -58,7 +58,7 @@ def usual_file() -> Path:
 
 
 def is_usual(place: str) -> bool:
-    """Whether this is the file that is taken when nothing is named."""
+    """Whether this is the default file."""
     try:
         return place == str(usual_file())
     except StepNcError:

@@ -10,29 +10,31 @@ from datetime import UTC, datetime
 from enum import StrEnum
 from math import expm1
 
-from kbe.acceptance import Bounds, Objection, objections
-from kbe.corrections import Learned, learned
-from kbe.ledger import Entry, Standing
-from kbe.selection import EVERYTHING, Selection
+from kbe.acceptance import AcceptanceBounds, Objection, objections
+from kbe.corrections import LearnedFactor, learned
+from kbe.ledger import Standing, StoredCorrection
+from kbe.selection import Selection
 from kbe.store import Store
 from service.knowledge.verbs import readable
-from stepnc_model.outcome import Context, Correction
+from service.requests.knowledge import ReviewRequest
+from stepnc_model.outcome import Context, LearnedCorrection
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ReviewRequest:
-    """What to learn from, and whether to accept what is beyond doubt."""
+class Acceptance:
+    """How corrections are accepted without a person."""
 
-    selection: Selection = EVERYTHING
-    by: str
-    """who reviews"""
-    is_automatic: bool = False
-    """accept what keeps the bounds"""
-    bounds: Bounds = field(default_factory=Bounds)
+    by: str = ""
+    """who lets them be accepted; empty: nobody"""
+    bounds: AcceptanceBounds = field(default_factory=AcceptanceBounds)
 
 
-class Change(StrEnum):
-    """What a review did about one context."""
+PROPOSE = Acceptance()
+"""nothing is accepted without a person"""
+
+
+class ReviewResult(StrEnum):
+    """Result of a review for one context."""
 
     NOTHING_TO_LEARN = "nothing to learn from"
     PROPOSED = "proposed"
@@ -42,13 +44,13 @@ class Change(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reviewed:
-    """What a review found out about one context."""
+    """Review of one context."""
 
-    learned: Learned
-    change: Change
-    entry: Entry | None
+    learned: LearnedFactor
+    change: ReviewResult
+    entry: StoredCorrection | None
     """the stored correction that says so; None: nothing to learn from"""
-    accepted: Correction | None
+    accepted: LearnedCorrection | None
     """in force before the review"""
     objections: tuple[Objection, ...]
     """against accepting it without a person"""
@@ -61,7 +63,9 @@ AUTOMATIC = "{by} (automatically)"
 """who accepted when no person looked"""
 
 
-def review(place: str, request: ReviewRequest) -> tuple[Reviewed, ...]:
+def review(
+    place: str, request: ReviewRequest, acceptance: Acceptance = PROPOSE
+) -> tuple[Reviewed, ...]:
     """Learn from outcomes and propose what is new or changed, context after context."""
     with readable(place) as store:
         if store is None:
@@ -69,13 +73,13 @@ def review(place: str, request: ReviewRequest) -> tuple[Reviewed, ...]:
         latest = {entry.correction.context: entry for entry in store.corrections()}
         now = datetime.now(UTC)
         found = [
-            _reviewed(store, each, latest.get(each.context), request=request)
+            _reviewed(store, each, latest.get(each.context), acceptance=acceptance)
             for each in _learned(store, request.selection, at=now)
         ]
         return tuple(found)
 
 
-def _learned(store: Store, selection: Selection, *, at: datetime) -> Iterator[Learned]:
+def _learned(store: Store, selection: Selection, *, at: datetime) -> Iterator[LearnedFactor]:
     """One context after the other, so that only the outcomes of one are in memory."""
     for context in store.contexts():
         narrowed = narrowed_to(context, selection)
@@ -96,7 +100,11 @@ def narrowed_to(context: Context, selection: Selection) -> Selection | None:
 
 
 def _reviewed(
-    store: Store, found: Learned, latest: Entry | None, *, request: ReviewRequest
+    store: Store,
+    found: LearnedFactor,
+    latest: StoredCorrection | None,
+    *,
+    acceptance: Acceptance,
 ) -> Reviewed:
     """Propose, and accept where that is wished and nothing speaks against it."""
     accepted = store.accepted(found.context)
@@ -104,38 +112,38 @@ def _reviewed(
     if proposed is None:
         return Reviewed(
             learned=found,
-            change=Change.NOTHING_TO_LEARN,
+            change=ReviewResult.NOTHING_TO_LEARN,
             entry=None,
             accepted=accepted,
             objections=(),
         )
-    entry, change = latest, Change.UNCHANGED
+    entry, change = latest, ReviewResult.UNCHANGED
     if entry is None or is_changed(proposed, entry.correction):
-        entry, change = _proposed(store, proposed), Change.PROPOSED
-    against = objections(proposed, accepted, bounds=request.bounds)
+        entry, change = _proposed(store, proposed), ReviewResult.PROPOSED
+    against = objections(proposed, accepted, bounds=acceptance.bounds)
     # What a person has decided about is not decided again by nobody.
-    if request.is_automatic and not against and entry.standing is Standing.PROPOSED:
-        by, at = AUTOMATIC.format(by=request.by), datetime.now(UTC)
+    if acceptance.by and not against and entry.standing is Standing.PROPOSED:
+        by, at = AUTOMATIC.format(by=acceptance.by), datetime.now(UTC)
         store.accept(entry.id, by=by, at=at)
         taken = replace(entry.correction, accepted_by=by, accepted_at=at)
         entry = replace(
             entry, correction=taken, standing=Standing.ACCEPTED, decided_by=by, decided_at=at
         )
-        change = Change.ACCEPTED
+        change = ReviewResult.ACCEPTED
     return Reviewed(
         learned=found, change=change, entry=entry, accepted=accepted, objections=against
     )
 
 
-def is_changed(proposed: Correction, before: Correction) -> bool:
-    """Whether it says something that the last proposal did not."""
+def is_changed(proposed: LearnedCorrection, before: LearnedCorrection) -> bool:
+    """Whether a proposal differs from the last one."""
     change = abs(expm1(proposed.log_centre - before.log_centre))
     return proposed.outcomes > before.outcomes or change > SAME
 
 
-def _proposed(store: Store, proposed: Correction) -> Entry:
+def _proposed(store: Store, proposed: LearnedCorrection) -> StoredCorrection:
     """Keep a proposal."""
-    return Entry(
+    return StoredCorrection(
         id=store.propose(proposed),
         correction=proposed,
         standing=Standing.PROPOSED,

@@ -1,4 +1,4 @@
-"""What a user does with the knowledge base: one function per verb.
+"""Verbs of the knowledge base: one function each.
 
 A place is a file of SQLite or the address of a PostgreSQL database, see
 :mod:`service.knowledge.place`. Each function opens it, does one thing, and closes it. The
@@ -17,13 +17,13 @@ from kbe import backup as copies
 from kbe.backup import Content
 from kbe.errors import UnknownCorrection
 from kbe.factor import SAFE, factor_at
-from kbe.ledger import Entry
-from kbe.place import parsed_place
+from kbe.ledger import StoredCorrection
 from kbe.selection import EVERYTHING, Selection
 from kbe.store import Store, open_store
+from kbe.store_location import parsed_place
 from service.knowledge.place import is_usual, make_folder
 from stepnc_model.errors import StepNcError
-from stepnc_model.outcome import Context, Correction, ProcessOutcome
+from stepnc_model.outcome import Context, LearnedCorrection, ProcessOutcome
 
 CENTURY = timedelta(days=36_525)
 
@@ -46,7 +46,7 @@ class AcceptedFactor:
     accepted_at: datetime
     outcomes: int
     """that it was learned from"""
-    correction: Correction
+    correction: LearnedCorrection
     """all of it"""
 
 
@@ -93,7 +93,7 @@ def accepted_factors(
         )
 
 
-def _factor(tool: str, correction: Correction, quantile: float) -> AcceptedFactor:
+def _factor(tool: str, correction: LearnedCorrection, quantile: float) -> AcceptedFactor:
     return AcceptedFactor(
         tool=tool,
         factor=factor_at(correction, quantile=quantile),
@@ -211,7 +211,7 @@ def selected_outcomes(place: str, selection: Selection) -> Iterator[Iterator[Pro
         yield iter(()) if store is None else store.outcomes(selection)
 
 
-def corrections(place: str) -> tuple[Entry, ...]:
+def corrections(place: str) -> tuple[StoredCorrection, ...]:
     """All corrections and what was decided about them, in the order of their proposal."""
     with readable(place) as store:
         return () if store is None else store.corrections()
@@ -223,7 +223,7 @@ def contexts(place: str) -> tuple[Context, ...]:
         return () if store is None else store.contexts()
 
 
-def accept(place: str, ids: Sequence[int], *, by: str) -> tuple[Entry, ...]:
+def accept(place: str, ids: Sequence[int], *, by: str) -> tuple[StoredCorrection, ...]:
     """Put corrections in force in the name of a person; none when one is not known.
 
     Raises
@@ -238,7 +238,7 @@ def accept(place: str, ids: Sequence[int], *, by: str) -> tuple[Entry, ...]:
         return _entries(store, ids)
 
 
-def withdraw(place: str, ids: Sequence[int], *, by: str) -> tuple[Entry, ...]:
+def withdraw(place: str, ids: Sequence[int], *, by: str) -> tuple[StoredCorrection, ...]:
     """Take corrections out of force, or refuse proposals; errors as :func:`accept`."""
     with open_store(place, is_new_allowed=False) as store:
         _require_known(store, ids)
@@ -255,7 +255,7 @@ def _require_known(store: Store, ids: Sequence[int]) -> None:
             raise UnknownCorrection(store.place.shown, id=each)
 
 
-def _entries(store: Store, ids: Sequence[int]) -> tuple[Entry, ...]:
+def _entries(store: Store, ids: Sequence[int]) -> tuple[StoredCorrection, ...]:
     by_id = {entry.id: entry for entry in store.corrections()}
     return tuple(by_id[each] for each in dict.fromkeys(ids))
 

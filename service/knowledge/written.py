@@ -1,4 +1,4 @@
-"""What a run showed and what was accepted, written back into the program as entities."""
+"""Outcomes of a run and accepted corrections, written into the program as entities."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,13 +9,13 @@ from service.files import beside, require_place, write_atomically
 from service.knowledge.place import require_apart
 from service.reading import read_program
 from stepnc_model.errors import StepNcError
-from stepnc_model.outcome import Correction, ProcessOutcome
+from stepnc_model.outcome import LearnedCorrection, ProcessOutcome
 from stepnc_model.outcome_record import write_outcomes
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Written:
-    """What went into the file."""
+class WrittenOutcomes:
+    """Content that was written to the file."""
 
     place: Path
     run: str
@@ -23,7 +23,9 @@ class Written:
     corrections: int
 
 
-def write_back(place: str, file: Path, *, run: str = "", output: Path | None = None) -> Written:
+def write_back(
+    place: str, file: Path, *, run: str = "", output: Path | None = None
+) -> WrittenOutcomes:
     """Write the outcomes of one run, and the corrections in force for its tools.
 
     Parameters
@@ -50,7 +52,7 @@ def write_back(place: str, file: Path, *, run: str = "", output: Path | None = N
         outcomes = _outcomes(store, program.name, run)
         corrections = _in_force(store, outcomes)
     write_atomically(target, write_outcomes(program, outcomes, corrections))
-    return Written(
+    return WrittenOutcomes(
         place=target,
         run=outcomes[0].run,
         outcomes=len(outcomes),
@@ -72,7 +74,9 @@ def _outcomes(store: Store, program: str, run: str) -> tuple[ProcessOutcome, ...
     return tuple(newest)
 
 
-def _in_force(store: Store, outcomes: tuple[ProcessOutcome, ...]) -> tuple[Correction, ...]:
+def _in_force(
+    store: Store, outcomes: tuple[ProcessOutcome, ...]
+) -> tuple[LearnedCorrection, ...]:
     """Accepted corrections of the contexts of some outcomes."""
     contexts = dict.fromkeys(outcome.context for outcome in outcomes)
     found = (store.accepted(context) for context in contexts)

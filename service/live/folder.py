@@ -9,10 +9,13 @@ from typing import Any
 
 from service.live.storage import storing
 
+FORMER = {"is_over": "is_overloaded"}
+"""keys of a status as earlier versions wrote them"""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LiveFolder:
-    """Where a run tells, and is told."""
+    """Folder through which a run reports and takes orders."""
 
     path: Path
 
@@ -23,17 +26,17 @@ class LiveFolder:
 
     @property
     def events(self) -> Path:
-        """What happened, a line each."""
+        """Events, a line each."""
         return self.path / "events.jsonl"
 
     @property
     def orders(self) -> Path:
-        """What is asked of the run, a line each."""
+        """Orders to the run, a line each."""
         return self.path / "orders.jsonl"
 
     @property
     def status(self) -> Path:
-        """How it is now."""
+        """Latest status snapshot."""
         return self.path / "status.json"
 
     def write_status(self, status: Mapping[str, Any]) -> None:
@@ -50,9 +53,9 @@ class LiveFolder:
             os.replace(partial, self.status)
 
     def read_status(self) -> dict[str, Any] | None:
-        """How it is now; None: nothing was said yet."""
+        """Latest status snapshot; None: there is none yet."""
         try:
             found: dict[str, Any] = json.loads(self.status.read_text(encoding="utf-8"))
         except FileNotFoundError:
             return None
-        return found
+        return {FORMER.get(key, key): value for key, value in found.items()}

@@ -21,12 +21,12 @@ LONGEST = 1 << 20
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Read:
+class JournalPart:
     """Lines, and where the next begins."""
 
     lines: tuple[dict[str, Any], ...]
     offset: int
-    """bytes from the beginning of the file"""
+    """Offset, bytes from the beginning of the file"""
 
 
 def append(file: Path, entry: Mapping[str, Any]) -> None:
@@ -59,18 +59,18 @@ def _add(descriptor: int, line: bytes) -> None:
         raise
 
 
-def read_on(file: Path, offset: int) -> Read:
+def read_on(file: Path, offset: int) -> JournalPart:
     """Lines from an offset on; none when the file does not exist yet."""
     try:
         with file.open("rb") as opened:
             opened.seek(offset)
             text = opened.read(LONGEST)
     except FileNotFoundError:
-        return Read(lines=(), offset=offset)
+        return JournalPart(lines=(), offset=offset)
     whole = text[: text.rfind(b"\n") + 1]
     lines = (_parsed(line) for line in whole.split(b"\n"))
     found = tuple(line for line in lines if line is not None)
-    return Read(lines=found, offset=offset + len(whole))
+    return JournalPart(lines=found, offset=offset + len(whole))
 
 
 def _parsed(line: bytes) -> dict[str, Any] | None:

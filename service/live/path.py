@@ -55,28 +55,28 @@ Flags = NDArray[np.bool_]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ToolPath:
-    """Where a tool was, N points ascending in time."""
+class TravelledPath:
+    """Path of a tool, N points ascending in time."""
 
     time: Floats
-    """(N,) s"""
+    """Time, (N,) s"""
     position: Floats
-    """(N, 3) mm"""
+    """Position, (N, 3) mm"""
     feed: Floats
-    """(N,) mm/min, along the path"""
+    """Feed, (N,) mm/min, along the path"""
     force: Floats
-    """(N,) N"""
+    """Force, (N,) N"""
     is_rapid: Flags
     """(N,) whether the move that ends here is a rapid one"""
     workingstep: Ints
-    """(N,) counted from 1; 0: none"""
+    """Workingstep, (N,) counted from 1; 0: none"""
 
     def __len__(self) -> int:
         return len(self.time)
 
-    def at(self, kept: Ints) -> "ToolPath":
+    def at(self, kept: Ints) -> "TravelledPath":
         """Some of its points."""
-        return ToolPath(
+        return TravelledPath(
             time=self.time[kept],
             position=self.position[kept],
             feed=self.feed[kept],
@@ -88,27 +88,27 @@ class ToolPath:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Deviation:
-    """How far points that were left out lie from the thinned path, at the same moment."""
+    """Distance of points that were left out from the thinned path, at the same moment."""
 
     length: float
-    """mm"""
+    """Length, mm"""
     feed: float
     """mm/min, outside of rapid moves"""
     force: float
-    """N"""
+    """Force, N"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Shown:
+class ThinnedPath:
     """A thinned path, and how true it is."""
 
-    path: ToolPath
+    path: TravelledPath
     deviation: Deviation
     rows: int
     """that it stands for"""
 
 
-def shown_path(series: Series, points: int) -> Shown:
+def shown_path(series: Series, points: int) -> ThinnedPath:
     """The path in the rows of a run, at most so many points of it.
 
     Raises
@@ -124,15 +124,15 @@ def shown_path(series: Series, points: int) -> Shown:
     if len(pieces) < 2:
         whole = path_of(series)
         path = whole.at(thinned(whole, points))
-        return Shown(path=path, deviation=_deviation(whole, path), rows=len(series))
+        return ThinnedPath(path=path, deviation=_deviation(whole, path), rows=len(series))
     parts = (path_of(series, begin=begin, end=end) for begin, end in pieces)
     rough = _joined([part.at(thinned(part, points)) for part in parts])
     path = rough.at(thinned(rough, points))
     off = [_deviation(path_of(series, begin=begin, end=end), path) for begin, end in pieces]
-    return Shown(path=path, deviation=_greatest(off), rows=len(series))
+    return ThinnedPath(path=path, deviation=_greatest(off), rows=len(series))
 
 
-def path_of(series: Series, *, begin: int = 0, end: int | None = None) -> ToolPath:
+def path_of(series: Series, *, begin: int = 0, end: int | None = None) -> TravelledPath:
     """The path in rows of a run, from one on and up to another.
 
     Raises
@@ -141,7 +141,7 @@ def path_of(series: Series, *, begin: int = 0, end: int | None = None) -> ToolPa
         When the rows have no such columns.
     """
     rows = np.asarray(series.values[begin:end, series.places(COLUMNS)], dtype=np.float64)
-    return ToolPath(
+    return TravelledPath(
         time=rows[:, 0],
         position=rows[:, 1:4],
         feed=rows[:, 4],
@@ -151,14 +151,14 @@ def path_of(series: Series, *, begin: int = 0, end: int | None = None) -> ToolPa
     )
 
 
-def thinned(path: ToolPath, points: int) -> Ints:
-    """Which points to keep: at most so many, ascending; ends and extremes always.
+def thinned(path: TravelledPath, points: int) -> Ints:
+    """Indices of the points to keep: at most so many, ascending; ends and extremes always.
 
     Fewer are kept when more would not be seen, see :data:`FINE_LENGTH`, :data:`FINE_COLOUR`.
 
     Parameters
     ----------
-    path : ToolPath
+    path : TravelledPath
         N points.
     points : int
         At least :data:`FEWEST`.
@@ -186,13 +186,13 @@ def thinned(path: ToolPath, points: int) -> Ints:
     return worth
 
 
-def deviation(path: ToolPath, kept: Ints) -> Deviation:
-    """How far the points between those that were kept are off."""
+def deviation(path: TravelledPath, kept: Ints) -> Deviation:
+    """Distances of the points between those that were kept."""
     return _deviation(path, path.at(kept))
 
 
-def _deviation(path: ToolPath, shown: ToolPath) -> Deviation:
-    """How far the points of a path are off one that stands for it."""
+def _deviation(path: TravelledPath, shown: TravelledPath) -> Deviation:
+    """Distances of the points of a path from one that stands for it."""
     if len(shown) < 2:
         return Deviation(length=0.0, feed=0.0, force=0.0)
     values, kept = _values(path), _values(shown)
@@ -206,16 +206,16 @@ def _deviation(path: ToolPath, shown: ToolPath) -> Deviation:
     )
 
 
-def _values(path: ToolPath) -> Floats:
+def _values(path: TravelledPath) -> Floats:
     """(N, 5) position, feed and force; 0 where they are missing."""
     return np.nan_to_num(np.column_stack([path.position, path.feed, path.force]))
 
 
-def _joined(parts: Sequence[ToolPath]) -> ToolPath:
+def _joined(parts: Sequence[TravelledPath]) -> TravelledPath:
     """One path of those that follow each other."""
-    return ToolPath(**{
+    return TravelledPath(**{
         name: np.concatenate([getattr(part, name) for part in parts])
-        for name in ToolPath.__slots__
+        for name in TravelledPath.__slots__
     })
 
 
@@ -228,7 +228,7 @@ def _greatest(found: Sequence[Deviation]) -> Deviation:
     )
 
 
-def _musts(path: ToolPath) -> Ints:
+def _musts(path: TravelledPath) -> Ints:
     """Both ends, and where each axis, feed and force are least and greatest."""
     cut_feed = np.where(path.is_rapid, 0.0, np.nan_to_num(path.feed))
     columns = (*np.nan_to_num(path.position).T, cut_feed, np.nan_to_num(path.force))
@@ -236,14 +236,14 @@ def _musts(path: ToolPath) -> Ints:
     return np.unique(np.array([0, len(path) - 1, *extremes], dtype=np.int64))
 
 
-def _changes(path: ToolPath) -> Ints:
+def _changes(path: TravelledPath) -> Ints:
     """Both sides of where a rapid move or a workingstep begins or ends."""
     is_other = np.diff(path.is_rapid.astype(np.int64)) != 0
     before = np.flatnonzero(is_other | (np.diff(path.workingstep) != 0))
     return np.union1d(before, before + 1)
 
 
-def _scaled(path: ToolPath) -> Floats:
+def _scaled(path: TravelledPath) -> Floats:
     """(N, 5) position, feed and force in units of what is just not seen.
 
     Feeds of rapid moves, which are not told by colour, count as the greatest feed of a cut.
@@ -302,7 +302,7 @@ def _ranks(time: Floats, values: Floats, fixed: Ints) -> Floats:
 
 
 def _off(time: Floats, values: Floats, *, at: Ints, start: Ints, end: Ints) -> Floats:
-    """How far points are off the straight line between two others, at the same moment."""
+    """Distances of points from the straight line between two others, at the same moment."""
     span = time[end] - time[start]
     share = np.divide(time[at] - time[start], span, out=np.zeros(len(at)), where=span > 0.0)
     line = values[start] + share[:, None] * (values[end] - values[start])

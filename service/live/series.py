@@ -96,13 +96,13 @@ class Series:
 
     columns: tuple[str, ...]
     values: Floats
-    """(N, C), read from the file as they are needed"""
+    """Values, (N, C), read from the file as they are needed"""
 
     def __len__(self) -> int:
         return len(self.values)
 
     def places(self, names: Sequence[str]) -> list[int]:
-        """Where columns stand.
+        """Indices of columns by their names.
 
         Raises
         ------
@@ -121,26 +121,26 @@ class Window:
 
     names: tuple[str, ...]
     time: Floats
-    """(B,) s, of the first row of each"""
+    """Time, (B,) s, of the first row of each"""
     end: Floats
-    """(B,) s, of the last one"""
+    """End, (B,) s, of the last one"""
     low: Floats
-    """(B, S)"""
+    """Low, (B, S)"""
     mean: Floats
-    """(B, S)"""
+    """Mean, (B, S)"""
     high: Floats
-    """(B, S)"""
+    """High, (B, S)"""
     rows: int
     """that the range holds"""
 
     @property
     def is_reduced(self) -> bool:
-        """Whether rows were brought together."""
+        """Whether rows were merged."""
         return self.rows > len(self.time)
 
 
 def open_series(file: Path) -> Series | None:
-    """What a file holds now; None: there is no file, or not even its head."""
+    """Rows of a file; None: there is no file yet, or not even its header."""
     try:
         # Once it is open it stays, whoever deletes it.
         with file.open("rb") as opened:

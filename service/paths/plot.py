@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from stepnc_model.stock import Stock
+from stepnc_model.program import Stock
 from stepnc_model.toolpath.path import MoveType, Point, ToolPath, points_along
 
 COLOURS = {

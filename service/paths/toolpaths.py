@@ -14,25 +14,24 @@ from service.files import (
 from service.progress import Progress
 from service.reading import Tell, one_of, read_program, silent
 from stepnc_model.entities.entity import Entity
-from stepnc_model.entities.setup import Setup
+from stepnc_model.entities.executables import Setup
 from stepnc_model.errors import Finding, PostError, SchemaError, StepNcError, WriteError
 from stepnc_model.part21.values import Ref
 from stepnc_model.plausibility import refusal
-from stepnc_model.post.blocks import Cycles, Machine
-from stepnc_model.post.controls import Control, read, write
+from stepnc_model.post.blocks import Cycles, MachineType
+from stepnc_model.post.dialect import Dialect
+from stepnc_model.post.dialects import read, write
 from stepnc_model.post.neutral import blocks_of
-from stepnc_model.program import Executable, Program
-from stepnc_model.stock import Stock
+from stepnc_model.program import Program, ProgramLine, Stock
 from stepnc_model.technology import programmed
-from stepnc_model.toolpath.function import LEFT_OUT, Function
 from stepnc_model.toolpath.generate import generate, raised, require_ready
-from stepnc_model.toolpath.job import clamps_of, stock_of
-from stepnc_model.toolpath.path import Point, ToolPath
+from stepnc_model.toolpath.path import LEFT_OUT, Function, Point, ToolPath
+from stepnc_model.toolpath.task import clamps_of, stock_of
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Paths:
-    """What a program makes the tool do."""
+    """Tool paths of a program."""
 
     program: Program
     items: tuple[ToolPath | Function, ...]
@@ -46,7 +45,7 @@ class Paths:
 
     @property
     def clamps(self) -> tuple[Point, ...]:
-        """Where the workpiece is clamped, in the setup of the first workingstep."""
+        """Clamping positions of the workpiece, in the setup of the first workingstep."""
         return clamps_of(self.program, self._setup)
 
     @property
@@ -60,13 +59,13 @@ class Paths:
 
     @property
     def findings(self) -> tuple[Finding, ...]:
-        """What was assumed."""
+        """Assumptions."""
         return tuple(finding for path in self.paths for finding in path.findings)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PostRequest:
-    """What the user asks of ``post``."""
+    """Request of ``post``."""
 
     file: Path
     control: str
@@ -95,7 +94,7 @@ def paths_of(program: Program, *, keep_going: bool = False, tell: Tell = silent)
     progress = Progress(tell, total=len(program.workingsteps))
     items: list[ToolPath | Function] = []
 
-    def left_out(executable: Executable, fault: SchemaError) -> None:
+    def left_out(executable: ProgramLine, fault: SchemaError) -> None:
         faults.append(fault)
         items.append(_left_out(executable.ref, executable.id))
         tell(f"left out: '{executable.id}': {fault}")
@@ -127,7 +126,7 @@ def post(request: PostRequest, *, tell: Tell = silent) -> Paths:
     StepNcError
         When the control is unknown, a path cannot be made, or the file cannot be written.
     """
-    control = one_of(Control, request.control.lower(), "control")
+    control = one_of(Dialect, request.control.lower(), "control")
     output = request.output or beside(request.file, control.suffix)
     require_place(output, apart_from=request.file)
     program = read_program(request.file, units=request.units)
@@ -175,11 +174,11 @@ def with_feeds(paths: Paths, *, keep_going: bool, tell: Tell = silent) -> Paths:
 
 
 def _left_out(ref: Ref[Entity], name: str) -> Function:
-    """Where a workingstep is missing, so that NC code says so."""
+    """Comment in the NC code for a workingstep without a path."""
     return Function(ref=ref, keyword=LEFT_OUT, id=name)
 
 
-def nc_lines(paths: Paths, control: Control, cycles: Cycles = Cycles.EXPANDED) -> Iterator[str]:
+def nc_lines(paths: Paths, control: Dialect, cycles: Cycles = Cycles.EXPANDED) -> Iterator[str]:
     """NC code of tool paths, line by line."""
     blocks = blocks_of(paths.program, paths.items, name=Path(paths.program.name).stem)
     return write(blocks, control, cycles=cycles)
@@ -193,13 +192,13 @@ def canonical_of(path: Path, *, control: str, is_lathe: bool) -> Iterator[str]:
     StepNcError
         When the control is unknown, or a line cannot be read.
     """
-    dialect = one_of(Control, control.lower(), "control")
-    machine = Machine.LATHE if is_lathe else Machine.MILL
+    dialect = one_of(Dialect, control.lower(), "control")
+    machine = MachineType.LATHE if is_lathe else MachineType.MILL
     lines = read_bytes(path).decode("utf-8", errors="replace").splitlines()
     try:
         commands = read(lines, dialect, machine=machine)
     except PostError as error:
-        may_be_lathe = dialect in {Control.FANUC, Control.HAAS} and not is_lathe
+        may_be_lathe = dialect in {Dialect.FANUC, Dialect.HAAS} and not is_lathe
         hint = " (code for a lathe is read with --lathe)" if may_be_lathe else ""
         raise StepNcError(f"{path.name}: {error}{hint}") from error
     return (str(command) for command in commands)

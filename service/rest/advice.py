@@ -16,23 +16,23 @@ from starlette.concurrency import run_in_threadpool
 from starlette.routing import Match, Route
 from starlette.types import Scope
 
-from service.depot import jobs, programs
-from service.depot.folder import Depot
-from service.depot.jobs import Kind, State
 from service.errors import Conflict, NotFound
 from service.jobs.task import NC_CODE, OPTIMISED, REPORT, RESULT, optimised_name
 from service.rest.bodies import Id
-from service.rest.context import AtPlace, InDepot, depot_of, page_reply
+from service.rest.context import InDataFolder, OnPage, data_folder_of, page_reply
 from service.rest.replies import (
     JSON,
-    Prepared,
+    PreparedResponse,
     file_reply,
     matches,
     report_reply,
     tag_of,
 )
 from service.rest.views import AdviceView, AdvisedView, JobView, PageView, job_view
-from stepnc_model.post.controls import SUFFIXES, Control
+from service.storage import jobs, programs
+from service.storage.folder import DataFolder
+from service.storage.jobs import JobKind, JobState
+from stepnc_model.post.dialect import SUFFIXES, Dialect
 
 ROUTES = APIRouter(prefix="/v1/advice", tags=["advice"])
 
@@ -41,12 +41,12 @@ MOST_READY = 64
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Part:
+class CachedAnswer:
     """An answer, and the one for clients that have it already."""
 
     tag: bytes
-    whole: Prepared
-    same: Prepared
+    whole: PreparedResponse
+    same: PreparedResponse
 
     def reply(self, request: Request) -> Response:
         """Whichever is due."""
@@ -57,25 +57,25 @@ class Part:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Ready:
+class CachedAdvice:
     """A result as bytes, with its tags."""
 
     file: str
     stamp: int
     """when its file was written, ns"""
-    whole: Part
-    workingsteps: dict[str, Part]
+    whole: CachedAnswer
+    workingsteps: dict[str, CachedAnswer]
     """by id and by instance"""
     result: dict[str, Any]
 
 
-class Shelf:
+class AdviceCache:
     """Results that were asked for lately. Running state."""
 
     def __init__(self) -> None:
-        self._ready: OrderedDict[str, Ready] = OrderedDict()
+        self._ready: OrderedDict[str, CachedAdvice] = OrderedDict()
 
-    def get(self, depot: Depot, id: str) -> Ready:
+    def get(self, data_folder: DataFolder, id: str) -> CachedAdvice:
         """A result.
 
         Raises
@@ -84,18 +84,18 @@ class Shelf:
             When there is none, or not yet.
         """
         known = self._ready.get(id)
-        file = str(depot.job_folder(id) / RESULT) if known is None else known.file
+        file = str(data_folder.job_folder(id) / RESULT) if known is None else known.file
         try:
             stamp = os.stat(file).st_mtime_ns
         except OSError:
             self._ready.pop(id, None)
-            raise _missing(depot, id) from None
+            raise _missing(data_folder, id) from None
         if known is None or known.stamp != stamp:
-            jobs.get(depot, id, Kind.ADVICE)
+            jobs.get(data_folder, id, JobKind.ADVICE)
             try:
                 known = self._ready[id] = _ready(file, stamp)
             except FileNotFoundError:
-                raise _missing(depot, id) from None
+                raise _missing(data_folder, id) from None
             while len(self._ready) > MOST_READY:
                 self._ready.popitem(last=False)
         else:
@@ -103,40 +103,42 @@ class Shelf:
         return known
 
 
-def _ready(file: str, stamp: int) -> Ready:
+def _ready(file: str, stamp: int) -> CachedAdvice:
     whole = Path(file).read_bytes()
     result = orjson.loads(whole)
-    parts: dict[str, Part] = {}
+    parts: dict[str, CachedAnswer] = {}
     for step in result["workingsteps"]:
         part = _part(orjson.dumps(step))
         for name in (step["instance"], step["id"]):
             parts.setdefault(name, part)
-    return Ready(file=file, stamp=stamp, whole=_part(whole), workingsteps=parts, result=result)
-
-
-def _part(body: bytes) -> Part:
-    tag = tag_of(body).encode()
-    common = [(b"etag", tag), (b"cache-control", b"no-cache")]
-    kind, length = (b"content-type", JSON.encode()), str(len(body)).encode()
-    return Part(
-        tag=tag,
-        whole=Prepared(200, body, [*common, kind, (b"content-length", length)]),
-        same=Prepared(304, b"", common),
+    return CachedAdvice(
+        file=file, stamp=stamp, whole=_part(whole), workingsteps=parts, result=result
     )
 
 
-def _missing(depot: Depot, id: str) -> Exception:
+def _part(body: bytes) -> CachedAnswer:
+    tag = tag_of(body).encode()
+    common = [(b"etag", tag), (b"cache-control", b"no-cache")]
+    kind, length = (b"content-type", JSON.encode()), str(len(body)).encode()
+    return CachedAnswer(
+        tag=tag,
+        whole=PreparedResponse(200, body, [*common, kind, (b"content-length", length)]),
+        same=PreparedResponse(304, b"", common),
+    )
+
+
+def _missing(data_folder: DataFolder, id: str) -> Exception:
     """Why there is no result."""
-    job = jobs.get(depot, id, Kind.ADVICE)
-    if job.state in {State.QUEUED, State.RUNNING}:
+    job = jobs.get(data_folder, id, JobKind.ADVICE)
+    if job.state in {JobState.QUEUED, JobState.RUNNING}:
         return Conflict(f"advice '{id}' is {job.state.value}: look again, or at its job")
-    if job.state is State.SUCCEEDED:
+    if job.state is JobState.SUCCEEDED:
         return Conflict(f"advice '{id}' had no result yet, or has lost it: look again")
     return Conflict(f"advice '{id}' has {job.state.value}: its job says why")
 
 
-def _shelf(request: Request) -> Shelf:
-    found: Shelf = request.app.state.advice
+def _cache(request: Request) -> AdviceCache:
+    found: AdviceCache = request.app.state.advice
     return found
 
 
@@ -147,14 +149,14 @@ def _shelf(request: Request) -> Shelf:
 )
 async def advised(request: Request, id: str, workingstep: str) -> Response:
     """By its id, or its instance without ``#``."""
-    parts = _shelf(request).get(depot_of(request), id).workingsteps
+    parts = _cache(request).get(data_folder_of(request), id).workingsteps
     found = parts.get(workingstep) or parts.get(f"#{workingstep}")
     if found is None:
         raise NotFound("workingstep", workingstep)
     return found.reply(request)
 
 
-class LookUp(Route):
+class LookUpRoute(Route):
     """The same without the framework's work on parameters, which takes longer than the look-up.
 
     It stands before all other routes; the one above is what the OpenAPI document tells.
@@ -174,16 +176,16 @@ async def _look_up(request: Request) -> Response:
 
 
 @ROUTES.get("", response_model=PageView[JobView], summary="All advice, newest first")
-async def list_advice(request: Request, depot: InDepot, place: AtPlace) -> Response:
+async def list_advice(request: Request, data_folder: InDataFolder, cursor: OnPage) -> Response:
     """The jobs that made it, or will."""
-    page = jobs.listed(depot, place, kind=Kind.ADVICE)
+    page = jobs.listed(data_folder, cursor, kind=JobKind.ADVICE)
     return page_reply(request, page, [job_view(job) for job in page.items])
 
 
 @ROUTES.get("/{id}", response_model=AdviceView, summary="One advice")
 async def advice(request: Request, id: Id) -> Response:
     """All workingsteps with programmed and advised feed, limits and reason."""
-    return _shelf(request).get(depot_of(request), id).whole.reply(request)
+    return _cache(request).get(data_folder_of(request), id).whole.reply(request)
 
 
 @ROUTES.get(
@@ -192,10 +194,10 @@ async def advice(request: Request, id: Id) -> Response:
     response_class=Response,
     responses={200: {"content": {"application/step": {}}}},
 )
-async def optimised(request: Request, depot: InDepot, id: Id) -> Response:
+async def optimised(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """The program as it came, with the advised feeds; nothing else is changed."""
-    name = await run_in_threadpool(_name, request, depot, id)
-    file = depot.job_folder(id) / OPTIMISED
+    name = await run_in_threadpool(_name, request, data_folder, id)
+    file = data_folder.job_folder(id) / OPTIMISED
     return file_reply(
         request, file, name=name, kind="application/step", thing="optimised program"
     )
@@ -207,14 +209,14 @@ async def optimised(request: Request, depot: InDepot, id: Id) -> Response:
     response_class=Response,
     responses={200: {"content": {"text/plain": {}}}},
 )
-async def nc_code(request: Request, depot: InDepot, id: Id) -> Response:
+async def nc_code(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """For the control that was named when the advice was asked for."""
-    name = await run_in_threadpool(_name, request, depot, id)
-    control = _shelf(request).get(depot, id).result["nc_control"]
+    name = await run_in_threadpool(_name, request, data_folder, id)
+    control = _cache(request).get(data_folder, id).result["nc_control"]
     if control is None:
         raise NotFound("NC code (ask for advice with nc_control)", id)
-    name = f"{Path(name).stem}{SUFFIXES[Control(control)]}"
-    file = depot.job_folder(id) / NC_CODE
+    name = f"{Path(name).stem}{SUFFIXES[Dialect(control)]}"
+    file = data_folder.job_folder(id) / NC_CODE
     return file_reply(
         request, file, name=name, kind="text/plain; charset=utf-8", thing="NC code"
     )
@@ -222,13 +224,13 @@ async def nc_code(request: Request, depot: InDepot, id: Id) -> Response:
 
 @ROUTES.get("/{id}/report", summary="The report as a page", response_class=Response,
             responses={200: {"content": {"text/html": {}}}})  # fmt: skip
-async def report(request: Request, depot: InDepot, id: Id) -> Response:
+async def report(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """A page that stands for itself: save it, print it, send it."""
-    jobs.get(depot, id, Kind.ADVICE)
-    return report_reply(request, depot.job_folder(id) / REPORT, id=id)
+    jobs.get(data_folder, id, JobKind.ADVICE)
+    return report_reply(request, data_folder.job_folder(id) / REPORT, id=id)
 
 
-def _name(request: Request, depot: Depot, id: str) -> str:
-    """What the optimised program is called, also when the program was deleted."""
-    program = str(_shelf(request).get(depot, id).result["program"])
+def _name(request: Request, data_folder: DataFolder, id: str) -> str:
+    """File name of the optimised program, also when the program was deleted."""
+    program = str(_cache(request).get(data_folder, id).result["program"])
     return optimised_name(programs.shown_name(program))

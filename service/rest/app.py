@@ -10,7 +10,6 @@ from fastapi.openapi.utils import get_openapi
 from starlette.exceptions import HTTPException
 
 from kbe.store import open_store
-from service.depot.folder import Depot, known_depot, open_depot
 from service.errors import TooMany
 from service.lifeline import end_with_parent
 from service.problem import plain_problem, problem_of
@@ -26,12 +25,13 @@ from service.rest import (
     programs,
     simulations,
 )
+from service.rest.access import AccessMiddleware
 from service.rest.context import PROBLEMS
-from service.rest.gate import Gate
 from service.rest.replies import problem_reply
 from service.rest.rights import is_protected, role_for
 from service.rest.settings import Settings, handed_on
-from service.rest.streams import Hub
+from service.rest.streams import StreamHub
+from service.storage.folder import DataFolder, known_data_folder, open_data_folder
 from stepnc_model.errors import StepNcError
 
 TITLE = "stepnc-optimiser"
@@ -53,16 +53,20 @@ def application(settings: Settings) -> FastAPI:
     ServiceError, KnowledgeError
         When folder or knowledge base cannot be used.
     """
-    return _on(open_depot(settings.root, knowledge=settings.knowledge), settings)
+    return _on(open_data_folder(settings.root, knowledge=settings.knowledge), settings)
 
 
-def _on(depot: Depot, settings: Settings) -> FastAPI:
-    with open_store(depot.knowledge):
+def _on(data_folder: DataFolder, settings: Settings) -> FastAPI:
+    with open_store(data_folder.knowledge):
         """made when it is new"""
     app = _routed()
-    app.state.depot, app.state.settings, app.state.hub = depot, settings, Hub(depot)
-    app.state.advice = advice.Shelf()
-    app.add_middleware(Gate, settings=settings, depot=depot)
+    app.state.data_folder, app.state.settings, app.state.hub = (
+        data_folder,
+        settings,
+        StreamHub(data_folder),
+    )
+    app.state.advice = advice.AdviceCache()
+    app.add_middleware(AccessMiddleware, settings=settings, data_folder=data_folder)
     return app
 
 
@@ -90,7 +94,7 @@ def _routed() -> FastAPI:
         knowledge.OUTCOMES, library.MACHINES, library.MATERIALS, health.ROUTES, pages.ROUTES,
     ):  # fmt: skip
         app.include_router(routes)
-    app.router.routes.insert(0, advice.LookUp())
+    app.router.routes.insert(0, advice.LookUpRoute())
     app.add_exception_handler(StepNcError, _project)
     app.add_exception_handler(RequestValidationError, _invalid)
     app.add_exception_handler(HTTPException, _http)
@@ -110,7 +114,7 @@ def from_environment() -> FastAPI:
     settings = handed_on()
     logs.configure(settings.level)
     end_with_parent()
-    return _on(known_depot(settings.root, knowledge=settings.knowledge), settings)
+    return _on(known_data_folder(settings.root, knowledge=settings.knowledge), settings)
 
 
 def described(app: FastAPI) -> dict[str, Any]:
@@ -135,7 +139,7 @@ async def _project(request: Request, error: Exception) -> Response:
     """An error of the project's tree."""
     if not isinstance(error, StepNcError):
         raise error
-    root = str(request.app.state.depot.root)
+    root = str(request.app.state.data_folder.root)
     reply = problem_reply({**problem_of(error, hidden=root), "instance": request.state.id})
     if isinstance(error, TooMany):
         reply.headers["retry-after"] = str(int(error.wait) + 1)
@@ -146,6 +150,18 @@ async def _invalid(request: Request, error: Exception) -> Response:
     """A body or a parameter that is not what it should be."""
     if not isinstance(error, RequestValidationError):
         raise error
+    if media_type := _foreign_media_type(request, error):
+        detail = f"the body must be application/json and is '{media_type}'"
+        problem = plain_problem(
+            415, "Unsupported media type", detail, instance=request.state.id
+        )
+        return problem_reply(problem)
+    broken = [one for one in error.errors() if one["type"] == "json_invalid"]
+    if broken:
+        position, why = broken[0]["loc"][-1], broken[0]["ctx"]["error"]
+        detail = f"the body is no JSON: {why} at character {position}"
+        problem = plain_problem(400, "Malformed JSON", detail, instance=request.state.id)
+        return problem_reply(problem)
     wrong = [
         {"place": ".".join(str(each) for each in one["loc"]), "message": one["msg"]}
         for one in error.errors()
@@ -157,8 +173,18 @@ async def _invalid(request: Request, error: Exception) -> Response:
     return problem_reply(problem)
 
 
+def _foreign_media_type(request: Request, error: RequestValidationError) -> str:
+    """Media type of a body that was not read as JSON for it; empty where that is no fault."""
+    media_type = request.headers.get("content-type", "").partition(";")[0].strip().lower()
+    is_json = media_type == "application/json" or media_type.endswith("+json")
+    is_whole = any(
+        one["loc"] == ("body",) and one["type"] != "missing" for one in error.errors()
+    )
+    return "" if is_json or not is_whole else media_type or "unknown"
+
+
 async def _http(request: Request, error: Exception) -> Response:
-    """What the framework refuses: an unknown path, a method that is not there."""
+    """Problem for errors of the framework: unknown path, method not allowed."""
     if not isinstance(error, HTTPException):
         raise error
     if isinstance(error.__cause__, StepNcError):

@@ -26,7 +26,7 @@ async def in_turn(read: Callable[[], T]) -> T:
     return await to_thread.run_sync(read, limiter=READERS)
 
 
-class Answers:
+class CheckCache:
     """Answers that were given lately. Running state."""
 
     def __init__(self) -> None:

@@ -4,14 +4,14 @@ from typing import Any
 
 from fastapi import APIRouter, Request, Response
 
-from service.depot.folder import Depot
-from service.depot.jobs import State
 from service.errors import ServiceError
 from service.jobs.runner import is_alive
-from service.rest.context import depot_of, owner_of, settings_of
+from service.rest.context import data_folder_of, owner_of, settings_of
 from service.rest.metrics import JOBS, TYPE, exposition
 from service.rest.programs import samples
 from service.rest.replies import json_reply
+from service.storage.folder import DataFolder
+from service.storage.jobs import JobState
 
 ROUTES = APIRouter(tags=["service"])
 
@@ -24,8 +24,8 @@ async def healthz(request: Request) -> Response:
 
 @ROUTES.get("/readyz", summary="Whether requests can be served")
 async def readyz(request: Request) -> Response:
-    """The database answers, and somebody runs jobs; else 503."""
-    found = _state(depot_of(request))
+    """The database answers, and a runner is alive; else 503."""
+    found = _state(data_folder_of(request))
     return json_reply(request, found, status=200 if all(found.values()) else 503)
 
 
@@ -33,10 +33,10 @@ async def readyz(request: Request) -> Response:
             responses={200: {"content": {"text/plain": {}}}})  # fmt: skip
 async def metrics(request: Request) -> Response:
     """Requests by route and status, their times, streams, jobs by state."""
-    with depot_of(request).database.reading() as connection:
+    with data_folder_of(request).database.reading() as connection:
         rows = connection.execute("SELECT state, count(*) FROM jobs GROUP BY state").fetchall()
     counts = dict(map(tuple, rows))
-    for state in State:
+    for state in JobState:
         JOBS.labels(state.value).set(counts.get(state.value, 0))
     return Response(exposition(), media_type=TYPE)
 
@@ -57,8 +57,8 @@ async def about(request: Request) -> Response:
     )
 
 
-def _state(depot: Depot) -> dict[str, Any]:
+def _state(data_folder: DataFolder) -> dict[str, Any]:
     try:
-        return {"database": True, "runner": is_alive(depot)}
+        return {"database": True, "runner": is_alive(data_folder)}
     except ServiceError:
         return {"database": False, "runner": False}

@@ -5,14 +5,14 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
 
-from service.depot import jobs
-from service.depot.jobs import Kind, State
 from service.rest.bodies import Id
-from service.rest.context import AtPlace, InDepot, key_of, page_reply
+from service.rest.context import InDataFolder, OnPage, key_of, page_reply
 from service.rest.replies import json_reply
 from service.rest.results import stream_reply
 from service.rest.rights import require, role_to_end
 from service.rest.views import JobView, PageView, job_view
+from service.storage import jobs
+from service.storage.jobs import JobKind, JobState
 
 ROUTES = APIRouter(prefix="/v1/jobs", tags=["jobs"])
 
@@ -24,40 +24,40 @@ EVENTS: dict[int | str, dict[str, Any]] = {
 @ROUTES.get("", response_model=PageView[JobView], summary="List jobs, newest first")
 async def list_jobs(
     request: Request,
-    depot: InDepot,
-    place: AtPlace,
-    kind: Annotated[Kind | None, Query(description="of this kind")] = None,
-    state: Annotated[State | None, Query(description="in this state")] = None,
+    data_folder: InDataFolder,
+    cursor: OnPage,
+    kind: Annotated[JobKind | None, Query(description="of this kind")] = None,
+    state: Annotated[JobState | None, Query(description="in this state")] = None,
 ) -> Response:
     """A page of them."""
-    page = jobs.listed(depot, place, kind=kind, state=state)
+    page = jobs.listed(data_folder, cursor, kind=kind, state=state)
     return page_reply(request, page, [job_view(job) for job in page.items])
 
 
 @ROUTES.get("/{id}", response_model=JobView, summary="One job")
-async def job(request: Request, depot: InDepot, id: Id) -> Response:
-    """How far it is."""
-    return json_reply(request, job_view(jobs.get(depot, id)))
+async def job(request: Request, data_folder: InDataFolder, id: Id) -> Response:
+    """Show a job and its progress."""
+    return json_reply(request, job_view(jobs.get(data_folder, id)))
 
 
 @ROUTES.get(
     "/{id}/events", summary="What happens in it", response_class=Response, responses=EVENTS
 )
-async def job_events(request: Request, depot: InDepot, id: Id) -> Response:
+async def job_events(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Events ``job``, ``status``, ``rows``, ``event`` and ``gap``, until the job is over."""
-    return await stream_reply(request, jobs.get(depot, id))
+    return await stream_reply(request, jobs.get(data_folder, id))
 
 
 @ROUTES.post("/{id}/cancel", response_model=JobView, summary="Ask for its end")
-async def cancel(request: Request, depot: InDepot, id: Id) -> Response:
+async def cancel(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """One that waits is cancelled at once, one that runs within seconds."""
-    require(key_of(request), role_to_end(jobs.get(depot, id).kind))
-    return json_reply(request, job_view(await run_in_threadpool(jobs.cancel, depot, id)))
+    require(key_of(request), role_to_end(jobs.get(data_folder, id).kind))
+    return json_reply(request, job_view(await run_in_threadpool(jobs.cancel, data_folder, id)))
 
 
 @ROUTES.delete("/{id}", status_code=204, summary="Delete a job that is over, with its results")
-async def delete(request: Request, depot: InDepot, id: Id) -> Response:
-    """What was recorded in the knowledge base stays there."""
-    require(key_of(request), role_to_end(jobs.get(depot, id).kind))
-    await run_in_threadpool(jobs.remove, depot, id)
+async def delete(request: Request, data_folder: InDataFolder, id: Id) -> Response:
+    """Delete a job; outcomes that it recorded in the knowledge base stay there."""
+    require(key_of(request), role_to_end(jobs.get(data_folder, id).kind))
+    await run_in_threadpool(jobs.remove, data_folder, id)
     return Response(status_code=204)

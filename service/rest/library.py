@@ -7,14 +7,20 @@ import orjson
 from fastapi import APIRouter, Path, Request, Response
 from starlette.concurrency import run_in_threadpool
 
-from service.depot import library
-from service.depot.folder import Depot
-from service.depot.library import NAME, Condition, Held, Listed, Shelf
 from service.errors import Unreadable
-from service.rest.context import InDepot
+from service.library_output import entry_json
+from service.rest.context import InDataFolder
 from service.rest.replies import json_reply, matches, tag_of, tagged
 from service.rest.views import EntryView
-from service.wire import entry_json
+from service.storage import library
+from service.storage.folder import DataFolder
+from service.storage.library import (
+    NAME,
+    Condition,
+    LibraryEntry,
+    LibraryListing,
+    LibrarySection,
+)
 
 MACHINES = APIRouter(prefix="/v1/machines", tags=["library"])
 MATERIALS = APIRouter(prefix="/v1/materials", tags=["library"])
@@ -32,57 +38,57 @@ TOML = {
 
 
 @MACHINES.get("", response_model=list[EntryView], summary="All machines")
-async def machines(request: Request, depot: InDepot) -> Response:
+async def machines(request: Request, data_folder: InDataFolder) -> Response:
     """By name; one of the shop's that cannot be read tells its problem."""
-    return await _all(request, depot, Shelf.MACHINES)
+    return await _all(request, data_folder, LibrarySection.MACHINES)
 
 
 @MACHINES.get("/{name}", summary="One machine")
-async def machine(request: Request, depot: InDepot, name: Known) -> Response:
+async def machine(request: Request, data_folder: InDataFolder, name: Known) -> Response:
     """In canonical units: mm, s, N, W, rev/s."""
-    return await _one(request, depot, Shelf.MACHINES, name)
+    return await _one(request, data_folder, LibrarySection.MACHINES, name)
 
 
 @MACHINES.put("/{name}", summary="Keep a machine of the shop", openapi_extra=TOML,
               response_model=EntryView)  # fmt: skip
-async def put_machine(request: Request, depot: InDepot, name: Own) -> Response:
-    """Refused unless it can be read; with If-Match, only if nobody has changed it since."""
-    return await _put(request, depot, Shelf.MACHINES, name)
+async def put_machine(request: Request, data_folder: InDataFolder, name: Own) -> Response:
+    """Refused unless it can be read; with If-Match, only if it has not changed since."""
+    return await _put(request, data_folder, LibrarySection.MACHINES, name)
 
 
 @MACHINES.delete("/{name}", status_code=204, summary="Delete a machine of the shop")
-async def delete_machine(request: Request, depot: InDepot, name: Own) -> Response:
+async def delete_machine(request: Request, data_folder: InDataFolder, name: Own) -> Response:
     """Those of the library stay; If-Match as when it is kept."""
-    return await _delete(request, depot, Shelf.MACHINES, name)
+    return await _delete(request, data_folder, LibrarySection.MACHINES, name)
 
 
 @MATERIALS.get("", response_model=list[EntryView], summary="All materials")
-async def materials(request: Request, depot: InDepot) -> Response:
+async def materials(request: Request, data_folder: InDataFolder) -> Response:
     """By name."""
-    return await _all(request, depot, Shelf.MATERIALS)
+    return await _all(request, data_folder, LibrarySection.MATERIALS)
 
 
 @MATERIALS.get("/{name}", summary="One material")
-async def material(request: Request, depot: InDepot, name: Known) -> Response:
+async def material(request: Request, data_folder: InDataFolder, name: Known) -> Response:
     """In canonical units."""
-    return await _one(request, depot, Shelf.MATERIALS, name)
+    return await _one(request, data_folder, LibrarySection.MATERIALS, name)
 
 
 @MATERIALS.put("/{name}", summary="Keep a material of the shop", openapi_extra=TOML,
                response_model=EntryView)  # fmt: skip
-async def put_material(request: Request, depot: InDepot, name: Own) -> Response:
+async def put_material(request: Request, data_folder: InDataFolder, name: Own) -> Response:
     """As for machines."""
-    return await _put(request, depot, Shelf.MATERIALS, name)
+    return await _put(request, data_folder, LibrarySection.MATERIALS, name)
 
 
 @MATERIALS.delete("/{name}", status_code=204, summary="Delete a material of the shop")
-async def delete_material(request: Request, depot: InDepot, name: Own) -> Response:
+async def delete_material(request: Request, data_folder: InDataFolder, name: Own) -> Response:
     """As for machines."""
-    return await _delete(request, depot, Shelf.MATERIALS, name)
+    return await _delete(request, data_folder, LibrarySection.MATERIALS, name)
 
 
-def _view(found: Held | Listed) -> dict[str, object]:
-    if isinstance(found, Held):
+def _view(found: LibraryEntry | LibraryListing) -> dict[str, object]:
+    if isinstance(found, LibraryEntry):
         title, problem = found.entry.title, ""
     else:
         title, problem = found.title, found.problem
@@ -94,13 +100,15 @@ def _view(found: Held | Listed) -> dict[str, object]:
     }
 
 
-async def _all(request: Request, depot: Depot, shelf: Shelf) -> Response:
-    found = await run_in_threadpool(library.held, depot, shelf)
+async def _all(request: Request, data_folder: DataFolder, section: LibrarySection) -> Response:
+    found = await run_in_threadpool(library.entries_of, data_folder, section)
     return json_reply(request, [_view(each) for each in found])
 
 
-async def _one(request: Request, depot: Depot, shelf: Shelf, name: str) -> Response:
-    held = await run_in_threadpool(library.one, depot, shelf, name)
+async def _one(
+    request: Request, data_folder: DataFolder, section: LibrarySection, name: str
+) -> Response:
+    held = await run_in_threadpool(library.one, data_folder, section, name)
     entry = json.loads(entry_json(held.entry))
     shown = orjson.dumps({**entry, "name": name, "is_own": held.is_own})
     if not held.is_own:
@@ -109,18 +117,24 @@ async def _one(request: Request, depot: Depot, shelf: Shelf, name: str) -> Respo
     return tagged(request, shown, tag_of(held.text))
 
 
-async def _put(request: Request, depot: Depot, shelf: Shelf, name: str) -> Response:
+async def _put(
+    request: Request, data_folder: DataFolder, section: LibrarySection, name: str
+) -> Response:
     data = await request.body()
     if not data:
         raise Unreadable("the body is empty: send the file")
     kept = await run_in_threadpool(
-        library.put, depot, shelf, name, data, condition=_condition(request)
+        library.put, data_folder, section, name, data, condition=_condition(request)
     )
     return json_reply(request, _view(kept), headers={"etag": tag_of(data)})
 
 
-async def _delete(request: Request, depot: Depot, shelf: Shelf, name: str) -> Response:
-    await run_in_threadpool(library.remove, depot, shelf, name, condition=_condition(request))
+async def _delete(
+    request: Request, data_folder: DataFolder, section: LibrarySection, name: str
+) -> Response:
+    await run_in_threadpool(
+        library.remove, data_folder, section, name, condition=_condition(request)
+    )
     return Response(status_code=204)
 
 

@@ -7,20 +7,19 @@ from typing import Any
 from fastapi import APIRouter, Request, Response
 from starlette.concurrency import run_in_threadpool
 
-from service.control.live import Changes
-from service.depot import jobs
-from service.depot.folder import Depot
-from service.depot.jobs import Job, Kind, Order
+from service.control.live import require_changes
 from service.errors import Conflict
 from service.jobs.task import REPORT, SAMPLES
 from service.live.folder import LiveFolder
 from service.live.journal import append, read_on
-from service.rest.bodies import ControlBody, ControlChanges, Id, TrialBody, TrialChanges
+from service.requests.fields import dumped
+from service.requests.runs import ControlChanges, ControlRequest
+from service.rest.bodies import Id, TrialBody, TrialChanges
 from service.rest.context import (
-    AtPlace,
     ByOwner,
-    InDepot,
-    OnceKey,
+    IdempotencyHeader,
+    InDataFolder,
+    OnPage,
     page_reply,
     queued,
     runnable,
@@ -41,6 +40,9 @@ from service.rest.results import (
 )
 from service.rest.simulations import PARQUET, run_order
 from service.rest.views import JobView, PageView, SeriesView, job_view
+from service.storage import jobs
+from service.storage.folder import DataFolder
+from service.storage.jobs import Job, JobKind, JobRequest
 from service.trial.inputs import Inputs, changed
 
 CONTROL = APIRouter(prefix="/v1/control-runs", tags=["control"])
@@ -58,66 +60,74 @@ USUAL = {
     "", status_code=202, response_model=JobView, summary="Run a program under control"
 )
 async def ask_control(
-    request: Request, depot: InDepot, body: ControlBody, owner: ByOwner, key: OnceKey = None
+    request: Request,
+    data_folder: InDataFolder,
+    body: ControlRequest,
+    owner: ByOwner,
+    key: IdempotencyHeader = None,
 ) -> Response:
     """A job on the virtual machine, under the force loop."""
     return await queued(
-        request, run_order(depot, Kind.CONTROL, body, owner), key, require=runnable
+        request, run_order(data_folder, JobKind.CONTROL, body, owner), key, require=runnable
     )
 
 
 @TRIALS.post("", status_code=202, response_model=JobView, summary="Begin a trial cut",
              openapi_extra=USUAL)  # fmt: skip
 async def ask_trial(
-    request: Request, body: TrialBody, owner: ByOwner, key: OnceKey = None
+    request: Request, body: TrialBody, owner: ByOwner, key: IdempotencyHeader = None
 ) -> Response:
     """A constant cut whose every input may change while it goes on."""
     inputs = body.inputs.model_dump(mode="json", exclude_none=True)
     await run_in_threadpool(changed, Inputs(), **inputs)
     words = {"inputs": inputs, "seed": body.seed, "pace": body.pace}
-    return await queued(request, Order(kind=Kind.TRIAL, request=words, owner=owner), key)
+    return await queued(
+        request, JobRequest(kind=JobKind.TRIAL, request=words, owner=owner), key
+    )
 
 
 @CONTROL.post("/{id}/changes", status_code=202, summary="Change something while it runs")
 async def change_control(
-    request: Request, depot: InDepot, id: Id, body: ControlChanges
+    request: Request, data_folder: InDataFolder, id: Id, body: ControlChanges
 ) -> Response:
     """It takes effect within a tenth of a second; the run's events tell of it."""
-    words = body.model_dump(mode="json", exclude_none=True)
-    Changes(**{name: words[name] for name in words if name != "pace"})
-    return await _ordered(request, depot, jobs.get(depot, id, Kind.CONTROL), words)
+    require_changes(body)
+    words = {name: value for name, value in dumped(body).items() if value is not None}
+    return await _ordered(
+        request, data_folder, jobs.get(data_folder, id, JobKind.CONTROL), words
+    )
 
 
 @TRIALS.post("/{id}/changes", status_code=202, summary="Change inputs while it runs")
 async def change_trial(
-    request: Request, depot: InDepot, id: Id, body: TrialChanges
+    request: Request, data_folder: InDataFolder, id: Id, body: TrialChanges
 ) -> Response:
     """As for runs under control; ``restart`` after the loop has stopped, ``end`` at last."""
-    job = jobs.get(depot, id, Kind.TRIAL)
+    job = jobs.get(data_folder, id, JobKind.TRIAL)
     inputs = body.inputs.model_dump(mode="json", exclude_none=True)
     if inputs:
-        now = await run_in_threadpool(_inputs, depot, job)
+        now = await run_in_threadpool(_inputs, data_folder, job)
         await run_in_threadpool(changed, now, **inputs)
     pace = {} if body.pace is None else {"pace": body.pace}
     # Inputs first: a new cutter enters the work with them.
     acts = [{name: True} for name in ("restart", "end") if getattr(body, name)]
-    return await _ordered(request, depot, job, *filter(None, ({**inputs, **pace}, *acts)))
+    return await _ordered(request, data_folder, job, *filter(None, ({**inputs, **pace}, *acts)))
 
 
-def _inputs(depot: Depot, job: Job) -> Inputs:
+def _inputs(data_folder: DataFolder, job: Job) -> Inputs:
     """Inputs with all that was asked so far."""
     inputs = changed(Inputs(), **job.request["inputs"])
-    status = LiveFolder(path=depot.job_folder(job.id)).read_status()
+    status = LiveFolder(path=data_folder.job_folder(job.id)).read_status()
     return inputs if status is None else changed(inputs, **status["inputs"])
 
 
 async def _ordered(
-    request: Request, depot: Depot, job: Job, *orders: Mapping[str, Any]
+    request: Request, data_folder: DataFolder, job: Job, *orders: Mapping[str, Any]
 ) -> Response:
     """Hand orders on to the process that runs."""
-    if job.state.is_over:
+    if job.state.is_finished:
         raise Conflict(f"{job.kind.value} '{job.id}' is {job.state.value}: it changes no more")
-    folder = LiveFolder(path=depot.job_folder(job.id))
+    folder = LiveFolder(path=data_folder.job_folder(job.id))
 
     def hand_on() -> None:
         folder.path.mkdir(mode=0o700, exist_ok=True)
@@ -128,14 +138,14 @@ async def _ordered(
     return json_reply(request, {"asked": orders}, status=202)
 
 
-def _add_common(routes: APIRouter, kind: Kind) -> None:
-    """What is looked at in the same way."""
+def _add_common(routes: APIRouter, kind: JobKind) -> None:
+    """Add the routes that trials and runs under control share."""
 
     @routes.get("", response_model=PageView[JobView], summary=f"{kind.value}s, newest first",
                 operation_id=f"list_{kind.name.lower()}")  # fmt: skip
-    async def listed(request: Request, depot: InDepot, place: AtPlace) -> Response:
+    async def listed(request: Request, data_folder: InDataFolder, cursor: OnPage) -> Response:
         """A page of their jobs."""
-        page = jobs.listed(depot, place, kind=kind)
+        page = jobs.listed(data_folder, cursor, kind=kind)
         return page_reply(request, page, [job_view(job) for job in page.items])
 
     @routes.get("/{id}", summary="The result", operation_id=f"result_{kind.name.lower()}")
@@ -145,29 +155,29 @@ def _add_common(routes: APIRouter, kind: Kind) -> None:
 
     @routes.get("/{id}/status", summary="How it is now",
                 operation_id=f"status_{kind.name.lower()}")  # fmt: skip
-    async def status(request: Request, depot: InDepot, id: Id) -> Response:
+    async def status(request: Request, data_folder: InDataFolder, id: Id) -> Response:
         """Inputs, feeds, force, power, what holds the feed; null before it has begun."""
-        return status_reply(request, jobs.get(depot, id, kind))
+        return status_reply(request, jobs.get(data_folder, id, kind))
 
     @routes.get("/{id}/log", summary="What has happened so far",
                 operation_id=f"log_{kind.name.lower()}")  # fmt: skip
-    async def log(request: Request, depot: InDepot, id: Id) -> Response:
+    async def log(request: Request, data_folder: InDataFolder, id: Id) -> Response:
         """The last events, oldest first."""
-        jobs.get(depot, id, kind)
-        events = await run_in_threadpool(_events, LiveFolder(path=depot.job_folder(id)))
+        jobs.get(data_folder, id, kind)
+        events = await run_in_threadpool(_events, LiveFolder(path=data_folder.job_folder(id)))
         return json_reply(request, {"events": events})
 
     @routes.get("/{id}/events", summary="What happens, as it happens", response_class=Response,
                 responses=EVENTS, operation_id=f"events_{kind.name.lower()}")  # fmt: skip
-    async def events(request: Request, depot: InDepot, id: Id) -> Response:
+    async def events(request: Request, data_folder: InDataFolder, id: Id) -> Response:
         """Server-sent events ``job``, ``status``, ``rows``, ``event`` and ``gap``."""
-        return await stream_reply(request, jobs.get(depot, id, kind))
+        return await stream_reply(request, jobs.get(data_folder, id, kind))
 
     @routes.get("/{id}/series", response_model=SeriesView, summary="Signals against time",
                 operation_id=f"series_{kind.name.lower()}")  # fmt: skip
     async def series(  # noqa: PLR0913, PLR0917 (each is a parameter of the request)
         request: Request,
-        depot: InDepot,
+        data_folder: InDataFolder,
         id: Id,
         signals: Signals = "",
         begin_s: Begin = None,
@@ -175,28 +185,32 @@ def _add_common(routes: APIRouter, kind: Kind) -> None:
         points: Points = SERIES_POINTS,
     ) -> Response:
         """A range of time in as many points as are wanted; also while it runs."""
-        job = jobs.get(depot, id, kind)
+        job = jobs.get(data_folder, id, kind)
         return await series_reply(
             request, job, signals=signals, begin=begin_s, end=end_s, points=points
         )
 
     @routes.post("/{id}/cancel", response_model=JobView, summary="End it",
                  operation_id=f"cancel_{kind.name.lower()}")  # fmt: skip
-    async def cancel(request: Request, depot: InDepot, id: Id) -> Response:
-        """What it has shown so far stays."""
-        jobs.get(depot, id, kind)
-        return json_reply(request, job_view(await run_in_threadpool(jobs.cancel, depot, id)))
+    async def cancel(request: Request, data_folder: InDataFolder, id: Id) -> Response:
+        """End a run; its rows stay."""
+        jobs.get(data_folder, id, kind)
+        return json_reply(
+            request, job_view(await run_in_threadpool(jobs.cancel, data_folder, id))
+        )
 
 
-_add_common(CONTROL, Kind.CONTROL)
-_add_common(TRIALS, Kind.TRIAL)
+_add_common(CONTROL, JobKind.CONTROL)
+_add_common(TRIALS, JobKind.TRIAL)
 
 
 @CONTROL.get("/{id}/samples", summary="The run as a Parquet file", response_class=Response,
              responses={200: {"content": {PARQUET: {}}}})  # fmt: skip
-async def samples(request: Request, depot: InDepot, id: Id) -> Response:
+async def samples(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Revolution by revolution."""
-    file = file_of(depot, jobs.get(depot, id, Kind.CONTROL), SAMPLES, thing="samples")
+    file = file_of(
+        data_folder, jobs.get(data_folder, id, JobKind.CONTROL), SAMPLES, thing="samples"
+    )
     return file_reply(
         request, file, name=f"control-run-{id}.parquet", kind=PARQUET, thing="samples"
     )
@@ -204,10 +218,10 @@ async def samples(request: Request, depot: InDepot, id: Id) -> Response:
 
 @CONTROL.get("/{id}/report", summary="The report as a page", response_class=Response,
              responses={200: {"content": {"text/html": {}}}})  # fmt: skip
-async def report(request: Request, depot: InDepot, id: Id) -> Response:
+async def report(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """A page that stands for itself."""
-    jobs.get(depot, id, Kind.CONTROL)
-    return report_reply(request, depot.job_folder(id) / REPORT, id=id)
+    jobs.get(data_folder, id, JobKind.CONTROL)
+    return report_reply(request, data_folder.job_folder(id) / REPORT, id=id)
 
 
 def _events(folder: LiveFolder) -> list[dict[str, Any]]:

@@ -10,21 +10,19 @@ from fastapi import APIRouter, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from service.contents import check
-from service.depot import jobs, programs
-from service.depot.folder import Depot
-from service.depot.jobs import Kind, Order
-from service.depot.pages import Page
-from service.depot.programs import StoredProgram
+from service.contents_output import contents_json
 from service.errors import TooLarge, Unreadable
 from service.files import read_bytes
-from service.rest.bodies import ISO, AdviceBody, Id, Name, Units
-from service.rest.checks import Answers, in_turn
+from service.requests.advice import ISO, AdviceRequest, Name, Units
+from service.requests.fields import dumped
+from service.rest.bodies import Id
+from service.rest.checks import CheckCache, in_turn
 from service.rest.context import (
-    AtPlace,
     ByOwner,
-    InDepot,
-    OnceKey,
-    once_of,
+    IdempotencyHeader,
+    InDataFolder,
+    OnPage,
+    idempotency_of,
     page_reply,
     queued,
     runnable,
@@ -39,7 +37,11 @@ from service.rest.views import (
     job_view,
     program_view,
 )
-from service.wire import contents_json
+from service.storage import jobs, programs
+from service.storage.folder import DataFolder
+from service.storage.jobs import JobKind, JobRequest
+from service.storage.pages import Page
+from service.storage.programs import StoredProgram
 from stepnc_model.errors import StepNcError
 from stepnc_model.part21.reader import Part21File
 
@@ -68,13 +70,13 @@ STEP = "application/step"
 )
 async def upload(
     request: Request,
-    depot: InDepot,
+    data_folder: InDataFolder,
     owner: ByOwner,
     name: Annotated[str, Query(max_length=200, description="what it is called")] = "",
     example: Annotated[
         str, Query(max_length=64, description="a sample, instead of a body")
     ] = "",
-    key: OnceKey = None,
+    key: IdempotencyHeader = None,
 ) -> Response:
     """Keep the bytes as they are. They must be a Part 21 file; findings are another call."""
     if example:
@@ -86,23 +88,30 @@ async def upload(
             raise Unreadable("the body is empty: send the bytes of the file")
     await in_turn(partial(_require_part21, data, programs.shown_name(name)))
     stored = await run_in_threadpool(
-        programs.add, depot, data, name=name, owner=owner, once=once_of(request, key, data)
+        programs.add,
+        data_folder,
+        data,
+        name=name,
+        owner=owner,
+        idempotency=idempotency_of(request, key, data),
     )
     headers = {"location": f"/v1/programs/{stored.id}"}
     return json_reply(request, program_view(stored), status=201, headers=headers)
 
 
 @ROUTES.get("", response_model=PageView[ProgramView], summary="List programs, newest first")
-async def list_programs(request: Request, depot: InDepot, place: AtPlace) -> Response:
+async def list_programs(
+    request: Request, data_folder: InDataFolder, cursor: OnPage
+) -> Response:
     """A page of them."""
-    page: Page[StoredProgram] = programs.listed(depot, place)
+    page: Page[StoredProgram] = programs.listed(data_folder, cursor)
     return page_reply(request, page, [program_view(each) for each in page.items])
 
 
 @ROUTES.get("/{id}", response_model=ProgramView, summary="One program")
-async def program(request: Request, depot: InDepot, id: Id) -> Response:
-    """What is known of it."""
-    return json_reply(request, program_view(programs.get(depot, id)))
+async def program(request: Request, data_folder: InDataFolder, id: Id) -> Response:
+    """Show a program."""
+    return json_reply(request, program_view(programs.get(data_folder, id)))
 
 
 @ROUTES.get(
@@ -111,13 +120,13 @@ async def program(request: Request, depot: InDepot, id: Id) -> Response:
     response_class=Response,
     responses={200: {"content": {STEP: {}}}},
 )
-async def program_bytes(request: Request, depot: InDepot, id: Id) -> Response:
+async def program_bytes(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Byte for byte."""
-    stored = programs.get(depot, id)
-    programs.require_file(depot, id)
+    stored = programs.get(data_folder, id)
+    programs.require_file(data_folder, id)
     return file_reply(
         request,
-        depot.program_file(id),
+        data_folder.program_file(id),
         name=stored.name,
         kind=STEP,
         thing=programs.FILE,
@@ -126,41 +135,47 @@ async def program_bytes(request: Request, depot: InDepot, id: Id) -> Response:
 
 
 @ROUTES.get("/{id}/findings", response_model=ContentsView, summary="What is wrong with it")
-async def findings(request: Request, depot: InDepot, id: Id, units: Units = ISO) -> Response:
+async def findings(
+    request: Request, data_folder: InDataFolder, id: Id, units: Units = ISO
+) -> Response:
     """Workingsteps and findings, as ``stepnc check`` tells them."""
-    stored = programs.get(depot, id)
-    programs.require_file(depot, id)
+    stored = programs.get(data_folder, id)
+    programs.require_file(data_folder, id)
     tag = f'"{stored.sha256[:24]}-{units.value}"'
     if matches(request.headers.get("if-none-match"), tag):
         return tagged(request, b"", tag)
     name = f"{id} {units.value}"
-    body = await _answers(request).get(name, partial(_contents, depot, stored, units.value))
+    body = await _answers(request).get(
+        name, partial(_contents, data_folder, stored, units.value)
+    )
     return tagged(request, body, tag)
 
 
 @ROUTES.delete("/{id}", status_code=204, summary="Delete a program")
-async def delete(depot: InDepot, id: Id) -> Response:
-    """What was made of it stays."""
-    await run_in_threadpool(programs.remove, depot, id)
+async def delete(data_folder: InDataFolder, id: Id) -> Response:
+    """Delete a program; results made from it stay."""
+    await run_in_threadpool(programs.remove, data_folder, id)
     return Response(status_code=204)
 
 
 @ROUTES.post("/{id}/advice", status_code=202, response_model=JobView, summary="Ask for feeds")
 async def ask_advice(
-    request: Request, id: Id, body: AdviceBody, owner: ByOwner, key: OnceKey = None
+    request: Request, id: Id, body: AdviceRequest, owner: ByOwner, key: IdempotencyHeader = None
 ) -> Response:
     """A job; its result is at ``/v1/advice/{job}``."""
-    order = Order(kind=Kind.ADVICE, request=body.words(), program=id, owner=owner)
-    return await queued(request, order, key, require=runnable)
+    asked = JobRequest(kind=JobKind.ADVICE, request=dumped(body), program=id, owner=owner)
+    return await queued(request, asked, key, require=runnable)
 
 
 @ROUTES.get(
     "/{id}/advice", response_model=PageView[JobView], summary="Advice that was asked for"
 )
-async def advice_of(request: Request, depot: InDepot, place: AtPlace, id: Id) -> Response:
+async def advice_of(
+    request: Request, data_folder: InDataFolder, cursor: OnPage, id: Id
+) -> Response:
     """Newest first."""
-    programs.get(depot, id)
-    page = jobs.listed(depot, place, kind=Kind.ADVICE, program=id)
+    programs.get(data_folder, id)
+    page = jobs.listed(data_folder, cursor, kind=JobKind.ADVICE, program=id)
     return page_reply(request, page, [job_view(job) for job in page.items])
 
 
@@ -180,16 +195,16 @@ def _require_part21(data: bytes, name: str) -> None:
     Part21File.from_bytes(data, name=name)
 
 
-def _answers(request: Request) -> Answers:
-    """Findings that were asked for lately; the first who asks brings the shelf."""
+def _answers(request: Request) -> CheckCache:
+    """Cache of recent findings; the first request makes it."""
     state = request.app.state
     if not hasattr(state, "findings"):
-        state.findings = Answers()
-    found: Answers = state.findings
+        state.findings = CheckCache()
+    found: CheckCache = state.findings
     return found
 
 
-def _contents(depot: Depot, stored: StoredProgram, units: str) -> bytes:
+def _contents(data_folder: DataFolder, stored: StoredProgram, units: str) -> bytes:
     """Bytes of the answer.
 
     Raises
@@ -198,9 +213,9 @@ def _contents(depot: Depot, stored: StoredProgram, units: str) -> bytes:
         When the program was deleted meanwhile.
     """
     try:
-        found = check(depot.program_file(stored.id), units=units, name=stored.name)
+        found = check(data_folder.program_file(stored.id), units=units, name=stored.name)
     except StepNcError:
-        programs.require_file(depot, stored.id)
+        programs.require_file(data_folder, stored.id)
         raise
     return contents_json(found).encode()
 
@@ -227,7 +242,7 @@ async def _body(request: Request) -> bytes:
 
 
 def _unpacked(unpack: "zlib._Decompress", chunk: bytes, most: int) -> bytes:
-    """What a chunk holds, but no more than a bound."""
+    """Decompressed chunk, up to a size."""
     try:
         part = unpack.decompress(chunk, most)
     except zlib.error as error:

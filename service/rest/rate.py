@@ -1,4 +1,4 @@
-"""How many requests a client may send: a bucket of tokens for each. Running state."""
+"""Rate limit of requests: a token bucket for each client. Running state."""
 
 import time
 from collections.abc import Callable

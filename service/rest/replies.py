@@ -15,7 +15,7 @@ from starlette.concurrency import run_in_threadpool
 from starlette.types import Receive, Scope, Send
 
 from service.errors import NotFound
-from service.rest.gate import REPORT_POLICY
+from service.rest.access import REPORT_POLICY
 
 JSON = "application/json"
 PROBLEM = "application/problem+json"
@@ -49,7 +49,7 @@ def tagged(
     return Response(body, 200, told, JSON)
 
 
-class Prepared(Response):
+class PreparedResponse(Response):
     """A body whose headers were made before: what is asked again and again is sent as it is."""
 
     def __init__(self, status: int, body: bytes, headers: list[tuple[bytes, bytes]]) -> None:
@@ -58,7 +58,7 @@ class Prepared(Response):
 
 
 def tag_of(body: bytes) -> str:
-    """What changes with every byte."""
+    """Entity tag of a content."""
     return f'"{hashlib.blake2b(body, digest_size=12).hexdigest()}"'
 
 

@@ -1,4 +1,4 @@
-"""What all kinds of jobs offer: their result, the rows of their run, what happens in it."""
+"""Routes of all kinds of jobs: their result, the rows of their run, their events."""
 
 from collections.abc import AsyncIterator, Callable
 from functools import partial
@@ -12,15 +12,15 @@ from fastapi import Query, Request, Response
 from fastapi.responses import StreamingResponse
 from starlette.concurrency import run_in_threadpool
 
-from service.depot import jobs
-from service.depot.folder import Depot
-from service.depot.jobs import Job, Kind, State
 from service.errors import Conflict, NotFound, Unreadable
 from service.jobs.task import RESULT
 from service.live.folder import LiveFolder
 from service.live.series import TIME, Series, Window, open_series, window
-from service.rest.context import depot_of, hub_of
+from service.rest.context import data_folder_of, hub_of
 from service.rest.replies import json_reply, tag_of, tagged
+from service.storage import jobs
+from service.storage.folder import DataFolder
+from service.storage.jobs import Job, JobKind, JobState
 
 SERIES_POINTS = 1000
 
@@ -44,7 +44,7 @@ async def read_in_turn(read: Callable[P, T], *args: P.args, **words: P.kwargs) -
     return await to_thread.run_sync(partial(read, *args, **words), limiter=READERS)
 
 
-async def result_reply(request: Request, id: str, kind: Kind) -> Response:
+async def result_reply(request: Request, id: str, kind: JobKind) -> Response:
     """The result of a job.
 
     Raises
@@ -52,11 +52,11 @@ async def result_reply(request: Request, id: str, kind: Kind) -> Response:
     NotFound, Conflict
         When there is no such job, or it has no result (yet).
     """
-    depot = depot_of(request)
-    job = jobs.get(depot, id, kind)
+    data_folder = data_folder_of(request)
+    job = jobs.get(data_folder, id, kind)
     require_done(job)
     try:
-        body = await run_in_threadpool((depot.job_folder(id) / RESULT).read_bytes)
+        body = await run_in_threadpool((data_folder.job_folder(id) / RESULT).read_bytes)
     except FileNotFoundError:
         raise NotFound("result of job", id) from None
     return tagged(request, body, tag_of(body))
@@ -70,7 +70,7 @@ def require_done(job: Job) -> None:
     Conflict
         When it has not succeeded.
     """
-    if job.state is not State.SUCCEEDED:
+    if job.state is not JobState.SUCCEEDED:
         where = f"see /v1/jobs/{job.id}"
         raise Conflict(f"{job.kind.value} '{job.id}' is {job.state.value}: {where}")
 
@@ -111,22 +111,22 @@ def _window(found: Window, series: Series, job: Job) -> dict[str, Any]:
         },
         "rows": found.rows,
         "is_reduced": found.is_reduced,
-        "is_growing": not job.state.is_over,
+        "is_growing": not job.state.is_finished,
         "columns": [name for name in series.columns if name != TIME],
     }
 
 
 def _live(request: Request, job: Job) -> LiveFolder:
-    return LiveFolder(path=depot_of(request).job_folder(job.id))
+    return LiveFolder(path=data_folder_of(request).job_folder(job.id))
 
 
 def status_reply(request: Request, job: Job) -> Response:
-    """How a run is now; null: nothing was said yet."""
+    """Latest status snapshot of a run; null: there is none yet."""
     return json_reply(request, _live(request, job).read_status())
 
 
 async def stream_reply(request: Request, job: Job) -> Response:
-    """What happens, as it happens."""
+    """Events of a run, as a stream."""
     hub = hub_of(request)
     hub.require_room()
 
@@ -139,7 +139,7 @@ async def stream_reply(request: Request, job: Job) -> Response:
     return StreamingResponse(messages(), media_type="text/event-stream", headers=headers)
 
 
-def file_of(depot: Depot, job: Job, name: str, *, thing: str) -> Path:
+def file_of(data_folder: DataFolder, job: Job, name: str, *, thing: str) -> Path:
     """A file that a job has left.
 
     Raises
@@ -147,7 +147,7 @@ def file_of(depot: Depot, job: Job, name: str, *, thing: str) -> Path:
     NotFound
         When it has left none.
     """
-    file = depot.job_folder(job.id) / name
+    file = data_folder.job_folder(job.id) / name
     if not file.is_file():
         raise NotFound(thing, job.id)
     return file

@@ -1,8 +1,8 @@
-"""Which role a request needs: one table, for the gate and for the OpenAPI document."""
+"""Role that a request needs: one table, for the access check and for the OpenAPI document."""
 
-from service.depot.jobs import Kind
-from service.depot.keys import Key, Role
 from service.errors import Forbidden
+from service.storage.jobs import JobKind
+from service.storage.keys import Key, Role
 
 OPERATED = ("/v1/control-runs", "/v1/trials")
 """where a machine is steered"""
@@ -31,7 +31,7 @@ def role_for(method: str, path: str) -> Role | None:
     return Role.OPERATOR if path.startswith(OPERATED) else Role.PLANNER
 
 
-def role_to_end(kind: Kind) -> Role:
+def role_to_end(kind: JobKind) -> Role:
     """The role that may end a job, and delete what it made."""
     return Role.OPERATOR if kind.is_live else Role.PLANNER
 

@@ -14,14 +14,14 @@ from types import FrameType
 import structlog
 import uvicorn
 
-from service.depot import keys
-from service.depot.folder import Depot, open_depot
 from service.errors import Forbidden
 from service.jobs import runner
 from service.rest import logs
+from service.rest.http_protocol import BoundedHttpProtocol
 from service.rest.metrics import SHARED
-from service.rest.protocol import Prompt
 from service.rest.settings import Settings
+from service.storage import keys
+from service.storage.folder import DataFolder, open_data_folder
 from stepnc_model.errors import StepNcError
 
 LOG = structlog.get_logger("serve")
@@ -39,8 +39,8 @@ MOST_CONNECTIONS = 2000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Start:
-    """How the service is started."""
+class ServerOptions:
+    """Options of the server."""
 
     settings: Settings
     workers: int
@@ -51,7 +51,7 @@ class Start:
     key: Path | None = None
 
 
-def serve(start: Start) -> None:
+def serve(start: ServerOptions) -> None:
     """Serve until told to stop.
 
     Raises
@@ -60,37 +60,39 @@ def serve(start: Start) -> None:
         When it cannot be started.
     """
     settings = start.settings
-    depot = open_depot(settings.root, knowledge=settings.knowledge)
-    if settings.needs_keys and not any(each.revoked is None for each in keys.listed(depot)):
+    data_folder = open_data_folder(settings.root, knowledge=settings.knowledge)
+    if settings.needs_keys and not any(
+        each.revoked is None for each in keys.listed(data_folder)
+    ):
         command = f"stepnc keys create --for NAME --role planner --data {settings.data}"
         raise Forbidden(f"host {settings.host}: keys are needed, and there is none: {command}")
     for file in (start.certificate, start.key):
         if file is not None and not file.is_file():
             raise StepNcError(f"{file}: no such file")
     _require_port(settings)
-    with runner.locked(depot.root, "server"):
-        with runner.locked(depot.root):
+    with runner.locked(data_folder.root, "server"):
+        with runner.locked(data_folder.root):
             """what is left of an earlier one is refused at once"""
-        _serve(start, depot)
+        _serve(start, data_folder)
 
 
-def _serve(start: Start, depot: Depot) -> None:
+def _serve(start: ServerOptions, data_folder: DataFolder) -> None:
     settings = start.settings
     settings.hand_on()
     logs.configure(settings.level)
     if start.workers > 1:
-        _share_metrics(depot.root)
-    keeper = RunnerKeeper(start, knowledge=depot.knowledge)
+        _share_metrics(data_folder.root)
+    keeper = RunnerKeeper(start, knowledge=data_folder.knowledge)
     keeper.start()
     # uvicorn raises the signal once more when all requests are answered: without this the
     # process would end there, before the one that runs jobs has freed the folder.
     signal.signal(signal.SIGTERM, _end)
-    LOG.info("serving", host=settings.host, port=settings.port, data=str(depot.root))
+    LOG.info("serving", host=settings.host, port=settings.port, data=str(data_folder.root))
     try:
         uvicorn.run(
             "service.rest.app:from_environment",
             factory=True,
-            http=Prompt,
+            http=BoundedHttpProtocol,
             ws="none",
             host=settings.host,
             port=settings.port,
@@ -126,7 +128,7 @@ def _end(_signal: int, _frame: FrameType | None) -> None:
 class RunnerKeeper:
     """Keeps a runner alive. Running state."""
 
-    def __init__(self, start: Start, *, knowledge: str) -> None:
+    def __init__(self, start: ServerOptions, *, knowledge: str) -> None:
         settings = start.settings
         self._arguments = (settings.data, knowledge, start.jobs, os.getpid(), settings.level)
         self._is_stopping = threading.Event()
@@ -162,7 +164,7 @@ class RunnerKeeper:
 
 
 def run_jobs(data: str, knowledge: str, workers: int, parent: int, level: str) -> None:
-    """What the process does that runs jobs."""
+    """Main function of the process that runs jobs."""
     logs.configure(level)
     try:
         runner.main(data, knowledge, workers, parent)

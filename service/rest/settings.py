@@ -1,4 +1,4 @@
-"""What the service is told when it starts; handed on to its processes in the environment."""
+"""Settings of the service; passed to its processes in the environment."""
 
 import json
 import os
@@ -29,7 +29,7 @@ class Settings:
     """names under which clients know this host, beside the one it listens on"""
     needs_keys: bool = False
     upload_bytes: int = 32 * MIB
-    """of a program, unpacked"""
+    """Upload bytes of a program, unpacked"""
     rate: float = 0.0
     """requests a second of one client, in the long run; 0: as many as there come"""
     burst: int = 100
@@ -37,16 +37,16 @@ class Settings:
     body_s: float = 60.0
     """in which a body arrives"""
     level: str = "info"
-    """of the log"""
+    """Level of the log"""
 
     @property
     def has_request_log(self) -> bool:
-        """Whether each request is a line of the log."""
+        """Whether each request is logged."""
         return self.level in {"debug", "info"}
 
     @property
     def is_loopback(self) -> bool:
-        """Whether only this computer comes in."""
+        """Whether only this computer can connect."""
         return self.host in LOOPBACK
 
     @property

@@ -15,15 +15,15 @@ import numpy as np
 import orjson
 import structlog
 
-from service.depot import jobs
-from service.depot.folder import Depot
-from service.depot.jobs import Job
 from service.errors import NotFound, ServiceError, TooMany
 from service.live.folder import LiveFolder
 from service.live.journal import read_on
 from service.live.series import open_series
 from service.rest.metrics import STREAMS
 from service.rest.views import job_view
+from service.storage import jobs
+from service.storage.folder import DataFolder
+from service.storage.jobs import Job
 
 LOG = structlog.get_logger("streams")
 
@@ -41,7 +41,7 @@ MOST_CLIENTS = 1000
 QUIET = 10.0
 """s after which something is said, so that a broken line is noticed"""
 
-OVER = b""
+END_OF_STREAM = b""
 """the last message"""
 
 
@@ -52,8 +52,8 @@ def event(name: str, content: Any) -> bytes:
 
 
 @dataclass(eq=False)
-class Client:
-    """Somebody who watches. Running state."""
+class StreamClient:
+    """Subscriber of server-sent events. Running state."""
 
     queue: asyncio.Queue[bytes] = field(default_factory=lambda: asyncio.Queue(WAITING))
     has_lost: bool = False
@@ -76,51 +76,51 @@ class Client:
             while self.queue.qsize() > WAITING - 2:
                 self.queue.get_nowait()
             self.queue.put_nowait(event("gap", {}))
-        self.queue.put_nowait(OVER)
+        self.queue.put_nowait(END_OF_STREAM)
 
 
-class Reader:
+class RunReader:
     """Reads one run for all its clients. Running state."""
 
-    def __init__(self, depot: Depot, id: str) -> None:
-        self.clients: set[Client] = set()
-        self.is_over = False
-        self._depot, self._id = depot, id
-        self._folder = LiveFolder(path=depot.job_folder(id))
+    def __init__(self, data_folder: DataFolder, id: str) -> None:
+        self.clients: set[StreamClient] = set()
+        self.is_finished = False
+        self._data_folder, self._id = data_folder, id
+        self._folder = LiveFolder(path=data_folder.job_folder(id))
         self._row = 0
         self._offset = 0
         self._job: bytes = b""
         self._status: bytes = b""
 
     async def run(self) -> None:
-        """Until the job is over, or nobody watches any more."""
+        """Run until the job has ended, or no subscriber is left."""
         try:
             with suppress(NotFound):
                 self._skip()
                 while self.clients:
-                    job = jobs.get(self._depot, self._id)
+                    job = jobs.get(self._data_folder, self._id)
                     # After the job was looked at: what it wrote before its end is seen.
                     for message in self._news(job):
                         for client in self.clients:
                             client.give(message)
-                    if job.state.is_over:
+                    if job.state.is_finished:
                         break
                     await asyncio.sleep(TICK)
         finally:
             # Also after a fault: nobody waits for what does not come.
-            self.is_over = True
+            self.is_finished = True
             for client in self.clients:
                 client.end()
 
     def _skip(self) -> None:
-        """What was before is in the series and in the list of events."""
+        """Read on from now; earlier rows are in the series and in the list of events."""
         series = open_series(self._folder.series)
         self._row = 0 if series is None else len(series)
         while (read := read_on(self._folder.events, self._offset)).lines:
             self._offset = read.offset
 
     def first(self) -> list[bytes]:
-        """What a client needs that comes later: how the run is."""
+        """First messages for a new subscriber: the job and the status."""
         return [message for message in (self._job, self._status) if message]
 
     def _news(self, job: Job) -> list[bytes]:
@@ -158,12 +158,12 @@ class Reader:
         return event("rows", {"columns": columns, "is_reduced": count > ROWS})
 
 
-class Hub:
+class StreamHub:
     """Readers by run. Running state."""
 
-    def __init__(self, depot: Depot) -> None:
-        self._depot = depot
-        self._readers: dict[str, Reader] = {}
+    def __init__(self, data_folder: DataFolder) -> None:
+        self._data_folder = data_folder
+        self._readers: dict[str, RunReader] = {}
         self._tasks: set[asyncio.Task[None]] = set()
         self._clients = 0
 
@@ -186,7 +186,7 @@ class Hub:
             When as many as can be watch already.
         """
         self.require_room()
-        client = Client()
+        client = StreamClient()
         reader = self._joined(id, client)
         self._clients += 1
         STREAMS.inc()
@@ -200,7 +200,7 @@ class Hub:
                 except TimeoutError:
                     yield b": still here\n\n"
                     continue
-                if message == OVER:
+                if message == END_OF_STREAM:
                     return
                 yield message
         finally:
@@ -208,12 +208,12 @@ class Hub:
             STREAMS.dec()
             reader.clients.discard(client)
 
-    def _joined(self, id: str, client: Client) -> Reader:
+    def _joined(self, id: str, client: StreamClient) -> RunReader:
         reader = self._readers.get(id)
-        if reader is not None and not reader.is_over:
+        if reader is not None and not reader.is_finished:
             reader.clients.add(client)
             return reader
-        reader = self._readers[id] = Reader(self._depot, id)
+        reader = self._readers[id] = RunReader(self._data_folder, id)
         reader.clients.add(client)
         task = asyncio.create_task(reader.run())
         self._tasks.add(task)

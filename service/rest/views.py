@@ -1,12 +1,12 @@
-"""What clients get: the shapes of answers, with units in the names of their fields."""
+"""Response bodies, with units in the names of their fields."""
 
 from typing import Any, Generic, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from service.depot.jobs import Job, Kind, State
-from service.depot.programs import StoredProgram
 from service.rest.replies import moment
+from service.storage.jobs import Job, JobKind, JobState
+from service.storage.programs import StoredProgram
 
 T = TypeVar("T")
 
@@ -17,7 +17,7 @@ class View(BaseModel):
     model_config = ConfigDict(frozen=True)
 
 
-class Problem(BaseModel):
+class ProblemDetails(BaseModel):
     """A problem after RFC 9457; errors of the project add fields (line, entity, limits …)."""
 
     model_config = ConfigDict(extra="allow")
@@ -76,7 +76,7 @@ class ExecutableView(View):
 
 
 class ContentsView(View):
-    """What is in a program, and what is wrong with it."""
+    """Content of a program, and its faults."""
 
     program: str
     schemas: list[str]
@@ -91,8 +91,8 @@ class JobView(View):
     """A job: long work that goes on by itself."""
 
     id: str
-    kind: Kind
-    state: State
+    kind: JobKind
+    state: JobState
     program_id: str | None
     advice_id: str | None
     owner: str
@@ -103,13 +103,13 @@ class JobView(View):
     message: str
     is_cancelling: bool
     attempt: int
-    problem: Problem | None = Field(description="why it failed")
+    problem: ProblemDetails | None = Field(description="why it failed")
     request: dict[str, Any]
     result: str = Field(description="path of the result, once it has succeeded")
 
 
 class LimitView(View):
-    """How near a limit is."""
+    """Use of a limit."""
 
     name: str
     value: float | None
@@ -134,7 +134,7 @@ class SettingView(View):
 
 
 class PlungeView(View):
-    """What holds the plunge feed."""
+    """Plunge feed and the limit that holds it."""
 
     reason: str
     fault: str | None = Field(description="why the tool may not go straight down; null: it may")
@@ -149,7 +149,7 @@ class BeforeAfterView(View):
 
 
 class StabilityView(View):
-    """What is known of a cut's stability; its bound is one of the limits."""
+    """Stability of a cut; its bound is one of the limits."""
 
     basis: str = Field(description="measured, estimated (bounds nothing) or not_used")
     reason: str
@@ -158,7 +158,7 @@ class StabilityView(View):
 
 
 class HoldingLoadView(View):
-    """What a cut asks of what holds its workpiece; bounds are among the limits."""
+    """Loads of a cut on the work-holding; bounds are among the limits."""
 
     torque_nm: float = Field(description="about the axis of a bar, axial force included")
     moment_nm: float = Field(description="of tilting about the jaws; 0: not known, or none")
@@ -331,12 +331,12 @@ def program_view(program: StoredProgram) -> dict[str, Any]:
 
 
 PLACES = {
-    Kind.ADVICE: "advice",
-    Kind.SIMULATION: "simulations",
-    Kind.CONTROL: "control-runs",
-    Kind.TRIAL: "trials",
-    Kind.EVALUATION: "evaluations",
-    Kind.REVIEW: "reviews",
+    JobKind.ADVICE: "advice",
+    JobKind.SIMULATION: "simulations",
+    JobKind.CONTROL: "control-runs",
+    JobKind.TRIAL: "trials",
+    JobKind.EVALUATION: "evaluations",
+    JobKind.REVIEW: "reviews",
 }
 """where results of a kind are"""
 

@@ -1,49 +1,48 @@
-"""What table, page and JSON of a simulated run have in common. Units s, J, W, N, mm³."""
+"""Figures of a simulated run for table, page and JSON. Units s, J, W, N, mm³."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from service.simulation.run import Simulation
-from simulator.machine.totals import Energy, Total
+from simulator.machine.totals import Total
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Row:
+class SimulationRow:
     """One workingstep, or what comes before them all."""
 
     id: str | None
     """None: before the first workingstep, or in a program without any"""
     begin: float
-    """s from the start of the program"""
+    """Begin, s from the start of the program; not a number for the whole run"""
     total: Total
 
     @property
     def name(self) -> str:
-        """What a table calls it."""
+        """Name of the row in a table."""
         return "outside workingsteps" if self.id is None else self.id
 
 
-def rows(simulation: Simulation) -> tuple[Row, ...]:
+def rows(simulation: Simulation) -> tuple[SimulationRow, ...]:
     """The run's workingsteps in their order; what comes before them only if it takes time."""
-    found: list[Row] = []
+    found: list[SimulationRow] = []
     now = 0.0
     for number, (name, total) in enumerate(simulation.totals):
         if number or total.duration > 0.0:
-            found.append(Row(id=name if number else None, begin=now, total=total))
+            found.append(SimulationRow(id=name if number else None, begin=now, total=total))
         now += total.duration
     return tuple(found)
 
 
-def components(energy: Energy) -> tuple[tuple[str, float], ...]:
-    """Name of each component and its energy in J."""
-    return (
-        ("X axis", energy.x_axis),
-        ("Y axis", energy.y_axis),
-        ("Z axis", energy.z_axis),
-        ("spindle", energy.spindle),
-        ("coolant", energy.coolant),
-        ("base load", energy.base),
-    )
+COMPONENTS = {
+    "x_axis": "X axis",
+    "y_axis": "Y axis",
+    "z_axis": "Z axis",
+    "spindle": "spindle",
+    "coolant": "coolant",
+    "base": "base load",
+}
+"""headings of the components of energy, by their names"""
 
 
 def ratio(part: float, whole: float) -> float:
@@ -51,7 +50,7 @@ def ratio(part: float, whole: float) -> float:
     return part / whole if whole else 0.0
 
 
-def exceeded(simulation: Simulation, found: Sequence[Row]) -> tuple[str, ...]:
+def exceeded(simulation: Simulation, found: Sequence[SimulationRow]) -> tuple[str, ...]:
     """A sentence for each workingstep that was above a limit."""
     return tuple(
         f"{row.name}: {row.total.overload_time:.3g} s above {_limits(simulation)}"

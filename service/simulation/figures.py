@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 import plotly.graph_objects as go
 
-from service.buckets import Trace
+from service.buckets import BucketedRun
 from service.panels import (
     BLUE,
     DIM,
@@ -20,38 +20,38 @@ from service.panels import (
     RED,
     SKY,
     Panels,
-    Stretch,
+    TimeSpan,
     key,
     line,
 )
-from service.simulation.facts import Row
-from service.simulation.trace import Signal
+from service.simulation.facts import SimulationRow
+from service.simulation.trace import SimulationSignal
 
 AXES = (
-    ("X", ORANGE, Signal.X_POWER),
-    ("Y", GREEN, Signal.Y_POWER),
-    ("Z", PINK, Signal.Z_POWER),
+    ("X", ORANGE, SimulationSignal.X_POWER),
+    ("Y", GREEN, SimulationSignal.Y_POWER),
+    ("Z", PINK, SimulationSignal.Z_POWER),
 )
 
 ROOM = 1.15
 """times the greatest feed of the program: what the panel of feed shows"""
 
 
-def run_figure(found: Sequence[Row], trace: Trace) -> go.Figure:
+def run_figure(found: Sequence[SimulationRow], trace: BucketedRun) -> go.Figure:
     """Workingsteps, powers, feed, spindle speed, force and removal rate against time.
 
     Parameters
     ----------
-    found : sequence of Row
+    found : sequence of SimulationRow
         The run's workingsteps.
-    trace : Trace
+    trace : BucketedRun
 
     Returns
     -------
     plotly.graph_objects.Figure
     """
     stretches = [
-        Stretch(name=row.name, begin=row.begin, duration=row.total.duration) for row in found
+        TimeSpan(name=row.name, begin=row.begin, duration=row.total.duration) for row in found
     ]
     panels = Panels(trace)
     panels.strip(stretches)
@@ -59,25 +59,25 @@ def run_figure(found: Sequence[Row], trace: Trace) -> go.Figure:
     _axes(panels, trace)
     _feed(panels, trace)
     panels.begin("<b>Spindle speed</b>, rpm", height=90)
-    panels.peaks("rpm", BLUE, Signal.SPINDLE_SPEED, scale=60.0)
+    panels.peaks("rpm", BLUE, SimulationSignal.SPINDLE_SPEED, scale=60.0)
     panels.begin("<b>Cutting force</b>, tangential, N", height=140)
-    panels.peaks("N", RED, Signal.FORCE)
+    panels.peaks("N", RED, SimulationSignal.FORCE)
     panels.begin("<b>Removal rate</b>, cm³/min", height=140)
-    panels.peaks("cm³/min", GREEN, Signal.REMOVAL_RATE, scale=0.06)
+    panels.peaks("cm³/min", GREEN, SimulationSignal.REMOVAL_RATE, scale=0.06)
     return panels.done(stretches)
 
 
-def _power(panels: Panels, trace: Trace) -> None:
+def _power(panels: Panels, trace: BucketedRun) -> None:
     """Components stacked, the greatest total, and where the drive is overloaded."""
     parts = [
-        ("base", GREY, Signal.BASE_POWER),
-        ("coolant", SKY, Signal.COOLANT_POWER),
+        ("base", GREY, SimulationSignal.BASE_POWER),
+        ("coolant", SKY, SimulationSignal.COOLANT_POWER),
         *AXES,
-        ("spindle", BLUE, Signal.SPINDLE_POWER),
+        ("spindle", BLUE, SimulationSignal.SPINDLE_POWER),
     ]
     shown = [part for part in parts if _is_used(trace, part[2])]
-    total = trace.curve(Signal.TOTAL_POWER)
-    loaded = trace.curve(Signal.OVERLOAD).high > 0.0
+    total = trace.curve(SimulationSignal.TOTAL_POWER)
+    loaded = trace.curve(SimulationSignal.OVERLOAD).high > 0.0
     keys = [key(name, colour) for name, colour, _ in shown]
     keys.append(key("peak", DIM, "━"))
     if loaded.any():
@@ -93,7 +93,7 @@ def _power(panels: Panels, trace: Trace) -> None:
         panels.add(marks.update(mode="markers", marker={"color": RED, "size": 5}))
 
 
-def _axes(panels: Panels, trace: Trace) -> None:
+def _axes(panels: Panels, trace: BucketedRun) -> None:
     """The axes by themselves: they vanish beside the spindle."""
     shown = [part for part in AXES if _is_used(trace, part[2])]
     keys = " ".join(key(name, colour) for name, colour, _ in shown)
@@ -102,17 +102,19 @@ def _axes(panels: Panels, trace: Trace) -> None:
         panels.peaks(name, colour, signal)
 
 
-def _feed(panels: Panels, trace: Trace) -> None:
+def _feed(panels: Panels, trace: BucketedRun) -> None:
     """Feed as programmed and as it is; rapids are far above and leave the panel."""
     keys = f"{key('commanded', GREY)} {key('actual', BLUE)}"
     # fmax passes over what is missing.
-    most = np.fmax.reduce(trace.curve(Signal.FEED_PROGRAMMED).high, initial=0.0) * 60.0
+    most = (
+        np.fmax.reduce(trace.curve(SimulationSignal.FEED_PROGRAMMED).high, initial=0.0) * 60.0
+    )
     title = f"<b>Feed</b>, mm/min<br>{keys} (rapids leave the frame)"
     panels.begin(title, height=150, range=[0.0, ROOM * most] if most > 0.0 else None)
-    panels.peaks("actual", BLUE, Signal.FEED_ACTUAL, scale=60.0)
-    panels.peaks("commanded", GREY, Signal.FEED_PROGRAMMED, scale=60.0)
+    panels.peaks("actual", BLUE, SimulationSignal.FEED_ACTUAL, scale=60.0)
+    panels.peaks("commanded", GREY, SimulationSignal.FEED_PROGRAMMED, scale=60.0)
 
 
-def _is_used(trace: Trace, signal: Signal) -> bool:
+def _is_used(trace: BucketedRun, signal: SimulationSignal) -> bool:
     curve = trace.curve(signal)
     return bool((curve.high > 0.0).any() or (curve.low < 0.0).any())

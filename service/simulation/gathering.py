@@ -1,4 +1,4 @@
-"""What is gathered while a program runs on the virtual machine: totals, samples, a trace."""
+"""Collector of a run on the virtual machine: totals, samples, a trace."""
 
 from collections.abc import Callable, Sequence
 from typing import Protocol
@@ -7,8 +7,7 @@ from service.simulation.timeline_file import TimelineFile
 from service.simulation.trace import TraceKeeper
 from simulator.errors import ProgramFault, SimulationError
 from simulator.machine.disturbance import Disturbance, Disturbed
-from simulator.machine.episode import Episode
-from simulator.machine.samples import Execution, Samples
+from simulator.machine.samples import Episode, Execution, Samples
 from simulator.machine.sensing import Sampler
 from simulator.machine.totals import Total, added
 from simulator.machine.virtual import VirtualMachine
@@ -17,8 +16,8 @@ MOST_SECONDS = 1e7
 """of machining, a hundred days: a slip of the feed or of a dwell rather than a program"""
 
 
-class Watcher(Protocol):
-    """Who looks at the samples while the machine runs: a live view."""
+class SampleWatcher(Protocol):
+    """Observer of the samples while the machine runs: a live view."""
 
     def begin(self, workingsteps: Sequence[str]) -> None:
         """Told once: ids of the workingsteps by their number, from 1; they grow on the way."""
@@ -27,8 +26,8 @@ class Watcher(Protocol):
         """More samples, later than those before."""
 
 
-class Gathering:
-    """What is gathered on the way. Running state."""
+class RunCollector:
+    """Collected totals, samples and trace."""
 
     def __init__(
         self,
@@ -36,7 +35,7 @@ class Gathering:
         disturbance: Disturbance,
         *,
         rate: float,
-        watchers: Sequence[Watcher],
+        watchers: Sequence[SampleWatcher],
     ) -> None:
         self.totals = [Total()]
         self.file: TimelineFile | None = None

@@ -14,7 +14,7 @@ from simulator.motion.segments import Floats
 from stepnc_model.units import mm_min_from_speed, rpm_from_rev_s
 
 MM_MIN, RPM = mm_min_from_speed(1.0), rpm_from_rev_s(1.0)
-"""the user's units in one of ours"""
+"""the user's units per internal unit"""
 
 CM3_MIN = 0.001 * mm_min_from_speed(1.0)
 """cm³/min in one mm³/s"""
@@ -72,11 +72,11 @@ class LiveSamples:
         self._count = 0
 
     def begin(self, workingsteps: Sequence[str]) -> None:
-        """See :class:`service.simulation.gathering.Watcher`."""
+        """See :class:`service.simulation.gathering.SampleWatcher`."""
         self._workingsteps = workingsteps
 
     def add(self, samples: Samples) -> None:
-        """See :class:`service.simulation.gathering.Watcher`.
+        """See :class:`service.simulation.gathering.SampleWatcher`.
 
         Raises
         ------

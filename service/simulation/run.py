@@ -3,20 +3,21 @@
 from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
-from enum import StrEnum
 from pathlib import Path
 
-from service.buckets import Trace
+from service.buckets import BucketedRun
 from service.chosen import require_axes
 from service.files import require_place
 from service.numbers import numbers_in
 from service.progress import Ticker, bar
-from service.reading import Tell, one_of, silent
+from service.reading import Tell, silent
+from service.requests.fields import require_bounds
+from service.requests.runs import ForceView, SimulationRequest
 from service.run_file import require_suffix
-from service.simulation.gathering import Gathering, Watcher
+from service.simulation.gathering import RunCollector, SampleWatcher
 from service.simulation.setup import (
     CodeRequest,
-    Prepared,
+    PreparedRun,
     from_code,
     from_program,
     prepared_program,
@@ -24,85 +25,46 @@ from service.simulation.setup import (
 from service.simulation.timeline_file import TimelineFile
 from service.simulation.trace import TraceKeeper
 from simulator.errors import SimulationError
-from simulator.machine.disturbance import Disturbance, NoiseKind
+from simulator.machine.disturbance import Disturbance
 from simulator.machine.interpreter import interpret
-from simulator.machine.tooth_loads import Teeth
+from simulator.machine.tooth_loads import ToothOptions
 from simulator.machine.totals import Total
 from simulator.machine.transients import Response
 from simulator.machine.travel import Zero, zero_of
-from simulator.machine.virtual import LoadedTool, Setup, VirtualMachine
-from simulator.motion.control import DEVIATION, Control, control_model
+from simulator.machine.virtual import LoadedTool, MachineSetup, VirtualMachine
+from simulator.motion.control import control_model
 from simulator.motion.fir import FixedTimeFilter
-from simulator.motion.motion import ControlModel, axis_limits
+from simulator.motion.model_name import ControlModelName
+from simulator.motion.segments import ControlModel, axis_limits
 from simulator.spec import Machine, MaterialMatch
 from stepnc_model.errors import Finding, StepNcError, WriteError
 from stepnc_model.program import Program
 from stepnc_model.units import mm_from_um
 
-MOST_FACTOR = 100.0
-"""on k_c; more is a slip"""
-
-MOST_RATE = 10_000.0
-"""1/s"""
-
-MOST_RUNOUT_UM = 500.0
-
-MOST_DEVIATION = 10.0
-"""mm, of the junctions"""
-
 LEAST_FILTER, MOST_FILTER = 1e-6, 100.0
 """s"""
 
 
-class ForceView(StrEnum):
-    """How forces are shown."""
-
-    MEAN = "mean"
-    """over a revolution"""
-    TOOTH = "tooth"
-    """of the teeth that cut at each time"""
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SimulationRequest:
-    """What the user asks of ``simulate``, in the user's units."""
+class RunFiles:
+    """Files that a run on the virtual machine reads and writes."""
 
     file: Path | None = None
     name: str = ""
-    """what the program is called; as its file when empty"""
+    """name of the program; that of its file when empty"""
     code: CodeRequest | None = None
-    machine: str = ""
-    material: str = ""
-    units: str = "iso"
-    rate: float = 10.0
-    control: str = Control.FIR.value
-    filter_s: str = ""
-    """times of the fixed-time filter, "T1,T2"; by the axes when empty"""
-    deviation: float = DEVIATION
-    """mm, of the junctions"""
-    zero: str = ""
-    noise: str = NoiseKind.NONE.value
-    missing: float = 0.0
-    has_lag: bool = False
-    """the main drive answers late and too far"""
-    has_wear: bool = False
-    """tools wear while they cut"""
-    force: str = ForceView.MEAN.value
-    runout_um: float = 0.0
-    kc_factor: float = 1.0
-    """on the specific cutting force"""
-    seed: int = 0
+    """NC code that runs instead of the program's own"""
     output: Path | None = None
     report: Path | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Simulation:
-    """What ``simulate`` found."""
+    """Result of ``simulate``."""
 
     program: str
     machine: Machine
-    control: Control
+    control: ControlModelName
     material: MaterialMatch | None = None
     """None: not known"""
     totals: tuple[tuple[str, Total], ...]
@@ -110,7 +72,7 @@ class Simulation:
     findings: tuple[Finding, ...]
     samples: int = 0
     """that were written"""
-    trace: Trace | None = None
+    trace: BucketedRun | None = None
     """for a report, when one was asked for"""
 
     @property
@@ -123,7 +85,11 @@ class Simulation:
 
 
 def simulate(
-    request: SimulationRequest, *, tell: Tell = silent, watchers: Sequence[Watcher] = ()
+    request: SimulationRequest,
+    files: RunFiles,
+    *,
+    tell: Tell = silent,
+    watchers: Sequence[SampleWatcher] = (),
 ) -> Simulation:
     """Run a program on the virtual machine.
 
@@ -132,14 +98,13 @@ def simulate(
     StepNcError
         For everything that is wrong with file, names, numbers or output.
     """
-    kind, disturbance = _control_kind(request), _disturbance(request)
-    prepared, virtual = waiting_machine(request, tell=tell)
-    disturbance = _of_machine(disturbance, virtual.machine)
-    run = Gathering(virtual, disturbance, rate=request.rate, watchers=watchers)
-    if request.report is not None:
+    prepared, virtual = waiting_machine(request, files, tell=tell)
+    disturbance = _disturbance(request, virtual.machine)
+    run = RunCollector(virtual, disturbance, rate=request.rate_hz, watchers=watchers)
+    if files.report is not None:
         run.trace = TraceKeeper()
-    if request.output is not None:
-        run.file = TimelineFile(request.output, virtual.workingsteps, program=prepared.name)
+    if files.output is not None:
+        run.file = TimelineFile(files.output, virtual.workingsteps, program=prepared.name)
     try:
         _run(prepared, virtual, run, tell=tell)
     finally:
@@ -148,7 +113,7 @@ def simulate(
     return Simulation(
         program=prepared.name,
         machine=virtual.machine,
-        control=kind,
+        control=request.control,
         material=prepared.material,
         totals=tuple(zip(("", *virtual.workingsteps), run.totals, strict=True)),
         findings=(*prepared.findings, *virtual.findings),
@@ -169,14 +134,14 @@ def run_of_program(
     """
     prepared = prepared_program(program, machine, material, tell=tell)
     virtual = _machine(SimulationRequest(), prepared, teeth=None)
-    run = Gathering(virtual, Disturbance(), rate=1.0, watchers=())
+    run = RunCollector(virtual, Disturbance(), rate=1.0, watchers=())
     _run(prepared, virtual, run, tell=tell)
     return tuple(zip(virtual.workingsteps, run.totals[1:], strict=True))
 
 
 def waiting_machine(
-    request: SimulationRequest, *, tell: Tell = silent
-) -> tuple[Prepared, VirtualMachine]:
+    request: SimulationRequest, files: RunFiles, *, tell: Tell = silent
+) -> tuple[PreparedRun, VirtualMachine]:
     """A program and the machine that waits for it.
 
     Raises
@@ -184,13 +149,16 @@ def waiting_machine(
     StepNcError
         As :func:`simulate`.
     """
-    _require(request)
+    require_bounds(request)
+    _require_files(files)
     teeth = _teeth(request)
-    prepared = _prepared(request, tell)
+    prepared = _prepared(request, files, tell)
     return prepared, _machine(request, prepared, teeth=teeth)
 
 
-def _run(prepared: Prepared, virtual: VirtualMachine, run: Gathering, *, tell: Tell) -> None:
+def _run(
+    prepared: PreparedRun, virtual: VirtualMachine, run: RunCollector, *, tell: Tell
+) -> None:
     """Run to the end, told of where it is."""
     ticker = Ticker(tell)
     try:
@@ -203,7 +171,7 @@ def _run(prepared: Prepared, virtual: VirtualMachine, run: Gathering, *, tell: T
         raise SimulationError(f"{place_in(prepared, virtual)}: {error}") from error
 
 
-def _progress(prepared: Prepared, virtual: VirtualMachine, run: Gathering) -> str:
+def _progress(prepared: PreparedRun, virtual: VirtualMachine, run: RunCollector) -> str:
     """Of what was read the part that has run: a whole stretch is read before it runs."""
     at = virtual.workingsteps[-1:]
     share = prepared.done() * min(run.block / max(prepared.read(), 1), 1.0)
@@ -212,26 +180,26 @@ def _progress(prepared: Prepared, virtual: VirtualMachine, run: Gathering) -> st
     return ", ".join((f"{bar(run.share)}  {virtual.now:.0f} s of machining", *at))
 
 
-def place_in(prepared: Prepared, virtual: VirtualMachine) -> str:
-    """Where a fault lies: the lines of NC code are known to the user, those of blocks not."""
+def place_in(prepared: PreparedRun, virtual: VirtualMachine) -> str:
+    """Line of a fault: lines of NC code are known to the user, those of blocks are not."""
     at = virtual.workingsteps[-1:]
     return ": ".join((prepared.name, *(f"workingstep '{name}'" for name in at)))
 
 
-def _prepared(request: SimulationRequest, tell: Tell) -> Prepared:
-    if request.code is not None:
+def _prepared(request: SimulationRequest, files: RunFiles, tell: Tell) -> PreparedRun:
+    if files.code is not None:
         return from_code(
-            request.code,
-            program=request.file,
+            files.code,
+            program=files.file,
             units=request.units,
             machine=request.machine,
             material=request.material,
         )
-    if request.file is None:
+    if files.file is None:
         raise StepNcError("name a STEP-NC program, or NC code with --nc")
     return from_program(
-        request.file,
-        name=request.name,
+        files.file,
+        name=files.name,
         units=request.units,
         machine=request.machine,
         material=request.material,
@@ -240,12 +208,12 @@ def _prepared(request: SimulationRequest, tell: Tell) -> Prepared:
 
 
 def _machine(
-    request: SimulationRequest, prepared: Prepared, *, teeth: Teeth | None
+    request: SimulationRequest, prepared: PreparedRun, *, teeth: ToothOptions | None
 ) -> VirtualMachine:
     """The machine as it waits for the program."""
     require_axes(prepared.machine)
     return VirtualMachine(
-        Setup(
+        MachineSetup(
             machine=prepared.machine,
             control=_control(request, prepared.machine),
             tools=_tools(request, prepared),
@@ -256,17 +224,15 @@ def _machine(
     )
 
 
-def _require(request: SimulationRequest) -> None:
-    """Refuse what cannot be, before anything is read."""
-    if not 1.0 <= request.rate <= MOST_RATE:
-        raise StepNcError(f"rate {request.rate:g} Hz: it must be 1 to {MOST_RATE:g} Hz")
-    code = request.code
-    if code is not None and request.file is not None and (code.tools or code.stock):
+def _require_files(files: RunFiles) -> None:
+    """Refuse files that cannot be, before anything is read."""
+    code = files.code
+    if code is not None and files.file is not None and (code.tools or code.stock):
         raise StepNcError("tools and stock are those of the program: name no others")
-    if request.output is not None:
-        require_suffix(request.output)
-    inputs = [request.file, *((code.code, code.tools) if code else ())]
-    outputs = [request.output, request.report]
+    if files.output is not None:
+        require_suffix(files.output)
+    inputs = [files.file, *((code.code, code.tools) if code else ())]
+    outputs = [files.output, files.report]
     for row, place in enumerate(outputs):
         if place is None:
             continue
@@ -277,19 +243,12 @@ def _require(request: SimulationRequest) -> None:
             raise WriteError("is no regular file", path=str(place))
 
 
-def _control_kind(request: SimulationRequest) -> Control:
-    return one_of(Control, request.control, "control")
-
-
 def _control(request: SimulationRequest, machine: Machine) -> ControlModel:
-    """How the control runs the path."""
-    kind = _control_kind(request)
-    if not 0.0 < request.deviation <= MOST_DEVIATION:
-        bound = f"it must be above 0, at most {MOST_DEVIATION:g} mm"
-        raise StepNcError(f"deviation {request.deviation:g} mm: {bound}")
+    """Control model of the machine, or the one that was asked for."""
+    kind = request.control
     if not request.filter_s:
-        return _by_axes(kind, machine, deviation=request.deviation)
-    if kind is not Control.FIR:
+        return _by_axes(kind, machine, deviation=request.deviation_mm)
+    if kind is not ControlModelName.FIR:
         raise StepNcError(f"control {kind.value}: filter times are for the control fir")
     first, second = numbers_in(request.filter_s, "filter times", counts=(2,))
     if not LEAST_FILTER <= second <= first <= MOST_FILTER:
@@ -298,7 +257,7 @@ def _control(request: SimulationRequest, machine: Machine) -> ControlModel:
     return FixedTimeFilter(first=first, second=second)
 
 
-def _by_axes(kind: Control, machine: Machine, *, deviation: float) -> ControlModel:
+def _by_axes(kind: ControlModelName, machine: Machine, *, deviation: float) -> ControlModel:
     """The control that suits the axes."""
     try:
         return control_model(kind, axis_limits(machine), deviation=deviation)
@@ -306,11 +265,8 @@ def _by_axes(kind: Control, machine: Machine, *, deviation: float) -> ControlMod
         raise StepNcError(f"machine '{machine.name}', control {kind.value}: {error}") from error
 
 
-def _tools(request: SimulationRequest, prepared: Prepared) -> dict[int, LoadedTool] | None:
+def _tools(request: SimulationRequest, prepared: PreparedRun) -> dict[int, LoadedTool] | None:
     """The tools as asked for: they wear or not, the material is harder or not."""
-    if not 0.0 < request.kc_factor <= MOST_FACTOR:
-        bound = f"it must be positive, {MOST_FACTOR:g} at most"
-        raise StepNcError(f"factor on k_c {request.kc_factor:g}: {bound}")
     if prepared.tools is None:
         return None
     return {
@@ -323,40 +279,27 @@ def _tools(request: SimulationRequest, prepared: Prepared) -> dict[int, LoadedTo
     }
 
 
-def _teeth(request: SimulationRequest) -> Teeth | None:
-    view = one_of(ForceView, request.force, "force")
-    if not 0.0 <= request.runout_um <= MOST_RUNOUT_UM:
-        bound = f"0 to {MOST_RUNOUT_UM:g} µm"
-        raise StepNcError(f"runout {request.runout_um:g} µm: it must be {bound}")
-    if view is ForceView.MEAN:
+def _teeth(request: SimulationRequest) -> ToothOptions | None:
+    if request.force is ForceView.MEAN:
         if request.runout_um:
             raise StepNcError("runout shows in forces tooth by tooth: --force tooth")
         return None
-    return Teeth(eccentricity=mm_from_um(request.runout_um))
+    return ToothOptions(eccentricity=mm_from_um(request.runout_um))
 
 
-def _disturbance(request: SimulationRequest) -> Disturbance:
-    if not 0.0 <= request.missing < 1.0:
-        raise StepNcError(f"missing {request.missing:g}: it must be at least 0 and below 1")
-    if request.seed < 0:
-        raise StepNcError(f"seed {request.seed}: it must be at least 0")
+def _disturbance(request: SimulationRequest, machine: Machine) -> Disturbance:
+    """Disturbance of the readings, with the delay of the machine's drive where it is known."""
+    delay = machine.spindle.delay
+    response = Response() if delay is None else Response(delay=delay)
     return Disturbance(
-        noise=one_of(NoiseKind, request.noise, "noise"),
+        noise=request.noise,
         missing=request.missing,
-        response=Response() if request.has_lag else None,
+        response=response if request.has_lag else None,
         seed=request.seed,
     )
 
 
-def _of_machine(disturbance: Disturbance, machine: Machine) -> Disturbance:
-    """The disturbance with the delay of a machine's own drive, where it is known."""
-    delay = machine.spindle.delay
-    if disturbance.response is None or delay is None:
-        return disturbance
-    return replace(disturbance, response=Response(delay=delay))
-
-
-def _zero(text: str, prepared: Prepared) -> Zero | None:
+def _zero(text: str, prepared: PreparedRun) -> Zero | None:
     """Place of the program's zero: as the user says, or by the stock."""
     if not text:
         return None if prepared.raw is None else zero_of(prepared.machine, prepared.raw)

@@ -1,4 +1,4 @@
-"""What ``simulate`` needs to run: blocks, tools and stock, from a program or from NC code."""
+"""Setup of ``simulate``: blocks, tools and stock, from a program or from NC code."""
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
@@ -22,11 +22,11 @@ from stepnc_model.entities.entity import Entity
 from stepnc_model.errors import Finding, PostError, Severity, StepNcError
 from stepnc_model.part21.values import Ref
 from stepnc_model.post import blocks as post
-from stepnc_model.post.controls import SUFFIXES, Control, read_blocks
+from stepnc_model.post.dialect import SUFFIXES, Dialect
+from stepnc_model.post.dialects import read_blocks
 from stepnc_model.post.neutral import blocks_of, tool_numbers
-from stepnc_model.program import Program
-from stepnc_model.stock import Stock
-from stepnc_model.toolpath.job import stock_of
+from stepnc_model.program import Program, Stock
+from stepnc_model.toolpath.task import stock_of
 
 T = TypeVar("T")
 
@@ -35,7 +35,7 @@ AROUND_PATH, AROUND_PROGRAM = 4, 7
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Prepared:
+class PreparedRun:
     """A program and the machine that waits for it."""
 
     name: str
@@ -66,8 +66,8 @@ class CodeRequest:
     stock: str = ""
 
 
-class Counted(Generic[T]):
-    """What is handed on one by one, and how many that were. Running state."""
+class CountedIterator(Generic[T]):
+    """Iterator that counts its items. Running state."""
 
     def __init__(self, items: Iterable[T], size: Callable[[T], int] = lambda _: 1) -> None:
         self.count = 0
@@ -88,7 +88,7 @@ class Counted(Generic[T]):
 
 def from_program(
     file: Path, *, name: str = "", units: str, machine: str, material: str, tell: Tell
-) -> Prepared:
+) -> PreparedRun:
     """A STEP-NC program on a machine that suits it.
 
     Raises
@@ -104,7 +104,7 @@ def from_program(
 
 def prepared_program(
     program: Program, chosen: Machine, match: MaterialMatch, *, tell: Tell
-) -> Prepared:
+) -> PreparedRun:
     """A program that was read, on a machine that suits it.
 
     Raises
@@ -115,8 +115,8 @@ def prepared_program(
     paths = with_feeds(paths_of(program, tell=tell), keep_going=False)
     numbers = tool_numbers(paths.paths)
     steps = sum(len(path.steps) for path in paths.paths)
-    blocks = Counted(blocks_of(program, paths.items, name=Path(program.name).stem))
-    return Prepared(
+    blocks = CountedIterator(blocks_of(program, paths.items, name=Path(program.name).stem))
+    return PreparedRun(
         name=program.name,
         machine=chosen,
         material=match,
@@ -134,7 +134,7 @@ def prepared_program(
 
 def from_code(
     request: CodeRequest, *, program: Path | None, units: str, machine: str, material: str
-) -> Prepared:
+) -> PreparedRun:
     """NC code, with tools and stock of its program or of what the user says.
 
     Raises
@@ -156,13 +156,13 @@ def from_code(
         tools = {tool.number: table_tool(tool, match.material) for tool in read}
     raw = stock_in(request.stock) if request.stock else None
     size = _size(request.code)
-    lines = Counted(_lines(request.code), len)
+    lines = CountedIterator(_lines(request.code), len)
     clamped = None if raw is None else stock_map(chosen, raw)
     findings: tuple[Finding, ...] = ()
     if clamped is None or tools is None:
         text = "nothing is cut without a stock, a tool table and a material: idle power only"
         findings = (Finding(severity=Severity.WARNING, message=text),)
-    return Prepared(
+    return PreparedRun(
         name=request.code.name,
         machine=chosen,
         material=match,
@@ -178,7 +178,7 @@ def from_code(
 
 def _code_of_program(
     request: CodeRequest, file: Path, *, units: str, names: tuple[str, str]
-) -> Prepared:
+) -> PreparedRun:
     """NC code that was made of a program: its tools are numbered in their order there."""
     program = read_program(file, units=units)
     match = material_for(names[1], program)
@@ -187,9 +187,9 @@ def _code_of_program(
     numbers = {ref: number for number, ref in enumerate(used, 1)}
     ids = {_plain(step.id): step.id for step in program.workingsteps}
     size = _size(request.code)
-    lines = Counted(_lines(request.code), len)
+    lines = CountedIterator(_lines(request.code), len)
     setup = next((step.setup for step in program.workingsteps), None)
-    return Prepared(
+    return PreparedRun(
         name=request.code.name,
         machine=machine,
         material=match,
@@ -225,7 +225,7 @@ class _Clamped:
         self._maps: dict[object, StockMap | None] = {}
 
     def stock(self, workingstep: str) -> StockMap | None:
-        """What is clamped when a workingstep begins."""
+        """Clamped stock at the beginning of a workingstep."""
         if workingstep not in self._setups:
             return None
         setup = self._setups[workingstep]
@@ -260,10 +260,12 @@ def _lines(path: Path) -> Iterator[str]:
 
 
 def _read(
-    request: CodeRequest, lines: Counted[str], machine: Machine, ids: dict[str, str]
+    request: CodeRequest, lines: CountedIterator[str], machine: Machine, ids: dict[str, str]
 ) -> Iterator[Numbered]:
     """Blocks of NC code; remarks that name a workingstep begin it."""
-    kind = post.Machine.LATHE if machine.kind is MachineKind.LATHE else post.Machine.MILL
+    kind = (
+        post.MachineType.LATHE if machine.kind is MachineKind.LATHE else post.MachineType.MILL
+    )
     dialect = _dialect(request)
     try:
         for block in read_blocks(lines, dialect, machine=kind):
@@ -276,13 +278,13 @@ def _read(
         raise StepNcError(f"{request.code.name}: {error}") from error
 
 
-def _dialect(request: CodeRequest) -> Control:
+def _dialect(request: CodeRequest) -> Dialect:
     if request.dialect:
-        return one_of(Control, request.dialect.lower(), "dialect")
+        return one_of(Dialect, request.dialect.lower(), "dialect")
     for control, suffix in SUFFIXES.items():
         if request.code.name.lower().endswith(suffix):
             return control
-    known = ", ".join(control.value for control in Control)
+    known = ", ".join(control.value for control in Dialect)
     raise StepNcError(f"{request.code}: name its dialect with --dialect: {known}")
 
 

@@ -9,7 +9,7 @@ import pyarrow as pa
 
 from service.run_file import WORDS, RunFile
 from simulator.machine.samples import Samples, joined
-from simulator.timeline import COLUMNS, Column
+from simulator.timeline import COLUMNS, DataItem
 
 ROWS = 32_768
 """in one group of the file"""
@@ -51,17 +51,17 @@ class TimelineFile:
 
     @property
     def rows(self) -> int:
-        """That are written."""
+        """Number of rows written."""
         return self._run.rows
 
     @property
     def place(self) -> Path | None:
-        """Where the file lies once it is closed."""
+        """Name of the file once it is closed."""
         return self._run.place
 
     @property
     def partial(self) -> Path:
-        """Where a broken-off run is left."""
+        """Name of the file that an interrupted run leaves."""
         return self._run.partial
 
     def __enter__(self) -> "TimelineFile":
@@ -103,7 +103,7 @@ OF_RUN: Names = {"program": (), "workingstep": ()}
 def timeline_schema() -> pa.Schema:
     """Names and types of the columns, each with its unit as metadata."""
 
-    def kind(column: Column) -> pa.DataType:
+    def kind(column: DataItem) -> pa.DataType:
         if _words(column, OF_RUN) is not None:
             return WORDS
         if column.source in WHOLE:
@@ -116,12 +116,12 @@ def timeline_schema() -> pa.Schema:
     ])
 
 
-def _words(column: Column, of_run: Names) -> tuple[str, ...] | None:
-    """What the numbers of a column stand for; None: themselves."""
+def _words(column: DataItem, of_run: Names) -> tuple[str, ...] | None:
+    """Words of the numbers of a column; None: it has numbers."""
     return of_run.get(column.source, column.words)
 
 
-def _array(column: Column, samples: Samples, of_run: Names) -> pa.Array:
+def _array(column: DataItem, samples: Samples, of_run: Names) -> pa.Array:
     """One column of the file."""
     values = getattr(samples, column.source)
     if column.axis is not None:

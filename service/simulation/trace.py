@@ -1,16 +1,16 @@
-"""What plots need of a simulated run, in bounded memory. Units mm, s, N, W, rev/s."""
+"""Signals of a simulated run for plots, in bounded memory. Units mm, s, N, W, rev/s."""
 
 from enum import IntEnum
 
 import numpy as np
 
-from service.buckets import Buckets, Trace
+from service.buckets import BucketedRun, Buckets
 from simulator.machine.samples import Samples
 from simulator.motion.segments import Floats
 
 
-class Signal(IntEnum):
-    """What is kept of the samples; the number is its column."""
+class SimulationSignal(IntEnum):
+    """Signal that is kept of the samples; the number is its column."""
 
     X_POWER = 0
     Y_POWER = 1
@@ -32,13 +32,13 @@ class TraceKeeper:
     """Keeps the trace of a run while its samples pass by. Running state."""
 
     def __init__(self) -> None:
-        self._buckets = Buckets(len(Signal))
+        self._buckets = Buckets(len(SimulationSignal))
 
     def add(self, samples: Samples) -> None:
         """More samples, later than those before; NaN is a missing value."""
         self._buckets.add(samples.time, _values(samples))
 
-    def trace(self) -> Trace:
+    def trace(self) -> BucketedRun:
         """The run so far."""
         return self._buckets.trace()
 

@@ -19,10 +19,10 @@ from math import acos, pi
 
 import numpy as np
 
-from controller.aims import Step
+from controller.loop_settings import LoopStep
 from controller.preview import Preview
 from controller.reference import ForceBound, Reference
-from optimiser.limit import LimitName
+from optimiser.problem import LimitName
 from service.trial.inputs import Inputs, MillingType
 from simulator.library import find_grade, load_material
 from simulator.motion.segments import Floats
@@ -37,8 +37,7 @@ from simulator.physics.engagement import (
 )
 from simulator.physics.milling import MillingCut, mean_force, mean_specific_force
 from simulator.physics.power import cutting_power, motor_power
-from simulator.plant.course import NominalCourse, Singles
-from simulator.plant.pattern import Teeth, peak_over_mean
+from simulator.plant.course import EngagedTeeth, NominalCourse, Singles, peak_over_mean
 from simulator.spec import CuttingMaterial, Kienzle, ToolKind
 from stepnc_model.units import rad_from_deg, speed_from_m_min, watts_from_kw
 
@@ -78,7 +77,7 @@ class TrialCut:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Prediction:
-    """What the closed form says of a feed; the governing equations of [1]_."""
+    """Closed-form results at a feed; the governing equations of [1]_."""
 
     force: float = 0.0
     """F_mt, N"""
@@ -129,7 +128,7 @@ def engagement_of(inputs: Inputs) -> Engagement:
 
 
 def predicted(trial: TrialCut, feed_per_tooth: float) -> Prediction:
-    """What the closed form says of a feed per tooth, mm; at rest there is nothing."""
+    """Closed-form results at a feed per tooth, mm; zero at rest."""
     if not feed_per_tooth > 0.0:
         return Prediction()
     cut = replace(trial.cut, feed_per_tooth=feed_per_tooth)
@@ -154,7 +153,7 @@ def force_bound(trial: TrialCut, power: float) -> float:
 
 
 def course_of(trial: TrialCut) -> NominalCourse:
-    """What the cut does at an override of 1, which is the chip load: air, way in, the cut."""
+    """Course of the cut at an override of 1, which is the chip load: air, way in, the cut."""
     arcs = _arcs(trial.cut.engagement)
     forces = [
         0.0 if arc is None else mean_force(trial.kienzle, replace(trial.cut, engagement=arc))
@@ -200,7 +199,7 @@ def course_of(trial: TrialCut) -> NominalCourse:
 
 
 def preview_of(course: NominalCourse) -> Preview:
-    """What the loop is told of the cut."""
+    """Workingstep of the cut as the loop needs it."""
     return Preview(
         until=course.until,
         force=course.force,
@@ -209,8 +208,8 @@ def preview_of(course: NominalCourse) -> Preview:
     )
 
 
-def step_of(trial: TrialCut, inputs: Inputs) -> Step:
-    """What the loop is to keep: the motor's power as a force, the chip load as the ceiling."""
+def step_of(trial: TrialCut, inputs: Inputs) -> LoopStep:
+    """Reference of the loop: the motor's power as a force, the chip load as the ceiling."""
     power = watts_from_kw(inputs.motor_power_kw)
     bound = ForceBound(
         name=LimitName.MOTOR_POWER,
@@ -225,7 +224,7 @@ def step_of(trial: TrialCut, inputs: Inputs) -> Step:
         floor=min(_rubbing(trial, inputs), 1.0),
         ceiling=1.0,
     )
-    return Step(
+    return LoopStep(
         reference=reference,
         exponent=exponent_of(trial),
         tool="trial cutter",
@@ -278,7 +277,7 @@ def _peak(trial: TrialCut, arc: Engagement | None) -> float:
     """Greatest force of a revolution over its mean."""
     if arc is None:
         return 1.0
-    teeth = Teeth(
+    teeth = EngagedTeeth(
         count=trial.cut.teeth,
         entry_angle=arc.entry_angle,
         exit_angle=arc.exit_angle,

@@ -1,4 +1,4 @@
-"""What a user sets of a trial cut, in the user's units: the three panes of [1]_, Fig. 9.
+"""Inputs of a trial cut, in the user's units: the three panes of [1]_, Fig. 9.
 
 References
 ----------
@@ -36,7 +36,7 @@ class MillingType(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Field:
+class InputField:
     """A number that a user sets."""
 
     name: str
@@ -51,24 +51,24 @@ class Field:
 
 
 FIELDS = (
-    Field(name="tool_diameter_mm", words="tool diameter", unit="mm", low=4.0, high=160.0),
-    Field(name="teeth", words="teeth", unit="", low=1, high=16, is_whole=True),
-    Field(
+    InputField(name="tool_diameter_mm", words="tool diameter", unit="mm", low=4.0, high=160.0),
+    InputField(name="teeth", words="teeth", unit="", low=1, high=16, is_whole=True),
+    InputField(
         name="cutting_edge_angle_deg",
         words="cutting edge angle",
         unit="°",
         low=10.0,
         high=90.0,
     ),
-    Field(name="radial_width_mm", words="radial width", unit="mm", low=0.5, high=160.0),
-    Field(
+    InputField(name="radial_width_mm", words="radial width", unit="mm", low=0.5, high=160.0),
+    InputField(
         name="cutting_speed_m_min", words="cutting speed", unit="m/min", low=20.0, high=1000.0
     ),
-    Field(name="efficiency", words="mechanical efficiency", unit="", low=0.3, high=1.0),
-    Field(name="feed_per_tooth_mm", words="chip load", unit="mm", low=0.01, high=1.0),
-    Field(name="axial_depth_mm", words="depth", unit="mm", low=0.1, high=20.0),
-    Field(name="motor_power_kw", words="motor power", unit="kW", low=0.1, high=100.0),
-    Field(name="axial_depth_max_mm", words="allowed depth", unit="mm", low=0.1, high=20.0),
+    InputField(name="efficiency", words="mechanical efficiency", unit="", low=0.3, high=1.0),
+    InputField(name="feed_per_tooth_mm", words="chip load", unit="mm", low=0.01, high=1.0),
+    InputField(name="axial_depth_mm", words="depth", unit="mm", low=0.1, high=20.0),
+    InputField(name="motor_power_kw", words="motor power", unit="kW", low=0.1, high=100.0),
+    InputField(name="axial_depth_max_mm", words="allowed depth", unit="mm", low=0.1, high=20.0),
 )
 """Numbers with their bounds: what a shop meets; beyond them it is a slip."""
 
@@ -174,7 +174,7 @@ def change_words(before: Inputs, after: Inputs, name: str) -> str:
     return f"{field.words} {old:g} -> {new:g} {field.unit}".rstrip()
 
 
-def _require_within(field: Field, value: object) -> None:
+def _require_within(field: InputField, value: object) -> None:
     """Refuse what is no number or beyond the bounds."""
     bound = f"{field.low:g} to {field.high:g} {field.unit}".rstrip()
     if isinstance(value, bool) or not isinstance(value, int | float):

@@ -16,16 +16,17 @@ References
    J. Intell. Manuf., 2010, "Computer model", "Optimal results" and Fig. 9.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from controller.laws.choice import LawName
-from controller.orders import Criterion, Event, EventKind
-from controller.threshold import Level
-from service.control.live_run import Taken
-from service.control.tape import CM3_MIN, Tape, known
+from controller.orders import EventKind, LoopEvent
+from service.session.rows import CM3_MIN, LiveRows, RunUpdate, known
+from service.session.status import SessionStatus
 from service.trial.cut import predicted, trial_cut
-from service.trial.inputs import Inputs, change_words, differing
-from service.trial.setup import SetUp
+from service.trial.inputs import Inputs, change_words, changed, differing
+from service.trial.setup import TrialSetup
 from stepnc_model.units import kw_from_watts, mm_min_from_speed, watts_from_kw
 
 SET_UP = frozenset({
@@ -40,53 +41,29 @@ SET_UP = frozenset({
 """inputs that cannot change while the cutter is in the work"""
 
 
+LONGEST = 4 * 3600.0
+"""s of a trial: then it was forgotten"""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Status:
-    """How a trial is: the output pane of [1]_, Fig. 9. Predicted: by the closed form."""
+class TrialStatus(SessionStatus):
+    """Status snapshot of a trial, the output pane of [1]_, Fig. 9; closed-form predictions."""
 
     inputs: Inputs
-    time: float
-    """s"""
     power_predicted_kw: float
     """of the motor, at the feed that runs"""
-    power_kw: float
-    """that the drive really draws"""
-    motor_power_kw: float
     force_predicted: float
     """N, at the feed that runs"""
-    force_measured: float | None
-    """N, mean of the last revolution; None: there was none"""
-    set_point: float | None
-    """N; None: not known yet"""
     feed_per_tooth_mm: float
     """that runs"""
-    feed_programmed_mm_min: float
-    """at the chip load"""
-    feed_advised_mm_min: float
-    """that the loop commands"""
-    feed_actual_mm_min: float
-    override_percent: float
-    """commanded"""
-    removal_rate_cm3_min: float
-    """that really is removed"""
     specific_cutting_force: float | None
     """N/mm², predicted; None: the feed stands"""
     chip_thickness_mm: float
     """mean, predicted"""
-    is_over: bool
-    """power limit warning: the drive draws more than the motor has, or did a second ago"""
     depth_warning: str
     """empty: the machine allows the depth"""
-    holding: str
-    """what holds the feed now"""
-    level: Level
-    """of the force, as the loop sees it"""
-    is_stopped: bool
-    """by the loop; see :meth:`TrialRun.restart`"""
     stopped_by: str
-    """why; empty: it is not"""
-    criterion: Criterion
-    is_on: bool
+    """why the loop has stopped it; empty: it has not"""
 
 
 class TrialRun:
@@ -103,8 +80,9 @@ class TrialRun:
     def __init__(self, inputs: Inputs, *, seed: int = 0, law: LawName = LawName.LOG_PI) -> None:
         self._seed, self._law = seed, law
         self._inputs, self._cut = inputs, trial_cut(inputs)
-        self._tape = Tape(lambda: watts_from_kw(self._inputs.motor_power_kw))
+        self._live_rows = LiveRows(lambda: watts_from_kw(self._inputs.motor_power_kw))
         self._stopped_by = ""
+        self._is_ended = False
         self._set_ups = 0
         self._set_up = self._begun(0.0)
         self._warn_of_depth()
@@ -120,29 +98,31 @@ class TrialRun:
         return self._inputs
 
     def advance(self, until: float) -> bool:
-        """Run until a time, s; False: the loop has stopped the program, and the axes stand."""
+        """Run until a time, s; False: it was ended, or the loop has stopped it."""
+        if self._is_ended or self.time > LONGEST:
+            return False
         set_up = self._set_up
         while not set_up.is_done and set_up.time < until:
             for event in set_up.cycle().events:
-                self._tape.note(event)
+                self._live_rows.note(event)
                 if event.kind is EventKind.STOP:
                     self._stopped_by = event.text
         if set_up.is_done:
             set_up.trace.end()
         return not set_up.is_done
 
-    def taken(self) -> Taken:
+    def taken(self) -> RunUpdate:
         """Rows and events since it was asked last."""
-        return self._tape.taken()
+        return self._live_rows.taken()
 
     def change(self, inputs: Inputs) -> None:
-        """Let the inputs be otherwise from the next cycle on; if stopped, from the restart."""
+        """Apply new inputs from the next cycle on; if stopped, from the restart."""
         before, names = self._inputs, differing(self._inputs, inputs)
         if not names:
             return
         self._inputs, self._cut = inputs, trial_cut(inputs)
         is_new = not SET_UP.isdisjoint(names)
-        if self._set_up.loop.is_stopped:
+        if self._set_up.loop.state.is_stopped:
             is_new = False
         elif is_new:
             self._renew()
@@ -160,15 +140,33 @@ class TrialRun:
         self._renew()
         self._say(EventKind.RESUME, "a new cutter enters the work")
 
-    def status(self) -> Status:
-        """How the trial is now."""
+    @property
+    def is_waiting(self) -> bool:
+        """See :class:`service.session.runner.LiveSession`: stopped, it may be begun again."""
+        return self._set_up.loop.state.is_stopped and not self._is_ended
+
+    def obey(self, order: Mapping[str, Any]) -> None:
+        """See :class:`service.session.runner.LiveSession`: inputs, ``restart`` or ``end``."""
+        if order.get("end"):
+            self._is_ended = True
+        elif order.get("restart"):
+            self.restart()
+        elif order:
+            self.change(changed(self._inputs, **order))
+
+    def snapshot(self) -> dict[str, Any]:
+        """See :class:`service.session.runner.LiveSession`."""
+        return self.status().as_json()
+
+    def status(self) -> TrialStatus:
+        """Status snapshot of the trial."""
         inputs, cut, set_up = self._inputs, self._cut, self._set_up
-        row = None if set_up.is_done else self._tape.last
+        row = None if set_up.is_done else self._live_rows.last
         feed = 0.0 if row is None else row.feed_actual
-        override = set_up.loop.override
+        override = set_up.loop.state.override
         per_tooth = feed / (cut.cut.teeth * cut.spindle_speed)
         now = predicted(cut, per_tooth)
-        return Status(
+        return TrialStatus(
             inputs=inputs,
             time=self.time,
             power_predicted_kw=kw_from_watts(now.power),
@@ -185,11 +183,11 @@ class TrialRun:
             removal_rate_cm3_min=0.0 if row is None else CM3_MIN * row.removal_rate,
             specific_cutting_force=now.specific_cutting_force,
             chip_thickness_mm=now.chip_thickness,
-            is_over=not set_up.is_done and self._tape.is_over(self.time),
+            is_overloaded=not set_up.is_done and self._live_rows.is_overloaded(self.time),
             depth_warning=self._depth_warning,
             holding=set_up.holdings.words,
-            level=set_up.holdings.level,
-            is_stopped=set_up.loop.is_stopped,
+            level=set_up.holdings.level.value,
+            is_stopped=set_up.loop.state.is_stopped,
             stopped_by=self._stopped_by,
             criterion=inputs.mode,
             is_on=inputs.is_on,
@@ -208,19 +206,19 @@ class TrialRun:
         """Another set-up at the present time, with the inputs as they are."""
         self._set_up.trace.end()
         self._set_up = self._begun(self.time)
-        self._tape.last, self._stopped_by = None, ""
+        self._live_rows.last, self._stopped_by = None, ""
 
-    def _begun(self, time: float) -> SetUp:
+    def _begun(self, time: float) -> TrialSetup:
         self._set_ups += 1
-        return SetUp(
+        return TrialSetup(
             self._inputs,
             begin=time,
             seed=self._seed + self._set_ups,
             law=self._law,
-            sink=self._tape,
+            sink=self._live_rows,
         )
 
     def _say(self, kind: EventKind, text: str) -> None:
-        event = Event(time=self.time, kind=kind, text=text)
-        self._tape.note(event)
+        event = LoopEvent(time=self.time, kind=kind, text=text)
+        self._live_rows.note(event)
         self._set_up.trace.note(event)

@@ -9,31 +9,33 @@ from collections.abc import Callable
 from dataclasses import replace
 from math import inf
 
-from controller.aims import Aims
-from controller.cycle import Cycle
-from controller.guard import Band
+from controller.cycle import LoopCycle
+from controller.guard import OverrideBand
 from controller.laws.choice import LawName, law_named
-from controller.loop import STANDING, Loop
+from controller.loop import Loop
+from controller.loop_settings import LoopSettings
+from controller.loop_state import STANDING
 from controller.orders import Criterion, CriterionTo, EventKind, MotorPowerTo, SwitchTo
 from controller.source import Dynamometer
-from optimiser.limit import LimitName
-from service.control.holding import NO_CHIPS, Ends, Holdings, reason
-from service.control.trace import ControlTrace, Moment
+from optimiser.problem import LimitName
+from service.control.holding import NO_CHIPS, HoldTallies, OverrideLimits, reason
+from service.control.trace import ControlTrace
+from service.session.rows import Moment
 from service.trial.cut import NAME, course_of, preview_of, step_of, trial_cut
 from service.trial.inputs import Inputs
-from simulator.plant.controlled import Bench, ControlledMachine, Truth
+from simulator.plant.controlled import ControlledMachine, Instrumentation, TrueState
 from simulator.plant.dynamometer import DYNAMOMETER
-from simulator.plant.hidden import Change, Changed, Hidden
+from simulator.plant.hidden import HiddenChange, HiddenQuantity, HiddenTruth
 from simulator.reading import Reading
 
-BAND = Band(floor=0.05)
+BAND = OverrideBand(floor=0.05)
 """of the override: 100 % is the greatest chip load, far above what a weak motor allows"""
 
 INSTRUMENT = replace(DYNAMOMETER, drift=0.0)
 """without drift: the cut has no end after which its zero could be taken again"""
 
 
-class Drive:
+class TrialMachine:
     """The machine as the loop meets it, in the run's time. Running state.
 
     Parameters
@@ -52,12 +54,12 @@ class Drive:
 
     @property
     def time(self) -> float:
-        """S of the run."""
+        """Time of the run, in seconds."""
         return self._begin + self._machine.time
 
     @property
-    def truth(self) -> Truth:
-        """What really was in the last period."""
+    def truth(self) -> TrueState:
+        """True state of the last period."""
         truth = self._machine.truth
         return replace(truth, power=truth.power / self.efficiency)
 
@@ -73,7 +75,7 @@ class Drive:
         self._machine.set(override)
 
 
-class SetUp:
+class TrialSetup:
     """A cutter that enters its work and stays there. Running state.
 
     Parameters
@@ -102,39 +104,41 @@ class SetUp:
         self._planned = self._inputs = inputs
         self._step = step_of(trial, inputs)
         self._machine = ControlledMachine(
-            course, Hidden(), Bench(dynamometer=INSTRUMENT, seed=seed)
+            course, HiddenTruth(), Instrumentation(dynamometer=INSTRUMENT, seed=seed)
         )
-        self._drive = Drive(self._machine, begin=begin, efficiency=inputs.efficiency)
-        aims = Aims(criterion=inputs.mode, is_on=inputs.is_on, band=BAND, look_ahead=0)
+        self._drive = TrialMachine(self._machine, begin=begin, efficiency=inputs.efficiency)
+        settings = LoopSettings(
+            criterion=inputs.mode, is_on=inputs.is_on, band=BAND, look_ahead=0
+        )
         self.loop = Loop(
             self._drive,
             self._drive,
-            source=Dynamometer(aims.chips),
+            source=Dynamometer(settings.chips),
             law=lambda plant: law_named(law, plant, has_preview=False),
             steps=[self._step],
             preview=preview_of(course),
-            aims=aims,
+            settings=settings,
         )
-        self._holdings = Holdings([])
+        self._holdings = HoldTallies([])
         self.trace = ControlTrace(course, self._holdings, workingsteps=(NAME,), sink=sink)
         self._override = 1.0
 
     @property
     def time(self) -> float:
-        """S of the run."""
+        """Time of the run, in seconds."""
         return self._drive.time
 
     @property
-    def holdings(self) -> Holdings:
-        """What holds the feed, and how far the force is from what it may be."""
+    def holdings(self) -> HoldTallies:
+        """Reason that holds the feed, and the level of the force."""
         return self._holdings
 
     @property
     def is_done(self) -> bool:
         """Whether the loop has stopped the program and the axes stand."""
-        return self.loop.is_stopped and self._override < STANDING
+        return self.loop.state.is_stopped and self._override < STANDING
 
-    def cycle(self) -> Cycle:
+    def cycle(self) -> LoopCycle:
         """One cycle of the loop."""
         cycle = self.loop.cycle()
         if cycle is None:
@@ -149,7 +153,7 @@ class SetUp:
         return cycle
 
     def change(self, inputs: Inputs) -> None:
-        """What differs without another set-up, from the next cycle on.
+        """Apply changes that need no other set-up, from the next cycle on.
 
         Depth and workpiece change behind the loop's back: it is told nothing, and still
         compares the force with that of the inputs with which it began.
@@ -158,7 +162,9 @@ class SetUp:
         machine, planned = self._machine, self._planned
         if inputs.axial_depth_mm != before.axial_depth_mm:
             depth = inputs.axial_depth_mm / planned.axial_depth_mm
-            machine.change(Change(time=machine.time, what=Changed.DEPTH, value=depth))
+            machine.change(
+                HiddenChange(time=machine.time, what=HiddenQuantity.DEPTH, value=depth)
+            )
         if inputs.material != before.material:
             # Its exponent is another as well, which no factor on k_c would tell.
             real = replace(planned, material=inputs.material)
@@ -166,7 +172,7 @@ class SetUp:
         self._order(before, inputs)
 
     def _order(self, before: Inputs, inputs: Inputs) -> None:
-        """What the operator may switch."""
+        """Apply an order of the operator."""
         if inputs.mode is not before.mode:
             self.loop.order(CriterionTo(criterion=inputs.mode))
         if inputs.is_on is not before.is_on:
@@ -175,19 +181,19 @@ class SetUp:
             self.loop.order(MotorPowerTo(factor=_power(inputs) / _power(self._planned)))
         self._drive.efficiency = inputs.efficiency
 
-    def _hold(self, cycle: Cycle) -> None:
-        """What holds the override, in words."""
-        aims, holdings = self.loop.aims, self._holdings
-        holdings.add(cycle, aims)
+    def _hold(self, cycle: LoopCycle) -> None:
+        """Reason that holds the override, in words."""
+        settings, holdings = self.loop.state.settings, self._holdings
+        holdings.add(cycle, settings)
         if cycle.revolution is not None and holdings.words != NO_CHIPS:
-            holdings.words = reason(cycle, self._ends, aims)
+            holdings.words = reason(cycle, self._ends, settings)
 
     @property
-    def _ends(self) -> Ends:
+    def _ends(self) -> OverrideLimits:
         """Between which overrides the cut may run; in mode QC the mode is the ceiling."""
         reference = self._step.reference
-        is_quality = self.loop.aims.criterion is Criterion.QC
-        return Ends(
+        is_quality = self.loop.state.settings.criterion is Criterion.QC
+        return OverrideLimits(
             reference=reference,
             ceiling=(inf, "") if is_quality else (reference.ceiling, "chip load"),
             floor=(reference.floor, LimitName.CHIP_THICKNESS.words),
@@ -195,5 +201,5 @@ class SetUp:
 
 
 def _power(inputs: Inputs) -> float:
-    """What the motor gives at the tool, kW."""
+    """Motor power at the tool, kW."""
     return inputs.motor_power_kw * inputs.efficiency

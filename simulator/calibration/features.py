@@ -1,4 +1,4 @@
-"""What drives the power of a machine, sample by sample, and the power that follows from it.
+"""Regressors of the power of a machine, sample by sample, and the power that they give.
 
 Every component's power is linear in the parameters, but never negative: braking energy is
 burnt. With ``n`` the spindle's speed, ``v`` and ``a`` an axis' speed and acceleration, ``P_c``
@@ -13,6 +13,8 @@ efficiency::
 as in :mod:`simulator.physics.spindle_motion` and :mod:`simulator.physics.axis`, the axis'
 parameters seen from the mains: friction ``F_0`` in N, ``B`` in N·s/mm, mass ``m`` in kg, each
 divided by the drive's efficiency. Units mm, s, N, W, rev/s, kg·m².
+
+Priors and estimates of a machine's parameters.
 """
 
 from collections.abc import Mapping
@@ -30,7 +32,7 @@ _MM2_PER_M2 = 1e6
 
 
 class Parameter(StrEnum):
-    """What may be fitted."""
+    """Parameter that can be fitted."""
 
     BASE = "base power"
     COOLANT = "coolant power"
@@ -79,19 +81,19 @@ class RunFeatures:
 
     name: str
     duration: Floats
-    """(N,) s that each sample stands for"""
+    """Duration, (N,) s that each sample stands for"""
     spindle_speed: Floats
-    """(N,) rev/s"""
+    """Spindle speed, (N,) rev/s"""
     spindle_acceleration: Floats
-    """(N,) rev/s²"""
+    """Spindle acceleration, (N,) rev/s²"""
     velocity: Floats
-    """(N, 3) mm/s"""
+    """Velocity, (N, 3) mm/s"""
     acceleration: Floats
-    """(N, 3) mm/s²"""
+    """Acceleration, (N, 3) mm/s²"""
     cutting_power: Floats
-    """(N,) W at the edge, for a factor of 1 on the specific cutting force"""
+    """Cutting power, (N,) W at the edge, for a factor of 1 on the specific cutting force"""
     coolant: Floats
-    """(N,) share of the coolant's power, 0 to 1"""
+    """Coolant, (N,) share of the coolant's power, 0 to 1"""
     measured: Mapping[Component, Floats]
     """each (N,) W; empty when the run is only predicted"""
 
@@ -104,7 +106,7 @@ Design = Mapping[Component, Floats]
 
 
 def design(run: RunFeatures, *, efficiency: float) -> Design:
-    """What each parameter adds to each component's power, sample by sample.
+    """Contribution of each parameter to the power of each component, sample by sample.
 
     Parameters
     ----------
@@ -148,3 +150,52 @@ def slopes(table: Design, values: Floats) -> dict[Component, Floats]:
     """Change of every component's power and of their total with each parameter, (N, P)."""
     parts = {part: table[part] * (table[part] @ values > 0.0)[:, None] for part in PARTS}
     return {**parts, Component.TOTAL: np.sum(list(parts.values()), axis=0)}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ParameterPrior:
+    """Prior of a parameter."""
+
+    value: float
+    scale: float
+    """by how much it may well be off"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Estimate:
+    """Estimate of a parameter after a fit."""
+
+    parameter: Parameter
+    value: float
+    low: float
+    high: float
+    """95 % interval; of one that is not identified, what the data allow"""
+    reason: str = ""
+    """why it could not be identified and keeps its prior value; empty: it was"""
+
+    @property
+    def is_identified(self) -> bool:
+        """Whether the data say more than was known before."""
+        return not self.reason
+
+    @property
+    def unit(self) -> str:
+        """Of value and interval."""
+        return UNITS[self.parameter]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Calibration:
+    """Fitted parameters."""
+
+    estimates: tuple[Estimate, ...]
+    """one of each parameter"""
+    noise: Mapping[Component, float]
+    """Noise, W, standard deviation of what the fit leaves, by component"""
+    blocks: int
+    """of consecutive samples, each one observation"""
+
+    @property
+    def values(self) -> Floats:
+        """(P,) values in the order of the parameters."""
+        return np.array([estimate.value for estimate in self.estimates])

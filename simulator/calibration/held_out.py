@@ -5,8 +5,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from simulator.calibration.estimates import Calibration, Prior
-from simulator.calibration.features import Parameter, RunFeatures, design, powers
+from simulator.calibration.features import (
+    Calibration,
+    Parameter,
+    ParameterPrior,
+    RunFeatures,
+    design,
+    powers,
+)
 from simulator.calibration.fit import fitted
 from simulator.calibration.measured_run import Component
 from simulator.calibration.skill import Skill, compared, mean_power
@@ -24,7 +30,10 @@ class HeldOut:
 
 
 def held_out(
-    runs: Sequence[RunFeatures], priors: Mapping[Parameter, Prior], *, efficiency: float
+    runs: Sequence[RunFeatures],
+    priors: Mapping[Parameter, ParameterPrior],
+    *,
+    efficiency: float,
 ) -> tuple[HeldOut, ...]:
     """Errors of each run when the others are fitted, of a single one when its start is.
 
@@ -32,7 +41,7 @@ def held_out(
     ----------
     runs : sequence of RunFeatures
         With measured powers.
-    priors : mapping of Prior
+    priors : mapping of ParameterPrior
     efficiency : float
         Of the spindle.
     """

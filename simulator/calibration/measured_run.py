@@ -1,8 +1,9 @@
 """A measured run: what the sensors of a machine showed, one row a sample.
 
 The file is CSV with the column names of the virtual machine's timeline; columns that a machine
-has not are absent. What cannot be a run at all is a :class:`CalibrationError`; what a fit can
-live with, but somebody should know, is a :class:`~stepnc_model.errors.Finding`. Units mm, s, W.
+has not are absent. Cells are separated by comma, semicolon or tab. What cannot be a run at all
+is a :class:`CalibrationError`; what a fit can live with, but somebody should know, is a
+:class:`~stepnc_model.errors.Finding`. Units mm, s, W.
 """
 
 import csv
@@ -10,6 +11,7 @@ from array import array
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +22,8 @@ from stepnc_model.errors import Finding, Severity
 
 TIME = "time_s"
 POSITIONS = tuple(f"{axis}_axis_position_actual" for axis in "xyz")
+SEPARATORS = ",;\t"
+"""of cells, the first one that the heading has; decimals may have a comma beside the others"""
 FEWEST_SAMPLES = 10
 GAP = 3.0
 """a sampling interval this many times the median is a gap"""
@@ -29,7 +33,7 @@ INTERVAL = (1e-5, 60.0)  # s between samples: 100 kHz to one a minute
 
 
 class Component(StrEnum):
-    """What a power belongs to, by the name of its column in :mod:`simulator.timeline`."""
+    """Component that a power belongs to, by its column in :mod:`simulator.timeline`."""
 
     X = "x_axis_wattage"
     Y = "y_axis_wattage"
@@ -46,9 +50,9 @@ class MeasuredRun:
 
     name: str
     time: Floats
-    """(N,) s, ascending"""
+    """Time, (N,) s, ascending"""
     position: Floats
-    """(N, 3) mm; NaN for an axis without a column"""
+    """Position, (N, 3) mm; NaN for an axis without a column"""
     power: Mapping[Component, Floats]
     """each (N,) W"""
     findings: tuple[Finding, ...] = ()
@@ -147,10 +151,14 @@ def read_columns(
 
 
 def _rows(path: Path) -> Iterator[list[str]]:
-    """Rows of a CSV file, as they are read."""
+    """Rows of a CSV file, as they are read; its heading tells what separates cells."""
     try:
         with path.open(encoding="utf-8-sig", newline="") as stream:
-            yield from csv.reader(stream)
+            heading = stream.readline()
+            mark = next((each for each in SEPARATORS if each in heading), ",")
+            for row in csv.reader(chain((heading,), stream), delimiter=mark):
+                # Where no comma separates, it may be a decimal one.
+                yield row if mark == "," else [cell.replace(",", ".") for cell in row]
     except OSError as error:
         raise CalibrationError(error.strerror or str(error), path=str(path)) from error
     except UnicodeDecodeError as error:

@@ -1,4 +1,4 @@
-"""How well a predicted run meets a measured one, beside the baseline that knows no physics.
+"""Skill of a predicted run against a measured one, over a baseline without physics.
 
 The baseline is the mean power of the calibration runs times the time of the run that is to be
 predicted; it is given the measured time, so that it has every advantage. Skill is
@@ -21,19 +21,19 @@ class Skill:
     """Errors of one power of one run, model and baseline side by side."""
 
     measured_energy: float
-    """J"""
+    """Measured energy, J"""
     model_energy: float
-    """J"""
+    """Model energy, J"""
     baseline_energy: float
-    """J"""
+    """Baseline energy, J"""
     model_rmse: float
-    """W"""
+    """Model rmse, W"""
     baseline_rmse: float
-    """W"""
+    """Baseline rmse, W"""
     measured_net: float
     """J, cutting energy: without base, idle, axes; of the measured run by subtraction"""
     model_net: float
-    """J"""
+    """Model net, J"""
 
     @property
     def energy_error(self) -> float:

@@ -31,9 +31,9 @@ class LifePair:
     """One edge that was cut until it was worn."""
 
     cutting_speed: float
-    """mm/s"""
+    """Cutting speed, mm/s"""
     life: float
-    """s"""
+    """Life, s"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,13 +42,13 @@ class FittedTaylor:
 
     taylor: Taylor
     low: float
-    """of the 95 % interval of n; 0: two pairs tell no interval"""
+    """Low of the 95 % interval of n; 0: two pairs tell no interval"""
     high: float
     """``inf``: the pairs do not tell that the life falls with the speed"""
     scatter: float
     """standard deviation of ln T about the line; 0 with two pairs"""
     slowest: float
-    """mm/s, between this and the next the law was measured"""
+    """Slowest, mm/s, between this and the next the law was measured"""
     fastest: float
     pairs: int
 

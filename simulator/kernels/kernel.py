@@ -42,7 +42,7 @@ def kernel(function: Function) -> Function:
     return function
 
 
-class Entry(Generic[Parameters]):
+class KernelEntry(Generic[Parameters]):
     """A kernel that Python calls."""
 
     def __init__(self, function: Callable[Parameters, None]) -> None:
@@ -84,13 +84,13 @@ class Entry(Generic[Parameters]):
         return prototype(link.address_of(found, f"{name}_{key}"))
 
 
-def entry(function: Callable[Parameters, None]) -> Entry[Parameters]:
+def entry(function: Callable[Parameters, None]) -> KernelEntry[Parameters]:
     """Make a kernel one that Python calls."""
-    return Entry(function)
+    return KernelEntry(function)
 
 
 def _type_of(value: object) -> object:
-    """What machine code depends on of a value."""
+    """Part of a value that machine code depends on."""
     if isinstance(value, np.ndarray):
         return value.dtype.str, value.ndim, value.flags.c_contiguous, value.flags.writeable
     if isinstance(value, tuple):

@@ -23,7 +23,7 @@ def processor() -> tuple[str, str, str]:
 
 @cache
 def target_machine() -> Any:
-    """What machine code is made for."""
+    """Processor and version that machine code is made for."""
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
     platform, name, features = processor()

@@ -1,4 +1,4 @@
-"""What a program makes the machine do, one act after another.
+"""Acts of the machine that a program asks for, one after another.
 
 Between the neutral blocks of a program and the run of the machine: feeds are speeds in mm/s,
 cycles and threads are moves, and moves that follow each other without a pause are one stretch.
@@ -11,14 +11,14 @@ from stepnc_model.post.blocks import Coolant
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Stretch:
+class MoveStretch:
     """Moves from rest to rest."""
 
     segments: Segments
     spindle_speed: Floats
     """(N,) rev/s that the spindle has at the end of each segment; NaN: it keeps its speed"""
     per_revolution: Floats
-    """(N,) mm of path in a revolution of the spindle; NaN: a feed by time"""
+    """Per revolution, (N,) mm of path in a revolution of the spindle; NaN: a feed by time"""
     way: int = 0
     """segments at the beginning that lead to the path of the workingstep"""
     back: int = 0
@@ -30,7 +30,7 @@ class SpindleTo:
     """The spindle goes to a speed; moves may begin meanwhile."""
 
     speed: float
-    """rev/s, positive clockwise (M3), 0: stop"""
+    """Speed, rev/s, positive clockwise (M3), 0: stop"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,16 +68,16 @@ class WorkingstepTo:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stop:
-    """The program stops until somebody starts it again; takes no time here."""
+    """The program stops until the operator starts it again; takes no time here."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class End:
+class EndOfProgram:
     """The program has ended."""
 
 
 Act = (
-    Stretch
+    MoveStretch
     | SpindleTo
     | SpindleReached
     | Wait
@@ -85,12 +85,12 @@ Act = (
     | CoolantTo
     | WorkingstepTo
     | Stop
-    | End
+    | EndOfProgram
 )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Step:
+class ProgramAct:
     """An act and the line of the program from which it comes."""
 
     line: int

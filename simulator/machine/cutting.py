@@ -30,26 +30,26 @@ from simulator.physics.flutes import CuttingEdges
 from simulator.physics.milling import RADIAL_SHARE
 from simulator.physics.tooth_forces import arcs_of
 from simulator.physics.turning import turning_forces
-from simulator.removal.stations import CutKind, Stations
+from simulator.removal.stations import StationKind, Stations
 from simulator.spec import DrillPoint, Kienzle
 
 NMM_S_PER_WATT = 1000.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Edge:
-    """What cuts what."""
+class CuttingEdge:
+    """Cutting edge and the material that it cuts."""
 
     teeth: int
     kienzle: Kienzle
     factor: float = 1.0
     """on k_c: rake, speed, and what calibration found"""
     flutes: CuttingEdges | None = None
-    """of a milling cutter; None: straight edges, upright"""
+    """Flutes of a milling cutter; None: straight edges, upright"""
     compliance: float = 0.0
     """mm/N, of the tip of an end mill; 0: it does not bend"""
     point: DrillPoint = LIPS_ONLY
-    """of a tool that cuts on its end"""
+    """Point of a tool that cuts on its end"""
     feed_force: Kienzle | None = None
     """(k_f1.1, m_f) of turning; None: the usual share of the cutting force"""
     back_force: Kienzle | None = None
@@ -58,26 +58,26 @@ class Edge:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class CuttingLoads:
-    """What the cut takes at M times."""
+    """Loads of the cut at M times."""
 
     removal_rate: Floats
-    """(M,) mm³/s"""
+    """Removal rate, (M,) mm³/s"""
     chip_thickness: Floats
-    """(M,) mm, mean over the contact"""
+    """Chip thickness, (M,) mm, mean over the contact"""
     power: Floats
-    """(M,) W at the edge"""
+    """Power, (M,) W at the edge"""
     force: Floats
-    """(M,) N, tangential"""
+    """Force, (M,) N, tangential"""
     feed_force: Floats
-    """(M,) N, against the feed"""
+    """Feed force, (M,) N, against the feed"""
     back_force: Floats
-    """(M,) N, across the feed, from the surface"""
+    """Back force, (M,) N, across the feed, from the surface"""
     thrust: Floats
-    """(M,) N, along the axis, of a drill or of a mill that goes straight down"""
+    """Thrust, (M,) N, along the axis, of a drill or of a mill that goes straight down"""
     deflection: Floats
     """(M,) mm that the tip gives way, normal to the wall that it makes, at most in a turn"""
     filled: Floats
-    """(M,) section over the greatest of its station"""
+    """Filled, (M,) section over the greatest of its station"""
 
 
 def no_loads(count: int) -> CuttingLoads:
@@ -102,7 +102,7 @@ def cutting_loads(
     *,
     speed: Floats,
     spindle_speed: Floats,
-    edge: Edge,
+    edge: CuttingEdge,
     beyond: Floats | float = 0.0,
 ) -> CuttingLoads:
     """Loads of a sharp edge at M places of a path.
@@ -116,7 +116,7 @@ def cutting_loads(
         Along the path.
     spindle_speed : (M,) array, rev/s
         Magnitude; a cut with a standing spindle has no model: its force is 0.
-    edge : Edge
+    edge : CuttingEdge
     beyond : (M,) array or float
         Place beyond the middle of the stretch over its length, -1/2 to 1/2.
     """
@@ -140,7 +140,7 @@ def cutting_loads(
         force=force,
         feed_force=feed,
         back_force=back,
-        thrust=np.where(stations.kind[rows] == CutKind.DRILLING, feed, 0.0),
+        thrust=np.where(stations.kind[rows] == StationKind.DRILLING, feed, 0.0),
         deflection=np.zeros(len(rows)),
         filled=np.where(cuts, section / np.where(cuts, stations.peak_section[rows], 1.0), 0.0),
     )
@@ -152,7 +152,7 @@ def worn_loads(
     rows: Ints,
     *,
     spindle_speed: Floats,
-    edge: Edge,
+    edge: CuttingEdge,
     flank_wear: Floats,
 ) -> CuttingLoads:
     """Loads of a sharp edge and of its wear land, :mod:`simulator.physics.flank`.
@@ -166,7 +166,7 @@ def worn_loads(
         Which station holds.
     spindle_speed : (M,) array, rev/s
         Magnitude.
-    edge : Edge
+    edge : CuttingEdge
     flank_wear : (M,) array, mm
     """
     width = np.where(sharp.removal_rate > 0.0, engaged_width(stations, edge.teeth)[rows], 0.0)
@@ -191,7 +191,7 @@ def engaged_width(stations: Stations, teeth: int) -> Floats:
     ``z · a_p · φ/2π`` of a mill, the lips of a drill, the depth of a turning tool; all counted
     across the depth. ``z·A/(π·D)`` is it for a chip as thick as the feed, A the section.
     """
-    is_milling = stations.kind == CutKind.MILLING
+    is_milling = stations.kind == StationKind.MILLING
     met = stations.diameter > 0.0
     width = teeth * stations.section / (pi * np.where(met, stations.diameter, 1.0))
     arc = arcs_of(stations.entry_angle, stations.exit_angle)
@@ -211,7 +211,7 @@ def land_coefficients(stations: Stations) -> tuple[Floats, Floats]:
     contact = np.where(arc.contact > 0.0, arc.contact, 1.0)
     feed = (along * arc.cosine + normal * arc.sine) / contact
     back = (along * arc.sine - normal * arc.cosine) / contact
-    is_drilling, is_turning = kind == CutKind.DRILLING, kind == CutKind.TURNING
+    is_drilling, is_turning = kind == StationKind.DRILLING, kind == StationKind.TURNING
     return (
         np.where(is_drilling | is_turning, flank.FEED, feed),
         np.where(is_turning, flank.BACK, np.where(is_drilling, 0.0, back)),
@@ -241,7 +241,7 @@ def _edge_sine(stations: Stations) -> Floats:
 
 
 def _across(
-    stations: Stations, rows: Ints, force: Floats, *, chip: Floats, edge: Edge
+    stations: Stations, rows: Ints, force: Floats, *, chip: Floats, edge: CuttingEdge
 ) -> tuple[Floats, Floats]:
     """Forces against and across the feed, N."""
     kind = stations.kind[rows]
@@ -249,7 +249,7 @@ def _across(
     turning = turning_forces(
         force, chip, cutting=edge.kienzle, feed=edge.feed_force, back=edge.back_force
     )
-    is_drilling, is_turning = kind == CutKind.DRILLING, kind == CutKind.TURNING
+    is_drilling, is_turning = kind == StationKind.DRILLING, kind == StationKind.TURNING
     feed = np.where(is_turning, turning.feed, feed_share[rows] * force)
     back = np.where(is_turning, turning.back, back_share[rows] * force)
     if not is_drilling.any():
@@ -258,7 +258,7 @@ def _across(
     return np.where(is_drilling, thrust, feed), np.where(is_drilling, 0.0, back)
 
 
-def _thrust(stations: Stations, rows: Ints, force: Floats, *, edge: Edge) -> Floats:
+def _thrust(stations: Stations, rows: Ints, force: Floats, *, edge: CuttingEdge) -> Floats:
     """Thrust of a drill, N: lips and chisel edge of :mod:`simulator.physics.drilling`."""
     point, ratio = edge.point, stations.chip_ratio[rows]
     is_solid = _is_solid(stations, point)[rows]
@@ -281,6 +281,6 @@ def _is_solid(stations: Stations, point: DrillPoint) -> Bools:
     # The middle of a lip and its width tell the diameters inside and outside.
     inside = stations.diameter - stations.axial_depth
     outside = stations.diameter + stations.axial_depth
-    is_drill = (stations.kind == CutKind.DRILLING) & (point.chisel_ratio > 0.0)
+    is_drill = (stations.kind == StationKind.DRILLING) & (point.chisel_ratio > 0.0)
     is_solid: Bools = is_drill & (inside <= point.chisel_ratio * outside)
     return is_solid

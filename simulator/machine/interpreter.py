@@ -3,25 +3,31 @@
 Feeds per revolution become speeds along the path; where the spindle follows a constant surface
 speed, a move is split so that its speed changes by at most a few per cent from piece to piece.
 Cycles, threads and taps become moves. Memory is bounded: moves are handed on in stretches.
+
+The rows of a stretch are running state while it is collected.
 """
 
 from collections.abc import Callable, Iterable, Iterator
-from math import ceil, copysign, exp, inf, isfinite, isnan, log, nan, pi
+from dataclasses import dataclass
+from math import atan2, ceil, copysign, cos, exp, inf, isfinite, isnan, log, nan, pi, sin
+
+import numpy as np
 
 from simulator.errors import ProgramFault
 from simulator.machine.acts import (
     Act,
     CoolantTo,
-    End,
+    EndOfProgram,
+    MoveStretch,
+    ProgramAct,
     SpindleReached,
     SpindleTo,
-    Step,
     Stop,
     ToolTo,
     Wait,
     WorkingstepTo,
 )
-from simulator.machine.rows import Pace, Rows
+from simulator.motion.segments import Segments
 from simulator.spec import Machine
 from stepnc_model.post.blocks import (
     Block,
@@ -32,23 +38,128 @@ from stepnc_model.post.blocks import (
     Linear,
     Pause,
     ProgramEnd,
-    ProgramStop,
+    ProgramStopBlock,
     Rapid,
     Rate,
     RateMode,
     Retract,
     RigidTap,
-    Sense,
+    SpindleDirection,
     SpindleOff,
     SpindleOn,
     SpindleOrient,
     SurfaceSpeed,
-    Threading,
+    ThreadingMove,
     ToolChange,
 )
 from stepnc_model.post.canonical import synchronised
-from stepnc_model.toolpath.path import Arc, Plane, Point
+from stepnc_model.toolpath.path import Arc, ArcPlane, Point, radius
 from stepnc_model.toolpath.path import radius as radius_of
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PieceSpeed:
+    """Speeds at which a piece is run."""
+
+    speed: float
+    """Speed, mm/s along the path, while the spindle has its speed; infinite: rapid"""
+    spindle: float = nan
+    """Spindle, rev/s at the end; NaN: it keeps its speed"""
+    per_revolution: float = nan
+    """Per revolution, mm; NaN: a feed by time"""
+
+
+Paces = Callable[[float, float], PieceSpeed]
+"""pace for x in the middle and at the end of a piece"""
+
+
+class Rows:
+    """Lines and arcs that wait to become a stretch."""
+
+    def __init__(self) -> None:
+        self._points: list[tuple[Point, Point, Point]] = []
+        self._numbers: list[tuple[float, int, int, float, float, float]] = []
+        self._way, self._back = 0, 0
+
+    def __len__(self) -> int:
+        return len(self._points)
+
+    def line(
+        self,
+        start: Point,
+        end: Point,
+        *,
+        pace: PieceSpeed,
+        line: int,
+        is_way: bool = False,
+    ) -> None:
+        """One line, rapid when its speed is infinite."""
+        leads = is_way and self._way == len(self._points)
+        self._way += leads
+        self._back = self._back + 1 if is_way and not leads else 0
+        self._add((start, end, start), pace, turn=0.0, normal=2, line=line)
+
+    def arc(
+        self, start: Point, block: Circular, *, pieces: int, paces: Paces, line: int
+    ) -> None:
+        """One arc or helix in pieces."""
+        first, second, normal = block.plane.axes
+        size = radius(start, Arc(centre=block.centre, turn=block.turn, plane=block.plane))
+        angle = atan2(start[second] - block.centre[second], start[first] - block.centre[first])
+        rise = block.end[normal] - start[normal]
+
+        def at(part: float) -> Point:
+            point = [0.0, 0.0, 0.0]
+            point[first] = block.centre[first] + size * cos(angle + part * block.turn)
+            point[second] = block.centre[second] + size * sin(angle + part * block.turn)
+            point[normal] = start[normal] + part * rise
+            return point[0], point[1], point[2]
+
+        here, self._back = start, 0
+        for index in range(1, pieces + 1):
+            there = block.end if index == pieces else at(index / pieces)
+            pace = paces(at((index - 0.5) / pieces)[0], there[0])
+            points = here, there, block.centre
+            self._add(points, pace, turn=block.turn / pieces, normal=normal, line=line)
+            here = there
+
+    def _add(
+        self,
+        points: tuple[Point, Point, Point],
+        pace: PieceSpeed,
+        *,
+        turn: float,
+        normal: int,
+        line: int,
+    ) -> None:
+        self._points.append(points)
+        per_time = (pace.speed, pace.spindle, pace.per_revolution)
+        self._numbers.append((turn, normal, line, *per_time))
+
+    def taken(self) -> MoveStretch:
+        """The stretch; the rows are empty afterwards."""
+        points = np.array(self._points)
+        turn, normal, line, speed, spindle, per_revolution = np.array(self._numbers).T
+        way, back = self._way, self._back
+        self._points, self._numbers, self._way, self._back = [], [], 0, 0
+        segments = Segments(
+            start=points[:, 0],
+            end=points[:, 1],
+            speed=speed,
+            is_rapid=speed == inf,
+            centre=points[:, 2],
+            turn=turn,
+            normal=normal.astype(np.int64),
+            block=line.astype(np.int64),
+        )
+        return MoveStretch(
+            segments=segments,
+            spindle_speed=spindle,
+            per_revolution=per_revolution,
+            way=way,
+            back=back,
+        )
+
 
 Numbered = tuple[int, Block]
 """line of the program and what it says"""
@@ -66,7 +177,7 @@ MOST_PIECES = 400
 """of one move; radii below e⁻⁸ of its greatest are not told apart"""
 
 
-def interpret(blocks: Iterable[Numbered], machine: Machine) -> Iterator[Step]:
+def interpret(blocks: Iterable[Numbered], machine: Machine) -> Iterator[ProgramAct]:
     """Acts of a program.
 
     Parameters
@@ -111,22 +222,22 @@ class _Interpreter:
             Rapid: self._rapid,
             Linear: self._linear,
             Circular: self._circular,
-            Threading: self._threading,
+            ThreadingMove: self._threading,
             RigidTap: self._tap,
             Pause: self._pause,
-            ProgramStop: self._stop,
+            ProgramStopBlock: self._stop,
             ProgramEnd: self._end,
             DrillingCycle: self._cycle,
         }
 
-    def steps(self, blocks: Iterable[Numbered]) -> Iterator[Step]:
+    def steps(self, blocks: Iterable[Numbered]) -> Iterator[ProgramAct]:
         """Acts, each with its line; moves are handed on when something else comes."""
         for line, block in blocks:
             self.line = line
-            yield from (Step(line=line, act=act) for act in self._read(block))
+            yield from (ProgramAct(line=line, act=act) for act in self._read(block))
             if isinstance(block, ProgramEnd):
                 return
-        yield from (Step(line=self.line, act=act) for act in self._flush())
+        yield from (ProgramAct(line=self.line, act=act) for act in self._flush())
 
     def _read(self, block: Block) -> Iterator[Act]:
         reader = self._readers.get(type(block))
@@ -192,13 +303,13 @@ class _Interpreter:
         yield from self._flush()
         yield Wait(seconds=block.seconds)
 
-    def _stop(self, _block: ProgramStop) -> Iterator[Act]:
+    def _stop(self, _block: ProgramStopBlock) -> Iterator[Act]:
         yield from self._flush()
         yield Stop()
 
     def _end(self, _block: ProgramEnd) -> Iterator[Act]:
         yield from self._flush()
-        yield End()
+        yield EndOfProgram()
 
     def _cycle(self, block: DrillingCycle) -> Iterator[Act]:
         for part in block.expansion:
@@ -207,7 +318,7 @@ class _Interpreter:
     # Moves.
 
     def _start(self, end: Point) -> Point:
-        """Where a move begins; what is not known yet is where it ends."""
+        """Start of a move; an unknown coordinate is that of its end."""
         known = [e if isnan(a) else a for a, e in zip(self.at, end, strict=True)]
         return known[0], known[1], known[2]
 
@@ -225,7 +336,7 @@ class _Interpreter:
             wanted = _signed(self._speed_at(block.end[0]), self.surface.sense)
             yield from self._turn(wanted)
         if start != block.end:
-            pace = Pace(speed=inf)
+            pace = PieceSpeed(speed=inf)
             self.rows.line(start, block.end, pace=pace, line=self.line, is_way=block.is_way)
         self.at = list(block.end)
 
@@ -284,7 +395,7 @@ class _Interpreter:
 
     def _arc_pieces(self, start: Point, block: Circular) -> int:
         """Into how many pieces an arc is split because the spindle follows the radius."""
-        if self.surface is None or block.plane is Plane.YZ:
+        if self.surface is None or block.plane is ArcPlane.YZ:
             return 1
         size = radius_of(start, Arc(centre=block.centre, turn=block.turn, plane=block.plane))
         way = size * abs(block.turn)
@@ -297,7 +408,7 @@ class _Interpreter:
         """Radius below which the spindle keeps its greatest speed, mm."""
         return surface.speed / (2.0 * pi * self._most(surface))
 
-    def _pace(self, rate: Rate, middle: float, end: float) -> Pace:
+    def _pace(self, rate: Rate, middle: float, end: float) -> PieceSpeed:
         """Pace of a piece by the radius in its middle and at its end."""
         speed, last, per_revolution = rate.value, nan, nan
         if rate.mode is RateMode.PER_REVOLUTION:
@@ -309,7 +420,7 @@ class _Interpreter:
             reason = "the spindle stands" if rate.value > 0.0 else "it must be positive"
             unit = "mm/rev" if rate.mode is RateMode.PER_REVOLUTION else "mm/s"
             raise ProgramFault(f"feed {rate.value:g} {unit}: {reason}", self.line)
-        return Pace(speed=speed, spindle=last, per_revolution=per_revolution)
+        return PieceSpeed(speed=speed, spindle=last, per_revolution=per_revolution)
 
     def _cut_begins(self, radius: float) -> Iterator[Act]:
         """The feed waits for the spindle."""
@@ -320,7 +431,7 @@ class _Interpreter:
             yield SpindleReached()
             self.is_awaited = False
 
-    def _threading(self, block: Threading) -> Iterator[Act]:
+    def _threading(self, block: ThreadingMove) -> Iterator[Act]:
         start = self._start(block.end)
         if start == block.end:
             return
@@ -343,8 +454,8 @@ class _Interpreter:
         yield from self._turn(_signed(block.speed, block.sense))
 
 
-def _signed(speed: float, sense: Sense) -> float:
-    return copysign(speed, 1.0 if sense is Sense.CLOCKWISE else -1.0)
+def _signed(speed: float, sense: SpindleDirection) -> float:
+    return copysign(speed, 1.0 if sense is SpindleDirection.CLOCKWISE else -1.0)
 
 
 def _between(start: Point, end: Point, part: float) -> Point:

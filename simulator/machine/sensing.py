@@ -1,4 +1,8 @@
-"""What the sensors show at any times of an episode, exactly.
+"""Exact sensor values at any times of an episode.
+
+Units mm, s, N, W, rev/s.
+
+Electrical power of the machine's components, as arrays over time.
 
 Units mm, s, N, W, rev/s.
 """
@@ -9,14 +13,94 @@ from math import ceil
 import numpy as np
 
 from simulator.machine.cutting import CuttingLoads, cutting_loads, no_loads, worn_loads
-from simulator.machine.drives import axes_power, main_power, overload
-from simulator.machine.episode import Course, Episode
-from simulator.machine.samples import Execution, PathMode, Samples
+from simulator.machine.samples import (
+    Condition,
+    Episode,
+    EpisodeCourse,
+    Execution,
+    PathMode,
+    Samples,
+)
 from simulator.machine.tooth_loads import bent, entered_loads, tooth_loads
-from simulator.motion.motion import Kinematics
-from simulator.motion.segments import Floats, Ints
-from simulator.removal.stations import CutKind
+from simulator.motion.segments import AXES, Floats, Ints, Kinematics
+from simulator.physics.axis import axis_power
+from simulator.physics.spindle import curve_segments
+from simulator.physics.spindle_motion import spindle_power
+from simulator.removal.stations import StationKind
 from simulator.spec import Machine
+
+FAULT_SHARE = 1.5
+"""of the continuous power: what a drive gives for a minute at most, customary"""
+
+
+def axes_power(
+    machine: Machine, velocity: Floats, acceleration: Floats, *, feed_force: Floats
+) -> Floats:
+    """Power of the axes X, Y and Z.
+
+    Parameters
+    ----------
+    machine : Machine
+        An axis without a known drive draws nothing of its own.
+    velocity, acceleration : (M, 3) array, mm/s and mm/s²
+    feed_force : (M,) array, N
+        Against the path; each axis bears its share of the direction.
+
+    Returns
+    -------
+    (M, 3) array, W
+    """
+    power = np.zeros_like(velocity)
+    speed = np.linalg.norm(velocity, axis=1)
+    moving = np.where(speed > 0.0, speed, 1.0)
+    for axis in machine.axes:
+        if axis.drive is not None and axis.name in AXES:
+            row = AXES.index(axis.name)
+            share = np.abs(velocity[:, row]) / moving
+            power[:, row] = axis_power(
+                axis.drive,
+                velocity[:, row],
+                acceleration[:, row],
+                feed_force=feed_force * share,
+            )
+    return power
+
+
+def main_power(
+    machine: Machine, speed: Floats, acceleration: Floats, *, cutting_power: Floats
+) -> Floats:
+    """Power of the spindle drive, W, for speeds in rev/s and the power at the edge in W."""
+    return np.asarray(
+        spindle_power(machine.spindle, speed, acceleration, cutting_power=cutting_power)
+    )
+
+
+def continuous_power(machine: Machine, speed: Floats) -> Floats:
+    """Power that the spindle drive gives continuously at speeds in rev/s, W."""
+    power = np.full(len(speed), np.inf)
+    around = np.abs(speed)
+    for part in curve_segments(machine.spindle):
+        inside = (around > 0.0) & (around >= part.min_speed) & (around <= part.max_speed)
+        power[inside] = part.power_coefficient * around[inside] ** part.power_exponent
+    return power
+
+
+def overload(machine: Machine, cutting_power: Floats, speed: Floats, *, force: Floats) -> Ints:
+    """Condition of the spindle drive and the force on the machine.
+
+    As the optimiser counts it: the power at the edge over the efficiency, which holds the
+    losses, against the continuous power. Ramps take a drive no longer than it bears.
+    """
+    power = cutting_power / machine.spindle.efficiency
+    share = power / continuous_power(machine, speed)
+    if machine.max_cutting_force is not None:
+        share = np.maximum(share, force / machine.max_cutting_force)
+    return np.where(
+        share > FAULT_SHARE,
+        int(Condition.FAULT),
+        np.where(share > 1.0, int(Condition.WARNING), int(Condition.NORMAL)),
+    )
+
 
 ROUNDING = 1e-9
 """share of a sampling interval by which a sample may miss the end of an episode"""
@@ -154,7 +238,7 @@ def _cutting_feed(kinematics: Kinematics, kind: Ints) -> Floats:
     """Feed at M times, mm/s: that of a tool that sinks is along its axis, also at a corner."""
     along = np.abs(kinematics.velocity[:, 2])
     path = np.linalg.norm(kinematics.velocity, axis=1)
-    feed: Floats = np.where(kind == CutKind.DRILLING, along, path)
+    feed: Floats = np.where(kind == StationKind.DRILLING, along, path)
     return feed
 
 
@@ -162,11 +246,11 @@ def _pushing(episode: Episode, rows: Ints | None, loads: CuttingLoads) -> Floats
     """Force that is held against what the machine bears: of a drill its thrust, as planned."""
     if episode.course is None or rows is None:
         return loads.force
-    is_drilling = episode.course.stations.kind[rows] == CutKind.DRILLING
+    is_drilling = episode.course.stations.kind[rows] == StationKind.DRILLING
     return np.where(is_drilling, loads.feed_force, loads.force)
 
 
-def _revolutions_since_entry(episode: Episode, course: Course, times: Floats) -> Floats:
+def _revolutions_since_entry(episode: Episode, course: EpisodeCourse, times: Floats) -> Floats:
     """Revolutions of the spindle since the cut that runs at some times began."""
     entry = episode.begin + course.entry_times(times - episode.begin)
     turned: Floats = episode.spindle.revolutions(times) - episode.spindle.revolutions(entry)

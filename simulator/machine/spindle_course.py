@@ -16,9 +16,9 @@ class SpindleCourse:
     """Speed at knots; straight between them, constant before the first and after the last."""
 
     times: Floats
-    """(K,) s, ascending"""
+    """Times, (K,) s, ascending"""
     speeds: Floats
-    """(K,) rev/s, positive clockwise"""
+    """Speeds, (K,) rev/s, positive clockwise"""
     turned: float = 0.0
     """revolutions made until the first knot"""
 

@@ -5,14 +5,14 @@ from math import isinf
 
 from simulator.edge_material import correction_of, edge_material
 from simulator.library import find_window, grade_for
-from simulator.machine.cutting import Edge
+from simulator.machine.cutting import CuttingEdge
 from simulator.machine.virtual import LoadedTool, Shape
 from simulator.physics.drilling import LIPS_ONLY
 from simulator.physics.flutes import CuttingEdges
 from simulator.physics.strength import end_mill
 from simulator.removal.cutter import Cutter
 from simulator.removal.tool_shape import THREADS, shape_of, tool_kind
-from simulator.spec import CuttingMaterial, Material, Taylor, ToolKind
+from simulator.spec import CuttingMaterial, Taylor, ToolKind, WorkMaterial
 from simulator.tool_table import TableTool
 from stepnc_model.entities.entity import Entity
 from stepnc_model.part21.values import Ref
@@ -21,7 +21,12 @@ from stepnc_model.tool import tool_of
 
 
 def loaded_tool(
-    program: Program, ref: Ref[Entity], number: int, material: Material, *, factor: float = 1.0
+    program: Program,
+    ref: Ref[Entity],
+    number: int,
+    material: WorkMaterial,
+    *,
+    factor: float = 1.0,
 ) -> LoadedTool:
     """A tool of a program.
 
@@ -32,7 +37,7 @@ def loaded_tool(
         To the tool.
     number : int
         In the machine.
-    material : Material
+    material : WorkMaterial
         Of the workpiece.
     factor : float
         On k_c, from calibration.
@@ -57,7 +62,7 @@ def loaded_tool(
     )
 
 
-def table_tool(tool: TableTool, material: Material, *, factor: float = 1.0) -> LoadedTool:
+def table_tool(tool: TableTool, material: WorkMaterial, *, factor: float = 1.0) -> LoadedTool:
     """A tool of a tool table."""
     edge = _edge(
         tool.kind, tool.cutting_material, tool.teeth, shape=tool.shape, material=material
@@ -74,7 +79,7 @@ def table_tool(tool: TableTool, material: Material, *, factor: float = 1.0) -> L
 
 
 def _taylor(
-    kind: ToolKind, cutting_material: CuttingMaterial, material: Material
+    kind: ToolKind, cutting_material: CuttingMaterial, material: WorkMaterial
 ) -> Taylor | None:
     window = find_window(material, kind, cutting_material)
     return None if window is None else window.taylor
@@ -86,12 +91,12 @@ def _edge(
     teeth: int,
     *,
     shape: Shape | None,
-    material: Material,
-) -> Edge:
-    """What a tool cuts a material with, and how far an end mill gives way."""
+    material: WorkMaterial,
+) -> CuttingEdge:
+    """Cutting edge of a tool in a material, with the compliance of an end mill."""
     grade = grade_for(kind, cutting_material, material)
     correction = correction_of(material, grade, cutting_material)
-    edge = Edge(
+    edge = CuttingEdge(
         teeth=teeth,
         kienzle=material.kienzle,
         factor=correction.factor,

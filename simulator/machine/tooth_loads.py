@@ -10,32 +10,32 @@ from math import pi, sin
 
 import numpy as np
 
-from simulator.machine.cutting import CuttingLoads, Edge
+from simulator.machine.cutting import CuttingEdge, CuttingLoads
 from simulator.machine.transients import entry_share
 from simulator.motion.segments import Bools, Floats, Ints
 from simulator.physics import flank
-from simulator.physics.flutes import CuttingEdges, Law
+from simulator.physics.flutes import CuttingEdges, ForceLaw
 from simulator.physics.tooth_forces import (
     Places,
     forces,
     wall_force,
 )
 from simulator.physics.uneven_teeth import Runout, eccentric_runout
-from simulator.removal.stations import CutKind, Stations, single_arcs
+from simulator.removal.stations import StationKind, Stations, single_arcs
 
 DIGITS = 3
 """to which engagements are told apart: µm, mrad"""
 
-LAND = Law(exponent=0.0, radial_share=flank.NORMAL / flank.CUTTING)
+LAND = ForceLaw(exponent=0.0, radial_share=flank.NORMAL / flank.CUTTING)
 """of a wear land, which rubs along the edges in the cut whatever the chip"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Teeth:
-    """How forces of single teeth are shown."""
+class ToothOptions:
+    """Options for forces of single teeth."""
 
     eccentricity: float = 0.0
-    """mm, of the cutter's axis off the spindle's"""
+    """Eccentricity, mm, of the cutter's axis off the spindle's"""
 
 
 def tooth_loads(  # noqa: PLR0913 (places, times and state of the edge are apart)
@@ -44,8 +44,8 @@ def tooth_loads(  # noqa: PLR0913 (places, times and state of the edge are apart
     rows: Ints,
     *,
     turned: Floats,
-    edge: Edge,
-    teeth: Teeth,
+    edge: CuttingEdge,
+    teeth: ToothOptions,
     flank_wear: Floats,
 ) -> CuttingLoads:
     """Loads with the forces of the teeth that are in the cut at each time.
@@ -59,8 +59,8 @@ def tooth_loads(  # noqa: PLR0913 (places, times and state of the edge are apart
         Which station holds.
     turned : (M,) array
         Revolutions of the spindle.
-    edge : Edge
-    teeth : Teeth
+    edge : CuttingEdge
+    teeth : ToothOptions
     flank_wear : (M,) array, mm
     """
     at = np.flatnonzero(_has_arc(stations)[rows] & (mean.force > 0.0))
@@ -87,7 +87,7 @@ def tooth_loads(  # noqa: PLR0913 (places, times and state of the edge are apart
     return replace(mean, force=force, feed_force=feed, back_force=back)
 
 
-def wall_forces(stations: Stations, edge: Edge) -> Floats:
+def wall_forces(stations: Stations, edge: CuttingEdge) -> Floats:
     """(2, M) mm, normal force of each station while a wall is made: of a sharp edge, of a land.
 
     Over ``K·k_c1.1·f_z^q`` and the share by which the section fills the engagement, and over
@@ -113,7 +113,7 @@ def bent(
     stations: Stations,
     rows: Ints,
     *,
-    edge: Edge,
+    edge: CuttingEdge,
     walls: Floats,
     flank_wear: Floats,
 ) -> CuttingLoads:
@@ -126,7 +126,7 @@ def bent(
     stations : Stations
     rows : (M,) array of int
         Which station holds.
-    edge : Edge
+    edge : CuttingEdge
     walls : array
         Of :func:`wall_forces`.
     flank_wear : (M,) array, mm
@@ -142,7 +142,12 @@ def bent(
 
 
 def entered_loads(
-    mean: CuttingLoads, stations: Stations, rows: Ints, *, since_entry: Floats, edge: Edge
+    mean: CuttingLoads,
+    stations: Stations,
+    rows: Ints,
+    *,
+    since_entry: Floats,
+    edge: CuttingEdge,
 ) -> CuttingLoads:
     """Loads of turning with the chip that grows in the first revolution of a cut.
 
@@ -155,9 +160,9 @@ def entered_loads(
         Which station holds.
     since_entry : (M,) array
         Revolutions since the insert met the work.
-    edge : Edge
+    edge : CuttingEdge
     """
-    is_turning = stations.kind[rows] == CutKind.TURNING
+    is_turning = stations.kind[rows] == StationKind.TURNING
     share = np.where(is_turning, entry_share(since_entry) ** (1.0 - edge.kienzle.m_c), 1.0)
     return replace(
         mean,
@@ -168,8 +173,8 @@ def entered_loads(
 
 
 def _has_arc(stations: Stations) -> Bools:
-    """Which stations mill along an arc that is known."""
-    is_milling: Bools = (stations.kind == CutKind.MILLING) & (stations.section > 0.0)
+    """Mask of the stations that mill along a known arc."""
+    is_milling: Bools = (stations.kind == StationKind.MILLING) & (stations.section > 0.0)
     is_milling &= stations.exit_angle > stations.entry_angle
     return is_milling
 
@@ -183,21 +188,21 @@ def _places(stations: Stations, rows: Ints) -> Places:
     )
 
 
-def _flutes(edge: Edge) -> CuttingEdges:
+def _flutes(edge: CuttingEdge) -> CuttingEdges:
     return edge.flutes or CuttingEdges(teeth=edge.teeth, diameter=1.0)
 
 
-def _law(edge: Edge) -> Law:
-    return Law(exponent=1.0 - edge.kienzle.m_c)
+def _law(edge: CuttingEdge) -> ForceLaw:
+    return ForceLaw(exponent=1.0 - edge.kienzle.m_c)
 
 
-def _land(edge: Edge, flank_wear: Floats) -> Floats:
+def _land(edge: CuttingEdge, flank_wear: Floats) -> Floats:
     """N in 1 mm of edge that rubs; the coefficient counts across the depth."""
     return flank.CUTTING * flank_wear * sin(_flutes(edge).cutting_edge_angle)
 
 
 def _scale(
-    mean: CuttingLoads, stations: Stations, rows: Ints, edge: Edge, at: Ints
+    mean: CuttingLoads, stations: Stations, rows: Ints, edge: CuttingEdge, at: Ints
 ) -> tuple[Floats, Floats]:
     """Feed per tooth in mm, and N of a sharp edge in 1 mm of the integrals, at some times.
 

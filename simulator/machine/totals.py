@@ -12,10 +12,8 @@ from math import sqrt
 
 import numpy as np
 
-from simulator.machine.drives import main_power
-from simulator.machine.episode import Episode
-from simulator.machine.samples import Condition, PathMode, Samples
-from simulator.machine.sensing import sensed
+from simulator.machine.samples import Condition, Episode, PathMode, Samples
+from simulator.machine.sensing import main_power, sensed
 from simulator.motion.segments import Floats
 from simulator.spec import Machine
 
@@ -63,7 +61,7 @@ class Peak:
 
     value: float = 0.0
     time: float = 0.0
-    """s"""
+    """Time, s"""
     line: int = 0
 
     def or_greater(self, values: Floats, samples: Samples) -> "Peak":
@@ -81,37 +79,37 @@ class Total:
     """One workingstep, or what stands between them."""
 
     duration: float = 0.0
-    """s"""
+    """Duration, s"""
     cutting_time: float = 0.0
-    """s with chips"""
+    """Cutting time, s with chips"""
     rapid_time: float = 0.0
-    """s"""
+    """Rapid time, s"""
     waiting_time: float = 0.0
-    """s at rest: pauses, tool changes, a spindle that has not its speed"""
+    """Waiting time, s at rest: pauses, tool changes, a spindle that has not its speed"""
     way_time: float = 0.0
     """s before the path begins and after it: tool change, spindle, the moves to it and home"""
     energy: Energy = field(default_factory=Energy)
     cutting_energy: float = 0.0
-    """J at the edge"""
+    """Cutting energy, J at the edge"""
     volume: float = 0.0
-    """mm³ removed"""
+    """Volume, mm³ removed"""
     power: Peak = field(default_factory=Peak)
-    """W of the spindle drive"""
+    """Power, W of the spindle drive"""
     cutting_power: Peak = field(default_factory=Peak)
-    """W at the edge"""
+    """Cutting power, W at the edge"""
     drive_power: Peak = field(default_factory=Peak)
     """W of the spindle drive while there are chips: of the cut and of the idle spindle, without
     what a spindle that follows the radius takes to speed up"""
     force: Peak = field(default_factory=Peak)
-    """N, tangential; of a mill without its plunges"""
+    """Force, N, tangential; of a mill without its plunges"""
     thrust: Peak = field(default_factory=Peak)
-    """N, of drills and plunges"""
+    """Thrust, N, of drills and plunges"""
     chip: Peak = field(default_factory=Peak)
-    """mm, mean thickness"""
+    """Chip, mm, mean thickness"""
     deflection: Peak = field(default_factory=Peak)
-    """mm, of an end mill while it makes a wall"""
+    """Deflection, mm, of an end mill while it makes a wall"""
     overload_time: float = 0.0
-    """s above the continuous power or the permitted force"""
+    """Overload time, s above the continuous power or the permitted force"""
 
     @property
     def air_time(self) -> float:

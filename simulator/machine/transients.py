@@ -1,4 +1,4 @@
-"""What drives and cuts add to the steady state: delay, overshoot, first revolution.
+"""Transients of drives and cuts over the steady state: delay, overshoot, first revolution.
 
 A drive answers its load late, as a first-order lag, or late and too far, as a second-order
 one. Both are made of one pole, so that one recursion serves: exact at the samples for a signal
@@ -33,7 +33,7 @@ _SHORT = 1e-4  # |pole · interval| below which differences lose their digits
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Response:
-    """How a drive follows its load.
+    """Step response of a drive to its load.
 
     Raises
     ------
@@ -97,7 +97,7 @@ class Follower:
         self._weights = _weights(pole * interval, interval)
 
     def follow(self, load: Floats) -> Floats:
-        """What the drive shows; before the first sample it was at rest there.
+        """Power that the drive shows; before the first sample it was at rest there.
 
         Parameters
         ----------

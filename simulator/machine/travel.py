@@ -1,4 +1,4 @@
-"""Where the program's zero lies on the machine, and moves that leave the travel of its axes.
+"""Position of the program's zero on the machine, and moves beyond the travel of its axes.
 
 Units mm.
 """
@@ -8,10 +8,9 @@ from math import isfinite, pi
 import numpy as np
 
 from simulator.errors import OutOfTravel, ProgramFault
-from simulator.motion.motion import AXES
-from simulator.motion.segments import FIRST, SECOND, Floats, Ints, Segments
+from simulator.motion.segments import AXES, FIRST, SECOND, Floats, Ints, Segments
 from simulator.spec import Machine, MachineKind
-from stepnc_model.stock import Stock
+from stepnc_model.program import Stock
 
 Zero = tuple[float, float, float]
 """place of the program's zero on the axes X, Y, Z, mm"""

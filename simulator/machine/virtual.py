@@ -3,6 +3,13 @@
 Rapid moves may begin while the spindle speeds up; a feed waits until it has its speed. A
 stretch begins and ends at rest. Everything is decided by path and time alone: same program,
 same machine, same run. Units mm, s, rev/s.
+
+Findings on collisions with the stock.
+
+Feeds per revolution, kept by a spindle that cannot always follow the radius.
+
+A lathe locks such a feed to the encoder of its spindle: while the spindle ramps, the axes go
+as fast as it really turns, and the chip stays as programmed. Units mm, s, rev/s.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -15,39 +22,170 @@ import numpy as np
 from simulator.errors import ProgramFault, UnknownTool
 from simulator.machine.acts import (
     CoolantTo,
-    End,
+    EndOfProgram,
+    MoveStretch,
+    ProgramAct,
     SpindleReached,
     SpindleTo,
-    Step,
     Stop,
-    Stretch,
     ToolTo,
     Wait,
     WorkingstepTo,
 )
-from simulator.machine.contacts import Met, contacts
-from simulator.machine.cutting import Edge
-from simulator.machine.episode import Course, Episode, State
-from simulator.machine.pacing import paced
-from simulator.machine.samples import Execution
-from simulator.machine.spindle_course import SpindleCourse, ramped, standing
-from simulator.machine.tooth_loads import Teeth
+from simulator.machine.cutting import CuttingEdge
+from simulator.machine.samples import Episode, EpisodeCourse, EpisodeState, Execution
+from simulator.machine.spindle_course import SpindleCourse, following, ramped, standing
+from simulator.machine.tooth_loads import ToothOptions
 from simulator.machine.travel import Zero, require_axes, require_travel
 from simulator.machine.wear import Wear, wearing_along
-from simulator.motion.motion import ControlModel, axis_limits
-from simulator.motion.segments import Floats, Segments
+from simulator.motion.segments import ControlModel, Floats, Motion, Segments, axis_limits
 from simulator.physics.tool_life import LIFE_CRITERION
+from simulator.removal.collision import Collision
 from simulator.removal.cutter import Cutter, Insert
 from simulator.removal.stations import Stations, air
 from simulator.spec import Machine, MachineKind, Taylor
 from stepnc_model.errors import Finding, Severity
 from stepnc_model.units import rpm_from_rev_s
 
+MOST = 20
+"""findings of one kind; the rest is counted"""
+
+LEAST_VOLUME = 1e-3
+"""mm³ by which a rapid may graze what is just cut: rounding of the map"""
+
+
+class ContactRecorder(Protocol):
+    """A stock that knows what met it."""
+
+    collisions: list[Collision]
+    """rapids through material"""
+    holder_collisions: list[Collision]
+    shank_collisions: list[Collision]
+
+
+def contacts(stock: ContactRecorder) -> list[Finding]:
+    """Findings for rapids through material, holders and shanks that met it."""
+    met = [hit for hit in stock.collisions if hit.volume > LEAST_VOLUME]
+    told = [
+        (hit, f"a rapid cuts {hit.volume:.3g} mm³ of material, up to {_place(hit)}")
+        for hit in met
+    ]
+    findings = _first(told, "rapids through material")
+    told = [
+        (hit, f"the holder is {hit.depth:.3g} mm deep in the material at {_place(hit)}")
+        for hit in stock.holder_collisions
+    ]
+    findings += _first(told, "moves with the holder in the material")
+    told = [
+        (
+            hit,
+            f"{hit.depth:.3g} mm of material above the cutting edge meet the shank at "
+            f"{_place(hit)}",
+        )
+        for hit in stock.shank_collisions
+    ]
+    return findings + _first(told, "moves with material at the shank")
+
+
+def _place(hit: Collision) -> str:
+    x, y, z = hit.position
+    return f"({x:.2f}, {y:.2f}, {z:.2f}) mm"
+
+
+def _first(told: list[tuple[Collision, str]], kind: str) -> list[Finding]:
+    findings = [
+        Finding(severity=Severity.WARNING, message=text, line=hit.block)
+        for hit, text in told[:MOST]
+    ]
+    if len(told) > MOST:
+        more = f"{len(told) - MOST} more {kind}"
+        findings.append(Finding(severity=Severity.WARNING, message=more))
+    return findings
+
+
+AGREED = 1e-3
+"""relative difference between the feed of a segment and what its mean spindle speed asks for"""
+
+MOST_PLANS = 20
+"""of one stretch; a tenth of them is usual"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class PacedStretch:
+    """A stretch as it is run."""
+
+    segments: Segments
+    """with the feeds at which they are planned"""
+    motion: Motion
+    spindle: SpindleCourse
+
+
+def paced(
+    stretch: MoveStretch,
+    plan: Callable[[Segments], Motion],
+    spindle: SpindleCourse,
+    *,
+    begin: float,
+    acceleration: float,
+) -> PacedStretch:
+    """Motion and spindle that agree.
+
+    The motion says when each radius is reached, hence how far the spindle has come; its mean
+    speed in each segment says the feed, hence the motion. Each plan is closed form; they are
+    repeated until feeds and spindle agree within ``AGREED``. What happens later changes nothing
+    before it, so that the repetition ends as that of an integral equation does.
+
+    Parameters
+    ----------
+    stretch : MoveStretch
+    plan : callable
+        Motion of segments, from rest to rest.
+    spindle : SpindleCourse
+        Until the stretch begins.
+    begin : float, s
+    acceleration : float, rev/s²
+        Of the spindle; infinite: without delay.
+    """
+    segments, before = stretch.segments, spindle
+    for _ in range(MOST_PLANS):
+        motion = plan(segments)
+        spindle = _followed(stretch, before, begin, motion.ends, acceleration=acceleration)
+        speed = _locked(stretch, spindle, begin, motion.ends)
+        is_own = np.isnan(speed)
+        if is_own.all() or (np.abs(speed / segments.speed - 1.0)[~is_own] <= AGREED).all():
+            break
+        segments = replace(segments, speed=np.where(is_own, segments.speed, speed))
+    return PacedStretch(segments=segments, motion=motion, spindle=spindle)
+
+
+def _followed(
+    stretch: MoveStretch,
+    spindle: SpindleCourse,
+    begin: float,
+    ends: Floats,
+    *,
+    acceleration: float,
+) -> SpindleCourse:
+    """The spindle, which follows the radius where it keeps a surface speed."""
+    wanted = stretch.spindle_speed
+    if np.isnan(wanted).all():
+        return spindle
+    return following(spindle, begin, begin + ends, wanted=wanted, acceleration=acceleration)
+
+
+def _locked(stretch: MoveStretch, spindle: SpindleCourse, begin: float, ends: Floats) -> Floats:
+    """(N,) mm/s that the spindle's mean speed in each segment asks for; NaN: not locked."""
+    turned = np.diff(spindle.revolutions(begin + np.concatenate(([0.0], ends))))
+    seconds = np.diff(ends, prepend=0.0)
+    mean = np.divide(np.abs(turned), seconds, out=np.zeros(len(ends)), where=seconds > 0.0)
+    return np.where(mean > 0.0, stretch.per_revolution * mean, np.nan)
+
+
 Shape = Cutter | Insert
 
 
-class StockMap(Met, Protocol):
-    """What is left of the stock."""
+class StockMap(ContactRecorder, Protocol):
+    """Map of the remaining stock."""
 
     def cut(self, segments: Segments, shape: Any, /, *, is_clockwise: bool) -> Stations:
         """Take away what the tool sweeps; what it met. A mill's map knows cutters only."""
@@ -62,16 +200,16 @@ class LoadedTool:
     id: str
     shape: Shape | None
     """None: threads; what they take is not modelled"""
-    edge: Edge
+    edge: CuttingEdge
     flank_wear: float = 0.0
-    """mm, when the program starts"""
+    """Flank wear, mm, when the program starts"""
     taylor: Taylor | None = None
     """how fast it wears; None: it stays as it is"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Setup:
-    """The machine as somebody prepared it."""
+class MachineSetup:
+    """Machine as prepared for a program: tools, stock, zero."""
 
     machine: Machine
     control: ControlModel
@@ -79,7 +217,7 @@ class Setup:
     """by number; None: no tool is known, and nothing is cut"""
     stock: Callable[[str], StockMap | None] = lambda _: None
     """what is clamped when a workingstep begins; None: nothing is known of it"""
-    teeth: Teeth | None = None
+    teeth: ToothOptions | None = None
     """None: forces are means over a revolution"""
     zero: Zero | None = None
     """None: travel is not looked at"""
@@ -88,14 +226,14 @@ class Setup:
 class VirtualMachine:
     """A machine that runs one program. Running state."""
 
-    def __init__(self, setup: Setup) -> None:
+    def __init__(self, setup: MachineSetup) -> None:
         self.setup = setup
         self.machine = setup.machine
         self.limits = axis_limits(setup.machine)
         self.now = 0.0
         self.position: Floats | None = None
         self.spindle = standing(0.0)
-        self.state = State(execution=Execution.ACTIVE, line=0)
+        self.state = EpisodeState(execution=Execution.ACTIVE, line=0)
         self.workingsteps: list[str] = []
         """ids in the order of their beginning; numbered from 1 in the episodes"""
         self.tool: LoadedTool | None = None
@@ -109,7 +247,7 @@ class VirtualMachine:
         """mm of flank wear by the tool's number"""
         self._said: set[str] = set()
 
-    def run(self, steps: Iterable[Step]) -> Iterator[Episode]:
+    def run(self, steps: Iterable[ProgramAct]) -> Iterator[Episode]:
         """Episodes of a program, one after another without a gap.
 
         The machine stands where the first move begins, wherever that is. The last episode
@@ -120,11 +258,11 @@ class VirtualMachine:
         ProgramFault, UnknownTool, OutOfTravel
             What this machine cannot run, with the line.
         """
-        waiting: list[Step] = []
+        waiting: list[ProgramAct] = []
         for step in steps:
             waiting.append(step)
             if self.position is None:
-                if not isinstance(step.act, Stretch):
+                if not isinstance(step.act, MoveStretch):
                     continue
                 self.position = step.act.segments.start[0]
             for held in waiting:
@@ -136,10 +274,10 @@ class VirtualMachine:
             self.findings += contacts(stock)
         yield self._still(0.0, Execution.PROGRAM_COMPLETED)
 
-    def _act(self, step: Step) -> Iterator[Episode]:
+    def _act(self, step: ProgramAct) -> Iterator[Episode]:
         self.state = replace(self.state, line=step.line)
         match step.act:
-            case Stretch() as stretch:
+            case MoveStretch() as stretch:
                 yield self._move(stretch)
             case SpindleTo(speed=speed):
                 self._turn(speed)
@@ -159,7 +297,7 @@ class VirtualMachine:
             case Stop():
                 left = max(self.spindle.reached - self.now, 0.0)
                 yield self._still(left, Execution.PROGRAM_STOPPED)
-            case End():
+            case EndOfProgram():
                 self._turn(0.0)
                 self.state = replace(self.state, coolant_on=False)
                 # The spindle stops after the path, as it starts before it.
@@ -209,7 +347,7 @@ class VirtualMachine:
         self.tool = None if tools is None else tools.get(number)
         self.state = replace(self.state, tool=number)
 
-    def _move(self, stretch: Stretch) -> Episode:
+    def _move(self, stretch: MoveStretch) -> Episode:
         require_axes(self.machine, stretch.segments)
         if self.setup.zero is not None:
             require_travel(self.machine, stretch.segments, self.setup.zero)
@@ -225,7 +363,7 @@ class VirtualMachine:
         segments, motion = run.segments, run.motion
         self.now += motion.duration
         stations = self._cut(segments)
-        course = Course(
+        course = EpisodeCourse(
             segments=segments,
             motion=motion,
             spindle_programmed=stretch.spindle_speed,
@@ -249,7 +387,7 @@ class VirtualMachine:
         self.position = segments.end[-1]
         return episode
 
-    def _follow(self, stretch: Stretch, spindle: SpindleCourse) -> None:
+    def _follow(self, stretch: MoveStretch, spindle: SpindleCourse) -> None:
         """The spindle as it goes on, and what it was told last."""
         self.spindle, told = spindle, stretch.spindle_speed
         if not np.isnan(told).all():
@@ -277,7 +415,7 @@ class VirtualMachine:
             self._say("cuts while the spindle stands: its force is not known", line)
         return stations
 
-    def _wear(self, stretch: Stretch, segments: Segments, stations: Stations) -> Wear:
+    def _wear(self, stretch: MoveStretch, segments: Segments, stations: Stations) -> Wear:
         """Wear of the edge that begins a stretch, and how fast it grows there."""
         if self.tool is None:
             return Wear()
@@ -288,8 +426,8 @@ class VirtualMachine:
         speed = np.abs(np.where(np.isnan(wanted), self.spindle.target, wanted))
         return wearing_along(flank, self.tool.taylor, segments, stations, spindle_speed=speed)
 
-    def _worn(self, course: Course) -> None:
-        """What a stretch leaves of the edge."""
+    def _worn(self, course: EpisodeCourse) -> None:
+        """Wear of the edge after a stretch."""
         if self.tool is None or not course.wear.grows:
             return
         flank = course.wear.after(course.cutting_seconds).flank

@@ -25,9 +25,9 @@ class Wear:
     """Flank wear of one edge."""
 
     flank: float = 0.0
-    """mm now"""
+    """Flank, mm now"""
     per_second: float = 0.0
-    """mm of flank wear in one second of cutting"""
+    """Per second, mm of flank wear in one second of cutting"""
 
     @property
     def grows(self) -> bool:

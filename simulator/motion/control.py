@@ -1,38 +1,143 @@
-"""Control models by name, with customary numbers. Units mm, s."""
+"""Control models by name, with customary numbers. Units mm, s.
 
-from enum import StrEnum
+Exact stop: every block from rest to rest, as the papers on virtual machining model it.
 
-from simulator.motion.exact_stop import ExactStop
+A trapezoid of speed, or a triangle where the block is too short to reach its speed. Pieces of
+one block that goes straight on are one move. A feed block without length takes the control's
+block time. Units mm, s; references in :mod:`simulator.motion.sweep`.
+
+Continuous path with junction deviation: corners are taken at a speed, not at rest.
+
+At a corner a circle touches both directions and passes the corner at the distance of the
+deviation e; the speed is that at which the circle needs the centripetal acceleration a:
+``v² = a·e·S/(1−S)``, S = sin(θ/2), θ the angle between the two segments (π: straight on). The
+circle sets the speed only: the path keeps its corner, so the speed along the path is
+continuous while the velocity of an axis jumps there, as the model has it.
+
+The control stops before, after and between rapids, and reads blocks ahead: one without length
+takes no time. Units mm, s.
+
+References
+----------
+.. [1] S. K. Jeon, "Improving Grbl: Cornering algorithm", 2011: junction deviation.
+.. [2] S. S. Skogsrud and S. K. Jeon, Grbl 1.1, planner: the acceleration that the axes reach
+   in the direction in which the velocity changes.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
 from simulator.motion.fir import FilterWithinLimits, shortest_filter
-from simulator.motion.junction import JunctionDeviation
-from simulator.motion.motion import AxisLimits, ControlModel
+from simulator.motion.model_name import ControlModelName
+from simulator.motion.path_limits import (
+    block_lengths,
+    corners,
+    goes_on,
+    is_stop,
+    least,
+    path_limits,
+)
+from simulator.motion.segments import AxisLimits, ControlModel, Floats, Segments
+from simulator.motion.sweep import Phases, swept
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExactStop:
+    """A control that waits at the end of each block until the axes stand."""
+
+    def plan(self, segments: Segments, limits: AxisLimits) -> Phases:
+        """Motion along segments, from rest to rest.
+
+        Raises
+        ------
+        ValueError
+            When there is no segment, or a segment's speed has no bound at all.
+        """
+        bounds = path_limits(segments, limits)
+        is_pause = (block_lengths(segments) == 0.0) & ~segments.is_rapid
+        rows = np.flatnonzero((segments.length > 0.0) | is_pause)
+        corner = np.where(goes_on(segments[rows]), np.inf, 0.0)
+        pause = limits.block_time
+        return swept(segments, rows, limits=bounds, corner=corner, pause=pause)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JunctionDeviation:
+    """A control that looks ahead over the whole stretch.
+
+    Raises
+    ------
+    ValueError
+        When the deviation is not positive.
+    """
+
+    deviation: float
+    """Deviation, mm, e"""
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.deviation < np.inf:
+            raise ValueError(f"junction deviation {self.deviation:g} mm must be positive")
+
+    def plan(self, segments: Segments, limits: AxisLimits) -> Phases:
+        """Motion along segments, from rest to rest.
+
+        Raises
+        ------
+        ValueError
+            When there is no segment, or a segment's speed has no bound at all.
+        """
+        bounds = path_limits(segments, limits)
+        rows = np.flatnonzero(segments.length > 0.0)
+        moving = segments[rows]
+        corner = corner_squares(moving, limits.acceleration, deviation=self.deviation)
+        corner = np.where(is_stop(moving), 0.0, corner)
+        return swept(segments, rows, limits=bounds, corner=corner)
+
+
+def corner_squares(segments: Segments, acceleration: Floats, *, deviation: float) -> Floats:
+    """Greatest squared speed at each corner, ``a·e·S/(1−S)``, [1]_.
+
+    Parameters
+    ----------
+    segments : Segments
+        N of them, each with a length.
+    acceleration : (3,) array, mm/s²
+        Of the axes; a is what they reach along the change of velocity, [2]_.
+    deviation : float, mm
+
+    Returns
+    -------
+    (N−1,) array, mm²/s²
+        Infinite where the path goes straight on, 0 where it turns back.
+    """
+    before, after = corners(segments)
+    change = np.linalg.norm(after - before, axis=1)
+    sine = 0.5 * np.linalg.norm(after + before, axis=1)
+    squares = np.full(len(change), np.inf)
+    bent = np.flatnonzero(change > 0.0)
+    share = np.abs(after - before)[bent] / change[bent, None]
+    # 1 − S = (1 − S²)/(1 + S) = (|Δd|/2)²/(1 + S), without cancellation near straight on.
+    radius = deviation * sine[bent] * (1.0 + sine[bent]) * (2.0 / change[bent]) ** 2
+    squares[bent] = least(acceleration, share) * radius
+    return squares
+
 
 DEVIATION = 0.01
 """mm, default of grbl 1.1 ($11)"""
 
 
-class Control(StrEnum):
-    """How a control runs a path."""
-
-    EXACT_STOP = "exact-stop"
-    """each block from rest to rest"""
-    JUNCTION = "junction"
-    """continuous, corners at the speed of a junction deviation"""
-    FIR = "fir"
-    """axis commands filtered over fixed times"""
-
-
 def control_model(
-    control: Control, limits: AxisLimits, *, deviation: float = DEVIATION
+    control: ControlModelName, limits: AxisLimits, *, deviation: float = DEVIATION
 ) -> ControlModel:
     """The control model of a name, with times of the filter from the limits.
 
     Parameters
     ----------
-    control : Control
+    control : ControlModelName
     limits : AxisLimits
     deviation : float, mm
-        Of :attr:`Control.JUNCTION`.
+        Of :attr:`ControlModelName.JUNCTION`.
 
     Returns
     -------
@@ -44,10 +149,10 @@ def control_model(
         When the deviation is not positive, or the limits give the filter no times.
     """
     match control:
-        case Control.EXACT_STOP:
+        case ControlModelName.EXACT_STOP:
             return ExactStop()
-        case Control.JUNCTION:
+        case ControlModelName.JUNCTION:
             return JunctionDeviation(deviation=deviation)
-        case Control.FIR:
+        case ControlModelName.FIR:
             shortest_filter(limits, limits.rapid)
             return FilterWithinLimits()

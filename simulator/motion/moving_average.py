@@ -31,7 +31,7 @@ WAY, ONCE, TWICE = 0, 1, 2
 
 
 def states_at_ends(time: Floats, velocity: Floats, rate: Floats) -> Floats:
-    """What each piece adds when all of it is passed.
+    """Sum that each piece contributes once all of it is passed.
 
     Parameters
     ----------

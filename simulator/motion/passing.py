@@ -1,6 +1,10 @@
-"""When places along a stretch of path are passed, and how fast: the motion by way, not by time.
+"""Times and speeds at which places along a path are passed: the motion by distance.
 
 Units mm, s.
+
+Speeds that the axes reach at places of a workingstep's tool path.
+
+Where a path turns, begins or ends they are slower than the feed. Units mm, s.
 """
 
 from dataclasses import dataclass
@@ -8,8 +12,8 @@ from functools import cached_property
 
 import numpy as np
 
-from simulator.motion.motion import Motion
-from simulator.motion.segments import Floats, Ints, Segments
+from simulator.motion.segments import AxisLimits, ControlModel, Floats, Ints, Motion, Segments
+from simulator.motion.tool_path import ToolPathRun
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -54,3 +58,33 @@ class Passing:
         """(M,) mm/s along the path at places in mm along segments, ascending."""
         at = self.motion.at(self.times(self.offsets[segment] + station))
         return np.linalg.norm(at.velocity, axis=1)
+
+
+def reached_speeds(
+    run: ToolPathRun,
+    control: ControlModel,
+    limits: AxisLimits,
+    *,
+    segment: Ints,
+    station: Floats,
+) -> Floats:
+    """(M,) mm/s that the axes reach at places of a path, which are ascending.
+
+    Parameters
+    ----------
+    run : ToolPathRun
+    control : ControlModel
+    limits : AxisLimits
+    segment : (M,) array of int
+        Rows of the run.
+    station : (M,) array, mm
+        Along them.
+    """
+    speeds = np.zeros(len(segment))
+    for leg in run.legs:
+        at = slice(*np.searchsorted(segment, (leg.first, leg.last)))
+        if at.stop > at.start:
+            part = run.segments[leg.first : leg.last]
+            passing = Passing(segments=part, motion=control.plan(part, limits))
+            speeds[at] = passing.speeds(segment[at] - leg.first, station[at])
+    return speeds

@@ -1,4 +1,4 @@
-"""What the axes and the control allow along each segment, and where a path has to stop.
+"""Limits of axes and control along each segment, and the points where a path must stop.
 
 Lines take of each axis its share of the direction, so that all axes arrive together. Arcs are
 limited as if they turned fully round. Their acceleration is a right-angled pair: centripetal
@@ -19,8 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from simulator.motion.motion import AxisLimits
-from simulator.motion.segments import Bools, Floats, Segments
+from simulator.motion.segments import AxisLimits, Bools, Floats, Segments
 
 CENTRIPETAL_SHARE = 0.8
 """of the acceleration in the plane of an arc, at most"""
@@ -34,9 +33,9 @@ class PathLimits:
     """Greatest speed and tangential acceleration on each of N segments."""
 
     speed: Floats
-    """(N,) mm/s; 0 where a segment has no length"""
+    """Speed, (N,) mm/s; 0 where a segment has no length"""
     acceleration: Floats
-    """(N,) mm/s²; infinite where no axis limits it"""
+    """Acceleration, (N,) mm/s²; infinite where no axis limits it"""
 
     def __getitem__(self, rows: slice) -> "PathLimits":
         """Those of some of the segments."""

@@ -1,14 +1,20 @@
-"""Lines and arcs of a path as arrays, and where the tool is on them.
+"""Lines and arcs of a path as arrays, and motion along them: position and speed by time.
 
 One row a segment, each beginning where the one before it ends. Units mm, mm/s, rad.
+
+A control model plans one stretch of path that begins and ends at rest. What it returns is
+closed form in time: any sampling rate is exact.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
+
+from simulator.spec import Machine
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -29,21 +35,21 @@ class Segments:
     """
 
     start: Floats
-    """(N, 3), mm"""
+    """Start, (N, 3), mm"""
     end: Floats
-    """(N, 3), mm"""
+    """End, (N, 3), mm"""
     speed: Floats
-    """(N,) commanded along the path, mm/s; infinite: as fast as the axes go"""
+    """Speed, (N,) commanded along the path, mm/s; infinite: as fast as the axes go"""
     is_rapid: Bools
     """(N,)"""
     centre: Floats
-    """(N, 3), mm, of arcs; its coordinate along the normal means nothing"""
+    """Centre, (N, 3), mm, of arcs; its coordinate along the normal means nothing"""
     turn: Floats
-    """(N,) rad about the normal, positive counter-clockwise; 0: a line"""
+    """Turn, (N,) rad about the normal, positive counter-clockwise; 0: a line"""
     normal: Ints
-    """(N,) axis of the plane's normal: 0, 1 or 2"""
+    """Normal, (N,) axis of the plane's normal: 0, 1 or 2"""
     block: Ints
-    """(N,) number of the block from which a segment comes"""
+    """Block, (N,) number of the block from which a segment comes"""
 
     def __post_init__(self) -> None:
         count = len(self.turn)
@@ -114,7 +120,7 @@ class Segments:
         return arm[order, _FIRST[normal]], arm[order, _SECOND[normal]]
 
     def position(self, rows: Ints, station: Floats) -> Floats:
-        """Where the tool is.
+        """Position at a share of each segment.
 
         Parameters
         ----------
@@ -173,7 +179,7 @@ class Segments:
         return bend
 
     def _bent(self, rows: Ints) -> Ints:
-        """Which of the rows are arcs."""
+        """Mask of the rows that are arcs."""
         return np.flatnonzero(self.turn[rows])
 
     def _angle(self, rows: Ints, station: Floats) -> Floats:
@@ -246,3 +252,102 @@ def chained(parts: Sequence[Segments]) -> Segments:
     }
     columns["block"] = np.arange(len(columns["turn"]))
     return Segments(**columns)
+
+
+AXES = ("X", "Y", "Z")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class AxisLimits:
+    """Limits of the axes; an axis that the machine lacks is not limited.
+
+    Raises
+    ------
+    ValueError
+        When a limit of an axis is not positive, or the block time is negative.
+    """
+
+    acceleration: Floats
+    """Acceleration, (3,) mm/s²"""
+    rapid: Floats
+    """Rapid, (3,) mm/s"""
+    feed: Floats
+    """Feed, (3,) mm/s, greatest feed"""
+    block_time: float = 0.0
+    """Block time, s, the control's processing time of one block"""
+    jerk: Floats = field(default_factory=lambda: np.full(3, np.inf))
+    """Jerk, (3,) mm/s³"""
+
+    def __post_init__(self) -> None:
+        for name in ("acceleration", "rapid", "feed", "jerk"):
+            value = getattr(self, name)
+            if value.shape != (3,) or not (value > 0.0).all():
+                raise ValueError(f"{name} of X, Y and Z must be positive, got {value}")
+        if not 0.0 <= self.block_time < np.inf:
+            raise ValueError(f"block time {self.block_time:g} s must not be negative")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Kinematics:
+    """State of the axes at M times."""
+
+    position: Floats
+    """Position, (M, 3) mm"""
+    velocity: Floats
+    """Velocity, (M, 3) mm/s"""
+    acceleration: Floats
+    """Acceleration, (M, 3) mm/s²"""
+    segment: Ints
+    """Segment, (M,) row of the segment that runs"""
+    station: Floats
+    """Station, (M,) mm along that segment"""
+
+
+class Motion(Protocol):
+    """A stretch of path by time, from rest to rest."""
+
+    @property
+    def duration(self) -> float:
+        """Time of the whole stretch, s."""
+        ...
+
+    @property
+    def ends(self) -> Floats:
+        """(N,) time at which each segment ends, s, ascending; the last is the duration."""
+        ...
+
+    @property
+    def knots(self) -> Floats:
+        """(K,) times from 0 to the duration between which speeds are smooth, s."""
+        ...
+
+    def at(self, times: Floats) -> Kinematics:
+        """State at (M,) times in s, ascending, between 0 and the duration."""
+        ...
+
+
+class ControlModel(Protocol):
+    """Control model: makes the motion of a path."""
+
+    def plan(self, segments: Segments, limits: AxisLimits) -> Motion:
+        """Motion along segments, from rest to rest."""
+        ...
+
+
+def axis_limits(machine: Machine) -> AxisLimits:
+    """Limits of a machine's axes in the order X, Y, Z."""
+    axes = {axis.name: axis for axis in machine.axes}
+    acceleration, rapid, feed, jerk = (np.full(3, np.inf) for _ in range(4))
+    for row, name in enumerate(AXES):
+        if name in axes:
+            acceleration[row] = axes[name].acceleration
+            rapid[row] = axes[name].rapid
+            feed[row] = axes[name].max_feed
+            jerk[row] = axes[name].jerk or np.inf
+    return AxisLimits(
+        acceleration=acceleration,
+        rapid=rapid,
+        feed=feed,
+        block_time=machine.block_time or 0.0,
+        jerk=jerk,
+    )

@@ -9,37 +9,134 @@ to the path are not part of it. Units mm, s, rev/s.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from math import inf, pi
+from math import inf, pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
 
-from simulator.motion.control import Control, control_model
-from simulator.motion.exact_stop import ExactStop
-from simulator.motion.motion import AxisLimits, ControlModel, axis_limits
-from simulator.motion.segments import Bools, Floats, Segments, chained
-from simulator.motion.surface_speed import behind, in_pieces
+from simulator.motion.control import ExactStop, control_model
+from simulator.motion.model_name import ControlModelName
+from simulator.motion.segments import (
+    AxisLimits,
+    Bools,
+    ControlModel,
+    Floats,
+    Ints,
+    Segments,
+    axis_limits,
+    chained,
+)
 from simulator.spec import Machine, Spindle
 from stepnc_model.entities.entity import Entity
 from stepnc_model.errors import PostError
 from stepnc_model.part21.values import Ref
-from stepnc_model.post.blocks import RateMode, Sense, SpindleOff, SpindleOn, SurfaceSpeed
+from stepnc_model.post.blocks import (
+    RateMode,
+    SpindleDirection,
+    SpindleOff,
+    SpindleOn,
+    SurfaceSpeed,
+)
 from stepnc_model.post.canonical import synchronised
-from stepnc_model.post.conditions import Conditions
-from stepnc_model.post.unsplit import unsplit
+from stepnc_model.post.modal_state import ModalState
+from stepnc_model.post.neutral import unsplit
 from stepnc_model.toolpath.path import (
     Dwell,
     Feed,
     Move,
     Point,
     SpindleCommand,
-    SpindleSpeed,
+    SpindleSpeedChange,
     ToolPath,
 )
 
+PIECE = 0.02
+"""relative change of the radius within one piece at constant surface speed"""
+
+MOST_PIECES = 400
+
+NEAREST = 0.02
+"""mm from the axis, within which no piece is told from the next"""
+
+
+def in_pieces(segments: Segments, least: float) -> Segments:
+    """Segments split so that the speed changes by little from piece to piece.
+
+    Parameters
+    ----------
+    segments : Segments
+    least : float, mm
+        Radius within which the spindle has its greatest speed.
+    """
+    return _split(segments, _pieces(segments, max(least, NEAREST)))
+
+
+def behind(wanted: Floats, length: Floats, advance: Floats, *, ramp: float) -> Floats:
+    """Mean speeds of a spindle that follows the radius as fast as it can.
+
+    A feed per revolution goes on with the spindle as it turns: within a piece of path of so
+    many revolutions it ramps towards the speed of the piece, and keeps it once it is reached.
+    On the way to the next feed it has caught up.
+
+    Parameters
+    ----------
+    wanted : (N,) array, rev/s
+        What the radius asks for; the first is met, as a feed waits for the spindle.
+    length : (N,) array, mm
+    advance : (N,) array, mm
+        Feeds per revolution; 0: none.
+    ramp : float, rev/s²
+    """
+    mean, speed, is_late = wanted.copy(), 0.0, False
+    is_locked = (advance > 0.0) & (length > 0.0)
+    for row in np.flatnonzero(is_locked):
+        if row == 0 or not is_locked[row - 1]:
+            speed, is_late = float(wanted[row]), False
+        turns, goal = float(length[row] / advance[row]), float(wanted[row])
+        rise = ramp if goal > speed else -ramp
+        until = abs(goal - speed) / ramp
+        if turns >= 0.5 * (speed + goal) * until:
+            # One that is not late follows within the piece too.
+            catch_up = 0.5 * (speed + goal) * until
+            seconds = until + (turns - catch_up) / goal if is_late else turns / goal
+            speed, is_late = goal, False
+        else:
+            is_late = True
+            seconds = (sqrt(speed * speed + 2.0 * rise * turns) - speed) / rise
+            speed += rise * seconds
+        mean[row] = turns / seconds
+    return mean
+
+
+def _pieces(segments: Segments, least: float) -> Ints:
+    """(N,) into how many pieces each is split because the spindle follows the radius.
+
+    Within ``least``, mm, the spindle has its greatest speed.
+    """
+    one, other = np.abs(segments.start[:, 0]), np.abs(segments.end[:, 0])
+    low = np.maximum(np.minimum(one, other), least)
+    high = np.maximum(np.maximum(one, other), low)
+    count = np.clip(np.ceil(np.log(high / low) / PIECE), 1, MOST_PIECES)
+    pieces: Ints = np.where(segments.is_rapid, 1, count).astype(np.int64)
+    return pieces
+
+
+def _split(segments: Segments, pieces: Ints) -> Segments:
+    """Each segment in so many pieces of equal length."""
+    rows = np.repeat(np.arange(len(segments)), pieces)
+    number = np.arange(len(rows)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+    step = (segments.length / pieces)[rows]
+    is_last = number + 1 == pieces[rows]
+    end = segments.position(rows, (number + 1) * step)
+    end[is_last] = segments.end
+    start = np.concatenate((segments.start[:1], end[:-1]))
+    start[number == 0] = segments.start
+    return replace(segments[rows], start=start, end=end, turn=(segments.turn / pieces)[rows])
+
+
 Spin = SpindleOn | SurfaceSpeed | SpindleOff
 
-LookUp = Callable[[Feed], Conditions]
+LookUp = Callable[[Feed], ModalState]
 """what holds while a move runs"""
 
 
@@ -51,53 +148,53 @@ class Leg:
     last: int
     """the row after the last one"""
     wait: float
-    """s"""
+    """Wait, s"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Run:
+class ToolPathRun:
     """A tool path as the axes run it."""
 
     moves: tuple[Move, ...]
     segments: Segments
-    """(N) lines and arcs; block: the row among the moves"""
+    """Segments, (N) lines and arcs; block: the row among the moves"""
     spindle: Floats
-    """(N,) rev/s in the middle of each segment, without sign"""
+    """Spindle, (N,) rev/s in the middle of each segment, without sign"""
     is_clockwise: bool
     """how the spindle turns at the first cut"""
     legs: tuple[Leg, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Pace:
-    """How much faster than programmed a technology is run, as ratios; and how it plunges."""
+class SpeedRatios:
+    """Ratios of feed and speed to those programmed, by technology; and the plunge feed."""
 
     technology: Ref[Entity]
     feed: float = 1.0
-    """of the feed per tooth, or per revolution"""
+    """Feed of the feed per tooth, or per revolution"""
     speed: float = 1.0
-    """of the spindle speed"""
+    """Speed of the spindle speed"""
     plunge: float | None = None
-    """mm per revolution on the way down into the material; None: as the path says"""
+    """Plunge, mm per revolution on the way down into the material; None: as the path says"""
 
 
-class _Row(NamedTuple):
+class _MoveRow(NamedTuple):
     """One move with what holds."""
 
     start: Point
     move: Move
-    found: Conditions | None
+    found: ModalState | None
     """None: rapid"""
 
 
-def run_of(path: ToolPath, look_up: LookUp, spindle: Spindle) -> Run:
-    """What the axes run.
+def run_of(path: ToolPath, look_up: LookUp, spindle: Spindle) -> ToolPathRun:
+    """Moves as the axes run them.
 
     Parameters
     ----------
     path : ToolPath
     look_up : callable
-        Conditions of a feed, as :func:`stepnc_model.post.conditions.conditions` finds them.
+        Conditions of a feed, as :func:`stepnc_model.post.modal_state.conditions` finds them.
     spindle : Spindle
         For its ramps and its greatest speed.
 
@@ -111,10 +208,10 @@ def run_of(path: ToolPath, look_up: LookUp, spindle: Spindle) -> Run:
     return _Collector(path, look_up, spindle).run()
 
 
-def paced(look_up: LookUp, pace: Pace) -> LookUp:
+def paced(look_up: LookUp, pace: SpeedRatios) -> LookUp:
     """The same conditions with one technology run faster; feeds of a path's own stay."""
 
-    def faster(feed: Feed) -> Conditions:
+    def faster(feed: Feed) -> ModalState:
         if feed.is_plunge and pace.plunge is not None:
             feed = replace(feed, per_revolution=pace.plunge)
         found = look_up(feed)
@@ -143,7 +240,7 @@ def usual_motion(machine: Machine) -> tuple[ControlModel, AxisLimits]:
     """
     limits = axis_limits(machine)
     if np.isfinite(limits.acceleration).any():
-        return control_model(Control.FIR, limits), limits
+        return control_model(ControlModelName.FIR, limits), limits
     rapid = np.full(3, machine.rapid or _NO_TIME)
     return ExactStop(), replace(limits, rapid=rapid)
 
@@ -151,7 +248,7 @@ def usual_motion(machine: Machine) -> tuple[ControlModel, AxisLimits]:
 _NO_TIME = 1e9  # mm/s
 
 
-def follows(run: Run, technology: Ref[Entity]) -> Bools:
+def follows(run: ToolPathRun, technology: Ref[Entity]) -> Bools:
     """(N,) which segments run as fast as the feed of a technology says."""
     feeds = [move.feed for move in run.moves]
     is_bound = [
@@ -166,14 +263,14 @@ def follows(run: Run, technology: Ref[Entity]) -> Bools:
     return bound
 
 
-def plunges(run: Run) -> Bools:
+def plunges(run: ToolPathRun) -> Bools:
     """(N,) which segments lead down into the material, at a feed of their own if need be."""
     is_plunge = [move.feed is not None and move.feed.is_plunge for move in run.moves]
     plunging: Bools = np.array(is_plunge, dtype=np.bool_)[run.segments.block]
     return plunging
 
 
-def duration(run: Run, control: ControlModel, limits: AxisLimits) -> float:
+def duration(run: ToolPathRun, control: ControlModel, limits: AxisLimits) -> float:
     """Time from the start of a path to its end, waits included, s."""
     moving = sum(
         control.plan(run.segments[leg.first : leg.last], limits).duration
@@ -194,13 +291,13 @@ class _Collector:
         self.at = path.start
         self.feed: Feed | None = None
         """of the last cut"""
-        self.found: Conditions | None = None
+        self.found: ModalState | None = None
         """that hold at this feed"""
         self.speed: float | None = None
         """rev/s that the spindle was told, signed; None: not yet, or it follows the radius"""
         self.asked: Spin | None = None
         """what the technology asks for"""
-        self.rows: list[_Row] = []
+        self.rows: list[_MoveRow] = []
         self.moves: list[Move] = []
         self.parts: list[tuple[Segments, Floats]] = []
         self.legs: list[Leg] = []
@@ -208,7 +305,7 @@ class _Collector:
         self.is_spindle_awaited = False
         """whether the wait of the last leg is for the spindle"""
 
-    def run(self) -> Run:
+    def run(self) -> ToolPathRun:
         """The whole path; the spindle turns when it begins."""
         if self.path.technology_ref is not None:
             self._take(self.look_up(Feed(technology=self.path.technology_ref)))
@@ -219,7 +316,7 @@ class _Collector:
                 case Dwell():
                     self._close(self._seconds(step))
                     self.is_spindle_awaited = False
-                case SpindleSpeed(technology=technology):
+                case SpindleSpeedChange(technology=technology):
                     self._take(self.look_up(Feed(technology=technology)))
                 case SpindleCommand():
                     self._turn(self.asked, step)
@@ -228,7 +325,7 @@ class _Collector:
             self.legs[-1] = replace(self.legs[-1], wait=0.0)
         self._close(0.0)
         segments = [part for part, _ in self.parts]
-        return Run(
+        return ToolPathRun(
             moves=tuple(self.moves),
             segments=replace(
                 chained(segments), block=np.concatenate([part.block for part in segments])
@@ -246,10 +343,10 @@ class _Collector:
                 self.feed, self.found = move.feed, self.look_up(move.feed)
             found = self.found
             self._take(found)
-        self.rows.append(_Row(self.at, move, found))
+        self.rows.append(_MoveRow(self.at, move, found))
         self.at = move.end
 
-    def _take(self, found: Conditions) -> None:
+    def _take(self, found: ModalState) -> None:
         """The spindle follows what a technology asks for."""
         if found.spindle is not None and found.spindle != self.asked:
             self._turn(found.spindle, SpindleCommand.START)
@@ -270,7 +367,7 @@ class _Collector:
         if not isinstance(asked, SpindleOn):
             return 0.0
         sign = {SpindleCommand.START: 1.0, SpindleCommand.REVERSE: -1.0}.get(command, 0.0)
-        if asked.sense is not Sense.CLOCKWISE:
+        if asked.sense is not SpindleDirection.CLOCKWISE:
             sign = -sign
         return sign * min(asked.speed, self.fastest)
 
@@ -309,7 +406,7 @@ class _Collector:
 
     def _turns_clockwise(self) -> bool:
         if isinstance(self.asked, SurfaceSpeed):
-            return self.asked.sense is Sense.CLOCKWISE
+            return self.asked.sense is SpindleDirection.CLOCKWISE
         return (self.speed or 0.0) >= 0.0
 
     def _timed(self) -> tuple[Segments, Floats]:
@@ -330,7 +427,7 @@ class _Collector:
                 speed[row] = self._feed(self.rows[of], found, float(spindle[row]))
         return replace(segments, speed=speed), spindle
 
-    def _feed(self, row: _Row, found: Conditions, spindle: float) -> float:
+    def _feed(self, row: _MoveRow, found: ModalState, spindle: float) -> float:
         """Speed along the path, mm/s."""
         if found.lead is not None:
             speed = synchronised(row.start, row.move.end, found.lead) * spindle
@@ -346,7 +443,7 @@ class _Collector:
         return speed
 
 
-def _advance(found: Sequence[Conditions | None]) -> Floats:
+def _advance(found: Sequence[ModalState | None]) -> Floats:
     """(N,) feeds per revolution, mm; 0 of rapids and of feeds by time."""
     rates = [None if each is None else each.rate for each in found]
     return np.array([
@@ -355,7 +452,7 @@ def _advance(found: Sequence[Conditions | None]) -> Floats:
     ])
 
 
-def _segments(rows: Sequence[_Row], *, first: int) -> Segments:
+def _segments(rows: Sequence[_MoveRow], *, first: int) -> Segments:
     """Lines and arcs of moves, all of them as fast as the axes go."""
     arcs = [row.move.arc for row in rows]
     centre = [arc.centre if arc else row.start for row, arc in zip(rows, arcs, strict=True)]

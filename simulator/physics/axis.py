@@ -19,7 +19,7 @@ inertia counts, and a gear divides the inertia behind it by the square of its ra
 
 from math import pi
 
-from simulator.physics.drive import Quantity, Value, electrical_power, positive_part
+from simulator.physics.drive import FloatOrArray, Value, electrical_power, positive_part
 from simulator.spec import AxisDrive
 
 GRAVITY = 9.81  # m/s², as the sources print it
@@ -91,7 +91,7 @@ def feed_torque(drive: AxisDrive, *, feed_force: Value) -> Value:
 
 
 def steady_torque(
-    drive: AxisDrive, *, feed_force: Value, vertical_force: Quantity = 0.0
+    drive: AxisDrive, *, feed_force: Value, vertical_force: FloatOrArray = 0.0
 ) -> Value:
     """Torque at the motor's shaft that does not depend on speed.
 
@@ -124,10 +124,10 @@ def motor_speed(drive: AxisDrive, velocity: Value) -> Value:
 def motor_torque(
     drive: AxisDrive,
     velocity: Value,
-    acceleration: Quantity = 0.0,
+    acceleration: FloatOrArray = 0.0,
     *,
-    feed_force: Quantity = 0.0,
-    vertical_force: Quantity = 0.0,
+    feed_force: FloatOrArray = 0.0,
+    vertical_force: FloatOrArray = 0.0,
 ) -> Value:
     """Torque of the motor in the direction of the motion, negative when it brakes.
 
@@ -160,10 +160,10 @@ def motor_torque(
 def axis_power(
     drive: AxisDrive,
     velocity: Value,
-    acceleration: Quantity = 0.0,
+    acceleration: FloatOrArray = 0.0,
     *,
-    feed_force: Quantity = 0.0,
-    vertical_force: Quantity = 0.0,
+    feed_force: FloatOrArray = 0.0,
+    vertical_force: FloatOrArray = 0.0,
 ) -> Value:
     """Power that an axis draws from the mains; 0 at rest.
 

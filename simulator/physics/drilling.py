@@ -59,14 +59,14 @@ def edge_angle(kind: ToolKind, point_angle: float | None) -> float:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ChiselFactors:
-    """What a chisel edge adds, [1]_ table 7."""
+    """Factors of a chisel edge, [1]_ table 7."""
 
     torque: float
     """A, on the torque of the lips"""
     thrust: float
     """B, on the thrust of the lips"""
     constant: float
-    """J, of a thrust that does not depend on the feed"""
+    """Constant, J, of a thrust that does not depend on the feed"""
 
 
 NO_CHISEL = ChiselFactors(torque=1.0, thrust=1.0, constant=0.0)
@@ -97,7 +97,7 @@ _CONSTANT_EXPONENT = 2.2
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DrillingCut:
-    """What a drill, reamer or boring bar cuts."""
+    """Cut of a drill, reamer or boring bar."""
 
     feed_per_revolution: float
     """f, mm"""

@@ -1,13 +1,13 @@
 """From the mechanical to the electrical power of a drive, and numbers that may be arrays.
 
-Functions that take a :class:`Quantity` consist of arithmetic alone and serve a float as well
-as an array of any library; several arrays broadcast. Power in W.
+Functions that take a :class:`FloatOrArray` consist of arithmetic alone and serve a float as
+well as an array of any library; several arrays broadcast. Power in W.
 """
 
 from typing import Any, Protocol, TypeVar
 
 
-class Quantity(Protocol):
+class FloatOrArray(Protocol):
     """A float or an array of floats."""
 
     def __abs__(self) -> Any: ...
@@ -22,7 +22,7 @@ class Quantity(Protocol):
     def __lt__(self, other: Any, /) -> Any: ...
 
 
-Value = TypeVar("Value", bound=Quantity)
+Value = TypeVar("Value", bound=FloatOrArray)
 
 
 def positive_part(value: Value) -> Value:

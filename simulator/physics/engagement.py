@@ -1,4 +1,4 @@
-"""Where a milling cutter meets the work: angles and chip thickness.
+"""Engagement of a milling cutter: angles and chip thickness.
 
 The angle φ of a tooth is counted in the direction of rotation from the normal to the feed, so
 that the chip is ``h = f_z · sin κ · sin φ`` thick: conventional (up) milling enters at φ = 0,

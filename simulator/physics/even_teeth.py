@@ -26,13 +26,13 @@ class Bands(NamedTuple):
     """Stretches of an edge by their height, as seen at M places; kernels take tuples."""
 
     low: Floats
-    """(M, B) rad, lag of the lower end behind the tip"""
+    """Low, (M, B) rad, lag of the lower end behind the tip"""
     high: Floats
-    """(M, B) rad, of the upper one"""
+    """High, (M, B) rad, of the upper one"""
     weight: Floats
-    """(M, B) mm, ∫sin^(q−1) κ dy"""
+    """Weight, (M, B) mm, ∫sin^(q−1) κ dy"""
     radial: Floats
-    """(M, B) radial force in the plane over the tangential one"""
+    """Radial, (M, B) radial force in the plane over the tangential one"""
 
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)

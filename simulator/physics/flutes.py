@@ -25,7 +25,7 @@ class CuttingEdges:
     helix_angle: float = 0.0
     """λ_s, rad"""
     corner_radius: float = 0.0
-    """mm; half the diameter for a ball"""
+    """Corner radius, mm; half the diameter for a ball"""
     cutting_edge_angle: float = pi / 2.0
     """κ_r of the flank, rad"""
 
@@ -48,8 +48,8 @@ class CuttingEdges:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Law:
-    """How the force of an edge follows from its chip."""
+class ForceLaw:
+    """Law of the force of an edge over its chip."""
 
     exponent: float
     """q = 1 − m_c"""

@@ -1,4 +1,4 @@
-"""What a chuck, a vice or clamps hold by friction.
+"""Holding capacity of a chuck, a vice or clamps by friction.
 
 The jaws of a chuck fly outwards, so its force falls with the square of the speed. What is left
 holds the bar against slipping (torque and axial force share the friction) and against tilting.
@@ -41,12 +41,12 @@ lose two thirds of its force, which at S_sp = 1.5 is all that is counted on"""
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GripSize:
-    """Where the jaws touch the bar."""
+    """Contact of the jaws with the bar."""
 
     diameter: float
-    """mm"""
+    """Diameter, mm"""
     length: float
-    """mm along the axis"""
+    """Length, mm along the axis"""
 
     def __post_init__(self) -> None:
         require_positive(self.diameter, "grip diameter", "mm")

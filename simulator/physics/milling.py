@@ -31,7 +31,7 @@ aluminium in [2]_, which lie between 0.16 and 0.60"""
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MillingCut:
-    """What one milling cutter cuts."""
+    """Cut of one milling cutter."""
 
     feed_per_tooth: float
     """f_z, mm"""

@@ -1,4 +1,4 @@
-"""How a structure gives under a force by frequency, from the modes of a tap test.
+"""Receptance of a structure by frequency, from the modes of a tap test.
 
 Units mm, N, rad/s; natural frequencies in Hz, as they are measured.
 
@@ -24,7 +24,7 @@ SAMPLES = 240
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Structure:
+class ModalStructure:
     """Measured modes in the plane of the cut; a direction without modes is rigid."""
 
     x: tuple[VibrationMode, ...]

@@ -22,13 +22,13 @@ class BarSection:
     """A stretch of a bar with one diameter."""
 
     start: float
-    """mm from the jaws"""
+    """Start, mm from the jaws"""
     end: float
-    """mm from the jaws, not before the start"""
+    """End, mm from the jaws, not before the start"""
     outer: float
-    """mm, diameter"""
+    """Outer, mm, diameter"""
     inner: float = 0.0
-    """mm, diameter of the bore"""
+    """Inner, mm, diameter of the bore"""
 
     @property
     def second_moment(self) -> float:

@@ -1,4 +1,4 @@
-"""What a spindle gives at a speed: its power and torque curve as monomials.
+"""Power and torque curve of a spindle as monomials of the speed.
 
 Scalars in W, N·mm and rev/s. Monomials, because what chooses the feed works in logarithms.
 """
@@ -18,9 +18,9 @@ class CurveSegment:
     """One stretch of a spindle's curve: ``P = c·n^γ`` and, where known, ``M = d·n^δ``."""
 
     min_speed: float
-    """rev/s, 0 when the curve has no lower end"""
+    """Min speed, rev/s, 0 when the curve has no lower end"""
     max_speed: float
-    """rev/s, ``inf`` when it has no upper end"""
+    """Max speed, rev/s, ``inf`` when it has no upper end"""
     power_coefficient: float
     """c: motor power in W at 1 rev/s"""
     power_exponent: float

@@ -18,7 +18,7 @@ not divided by the efficiency; the oil film follows Petroff in the speed's own u
 
 from math import pi
 
-from simulator.physics.drive import Quantity, Value, electrical_power
+from simulator.physics.drive import FloatOrArray, Value, electrical_power
 from simulator.spec import Spindle
 
 _NMM_PER_NM = 1000.0
@@ -75,9 +75,9 @@ def idle_power(spindle: Spindle, speed: Value) -> Value:
 def spindle_power(
     spindle: Spindle,
     speed: Value,
-    acceleration: Quantity = 0.0,
+    acceleration: FloatOrArray = 0.0,
     *,
-    cutting_power: Quantity = 0.0,
+    cutting_power: FloatOrArray = 0.0,
 ) -> Value:
     """Power that the main drive draws from the mains.
 

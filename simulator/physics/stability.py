@@ -35,7 +35,7 @@ from simulator.physics.engagement import Engagement
 from simulator.physics.receptance import (
     Complex,
     Floats,
-    Structure,
+    ModalStructure,
     chatter_frequencies,
     receptance,
 )
@@ -60,7 +60,7 @@ FEED_ANGLES = 12
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DynamicCut:
-    """What a milling cut does with a wave on the surface."""
+    """Dynamic milling cut: the response to a wave on the surface."""
 
     engagement: Engagement
     teeth: int
@@ -80,11 +80,11 @@ class Border:
     """The border of stability by chatter frequency; NaN where there is none."""
 
     frequency: Floats
-    """(N,) ω_c in rad/s, ascending"""
+    """Frequency, (N,) ω_c in rad/s, ascending"""
     depth: Floats
-    """(N,) mm"""
+    """Depth, (N,) mm"""
     phase: Floats
-    """(N,) ε in rad between two waves, 0 to 2π"""
+    """Phase, (N,) ε in rad between two waves, 0 to 2π"""
 
 
 def directional_coefficients(engagement: Engagement, radial_ratio: float) -> Floats:
@@ -126,7 +126,7 @@ def directional_coefficients(engagement: Engagement, radial_ratio: float) -> Flo
 
 
 def borders(
-    cut: DynamicCut, structure: Structure, *, feed_angle: float = 0.0
+    cut: DynamicCut, structure: ModalStructure, *, feed_angle: float = 0.0
 ) -> tuple[Border, Border]:
     """Border of stability for each of the two eigenvalues, by chatter frequency.
 
@@ -136,7 +136,7 @@ def borders(
     Parameters
     ----------
     cut : DynamicCut
-    structure : Structure
+    structure : ModalStructure
         Modes along x and y of the machine.
     feed_angle : float, rad
         From x of the machine to the feed.
@@ -160,7 +160,7 @@ def borders(
     return _border(cut, frequency, one), _border(cut, frequency, other)
 
 
-def least_stable_depth(cut: DynamicCut, structure: Structure) -> float:
+def least_stable_depth(cut: DynamicCut, structure: ModalStructure) -> float:
     """Depth that is stable at any spindle speed and in any direction of feed, mm."""
     least = min(
         float(np.nanmin(border.depth, initial=MOST_DEPTH))
@@ -171,7 +171,7 @@ def least_stable_depth(cut: DynamicCut, structure: Structure) -> float:
 
 
 def stable_depths(
-    cut: DynamicCut, structure: Structure, speeds: Floats, *, tolerance: float = 0.0
+    cut: DynamicCut, structure: ModalStructure, speeds: Floats, *, tolerance: float = 0.0
 ) -> Floats:
     """Greatest stable depth at each spindle speed: the least of all lobes, [1]_.
 
@@ -181,7 +181,7 @@ def stable_depths(
     Parameters
     ----------
     cut : DynamicCut
-    structure : Structure
+    structure : ModalStructure
     speeds : (N,) array, rev/s
         Ascending, positive.
     tolerance : float
@@ -196,16 +196,16 @@ def stable_depths(
     Examples
     --------
     >>> from simulator.physics.engagement import full_immersion
-    >>> from simulator.spec import Direction, VibratingPart, VibrationMode
+    >>> from simulator.spec import ModeDirection, VibratingPart, VibrationMode
     >>> mode = VibrationMode(
-    ...     part=VibratingPart.TOOL, direction=Direction.XY, natural_frequency=600.0,
+    ...     part=VibratingPart.TOOL, direction=ModeDirection.XY, natural_frequency=600.0,
     ...     damping_ratio=0.03, stiffness=10_000.0, source="example",
     ... )
     >>> slot = DynamicCut(
     ...     engagement=full_immersion(), teeth=4, stiffness=800.0, radial_ratio=0.3
     ... )
     >>> speeds = np.array([100.0, 150.0])  # the tooth period is the mode's at 150 rev/s
-    >>> stable_depths(slot, Structure(x=(mode,), y=(mode,)), speeds).round(2)
+    >>> stable_depths(slot, ModalStructure(x=(mode,), y=(mode,)), speeds).round(2)
     array([0.37, 4.18])
     """
     drawn = np.full(speeds.shape, MOST_DEPTH)
@@ -224,7 +224,7 @@ def stable_depths(
 
 def lobes(
     cut: DynamicCut,
-    structure: Structure,
+    structure: ModalStructure,
     *,
     between: tuple[float, float],
     step: float,
@@ -235,7 +235,7 @@ def lobes(
     Parameters
     ----------
     cut : DynamicCut
-    structure : Structure
+    structure : ModalStructure
     between : (float, float), rev/s
         Least and greatest speed; they may be equal.
     step : float
@@ -304,7 +304,7 @@ def _border(cut: DynamicCut, frequency: Floats, eigenvalue: Complex) -> Border:
     )
 
 
-def _feed_angles(structure: Structure) -> tuple[float, ...]:
+def _feed_angles(structure: ModalStructure) -> tuple[float, ...]:
     """Directions of feed to be tried: one where the structure gives alike in all."""
     alike = [(m.natural_frequency, m.damping_ratio, m.stiffness) for m in structure.x] == [
         (m.natural_frequency, m.damping_ratio, m.stiffness) for m in structure.y

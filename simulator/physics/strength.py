@@ -1,4 +1,4 @@
-"""What a slender tool bears: deflection and bending stress of a clamped shank.
+"""Strength of a slender tool: deflection and bending stress of a clamped shank.
 
 The tool is a beam clamped where it leaves the holder, with the force across its tip; that is on
 the safe side by the share in which the force lies above the tip. Holder and spindle are taken
@@ -33,11 +33,11 @@ class Cantilever:
     overhang: float
     """L, mm from holder to tip"""
     flute_length: float
-    """mm from the tip, at most the overhang; 0: a plain bar"""
+    """Flute length, mm from the tip, at most the overhang; 0: a plain bar"""
     flute_diameter: float
     """equivalent diameter of the fluted part, mm; see :func:`equivalent_diameter`"""
     shank_diameter: float
-    """mm"""
+    """Shank diameter, mm"""
     youngs_modulus: float
     """E, N/mm²"""
 

@@ -1,4 +1,4 @@
-"""How long an edge lasts, and how it wears until then.
+"""Life of an edge, and its wear until then.
 
 Scalars in mm, s and mm/s. Taylor's constant keeps the meaning of print, the speed for a life of
 one **minute**, and is turned into seconds here.

@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 
 from simulator.physics import even_teeth, uneven_teeth
 from simulator.physics.even_teeth import Bands
-from simulator.physics.flutes import WALL, CuttingEdges, Law
+from simulator.physics.flutes import WALL, CuttingEdges, ForceLaw
 from simulator.physics.uneven_teeth import Runout
 
 Floats = NDArray[np.float64]
@@ -54,11 +54,11 @@ class Places:
     """M engagements of a cutter."""
 
     entry_angle: Floats
-    """(M,) φ_st, rad"""
+    """Entry angle, (M,) φ_st, rad"""
     exit_angle: Floats
-    """(M,) φ_ex, rad"""
+    """Exit angle, (M,) φ_ex, rad"""
     axial_depth: Floats
-    """(M,) a_p, mm"""
+    """Axial depth, (M,) a_p, mm"""
 
     def rows(self, rows: Ints) -> "Places":
         """Some of them."""
@@ -74,15 +74,15 @@ class ArcIntegrals:
     """Integrals over M arcs of contact, which mean forces are made of."""
 
     contact: Floats
-    """(M,) ∫dφ, rad"""
+    """Contact, (M,) ∫dφ, rad"""
     sine: Floats
-    """(M,) ∫sin φ dφ = C"""
+    """Sine, (M,) ∫sin φ dφ = C"""
     cosine: Floats
-    """(M,) ∫cos φ dφ"""
+    """Cosine, (M,) ∫cos φ dφ"""
     sine_squared: Floats
-    """(M,) ∫sin² φ dφ"""
+    """Sine squared, (M,) ∫sin² φ dφ"""
     sine_cosine: Floats
-    """(M,) ∫sin φ·cos φ dφ"""
+    """Sine cosine, (M,) ∫sin φ·cos φ dφ"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -90,11 +90,11 @@ class Forces:
     """Sums over all teeth at K rotations of M places, over ``K·k_c1.1·f_z^q``."""
 
     tangential: Floats
-    """(M, K) mm"""
+    """Tangential, (M, K) mm"""
     feed: Floats
-    """(M, K) mm, against the feed"""
+    """Feed, (M, K) mm, against the feed"""
     normal: Floats
-    """(M, K) mm, towards φ = 0"""
+    """Normal, (M, K) mm, towards φ = 0"""
 
     @property
     def resultant(self) -> Floats:
@@ -129,7 +129,7 @@ def arcs_of(entry_angle: Floats, exit_angle: Floats) -> ArcIntegrals:
 def forces(
     edges: CuttingEdges,
     places: Places,
-    law: Law,
+    law: ForceLaw,
     *,
     rotation: Floats,
     runout: Runout | None = None,
@@ -143,7 +143,7 @@ def forces(
     ----------
     edges : CuttingEdges
     places : Places
-    law : Law
+    law : ForceLaw
     rotation : (M, K) array, rad
         Angle φ of the tip of tooth 0; tooth j follows ``j·2π/z`` behind.
     runout : Runout in mm, optional
@@ -165,7 +165,7 @@ def forces(
     ...     entry_angle=np.zeros(1), exit_angle=np.array([pi]), axial_depth=np.array([2.0])
     ... )
     >>> one = CuttingEdges(teeth=1, diameter=10.0)
-    >>> found = forces(one, slot, Law(exponent=1.0), rotation=np.array([[0.5 * pi]]))
+    >>> found = forces(one, slot, ForceLaw(exponent=1.0), rotation=np.array([[0.5 * pi]]))
     >>> round(float(found.tangential[0, 0]), 6), round(float(found.feed[0, 0]), 6)
     (2.0, 0.6)
     """
@@ -183,7 +183,7 @@ def forces(
 
 
 def peak_resultant(
-    edges: CuttingEdges, places: Places, law: Law, *, is_rough: bool = False
+    edges: CuttingEdges, places: Places, law: ForceLaw, *, is_rough: bool = False
 ) -> Floats:
     """Greatest force across the axis within a revolution, (M,) mm over ``K·k_c1.1·f_z^q``.
 
@@ -201,7 +201,7 @@ def peak_resultant(
 
 
 def wall_force(
-    edges: CuttingEdges, places: Places, law: Law, *, is_rough: bool = False
+    edges: CuttingEdges, places: Places, law: ForceLaw, *, is_rough: bool = False
 ) -> Floats:
     """Greatest force normal to a wall while an edge makes it, (M,) mm over ``K·k_c1.1·f_z^q``.
 
@@ -222,7 +222,7 @@ def wall_force(
 
 
 def _at_wall(
-    edges: CuttingEdges, places: Places, law: Law, angle: float, *, is_rough: bool
+    edges: CuttingEdges, places: Places, law: ForceLaw, angle: float, *, is_rough: bool
 ) -> Floats:
     """Greatest normal force while one edge passes an angle from its lower end to its upper."""
     span = np.minimum(edges.lag * places.axial_depth, edges.pitch)[:, None]
@@ -263,7 +263,7 @@ def _greatest(of: Callable[[Floats], Floats], corners: Floats, *, is_rough: bool
     return greatest
 
 
-def _bands(edges: CuttingEdges, depth: Floats, law: Law) -> Bands:
+def _bands(edges: CuttingEdges, depth: Floats, law: ForceLaw) -> Bands:
     """Bands of the edges down to which each place reaches, rounded end first."""
     corner = np.minimum(depth, edges.corner_radius)
     heights, weights, sines = [np.zeros_like(depth)], [], []

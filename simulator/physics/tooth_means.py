@@ -28,11 +28,11 @@ class Arcs:
     """Arcs of contact at N times."""
 
     entry_angle: Floats | Singles
-    """(N,) φ_st, rad"""
+    """Entry angle, (N,) φ_st, rad"""
     exit_angle: Floats | Singles
-    """(N,) φ_ex, rad; not above the entry: no arc is known"""
+    """Exit angle, (N,) φ_ex, rad; not above the entry: no arc is known"""
     lag: Floats | Singles
-    """(N,) rad by which the upper end of the edges in the cut is behind their tips"""
+    """Lag, (N,) rad by which the upper end of the edges in the cut is behind their tips"""
 
     @property
     def are_known(self) -> bool:

@@ -22,7 +22,7 @@ from typing import Generic
 
 from simulator.physics.cutting import chip_force
 from simulator.physics.domain import require_edge_angle, require_positive
-from simulator.physics.drive import Quantity, Value, positive_part
+from simulator.physics.drive import FloatOrArray, Value, positive_part
 from simulator.spec import Kienzle
 
 FEED_SHARE = 0.45
@@ -38,7 +38,7 @@ THINNEST = 0.05
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TurningCut:
-    """What a single-point tool cuts."""
+    """Cut of a single-point tool."""
 
     feed_per_revolution: float
     """f, mm"""
@@ -151,7 +151,7 @@ def force_share(pair: Kienzle, cutting: Kienzle, chip_thickness: Value) -> Value
 
 def turning_forces(
     cutting_force: Value,
-    chip_thickness: Quantity,
+    chip_thickness: FloatOrArray,
     *,
     cutting: Kienzle,
     feed: Kienzle | None,

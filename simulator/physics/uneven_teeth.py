@@ -26,7 +26,7 @@ class Runout:
     offsets: Floats
     """(z,) mm, ρ: radius of each tooth over the nominal one"""
     feed_per_tooth: Floats
-    """(M,) f_z, mm"""
+    """Feed per tooth, (M,) f_z, mm"""
 
 
 def eccentric_runout(eccentricity: float, teeth: int) -> Floats:

@@ -14,10 +14,9 @@ import numpy as np
 
 from simulator.errors import MachineSilent
 from simulator.motion.segments import Floats, Ints
-from simulator.plant.course import NominalCourse
+from simulator.plant.course import SAMPLES, EngagedTeeth, NominalCourse, pattern
 from simulator.plant.dynamometer import DYNAMOMETER, POWER_METER, Acquisition, Instrument
-from simulator.plant.hidden import Change, Changed, Hidden
-from simulator.plant.pattern import SAMPLES, Teeth, pattern
+from simulator.plant.hidden import HiddenChange, HiddenQuantity, HiddenTruth
 from simulator.reading import Reading
 
 LONGEST = 0.25
@@ -33,39 +32,39 @@ _FINE = 100.0  # runout over feed and angles are rounded to so many parts for th
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Truth:
-    """What really was in the last period."""
+class TrueState:
+    """True state of the last period."""
 
     force: float = 0.0
-    """N, tangential, mean"""
+    """Force, N, tangential, mean"""
     peak: float = 0.0
-    """N, greatest"""
+    """Peak, N, greatest"""
     power: float = 0.0
-    """W of the main drive"""
+    """Power, W of the main drive"""
     removal_rate: float = 0.0
-    """mm³/s"""
+    """Removal rate, mm³/s"""
     axial_depth: float = 0.0
-    """mm"""
+    """Axial depth, mm"""
     flank_wear: float = 0.0
-    """mm"""
+    """Flank wear, mm"""
     cell: int = 0
-    """of the course"""
+    """Cell of the course"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Bench:
-    """Instruments and luck."""
+class Instrumentation:
+    """Instruments and the seed of their noise."""
 
     dynamometer: Instrument = DYNAMOMETER
     power_meter: Instrument = POWER_METER
     efficiency: float = 1.0
-    """of the main drive"""
+    """Efficiency of the main drive"""
     seed: int = 0
 
 
 @dataclass(kw_only=True)
 class _Now:
-    """Where the machine is. Running state."""
+    """Position of the machine in its course. Running state."""
 
     time: float = 0.0
     progress: float = 0.0
@@ -78,30 +77,32 @@ class _Now:
     tool: int = 0
     """that cuts, or cut last"""
     flank_wear: dict[int, float] = field(default_factory=dict)
-    """mm, by the tool's number"""
+    """Flank wear, mm, by the tool's number"""
     broken: dict[int, int] = field(default_factory=dict)
     """tooth, by the tool's number"""
     silent_until: float = -inf
     is_cut_off: bool = False
-    factors: dict[Changed, float] = field(
-        default_factory=lambda: {Changed.DEPTH: 1.0, Changed.HARDNESS: 1.0}
+    factors: dict[HiddenQuantity, float] = field(
+        default_factory=lambda: {HiddenQuantity.DEPTH: 1.0, HiddenQuantity.HARDNESS: 1.0}
     )
 
 
 class ControlledMachine:
-    """A machine whose feed somebody overrides. Running state.
+    """Virtual machine with a feed override. Running state.
 
     Parameters
     ----------
     course : NominalCourse
-    hidden : Hidden
-    bench : Bench
+    hidden : HiddenTruth
+    bench : Instrumentation
     """
 
-    def __init__(self, course: NominalCourse, hidden: Hidden, bench: Bench) -> None:
+    def __init__(
+        self, course: NominalCourse, hidden: HiddenTruth, bench: Instrumentation
+    ) -> None:
         self.course = course
         self.hidden = hidden
-        self.truth = Truth()
+        self.truth = TrueState()
         self._bench = bench
         forces, powers = np.random.default_rng(bench.seed).spawn(2)
         self._forces = Acquisition(bench.dynamometer, forces)
@@ -113,7 +114,7 @@ class ControlledMachine:
 
     @property
     def time(self) -> float:
-        """S of the run."""
+        """Time of the run, in seconds."""
         return self._now.time
 
     @property
@@ -127,7 +128,7 @@ class ControlledMachine:
         return self._now.progress / self.course.duration
 
     @property
-    def factors(self) -> Mapping[Changed, float]:
+    def factors(self) -> Mapping[HiddenQuantity, float]:
         """On depth and hardness, now."""
         return self._now.factors
 
@@ -137,8 +138,8 @@ class ControlledMachine:
             raise ValueError(f"override {override:g} must be at least 0 and finite")
         self._now.commanded = override
 
-    def change(self, change: Change) -> None:
-        """Let something happen at the next reading, or later by its time."""
+    def change(self, change: HiddenChange) -> None:
+        """Apply a hidden change at the next reading, or later at its time."""
         self._changes = sorted((*self._changes, change), key=lambda each: each.time)
 
     def read(self) -> Reading | None:
@@ -160,13 +161,13 @@ class ControlledMachine:
             return self._feed()
         return self._wait()
 
-    def _apply(self, change: Change) -> None:
+    def _apply(self, change: HiddenChange) -> None:
         match change.what:
-            case Changed.TOOTH:
+            case HiddenQuantity.TOOTH:
                 self._now.broken[self._now.tool] = int(change.value)
-            case Changed.LINE:
+            case HiddenQuantity.LINE:
                 self._now.is_cut_off = True
-            case Changed.SILENCE:
+            case HiddenQuantity.SILENCE:
                 self._now.silent_until = change.time + change.value
             case _:
                 self._now.factors[change.what] = change.value
@@ -188,7 +189,7 @@ class ControlledMachine:
         now.override = now.commanded
         self._go_on(end, period)
         idle = float(course.idle_power[cell])
-        self.truth = Truth(power=idle, flank_wear=self._flank_wear, cell=cell)
+        self.truth = TrueState(power=idle, flank_wear=self._flank_wear, cell=cell)
         feed = float(course.feed[cell:beyond].max())
         still = np.zeros(SAMPLES)
         return self._reading(cell, period, still, feed=feed, tooth=0, override=now.override)
@@ -223,11 +224,11 @@ class ControlledMachine:
         feed = override * float(course.feed[cell])
         return self._reading(cell, period, force, feed=feed, tooth=tooth, override=override)
 
-    def _truth(self, cut: int, *, mean: float, force: Floats, override: float) -> Truth:
-        course, depth = self.course, self._now.factors[Changed.DEPTH]
+    def _truth(self, cut: int, *, mean: float, force: Floats, override: float) -> TrueState:
+        course, depth = self.course, self._now.factors[HiddenQuantity.DEPTH]
         around = pi * float(course.diameter[cut]) * float(course.spindle_speed[cut])
         cutting = mean * around / NMM_S_PER_WATT
-        return Truth(
+        return TrueState(
             force=mean,
             peak=float(force.max()),
             power=float(course.idle_power[cut]) + cutting / self._bench.efficiency,
@@ -247,7 +248,7 @@ class ControlledMachine:
         return exp(-seconds / self.hidden.servo_lag)
 
     def _ways(self, period: float) -> Floats:
-        """S of the program after each sample of a period; the override follows its command."""
+        """Program time after each sample of a period, s; the override follows its command."""
         now, lag = self._now, self.hidden.servo_lag
         gone = 1.0 - np.exp(-period * _STEPS / lag)
         ways: Floats = (
@@ -256,7 +257,7 @@ class ControlledMachine:
         return ways
 
     def _feed_end(self, cell: int, end: float) -> float:
-        """Where the feed that runs ends, but no farther than asked."""
+        """End of the feed that runs, at most as far as asked."""
         course, step = self.course, self.course.workingstep[cell]
         while cell < len(course) and course.can_override[cell]:
             if course.workingstep[cell] != step:
@@ -269,12 +270,12 @@ class ControlledMachine:
     def _mean_force(self, rows: Ints, overrides: Floats) -> Floats:
         """Mean of a revolution at each sample, N."""
         now, hidden, course = self._now, self.hidden, self.course
-        factor = hidden.force_factor * now.factors[Changed.HARDNESS]
+        factor = hidden.force_factor * now.factors[HiddenQuantity.HARDNESS]
         exponent = float(course.exponent[now.cell])
         chips: Floats = factor * course.force[rows] * overrides**exponent
         # The wear land rubs whatever the chip does.
         land = self._flank_wear * course.land_force[rows]
-        return now.factors[Changed.DEPTH] * (chips + land)
+        return now.factors[HiddenQuantity.DEPTH] * (chips + land)
 
     def _pattern(self, cell: int) -> Floats:
         course = self.course
@@ -282,12 +283,12 @@ class ControlledMachine:
         per_tooth = self._now.override * float(course.feed[cell]) / (teeth * speed)
         runout = self.hidden.eccentricity / per_tooth if per_tooth > 0.0 else 0.0
         return pattern(
-            Teeth(
+            EngagedTeeth(
                 count=teeth,
                 entry_angle=_rounded(float(course.entry_angle[cell])),
                 exit_angle=_rounded(float(course.exit_angle[cell])),
                 exponent=round(float(course.exponent[cell]), 4),
-                lag=_rounded(self._now.factors[Changed.DEPTH] * float(course.lag[cell])),
+                lag=_rounded(self._now.factors[HiddenQuantity.DEPTH] * float(course.lag[cell])),
                 runout=_rounded(runout),
                 broken=self._now.broken.get(self._now.tool),
             )

@@ -1,31 +1,149 @@
-"""What a program does at an override of 1, cell by cell: the ground on which the loop walks.
+"""Course of a program at an override of 1, cell by cell, for the closed loop.
 
 A control scales the time of a whole path by the override, and so does this: the axes follow
 the planned motion faster or slower, and a cell is passed in its time over the override.
 Accelerations then grow with its square, as they do in real controls; between 0 and 1.2 no
 limit is passed by much. Within a cell all is constant; cells end with stretches, so that the
 whole time is exact. Units mm, s, N, W, rad, rev/s.
+
+Force over a revolution of the cutter, relative to its mean.
+
+The teeth of :mod:`simulator.physics.tooth_forces` on one arc of contact, along their helix,
+with runout or with a tooth that has broken. Times the mean force of a revolution, which is that
+of the power, it is what a dynamometer shows. Units mm, rad.
 """
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, fields
-from math import ceil, hypot
+from functools import lru_cache
+from math import atan, ceil, cos, hypot, pi
 
 import numpy as np
 from numpy.typing import NDArray
 
-from simulator.machine.cutting import Edge, engaged_width
-from simulator.machine.episode import Episode
-from simulator.machine.samples import PathMode, Samples
+from simulator.machine.cutting import CuttingEdge, engaged_width
+from simulator.machine.samples import Episode, PathMode, Samples
 from simulator.machine.sensing import sensed
 from simulator.motion.segments import Bools, Floats, Ints
 from simulator.physics import flank
+from simulator.physics.flutes import CuttingEdges, ForceLaw
 from simulator.physics.milling import RADIAL_SHARE
 from simulator.physics.spindle_motion import idle_power
+from simulator.physics.tooth_forces import Places, forces, one_place, peak_resultant, wall_force
 from simulator.physics.tooth_means import Arcs
-from simulator.plant.pattern import Teeth, peak_over_mean, wall_over_mean
-from simulator.removal.stations import CutKind
+from simulator.physics.uneven_teeth import Runout, eccentric_runout
+from simulator.removal.stations import StationKind
 from simulator.spec import Machine
+
+SAMPLES = 8
+"""of a tooth period"""
+
+PLACES = 32
+"""places that make one sample: narrow arcs must not fall between two of them"""
+
+SUNKEN = 10.0
+"""feeds per tooth by which a broken tooth lies below the others: it meets nothing"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EngagedTeeth:
+    """Teeth on their arc."""
+
+    count: int
+    entry_angle: float
+    exit_angle: float
+    exponent: float
+    """of force over chip thickness"""
+    lag: float = 0.0
+    """Lag, rad by which the upper end of the edge in the cut is behind its tip"""
+    runout: float = 0.0
+    """eccentricity over feed per tooth"""
+    broken: int | None = None
+
+
+@lru_cache(maxsize=4096)
+def pattern(teeth: EngagedTeeth) -> Floats:
+    """Force in each tooth period of a revolution over the mean force of whole teeth.
+
+    Parameters
+    ----------
+    teeth : EngagedTeeth
+
+    Returns
+    -------
+    (z, K) array
+        Row j: while tooth j is the last that has entered. The mean is 1; with a broken tooth
+        it is less, as two chips in one take less force than two.
+    """
+    if not teeth.exit_angle > teeth.entry_angle:
+        return np.ones((teeth.count, SAMPLES))
+    runout = eccentric_runout(teeth.runout, teeth.count)
+    force = _force(teeth, runout)
+    mean = force.mean()
+    if not mean > 0.0:
+        return np.ones((teeth.count, SAMPLES))
+    if teeth.broken is not None and teeth.count > 1:
+        sunken = runout.copy()
+        sunken[teeth.broken % teeth.count] -= SUNKEN
+        force = _force(teeth, sunken)
+    shape: Floats = (force / mean).reshape(teeth.count, SAMPLES, PLACES).mean(axis=2)
+    shape.setflags(write=False)
+    return shape
+
+
+@lru_cache(maxsize=4096)
+def peak_over_mean(teeth: EngagedTeeth) -> float:
+    """Greatest force across the axis in a revolution, over the mean tangential force.
+
+    1 where no arc is known; less where teeth pull against each other. The mean is that of the
+    power, with k_c at the mean chip, as the optimiser has it: ``z·φ/2π · (C/φ)^q`` over the
+    force of one tooth at its thickest chip. Teeth without runout.
+    """
+    if not teeth.exit_angle > teeth.entry_angle:
+        return 1.0
+    found = peak_resultant(_edges(teeth), _place(teeth), ForceLaw(exponent=teeth.exponent))
+    return float(found[0]) / _mean(teeth)
+
+
+@lru_cache(maxsize=4096)
+def wall_over_mean(teeth: EngagedTeeth) -> float:
+    """Force normal to the wall while an edge makes it, over that mean; 0 without a wall."""
+    if not teeth.exit_angle > teeth.entry_angle:
+        return 0.0
+    found = wall_force(_edges(teeth), _place(teeth), ForceLaw(exponent=teeth.exponent))
+    return float(found[0]) / _mean(teeth)
+
+
+def _mean(teeth: EngagedTeeth) -> float:
+    contact = teeth.exit_angle - teeth.entry_angle
+    chip = (cos(teeth.entry_angle) - cos(teeth.exit_angle)) / contact
+    return float(teeth.count * contact / (2.0 * pi) * chip**teeth.exponent)
+
+
+def _edges(teeth: EngagedTeeth) -> CuttingEdges:
+    """Edges of a cutter of radius 1, which lag as they do over a depth of 1."""
+    return CuttingEdges(teeth=teeth.count, diameter=2.0, helix_angle=atan(teeth.lag))
+
+
+def _place(teeth: EngagedTeeth) -> Places:
+    return one_place(teeth.entry_angle, teeth.exit_angle, axial_depth=1.0)
+
+
+def _force(teeth: EngagedTeeth, runout: Floats) -> Floats:
+    """Sum over the teeth through a revolution that begins where tooth 0 enters."""
+    pitch = 2.0 * pi / teeth.count
+    each = SAMPLES * PLACES
+    middle = (np.arange(teeth.count * each) + 0.5) / each
+    found = forces(
+        _edges(teeth),
+        _place(teeth),
+        ForceLaw(exponent=teeth.exponent),
+        rotation=(teeth.entry_angle + pitch * middle)[None, :],
+        runout=Runout(offsets=runout, feed_per_tooth=np.ones(1)) if runout.any() else None,
+    )
+    force: Floats = found.tangential[0]
+    return force
+
 
 INTERVAL = 0.01
 """s, a cell at most: a revolution at 6000 rpm"""
@@ -41,47 +159,47 @@ class NominalCourse:
     """N cells, ascending in time; bulk columns in single precision for the sake of memory."""
 
     until: Floats
-    """(N,) s from the start of the program at which each cell ends"""
+    """Until, (N,) s from the start of the program at which each cell ends"""
     can_override: Bools
     """(N,) whether the feed override acts: not in rapid nor at rest"""
     position: Singles
-    """(N, 3) mm, of the tool in the middle"""
+    """Position, (N, 3) mm, of the tool in the middle"""
     feed: Singles
-    """(N,) mm/s along the path"""
+    """Feed, (N,) mm/s along the path"""
     programmed: Singles
-    """(N,) mm/s; 0 where nothing is programmed"""
+    """Programmed, (N,) mm/s; 0 where nothing is programmed"""
     force: Singles
-    """(N,) N, tangential, mean of a revolution"""
+    """Force, (N,) N, tangential, mean of a revolution"""
     land_force: Singles
-    """(N,) N per mm of flank wear, tangential, mean; no feed changes it"""
+    """Land force, (N,) N per mm of flank wear, tangential, mean; no feed changes it"""
     exponent: Singles
-    """(N,) p of force over feed, 1 − m_c"""
+    """Exponent, (N,) p of force over feed, 1 − m_c"""
     removal_rate: Singles
-    """(N,) mm³/s"""
+    """Removal rate, (N,) mm³/s"""
     axial_depth: Singles
-    """(N,) mm"""
+    """Axial depth, (N,) mm"""
     idle_power: Singles
-    """(N,) W of the main drive without the cut"""
+    """Idle power, (N,) W of the main drive without the cut"""
     spindle_speed: Singles
-    """(N,) rev/s, magnitude"""
+    """Spindle speed, (N,) rev/s, magnitude"""
     diameter: Singles
-    """(N,) mm at which the cutting speed drives the force; 0 in air"""
+    """Diameter, (N,) mm at which the cutting speed drives the force; 0 in air"""
     entry_angle: Singles
-    """(N,) rad; both 0 where no arc is known"""
+    """Entry angle, (N,) rad; both 0 where no arc is known"""
     exit_angle: Singles
-    """(N,) rad"""
+    """Exit angle, (N,) rad"""
     peak: Singles
-    """(N,) greatest force across the axis over the mean force; 1 where no arc is known"""
+    """Peak, (N,) greatest force across the axis over the mean force; 1 where no arc is known"""
     wall: Singles
     """(N,) force normal to the wall that an edge makes, over the mean; 0 without a wall"""
     lag: Singles
-    """(N,) rad by which the upper end of the edges in the cut is behind their tips"""
+    """Lag, (N,) rad by which the upper end of the edges in the cut is behind their tips"""
     teeth: Ints
-    """(N,)"""
+    """Teeth, (N,)"""
     tool: Ints
-    """(N,) number of the tool"""
+    """Tool, (N,) number of the tool"""
     workingstep: Ints
-    """(N,) counted from 1; 0: none"""
+    """Workingstep, (N,) counted from 1; 0: none"""
 
     def __post_init__(self) -> None:
         count = len(self.until)
@@ -151,7 +269,7 @@ def _part(
         at = course.motion.at(np.clip(middle - episode.begin, 0.0, course.motion.duration))
         stations, rows = course.stations, course.stations_at(at)
         diameter = np.where(samples.cutting_force > 0.0, stations.diameter[rows], 0.0)
-        has_arc = stations.kind[rows] == CutKind.MILLING
+        has_arc = stations.kind[rows] == StationKind.MILLING
         entry = np.where(has_arc, stations.entry_angle[rows], 0.0)
         exit_ = np.where(has_arc, stations.exit_angle[rows], 0.0)
         if course.edge is not None:
@@ -188,7 +306,7 @@ def _part(
 
 
 def _ratios(
-    samples: Samples, entry: Floats, exit_: Floats, *, lag: Floats, edge: Edge | None
+    samples: Samples, entry: Floats, exit_: Floats, *, lag: Floats, edge: CuttingEdge | None
 ) -> tuple[Floats, Floats]:
     """Greatest force and force at the wall over the mean; told apart are 0.01 rad.
 
@@ -202,7 +320,7 @@ def _ratios(
     keys = np.round(np.stack((entry[cuts], exit_[cuts], lag[cuts])), 2)
     arcs, row = np.unique(keys, axis=1, return_inverse=True)
     teeth = [
-        Teeth(
+        EngagedTeeth(
             count=edge.teeth,
             entry_angle=begin,
             exit_angle=end,
@@ -224,7 +342,7 @@ def _ratios(
     return peak, wall
 
 
-def _exponent(edge: Edge | None) -> float:
+def _exponent(edge: CuttingEdge | None) -> float:
     return 1.0 if edge is None else 1.0 - edge.kienzle.m_c
 
 

@@ -16,7 +16,7 @@ from simulator.physics.domain import require_not_negative
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Instrument:
-    """How an instrument errs; customary figures, not those of one product.
+    """Errors of an instrument; typical figures, not those of one product.
 
     Raises
     ------
@@ -27,13 +27,13 @@ class Instrument:
     noise: float = 0.0
     """standard deviation as a share of the reading"""
     floor: float = 0.0
-    """N or W, standard deviation at zero"""
+    """Floor, N or W, standard deviation at zero"""
     drift: float = 0.0
     """N/s or W/s of the zero"""
     step: float = 0.0
-    """N or W, of the converter; 0: none"""
+    """Step, N or W, of the converter; 0: none"""
     lag: float = 0.0
-    """s, time constant"""
+    """Lag, s, time constant"""
     missing: float = 0.0
     """probability that a sample is lost"""
 
@@ -69,7 +69,7 @@ class Acquisition:
         self.instrument = instrument
         self._random = random
         self._held = 0.0
-        self._step = _Step(0.0, 0, 0.0)
+        self._step = _LagStep(0.0, 0, 0.0)
         self._drawn = np.empty((3, 0))
 
     def shown(self, truth: Floats, *, time: float, interval: float, is_lost: bool) -> Floats:
@@ -103,7 +103,7 @@ class Acquisition:
         return values
 
     def _draws(self, count: int) -> Floats:
-        """(3, K) of luck: two normal, one even; drawn many at once, for speed."""
+        """(3, K) random numbers: two normal, one uniform; drawn many at once, for speed."""
         if self._drawn.shape[1] < count:
             more = max(DRAWN, count)
             normal = self._random.standard_normal((2, more))
@@ -116,14 +116,14 @@ class Acquisition:
         """First-order lag; the truth holds between samples."""
         step = self._step
         if step.interval != interval or len(step.kept) != len(truth):
-            step = self._step = _Step(interval, len(truth), self.instrument.lag)
+            step = self._step = _LagStep(interval, len(truth), self.instrument.lag)
         late: Floats = step.weights @ truth + step.kept * self._held
         self._held = float(late[-1])
         return late
 
 
-class _Step:
-    """What K samples of a first-order lag are made of, for one interval."""
+class _LagStep:
+    """Coefficients of K samples of a first-order lag over one interval."""
 
     def __init__(self, interval: float, count: int, lag: float) -> None:
         self.interval = interval

@@ -1,4 +1,4 @@
-"""What the machine of the closed loop does that its controller may not know.
+"""Behaviour of the machine of the closed loop that its controller may not know.
 
 Units mm, s.
 """
@@ -9,8 +9,8 @@ from enum import StrEnum
 from simulator.physics.domain import require_not_negative, require_positive
 
 
-class Changed(StrEnum):
-    """What may change while the program runs."""
+class HiddenQuantity(StrEnum):
+    """Quantity that may change while the program runs."""
 
     DEPTH = "depth"
     """factor on the axial depth"""
@@ -25,18 +25,18 @@ class Changed(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Change:
+class HiddenChange:
     """One change while the program runs."""
 
     time: float
-    """s of the run at which it happens"""
-    what: Changed
+    """Time, s of the run at which it happens"""
+    what: HiddenQuantity
     value: float
-    """as :class:`Changed` says; a factor replaces the one before it"""
+    """as :class:`HiddenQuantity` says; a factor replaces the one before it"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Hidden:
+class HiddenTruth:
     """The truth behind the plan.
 
     Raises
@@ -48,15 +48,15 @@ class Hidden:
     force_factor: float = 1.0
     """on k_c, from the start"""
     wear_rate: float = 0.0
-    """mm of flank wear in a second of cutting, each tool for itself"""
+    """Wear rate, mm of flank wear in a second of cutting, each tool for itself"""
     flank_wear: float = 0.0
-    """mm, of each tool when the program starts"""
+    """Flank wear, mm, of each tool when the program starts"""
     eccentricity: float = 0.0
-    """mm, of the cutter's axis off the spindle's"""
+    """Eccentricity, mm, of the cutter's axis off the spindle's"""
     servo_lag: float = 0.06
     """s, time constant with which the feed follows the override: three revolutions at 3000
     rpm; customary, calibrate it"""
-    changes: tuple[Change, ...] = ()
+    changes: tuple[HiddenChange, ...] = ()
 
     def __post_init__(self) -> None:
         require_positive(self.force_factor, "factor on k_c", "")

@@ -14,9 +14,9 @@ import numpy as np
 
 from simulator.kernels.kernel import kernel
 from simulator.motion.segments import Floats
-from simulator.removal.profile import Profile, is_upright, radius_at
-from simulator.removal.way import LEVEL, Way, arc_distance, way_between
-from simulator.removal.zmap import Grid
+from simulator.removal.profile import CutterProfile, is_upright, radius_at
+from simulator.removal.tip_move import LEVEL, TipMove, arc_distance, way_between
+from simulator.removal.zmap import HeightGrid
 
 TOUCH = 1e-10
 """mm within which two outlines are the same: a tool does not free its own front"""
@@ -29,7 +29,7 @@ RECORD = 20
 """columns of a remembered move: its row, and the profile of its tool"""
 
 
-class Circle(NamedTuple):
+class ToolCircle(NamedTuple):
     """Section of the tool at one height, and where it goes."""
 
     x: float
@@ -46,11 +46,11 @@ class Intervals(NamedTuple):
     """Room for the work on one circle."""
 
     cuts: Floats
-    """(16,) rad, where one outline crosses the circle"""
+    """Cuts, (16,) rad, where one outline crosses the circle"""
     free: Floats
-    """(MOST_INTERVALS, 2) rad"""
+    """Free, (MOST_INTERVALS, 2) rad"""
     contact: Floats
-    """(MOST_INTERVALS, 2) rad"""
+    """Contact, (MOST_INTERVALS, 2) rad"""
 
 
 def intervals() -> Intervals:
@@ -60,7 +60,7 @@ def intervals() -> Intervals:
 
 @kernel
 def free_by_move(
-    room: Intervals, count: int, circle: Circle, record: Floats, level: float
+    room: Intervals, count: int, circle: ToolCircle, record: Floats, level: float
 ) -> int:
     """Add what an earlier move freed at a height.
 
@@ -70,7 +70,7 @@ def free_by_move(
         Its free intervals are added to.
     count : int
         Number of free intervals so far.
-    circle : Circle
+    circle : ToolCircle
     record : (RECORD,) array
         Row of the move, then the profile of its tool.
     level : float, mm
@@ -80,7 +80,7 @@ def free_by_move(
     int
         Number of free intervals; −1 when this move has no exact outline at this height.
     """
-    profile = Profile(
+    profile = CutterProfile(
         record[13], record[14], record[15], record[16], record[17], record[18], record[19]
     )
     begin, end, radius = _cleared(record, profile, level)
@@ -101,7 +101,9 @@ def free_by_move(
 
 
 @kernel
-def _cleared(record: Floats, profile: Profile, level: float) -> tuple[float, float, float]:
+def _cleared(
+    record: Floats, profile: CutterProfile, level: float
+) -> tuple[float, float, float]:
     """Part of a move that lies below a height, and the radius it clears there."""
     low, high = min(record[2], record[5]), max(record[2], record[5])
     if low > level + TOUCH:
@@ -131,14 +133,14 @@ def hole_radius(record: Floats, x: float, y: float, level: float) -> float:
     away = hypot(record[0] - x, record[1] - y) + hypot(record[3] - x, record[4] - y)
     if away > TOUCH or record[11] != 0.0:
         return 0.0
-    profile = Profile(
+    profile = CutterProfile(
         record[13], record[14], record[15], record[16], record[17], record[18], record[19]
     )
     return _cleared(record, profile, level)[2]
 
 
 @kernel
-def _front(circle: Circle, x: float, y: float) -> float:
+def _front(circle: ToolCircle, x: float, y: float) -> float:
     """φ of a direction; negative behind."""
     onward = x * circle.ahead_x + y * circle.ahead_y
     if onward <= 0.0:
@@ -147,8 +149,8 @@ def _front(circle: Circle, x: float, y: float) -> float:
 
 
 @kernel
-def _line_cuts(cuts: Floats, circle: Circle, way: Way, radius: float) -> int:
-    """Where the outline of a stadium crosses the front half."""
+def _line_cuts(cuts: Floats, circle: ToolCircle, way: TipMove, radius: float) -> int:
+    """Intersections of the outline of a stadium with the front half."""
     along_x, along_y = way.end_x - way.x, way.end_y - way.y
     length = hypot(along_x, along_y)
     if length < TOUCH:
@@ -171,8 +173,8 @@ def _line_cuts(cuts: Floats, circle: Circle, way: Way, radius: float) -> int:
 
 
 @kernel
-def _arc_cuts(cuts: Floats, circle: Circle, way: Way, radius: float) -> int:
-    """Where the outline of the sector of a ring crosses the front half."""
+def _arc_cuts(cuts: Floats, circle: ToolCircle, way: TipMove, radius: float) -> int:
+    """Intersections of the outline of the sector of a ring with the front half."""
     centre = (way.centre_x, way.centre_y)
     count = _disc_cuts(cuts, 0, circle, centre, way.radius + radius)
     count = _disc_cuts(cuts, count, circle, centre, abs(way.radius - radius))
@@ -182,9 +184,9 @@ def _arc_cuts(cuts: Floats, circle: Circle, way: Way, radius: float) -> int:
 
 @kernel
 def _disc_cuts(
-    cuts: Floats, count: int, circle: Circle, centre: tuple[float, float], radius: float
+    cuts: Floats, count: int, circle: ToolCircle, centre: tuple[float, float], radius: float
 ) -> int:
-    """Where another circle crosses the front half."""
+    """Intersections of another circle with the front half."""
     x, y = centre[0] - circle.x, centre[1] - circle.y
     away = hypot(x, y)
     if away < TOUCH:
@@ -215,7 +217,7 @@ def _cut(cuts: Floats, count: int, angle: float) -> int:
 
 @kernel
 def _add_inside(
-    room: Intervals, count: int, cuts: int, circle: Circle, way: Way, radius: float
+    room: Intervals, count: int, cuts: int, circle: ToolCircle, way: TipMove, radius: float
 ) -> int:
     """Add the intervals between crossings whose middles lie within a sweep."""
     low = 0.0
@@ -234,7 +236,7 @@ def _add_inside(
 
 
 @kernel
-def _way_distance(way: Way, x: float, y: float) -> float:
+def _way_distance(way: TipMove, x: float, y: float) -> float:
     """Distance of a point from a line or an arc in the plane."""
     if way.turn != 0.0:
         return arc_distance(way, x - way.centre_x, y - way.centre_y)
@@ -260,7 +262,7 @@ def add_free(room: Intervals, count: int, low: float, high: float) -> int:
 
 
 @kernel
-def free_by_outline(room: Intervals, count: int, circle: Circle, grid: Grid) -> int:
+def free_by_outline(room: Intervals, count: int, circle: ToolCircle, grid: HeightGrid) -> int:
     """Add what lies beside the raw stock."""
     width = grid.heights.shape[0] * grid.dx
     depth = grid.heights.shape[1] * grid.dy
@@ -294,7 +296,7 @@ def free_by_outline(room: Intervals, count: int, circle: Circle, grid: Grid) -> 
 
 
 @kernel
-def is_beside(grid: Grid, x: float, y: float) -> bool:
+def is_beside(grid: HeightGrid, x: float, y: float) -> bool:
     """Whether a place lies beside the raw stock."""
     across = (x - grid.x) / (grid.heights.shape[0] * grid.dx)
     along = (y - grid.y) / (grid.heights.shape[1] * grid.dy)
@@ -309,7 +311,7 @@ def is_beside(grid: Grid, x: float, y: float) -> bool:
 
 @kernel
 def contact_arcs(room: Intervals, count: int) -> int:
-    """What the free intervals leave of the front half; gives the number of contact arcs."""
+    """Remove the free intervals from the front half; returns the number of contact arcs."""
     free, contact = room.free, room.contact
     for index in range(1, count):
         low, high, place = free[index, 0], free[index, 1], index

@@ -1,4 +1,4 @@
-"""How low a rotating cutter reaches over each cell of a height map, and the cutting itself.
+"""Cutting of a height map by a rotating cutter: how low it reaches over each cell.
 
 Over a cell at the distance u along a line and v beside it the tool reaches down to the least of
 ``z(s) + f(√((u − s)² + v²))``, f the profile. f is convex and never falls, so this is convex in
@@ -14,18 +14,18 @@ from typing import NamedTuple
 
 from simulator.kernels.kernel import kernel
 from simulator.motion.segments import Floats
-from simulator.removal.profile import Profile, is_plain, rise, steepness
-from simulator.removal.way import (
+from simulator.removal.profile import CutterProfile, is_plain, rise, steepness
+from simulator.removal.tip_move import (
     LEAST,
     LEVEL,
-    Way,
+    TipMove,
     arc_distance,
     bounds,
     helix_height,
     place,
     way_between,
 )
-from simulator.removal.zmap import Grid
+from simulator.removal.zmap import HeightGrid
 
 CHORD_SHARE = 0.01
 """of a cell: by how much chords may leave an arc that has no closed form"""
@@ -44,8 +44,8 @@ corner's radius"""
 
 @kernel
 def carve_part(
-    grid: Grid,
-    profile: Profile,
+    grid: HeightGrid,
+    profile: CutterProfile,
     row: Floats,
     span: tuple[float, float],
     number: int,
@@ -55,9 +55,9 @@ def carve_part(
 
     Parameters
     ----------
-    grid : Grid
+    grid : HeightGrid
         Changed, unless the number is ``MEASURE``.
-    profile : Profile
+    profile : CutterProfile
     row : (13,) array
     span : (float, float)
         Shares of the row's length.
@@ -88,7 +88,7 @@ def carve_part(
     for index in range(chords):
         begin = span[0] + index * step
         start, stop = place(row, begin), place(row, begin + step)
-        chord = Way(
+        chord = TipMove(
             start[0], start[1], start[2], stop[0], stop[1], stop[2], 0.0, 0.0, 0.0, 0.0, 0.0
         )
         lost, depth, at_x, at_y = _line(grid, profile, chord, number, goes_on or index > 0)
@@ -111,24 +111,24 @@ def _range(low: float, high: float, origin: float, size: float, count: int) -> t
 class _Line(NamedTuple):
     """A line as the cells see it."""
 
-    way: Way
+    way: TipMove
     along_x: float
     along_y: float
     """unit vector in the plane"""
     length: float
-    """mm in the plane"""
+    """Length, mm in the plane"""
     slope: float
     low: float
-    """mm, height of the lower end"""
+    """Low, mm, height of the lower end"""
     fresh: float
-    """mm along the line behind which its start settles all"""
+    """Fresh, mm along the line behind which its start settles all"""
     skips_start: bool
     """nothing under the tool at the start is left to cut"""
 
 
 @kernel
 def _line(
-    grid: Grid, profile: Profile, way: Way, number: int, goes_on: bool
+    grid: HeightGrid, profile: CutterProfile, way: TipMove, number: int, goes_on: bool
 ) -> tuple[float, float, float, float]:
     """Cut along a line of any direction."""
     line = _lined(profile, way, goes_on)
@@ -163,7 +163,7 @@ def _line(
 
 
 @kernel
-def _lined(profile: Profile, way: Way, goes_on: bool) -> _Line:
+def _lined(profile: CutterProfile, way: TipMove, goes_on: bool) -> _Line:
     """A way as a line."""
     length = hypot(way.end_x - way.x, way.end_y - way.y)
     climb = way.end_z - way.z
@@ -178,7 +178,7 @@ def _lined(profile: Profile, way: Way, goes_on: bool) -> _Line:
 
 
 @kernel
-def _over(line: _Line, profile: Profile, x: float, y: float, height: float) -> float:
+def _over(line: _Line, profile: CutterProfile, x: float, y: float, height: float) -> float:
     """Least height of the tool over a cell; infinite where it does not reach so low."""
     if line.slope == 0.0 and is_plain(profile):
         return line.low
@@ -197,8 +197,8 @@ def _over(line: _Line, profile: Profile, x: float, y: float, height: float) -> f
 
 
 @kernel
-def _fresh(profile: Profile, slope: float) -> float:
-    """Where along a line the first cell lies that its start does not settle.
+def _fresh(profile: CutterProfile, slope: float) -> float:
+    """First cell along a line that its start does not settle.
 
     A level or climbing tool settles all behind its axis; a ball that runs down touches behind
     its axis no farther than where its surface is as steep as the line.
@@ -234,12 +234,12 @@ def _outline(line: _Line, reach: float, x: float) -> tuple[float, float]:
 
 
 @kernel
-def lowest(profile: Profile, u: float, v: float, length: float, slope: float) -> float:
+def lowest(profile: CutterProfile, u: float, v: float, length: float, slope: float) -> float:
     """Least height of the tool over a cell, above the start of a sloping line.
 
     Parameters
     ----------
-    profile : Profile
+    profile : CutterProfile
     u, v : float, mm
         Where the cell is along the line and beside it, in the plane.
     length : float, mm
@@ -269,7 +269,7 @@ def lowest(profile: Profile, u: float, v: float, length: float, slope: float) ->
 
 @kernel
 def _bisected(
-    profile: Profile, u: float, v: float, slope: float, span: tuple[float, float]
+    profile: CutterProfile, u: float, v: float, slope: float, span: tuple[float, float]
 ) -> float:
     """Least value of a convex function by the sign of its derivative.
 
@@ -297,7 +297,7 @@ def _bisected(
 
 @kernel
 def _arc(
-    grid: Grid, profile: Profile, way: Way, number: int
+    grid: HeightGrid, profile: CutterProfile, way: TipMove, number: int
 ) -> tuple[float, float, float, float]:
     """Cut along an arc of at most half a turn in XY: level, or a helix of a flat tool."""
     floor_z = min(way.z, way.end_z)

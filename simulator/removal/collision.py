@@ -1,4 +1,4 @@
-"""What met the stock and should not have. Units mm."""
+"""Collisions with the stock. Units mm."""
 
 from dataclasses import dataclass
 
@@ -13,10 +13,10 @@ class Collision:
     block: int
     """from which the move comes"""
     position: tuple[float, float, float]
-    """mm, where"""
+    """Position, mm, where"""
     segment: int = 0
     """row in its stretch"""
     depth: float = 0.0
-    """mm, deepest; 0: not told"""
+    """Depth, mm, deepest; 0: not told"""
     volume: float = 0.0
-    """mm³ removed; 0: not told"""
+    """Volume, mm³ removed; 0: not told"""

@@ -21,9 +21,9 @@ class Holder:
     """Cylinder above the tool that must stay out of the stock."""
 
     diameter: float
-    """mm"""
+    """Diameter, mm"""
     overhang: float
-    """mm from the tip of the tool to the holder"""
+    """Overhang, mm from the tip of the tool to the holder"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -31,18 +31,18 @@ class Cutter:
     """Rotating tool: end mill, face mill, ball, bull nose, taper, drill."""
 
     diameter: float
-    """mm, of the cylinder, or of the cone where it begins"""
+    """Diameter, mm, of the cylinder, or of the cone where it begins"""
     corner_radius: float = 0.0
-    """mm; half the diameter for a ball"""
+    """Corner radius, mm; half the diameter for a ball"""
     taper_angle: float = 0.0
-    """rad, of the flank against the axis, positive when the tool grows upward"""
+    """Taper angle, rad, of the flank against the axis, positive when the tool grows upward"""
     point_angle: float = pi
-    """rad, included angle of a conical point; π: flat"""
+    """Point angle, rad, included angle of a conical point; π: flat"""
     teeth: int = 2
     edge_length: float = inf
-    """mm of cutting edge from the tip up; above it the shank is smooth"""
+    """Edge length, mm of cutting edge from the tip up; above it the shank is smooth"""
     cutting_edge_angle: float = pi / 2.0
-    """rad, κ_r of the flank"""
+    """Cutting edge angle, rad, κ_r of the flank"""
     is_drill: bool = False
     """cuts with its end only, along its axis"""
     holder: Holder | None = None
@@ -65,14 +65,14 @@ class Insert:
     """
 
     nose_radius: float = 0.0
-    """mm; of both corners of a blade"""
+    """Nose radius, mm; of both corners of a blade"""
     cutting_edge_angle: float = pi / 2.0
-    """rad, κ_r of the major edge, from the feed along the axis"""
+    """Cutting edge angle, rad, κ_r of the major edge, from the feed along the axis"""
     trailing_angle: float = rad_from_deg(5.0)
     """rad, κ_r' of the minor edge from the turned surface; 5° are left by κ_r = 95° and the
     80° of the commonest insert, form C of ISO 1832"""
     width: float | None = None
-    """mm of a grooving blade, whose sides are upright; None: a turning insert"""
+    """Width, mm of a grooving blade, whose sides are upright; None: a turning insert"""
     hand: HandOfToolType = HandOfToolType.RIGHT
     """right: fed towards the chuck"""
     is_inside: bool = False

@@ -44,14 +44,24 @@ from simulator.removal.march import (
     VOLUME,
     march,
 )
-from simulator.removal.profile import Profile, cylinder, profile_of
+from simulator.removal.profile import CutterProfile, cylinder, profile_of
 from simulator.removal.rim import past
-from simulator.removal.ring import Tool
-from simulator.removal.stations import CutKind, Stations
-from simulator.removal.task import March, Task, desk_for, rows_of
-from simulator.removal.trial import Patch, Trial, box_of, moves_of, patch_of, put_back
+from simulator.removal.ring import RimTool
+from simulator.removal.stations import StationKind, Stations
+from simulator.removal.trial import (
+    MarchSettings,
+    PathTrial,
+    RemovalTask,
+    StockPatch,
+    box_of,
+    desk_for,
+    moves_of,
+    patch_of,
+    put_back,
+    rows_of,
+)
 from simulator.removal.zmap import ZMap, cell_size, zmap_of
-from stepnc_model.stock import Stock
+from stepnc_model.program import Stock
 
 WINDOW = 10.0
 """cells of path over which the map's volume is a measure"""
@@ -120,7 +130,7 @@ class MillingStock:
         grid = self.map.grid
         profile = profile_of(cutter, reach=grid.top - grid.bottom)
         flank = sin(cutter.cutting_edge_angle)
-        tool = Tool(profile, flank, 1.0 if is_clockwise else -1.0)
+        tool = RimTool(profile, flank, 1.0 if is_clockwise else -1.0)
         how = _how(cutter, profile, self.map.cell)
         self._past.last[:] = np.nan
         parts: list[Floats] = []
@@ -132,7 +142,7 @@ class MillingStock:
 
     def tried(
         self, segments: Segments, cutter: Cutter, *, is_clockwise: bool = True
-    ) -> tuple[Stations, Trial]:
+    ) -> tuple[Stations, PathTrial]:
         """As :meth:`cut`, but on trial: the stock stays, and what it would become is told."""
         radius = profile_of(cutter, reach=self.map.grid.top - self.map.grid.bottom).radius
         where = box_of(self.map.grid, segments, radius), moves_of(self._past, segments)
@@ -145,20 +155,22 @@ class MillingStock:
         self.volume = volume
         for each, count in zip(kept, counts, strict=True):
             del each[count:]
-        return stations, Trial(before=before, after=after)
+        return stations, PathTrial(before=before, after=after)
 
     @property
     def next_move(self) -> int:
         """Number of the next move that cuts."""
         return int(self._past.next[0])
 
-    def take(self, patch: Patch) -> None:
+    def take(self, patch: StockPatch) -> None:
         """Become what a trial made of this very stock."""
         put_back(patch, self.map.grid, self._past)
 
-    def _chunk(self, segments: Segments, tool: Tool, how: March, first: int) -> list[Floats]:
+    def _chunk(
+        self, segments: Segments, tool: RimTool, how: MarchSettings, first: int
+    ) -> list[Floats]:
         """March along some rows."""
-        task = Task(self.map.grid, self._past, tool, how, desk_for(tool))
+        task = RemovalTask(self.map.grid, self._past, tool, how, desk_for(tool))
         rows, lengths = rows_of(segments), segments.length
         out = np.empty((_LINES, COLUMNS))
         found = np.zeros((len(segments), FINDINGS))
@@ -200,10 +212,10 @@ class MillingStock:
                 )
 
 
-def _how(cutter: Cutter, profile: Profile, cell: float) -> March:
-    """How to march with a cutter over cells of a size."""
+def _how(cutter: Cutter, profile: CutterProfile, cell: float) -> MarchSettings:
+    """Settings for marching a cutter over cells of a size."""
     holder = cutter.holder
-    return March(
+    return MarchSettings(
         step=STEP_SHARE * profile.radius,
         least=LEAST_SHARE * profile.radius,
         coarse=5.0 * cell,
@@ -218,7 +230,7 @@ def _how(cutter: Cutter, profile: Profile, cell: float) -> March:
 
 def _windowed(lines: Floats, window: float) -> None:
     """Share the map's volume anew over windows of neighbouring stretches."""
-    is_shared = (lines[:, KIND] == CutKind.MILLING) & (lines[:, EXACT] == 0.0)
+    is_shared = (lines[:, KIND] == StationKind.MILLING) & (lines[:, EXACT] == 0.0)
     rows = np.flatnonzero(is_shared)
     if not len(rows):
         return
@@ -242,7 +254,7 @@ def _stations(lines: Floats, cutter: Cutter) -> Stations:
     kind = lines[:, KIND].astype(np.int64)
     if cutter.is_drill and cutter.point_angle == pi:
         # A reamer cuts a ring that cells cannot show: its section tells the hole before it.
-        rows = np.flatnonzero((kind == CutKind.DRILLING) & (section > 0.0))
+        rows = np.flatnonzero((kind == StationKind.DRILLING) & (section > 0.0))
         bored = np.sqrt(np.maximum(cutter.diameter**2 - 4.0 * section[rows] / pi, 0.0))
         axial[rows] = 0.5 * (cutter.diameter - bored)
         diameter[rows] = 0.5 * (cutter.diameter + bored)
@@ -254,7 +266,7 @@ def _stations(lines: Floats, cutter: Cutter) -> Stations:
         section=section.copy(),
         growth=lines[:, GROWTH].copy(),
         axial_depth=axial,
-        radial_width=np.where(kind == CutKind.DRILLING, axial, width),
+        radial_width=np.where(kind == StationKind.DRILLING, axial, width),
         entry_angle=lines[:, ENTRY].copy(),
         exit_angle=lines[:, EXIT].copy(),
         contact_angle=lines[:, CONTACT].copy(),

@@ -12,25 +12,168 @@ tools beside the axis. A box counts as the cylinder around it: no contact is mis
 volume is too large until it is round.
 
 Units mm and rad. x is the radius, z the spindle axis, away from the chuck.
+
+Edge of a turning insert that cuts in a direction, and its chip.
+
+An edge leads when the tool moves towards its outside; of two that lead the one that leads most
+is taken, and of a blade its flat end is a third. The nose is in the effective angle of
+:mod:`simulator.physics.edge`. mm and rad.
+
+Units mm and rad.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import ceil, hypot, inf, pi, sin, tan
+from math import ceil, cos, hypot, inf, pi, sin, tan
 
 import numpy as np
 
 from simulator.errors import SimulationError
 from simulator.motion.segments import Floats, Segments
 from simulator.physics.domain import require_positive
+from simulator.physics.edge import effective_edge_angle
 from simulator.removal.collision import MOST, Collision
 from simulator.removal.cutter import Cutter, Insert
-from simulator.removal.lathe_carve import Grid, bore, carve
-from simulator.removal.lathe_edge import chip_ratios, edge_angles
-from simulator.removal.lathe_ways import UPRIGHT, body_of, ways_of
+from simulator.removal.lathe_carve import AxialGrid, InsertOutline, bore, carve
 from simulator.removal.lathe_windows import Removed, Windows, grouped, windows_of
-from simulator.removal.stations import CutKind, Stations
-from stepnc_model.stock import Stock
+from simulator.removal.stations import StationKind, Stations
+from stepnc_model.program import Stock
+from stepnc_model.units import rad_from_deg
+
+LEAST_ANGLE = rad_from_deg(5.0)
+"""an edge nearer to the feed than this wipes: the chip would be thin and wide without end"""
+
+LEAST_DEPTH = 1e-6
+"""mm; shallower cuts take the chip of this one"""
+
+
+def edge_angles(insert: Insert, direction: Floats) -> Floats:
+    """Angle κ_r between the leading edge and the feed.
+
+    Parameters
+    ----------
+    insert : Insert
+    direction : (M, 3) array
+        Unit vectors of the feed.
+
+    Returns
+    -------
+    (M,) array, rad
+        π/2 where there is no feed.
+    """
+    mirror = -1.0 if insert.is_inside else 1.0
+    z, x = direction[:, 2], mirror * direction[:, 0]
+    back, front = insert.edge_angles
+    # Edges as unit vectors away from the nose, and their outsides.
+    edges = [(-cos(back), sin(back)), (cos(front), sin(front))]
+    outsides = [(-sin(back), -cos(back)), (sin(front), -cos(front))]
+    if insert.width is not None:
+        edges.append((1.0, 0.0))
+        outsides.append((0.0, -1.0))
+    along = np.array([u * z + v * x for u, v in edges])
+    leads = np.array([u * z + v * x for u, v in outsides])
+    chosen: Floats = along[leads.argmax(axis=0), np.arange(len(z))]
+    angle: Floats = np.arccos(np.clip(chosen, -1.0, 1.0))
+    return np.clip(angle, LEAST_ANGLE, pi - LEAST_ANGLE)
+
+
+def chip_ratios(insert: Insert, depth: Floats, angle: Floats) -> Floats:
+    """Chip thickness over feed, ``h/f = sin κ`` of the edge that really cuts.
+
+    Parameters
+    ----------
+    insert : Insert
+    depth : (M,) array, mm
+        a_p.
+    angle : (M,) array, rad
+        κ_r of the leading edge.
+
+    Returns
+    -------
+    (M,) array
+    """
+    # The corners of a blade are small beside its width: its chip is as thick as the feed.
+    nose = insert.nose_radius if insert.width is None else 0.0
+    bounded = np.maximum(depth, LEAST_DEPTH)
+    return np.array(
+        [
+            sin(effective_edge_angle(nose, one, cutting_edge_angle=kappa))
+            for one, kappa in zip(bounded.tolist(), angle.tolist(), strict=True)
+        ],
+        dtype=np.float64,
+    )
+
+
+ZX_NORMAL = 1
+"""axis across the half plane of the lathe"""
+
+UPRIGHT = 0.5 * pi - 1e-9
+"""rad; steeper edges overhang and count as upright"""
+
+
+def body_of(insert: Insert) -> InsertOutline:
+    """Curve of an insert."""
+    back, front = (_edge(insert.nose_radius, angle) for angle in insert.edge_angles)
+    return InsertOutline(insert.nose_radius, insert.flat, *back, *front)
+
+
+def _edge(nose: float, angle: float) -> tuple[float, float]:
+    """Slope of an edge, and where it leaves the nose; upright from 90° on."""
+    return (inf, nose) if angle >= UPRIGHT else (tan(angle), nose * sin(angle))
+
+
+def ways_of(segments: Segments, windows: Windows, insert: Insert) -> Floats:
+    """Ways of the centre of the nose, one a stretch; mirrored for a bore.
+
+    Parameters
+    ----------
+    segments : Segments
+        Of the programmed point.
+    windows : Windows
+    insert : Insert
+
+    Returns
+    -------
+    (M, 9) array
+        Rows of :class:`~simulator.removal.lathe_carve.NosePath`.
+
+    Raises
+    ------
+    SimulationError
+        When an arc lies in another plane than ZX.
+    """
+    _require_plane(segments)
+    rows = windows.segment
+    mirror = -1.0 if insert.is_inside else 1.0
+    shift_x, shift_z = insert.centre
+    start = segments.position(rows, windows.start)
+    end = segments.position(rows, windows.end)
+    centre = segments.centre[rows]
+    arm = start - centre
+    begin = np.arctan2(mirror * arm[:, 0], arm[:, 2])
+    length = segments.length[rows]
+    part = np.divide(windows.length, length, out=np.zeros(len(rows)), where=length > 0.0)
+    turn = mirror * segments.turn[rows] * part
+    return np.column_stack((
+        start[:, 2] + shift_z,
+        mirror * (start[:, 0] + shift_x),
+        end[:, 2] + shift_z,
+        mirror * (end[:, 0] + shift_x),
+        centre[:, 2] + shift_z,
+        mirror * (centre[:, 0] + shift_x),
+        segments.radius[rows],
+        np.minimum(begin, begin + turn),
+        np.abs(turn),
+    ))
+
+
+def _require_plane(segments: Segments) -> None:
+    """Arcs must lie in the half plane."""
+    wrong = np.flatnonzero((segments.turn != 0.0) & (segments.normal != ZX_NORMAL))
+    if len(wrong):
+        block = segments.block[wrong[0]]
+        raise SimulationError(f"block {block}: an arc of a turning tool must lie in plane ZX")
+
 
 DEFAULT_CELL = 0.01
 """mm; longer bars than MOST_CELLS of it have longer cells"""
@@ -42,13 +185,13 @@ ON_AXIS = 1e-3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Bar:
+class BarRadii:
     """Radii of a bar."""
 
     outer: Floats
-    """(C,) mm"""
+    """Outer, (C,) mm"""
     inner: Floats
-    """(C,) mm"""
+    """Inner, (C,) mm"""
 
 
 class TurningStock:
@@ -80,7 +223,7 @@ class TurningStock:
                 f"cell {wanted:g} mm must be at least {length / MOST_CELLS:g} mm: "
                 f"the bar is {length:g} mm long"
             )
-        self._grid = Grid(float(stock.low[2]), length / count)
+        self._grid = AxialGrid(float(stock.low[2]), length / count)
         self.outer: Floats = np.full(count, float(radius))
         """(C,) mm, radius of the outside over each cell"""
         self.inner: Floats = np.zeros(count)
@@ -104,7 +247,7 @@ class TurningStock:
 
     @property
     def volume(self) -> float:
-        """What is left, mm³."""
+        """Remaining volume, mm³."""
         return float(pi * self.cell * (self.outer**2 - self.inner**2).sum())
 
     def cut(
@@ -138,31 +281,31 @@ class TurningStock:
         if isinstance(shape, Insert):
             removed = self._turned(segments, windows, shape)
             ratio = _ratios(segments, removed, shape)
-            return _stations(removed, CutKind.TURNING, ratio)
+            return _stations(removed, StationKind.TURNING, ratio)
         removed = self._drilled(segments, windows, shape)
         ratio = np.full(len(removed.area), sin(0.5 * shape.point_angle))
-        return _stations(removed, CutKind.DRILLING, ratio)
+        return _stations(removed, StationKind.DRILLING, ratio)
 
     def tried(
         self, segments: Segments, shape: Cutter | Insert, *, is_clockwise: bool = True
-    ) -> tuple[Stations, Bar]:
+    ) -> tuple[Stations, BarRadii]:
         """As :meth:`cut`, but on trial: the bar stays, and what it would become is told."""
         before, count = (
-            Bar(outer=self.outer.copy(), inner=self.inner.copy()),
+            BarRadii(outer=self.outer.copy(), inner=self.inner.copy()),
             len(self.collisions),
         )
         stations = self.cut(segments, shape, is_clockwise=is_clockwise)
-        after = Bar(outer=self.outer.copy(), inner=self.inner.copy())
+        after = BarRadii(outer=self.outer.copy(), inner=self.inner.copy())
         self.take(before)
         del self.collisions[count:]
         return stations, after
 
-    def take(self, bar: Bar) -> None:
+    def take(self, bar: BarRadii) -> None:
         """Become what a trial made of this very bar."""
         self.outer[:], self.inner[:] = bar.outer, bar.inner
 
     def _turned(self, segments: Segments, windows: Windows, insert: Insert) -> Removed:
-        """What an insert removes."""
+        """Remove the cut of an insert."""
         body, ways = body_of(insert), ways_of(segments, windows, insert)
         if insert.is_inside:
             taken = self._in_bore(lambda s, bed: carve(s, bed, self._grid, body, ways))
@@ -171,7 +314,7 @@ class TurningStock:
         return self._counted(segments, windows, taken)
 
     def _drilled(self, segments: Segments, windows: Windows, cutter: Cutter) -> Removed:
-        """What a rotating tool on the axis removes."""
+        """Remove the cut of a rotating tool on the axis."""
         self._require_axis(segments, cutter)
         start = segments.position(windows.segment, windows.start)
         end = segments.position(windows.segment, windows.end)
@@ -195,7 +338,7 @@ class TurningStock:
     def _counted(
         self, segments: Segments, windows: Windows, taken: tuple[Floats, Floats]
     ) -> Removed:
-        """What was removed, alike together; what no cut removes is noted instead."""
+        """Removed stretches, equal ones together; what no cut removes is noted instead."""
         area, volume = taken
         is_wrong = segments.is_rapid[windows.segment]
         is_wrong[:1] = True
@@ -249,7 +392,7 @@ def _per_length(amount: Floats, length: Floats) -> Floats:
     return np.divide(amount, length, out=np.zeros(len(length)), where=length > 0.0)
 
 
-def _stations(removed: Removed, kind: CutKind, chip_ratio: Floats) -> Stations:
+def _stations(removed: Removed, kind: StationKind, chip_ratio: Floats) -> Stations:
     """Stations of what was removed; air where nothing was."""
     windows = removed.windows
     section = _per_length(removed.volume, windows.length)
@@ -259,7 +402,7 @@ def _stations(removed: Removed, kind: CutKind, chip_ratio: Floats) -> Stations:
     return Stations(
         segment=windows.segment,
         station=windows.end,
-        kind=np.where(is_cut, int(kind), int(CutKind.AIR)),
+        kind=np.where(is_cut, int(kind), int(StationKind.AIR)),
         section=section,
         growth=nothing,
         axial_depth=depth,

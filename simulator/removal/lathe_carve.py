@@ -1,4 +1,4 @@
-"""How low a turning insert reaches over each cell of a bar, in closed form.
+"""Cutting of a bar by a turning insert: how low it reaches over each cell, in closed form.
 
 The insert is the region above a convex curve: the arc of its nose (of a blade: two corners and
 the flat between them), and on each side a straight edge that rises at its angle and has no
@@ -27,33 +27,33 @@ BLOCK = 64
 """cells of which the greatest height is kept: edges pass quickly over what they do not touch"""
 
 
-class Body(NamedTuple):
+class InsertOutline(NamedTuple):
     """Curve of an insert about the centre of its nose; upright edges have infinite slope."""
 
     nose: float
-    """mm, radius"""
+    """Nose, mm, radius"""
     flat: float
-    """mm between the centres of the corners of a blade"""
+    """Flat, mm between the centres of the corners of a blade"""
     back_slope: float
-    """of the edge towards −z"""
+    """Back slope of the edge towards −z"""
     back_foot: float
-    """mm before the centre where it leaves the nose"""
+    """Back foot, mm before the centre where it leaves the nose"""
     front_slope: float
-    """of the edge towards +z"""
+    """Front slope of the edge towards +z"""
     front_foot: float
-    """mm behind the centre of the other corner"""
+    """Front foot, mm behind the centre of the other corner"""
 
 
-class Grid(NamedTuple):
+class AxialGrid(NamedTuple):
     """Cells along the axis, looked at in their middles."""
 
     start: float
     """z where the first cell begins, mm"""
     cell: float
-    """mm"""
+    """Cell, mm"""
 
 
-class Way(NamedTuple):
+class NosePath(NamedTuple):
     """A line or an arc of the centre of the nose, mm and rad."""
 
     start_z: float
@@ -70,17 +70,17 @@ class Way(NamedTuple):
     """angle between them"""
 
 
-class Taken(NamedTuple):
-    """What each of M ways removes."""
+class RemovedAmounts(NamedTuple):
+    """Area and volume that each of M ways removes."""
 
     areas: Floats
-    """(M,) mm²"""
+    """Areas, (M,) mm²"""
     volumes: Floats
-    """(M,) mm³"""
+    """Volumes, (M,) mm³"""
 
 
 def carve(
-    surface: Floats, bed: Floats, grid: Grid, body: Body, ways: Floats
+    surface: Floats, bed: Floats, grid: AxialGrid, body: InsertOutline, ways: Floats
 ) -> tuple[Floats, Floats]:
     """Lower a surface to where an insert reaches.
 
@@ -90,10 +90,10 @@ def carve(
         Heights over the cells; lowered in place.
     bed : (C,) array, mm
         Below it there is nothing.
-    grid : Grid
-    body : Body
+    grid : AxialGrid
+    body : InsertOutline
     ways : (M, 9) array
-        Rows of :class:`Way`, one after another.
+        Rows of :class:`NosePath`, one after another.
 
     Returns
     -------
@@ -104,13 +104,18 @@ def carve(
     """
     areas, volumes = np.zeros(len(ways)), np.zeros(len(ways))
     tops = np.empty(ceil(len(surface) / BLOCK))
-    _carve((surface, bed), grid, body, ways, tops, Taken(areas, volumes))
+    _carve((surface, bed), grid, body, ways, tops, RemovedAmounts(areas, volumes))
     return areas, volumes
 
 
 @entry
 def _carve(
-    bar: tuple[Floats, Floats], grid: Grid, body: Body, ways: Floats, tops: Floats, taken: Taken
+    bar: tuple[Floats, Floats],
+    grid: AxialGrid,
+    body: InsertOutline,
+    ways: Floats,
+    tops: Floats,
+    taken: RemovedAmounts,
 ) -> None:
     """The same, added to the last argument; tops has room for one number a block."""
     (surface, bed), areas, volumes = bar, taken.areas, taken.volumes
@@ -121,7 +126,7 @@ def _carve(
         tallest = max(tallest, top)
     for row in range(len(ways)):
         w = ways[row]
-        way = Way(w[0], w[1], w[2], w[3], w[4], w[5], w[6], w[7], w[8])
+        way = NosePath(w[0], w[1], w[2], w[3], w[4], w[5], w[6], w[7], w[8])
         low, high, least = _extent(way)
         low, high, least = low - body.nose, high + body.flat + body.nose, least - body.nose
         if least >= tallest:
@@ -146,7 +151,7 @@ def _carve(
 
 
 def bore(
-    surface: Floats, bed: Floats, grid: Grid, profile: Floats, tips: Floats
+    surface: Floats, bed: Floats, grid: AxialGrid, profile: Floats, tips: Floats
 ) -> tuple[Floats, Floats]:
     """Lower a surface to where a rotating tool on the axis reaches.
 
@@ -154,7 +159,7 @@ def bore(
     ----------
     surface, bed : (C,) array, mm
         As of :func:`carve`, of a bore: negative radii.
-    grid : Grid
+    grid : AxialGrid
     profile : (3,) array
         Radius in mm, cotangent of half the point angle, corner radius in mm.
     tips : (M,) array, mm
@@ -167,13 +172,18 @@ def bore(
         As of :func:`carve`.
     """
     areas, volumes = np.zeros(len(tips)), np.zeros(len(tips))
-    _bore(surface, bed, grid, profile, tips, Taken(areas, volumes))
+    _bore(surface, bed, grid, profile, tips, RemovedAmounts(areas, volumes))
     return areas, volumes
 
 
 @entry
 def _bore(
-    surface: Floats, bed: Floats, grid: Grid, profile: Floats, tips: Floats, taken: Taken
+    surface: Floats,
+    bed: Floats,
+    grid: AxialGrid,
+    profile: Floats,
+    tips: Floats,
+    taken: RemovedAmounts,
 ) -> None:
     """The same, added to the last argument."""
     areas, volumes = taken.areas, taken.volumes
@@ -211,25 +221,25 @@ def _top(surface: Floats, block: int) -> float:
 
 
 @kernel
-def _middle(grid: Grid, index: int) -> float:
+def _middle(grid: AxialGrid, index: int) -> float:
     """Middle of a cell."""
     return grid.start + (index + 0.5) * grid.cell
 
 
 @kernel
-def _cell(grid: Grid, z: float, count: int) -> int:
+def _cell(grid: AxialGrid, z: float, count: int) -> int:
     """Cell at z, or the nearest one."""
     return int(min(max(floor((z - grid.start) / grid.cell), 0.0), count - 1.0))
 
 
 @kernel
 def _reach(height: float, slope: float) -> float:
-    """How far an edge goes until it has risen by a height."""
+    """Distance along an edge until it has risen by a height."""
     return height / slope if slope > 0.0 else inf
 
 
 @kernel
-def _extent(way: Way) -> tuple[float, float, float]:
+def _extent(way: NosePath) -> tuple[float, float, float]:
     """Least and greatest z and least x of a way."""
     low, high = min(way.start_z, way.end_z), max(way.start_z, way.end_z)
     least = min(way.start_x, way.end_x)
@@ -244,13 +254,13 @@ def _extent(way: Way) -> tuple[float, float, float]:
 
 
 @kernel
-def _is_passed(way: Way, angle: float) -> bool:
+def _is_passed(way: NosePath, angle: float) -> bool:
     """Whether an arc has a point at an angle."""
     return bool((angle - way.low) % (2.0 * pi) <= way.span)
 
 
 @kernel
-def _height(body: Body, way: Way, z: float) -> float:
+def _height(body: InsertOutline, way: NosePath, z: float) -> float:
     """Least height that the insert reaches over a place."""
     if way.radius > 0.0:
         return _height_of_arc(body, way, z)
@@ -258,7 +268,7 @@ def _height(body: Body, way: Way, z: float) -> float:
 
 
 @kernel
-def _curve(body: Body, t: float) -> float:
+def _curve(body: InsertOutline, t: float) -> float:
     """Height of the insert's curve over the centre of its nose; t along the axis from there."""
     if t < -body.back_foot - LEAST:
         foot = -sqrt(max(0.0, body.nose**2 - body.back_foot**2))
@@ -272,7 +282,7 @@ def _curve(body: Body, t: float) -> float:
 
 
 @kernel
-def _height_of_line(body: Body, way: Way, z: float) -> float:
+def _height_of_line(body: InsertOutline, way: NosePath, z: float) -> float:
     """Least height over a place of a line."""
     run, rise = way.end_z - way.start_z, way.end_x - way.start_x
     if run == 0.0:
@@ -296,7 +306,7 @@ def _height_of_line(body: Body, way: Way, z: float) -> float:
 
 
 @kernel
-def _height_of_arc(body: Body, way: Way, z: float) -> float:
+def _height_of_arc(body: InsertOutline, way: NosePath, z: float) -> float:
     """Least height over a place of an arc: of all stationary points and both ends."""
     least = min(
         way.start_x + _curve(body, z - way.start_z), way.end_x + _curve(body, z - way.end_z)
@@ -315,7 +325,7 @@ def _height_of_arc(body: Body, way: Way, z: float) -> float:
 
 
 @kernel
-def _at(body: Body, way: Way, angle: float, z: float) -> float:
+def _at(body: InsertOutline, way: NosePath, angle: float, z: float) -> float:
     """Height over a place with the nose at an angle of an arc; none beside the arc."""
     if not _is_passed(way, angle):
         return inf

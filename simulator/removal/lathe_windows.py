@@ -27,11 +27,11 @@ class Windows:
     """M stretches, each of one segment, in order."""
 
     segment: Ints
-    """(M,)"""
+    """Segment, (M,)"""
     start: Floats
-    """(M,) mm along the segment"""
+    """Start, (M,) mm along the segment"""
     end: Floats
-    """(M,) mm"""
+    """End, (M,) mm"""
 
     @property
     def length(self) -> Floats:
@@ -41,13 +41,13 @@ class Windows:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Removed:
-    """What was removed, by stretch."""
+    """Removed material, by stretch."""
 
     windows: Windows
     area: Floats
-    """(M,) mm², in the half plane"""
+    """Area, (M,) mm², in the half plane"""
     volume: Floats
-    """(M,) mm³"""
+    """Volume, (M,) mm³"""
 
 
 def windows_of(segments: Segments, cell: float) -> Windows:

@@ -12,13 +12,13 @@ from simulator.kernels.kernel import entry, kernel
 from simulator.motion.segments import Floats, Ints
 from simulator.removal.carve import MEASURE, carve_part
 from simulator.removal.profile import is_plain
-from simulator.removal.rim import AREA, FLANK, FORGETTING, Past, look
+from simulator.removal.rim import AREA, FLANK, FORGETTING, RecentOutlines, look
 from simulator.removal.rim import CONTACT as CONTACT_SEEN
 from simulator.removal.ring import Pose
 from simulator.removal.sink import LIP_ERROR, hole, lip
-from simulator.removal.stations import CutKind
-from simulator.removal.task import DEEPEST, Task
-from simulator.removal.way import copy, place, raised
+from simulator.removal.stations import StationKind
+from simulator.removal.tip_move import copy, place, raised
+from simulator.removal.trial import DEEPEST, RemovalTask
 
 STEEP = 0.1
 """horizontal share of a move below which the tool sinks rather than mills"""
@@ -72,7 +72,11 @@ VOLUME, DEPTH, SPOT_X, SPOT_Y, SPOT_Z, SHANK, HOLDER, HOLDER_X, HOLDER_Y = range
 
 FINDINGS = 9
 
-_AIR, _MILLING, _DRILLING = int(CutKind.AIR), int(CutKind.MILLING), int(CutKind.DRILLING)
+_AIR, _MILLING, _DRILLING = (
+    int(StationKind.AIR),
+    int(StationKind.MILLING),
+    int(StationKind.DRILLING),
+)
 
 
 Segment = tuple[Floats, float, int]
@@ -84,13 +88,13 @@ Span = tuple[float, float]
 
 @entry
 def march(
-    task: Task, rows: Floats, lengths: Floats, out: Floats, found: Floats, reached: Ints
+    task: RemovalTask, rows: Floats, lengths: Floats, out: Floats, found: Floats, reached: Ints
 ) -> None:
     """Cut row after row until there is no room for more stations.
 
     Parameters
     ----------
-    task : Task
+    task : RemovalTask
     rows : (N, 13) array
         Of :func:`rows_of`.
     lengths : (N,) array, mm
@@ -109,7 +113,7 @@ def march(
 
 
 @kernel
-def _row(task: Task, segment: Segment, out: Floats, count: int, found: Floats) -> int:
+def _row(task: RemovalTask, segment: Segment, out: Floats, count: int, found: Floats) -> int:
     """Cut one row; gives the number of stations so far."""
     row, length, index = segment
     if length <= 0.0:
@@ -139,7 +143,7 @@ def _air(out: Floats, count: int, index: int, station: float, length: float) -> 
 
 
 @kernel
-def _sink(task: Task, segment: Segment, out: Floats, count: int, found: Floats) -> int:
+def _sink(task: RemovalTask, segment: Segment, out: Floats, count: int, found: Floats) -> int:
     """Cut a plunge by stretches, or what a tool meets on its way up."""
     row, length, index = segment
     grid = task.grid
@@ -198,7 +202,7 @@ def _sink(task: Task, segment: Segment, out: Floats, count: int, found: Floats) 
 
 @kernel
 def _mill(
-    task: Task, segment: Segment, span: Span, out: Floats, count: int, found: Floats
+    task: RemovalTask, segment: Segment, span: Span, out: Floats, count: int, found: Floats
 ) -> int:
     """Look along a part, cut it, and share its volume among the stretches."""
     row, length, index = segment
@@ -212,13 +216,13 @@ def _mill(
 
 
 @kernel
-def _leave(past: Past) -> None:
+def _leave(past: RecentOutlines) -> None:
     """Forget where the tool cut last."""
     past.last[0] = np.nan
 
 
 @kernel
-def _stations(task: Task, segment: Segment, span: Span, out: Floats, count: int) -> int:
+def _stations(task: RemovalTask, segment: Segment, span: Span, out: Floats, count: int) -> int:
     """Write a line for each stretch of a part: the fuller of its ends, and the mean section.
 
     A stretch waits in the stack with what was seen at its end; where that differs too much
@@ -263,7 +267,7 @@ def _stations(task: Task, segment: Segment, span: Span, out: Floats, count: int)
 
 
 @kernel
-def _look(task: Task, row: Floats, part: float, into: Floats) -> None:
+def _look(task: RemovalTask, row: Floats, part: float, into: Floats) -> None:
     """Engagement at a share of a row."""
     x, y, z = place(row, part)
     if row[11] == 0.0:
@@ -281,7 +285,7 @@ def _look(task: Task, row: Floats, part: float, into: Floats) -> None:
 
 
 @kernel
-def _differs(task: Task, left: Floats, right: Floats, long: float) -> bool:
+def _differs(task: RemovalTask, left: Floats, right: Floats, long: float) -> bool:
     """Whether there should be a station between two; what the map says is noise when near."""
     if left[7] * right[7] == 0.0:
         return (left[AREA] == 0.0) != (right[AREA] == 0.0) and long > 2.0 * task.how.coarse
@@ -293,7 +297,7 @@ def _differs(task: Task, left: Floats, right: Floats, long: float) -> bool:
 
 
 @kernel
-def _cut(task: Task, row: Floats, span: Span, found: Floats) -> tuple[float, float]:
+def _cut(task: RemovalTask, row: Floats, span: Span, found: Floats) -> tuple[float, float]:
     """Cut a part of a row and keep account; gives volume and greatest depth."""
     grid, past = task.grid, task.past
     start, end = place(row, span[0]), place(row, span[1])
@@ -356,7 +360,7 @@ def _with_end(out: Floats, begin: int, count: int, volume: float) -> None:
 
 
 @kernel
-def _shared(task: Task, out: Floats, begin: int, count: int, volume: float) -> int:
+def _shared(task: RemovalTask, out: Floats, begin: int, count: int, volume: float) -> int:
     """Sections that are not exact hold what is left of the volume; air where there is none."""
     unknown = False
     for index in range(begin, count):

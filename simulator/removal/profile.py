@@ -18,26 +18,26 @@ SMALL_CORNER = 0.25
 _STRAIGHT = 1e-9  # rad; a smaller taper is none
 
 
-class Profile(NamedTuple):
+class CutterProfile(NamedTuple):
     """Profile of revolution."""
 
     slope: float
     """rise per mm of the point; 0: flat"""
     flat: float
-    """mm from the axis to where the point or flat ends and the corner begins"""
+    """Flat, mm from the axis to where the point or flat ends and the corner begins"""
     corner: float
-    """mm, radius of the corner"""
+    """Corner, mm, radius of the corner"""
     tangent: float
-    """mm from the axis to where the corner ends and the flank begins"""
+    """Tangent, mm from the axis to where the corner ends and the flank begins"""
     shoulder: float
-    """mm over the tip, there"""
+    """Shoulder, mm over the tip, there"""
     flank: float
     """rise per mm of the flank; 0: a cylinder, which has no width"""
     radius: float
-    """mm, greatest"""
+    """Radius, mm, greatest"""
 
 
-def profile_of(cutter: Cutter, *, reach: float) -> Profile:
+def profile_of(cutter: Cutter, *, reach: float) -> CutterProfile:
     """Profile of a cutter.
 
     Parameters
@@ -63,38 +63,38 @@ def profile_of(cutter: Cutter, *, reach: float) -> Profile:
         raise ValueError(f"point angle {cutter.point_angle:g} rad must lie in (0, π] rad")
     if cutter.point_angle < pi:
         slope = 1.0 / tan(0.5 * cutter.point_angle)
-        return Profile(slope, radius, 0.0, radius, slope * radius, 0.0, radius)
+        return CutterProfile(slope, radius, 0.0, radius, slope * radius, 0.0, radius)
     flat = max(radius - corner, 0.0)
     if cutter.taper_angle < _STRAIGHT:
-        return Profile(0.0, flat, corner, radius, corner, 0.0, radius)
+        return CutterProfile(0.0, flat, corner, radius, corner, 0.0, radius)
     tangent = flat + corner * cos(cutter.taper_angle)
     shoulder = corner * (1.0 - sin(cutter.taper_angle))
     flank = 1.0 / tan(cutter.taper_angle)
     top = max(min(cutter.edge_length, reach), shoulder)
     widest = tangent + (top - shoulder) / flank
-    return Profile(0.0, flat, corner, tangent, shoulder, flank, widest)
+    return CutterProfile(0.0, flat, corner, tangent, shoulder, flank, widest)
 
 
-def cylinder(radius: float) -> Profile:
+def cylinder(radius: float) -> CutterProfile:
     """Profile of a plain cylinder."""
-    return Profile(0.0, radius, 0.0, radius, 0.0, 0.0, radius)
+    return CutterProfile(0.0, radius, 0.0, radius, 0.0, 0.0, radius)
 
 
 @kernel
-def is_plain(profile: Profile) -> bool:
+def is_plain(profile: CutterProfile) -> bool:
     """Whether the tool is a cylinder with a flat end."""
     return profile.slope == 0.0 and profile.flat == profile.radius
 
 
 @kernel
-def is_upright(profile: Profile) -> bool:
+def is_upright(profile: CutterProfile) -> bool:
     """Whether the tool is a cylinder with a flat end, or one whose corner is small."""
     has_small_corner = profile.corner <= SMALL_CORNER * profile.radius
     return profile.slope == 0.0 and profile.flank == 0.0 and has_small_corner
 
 
 @kernel
-def rise(profile: Profile, distance: float) -> float:
+def rise(profile: CutterProfile, distance: float) -> float:
     """Height over the tip at a distance from the axis, mm."""
     if distance <= profile.flat:
         return profile.slope * distance
@@ -105,7 +105,7 @@ def rise(profile: Profile, distance: float) -> float:
 
 
 @kernel
-def steepness(profile: Profile, distance: float) -> float:
+def steepness(profile: CutterProfile, distance: float) -> float:
     """Derivative of :func:`rise`."""
     if distance <= profile.flat:
         return profile.slope
@@ -116,7 +116,7 @@ def steepness(profile: Profile, distance: float) -> float:
 
 
 @kernel
-def radius_at(profile: Profile, height: float) -> float:
+def radius_at(profile: CutterProfile, height: float) -> float:
     """Distance from the axis to the surface at a height over the tip, mm."""
     if profile.slope > 0.0:
         return min(height / profile.slope, profile.radius)

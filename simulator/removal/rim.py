@@ -1,4 +1,4 @@
-"""Where a cutter touches the stock: its rim against the height map, in slices.
+"""Contact of a cutter with the stock: its rim against the height map, in slices.
 
 At each slice a ring of samples one cell outside the rim says what is solid, because nearer to
 the rim the cells of the tool's own last step read as air. A sample that reads as free knows
@@ -20,28 +20,28 @@ from simulator.kernels.kernel import kernel
 from simulator.motion.segments import Floats, Ints
 from simulator.removal.arcs import (
     RECORD,
-    Circle,
     Intervals,
+    ToolCircle,
     add_free,
     contact_arcs,
     free_by_move,
     free_by_outline,
 )
-from simulator.removal.profile import Profile, is_plain, is_upright, radius_at, rise
+from simulator.removal.profile import CutterProfile, is_plain, is_upright, radius_at, rise
 from simulator.removal.ring import (
     CORNER_SLICES,
     MOST_CANDIDATES,
     NEAR,
     Pose,
-    Room,
-    Tool,
+    RimBuffers,
+    RimTool,
     cell_at,
     circle_of,
     levels,
     read_ring,
 )
-from simulator.removal.way import LEAST, LEVEL
-from simulator.removal.zmap import OUTSIDE, Grid
+from simulator.removal.tip_move import LEAST, LEVEL
+from simulator.removal.zmap import OUTSIDE, HeightGrid
 
 FLANK_SLICES = 4
 
@@ -61,15 +61,15 @@ RECENT = 3
 """last moves, whose outlines count whether the map names them or not"""
 
 
-class Past(NamedTuple):
+class RecentOutlines(NamedTuple):
     """Outlines of the last moves that cut."""
 
     records: Floats
-    """(FORGETTING, RECORD)"""
+    """Records, (FORGETTING, RECORD)"""
     next: Ints
-    """(1,) number of the next move"""
+    """Next, (1,) number of the next move"""
     last: Floats
-    """(3,) mm, where the tool cut last; NaN: elsewhere"""
+    """Last, (3,) mm, where the tool cut last; NaN: elsewhere"""
 
 
 AREA, DEPTH, ENTRY, EXIT, CONTACT, CHIP, DIAMETER, EXACT = range(8)
@@ -83,21 +83,30 @@ FLANK = 0.5
 ENGAGEMENT = 8
 
 
-def past() -> Past:
+def past() -> RecentOutlines:
     """No moves yet."""
-    return Past(np.zeros((FORGETTING, RECORD)), np.zeros(1, dtype=np.int64), np.full(3, np.nan))
+    return RecentOutlines(
+        np.zeros((FORGETTING, RECORD)), np.zeros(1, dtype=np.int64), np.full(3, np.nan)
+    )
 
 
 @kernel
-def look(grid: Grid, before: Past, tool: Tool, work: Room, pose: Pose, into: Floats) -> None:
+def look(
+    grid: HeightGrid,
+    before: RecentOutlines,
+    tool: RimTool,
+    work: RimBuffers,
+    pose: Pose,
+    into: Floats,
+) -> None:
     """Engagement of a tool at a place, before it cuts there.
 
     Parameters
     ----------
-    grid : Grid
-    before : Past
-    tool : Tool
-    work : Room
+    grid : HeightGrid
+    before : RecentOutlines
+    tool : RimTool
+    work : RimBuffers
     pose : Pose
     into : (ENGAGEMENT,) array
         Where the engagement is written.
@@ -157,14 +166,16 @@ def look(grid: Grid, before: Past, tool: Tool, work: Room, pose: Pose, into: Flo
 
 @kernel
 def _exactness(is_known: bool, climb: float) -> float:
-    """How exact the section is, by the outlines and the slope of the path."""
+    """Exactness of the section, by the outlines and the slope of the path."""
     if not is_known or climb > LEVEL:
         return 0.0
     return FLANK if climb < -LEVEL else 1.0
 
 
 @kernel
-def _slices(grid: Grid, work: Room, tool: Tool, pose: Pose, base: float, upright: bool) -> int:
+def _slices(
+    grid: HeightGrid, work: RimBuffers, tool: RimTool, pose: Pose, base: float, upright: bool
+) -> int:
     """Slices of a rounded tool: up to the highest place that it touches ahead.
 
     Above the corner of an upright one they lie between the heights that its ring meets.
@@ -189,7 +200,7 @@ def _slices(grid: Grid, work: Room, tool: Tool, pose: Pose, base: float, upright
 
 
 @kernel
-def _divided(work: Room, count: int, low: float, high: float, parts: int) -> int:
+def _divided(work: RimBuffers, count: int, low: float, high: float, parts: int) -> int:
     """Number of slices after some more have been added that divide a height."""
     work.bounds[count] = low
     if high <= low + LEAST:
@@ -200,7 +211,7 @@ def _divided(work: Room, count: int, low: float, high: float, parts: int) -> int
 
 
 @kernel
-def _top(grid: Grid, work: Room, tool: Tool, pose: Pose, base: float) -> float:
+def _top(grid: HeightGrid, work: RimBuffers, tool: RimTool, pose: Pose, base: float) -> float:
     """Highest place that a rounded tool touches ahead."""
     profile, gap = tool.profile, max(grid.dx, grid.dy)
     samples = len(work.heights)
@@ -224,7 +235,7 @@ def _top(grid: Grid, work: Room, tool: Tool, pose: Pose, base: float) -> float:
 
 
 @kernel
-def _recent(before: Past, work: Room, circle: Circle, level: float) -> int:
+def _recent(before: RecentOutlines, work: RimBuffers, circle: ToolCircle, level: float) -> int:
     """Candidates from the last moves; number of intervals that they freed."""
     latest, free = before.next[0], int(np.int64(0))
     for index in range(min(latest, RECENT)):
@@ -237,7 +248,12 @@ def _recent(before: Past, work: Room, circle: Circle, level: float) -> int:
 
 @kernel
 def _slice(
-    grid: Grid, before: Past, work: Room, circle: Circle, level: float, is_above: bool
+    grid: HeightGrid,
+    before: RecentOutlines,
+    work: RimBuffers,
+    circle: ToolCircle,
+    level: float,
+    is_above: bool,
 ) -> tuple[int, bool]:
     """Contact arcs of one slice, above the lowest or not; whether all outlines were exact."""
     latest = before.next[0]
@@ -282,7 +298,12 @@ def _slice(
 
 @kernel
 def _named_inside(
-    grid: Grid, before: Past, work: Room, circle: Circle, level: float, free: int
+    grid: HeightGrid,
+    before: RecentOutlines,
+    work: RimBuffers,
+    circle: ToolCircle,
+    level: float,
+    free: int,
 ) -> int:
     """Add what moves freed that no sample outside the rim names; number of free intervals.
 
@@ -304,8 +325,8 @@ def _named_inside(
 
 
 @kernel
-def _runs(work: Room, level: float) -> int:
-    """How many samples each free one is away from a solid one; gives the number of solids."""
+def _runs(work: RimBuffers, level: float) -> int:
+    """Distance in samples of each free one from a solid one; returns the number of solids."""
     solid, heights = work.solid, work.heights
     away, count, last = NEAR + 1, 0, len(heights) - 1
     for index in range(last + 1):
@@ -318,7 +339,9 @@ def _runs(work: Room, level: float) -> int:
 
 
 @kernel
-def _leading(work: Room, count: int, profile: Profile, height: float, climb: float) -> int:
+def _leading(
+    work: RimBuffers, count: int, profile: CutterProfile, height: float, climb: float
+) -> int:
     """Contact arcs without what a climbing tool leaves behind: ``n·v ≤ 0`` on its surface."""
     radius = radius_at(profile, height)
     if profile.slope > 0.0 and radius < profile.radius:
@@ -343,7 +366,7 @@ def _leading(work: Room, count: int, profile: Profile, height: float, climb: flo
 
 
 @kernel
-def _edge(profile: Profile, low: float, high: float, sine: float) -> float:
+def _edge(profile: CutterProfile, low: float, high: float, sine: float) -> float:
     """Length of the edge between two heights over the tip."""
     if profile.slope > 0.0:
         return (high - low) * sqrt(1.0 + 1.0 / profile.slope**2)

@@ -11,13 +11,13 @@ import numpy as np
 from simulator.kernels.kernel import kernel
 from simulator.motion.segments import Floats, Ints
 from simulator.removal.arcs import (
-    Circle,
     Intervals,
+    ToolCircle,
     intervals,
 )
-from simulator.removal.profile import Profile
-from simulator.removal.way import LEAST
-from simulator.removal.zmap import OUTSIDE, Grid
+from simulator.removal.profile import CutterProfile
+from simulator.removal.tip_move import LEAST
+from simulator.removal.zmap import OUTSIDE, HeightGrid
 
 SAMPLES = 128
 """of the front half of a ring"""
@@ -40,29 +40,29 @@ NEAR = 8
 MOST_CANDIDATES = 96
 
 
-class Room(NamedTuple):
+class RimBuffers(NamedTuple):
     """Room for the work of one station."""
 
     arcs: Intervals
     total: Intervals
     heights: Floats
-    """(S,) mm, of the ring"""
+    """Heights, (S,) mm, of the ring"""
     owner: Ints
-    """(S,)"""
+    """Owner, (S,)"""
     solid: Ints
-    """(S,) samples from there to the next that is solid"""
+    """Solid, (S,) samples from there to the next that is solid"""
     bounds: Floats
-    """(MOST_LEVELS + CORNER_SLICES + 3,) mm between slices"""
+    """Bounds, (MOST_LEVELS + CORNER_SLICES + 3,) mm between slices"""
     areas: Floats
-    """mm², of each slice"""
+    """Areas, mm², of each slice"""
     candidates: Ints
-    """(MOST_CANDIDATES,)"""
+    """Candidates, (MOST_CANDIDATES,)"""
 
 
-class Tool(NamedTuple):
+class RimTool(NamedTuple):
     """A cutter as the rim sees it."""
 
-    profile: Profile
+    profile: CutterProfile
     sine: float
     """sin κ of the flank"""
     side: float
@@ -70,7 +70,7 @@ class Tool(NamedTuple):
 
 
 class Pose(NamedTuple):
-    """Where the tip is and where it goes."""
+    """Position and direction of the tip."""
 
     x: float
     y: float
@@ -82,9 +82,9 @@ class Pose(NamedTuple):
     """rise per mm in the plane"""
 
 
-def room_for(samples: int) -> Room:
+def room_for(samples: int) -> RimBuffers:
     """Room for the work of one station."""
-    return Room(
+    return RimBuffers(
         intervals(),
         intervals(),
         np.empty(samples),
@@ -97,13 +97,13 @@ def room_for(samples: int) -> Room:
 
 
 @kernel
-def circle_of(pose: Pose, radius: float, side: float) -> Circle:
+def circle_of(pose: Pose, radius: float, side: float) -> ToolCircle:
     """Section of the tool."""
-    return Circle(pose.x, pose.y, radius, pose.ahead_x, pose.ahead_y, side)
+    return ToolCircle(pose.x, pose.y, radius, pose.ahead_x, pose.ahead_y, side)
 
 
 @kernel
-def read_ring(grid: Grid, work: Room, circle: Circle, gap: float) -> None:
+def read_ring(grid: HeightGrid, work: RimBuffers, circle: ToolCircle, gap: float) -> None:
     """Heights and owners on the front half of a ring outside a circle."""
     samples = len(work.heights)
     radius = circle.radius + gap
@@ -129,7 +129,9 @@ def read_ring(grid: Grid, work: Room, circle: Circle, gap: float) -> None:
 
 
 @kernel
-def cell_at(grid: Grid, circle: Circle, radius: float, angle: float) -> tuple[float, int]:
+def cell_at(
+    grid: HeightGrid, circle: ToolCircle, radius: float, angle: float
+) -> tuple[float, int]:
     """Height and owner of the map at an angle φ and a distance from the axis."""
     across, onward = circle.side * radius * cos(angle), radius * sin(angle)
     x = circle.x + onward * circle.ahead_x - across * circle.ahead_y
@@ -141,7 +143,7 @@ def cell_at(grid: Grid, circle: Circle, radius: float, angle: float) -> tuple[fl
 
 
 @kernel
-def levels(work: Room, base: float) -> int:
+def levels(work: RimBuffers, base: float) -> int:
     """Slices of a flat cutter: between the heights that its ring meets, or even ones."""
     bounds = work.bounds
     bounds[0] = base

@@ -1,4 +1,4 @@
-"""What a tool that goes straight down cuts at a place: its lips, and the hole that was there.
+"""Plunge cut of a tool at a place: the contact of its lips, and the hole before.
 
 Units mm and rad.
 """
@@ -7,10 +7,10 @@ from math import cos, floor, pi, sin
 
 from simulator.kernels.kernel import kernel
 from simulator.removal.arcs import hole_radius
-from simulator.removal.profile import Profile, rise
-from simulator.removal.rim import FORGETTING, Past
-from simulator.removal.way import LEAST
-from simulator.removal.zmap import Grid
+from simulator.removal.profile import CutterProfile, rise
+from simulator.removal.rim import FORGETTING, RecentOutlines
+from simulator.removal.tip_move import LEAST
+from simulator.removal.zmap import HeightGrid
 
 LIP_RINGS = 16
 LIP_ERROR = 1.0 / LIP_RINGS
@@ -18,7 +18,9 @@ LIP_ERROR = 1.0 / LIP_RINGS
 
 
 @kernel
-def lip(grid: Grid, profile: Profile, x: float, y: float, z: float) -> tuple[float, float]:
+def lip(
+    grid: HeightGrid, profile: CutterProfile, x: float, y: float, z: float
+) -> tuple[float, float]:
     """Inner and outer radius of what a tool that sinks down to a place cuts there, mm."""
     rings, spokes = LIP_RINGS, 16
     inner, outer = profile.radius, 0.0
@@ -41,7 +43,7 @@ def lip(grid: Grid, profile: Profile, x: float, y: float, z: float) -> tuple[flo
 
 
 @kernel
-def _stock_at(grid: Grid, x: float, y: float) -> float:
+def _stock_at(grid: HeightGrid, x: float, y: float) -> float:
     """Height of the stock at a place, mm; beside the map that of its bottom."""
     columns, rows = grid.heights.shape
     column, row = floor((x - grid.x) / grid.dx), floor((y - grid.y) / grid.dy)
@@ -51,7 +53,7 @@ def _stock_at(grid: Grid, x: float, y: float) -> float:
 
 
 @kernel
-def hole(grid: Grid, before: Past, axis: tuple[float, float, float]) -> float:
+def hole(grid: HeightGrid, before: RecentOutlines, axis: tuple[float, float, float]) -> float:
     """Radius at a height of the hole that the last move down an axis sank, mm; 0: none did."""
     x, y, level = axis[0], axis[1], max(axis[2], grid.bottom)
     columns, rows = grid.heights.shape

@@ -1,4 +1,4 @@
-"""What the tool meets along a path: one row a station, whatever the process.
+"""Stations of a path: one row each, whatever the process.
 
 ``section`` is the volume removed per length of path, so that the removal rate is section times
 the speed along the path, and ``chip_ratio`` is the mean chip thickness over the feed per tooth:
@@ -25,8 +25,8 @@ THICKEST = 2.3311
 HALVINGS = 32
 
 
-class CutKind(IntEnum):
-    """Which process."""
+class StationKind(IntEnum):
+    """Process at a station."""
 
     AIR = 0
     MILLING = 1
@@ -44,27 +44,27 @@ class Stations:
     """
 
     segment: Ints
-    """(M,) row of the segment"""
+    """Segment, (M,) row of the segment"""
     station: Floats
-    """(M,) mm along that segment: the end of the stretch"""
+    """Station, (M,) mm along that segment: the end of the stretch"""
     kind: Ints
-    """(M,) :class:`CutKind`"""
+    """Kind, (M,) :class:`StationKind`"""
     section: Floats
-    """(M,) mm², volume removed per mm of path"""
+    """Section, (M,) mm², volume removed per mm of path"""
     growth: Floats
     """(M,) mm² by which the section grows from the beginning of the stretch to its end"""
     axial_depth: Floats
-    """(M,) mm, a_p; in turning the depth of cut; 0 in air"""
+    """Axial depth, (M,) mm, a_p; in turning the depth of cut; 0 in air"""
     radial_width: Floats
     """(M,) mm, a_e: section over axial depth in milling; of a lip or an insert elsewhere"""
     entry_angle: Floats
-    """(M,) rad, φ_st of the arc that holds all contact; milling only"""
+    """Entry angle, (M,) rad, φ_st of the arc that holds all contact; milling only"""
     exit_angle: Floats
-    """(M,) rad, φ_ex"""
+    """Exit angle, (M,) rad, φ_ex"""
     contact_angle: Floats
     """(M,) rad of contact, all arcs together; φ_ex − φ_st when there is one arc"""
     chip_ratio: Floats
-    """(M,) mean chip thickness over feed per tooth"""
+    """Chip ratio, (M,) mean chip thickness over feed per tooth"""
     diameter: Floats
     """(M,) mm at which the cutting speed drives the force: of the cutter where it cuts, of
     the middle of a lip, of the workpiece in the middle of the cut"""
@@ -109,7 +109,7 @@ def air(segments: Ints, length: Floats) -> Stations:
     return Stations(
         segment=segments,
         station=length,
-        kind=np.full(len(segments), int(CutKind.AIR)),
+        kind=np.full(len(segments), int(StationKind.AIR)),
         section=nothing,
         growth=nothing,
         axial_depth=nothing,
@@ -127,13 +127,13 @@ class SingleArcs:
     """One arc of contact for each station, with the section and the mean chip that were met."""
 
     entry_angle: Floats
-    """(M,) rad"""
+    """Entry angle, (M,) rad"""
     exit_angle: Floats
-    """(M,) rad; the entry angle in air"""
+    """Exit angle, (M,) rad; the entry angle in air"""
     depth: Floats
-    """(M,) mm, at most the axial depth"""
+    """Depth, (M,) mm, at most the axial depth"""
     fill: Floats
-    """(M,) section over that of arc and depth, 1 where both are met; 0 in air"""
+    """Fill, (M,) section over that of arc and depth, 1 where both are met; 0 in air"""
 
 
 def single_arcs(stations: Stations) -> SingleArcs:

@@ -1,17 +1,98 @@
-"""What one path changes in a stock, so that it can be undone and done again.
+"""Changes of a stock by one path, which can be undone and done again.
 
 A path touches the cells under its box only, and writes the outlines of its own moves. Units mm.
+
+Arguments of a march of a tool through its stock, as kernels take them.
+
+Units mm and rad.
 """
 
 from dataclasses import dataclass
 from math import ceil, floor, pi
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from simulator.motion.segments import Floats, Ints, Segments
-from simulator.removal.rim import FORGETTING, Past
-from simulator.removal.zmap import Grid
+from simulator.removal.profile import CutterProfile, is_upright
+from simulator.removal.rim import ENGAGEMENT, FORGETTING, RecentOutlines
+from simulator.removal.ring import ROUND_SAMPLES, SAMPLES, RimBuffers, RimTool, room_for
+from simulator.removal.zmap import HeightGrid
+
+DEEPEST = 12
+"""halvings of a stretch"""
+
+
+class MarchSettings(NamedTuple):
+    """Settings of a march."""
+
+    step: float
+    """Step, mm, longest stretch between two stations"""
+    least: float
+    """Least, mm, shortest stretch"""
+    shank: float
+    """Shank, mm above the tip where the cutting edge ends; infinite: never"""
+    coarse: float
+    """Coarse, mm over which the map's own rim tells more than noise"""
+    shape: Floats
+    """Shape, (7,) numbers of the tool's profile"""
+    neck: CutterProfile
+    """Neck of the shank above the edge"""
+    holder: CutterProfile
+    overhang: float
+    """Overhang, mm above the tip where the holder begins; infinite: there is none"""
+    tip_sine: float
+    """sine of half the point angle"""
+
+
+class RowBuffers(NamedTuple):
+    """Room for the work along a part of a row."""
+
+    rim: RimBuffers
+    parts: Floats
+    """Parts, (DEEPEST,) shares of the row, of stretches that wait"""
+    seen: Floats
+    """Seen, (DEEPEST, ENGAGEMENT) engagement there"""
+    left: Floats
+    """Left, (ENGAGEMENT,) engagement where the stretch begins"""
+    raised: Floats
+    """Raised, (13,) row of the shank or the holder"""
+
+
+class RemovalTask(NamedTuple):
+    """Arguments of a march: stock, tool, path, buffers."""
+
+    grid: HeightGrid
+    past: RecentOutlines
+    tool: RimTool
+    how: MarchSettings
+    desk: RowBuffers
+
+
+def desk_for(tool: RimTool) -> RowBuffers:
+    """Room for the work of a tool."""
+    samples = SAMPLES if is_upright(tool.profile) else ROUND_SAMPLES
+    return RowBuffers(
+        room_for(samples),
+        np.empty(DEEPEST),
+        np.empty((DEEPEST, ENGAGEMENT)),
+        np.empty(ENGAGEMENT),
+        np.empty(13),
+    )
+
+
+def rows_of(segments: Segments) -> Floats:
+    """(N, 13) start, end, centre, radius, angle of the first arm, turn, normal."""
+    rows = np.arange(len(segments))
+    first = (segments.normal + 1) % 3
+    second = (segments.normal + 2) % 3
+    arm = segments.start - segments.centre
+    angle = np.arctan2(arm[rows, second], arm[rows, first])
+    columns = (segments.start, segments.end, segments.centre)
+    numbers = (segments.radius, angle, segments.turn, segments.normal.astype(np.float64))
+    return np.ascontiguousarray(np.column_stack([*columns, *numbers]))
+
 
 _ROUNDING = 1e-9  # rad
 
@@ -23,7 +104,7 @@ MARGIN = 2
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Patch:
+class StockPatch:
     """State of a stock where a path may have touched it."""
 
     box: Box
@@ -38,11 +119,11 @@ class Patch:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Trial:
-    """What a path found in its box, and what it made of it."""
+class PathTrial:
+    """Stock within the box of a path, before and after it."""
 
-    before: Patch
-    after: Patch
+    before: StockPatch
+    after: StockPatch
 
     @property
     def box(self) -> Box:
@@ -50,9 +131,9 @@ class Trial:
         return self.before.box
 
 
-def patch_of(grid: Grid, past: Past, box: Box, moves: Ints) -> Patch:
+def patch_of(grid: HeightGrid, past: RecentOutlines, box: Box, moves: Ints) -> StockPatch:
     """Keep what is in a box, and some outlines."""
-    return Patch(
+    return StockPatch(
         box=box,
         heights=grid.heights[box].copy(),
         owner=grid.owner[box].copy(),
@@ -62,7 +143,7 @@ def patch_of(grid: Grid, past: Past, box: Box, moves: Ints) -> Patch:
     )
 
 
-def put_back(patch: Patch, grid: Grid, past: Past) -> None:
+def put_back(patch: StockPatch, grid: HeightGrid, past: RecentOutlines) -> None:
     """Make a stock in a box what it was when the patch was made."""
     grid.heights[patch.box] = patch.heights
     grid.owner[patch.box] = patch.owner
@@ -70,7 +151,7 @@ def put_back(patch: Patch, grid: Grid, past: Past) -> None:
     past.next[0] = patch.next
 
 
-def box_of(grid: Grid, segments: Segments, radius: float) -> Box:
+def box_of(grid: HeightGrid, segments: Segments, radius: float) -> Box:
     """Cells that a tool of a radius may touch or look at along segments."""
     reach = radius + MARGIN * max(grid.dx, grid.dy)
     low, high = _extents(segments)
@@ -112,7 +193,7 @@ def _extents(segments: Segments) -> tuple[Floats, Floats]:
     return low, high
 
 
-def moves_of(past: Past, segments: Segments) -> Ints:
+def moves_of(past: RecentOutlines, segments: Segments) -> Ints:
     """Rows of the outlines that a path may write: one a line, one a quarter turn."""
     parts = np.maximum(1.0, np.ceil(np.abs(segments.turn) / (0.5 * pi)))
     count = min(int(parts.sum()), len(past.records))
@@ -124,7 +205,7 @@ def do_overlap(one: Box, other: Box) -> bool:
     return all(a.start < b.stop and b.start < a.stop for a, b in zip(one, other, strict=True))
 
 
-def is_remembered_alike(trial: Trial, later: int) -> bool:
+def is_remembered_alike(trial: PathTrial, later: int) -> bool:
     """Whether a path finds the same outlines remembered when it comes some moves later."""
     made = trial.after.next - trial.before.next
     ages = trial.before.next - trial.before.owner[trial.before.owner >= 0]
@@ -133,12 +214,12 @@ def is_remembered_alike(trial: Trial, later: int) -> bool:
     return bool((is_young | is_old).all())
 
 
-def renumbered(trial: Trial, number: int, known: dict[int, int]) -> Patch:
-    """What a path makes when the number of its first move is another one.
+def renumbered(trial: PathTrial, number: int, known: dict[int, int]) -> StockPatch:
+    """Changes of a path when its first move has another number.
 
     Parameters
     ----------
-    trial : Trial
+    trial : PathTrial
     number : int
         Of its first move.
     known : dict
@@ -152,7 +233,7 @@ def renumbered(trial: Trial, number: int, known: dict[int, int]) -> Patch:
     owner = after.owner.astype(np.int64)
     place = np.searchsorted(firsts, owner, side="right")
     owner += np.append(0, shifts)[place]
-    return Patch(
+    return StockPatch(
         box=after.box,
         heights=after.heights,
         owner=owner.astype(np.int32),

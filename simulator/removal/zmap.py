@@ -13,10 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from simulator.motion.segments import Floats
-from stepnc_model.stock import Stock
+from stepnc_model.program import Stock
 
 MOST_CELLS = 4_000_000
-"""of a map whose cell size nobody chose"""
+"""of a map without a given cell size"""
 
 USUAL_CELLS = 1_000_000
 """of a map when its tools do not ask for finer cells"""
@@ -29,32 +29,32 @@ OUTSIDE = -2
 """owner of a cell that was never cut; of one beside the stock"""
 
 
-class Grid(NamedTuple):
+class HeightGrid(NamedTuple):
     """Heights and what the kernels must know of them."""
 
     heights: Floats
-    """(X, Y) mm, changed by the kernels"""
+    """Heights, (X, Y) mm, changed by the kernels"""
     owner: NDArray[np.int32]
-    """(X, Y) number of the move that last lowered a cell"""
+    """Owner, (X, Y) number of the move that last lowered a cell"""
     x: float
     y: float
-    """mm, corner of the first cell"""
+    """Y, mm, corner of the first cell"""
     dx: float
     dy: float
-    """mm, size of a cell"""
+    """Dy, mm, size of a cell"""
     bottom: float
-    """mm"""
+    """Bottom, mm"""
     top: float
-    """mm, of the raw stock"""
+    """Top, mm, of the raw stock"""
     radius: float
-    """mm, of a bar about the middle of the map; 0: a box"""
+    """Radius, mm, of a bar about the middle of the map; 0: a box"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ZMap:
     """Heights of a stock; its arrays change as material is cut away."""
 
-    grid: Grid
+    grid: HeightGrid
 
     @property
     def cell(self) -> float:
@@ -63,7 +63,7 @@ class ZMap:
 
     @property
     def volume(self) -> float:
-        """What is left, mm³."""
+        """Remaining volume, mm³."""
         grid = self.grid
         return float((grid.heights - grid.bottom).sum() * grid.dx * grid.dy)
 
@@ -98,7 +98,7 @@ def zmap_of(stock: Stock, *, cell: float) -> ZMap:
         beside = across[:, None] ** 2 + along**2 > stock.radius**2
         heights[beside] = stock.low[2]
         owner[beside] = OUTSIDE
-    grid = Grid(
+    grid = HeightGrid(
         heights=heights,
         owner=owner,
         x=stock.low[0],

@@ -6,54 +6,47 @@ of them references, tell it from the standard's nine.
 
 from __future__ import annotations
 
-from stepnc_model.entities.entity import Entity, abstract, entity
+from stepnc_model.entities.entity import Entity
 from stepnc_model.part21.values import Ref
 
 
-@abstract
-class SpeedSpec(Entity):
+class SpeedSpec(Entity, abstract=True):
     """Supertype ``speed_spec``."""
 
     adaptive_allowed: bool
 
 
-@entity
 class Cutspeed(SpeedSpec):
     """EXPRESS ``cutspeed``."""
 
     value: float
 
 
-@entity
 class SpindleSpeed(SpeedSpec):
     """EXPRESS ``spindle_speed``."""
 
     value: float
 
 
-@abstract
-class FeedSpec(Entity):
+class FeedSpec(Entity, abstract=True):
     """Supertype ``feed_spec``."""
 
     adaptive_allowed: bool
 
 
-@entity
 class FeedrateTcp(FeedSpec):
     """EXPRESS ``feedrate_tcp``."""
 
     value: float
 
 
-@entity
 class FeedratePerTooth(FeedSpec):
     """EXPRESS ``feedrate_per_tooth``."""
 
     value: float
 
 
-@abstract
-class AdaptiveMillingTechnology(Entity):
+class AdaptiveMillingTechnology(Entity, abstract=True):
     """EXPRESS ``milling_technology`` in the proposed form."""
 
     its_speed: Ref[SpeedSpec]

@@ -16,34 +16,39 @@ from __future__ import annotations
 
 import re
 from dataclasses import MISSING, FrozenInstanceError, dataclass, field, fields
-from typing import TYPE_CHECKING, TypeVar, dataclass_transform
+from typing import TYPE_CHECKING, dataclass_transform
 
 if TYPE_CHECKING:
     from dataclasses import Field
     from typing import Any, ClassVar, NoReturn
 
-E = TypeVar("E")
-
 _WORD = re.compile(r"(?<=.)(?=[A-Z])|(?<=[a-z])(?=[0-9][a-z])")
 
 
 @dataclass_transform(frozen_default=True, kw_only_default=True, field_specifiers=(field,))
-def abstract(cls: type[E]) -> type[E]:
-    """Make an EXPRESS supertype that no instance of a file may name."""
-    return dataclass(init=False, repr=False, eq=False, slots=True, kw_only=True)(cls)
+class EntityType(type):
+    """Makes a dataclass of every entity, and its keyword of the name of the class."""
+
+    def __new__(
+        cls,
+        name: str,
+        bases: tuple[type, ...],
+        namespace: dict[str, Any],
+        *,
+        abstract: bool = False,
+    ) -> Any:
+        """Make a class; no instance of a file may name an ``abstract`` one."""
+        made: Any = super().__new__(cls, name, bases, namespace)
+        if "__slots__" in namespace:
+            return made  # the dataclass makes its class once more, with slots
+        made = dataclass(init=False, repr=False, eq=False, slots=True, kw_only=True)(made)
+        if not abstract:
+            made.keyword = _WORD.sub("_", name).upper()
+        return made
 
 
-@dataclass_transform(frozen_default=True, kw_only_default=True, field_specifiers=(field,))
-def entity(cls: type[E]) -> type[E]:
-    """Make an EXPRESS entity; its keyword follows from the name of the class."""
-    made = abstract(cls)
-    made.keyword = _WORD.sub("_", cls.__name__).upper()  # type: ignore[attr-defined]
-    return made
-
-
-@abstract
-class Entity:
-    """What every entity of ISO 14649 has: equality by value, and no change."""
+class Entity(metaclass=EntityType, abstract=True):
+    """Base of all entities of ISO 14649: immutable, equal by value."""
 
     keyword = ""
     """Name in a Part 21 file; an abstract class has the one of the entity above it, or none."""
@@ -90,7 +95,7 @@ class Entity:
 
 
 def apart() -> Any:
-    """Field of ours that the EXPRESS entity lacks: no Part 21 position, absent by default."""
+    """Field that the EXPRESS entity lacks: no Part 21 position, absent by default."""
     return field(default=None, metadata={"express": False})
 
 

@@ -71,7 +71,7 @@ class StrokeConnectionStrategy(StrEnum):
 
 
 class ToolpathType(StrEnum):
-    """What a tool path is for."""
+    """Purpose of a tool path."""
 
     APPROACH = "APPROACH"
     LIFT = "LIFT"
@@ -103,14 +103,14 @@ class BottomOrSide(StrEnum):
 
 
 class FittingType(StrEnum):
-    """Which partner of a fit."""
+    """Partner of a fit: hole or shaft."""
 
     SHAFT = "SHAFT"
     HOLE = "HOLE"
 
 
 class CoolantSelect(StrEnum):
-    """How a lathe brings its coolant (ISO 14649-12)."""
+    """Coolant selection of a lathe (ISO 14649-12)."""
 
     FLOOD = "FLOOD"
     MIST = "MIST"
@@ -118,7 +118,7 @@ class CoolantSelect(StrEnum):
 
 
 class ThreadCutDepthType(StrEnum):
-    """How the depth of thread passes develops (ISO 14649-12)."""
+    """Development of the depth of thread passes (ISO 14649-12)."""
 
     CONSTANT_DEPTH = "CONSTANT_DEPTH"
     VARIABLE_DEPTH = "VARIABLE_DEPTH"
@@ -173,7 +173,7 @@ class KnurlPatternType(StrEnum):
 
 
 class TransitionCode(StrEnum):
-    """How one segment of a composite curve meets the next (ISO 10303-42)."""
+    """Continuity between one segment of a composite curve and the next (ISO 10303-42)."""
 
     DISCONTINUOUS = "DISCONTINUOUS"
     CONTINUOUS = "CONTINUOUS"
@@ -182,7 +182,7 @@ class TransitionCode(StrEnum):
 
 
 class TrimmingPreference(StrEnum):
-    """Which way of trimming wins where both are given (ISO 10303-42)."""
+    """Preferred way of trimming where both are given (ISO 10303-42)."""
 
     CARTESIAN = "CARTESIAN"
     PARAMETER = "PARAMETER"
@@ -190,7 +190,7 @@ class TrimmingPreference(StrEnum):
 
 
 class BSplineCurveForm(StrEnum):
-    """What curve a B-spline stands for (ISO 10303-42)."""
+    """Form of curve that a B-spline stands for (ISO 10303-42)."""
 
     POLYLINE_FORM = "POLYLINE_FORM"
     CIRCULAR_ARC = "CIRCULAR_ARC"
@@ -201,7 +201,7 @@ class BSplineCurveForm(StrEnum):
 
 
 class KnotType(StrEnum):
-    """How the knots of a B-spline are spread (ISO 10303-42)."""
+    """Distribution of the knots of a B-spline (ISO 10303-42)."""
 
     UNIFORM_KNOTS = "UNIFORM_KNOTS"
     QUASI_UNIFORM_KNOTS = "QUASI_UNIFORM_KNOTS"

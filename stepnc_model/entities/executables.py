@@ -1,34 +1,86 @@
-"""What a program runs, from workplans down to workingsteps (ISO 14649-10 and -12)."""
+"""Projects, setups and executables: workplans, workingsteps, probing, functions (ISO 14649-10).
+
+The project is the root of a program, with owner, date and status. Turning steps are those of
+ISO 14649-12. Lengths in mm.
+"""
 
 from __future__ import annotations
 
-from stepnc_model.entities.entity import Entity, abstract, entity
-from stepnc_model.entities.expressions import BooleanExpression, NcConstant, NcVariable
-from stepnc_model.entities.geometry import AdvancedBrepShapeRepresentation, ElementarySurface
-from stepnc_model.entities.operations import MachiningOperation
-from stepnc_model.entities.regions import ManufacturingFeature
-from stepnc_model.entities.setup import Setup
+from stepnc_model.entities.entity import Entity
+from stepnc_model.entities.enums import AheadOrBehind
+from stepnc_model.entities.geometry import (
+    AdvancedBrepShapeRepresentation,
+    Axis2Placement3d,
+    Block,
+    BoundedSurface,
+    CartesianPoint,
+    Direction,
+    ElementarySurface,
+    RightCircularCylinder,
+)
+from stepnc_model.entities.measures import (
+    BooleanExpression,
+    NcConstant,
+    NcVariable,
+    TolerancedLengthMeasure,
+)
+from stepnc_model.entities.operations import MachiningOperation, ToolpathList
+from stepnc_model.entities.profiles import ManufacturingFeature
 from stepnc_model.entities.technology import ToolDirection
-from stepnc_model.entities.toolpaths import ToolpathList
+from stepnc_model.entities.tools import MachiningTool, TouchProbe
 from stepnc_model.entities.turning import TurningMachiningOperation
+from stepnc_model.entities.workpiece import Workpiece
 from stepnc_model.part21.values import Ref
 
 
-@abstract
-class Executable(Entity):
+class OffsetVector(Entity):
+    """Offset that the control measures: three variables each."""
+
+    translate: tuple[Ref[NcVariable], ...]
+    rotate: tuple[Ref[NcVariable], ...] | None = None
+
+
+class SetupInstruction(Entity):
+    """Instruction for the operator."""
+
+    description: str | None = None
+    external_document: str | None = None
+
+
+class WorkpieceSetup(Entity):
+    """One workpiece in a setup; ``its_origin`` is given in the setup's coordinates."""
+
+    its_workpiece: Ref[Workpiece]
+    its_origin: Ref[Axis2Placement3d]
+    its_offset: Ref[OffsetVector] | None = None
+    its_restricted_area: (
+        Ref[BoundedSurface | Block | RightCircularCylinder | AdvancedBrepShapeRepresentation]
+        | None
+    ) = None
+    its_instructions: tuple[Ref[SetupInstruction], ...]
+
+
+class Setup(Entity):
+    """Clamping; ``its_origin`` is given in the machine's coordinates."""
+
+    its_id: str
+    its_origin: Ref[Axis2Placement3d] | None = None
+    its_secplane: Ref[ElementarySurface]
+    its_workpiece_setup: tuple[Ref[WorkpieceSetup], ...]
+
+
+class Executable(Entity, abstract=True):
     """Anything a control can run."""
 
     its_id: str
 
 
-@entity
 class Channel(Entity):
     """Channel of a control."""
 
     its_id: str
 
 
-@entity
 class InProcessGeometry(Entity):
     """Shape before, after, and what is removed."""
 
@@ -37,14 +89,12 @@ class InProcessGeometry(Entity):
     removal: Ref[AdvancedBrepShapeRepresentation] | None = None
 
 
-@abstract
-class Workingstep(Executable):
+class Workingstep(Executable, abstract=True):
     """Step that works above a security plane."""
 
     its_secplane: Ref[ElementarySurface]
 
 
-@entity
 class MachiningWorkingstep(Workingstep):
     """One operation on one feature."""
 
@@ -53,7 +103,6 @@ class MachiningWorkingstep(Workingstep):
     its_effect: Ref[InProcessGeometry] | None = None
 
 
-@entity
 class TurningWorkingstep(Workingstep):
     """One turning operation on several features."""
 
@@ -62,7 +111,6 @@ class TurningWorkingstep(Workingstep):
     its_effect: Ref[InProcessGeometry] | None = None
 
 
-@entity
 class RapidMovement(Workingstep):
     """Movement in rapid; the second supertype, ``operation``, is spelt out."""
 
@@ -70,17 +118,14 @@ class RapidMovement(Workingstep):
     its_tool_direction: Ref[ToolDirection] | None = None
 
 
-@entity
 class ReturnHome(RapidMovement):
     """Movement to the home position."""
 
 
-@abstract
-class ProgramStructure(Executable):
-    """What holds other executables."""
+class ProgramStructure(Executable, abstract=True):
+    """Executable that holds others."""
 
 
-@entity
 class Workplan(ProgramStructure):
     """Executables one after another."""
 
@@ -90,28 +135,24 @@ class Workplan(ProgramStructure):
     its_effect: Ref[InProcessGeometry] | None = None
 
 
-@entity
 class Parallel(ProgramStructure):
     """Executables at the same time."""
 
     branches: tuple[Ref[Executable], ...]
 
 
-@entity
 class NonSequential(ProgramStructure):
     """Executables in any order."""
 
     its_elements: tuple[Ref[Executable], ...]
 
 
-@entity
 class Selective(ProgramStructure):
     """One of several executables."""
 
     its_elements: tuple[Ref[Executable], ...]
 
 
-@entity
 class IfStatement(ProgramStructure):
     """One executable or the other."""
 
@@ -120,7 +161,6 @@ class IfStatement(ProgramStructure):
     false_branch: Ref[Executable] | None = None
 
 
-@entity
 class WhileStatement(ProgramStructure):
     """Executable repeated."""
 
@@ -128,9 +168,198 @@ class WhileStatement(ProgramStructure):
     body: Ref[Executable]
 
 
-@entity
 class Assignment(ProgramStructure):
     """Variable gets a value."""
 
     its_lvalue: Ref[NcVariable]
     its_rvalue: Ref[NcVariable | NcConstant]
+
+
+class NcFunction(Executable, abstract=True):
+    """Switching action or message."""
+
+
+class DisplayMessage(NcFunction):
+    """Message on the screen."""
+
+    its_text: str
+
+
+class OptionalStop(NcFunction):
+    """Stop if the switch is on."""
+
+
+class ProgramStop(NcFunction):
+    """Stop until started again."""
+
+
+class LoadTool(NcFunction):
+    """Tool into the spindle."""
+
+    its_tool: Ref[MachiningTool]
+
+
+class UnloadTool(NcFunction):
+    """Tool out of the spindle."""
+
+    its_tool: Ref[MachiningTool] | None = None
+
+
+class SetMark(NcFunction):
+    """Mark that other channels may wait for."""
+
+
+class WaitForMark(NcFunction):
+    """Wait for the mark of another channel."""
+
+    its_channel: Ref[Channel]
+
+
+class ExchangePallet(NcFunction):
+    """Next pallet."""
+
+
+class IndexPallet(NcFunction):
+    """Pallet to a position."""
+
+    its_index: int
+
+
+class IndexTable(NcFunction):
+    """Table to a position."""
+
+    its_index: int
+
+
+class TouchProbing(Workingstep, abstract=True):
+    """Measurement; the second supertype, ``operation``, is spelt out."""
+
+    its_toolpath: Ref[ToolpathList] | None = None
+    its_tool_direction: Ref[ToolDirection] | None = None
+    measured_offset: Ref[NcVariable]
+
+
+class WorkpieceProbing(TouchProbing):
+    """One point of the workpiece."""
+
+    start_position: Ref[Axis2Placement3d]
+    its_workpiece: Ref[Workpiece]
+    its_direction: Ref[Direction]
+    expected_value: Ref[TolerancedLengthMeasure]
+    its_probe: Ref[TouchProbe]
+
+
+class WorkpieceCompleteProbing(TouchProbing):
+    """Place and attitude of the workpiece."""
+
+    its_workpiece: Ref[Workpiece]
+    probing_distance: Ref[TolerancedLengthMeasure]
+    its_probe: Ref[TouchProbe]
+    computed_offset: Ref[OffsetVector]
+
+
+class ToolProbing(TouchProbing, abstract=True):
+    """Measurement of a tool."""
+
+    offset: Ref[CartesianPoint]
+    max_wear: float
+    its_tool: Ref[MachiningTool]
+
+
+class ToolLengthProbing(ToolProbing):
+    """Length of a tool."""
+
+
+class ToolRadiusProbing(ToolProbing):
+    """Radius of a tool."""
+
+
+class Person(Entity):
+    """Person (ISO 10303-41)."""
+
+    id: str
+    last_name: str | None = None
+    first_name: str | None = None
+    middle_names: tuple[str, ...] | None = None
+    prefix_titles: tuple[str, ...] | None = None
+    suffix_titles: tuple[str, ...] | None = None
+
+
+class Address(Entity):
+    """Address (ISO 10303-41)."""
+
+    internal_location: str | None = None
+    street_number: str | None = None
+    street: str | None = None
+    postal_box: str | None = None
+    town: str | None = None
+    region: str | None = None
+    postal_code: str | None = None
+    country: str | None = None
+    facsimile_number: str | None = None
+    telephone_number: str | None = None
+    electronic_mail_address: str | None = None
+    telex_number: str | None = None
+
+
+class PersonAndAddress(Entity):
+    """Owner of the project."""
+
+    its_person: Ref[Person]
+    its_address: Ref[Address] | None = None
+
+
+class CalendarDate(Entity):
+    """Day (ISO 10303-41)."""
+
+    year_component: int
+    day_component: int
+    month_component: int
+
+
+class CoordinatedUniversalTimeOffset(Entity):
+    """Time zone (ISO 10303-41)."""
+
+    hour_offset: int
+    minute_offset: int | None = None
+    sense: AheadOrBehind
+
+
+class LocalTime(Entity):
+    """Time of the day (ISO 10303-41)."""
+
+    hour_component: int
+    minute_component: int | None = None
+    second_component: float | None = None
+    zone: Ref[CoordinatedUniversalTimeOffset]
+
+
+class DateAndTime(Entity):
+    """Moment (ISO 10303-41)."""
+
+    date_component: Ref[CalendarDate]
+    time_component: Ref[LocalTime]
+
+
+class ApprovalStatus(Entity):
+    """Name of a status (ISO 10303-41)."""
+
+    name: str
+
+
+class Approval(Entity):
+    """Status with its level (ISO 10303-41)."""
+
+    status: Ref[ApprovalStatus]
+    level: str
+
+
+class Project(Entity):
+    """Root of a program."""
+
+    its_id: str
+    main_workplan: Ref[Workplan]
+    its_workpieces: tuple[Ref[Workpiece], ...]
+    its_owner: Ref[PersonAndAddress] | None = None
+    its_release: Ref[DateAndTime] | None = None
+    its_status: Ref[Approval] | None = None

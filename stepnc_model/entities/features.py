@@ -1,51 +1,50 @@
-"""Features of milling and drilling (ISO 14649-10); mm and degrees."""
+"""Features of milling and drilling, threads (ISO 14649-10); mm and degrees."""
 
 from __future__ import annotations
 
-from stepnc_model.entities.bottoms import (
-    HoleBottomCondition,
-    PocketBottomCondition,
-    ProfileFloor,
-    ThroughProfileFloor,
-)
-from stepnc_model.entities.entity import Entity, abstract, entity
+from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.geometry import Axis2Placement3d, Direction, ElementarySurface
-from stepnc_model.entities.measures import NumericParameter, TolerancedLengthMeasure
+from stepnc_model.entities.measures import (
+    DescriptiveParameter,
+    NumericParameter,
+    TolerancedLengthMeasure,
+)
 from stepnc_model.entities.profiles import (
     AngleTaper,
     CircularClosedProfile,
     ClosedProfile,
     DiameterTaper,
+    HoleBottomCondition,
     LinearPath,
     LinearProfile,
+    ManufacturingFeature,
     OpenProfile,
     PartialCircularProfile,
+    PocketBottomCondition,
     Profile,
+    ProfileFloor,
     RectangularClosedProfile,
     SlotEndType,
     SquareUProfile,
+    ThroughProfileFloor,
     TravelPath,
     VeeProfile,
 )
-from stepnc_model.entities.regions import ManufacturingFeature
 from stepnc_model.part21.values import Ref
 
 
-@abstract
-class Two5dManufacturingFeature(ManufacturingFeature):
+class Two5dManufacturingFeature(ManufacturingFeature, abstract=True):
     """Feature that lies on a plane."""
 
     feature_placement: Ref[Axis2Placement3d]
 
 
-@abstract
-class MachiningFeature(Two5dManufacturingFeature):
+class MachiningFeature(Two5dManufacturingFeature, abstract=True):
     """Feature with a depth, given as a surface in the feature's coordinates."""
 
     depth: Ref[ElementarySurface]
 
 
-@entity
 class Boss(MachiningFeature):
     """Material left standing within another feature."""
 
@@ -53,7 +52,6 @@ class Boss(MachiningFeature):
     slope: float | None = None
 
 
-@entity
 class PlanarFace(MachiningFeature):
     """Face to be milled flat."""
 
@@ -63,8 +61,7 @@ class PlanarFace(MachiningFeature):
     its_boss: tuple[Ref[Boss], ...]
 
 
-@abstract
-class Pocket(MachiningFeature):
+class Pocket(MachiningFeature, abstract=True):
     """Hollow with a floor and walls."""
 
     its_boss: tuple[Ref[Boss], ...]
@@ -74,14 +71,12 @@ class Pocket(MachiningFeature):
     orthogonal_radius: Ref[TolerancedLengthMeasure] | None = None
 
 
-@entity
 class ClosedPocket(Pocket):
     """Pocket with walls all around."""
 
     feature_boundary: Ref[ClosedProfile]
 
 
-@entity
 class OpenPocket(Pocket):
     """Pocket that the tool may enter from the side."""
 
@@ -89,7 +84,6 @@ class OpenPocket(Pocket):
     wall_boundary: Ref[OpenProfile] | None = None
 
 
-@entity
 class Slot(MachiningFeature):
     """Profile swept along a path."""
 
@@ -98,7 +92,6 @@ class Slot(MachiningFeature):
     end_conditions: tuple[Ref[SlotEndType], ...]
 
 
-@entity
 class Step(MachiningFeature):
     """Corner taken off along an edge."""
 
@@ -107,7 +100,6 @@ class Step(MachiningFeature):
     its_boss: tuple[Ref[Boss], ...]
 
 
-@entity
 class RoundHole(MachiningFeature):
     """Hole by its diameter."""
 
@@ -116,12 +108,10 @@ class RoundHole(MachiningFeature):
     bottom_condition: Ref[HoleBottomCondition]
 
 
-@entity
 class ToolpathFeature(MachiningFeature):
     """Whatever the tool path leaves."""
 
 
-@entity
 class RoundedEnd(MachiningFeature):
     """Partial circle swept along a line."""
 
@@ -129,7 +119,6 @@ class RoundedEnd(MachiningFeature):
     partial_circular_boundary: Ref[PartialCircularProfile]
 
 
-@entity
 class SphericalCap(MachiningFeature):
     """Part of a sphere."""
 
@@ -137,72 +126,62 @@ class SphericalCap(MachiningFeature):
     radius: Ref[NumericParameter]
 
 
-@abstract
-class ProfileFeature(MachiningFeature):
+class ProfileFeature(MachiningFeature, abstract=True):
     """Profile swept along a line."""
 
     profile_swept_shape: Ref[LinearPath]
 
 
-@entity
 class GeneralOutsideProfile(ProfileFeature):
     """Outside of the workpiece."""
 
     feature_boundary: Ref[Profile]
 
 
-@abstract
-class ShapeProfile(ProfileFeature):
+class ShapeProfile(ProfileFeature, abstract=True):
     """Swept profile with a floor."""
 
     floor_condition: Ref[ThroughProfileFloor | ProfileFloor]
     removal_direction: Ref[Direction]
 
 
-@entity
 class GeneralShapeProfile(ShapeProfile):
     """Shape of any profile."""
 
     profile_boundary: Ref[Profile]
 
 
-@entity
 class PartialCircularShapeProfile(ShapeProfile):
     """Shape of an arc."""
 
     open_boundary: Ref[PartialCircularProfile]
 
 
-@entity
 class CircularClosedShapeProfile(ShapeProfile):
     """Shape of a circle."""
 
     closed_boundary: Ref[CircularClosedProfile]
 
 
-@entity
 class RectangularOpenShapeProfile(ShapeProfile):
     """Shape of a U."""
 
     open_boundary: Ref[SquareUProfile]
 
 
-@entity
 class RectangularClosedShapeProfile(ShapeProfile):
     """Shape of a rectangle."""
 
     closed_boundary: Ref[RectangularClosedProfile]
 
 
-@abstract
-class TransitionFeature(ManufacturingFeature):
-    """What joins two features."""
+class TransitionFeature(ManufacturingFeature, abstract=True):
+    """Feature that joins two others."""
 
     first_feature: Ref[MachiningFeature]
     second_feature: Ref[MachiningFeature]
 
 
-@entity
 class Chamfer(TransitionFeature):
     """Broken edge."""
 
@@ -210,7 +189,6 @@ class Chamfer(TransitionFeature):
     first_offset_amount: Ref[TolerancedLengthMeasure]
 
 
-@entity
 class EdgeRound(TransitionFeature):
     """Rounded edge."""
 
@@ -219,38 +197,32 @@ class EdgeRound(TransitionFeature):
     second_offset_amount: Ref[TolerancedLengthMeasure] | None = None
 
 
-@entity
 class CompoundFeature(Two5dManufacturingFeature):
     """Several features as one."""
 
     elements: tuple[Ref[MachiningFeature | TransitionFeature], ...]
 
 
-@entity
 class CounterboreHole(CompoundFeature):
     """Hole with a cylindrical sink."""
 
 
-@entity
 class CountersunkHole(CompoundFeature):
     """Hole with a conical sink."""
 
 
-@abstract
-class ReplicateFeature(Two5dManufacturingFeature):
+class ReplicateFeature(Two5dManufacturingFeature, abstract=True):
     """Feature repeated."""
 
     replicate_base_feature: Ref[Two5dManufacturingFeature]
 
 
-@entity
 class GeneralPattern(ReplicateFeature):
     """Feature repeated at placements of its own."""
 
     replicate_locations: tuple[Ref[Axis2Placement3d], ...]
 
 
-@entity
 class CircularOffset(Entity):
     """Copy of a circular pattern that is turned."""
 
@@ -258,14 +230,12 @@ class CircularOffset(Entity):
     index: int
 
 
-@entity
 class CircularOmit(Entity):
     """Copy of a circular pattern that is left out."""
 
     index: int
 
 
-@entity
 class CircularPattern(ReplicateFeature):
     """Feature repeated on a circle."""
 
@@ -277,7 +247,6 @@ class CircularPattern(ReplicateFeature):
     base_feature_rotation: float
 
 
-@entity
 class RectangularOffset(Entity):
     """Copy of a rectangular pattern that is moved."""
 
@@ -287,7 +256,6 @@ class RectangularOffset(Entity):
     column_index: int
 
 
-@entity
 class RectangularOmit(Entity):
     """Copy of a rectangular pattern that is left out."""
 
@@ -295,7 +263,6 @@ class RectangularOmit(Entity):
     column_index: int
 
 
-@entity
 class RectangularPattern(ReplicateFeature):
     """Feature repeated in rows and columns; names after the draft of 2001."""
 
@@ -307,3 +274,55 @@ class RectangularPattern(ReplicateFeature):
     row_layout_direction: Ref[Direction] | None = None
     relocated_base_feature: tuple[Ref[RectangularOffset], ...]
     missing_base_feature: tuple[Ref[RectangularOmit], ...]
+
+
+class PartialAreaDefinition(Entity):
+    """Part of a feature's length."""
+
+    effective_length: float
+    placement: Ref[Axis2Placement3d]
+    maximum_length: float | None = None
+
+
+class SpecificationUsageConstraint(Entity):
+    """Element of a document that applies."""
+
+    element: str
+    class_id: str
+
+
+class Specification(Entity):
+    """Document by its name."""
+
+    constraint: tuple[Ref[SpecificationUsageConstraint], ...]
+    specification_id: str
+    specification_description: str | None = None
+    specification_class: str | None = None
+
+
+class Thread(MachiningFeature, abstract=True):
+    """Thread on a shape."""
+
+    partial_profile: Ref[PartialAreaDefinition]
+    applied_shape: tuple[Ref[MachiningFeature], ...]
+    inner_or_outer_thread: bool
+    qualifier: Ref[DescriptiveParameter] | None = None
+    fit_class: Ref[DescriptiveParameter]
+    form: Ref[DescriptiveParameter]
+    major_diameter: float
+    number_of_threads: Ref[NumericParameter]
+    thread_hand: Ref[DescriptiveParameter]
+
+
+class CatalogueThread(Thread):
+    """Thread by a standard."""
+
+    documentation: Ref[Specification]
+
+
+class DefinedThread(Thread):
+    """Thread by its sizes."""
+
+    pitch_diameter: float
+    minor_diameter: float | None = None
+    crest: float | None = None

@@ -5,7 +5,7 @@ Lengths in mm; what the faces of a solid look like is kept in the file and not m
 
 from __future__ import annotations
 
-from stepnc_model.entities.entity import Entity, abstract, entity
+from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.enums import (
     BSplineCurveForm,
     KnotType,
@@ -16,33 +16,28 @@ from stepnc_model.entities.enums import (
 from stepnc_model.part21.values import Ref, Typed
 
 
-@abstract
-class RepresentationItem(Entity):
+class RepresentationItem(Entity, abstract=True):
     """Anything that geometry is made of."""
 
     name: str
 
 
-@abstract
-class Point(RepresentationItem):
+class Point(RepresentationItem, abstract=True):
     """Location in space."""
 
 
-@entity
 class CartesianPoint(Point):
     """Point by its coordinates, mm."""
 
     coordinates: tuple[float, ...]
 
 
-@entity
 class Direction(RepresentationItem):
     """Direction by its ratios; the length means nothing."""
 
     direction_ratios: tuple[float, ...]
 
 
-@entity
 class Vector(RepresentationItem):
     """Direction with a magnitude."""
 
@@ -50,28 +45,24 @@ class Vector(RepresentationItem):
     magnitude: float
 
 
-@abstract
-class Placement(RepresentationItem):
+class Placement(RepresentationItem, abstract=True):
     """Location of a coordinate system."""
 
     location: Ref[CartesianPoint]
 
 
-@entity
 class Axis1Placement(Placement):
     """Location and axis; the axis is z unless given."""
 
     axis: Ref[Direction] | None = None
 
 
-@entity
 class Axis2Placement2d(Placement):
     """Coordinate system in the plane."""
 
     ref_direction: Ref[Direction] | None = None
 
 
-@entity
 class Axis2Placement3d(Placement):
     """Coordinate system in space: z along ``axis``, x towards ``ref_direction``."""
 
@@ -79,12 +70,10 @@ class Axis2Placement3d(Placement):
     ref_direction: Ref[Direction] | None = None
 
 
-@abstract
-class Curve(RepresentationItem):
+class Curve(RepresentationItem, abstract=True):
     """Anything that has one parameter."""
 
 
-@entity
 class Line(Curve):
     """Unbounded straight line."""
 
@@ -92,21 +81,18 @@ class Line(Curve):
     dir: Ref[Vector]
 
 
-@abstract
-class Conic(Curve):
+class Conic(Curve, abstract=True):
     """Plane curve of second order."""
 
     position: Ref[Axis2Placement2d | Axis2Placement3d]
 
 
-@entity
 class Circle(Conic):
     """Full circle about the z axis of its placement."""
 
     radius: float
 
 
-@entity
 class Ellipse(Conic):
     """Full ellipse; the first half axis lies along x."""
 
@@ -114,7 +100,6 @@ class Ellipse(Conic):
     semi_axis_2: float
 
 
-@entity
 class Helix(Curve):
     """Right-hand screw line about z.
 
@@ -126,19 +111,16 @@ class Helix(Curve):
     pitch: float
 
 
-@abstract
-class BoundedCurve(Curve):
+class BoundedCurve(Curve, abstract=True):
     """Curve with two ends."""
 
 
-@entity
 class Polyline(BoundedCurve):
     """Straight segments from point to point."""
 
     points: tuple[Ref[CartesianPoint], ...]
 
 
-@entity
 class TrimmedCurve(BoundedCurve):
     """Part of a curve between two points or two parameters."""
 
@@ -149,12 +131,10 @@ class TrimmedCurve(BoundedCurve):
     master_representation: TrimmingPreference
 
 
-@abstract
-class FoundedItem(Entity):
-    """What has a meaning only within another item."""
+class FoundedItem(Entity, abstract=True):
+    """Item with a meaning only within another one."""
 
 
-@entity
 class CompositeCurveSegment(FoundedItem):
     """One curve of a chain, and how it meets the next."""
 
@@ -163,7 +143,6 @@ class CompositeCurveSegment(FoundedItem):
     parent_curve: Ref[Curve]
 
 
-@entity
 class CompositeCurve(BoundedCurve):
     """Chain of curves."""
 
@@ -171,7 +150,6 @@ class CompositeCurve(BoundedCurve):
     self_intersect: Logical
 
 
-@entity
 class BSplineCurve(BoundedCurve):
     """Polynomial curve by its control points."""
 
@@ -182,7 +160,6 @@ class BSplineCurve(BoundedCurve):
     self_intersect: Logical
 
 
-@entity
 class BSplineCurveWithKnots(BSplineCurve):
     """Polynomial curve with its knots spelt out."""
 
@@ -191,36 +168,30 @@ class BSplineCurveWithKnots(BSplineCurve):
     knot_spec: KnotType
 
 
-@abstract
-class Surface(RepresentationItem):
+class Surface(RepresentationItem, abstract=True):
     """Anything that has two parameters."""
 
 
-@entity
 class ElementarySurface(Surface):
     """Simple surface; drafts of ISO 14649 write it where they mean a plane."""
 
     position: Ref[Axis2Placement3d]
 
 
-@entity
 class Plane(ElementarySurface):
     """Plane through the origin of its placement, normal to z."""
 
 
-@entity
 class CylindricalSurface(ElementarySurface):
     """Unbounded cylinder about z."""
 
     radius: float
 
 
-@abstract
-class BoundedSurface(Surface):
+class BoundedSurface(Surface, abstract=True):
     """Surface with a boundary."""
 
 
-@entity
 class Block(RepresentationItem):
     """Box from the origin of its placement along the positive axes, mm."""
 
@@ -230,7 +201,6 @@ class Block(RepresentationItem):
     z: float
 
 
-@entity
 class RightCircularCylinder(RepresentationItem):
     """Cylinder that rises from its placement along the axis, mm."""
 
@@ -239,7 +209,6 @@ class RightCircularCylinder(RepresentationItem):
     radius: float
 
 
-@entity
 class AdvancedBrepShapeRepresentation(Entity):
     """Solid by its faces; faces are not modelled, the references are."""
 

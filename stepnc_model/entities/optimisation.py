@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from enum import StrEnum
 
-from stepnc_model.entities.entity import Entity, abstract, entity
+from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.measures import NumericParameter
 from stepnc_model.entities.operations import MachiningOperation
 from stepnc_model.part21.values import Ref
@@ -29,8 +29,7 @@ class FaceMillingImmersion(StrEnum):
     BILATERAL_PART_IMMERSION = "BILATERAL_PART_IMMERSION"
 
 
-@abstract
-class Optimisation(Entity):
+class Optimisation(Entity, abstract=True):
     """Supertype ``optimisation``."""
 
     its_id: str
@@ -38,7 +37,6 @@ class Optimisation(Entity):
     process_description: str | None = None
 
 
-@entity
 class TimeCriticalOptimisation(Optimisation):
     """EXPRESS ``time_critical_optimisation``: mm per tooth and mm."""
 
@@ -47,7 +45,6 @@ class TimeCriticalOptimisation(Optimisation):
     its_record: Ref[OptimisationRecord] | None = None
 
 
-@entity
 class QualityCriticalOptimisation(Optimisation):
     """EXPRESS ``quality_critical_optimisation``: mm per tooth and mm."""
 
@@ -56,7 +53,6 @@ class QualityCriticalOptimisation(Optimisation):
     its_record: Ref[OptimisationRecord] | None = None
 
 
-@entity
 class EnergyCriticalOptimisation(Optimisation):
     """EXPRESS ``energy_critical_optimisation``: mm per tooth and mm."""
 
@@ -65,19 +61,16 @@ class EnergyCriticalOptimisation(Optimisation):
     its_record: Ref[OptimisationRecord] | None = None
 
 
-@abstract
-class Power(Entity):
+class Power(Entity, abstract=True):
     """Supertype ``power``: a numeric parameter in kW."""
 
     its_power_property: Ref[NumericParameter]
 
 
-@entity
 class MachinePower(Power):
     """EXPRESS ``machine_power``: what the main drive has."""
 
 
-@entity
 class MainCuttingPower(Power):
     """EXPRESS ``main_cutting_power``: what the cut takes, at a signed speed in rev/s."""
 
@@ -85,7 +78,6 @@ class MainCuttingPower(Power):
     spindle_speed: float
 
 
-@entity
 class CuttingForce(Entity):
     """EXPRESS ``cutting_force``: what the mean tangential force follows from."""
 
@@ -100,7 +92,6 @@ class CuttingForce(Entity):
     """mm"""
 
 
-@entity
 class FaceMillingType(Entity):
     """EXPRESS ``face_milling_type``: the angle of contact in degrees, 180 in a full cut."""
 
@@ -108,7 +99,6 @@ class FaceMillingType(Entity):
     immersion_type: FaceMillingImmersion
 
 
-@entity
 class OptimisationRecord(Entity):
     """EXPRESS ``optimisation_record``: how an optimum came about."""
 
@@ -125,7 +115,6 @@ class OptimisationRecord(Entity):
     """mm, on the way down into the material; absent: the feed of the cut"""
 
 
-@entity
 class PredictedValues(Entity):
     """EXPRESS ``predicted_values``: what the models expect of the whole operation."""
 
@@ -141,7 +130,6 @@ class PredictedValues(Entity):
     """J"""
 
 
-@entity
 class ProgrammedValues(Entity):
     """EXPRESS ``programmed_values``: what the file said before the first optimisation."""
 
@@ -157,7 +145,6 @@ class ProgrammedValues(Entity):
     """mm"""
 
 
-@entity
 class FeedProfile(Entity):
     """EXPRESS ``feed_profile``: feed along the path, linear between stations."""
 
@@ -168,7 +155,6 @@ class FeedProfile(Entity):
     """m/s, one for each station"""
 
 
-@entity
 class Outcome(Entity):
     """EXPRESS ``outcome``: what was measured while an operation ran."""
 
@@ -187,7 +173,6 @@ class Outcome(Entity):
     """where the samples are kept"""
 
 
-@entity
 class Correction(Entity):
     """EXPRESS ``correction``: what was learned for a machine, a material and a tool."""
 

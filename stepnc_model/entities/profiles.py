@@ -1,33 +1,181 @@
-"""Profiles, paths, ends of slots and tapers (ISO 14649-10); mm and degrees."""
+"""Geometry of features: regions, bottoms, profiles, paths, ends of slots (ISO 14649-10).
+
+Lengths in mm, angles in degrees.
+"""
 
 from __future__ import annotations
 
-from stepnc_model.entities.entity import Entity, abstract, entity
-from stepnc_model.entities.geometry import Axis2Placement3d, BoundedCurve, Direction
+from stepnc_model.entities.entity import Entity
+from stepnc_model.entities.enums import BottomOrSide
+from stepnc_model.entities.geometry import (
+    Axis2Placement3d,
+    BoundedCurve,
+    BoundedSurface,
+    CartesianPoint,
+    Direction,
+    Plane,
+)
 from stepnc_model.entities.measures import NumericParameter, TolerancedLengthMeasure
+from stepnc_model.entities.operations import MachiningOperation
+from stepnc_model.entities.workpiece import Workpiece
 from stepnc_model.part21.values import Ref
 
 
-@abstract
-class Profile(Entity):
+class ManufacturingFeature(Entity, abstract=True):
+    """Shape to be made, with the operations that make it."""
+
+    its_id: str
+    its_workpiece: Ref[Workpiece]
+    its_operations: tuple[Ref[MachiningOperation], ...]
+
+
+class Region(ManufacturingFeature, abstract=True):
+    """Part of a free-form surface."""
+
+    feature_placement: Ref[Axis2Placement3d] | None = None
+
+
+class RegionProjection(Region):
+    """Region below a closed curve."""
+
+    proj_curve: Ref[BoundedCurve]
+    proj_dir: Ref[Direction]
+    depth: Ref[TolerancedLengthMeasure]
+
+
+class RegionSurfaceList(Region):
+    """Surfaces one by one."""
+
+    surface_list: tuple[Ref[BoundedSurface], ...]
+
+
+class TopologicalRegion(Region):
+    """Faces that hang together; the second supertype, ``open_shell``, is spelt out."""
+
+    name: str
+    cfs_faces: tuple[Ref[Entity], ...]
+
+
+class MachinedSurface(Entity):
+    """Bottom or side of a feature.
+
+    ISO 14649-10 names ``machining_feature``, which leaves out turning features; a turned seat
+    has a roughness too, so any manufacturing feature is read.
+    """
+
+    its_machining_feature: Ref[ManufacturingFeature]
+    surface_element: BottomOrSide
+
+
+class SurfaceTextureParameter(Entity):
+    """Roughness by its parameter, the unit as the parameter's standard has it (µm)."""
+
+    its_value: float
+    parameter_name: str
+    measuring_method: str
+    parameter_index: str | None = None
+    applied_surfaces: tuple[Ref[MachinedSurface], ...]
+
+
+class HoleBottomCondition(Entity, abstract=True):
+    """Bottom of a hole."""
+
+
+class ThroughBottomCondition(HoleBottomCondition):
+    """The hole goes through."""
+
+
+class BlindBottomCondition(HoleBottomCondition, abstract=True):
+    """The hole has a bottom."""
+
+
+class FlatHoleBottom(BlindBottomCondition):
+    """Flat bottom."""
+
+
+class FlatWithRadiusHoleBottom(BlindBottomCondition):
+    """Flat bottom with a rounded edge."""
+
+    corner_radius: Ref[TolerancedLengthMeasure]
+
+
+class SphericalHoleBottom(BlindBottomCondition):
+    """Round bottom."""
+
+    radius: Ref[TolerancedLengthMeasure]
+
+
+class ConicalHoleBottom(BlindBottomCondition):
+    """Bottom that a drill leaves."""
+
+    tip_angle: float
+    tip_radius: Ref[TolerancedLengthMeasure] | None = None
+
+
+class PocketBottomCondition(Entity, abstract=True):
+    """Bottom of a pocket."""
+
+
+class ThroughPocketBottomCondition(PocketBottomCondition):
+    """The pocket goes through."""
+
+
+class PlanarPocketBottomCondition(PocketBottomCondition):
+    """Flat floor."""
+
+
+class RadiusedPocketBottomCondition(PocketBottomCondition):
+    """Floor that is part of a sphere."""
+
+    floor_radius_center: Ref[CartesianPoint]
+    floor_radius: Ref[TolerancedLengthMeasure]
+
+
+class GeneralPocketBottomCondition(PocketBottomCondition):
+    """Floor of any shape."""
+
+    shape: Ref[Region]
+
+
+class ThroughProfileFloor(Entity):
+    """The profile has no floor."""
+
+
+class ProfileFloor(Entity, abstract=True):
+    """Floor of a profile."""
+
+    floor_radius: Ref[NumericParameter] | None = None
+    start_or_end: bool
+
+
+class GeneralProfileFloor(ProfileFloor):
+    """Floor of any shape, by its face."""
+
+    floor: Ref[Entity]
+
+
+class PlanarProfileFloor(ProfileFloor):
+    """Flat floor."""
+
+    floor: Ref[Plane]
+
+
+class Profile(Entity, abstract=True):
     """Plane curve that bounds a feature or is swept."""
 
     placement: Ref[Axis2Placement3d] | None = None
 
 
-@abstract
-class OpenProfile(Profile):
+class OpenProfile(Profile, abstract=True):
     """Profile with two ends."""
 
 
-@entity
 class LinearProfile(OpenProfile):
     """Straight line."""
 
     profile_length: Ref[NumericParameter]
 
 
-@entity
 class SquareUProfile(OpenProfile):
     """Floor and two walls, each with an angle and a radius."""
 
@@ -38,14 +186,12 @@ class SquareUProfile(OpenProfile):
     second_angle: float
 
 
-@entity
 class RoundedUProfile(OpenProfile):
     """Two walls and a half circle."""
 
     width: Ref[TolerancedLengthMeasure]
 
 
-@entity
 class TeeProfile(OpenProfile):
     """Section of a T slot."""
 
@@ -59,7 +205,6 @@ class TeeProfile(OpenProfile):
     second_offset: Ref[TolerancedLengthMeasure]
 
 
-@entity
 class VeeProfile(OpenProfile):
     """Two lines that meet in a radius."""
 
@@ -68,7 +213,6 @@ class VeeProfile(OpenProfile):
     tilt_angle: float
 
 
-@entity
 class PartialCircularProfile(OpenProfile):
     """Arc."""
 
@@ -76,19 +220,16 @@ class PartialCircularProfile(OpenProfile):
     sweep_angle: float
 
 
-@entity
 class GeneralProfile(OpenProfile):
     """Any curve with two ends."""
 
     its_profile: Ref[BoundedCurve]
 
 
-@abstract
-class ClosedProfile(Profile):
+class ClosedProfile(Profile, abstract=True):
     """Profile that encloses an area."""
 
 
-@entity
 class RectangularClosedProfile(ClosedProfile):
     """Rectangle about the origin of its placement."""
 
@@ -96,14 +237,12 @@ class RectangularClosedProfile(ClosedProfile):
     profile_length: Ref[TolerancedLengthMeasure]
 
 
-@entity
 class CircularClosedProfile(ClosedProfile):
     """Circle."""
 
     diameter: Ref[TolerancedLengthMeasure]
 
 
-@entity
 class NgonClosedProfile(ClosedProfile):
     """Regular polygon; NGON_PROFILE in the draft of 2001."""
 
@@ -112,28 +251,24 @@ class NgonClosedProfile(ClosedProfile):
     circumscribed_or_across_flats: bool
 
 
-@entity
 class GeneralClosedProfile(ClosedProfile):
     """Any closed curve."""
 
     closed_profile_shape: Ref[BoundedCurve]
 
 
-@abstract
-class TravelPath(Entity):
+class TravelPath(Entity, abstract=True):
     """Way along which a profile is swept."""
 
     placement: Ref[Axis2Placement3d] | None = None
 
 
-@entity
 class GeneralPath(TravelPath):
     """Along any curve."""
 
     swept_path: Ref[BoundedCurve]
 
 
-@entity
 class LinearPath(TravelPath):
     """Along a straight line."""
 
@@ -141,41 +276,34 @@ class LinearPath(TravelPath):
     its_direction: Ref[Direction]
 
 
-@abstract
-class CircularPath(TravelPath):
+class CircularPath(TravelPath, abstract=True):
     """Along a circle."""
 
     radius: Ref[TolerancedLengthMeasure]
 
 
-@entity
 class CompleteCircularPath(CircularPath):
     """Once around."""
 
 
-@entity
 class PartialCircularPath(CircularPath):
     """Along an arc."""
 
     sweep_angle: float
 
 
-@abstract
-class SlotEndType(Entity):
-    """How a slot ends."""
+class SlotEndType(Entity, abstract=True):
+    """End of a slot."""
 
 
-@entity
 class OpenSlotEndType(SlotEndType):
     """The tool runs out."""
 
 
-@entity
 class RadiusedSlotEndType(SlotEndType):
     """Half circle as wide as the slot."""
 
 
-@entity
 class FlatSlotEndType(SlotEndType):
     """Wall with a radius in each corner."""
 
@@ -183,26 +311,22 @@ class FlatSlotEndType(SlotEndType):
     corner_radius2: Ref[TolerancedLengthMeasure]
 
 
-@entity
 class WoodruffSlotEndType(SlotEndType):
     """Arc that a disc cutter leaves in the floor."""
 
     radius: Ref[TolerancedLengthMeasure]
 
 
-@entity
 class LoopSlotEndType(SlotEndType):
     """The end meets the start."""
 
 
-@entity
 class DiameterTaper(Entity):
     """Taper by the diameter at its end."""
 
     final_diameter: Ref[TolerancedLengthMeasure]
 
 
-@entity
 class AngleTaper(Entity):
     """Taper by its angle."""
 

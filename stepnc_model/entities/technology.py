@@ -5,28 +5,25 @@ Numbers are kept in the units of ISO 14649-10 §4.2.1: m/s, rev/s, mm/tooth, Pa,
 
 from __future__ import annotations
 
-from stepnc_model.entities.entity import Entity, abstract, entity
+from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.enums import ToolReferencePoint
 from stepnc_model.entities.geometry import Direction
 from stepnc_model.entities.measures import PropertyParameter
 from stepnc_model.part21.values import Ref
 
 
-@abstract
-class Technology(Entity):
-    """What every technology programs."""
+class Technology(Entity, abstract=True):
+    """Base of all technologies: feed, speed, inhibitions."""
 
     feedrate: float | None = None
     """m/s"""
     feedrate_reference: ToolReferencePoint
 
 
-@entity
 class AdaptiveControl(Entity):
     """Adaptive control of the machine; the standard leaves the content to vendors."""
 
 
-@entity
 class MillingTechnology(Technology):
     """Cutting conditions of a rotating tool.
 
@@ -46,7 +43,6 @@ class MillingTechnology(Technology):
     its_adaptive_control: Ref[AdaptiveControl] | None = None
 
 
-@entity
 class ProcessModel(Entity):
     """Model of the process, by the file that holds its data."""
 
@@ -54,19 +50,16 @@ class ProcessModel(Entity):
     its_type: str
 
 
-@entity
 class ProcessModelList(Entity):
     """Process models of one operation."""
 
     its_list: tuple[Ref[ProcessModel], ...]
 
 
-@abstract
-class MachineFunctions(Entity):
-    """What the machine does besides moving."""
+class MachineFunctions(Entity, abstract=True):
+    """Machine functions besides moves."""
 
 
-@entity
 class MillingMachineFunctions(MachineFunctions):
     """Coolant, clamping and chips on a milling machine; pressures in Pa."""
 
@@ -82,34 +75,28 @@ class MillingMachineFunctions(MachineFunctions):
     other_functions: tuple[Ref[PropertyParameter], ...]
 
 
-@abstract
-class ToolDirection(Entity):
-    """How the tool stands."""
+class ToolDirection(Entity, abstract=True):
+    """Direction of the tool's axis."""
 
 
-@entity
 class TwoAxes(ToolDirection):
     """Tool of a lathe."""
 
 
-@entity
 class ThreeAxes(ToolDirection):
     """Tool along z."""
 
 
-@abstract
-class ToolDirectionForMilling(ToolDirection):
+class ToolDirectionForMilling(ToolDirection, abstract=True):
     """Tool that may be inclined."""
 
 
-@entity
 class ThreeAxesTiltedTool(ToolDirectionForMilling):
     """Tool along a direction that stays."""
 
     its_tool_direction: Ref[Direction]
 
 
-@entity
 class FiveAxesConstTiltYaw(ToolDirectionForMilling):
     """Tool at constant angles to the path, degrees."""
 
@@ -117,6 +104,5 @@ class FiveAxesConstTiltYaw(ToolDirectionForMilling):
     yaw_angle: float
 
 
-@entity
 class FiveAxesVarTiltYaw(ToolDirectionForMilling):
     """Tool whose angles the tool path tells."""

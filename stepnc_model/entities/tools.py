@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from stepnc_model.entities.entity import Entity, abstract, entity
+from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.enums import Hand
 from stepnc_model.entities.geometry import Direction
 from stepnc_model.entities.technology import MillingTechnology
@@ -10,21 +10,18 @@ from stepnc_model.entities.workpiece import Material
 from stepnc_model.part21.values import Ref
 
 
-@abstract
-class MachiningTool(Entity):
-    """What is clamped in the machine."""
+class MachiningTool(Entity, abstract=True):
+    """Machining tool."""
 
     its_id: str
 
 
-@entity
 class TouchProbe(Entity):
     """Probe that measures by touching."""
 
     its_id: str
 
 
-@entity
 class CuttingEdgeTechnologicalData(Entity):
     """Angles of the cutting edge."""
 
@@ -33,7 +30,6 @@ class CuttingEdgeTechnologicalData(Entity):
     aux_angle: float | None = None
 
 
-@entity
 class CuttingComponent(Entity):
     """One cutting edge; drafts write four parameters, the standard of 2004 five."""
 
@@ -45,7 +41,6 @@ class CuttingComponent(Entity):
     its_technology: Ref[MillingTechnology] | None = None
 
 
-@entity
 class MillingToolDimension(Entity):
     """Sizes of a tool body; TOOL_DIMENSION in the draft of 2001."""
 
@@ -58,14 +53,12 @@ class MillingToolDimension(Entity):
     edge_center_horizontal: float | None = None
 
 
-@abstract
-class ToolBody(Entity):
-    """What carries the cutting edges."""
+class ToolBody(Entity, abstract=True):
+    """Body that carries the cutting edges."""
 
 
-@abstract
-class MillingToolBody(ToolBody):
-    """What every rotating tool body has."""
+class MillingToolBody(ToolBody, abstract=True):
+    """Base of all rotating tool bodies."""
 
     dimension: Ref[MillingToolDimension]
     number_of_teeth: int | None = None
@@ -74,8 +67,7 @@ class MillingToolBody(ToolBody):
     pilot_length: float | None = None
 
 
-@abstract
-class CuttingTool(MachiningTool):
+class CuttingTool(MachiningTool, abstract=True):
     """Tool body with its edges; instances named so in drafts are milling tools."""
 
     its_tool_body: Ref[ToolBody]
@@ -83,7 +75,6 @@ class CuttingTool(MachiningTool):
     overall_assembly_length: float | None = None
 
 
-@entity
 class MillingCuttingTool(CuttingTool):
     """Rotating tool ready for use."""
 
@@ -91,164 +82,136 @@ class MillingCuttingTool(CuttingTool):
     tool_holder_diameter_for_spindle_orientation: float | None = None
 
 
-@abstract
-class MillingCutter(MillingToolBody):
+class MillingCutter(MillingToolBody, abstract=True):
     """Tool that cuts with its side."""
 
 
-@entity
 class Facemill(MillingCutter):
     """Cutter for faces."""
 
 
-@entity
 class Endmill(MillingCutter):
     """Cutter with edges on end and side."""
 
 
-@entity
 class TaperedEndmill(Endmill):
     """End mill whose side is a cone."""
 
     taper_angle: float | None = None
 
 
-@entity
 class BallEndmill(Endmill):
     """End mill whose end is half a sphere."""
 
 
-@entity
 class BullnoseEndmill(Endmill):
     """End mill with rounded corners."""
 
 
-@entity
 class SideMill(MillingCutter):
     """Disc cutter."""
 
     cutter_width: float | None = None
 
 
-@entity
 class TSlotMill(MillingCutter):
     """Cutter for T slots."""
 
     cutting_thickness: float | None = None
 
 
-@entity
 class DovetailMill(MillingCutter):
     """Cutter for dovetails."""
 
     included_angle: float | None = None
 
 
-@entity
 class WoodruffKeyseatMill(MillingCutter):
     """Cutter for Woodruff keys."""
 
     cutter_width: float | None = None
 
 
-@entity
 class ThreadMill(MillingCutter):
     """Cutter for threads."""
 
 
-@abstract
-class Drill(MillingToolBody):
+class Drill(MillingToolBody, abstract=True):
     """Tool that cuts with its point."""
 
 
-@entity
 class TwistDrill(Drill):
     """Drill with helical flutes."""
 
 
-@entity
 class TaperedDrill(TwistDrill):
     """Twist drill whose side is a cone."""
 
     taper_angle: float | None = None
 
 
-@entity
 class SpadeDrill(Drill):
     """Drill with a flat blade."""
 
 
-@entity
 class CenterDrill(MillingToolBody):
     """Drill for centre holes."""
 
 
-@entity
 class Countersink(MillingToolBody):
     """Tool for conical sinks."""
 
     countersink_radius: float | None = None
 
 
-@entity
 class BacksideCountersink(Countersink):
     """Countersink that works from behind."""
 
 
-@entity
 class Counterbore(MillingToolBody):
     """Tool for cylindrical sinks."""
 
 
-@entity
 class BacksideCounterbore(Counterbore):
     """Counterbore that works from behind."""
 
 
-@entity
 class Reamer(MillingToolBody):
     """Tool that finishes a hole."""
 
 
-@entity
 class TaperedReamer(Reamer):
     """Reamer whose side is a cone."""
 
     taper_angle: float | None = None
 
 
-@entity
 class CombinedDrillAndReamer(Reamer):
     """Reamer with a drill before it."""
 
     drill_length: float | None = None
 
 
-@entity
 class Tap(MillingToolBody):
     """Tool that cuts a thread in one go."""
 
 
-@entity
 class TaperedTap(Tap):
     """Tap whose side is a cone."""
 
     taper_angle: float | None = None
 
 
-@entity
 class CombinedDrillAndTap(Tap):
     """Tap with a drill before it."""
 
     drill_length: float | None = None
 
 
-@entity
 class MillingThreadingTool(MillingToolBody):
     """Tool for thread drilling; THREADING_TOOL in the draft of 2001."""
 
 
-@entity
 class BoringTool(MillingToolBody):
     """Tool with one adjustable edge.
 
@@ -259,7 +222,6 @@ class BoringTool(MillingToolBody):
     is_adjustable: bool | None = None
 
 
-@entity
 class UserDefinedTool(MillingToolBody):
     """Tool by a name that maker and user agree on."""
 

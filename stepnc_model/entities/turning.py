@@ -1,6 +1,7 @@
-"""Technology, machine functions and operations of turning (ISO 14649-12).
+"""Features, operations and strategies of turning (ISO 14649-12).
 
-Numbers are kept in the units of ISO 14649-10 §4.2.1: m/s, rev/s, mm per revolution, Pa.
+Numbers are kept in the units of ISO 14649-10 §4.2.1: m/s, rev/s, mm per revolution, Pa, mm and
+degrees. A feed is a typed value, ``FEED_VELOCITY_TYPE`` in m/s or ``FEED_PER_REV_TYPE`` in mm.
 
 Order of the attributes after the flattened XSD of ISO 14649-12, less its private
 ``ref_dt_cutting_tool``; it was not checked against the text of the standard.
@@ -8,23 +9,105 @@ Order of the attributes after the flattened XSD of ISO 14649-12, less its privat
 
 from __future__ import annotations
 
-from stepnc_model.entities.approach import ApproachRetractStrategy
-from stepnc_model.entities.entity import Entity, abstract, entity
-from stepnc_model.entities.enums import CoolantSelect
+from stepnc_model.entities.entity import Entity
+from stepnc_model.entities.enums import (
+    CoolantSelect,
+    ThreadCutDepthType,
+    ThreadingDirectionType,
+)
+from stepnc_model.entities.features import PartialAreaDefinition, Two5dManufacturingFeature
 from stepnc_model.entities.geometry import Direction
-from stepnc_model.entities.measures import PropertyParameter
+from stepnc_model.entities.measures import PropertyParameter, TolerancedLengthMeasure
+from stepnc_model.entities.milling import ApproachRetractStrategy
 from stepnc_model.entities.operations import MachiningOperation
+from stepnc_model.entities.profiles import (
+    AngleTaper,
+    DiameterTaper,
+    GeneralProfile,
+    LinearProfile,
+    OpenProfile,
+    PartialCircularProfile,
+    VeeProfile,
+)
 from stepnc_model.entities.technology import (
     AdaptiveControl,
     MachineFunctions,
     ProcessModelList,
     Technology,
 )
-from stepnc_model.entities.turning_strategies import TurningMachiningStrategy
 from stepnc_model.part21.values import Ref, Typed
 
 
-@entity
+class TurningMachiningStrategy(Entity, abstract=True):
+    """Strategy of turning."""
+
+    overcut_length: float | None = None
+    allow_multiple_passes: bool | None = None
+    cutting_depth: tuple[float, ...]
+    """one depth for all passes, or one for each"""
+    variable_feedrate: float | None = None
+    """ratio of the feedrate"""
+
+
+class UnidirectionalTurning(TurningMachiningStrategy):
+    """Passes in one direction."""
+
+    feed_direction: Ref[Direction] | None = None
+    back_path_direction: Ref[Direction] | None = None
+    lift_direction: Ref[Direction] | None = None
+    stepover_direction: Ref[Direction] | None = None
+    lift_height: float | None = None
+    lift_feed: Typed | float | None = None
+    stepover_feed: Typed | float | None = None
+
+
+class BidirectionalTurning(TurningMachiningStrategy):
+    """Passes to and fro."""
+
+    feed_direction: Ref[Direction] | None = None
+    stepover_direction: Ref[Direction] | None = None
+    stepover_feed: Typed | float | None = None
+
+
+class ContourTurning(TurningMachiningStrategy):
+    """Passes along the contour."""
+
+    feed_direction: Ref[Direction] | None = None
+    back_path_direction: Ref[Direction] | None = None
+    lift_direction: Ref[Direction] | None = None
+    stepover_direction: Ref[Direction] | None = None
+    lift_height: float | None = None
+    lift_feed: Typed | float | None = None
+    stepover_feed: Typed | float | None = None
+    variable_stepover_feed: float | None = None
+
+
+class ThreadStrategy(TurningMachiningStrategy):
+    """Passes of a thread."""
+
+    cut_in_amount_function: ThreadCutDepthType
+    threading_direction: ThreadingDirectionType
+    path_return_angle: float | None = None
+    lift_height: float | None = None
+
+
+class GroovingStrategy(TurningMachiningStrategy):
+    """Plunges side by side."""
+
+    grooving_direction: Ref[Direction] | None = None
+    travel_distance: float | None = None
+
+
+class MultistepGroovingStrategy(GroovingStrategy):
+    """Plunges with retracts that break the chip."""
+
+    retract_distance: float
+
+
+class ExplicitTurningStrategy(TurningMachiningStrategy):
+    """As the tool path says."""
+
+
 class ConstSpindleSpeed(Entity):
     """The spindle turns evenly."""
 
@@ -32,7 +115,6 @@ class ConstSpindleSpeed(Entity):
     """rev/s; negative is clockwise"""
 
 
-@entity
 class ConstCuttingSpeed(Entity):
     """The spindle follows the diameter."""
 
@@ -42,7 +124,6 @@ class ConstCuttingSpeed(Entity):
     """rev/s"""
 
 
-@entity
 class TurningTechnology(Technology):
     """Cutting conditions of a lathe."""
 
@@ -55,7 +136,6 @@ class TurningTechnology(Technology):
     its_adaptive_control: Ref[AdaptiveControl] | None = None
 
 
-@entity
 class TurningMachineFunctions(MachineFunctions):
     """Coolant, clamping, chips and rests of a lathe; pressure in Pa."""
 
@@ -72,8 +152,7 @@ class TurningMachineFunctions(MachineFunctions):
     follow_rest: bool | None = None
 
 
-@abstract
-class TurningMachiningOperation(MachiningOperation):
+class TurningMachiningOperation(MachiningOperation, abstract=True):
     """Operation of a lathe."""
 
     approach: Ref[ApproachRetractStrategy] | None = None
@@ -81,25 +160,21 @@ class TurningMachiningOperation(MachiningOperation):
     its_machining_strategy: Ref[TurningMachiningStrategy] | None = None
 
 
-@abstract
-class Facing(TurningMachiningOperation):
+class Facing(TurningMachiningOperation, abstract=True):
     """Turning of a face."""
 
     allowance: float | None = None
 
 
-@entity
 class FacingRough(Facing):
     """Roughing of a face."""
 
 
-@entity
 class FacingFinish(Facing):
     """Finishing of a face."""
 
 
-@abstract
-class Grooving(TurningMachiningOperation):
+class Grooving(TurningMachiningOperation, abstract=True):
     """Plunging into a groove."""
 
     dwell: Typed | float | None = None
@@ -107,55 +182,133 @@ class Grooving(TurningMachiningOperation):
     allowance: float | None = None
 
 
-@entity
 class GroovingRough(Grooving):
     """Roughing of a groove."""
 
 
-@entity
 class GroovingFinish(Grooving):
     """Finishing of a groove."""
 
 
-@entity
 class CuttingIn(Grooving):
     """Cutting in or off."""
 
 
-@abstract
-class Contouring(TurningMachiningOperation):
+class Contouring(TurningMachiningOperation, abstract=True):
     """Turning along a contour."""
 
     allowance: float | None = None
 
 
-@entity
 class ContouringRough(Contouring):
     """Roughing of a contour."""
 
 
-@entity
 class ContouringFinish(Contouring):
     """Finishing of a contour."""
 
 
-@abstract
-class Threading(TurningMachiningOperation):
+class Threading(TurningMachiningOperation, abstract=True):
     """Turning of a thread."""
 
     allowance: float | None = None
 
 
-@entity
 class ThreadingRough(Threading):
     """Roughing of a thread."""
 
 
-@entity
 class ThreadingFinish(Threading):
     """Finishing of a thread."""
 
 
-@entity
 class Knurling(TurningMachiningOperation):
     """Pressing of a knurl."""
+
+
+class TurningFeature(Two5dManufacturingFeature, abstract=True):
+    """Feature about the axis of a lathe."""
+
+
+class OuterRound(TurningFeature, abstract=True):
+    """Outside diameter."""
+
+    diameter_at_placement: Ref[TolerancedLengthMeasure]
+
+
+class OuterDiameter(OuterRound):
+    """Cylinder or cone."""
+
+    feature_length: Ref[TolerancedLengthMeasure]
+    reduced_size: Ref[DiameterTaper | AngleTaper] | None = None
+
+
+class OuterDiameterToShoulder(OuterRound):
+    """Cylinder that ends at a shoulder."""
+
+    v_shape_boundary: Ref[VeeProfile]
+
+
+class RevolvedFeature(TurningFeature, abstract=True):
+    """Profile turned about the axis at a radius, mm."""
+
+    material_side: Ref[Direction] | None = None
+    radius: float
+
+
+class RevolvedFlat(RevolvedFeature):
+    """Face or cone."""
+
+    flat_edge_shape: Ref[LinearProfile]
+
+
+class RevolvedRound(RevolvedFeature):
+    """Rounded edge."""
+
+    rounded_edge_shape: Ref[PartialCircularProfile]
+
+
+class Groove(RevolvedFeature):
+    """Groove in a diameter or a face."""
+
+    sweep: Ref[OpenProfile]
+
+
+class GeneralRevolution(RevolvedFeature):
+    """Contour of any shape."""
+
+    outer_edge_profile: Ref[GeneralProfile]
+
+
+class Knurl(TurningFeature, abstract=True):
+    """Knurled surface."""
+
+    base_feature: Ref[TurningFeature]
+    partial_profile: Ref[PartialAreaDefinition] | None = None
+    tooth_depth: Ref[TolerancedLengthMeasure] | None = None
+    diametral_pitch: Ref[TolerancedLengthMeasure] | None = None
+    root_fillet: Ref[TolerancedLengthMeasure] | None = None
+    number_of_teeth: int | None = None
+    major_diameter: Ref[TolerancedLengthMeasure] | None = None
+    nominal_diameter: Ref[TolerancedLengthMeasure] | None = None
+
+
+class StraightKnurl(Knurl):
+    """Teeth along the axis."""
+
+
+class DiagonalKnurl(Knurl):
+    """Teeth along one helix."""
+
+    helix_angle: float
+
+
+class DiamondKnurl(Knurl):
+    """Teeth along two helices."""
+
+    helix1_angle: float
+    helix2_angle: float | None = None
+
+
+class ToolKnurl(Knurl):
+    """As the knurling tool leaves it."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from stepnc_model.entities.entity import Entity, abstract, entity
+from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.enums import (
     HandOfToolType,
     KnurlPatternType,
@@ -15,19 +15,16 @@ from stepnc_model.entities.tools import MachiningTool
 from stepnc_model.part21.values import Ref
 
 
-@abstract
-class CornerTransition(Entity):
+class CornerTransition(Entity, abstract=True):
     """Corner of an insert."""
 
 
-@entity
 class RoundedCorner(CornerTransition):
     """Corner with a nose radius."""
 
     corner_radius: float
 
 
-@entity
 class ChamferedCorner(CornerTransition):
     """Corner with a chamfer."""
 
@@ -36,7 +33,6 @@ class ChamferedCorner(CornerTransition):
     corner_chamfer_width: float | None = None
 
 
-@entity
 class CuttingEdgeProperties(Entity):
     """Cutting edge of a turning tool."""
 
@@ -52,9 +48,8 @@ class CuttingEdgeProperties(Entity):
     maximum_end_cutting_depth: float | None = None
 
 
-@entity
 class TurningMachineCuttingTool(MachiningTool):
-    """What every turning tool has."""
+    """Base of all turning tools."""
 
     functional_length: float
     f_dimension: float
@@ -65,12 +60,10 @@ class TurningMachineCuttingTool(MachiningTool):
     hand_of_tool: HandOfToolType | None = None
 
 
-@entity
 class GeneralTurningTool(TurningMachineCuttingTool):
     """Tool for turning, facing and boring."""
 
 
-@entity
 class TurningThreadingTool(TurningMachineCuttingTool):
     """Tool for threads."""
 
@@ -81,7 +74,6 @@ class TurningThreadingTool(TurningMachineCuttingTool):
     thread_form_type: str
 
 
-@entity
 class GroovingTool(TurningMachineCuttingTool):
     """Tool for grooves."""
 
@@ -92,7 +84,6 @@ class GroovingTool(TurningMachineCuttingTool):
     minimum_axial_grooving_diameter: float | None = None
 
 
-@entity
 class KnurlingTool(TurningMachineCuttingTool):
     """Tool for knurls; own attributes after AP238."""
 
@@ -102,7 +93,6 @@ class KnurlingTool(TurningMachineCuttingTool):
     pitch: float | None = None
 
 
-@entity
 class UserDefinedTurningTool(TurningMachineCuttingTool):
     """Tool by a name that maker and user agree on."""
 

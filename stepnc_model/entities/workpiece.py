@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from stepnc_model.entities.entity import Entity, entity
+from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.geometry import (
     AdvancedBrepShapeRepresentation,
     Block,
@@ -13,7 +13,6 @@ from stepnc_model.entities.measures import PropertyParameter
 from stepnc_model.part21.values import Ref
 
 
-@entity
 class Material(Entity):
     """Material by its names and properties."""
 
@@ -22,9 +21,8 @@ class Material(Entity):
     material_property: tuple[Ref[PropertyParameter], ...]
 
 
-@entity
 class Workpiece(Entity):
-    """What is machined, or what it is made from."""
+    """Workpiece: the part, or the raw piece that it is made from."""
 
     its_id: str
     its_material: Ref[Material] | None = None

@@ -9,8 +9,7 @@ group is done: 32 MB of slashes would take 4 GB. What is longer is scanned in ru
 
 import re
 
-from stepnc_model.part21.places import Slip, error_at
-from stepnc_model.part21.slips import Slips
+from stepnc_model.part21.places import Slips, SyntaxSlip, error_at
 
 COMMENT = rb"(?>/\*(?s:.*?)\*/)"
 """A comment; within it ``/*`` is text."""
@@ -23,7 +22,7 @@ STRING = rb"'[^']*+'"
 """A string, or the piece of one up to a doubled apostrophe."""
 BINARY = rb'"[^"\r\n;]*+"'
 SECTION_END = rb"(?i:ENDSEC(?![A-Za-z0-9_])|END-ISO-10303-21|DATA\s*+[;(])"
-"""What ends the instances of a section, the missing ENDSEC included."""
+"""End of the instances of a section, also where ENDSEC is missing."""
 
 INSTANCE_HEAD = re.compile(rb"\#([0-9]++)\s*+=")
 """``#19=``; its group is the number."""
@@ -66,11 +65,11 @@ def skip_blank(data: bytes, position: int, *, slips: Slips) -> int:
         position = comment.end()
 
 
-def _nested(data: bytes, start: int, end: int) -> Slip:
+def _nested(data: bytes, start: int, end: int) -> SyntaxSlip:
     """Say how much a comment holds that opens another one."""
     hidden = len(_HEAD_IN_COMMENT.findall(data, start, end))
     text = f"; it hides {hidden} instances" if hidden else ""
-    return Slip(offset=start, message=f"nested comment: '/*' within a comment{text}")
+    return SyntaxSlip(offset=start, message=f"nested comment: '/*' within a comment{text}")
 
 
 def closing(data: bytes, position: int, *, stop: int | None = None) -> int:
@@ -102,7 +101,7 @@ def closing(data: bytes, position: int, *, stop: int | None = None) -> int:
 
 
 def run_end(pattern: re.Pattern[bytes], data: bytes, position: int) -> int:
-    """Where the last of the matches ends that follow each other from ``position`` on."""
+    """End of the last of the adjoining matches from ``position`` on."""
     while (match := pattern.match(data, position)) and match.end() > position:
         position = match.end()
     return position

@@ -1,4 +1,4 @@
-r"""Where the instances of a DATA section are: one pass, no object per instance.
+r"""Index of the instances of a DATA section: one pass, no object per instance.
 
 One regular expression takes the ordinary instance in a single step. What it does not take is
 looked at piece by piece: an instance with ``#`` in a string or without its ``;``, comments,
@@ -27,9 +27,8 @@ from stepnc_model.part21.grammar import (
     run_end,
     skip_blank,
 )
-from stepnc_model.part21.places import Slip, error_at, excerpt
+from stepnc_model.part21.places import Slips, SyntaxSlip, error_at, excerpt
 from stepnc_model.part21.record import parse_record
-from stepnc_model.part21.slips import Slips
 from stepnc_model.part21.tidy import is_tidy
 
 _ITEM = re.compile(
@@ -143,13 +142,13 @@ class IndexBuilder:
         return end
 
     def _end_without_semicolon(self, start: int, stop: int, *, name: str) -> int:
-        """Where an instance ends whose ``;`` is missing before ``stop``."""
+        """End of an instance whose ``;`` is missing before ``stop``."""
         data = self._data
         bracket = data.find(b"(", start, stop)
         end = closing(data, bracket, stop=stop) if bracket >= 0 else -1
         if end < 0:
             end = start + len(data[start:stop].rstrip())
-        self._slips.append(Slip(offset=end - 1, message=f"';' is missing after {name}"))
+        self._slips.append(SyntaxSlip(offset=end - 1, message=f"';' is missing after {name}"))
         return end
 
     def finish(self) -> Index:
@@ -206,7 +205,7 @@ def skip_junk(data: bytes, position: int, *, slips: Slips) -> int:
     end = max(run_end(_JUNK, data, position), position + 1)
     last = position + len(data[position:end].rstrip())
     message = f"text that belongs to no instance: {excerpt(data, position, last)}"
-    slips.append(Slip(offset=position, message=message))
+    slips.append(SyntaxSlip(offset=position, message=message))
     return end
 
 

@@ -1,7 +1,13 @@
-"""Where something is in a file: offsets, lines and columns, and what is said about a place."""
+"""Places in a file: offsets, lines and columns, and deviations from ISO 10303-21 at a place.
+
+A reader that tolerates faults must not be made to describe millions of them. The frame of a
+file may have so many and no more; of those within an instance, the first are kept and the
+others counted.
+"""
 
 from array import array
 from dataclasses import dataclass
+from typing import Protocol
 
 from stepnc_model.errors import Part21Error, Severity
 
@@ -9,7 +15,7 @@ _BLOCK = 1 << 14
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Slip:
+class SyntaxSlip:
     """A deviation from the syntax at an offset; the reader makes a finding of it."""
 
     offset: int
@@ -61,3 +67,61 @@ def excerpt(data: bytes, start: int, end: int) -> str:
     text = data[start : min(end, start + 40)].decode("latin-1")
     shown = " ".join("".join(c if c.isprintable() else " " for c in text).split())
     return f"'{shown}…'" if end - start > 40 else f"'{shown}'"
+
+
+MOST_OF_FILE = 10_000
+"""deviations outside instances; the worst of the public files read have a dozen"""
+
+MOST_OF_INSTANCE = 100
+"""deviations of one instance that are described"""
+
+
+class Slips(Protocol):
+    """Sink of deviations; a list will do."""
+
+    def append(self, slip: SyntaxSlip, /) -> None:
+        """Note one."""
+
+
+class FileSlips:
+    """Deviations of the frame of a file. Running state; too many of them are an error.
+
+    Parameters
+    ----------
+    data : bytes
+        The file, for the place of the error.
+    """
+
+    def __init__(self, data: bytes) -> None:
+        self.noted: list[SyntaxSlip] = []
+        self._data = data
+
+    def append(self, slip: SyntaxSlip, /) -> None:
+        """Note one.
+
+        Raises
+        ------
+        Part21Error
+            If there are more than ``MOST_OF_FILE``.
+        """
+        if len(self.noted) == MOST_OF_FILE:
+            message = (
+                f"more than {MOST_OF_FILE} deviations from ISO 10303-21: this is no usable "
+                f"exchange structure; the last one: {slip.message}"
+            )
+            raise error_at(self._data, slip.offset, message)
+        self.noted.append(slip)
+
+
+class InstanceSlips:
+    """Deviations of one instance. Running state: the first ones, and how many there are."""
+
+    def __init__(self) -> None:
+        self.noted: list[SyntaxSlip] = []
+        self.count = 0
+
+    def append(self, slip: SyntaxSlip, /) -> None:
+        """Note one, or count it."""
+        self.count += 1
+        if self.count <= MOST_OF_INSTANCE:
+            self.noted.append(slip)

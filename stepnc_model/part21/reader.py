@@ -1,4 +1,11 @@
-"""Read access to an ISO 10303-21 file: an index now, parameters when they are asked for."""
+"""Read access to an ISO 10303-21 file: an index now, parameters when they are asked for.
+
+The HEADER section is read as far as it follows the standard [1]_.
+
+References
+----------
+.. [1] ISO 10303-21:2016, 8.2 (file_description, file_name, file_schema).
+"""
 
 from array import array
 from collections.abc import Iterator, Sequence
@@ -7,16 +14,75 @@ from functools import cached_property
 from heapq import merge
 from typing import Self
 
-from stepnc_model.errors import Finding, Severity
-from stepnc_model.finding_list import FindingList
+from stepnc_model.errors import Finding, FindingList, Severity
 from stepnc_model.part21.grammar import closing, skip_blank
-from stepnc_model.part21.header import Header, HeaderReading, read_header
 from stepnc_model.part21.index import Index
-from stepnc_model.part21.places import Lines, Slip, error_at
-from stepnc_model.part21.record import Part, Record, parse_record
-from stepnc_model.part21.structure import Structure, read_structure
+from stepnc_model.part21.places import Lines, SyntaxSlip, error_at
+from stepnc_model.part21.record import InstanceRecord, Part, parse_record
+from stepnc_model.part21.structure import FileStructure, Statement, read_structure
 from stepnc_model.part21.tidy import is_tidy, tidy_values
 from stepnc_model.part21.values import Value
+
+_ARITY = {"FILE_DESCRIPTION": 2, "FILE_NAME": 7, "FILE_SCHEMA": 1}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HeaderReading:
+    """Schemas that a header names, and what was wrong with it."""
+
+    schemas: tuple[str, ...]
+    """names as written, blank ones dropped"""
+    slips: tuple[SyntaxSlip, ...]
+
+
+def read_header(data: bytes, statements: tuple[Statement, ...]) -> HeaderReading:
+    """Read the header statements of a file; deviations are noted, never fatal."""
+    slips: list[SyntaxSlip] = []
+    values: dict[str, tuple[Value, ...]] = {}
+    for statement in statements:
+        if statement.keyword not in _ARITY:
+            continue
+        if statement.keyword in values:
+            message = f"{statement.keyword} is given twice; the first counts"
+            slips.append(SyntaxSlip(offset=statement.start, message=message))
+            continue
+        values[statement.keyword] = _parameters(data, statement, slips=slips)
+    missing = (keyword for keyword in _ARITY if keyword not in values)
+    slips.extend(SyntaxSlip(offset=0, message=f"{keyword} is missing") for keyword in missing)
+    schemas = (name for name in _texts(values.get("FILE_SCHEMA", ())) if name.strip())
+    return HeaderReading(schemas=tuple(schemas), slips=tuple(slips))
+
+
+def _parameters(
+    data: bytes, statement: Statement, *, slips: list[SyntaxSlip]
+) -> tuple[Value, ...]:
+    """Values of one statement; none where they cannot be read."""
+    record = parse_record(data[statement.start : statement.end].decode("latin-1"))
+    slips.extend(replace(slip, offset=statement.start + slip.offset) for slip in record.slips)
+    if record.error is not None:
+        message = f"{statement.keyword}: {record.error.message}"
+        slips.append(SyntaxSlip(offset=statement.start + record.error.offset, message=message))
+        return ()
+    values = record.parts[0][1]
+    expected = _ARITY[statement.keyword]
+    if len(values) != expected:
+        message = f"{statement.keyword} has {len(values)} parameters instead of {expected}"
+        slips.append(SyntaxSlip(offset=statement.start, message=message))
+    return values
+
+
+def _texts(value: Value) -> tuple[str, ...]:
+    """All strings in a value, in order."""
+    found: list[str] = []
+    pending = [value]
+    while pending:
+        item = pending.pop()
+        if isinstance(item, tuple):
+            pending.extend(reversed(item))
+        elif isinstance(item, str):
+            found.append(item)
+    return tuple(found)
+
 
 _RULE = "ISO 10303-21"
 
@@ -34,7 +100,7 @@ class Part21File:
 
     data: bytes
     name: str
-    structure: Structure
+    structure: FileStructure
 
     @classmethod
     def from_bytes(cls, data: bytes, *, name: str = "") -> Self:
@@ -127,14 +193,10 @@ class Part21File:
         """Name of an instance in messages, ``#19 PLANE_FINISH_MILLING``."""
         return f"#{id} {self.keyword(id)}".rstrip()
 
-    def header(self) -> Header:
-        """Header as far as it could be read."""
-        return self._header.header
-
     @property
     def schemas(self) -> tuple[str, ...]:
         """Names in FILE_SCHEMA as written; blank ones are dropped."""
-        return self._header.header.schemas
+        return self._header.schemas
 
     def schema_list_span(self) -> tuple[int, int]:
         """Byte span between the inner brackets of FILE_SCHEMA.
@@ -204,10 +266,10 @@ class Part21File:
         position = index.positions[id]
         return self.data[index.starts[position] : index.ends[position]].decode("latin-1")
 
-    def _read(self, id: int) -> Record:
+    def _read(self, id: int) -> InstanceRecord:
         return parse_record(self._text(id).partition("=")[2])
 
-    def _record(self, id: int) -> Record:
+    def _record(self, id: int) -> InstanceRecord:
         """Parsed instance; raises where it is malformed."""
         record = self._read(id)
         if record.error is not None:
@@ -215,7 +277,7 @@ class Part21File:
             raise error_at(self.data, offset, f"{self.label(id)}: {record.error.message}")
         return record
 
-    def _simple(self, id: int) -> Record:
+    def _simple(self, id: int) -> InstanceRecord:
         """Parsed instance that is not complex."""
         record = self._record(id)
         if record.is_complex:
@@ -248,7 +310,7 @@ class Part21File:
         return frozenset(found)
 
     def _not_examined(self) -> Finding:
-        """What is told of these."""
+        """Finding on the instances that were not examined."""
         first = min(self._unexamined, key=self.span)
         return Finding(
             severity=Severity.WARNING,
@@ -261,7 +323,7 @@ class Part21File:
             rule=_RULE,
         )
 
-    def _within(self, found: FindingList) -> "Iterator[tuple[Slip, int | None]]":
+    def _within(self, found: FindingList) -> "Iterator[tuple[SyntaxSlip, int | None]]":
         """Deviations within instances, the error that ends the reading of one last."""
         for id in self._untidy:
             if not self.is_examined(id):
@@ -271,8 +333,8 @@ class Part21File:
                 yield replace(slip, offset=origin + slip.offset), id
             found.count(Severity.WARNING, record.unlisted)
 
-    def _finding(self, slip: Slip, label: str = "") -> Finding:
-        """What is told of a deviation."""
+    def _finding(self, slip: SyntaxSlip, label: str = "") -> Finding:
+        """Finding on a deviation."""
         return Finding(
             severity=slip.severity,
             message=slip.message,
@@ -282,5 +344,5 @@ class Part21File:
         )
 
 
-def _offset(item: tuple[Slip, int | None]) -> int:
+def _offset(item: tuple[SyntaxSlip, int | None]) -> int:
     return item[0].offset

@@ -13,8 +13,7 @@ from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from stepnc_model.part21.grammar import MAX_DEPTH
-from stepnc_model.part21.places import Slip
-from stepnc_model.part21.slips import InstanceSlips
+from stepnc_model.part21.places import InstanceSlips, SyntaxSlip
 from stepnc_model.part21.tokens import TOKEN, MalformedError, scalar, shown
 from stepnc_model.part21.values import Typed, Value
 
@@ -23,24 +22,24 @@ Part: TypeAlias = tuple[str, tuple[Value, ...]]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Record:
-    """What an instance says, and what was wrong with how it says it."""
+class InstanceRecord:
+    """Keyword and parameters of an instance, and the faults in its syntax."""
 
     parts: tuple[Part, ...]
     is_complex: bool
     spans: tuple[tuple[int, int], ...]
-    """of the top-level parameters of a simple instance, in the text"""
+    """Spans of the top-level parameters of a simple instance, in the text"""
     end: int
     """offset of the bracket that closes a simple instance"""
-    slips: tuple[Slip, ...]
+    slips: tuple[SyntaxSlip, ...]
     """the first deviations"""
     unlisted: int
     """deviations beyond those"""
-    error: Slip | None
+    error: SyntaxSlip | None
     """why the parameters cannot be used"""
 
 
-def parse_record(text: str) -> Record:
+def parse_record(text: str) -> InstanceRecord:
     """Read ``KEYWORD(...);`` or ``(A(...)B(...));`` with the tolerance real files need.
 
     Parameters
@@ -56,7 +55,7 @@ def parse_record(text: str) -> Record:
         parser.finish(len(text))
     except MalformedError as malformed:
         error = malformed.slip
-    return Record(
+    return InstanceRecord(
         parts=tuple(parser.parts),
         is_complex=parser.is_complex,
         spans=tuple(parser.spans),
@@ -72,7 +71,7 @@ class _Frame:
     """An open bracket."""
 
     keyword: str
-    """of a part or of a typed value"""
+    """Keyword of a part or of a typed value"""
     is_part: bool
     is_complex: bool = False
     values: list[Value] = field(default_factory=list)

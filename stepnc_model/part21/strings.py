@@ -63,7 +63,7 @@ def decode(raw: str) -> str:
 
 
 def _high_half(character: str, *, page: str) -> str:
-    r"""What ``\S\`` makes of a character in a part of ISO 8859; empty where it is undefined."""
+    r"""Character that ``\S\`` stands for in a part of ISO 8859; empty where it is undefined."""
     return bytes([ord(character) | 0x80]).decode(page, errors="ignore")
 
 

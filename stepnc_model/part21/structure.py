@@ -20,8 +20,7 @@ from stepnc_model.part21.grammar import (
     skip_blank,
 )
 from stepnc_model.part21.index import Index, IndexBuilder, skip_junk
-from stepnc_model.part21.places import Slip, error_at, excerpt
-from stepnc_model.part21.slips import FileSlips
+from stepnc_model.part21.places import FileSlips, SyntaxSlip, error_at, excerpt
 
 _BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 _OPENING = re.compile(rb"(?i:ISO-10303-21)" + BLANK + rb"(;?)")
@@ -64,17 +63,17 @@ class Statement:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Structure:
-    """What a file is made of."""
+class FileStructure:
+    """Structure of a file: its statements and its index."""
 
     statements: tuple[Statement, ...]
     index: Index
     data_end: int
     """offset at which the last DATA section ends: its ENDSEC, or what stands in its place"""
-    slips: tuple[Slip, ...]
+    slips: tuple[SyntaxSlip, ...]
 
 
-def read_structure(data: bytes) -> Structure:
+def read_structure(data: bytes) -> FileStructure:
     """Find header statements and instances.
 
     Raises
@@ -91,7 +90,7 @@ def read_structure(data: bytes) -> Structure:
             break
         position = scan.step(position)
     scan.check_end(position)
-    return Structure(
+    return FileStructure(
         statements=tuple(scan.statements),
         index=scan.index.finish(),
         data_end=scan.data_end,
@@ -147,7 +146,7 @@ class _Scan:
         return skip_junk(self._data, position, slips=self.slips)
 
     def _section(self, match: re.Match[bytes]) -> int:
-        """Take the word that opens or closes a section, and the section if it is not ours."""
+        """Take the word that opens or closes a section, and a section of another schema."""
         if match.lastgroup == "end":
             return self._end_section(match)
         if self._open:
@@ -235,7 +234,7 @@ class _Scan:
             self._note(match.start(), f"';' is missing after {word}")
 
     def _note(self, offset: int, message: str) -> None:
-        self.slips.append(Slip(offset=offset, message=message, severity=Severity.WARNING))
+        self.slips.append(SyntaxSlip(offset=offset, message=message, severity=Severity.WARNING))
 
 
 def _blank_to_end(data: bytes, position: int) -> bool:

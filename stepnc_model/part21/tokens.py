@@ -8,8 +8,7 @@ References
 import re
 
 from stepnc_model.errors import Severity
-from stepnc_model.part21.places import Slip
-from stepnc_model.part21.slips import Slips
+from stepnc_model.part21.places import Slips, SyntaxSlip
 from stepnc_model.part21.strings import decode
 from stepnc_model.part21.values import DERIVED, Binary, Enumeration, Real, Ref, Value
 
@@ -47,7 +46,7 @@ class MalformedError(Exception):
 
     def __init__(self, offset: int, message: str) -> None:
         super().__init__(message)
-        self.slip = Slip(offset=offset, message=message, severity=Severity.ERROR)
+        self.slip = SyntaxSlip(offset=offset, message=message, severity=Severity.ERROR)
 
 
 def scalar(match: re.Match[str], *, slips: Slips) -> Value:
@@ -115,9 +114,9 @@ def _quoted(match: re.Match[str], *, slips: Slips) -> Value:
     return decode(token[1:-1])
 
 
-def _slip(match: re.Match[str], message: str) -> Slip:
+def _slip(match: re.Match[str], message: str) -> SyntaxSlip:
     """Deviation at a token."""
-    return Slip(offset=match.start(), message=f"{shown(match)}: {message}")
+    return SyntaxSlip(offset=match.start(), message=f"{shown(match)}: {message}")
 
 
 def shown(match: re.Match[str]) -> str:

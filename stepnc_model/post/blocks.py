@@ -2,23 +2,29 @@
 
 Numbers are resolved: mm, mm/s, mm/rev, rev/s, s, rad. Coordinates are those of the tool path;
 on a lathe x is a radius.
+
+Drilling cycles are taken apart for controls that lack one, and for readers. Motion after
+LinuxCNC, "G-Code reference", G73 and G81 to G86; controls differ in the distance that they keep
+above the last depth, which is an argument here.
 """
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
-from stepnc_model.toolpath.path import CycleKind, Plane, Point
+from stepnc_model.errors import PostError
+from stepnc_model.toolpath.path import ArcPlane, CycleKind, Point
 
 
-class Machine(StrEnum):
-    """What kind of machine a program is for."""
+class MachineType(StrEnum):
+    """Type of machine that a program is for."""
 
     MILL = "mill"
     LATHE = "lathe"
 
 
 class Cycles(StrEnum):
-    """How drilling cycles are written."""
+    """Form in which drilling cycles are written."""
 
     EXPANDED = "expanded"
     """as lines"""
@@ -27,7 +33,7 @@ class Cycles(StrEnum):
 
 
 class RateMode(StrEnum):
-    """What a feed counts against."""
+    """Reference of a feed: per minute, per revolution, inverse time."""
 
     PER_MINUTE = "per minute"
     """of time; inside in mm/s"""
@@ -40,11 +46,11 @@ class Rate:
     """A feed with its mode."""
 
     value: float
-    """mm/s or mm/rev"""
+    """Value, mm/s or mm/rev"""
     mode: RateMode = RateMode.PER_MINUTE
 
 
-class Sense(StrEnum):
+class SpindleDirection(StrEnum):
     """Sense of the spindle, as canonical commands name it.
 
     M3, clockwise, drives a right-hand screw into the workpiece (EIA RS-274-D). A mill turns
@@ -56,9 +62,13 @@ class Sense(StrEnum):
     COUNTERCLOCKWISE = "counterclockwise"
 
     @property
-    def opposite(self) -> "Sense":
+    def opposite(self) -> "SpindleDirection":
         """The other one."""
-        return Sense.COUNTERCLOCKWISE if self is Sense.CLOCKWISE else Sense.CLOCKWISE
+        return (
+            SpindleDirection.COUNTERCLOCKWISE
+            if self is SpindleDirection.CLOCKWISE
+            else SpindleDirection.CLOCKWISE
+        )
 
 
 class CoolantKind(StrEnum):
@@ -75,7 +85,7 @@ class ProgramStart:
     """Head of a program."""
 
     name: str
-    machine: Machine = Machine.MILL
+    machine: MachineType = MachineType.MILL
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -107,8 +117,8 @@ class SpindleOn:
     """Spindle on at constant speed."""
 
     speed: float
-    """rev/s"""
-    sense: Sense = Sense.CLOCKWISE
+    """Speed, rev/s"""
+    sense: SpindleDirection = SpindleDirection.CLOCKWISE
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -116,10 +126,10 @@ class SurfaceSpeed:
     """Spindle on at constant surface speed."""
 
     speed: float
-    """mm/s"""
+    """Speed, mm/s"""
     limit: float | None = None
-    """rev/s"""
-    sense: Sense = Sense.CLOCKWISE
+    """Limit, rev/s"""
+    sense: SpindleDirection = SpindleDirection.CLOCKWISE
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -173,18 +183,18 @@ class Circular:
     centre: Point
     """its coordinate along the normal of the plane means nothing"""
     turn: float
-    """rad, positive counter-clockwise; more than 2π for several turns"""
+    """Turn, rad, positive counter-clockwise; more than 2π for several turns"""
     rate: Rate
-    plane: Plane = Plane.XY
+    plane: ArcPlane = ArcPlane.XY
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Threading:
+class ThreadingMove:
     """Straight, bound to the angle of the spindle."""
 
     end: Point
     lead: float
-    """mm per revolution along the axis that moves most"""
+    """Lead, mm per revolution along the axis that moves most"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -194,10 +204,10 @@ class RigidTap:
     start: Point
     bottom_z: float
     lead: float
-    """mm per revolution"""
+    """Lead, mm per revolution"""
     speed: float
-    """rev/s"""
-    sense: Sense = Sense.CLOCKWISE
+    """Speed, rev/s"""
+    sense: SpindleDirection = SpindleDirection.CLOCKWISE
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -208,12 +218,12 @@ class Pause:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ProgramStop:
+class ProgramStopBlock:
     """Stop until started again."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class OptionalStop:
+class OptionalStopBlock:
     """Stop when the switch is on."""
 
 
@@ -233,11 +243,11 @@ class DrillingCycle:
     bottom_z: float
     rate: Rate
     step_depth: float = 0.0
-    """mm of each peck"""
+    """Step depth, mm of each peck"""
     retract_distance: float = 0.0
-    """mm of a short retract, or above the last depth after a full one"""
+    """Retract distance, mm of a short retract, or above the last depth after a full one"""
     dwell: float = 0.0
-    """s at the bottom"""
+    """Dwell, s at the bottom"""
     expansion: tuple["Block", ...] = ()
 
 
@@ -255,11 +265,68 @@ Block = (
     | Rapid
     | Linear
     | Circular
-    | Threading
+    | ThreadingMove
     | RigidTap
     | Pause
-    | ProgramStop
-    | OptionalStop
+    | ProgramStopBlock
+    | OptionalStopBlock
     | ProgramEnd
     | DrillingCycle
 )
+
+
+MOST_PECKS = 10_000
+
+LEAST = 1e-9
+"""mm; a peck that leaves less has reached the bottom"""
+
+
+def expanded(
+    cycle: DrillingCycle, spindle: SpindleOn | SurfaceSpeed | None = None
+) -> DrillingCycle:
+    """The cycle with its expansion.
+
+    Parameters
+    ----------
+    cycle : DrillingCycle
+    spindle : SpindleOn or SurfaceSpeed, optional
+        What turns again after a cycle that stops the spindle.
+    """
+    return replace(cycle, expansion=tuple(_expansion(cycle, spindle)))
+
+
+def _expansion(
+    cycle: DrillingCycle, spindle: SpindleOn | SurfaceSpeed | None
+) -> Iterator[Block]:
+    bottom, top = (*cycle.at, cycle.bottom_z), (*cycle.at, cycle.retract_z)
+    if cycle.kind in {CycleKind.PECK, CycleKind.CHIP_BREAK} and cycle.step_depth > 0.0:
+        yield from _pecks(cycle)
+    else:
+        yield Linear(end=bottom, rate=cycle.rate)
+    if cycle.dwell:
+        yield Pause(seconds=cycle.dwell)
+    if cycle.kind is CycleKind.BORE:
+        yield Linear(end=top, rate=cycle.rate)
+        return
+    if cycle.kind is CycleKind.BORE_STOP:
+        yield SpindleOff()
+    yield Rapid(end=top)
+    if cycle.kind is CycleKind.BORE_STOP and spindle is not None:
+        yield spindle
+
+
+def _pecks(cycle: DrillingCycle) -> Iterator[Block]:
+    """Down in steps; between them a full or a short retract."""
+    x, y = cycle.at
+    count = (cycle.retract_z - cycle.bottom_z) / cycle.step_depth
+    if count > MOST_PECKS:
+        raise PostError(f"a drilling cycle of {count:.4g} pecks: {MOST_PECKS} at most")
+    depth = cycle.retract_z - cycle.step_depth
+    while depth > cycle.bottom_z + LEAST:
+        yield Linear(end=(x, y, depth), rate=cycle.rate)
+        if cycle.kind is CycleKind.PECK:
+            yield Rapid(end=(x, y, cycle.retract_z))
+        above = min(depth + cycle.retract_distance, cycle.retract_z)
+        yield Rapid(end=(x, y, above))
+        depth -= cycle.step_depth
+    yield Linear(end=(x, y, cycle.bottom_z), rate=cycle.rate)

@@ -6,15 +6,19 @@ the order x y, z x or y z of their plane. Feed per revolution, constant surface 
 synchronised motion, which [1]_ lacks, are named as LinuxCNC prints them. Units: mm, mm/min or
 mm/rev, rpm or m/min, s. Of coolants only flood and mist are known: through the tool is flood.
 
+What is read are our own commands, NIST's, and those that LinuxCNC prints.
+
 References
 ----------
 .. [1] T. R. Kramer, F. M. Proctor, E. Messina, "The NIST RS274NGC Interpreter - Version 3",
    NISTIR 6556, 2000, section 4 "Canonical machining functions".
 """
 
+import re
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
-from math import ceil, dist, pi
+from math import ceil, dist, isfinite, pi
+from typing import Any
 
 from stepnc_model.errors import PostError
 from stepnc_model.post.blocks import (
@@ -25,11 +29,11 @@ from stepnc_model.post.blocks import (
     CoolantKind,
     Linear,
     Message,
-    OptionalStop,
+    OptionalStopBlock,
     Pause,
     ProgramEnd,
     ProgramStart,
-    ProgramStop,
+    ProgramStopBlock,
     Rapid,
     Rate,
     RateMode,
@@ -39,11 +43,12 @@ from stepnc_model.post.blocks import (
     SpindleOn,
     SpindleOrient,
     SurfaceSpeed,
-    Threading,
+    ThreadingMove,
     ToolChange,
 )
 from stepnc_model.post.grid import flat, on_grid
-from stepnc_model.toolpath.path import Plane, Point
+from stepnc_model.post.words import shown
+from stepnc_model.toolpath.path import ArcPlane, Point
 from stepnc_model.units import m_min_from_speed, mm_min_from_speed, rpm_from_rev_s
 
 PLACES = 4
@@ -51,7 +56,11 @@ PLACES = 4
 UNLIMITED = 1e30
 """rpm, what LinuxCNC prints for no limit"""
 
-PLANES = {Plane.XY: "CANON_PLANE_XY", Plane.ZX: "CANON_PLANE_XZ", Plane.YZ: "CANON_PLANE_YZ"}
+PLANES = {
+    ArcPlane.XY: "CANON_PLANE_XY",
+    ArcPlane.ZX: "CANON_PLANE_XZ",
+    ArcPlane.YZ: "CANON_PLANE_YZ",
+}
 
 Argument = float | int | str
 
@@ -98,7 +107,7 @@ class _Writer:
 
     def __init__(self) -> None:
         self.at: Point = (0.0, 0.0, 0.0)
-        self.plane: Plane | None = None
+        self.plane: ArcPlane | None = None
         self.rate: Rate | None = None
         self.mode = RateMode.PER_MINUTE
         self.speed: float | None = None
@@ -109,7 +118,7 @@ class _Writer:
             Linear: self._linear,
             Circular: self._circular,
             Retract: self._retract,
-            Threading: self._threading,
+            ThreadingMove: self._threading,
             RigidTap: self._tap,
             SpindleOn: self._spindle,
             SurfaceSpeed: self._surface,
@@ -123,7 +132,7 @@ class _Writer:
         if maker is not None:
             yield from maker(block)
         else:
-            yield _plain(block)
+            yield PLAIN[type(block)](block)
 
     def _start(self, block: ProgramStart) -> Iterator[Canonical]:
         yield Canonical("COMMENT", (block.name,))
@@ -165,7 +174,7 @@ class _Writer:
             ),
         )
 
-    def _threading(self, block: Threading) -> Iterator[Canonical]:
+    def _threading(self, block: ThreadingMove) -> Iterator[Canonical]:
         lead = synchronised(self.at, block.end, block.lead)
         self.at = block.end
         yield Canonical("START_SPEED_FEED_SYNC", (lead,))
@@ -221,29 +230,18 @@ class _Writer:
         self.coolant = kinds
 
 
-def _plain(block: Block) -> Canonical:
-    """The command of a block without memory."""
-    match block:
-        case Comment(text=text):
-            return Canonical("COMMENT", (text,))
-        case Message(text=text):
-            return Canonical("MESSAGE", (text,))
-        case ToolChange(number=number):
-            return Canonical("CHANGE_TOOL", (number,))
-        case Pause(seconds=seconds):
-            return Canonical("DWELL", (seconds,))
-        case SpindleOff():
-            return Canonical("STOP_SPINDLE_TURNING")
-        case SpindleOrient():
-            return Canonical("ORIENT_SPINDLE", (0.0,))
-        case ProgramStop():
-            return Canonical("PROGRAM_STOP")
-        case OptionalStop():
-            return Canonical("OPTIONAL_PROGRAM_STOP")
-        case ProgramEnd():
-            return Canonical("PROGRAM_END")
-        case _:
-            raise PostError(f"no canonical command for {type(block).__name__}")
+PLAIN: dict[type, Callable[[Any], Canonical]] = {
+    Comment: lambda block: Canonical("COMMENT", (block.text,)),
+    Message: lambda block: Canonical("MESSAGE", (block.text,)),
+    ToolChange: lambda block: Canonical("CHANGE_TOOL", (block.number,)),
+    Pause: lambda block: Canonical("DWELL", (block.seconds,)),
+    SpindleOff: lambda _: Canonical("STOP_SPINDLE_TURNING"),
+    SpindleOrient: lambda _: Canonical("ORIENT_SPINDLE", (0.0,)),
+    ProgramStopBlock: lambda _: Canonical("PROGRAM_STOP"),
+    OptionalStopBlock: lambda _: Canonical("OPTIONAL_PROGRAM_STOP"),
+    ProgramEnd: lambda _: Canonical("PROGRAM_END"),
+}
+"""commands of blocks without memory"""
 
 
 def _shown(argument: Argument) -> str:
@@ -252,3 +250,97 @@ def _shown(argument: Argument) -> str:
         text = f"{argument:.4f}"
         return "0.0000" if text == "-0.0000" else text
     return "".join(c if c.isprintable() else " " for c in str(argument))
+
+
+LINE = re.compile(r"\s*(?:\d+\s+)?(?:N\S+\s+)?([A-Z][A-Z0-9_]*)\((.*)\)\s*")
+NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
+
+NUMBERS = {
+    "STRAIGHT_TRAVERSE": slice(0, 3),
+    "STRAIGHT_FEED": slice(0, 3),
+    "RIGID_TAP": slice(0, 3),
+    "ARC_FEED": slice(0, 6),
+    "SET_FEED_RATE": slice(-1, None),
+    "SET_FEED_MODE": slice(-1, None),
+    "SET_SPINDLE_SPEED": slice(-1, None),
+    "SET_SPINDLE_MODE": slice(-1, None),
+    "START_SPEED_FEED_SYNC": slice(0, 1),
+    "DWELL": slice(0, 1),
+    "ORIENT_SPINDLE": slice(-2, -1),
+}
+"""which arguments count: LinuxCNC adds rotary axes behind and spindle numbers before"""
+
+NAMES = frozenset({
+    "SELECT_PLANE",
+    "CHANGE_TOOL",
+    "SELECT_TOOL",
+    "START_CHANGE",
+    "START_SPINDLE_CLOCKWISE",
+    "START_SPINDLE_COUNTERCLOCKWISE",
+    "STOP_SPINDLE_TURNING",
+    "SPINDLE_RETRACT",
+    "FLOOD_ON",
+    "FLOOD_OFF",
+    "MIST_ON",
+    "MIST_OFF",
+    "COMMENT",
+    "MESSAGE",
+    "PROGRAM_STOP",
+    "OPTIONAL_PROGRAM_STOP",
+    "PROGRAM_END",
+    "STOP_SPEED_FEED_SYNCH",
+    "USE_LENGTH_UNITS",
+    "SET_FEED_REFERENCE",
+    "SET_ORIGIN_OFFSETS",
+    "USE_TOOL_LENGTH_OFFSET",
+    "SET_G5X_OFFSET",
+    "SET_G92_OFFSET",
+    "SET_XY_ROTATION",
+    "ON_RESET",
+    "SET_MOTION_CONTROL_MODE",
+    "SET_NAIVECAM_TOLERANCE",
+    "ENABLE_FEED_OVERRIDE",
+    "DISABLE_FEED_OVERRIDE",
+    "ENABLE_SPEED_OVERRIDE",
+    "DISABLE_SPEED_OVERRIDE",
+})
+TEXTS = frozenset({"COMMENT", "MESSAGE"})
+
+
+def read(lines: Iterable[str]) -> Iterator[Canonical]:
+    """Canonical commands of a text: ours, NIST's, or what LinuxCNC prints.
+
+    Raises
+    ------
+    PostError
+        At a line that is no canonical command.
+    """
+    for number, line in enumerate(lines, 1):
+        if line.strip():
+            yield _parsed(line, number)
+
+
+def _parsed(line: str, number: int) -> Canonical:
+    """One command."""
+    found = LINE.fullmatch(line)
+    if found is None or (found[1] not in NUMBERS and found[1] not in NAMES):
+        raise PostError(f"'{shown(line)}' is no canonical command", line=number)
+    name, text = found[1], found[2]
+    if name in TEXTS:
+        return Canonical(name, (text.strip('"'),))
+    parts = [part for part in re.split(r"[,\s]+", text) if part]
+    if name not in NUMBERS:
+        return Canonical(name, () if name.startswith("START_SPINDLE") else (text,))
+    if not all(NUMBER.fullmatch(part) and isfinite(float(part)) for part in parts):
+        raise PostError(f"{name}({shown(text)}): its arguments must be numbers", line=number)
+    values: list[Argument] = [float(part) for part in parts]
+    chosen = values[NUMBERS[name]] if len(values) > 1 else values
+    wanted = {"ARC_FEED": 6}.get(name, 3 if NUMBERS[name] == slice(0, 3) else 1)
+    if len(chosen) != wanted:
+        raise PostError(f"{name} has {len(chosen)} arguments: it needs {wanted}", line=number)
+    if name == "ARC_FEED":
+        turns = float(chosen[4])
+        if not turns or turns != int(turns):
+            raise PostError(f"{name}: {turns:g} turns: whole ones are needed", line=number)
+        chosen[4] = int(turns)
+    return Canonical(name, tuple(chosen))

@@ -1,10 +1,16 @@
-"""NC code for Fanuc controls, mill (M) and lathe (T, G-code system A), and their kin.
+"""NC code for Fanuc controls, mill (M) and lathe (T, G-code system A), and for Haas.
 
 After Fanuc, "Series 0i-MODEL F Operator's Manual" (B-64604EN, B-64604EN-1 for lathes,
 B-64604EN-2 for machining centres) and, for rigid tapping by lead,
 "Series 0i Connection Manual (Function)" (B-63833EN-1). Dwell in ms, X of a lathe is a
 diameter, its G98 and G99 are the modes of feed. How far above the last depth a peck begins is
 parameter 5115, its short retract 5114.
+
+For Haas controls after Haas, "Mill Operator's Manual" and "Lathe Operator's Manual" (Next
+Generation Control): much as Fanuc, but P of a dwell is in s when it has a point and in ms when
+not, M88 and M89 switch coolant through the spindle, G84 starts the spindle itself (G74 on a
+mill and G184 on a lathe for left-hand threads), and a mill has no thread cutting. How far above
+the last depth a peck begins is setting 22.
 """
 
 import re
@@ -16,20 +22,29 @@ from stepnc_model.errors import PostError
 from stepnc_model.post.blocks import (
     Block,
     CoolantKind,
-    Machine,
+    MachineType,
     ProgramEnd,
     RateMode,
     RigidTap,
-    Sense,
-    Threading,
+    SpindleDirection,
+    ThreadingMove,
     ToolChange,
 )
-from stepnc_model.post.iso_acts import CANNED, COMMON, LENGTHS, PER_TIME, Act
 from stepnc_model.post.iso_code import IsoCode
 from stepnc_model.post.iso_reader import IsoReader
-from stepnc_model.post.iso_words import Words, whole
-from stepnc_model.post.words import ascii_text, pointed
-from stepnc_model.toolpath.path import Plane, Point
+from stepnc_model.post.words import (
+    CANNED,
+    COMMON,
+    LENGTHS,
+    PER_TIME,
+    GCode,
+    GCodeAction,
+    LineWords,
+    ascii_text,
+    pointed,
+    whole,
+)
+from stepnc_model.toolpath.path import ArcPlane, Point
 
 LONGEST = 100
 """characters of a comment"""
@@ -44,8 +59,8 @@ REFUSED = re.compile(r"[^A-Z0-9 .,+\-*/=#\[\]&_?@]")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Manner:
-    """Where the controls of this family differ."""
+class DialectTraits:
+    """Differences between the controls of this family."""
 
     head: str
     """number of the program"""
@@ -55,37 +70,37 @@ class Manner:
     """dwell in s of a P word, and of one that has no point"""
     coolant: Mapping[CoolantKind, str]
     coolant_ends: tuple[str, ...]
-    threads: Mapping[Machine, str]
+    threads: Mapping[MachineType, str]
     """thread cutting"""
-    taps: Mapping[tuple[Machine, Sense], str]
+    taps: Mapping[tuple[MachineType, SpindleDirection], str]
     """rigid tapping"""
     tap_speed: str
     """what goes before the S word of a rigid tap"""
-    retract: frozenset[Machine]
+    retract: frozenset[MachineType]
     """where a rigid tap names the plane it returns to, absolute"""
 
 
-FANUC = Manner(
+FANUC = DialectTraits(
     head="O0001",
     seconds=lambda value: f"P{round(1000.0 * value)}",
     seconds_of=lambda value, _pointless: value / 1000.0,
     coolant={CoolantKind.FLOOD: "M8", CoolantKind.MIST: "M7", CoolantKind.THROUGH: "M8"},
     coolant_ends=("M9",),
-    threads={Machine.MILL: "G33", Machine.LATHE: "G32"},
+    threads={MachineType.MILL: "G33", MachineType.LATHE: "G32"},
     taps={
-        (Machine.MILL, Sense.CLOCKWISE): "G84",
-        (Machine.MILL, Sense.COUNTERCLOCKWISE): "G74",
-        (Machine.LATHE, Sense.CLOCKWISE): "G84",
+        (MachineType.MILL, SpindleDirection.CLOCKWISE): "G84",
+        (MachineType.MILL, SpindleDirection.COUNTERCLOCKWISE): "G74",
+        (MachineType.LATHE, SpindleDirection.CLOCKWISE): "G84",
     },
     tap_speed="M29",
-    retract=frozenset({Machine.MILL}),
+    retract=frozenset({MachineType.MILL}),
 )
 
 
 class Fanuc(IsoCode):
     """Writer for Fanuc and its kin."""
 
-    def __init__(self, manner: Manner = FANUC) -> None:
+    def __init__(self, manner: DialectTraits = FANUC) -> None:
         super().__init__()
         self.manner = manner
         self.coolant_codes = manner.coolant
@@ -98,8 +113,8 @@ class Fanuc(IsoCode):
         """Percent sign, number, modes."""
         yield "%"
         yield f"{self.manner.head} {self.text(name)}"
-        is_lathe = self.machine is Machine.LATHE
-        self.plane_words(Plane.ZX if is_lathe else Plane.XY)
+        is_lathe = self.machine is MachineType.LATHE
+        self.plane_words(ArcPlane.ZX if is_lathe else ArcPlane.XY)
         self.modal.set("mode", "G99" if is_lathe else "G94")
         yield from self.line(
             "G18 G21 G40 G54 G80 G97 G99" if is_lathe else "G17 G21 G40 G49 G54 G80 G90 G94"
@@ -117,7 +132,7 @@ class Fanuc(IsoCode):
 
     def tool_change(self, block: ToolChange) -> Iterator[str]:
         """T and M6, the offset with the next z; on a lathe both in T."""
-        if self.machine is Machine.MILL:
+        if self.machine is MachineType.MILL:
             yield from self.line(f"T{block.number}", "M6")
             self.pend(f"G43 H{block.number}")
             return
@@ -128,7 +143,7 @@ class Fanuc(IsoCode):
 
     def mode_code(self, mode: RateMode) -> str:
         """G94 and G95, or G98 and G99 on a lathe."""
-        is_lathe = self.machine is Machine.LATHE
+        is_lathe = self.machine is MachineType.LATHE
         return LATHE_MODES[mode] if is_lathe else super().mode_code(mode)
 
     def surface_speed(self, speed: str, limit: str, sense: str) -> Iterator[str]:
@@ -154,7 +169,7 @@ class Fanuc(IsoCode):
         """P word of a dwell."""
         return self.manner.seconds(value)
 
-    def thread_words(self, start: Point, block: Threading) -> list[str]:
+    def thread_words(self, start: Point, block: ThreadingMove) -> list[str]:
         """Thread cutting with the lead in F."""
         if self.machine not in self.manner.threads:
             raise PostError(f"a synchronised line: this {self.machine} has none")
@@ -165,7 +180,7 @@ class Fanuc(IsoCode):
         code = self.manner.taps.get((self.machine, block.sense))
         if code is None:
             raise PostError(f"a left-hand rigid tap: this {self.machine} has none")
-        is_mill = self.machine is Machine.MILL
+        is_mill = self.machine is MachineType.MILL
         retract = ""
         if self.machine in self.manner.retract:
             retract = f"R{self.number(block.start[2], self.places)}"
@@ -181,15 +196,18 @@ class Fanuc(IsoCode):
         yield from self.line("G80")
 
 
-MILL: dict[str, Act] = COMMON | PER_TIME | LENGTHS | CANNED
-LATHE: dict[str, Act] = COMMON | {
-    "G21": Act.NOTHING,
-    "G50": Act.SPEED_LIMIT,
-    "G80": Act.CANCEL,
-    "G98": Act.PER_MINUTE,
-    "G99": Act.PER_REVOLUTION,
+MILL: dict[str, GCode] = COMMON | PER_TIME | LENGTHS | CANNED
+LATHE: dict[str, GCode] = COMMON | {
+    "G21": GCodeAction.NOTHING,
+    "G50": GCodeAction.SPEED_LIMIT,
+    "G80": GCodeAction.CANCEL,
+    "G98": RateMode.PER_MINUTE,
+    "G99": RateMode.PER_REVOLUTION,
 }
-TAPS = {Sense.CLOCKWISE: Act.TAP, Sense.COUNTERCLOCKWISE: Act.LEFT_TAP}
+TAPS = {
+    SpindleDirection.CLOCKWISE: GCodeAction.TAP,
+    SpindleDirection.COUNTERCLOCKWISE: GCodeAction.LEFT_TAP,
+}
 
 
 class FanucReader(IsoReader):
@@ -198,25 +216,25 @@ class FanucReader(IsoReader):
     quiet: ClassVar[frozenset[str]] = frozenset({"M29"})
     head: ClassVar[re.Pattern[str]] = re.compile(r"%|O[0-9]{4,5}")
 
-    def __init__(self, machine: Machine, manner: Manner = FANUC) -> None:
+    def __init__(self, machine: MachineType, manner: DialectTraits = FANUC) -> None:
         super().__init__(machine)
         self.manner = manner
         own = {code: TAPS[s] for (m, s), code in manner.taps.items() if m is machine}
         if machine in manner.threads:
-            own[manner.threads[machine]] = Act.THREAD
-        self.codes = {machine: (MILL if machine is Machine.MILL else LATHE) | own}
+            own[manner.threads[machine]] = GCodeAction.THREAD
+        self.codes = {machine: (MILL if machine is MachineType.MILL else LATHE) | own}
         self.coolants = {code: frozenset({kind}) for kind, code in manner.coolant.items()}
         self.coolants["M8"] = frozenset({CoolantKind.FLOOD})
         self.coolant_ends = frozenset(manner.coolant_ends)
 
-    def seconds(self, words: Words) -> float:
+    def seconds(self, words: LineWords) -> float:
         """P word of a dwell."""
         value = words.need("P", "G4")
         return self.manner.seconds_of(value, "P" in words.pointless)
 
-    def tool(self, words: Words) -> Iterator[Block]:
+    def tool(self, words: LineWords) -> Iterator[Block]:
         """T and M6; on a lathe T alone, its offset behind."""
-        if self.machine is Machine.MILL:
+        if self.machine is MachineType.MILL:
             yield from super().tool(words)
             return
         number = words.take("T")
@@ -224,13 +242,17 @@ class FanucReader(IsoReader):
             self.sense = None
             yield ToolChange(number=whole(whole(number, "T") // 100, "T"))
 
-    def lead(self, end: Point, words: Words) -> float:
+    def lead(self, end: Point, words: LineWords) -> float:
         """F, which is the feed as well."""
         return self._lead()
 
-    def tap(self, words: Words, act: Act) -> Iterator[Block]:
+    def tap(self, words: LineWords, act: GCode) -> Iterator[Block]:
         """Rigid taps by lead."""
-        sense = Sense.CLOCKWISE if act is Act.TAP else Sense.COUNTERCLOCKWISE
+        sense = (
+            SpindleDirection.CLOCKWISE
+            if act is GCodeAction.TAP
+            else SpindleDirection.COUNTERCLOCKWISE
+        )
         if self.mode is not RateMode.PER_REVOLUTION:
             raise PostError("a rigid tap is read with its lead, in the mode per revolution")
         x, y, bottom = self.end(words)
@@ -243,3 +265,21 @@ class FanucReader(IsoReader):
         if not self.feed:
             raise PostError("a thread without F")
         return self.feed
+
+
+HAAS = DialectTraits(
+    head="O00001",
+    seconds=lambda value: f"P{pointed(value, 3)}",
+    seconds_of=lambda value, pointless: value / 1000.0 if pointless else value,
+    coolant={CoolantKind.FLOOD: "M8", CoolantKind.MIST: "M7", CoolantKind.THROUGH: "M88"},
+    coolant_ends=("M9", "M89"),
+    threads={MachineType.LATHE: "G32"},
+    taps={
+        (MachineType.MILL, SpindleDirection.CLOCKWISE): "G84",
+        (MachineType.MILL, SpindleDirection.COUNTERCLOCKWISE): "G74",
+        (MachineType.LATHE, SpindleDirection.CLOCKWISE): "G84",
+        (MachineType.LATHE, SpindleDirection.COUNTERCLOCKWISE): "G184",
+    },
+    tap_speed="",
+    retract=frozenset({MachineType.MILL, MachineType.LATHE}),
+)

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from math import atan2, cos, hypot, pi, sin
 
+from stepnc_model.errors import PostError
 from stepnc_model.post.blocks import (
     Block,
     Circular,
@@ -17,9 +18,9 @@ from stepnc_model.post.blocks import (
     Rapid,
     Retract,
     RigidTap,
-    Threading,
+    ThreadingMove,
 )
-from stepnc_model.toolpath.path import Plane, Point
+from stepnc_model.toolpath.path import ArcPlane, Point
 
 FULL = 2.0 * pi
 
@@ -65,7 +66,7 @@ def on_grid(blocks: Iterable[Block], places: int) -> Iterator[Block]:
         elif isinstance(block, Retract):
             at = (at[0], at[1], round(block.z, places) + 0.0)
             yield Retract(z=at[2])
-        elif isinstance(block, Threading):
+        elif isinstance(block, ThreadingMove):
             end = rounded(block.end, places)
             if end != at:
                 at = end
@@ -182,8 +183,8 @@ def along(start: Point, arc: Circular, turned: float, part: float) -> Point:
 
 
 def end_of(block: Block, at: Point) -> Point:
-    """Where a block leaves the tool."""
-    if isinstance(block, (Rapid, Linear, Circular, Threading)):
+    """Position after a block."""
+    if isinstance(block, (Rapid, Linear, Circular, ThreadingMove)):
         return block.end
     if isinstance(block, Retract):
         return (at[0], at[1], block.z)
@@ -200,13 +201,33 @@ def rounded(point: Point, places: int) -> Point:
     return round(x, places) + 0.0, round(y, places) + 0.0, round(z, places) + 0.0
 
 
-def sweep(start: Point, end: Point, centre: Point, plane: Plane, *, sense: float) -> float:
+def sweep(start: Point, end: Point, centre: Point, plane: ArcPlane, *, sense: float) -> float:
     """Angle in rad, above 0 and at most 2π, from start to end about a centre."""
     first, second, _ = plane.axes
     a, b = start[first] - centre[first], start[second] - centre[second]
     c, d = end[first] - centre[first], end[second] - centre[second]
     angle = sense * atan2(a * d - b * c, a * c + b * d)
     return angle if angle > NOISE else angle + FULL
+
+
+def turn_between(
+    start: Point, end: Point, centre: Point, plane: ArcPlane, *, sense: float, slack: float
+) -> float:
+    """Angle in rad, signed by the sense, of an arc that a program gives by its ends and centre.
+
+    Raises
+    ------
+    PostError
+        When its radii to both ends differ by more than ``slack`` in mm.
+    """
+    first, second, _ = plane.axes
+    radii = [hypot(p[first] - centre[first], p[second] - centre[second]) for p in (start, end)]
+    if min(radii) <= 0.0 or abs(radii[0] - radii[1]) > slack:
+        raise PostError(
+            f"no arc: its radii are {radii[0]:.4f} and {radii[1]:.4f} mm, "
+            f"{slack:g} mm may lie between them"
+        )
+    return sense * sweep(start, end, centre, plane, sense=sense)
 
 
 def _arc(at: Point, arc: Circular, places: int) -> Iterator[Circular | Linear]:
@@ -260,7 +281,7 @@ def _bisected(start: Point, end: Point, arc: Circular) -> Point:
     return point[0], point[1], point[2]
 
 
-def _from(start: Point, centre: Point, plane: Plane, places: int) -> Point:
+def _from(start: Point, centre: Point, plane: ArcPlane, places: int) -> Point:
     """The centre at a rounded distance from the start, as I, J and K give it."""
     first, second, _ = plane.axes
     point = list(start)

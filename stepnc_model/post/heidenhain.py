@@ -20,29 +20,29 @@ from stepnc_model.post.blocks import (
     Cycles,
     DrillingCycle,
     Linear,
-    Machine,
+    MachineType,
     Message,
-    OptionalStop,
+    OptionalStopBlock,
     Pause,
     ProgramEnd,
     ProgramStart,
-    ProgramStop,
+    ProgramStopBlock,
     Rapid,
     Rate,
     RateMode,
     Retract,
     RigidTap,
-    Sense,
+    SpindleDirection,
     SpindleOff,
     SpindleOn,
     SpindleOrient,
     SurfaceSpeed,
-    Threading,
+    ThreadingMove,
     ToolChange,
 )
 from stepnc_model.post.grid import FULL, end_of, flat, on_grid, turns
 from stepnc_model.post.words import Modal, ascii_text, decimal
-from stepnc_model.toolpath.path import CycleKind, Plane, Point
+from stepnc_model.toolpath.path import ArcPlane, CycleKind, Point
 from stepnc_model.units import mm_min_from_speed, rpm_from_rev_s
 
 PLACES = 3
@@ -93,11 +93,11 @@ class Heidenhain:
             Rapid: self._rapid,
             Linear: self._linear,
             Circular: self._circular,
-            Threading: self._refuse,
+            ThreadingMove: self._refuse,
             RigidTap: self._rigid_tap,
             Pause: self._pause,
-            ProgramStop: lambda _: self._line("STOP"),
-            OptionalStop: lambda _: self._line("M1"),
+            ProgramStopBlock: lambda _: self._line("STOP"),
+            OptionalStopBlock: lambda _: self._line("M1"),
             DrillingCycle: self._drilling_cycle,
         }
 
@@ -115,7 +115,7 @@ class Heidenhain:
         self._number += 1
 
     def _start(self, block: ProgramStart) -> Iterator[str]:
-        if block.machine is Machine.LATHE:
+        if block.machine is MachineType.LATHE:
             raise PostError("Klartext is written for mills only")
         plain = re.sub(r"[^A-Z0-9]+", "_", ascii_text(block.name).upper()).strip("_")
         self.name = plain[:LONGEST_NAME] or "PART"
@@ -146,7 +146,7 @@ class Heidenhain:
 
     def _spindle_on(self, block: SpindleOn) -> Iterator[str]:
         yield from self._speed(block.speed)
-        yield from self._line("M3" if block.sense is Sense.CLOCKWISE else "M4")
+        yield from self._line("M3" if block.sense is SpindleDirection.CLOCKWISE else "M4")
 
     def _speed(self, speed: float) -> Iterator[str]:
         """Speed, in the call of a new tool or in one of its own."""
@@ -198,7 +198,7 @@ class Heidenhain:
         sense = "DR+" if block.turn > 0.0 else "DR-"
         rate = self._rate(block.rate)
         is_helix = abs(rise) > 0.0 or abs(block.turn) > FULL + 1e-6
-        if is_helix and block.plane is not Plane.XY:
+        if is_helix and block.plane is not ArcPlane.XY:
             raise PostError(f"a helix in the plane {block.plane}: Klartext has it in XY only")
         self.at = list(block.end)
         if is_helix:
@@ -212,7 +212,7 @@ class Heidenhain:
     def _rigid_tap(self, block: RigidTap) -> Iterator[str]:
         yield from self._rapid(Rapid(end=block.start))
         yield from self._speed(block.speed)
-        top, sign = block.start[2], 1.0 if block.sense is Sense.CLOCKWISE else -1.0
+        top, sign = block.start[2], 1.0 if block.sense is SpindleDirection.CLOCKWISE else -1.0
         yield from self._definition(
             "207",
             [

@@ -1,4 +1,4 @@
-"""What controls that speak G-code share: ISO 6983 words, modal and in a fixed order.
+"""Common part of controls with G-code: ISO 6983 words, modal and in a fixed order.
 
 A dialect derives from :class:`IsoCode` and says what it does otherwise.
 """
@@ -17,33 +17,33 @@ from stepnc_model.post.blocks import (
     Cycles,
     DrillingCycle,
     Linear,
-    Machine,
+    MachineType,
     Message,
-    OptionalStop,
+    OptionalStopBlock,
     Pause,
     ProgramEnd,
     ProgramStart,
-    ProgramStop,
+    ProgramStopBlock,
     Rapid,
     Rate,
     RateMode,
     Retract,
     RigidTap,
-    Sense,
+    SpindleDirection,
     SpindleOff,
     SpindleOn,
     SpindleOrient,
     SurfaceSpeed,
-    Threading,
+    ThreadingMove,
     ToolChange,
 )
 from stepnc_model.post.grid import flat, merged, on_grid, single_turns
 from stepnc_model.post.words import Modal, decimal
-from stepnc_model.toolpath.path import CycleKind, Plane, Point
+from stepnc_model.toolpath.path import ArcPlane, CycleKind, Point
 from stepnc_model.units import m_min_from_speed, mm_min_from_speed, rpm_from_rev_s
 
-PLANE_CODES = {Plane.XY: "G17", Plane.ZX: "G18", Plane.YZ: "G19"}
-SENSE_CODES = {Sense.CLOCKWISE: "M3", Sense.COUNTERCLOCKWISE: "M4"}
+PLANE_CODES = {ArcPlane.XY: "G17", ArcPlane.ZX: "G18", ArcPlane.YZ: "G19"}
+SENSE_CODES = {SpindleDirection.CLOCKWISE: "M3", SpindleDirection.COUNTERCLOCKWISE: "M4"}
 RATE_PLACES = {RateMode.PER_MINUTE: 3, RateMode.PER_REVOLUTION: 4}
 
 
@@ -51,9 +51,9 @@ class IsoCode(ABC):
     """Writer of one program. Running state: what is in force, and where the tool is."""
 
     places: ClassVar[int] = 3
-    """of a coordinate"""
+    """Places of a coordinate"""
     speed_places: ClassVar[int] = 0
-    """of an S word"""
+    """Speed places of an S word"""
     last_number: ClassVar[int] = 99999
     """block numbers end here: they are optional"""
     coolant_codes: Mapping[CoolantKind, str] = {
@@ -74,7 +74,7 @@ class IsoCode(ABC):
 
     def __init__(self) -> None:
         self.modal = Modal()
-        self.machine = Machine.MILL
+        self.machine = MachineType.MILL
         self.at: list[float | None] = [None, None, None]
         self.is_surface_speed = False
         self.cooling: set[str] = set()
@@ -89,18 +89,18 @@ class IsoCode(ABC):
             ToolChange: self.tool_change,
             SpindleOn: self.spindle_on,
             SurfaceSpeed: self._surface_speed,
-            SpindleOff: self._spindle_off,
+            SpindleOff: lambda _: self.line("M5"),
             SpindleOrient: self.orient,
             Coolant: self.coolant,
             Retract: self._retract,
             Rapid: self.rapid,
             Linear: self._linear,
             Circular: self._circular,
-            Threading: self._threading,
+            ThreadingMove: self._threading,
             RigidTap: self._rigid_tap,
             Pause: self.pause,
-            ProgramStop: self._stop,
-            OptionalStop: self._optional_stop,
+            ProgramStopBlock: lambda _: self.line("M0"),
+            OptionalStopBlock: lambda _: self.line("M1"),
             DrillingCycle: self.drilling_cycle,
         }
 
@@ -127,7 +127,7 @@ class IsoCode(ABC):
     def keeps(self, cycle: DrillingCycle) -> bool:
         """Whether the control has a cycle of its own for this one."""
         return (
-            self.machine is Machine.MILL
+            self.machine is MachineType.MILL
             and cycle.kind in self.cycle_codes
             and (not cycle.dwell or cycle.kind in self.dwelling)
         )
@@ -157,7 +157,7 @@ class IsoCode(ABC):
         """Lines of a constant surface speed in m/min with its limit in rpm, or none."""
 
     @abstractmethod
-    def thread_words(self, start: Point, block: Threading) -> list[str]:
+    def thread_words(self, start: Point, block: ThreadingMove) -> list[str]:
         """Motion and lead of a synchronised line."""
 
     @abstractmethod
@@ -169,7 +169,7 @@ class IsoCode(ABC):
         return f"P{self.number(value, 3)}"
 
     def turn_words(self, block: Circular) -> list[str]:
-        """What says how often an arc goes round."""
+        """Word for the number of turns of an arc."""
         return []
 
     # What they share.
@@ -244,7 +244,7 @@ class IsoCode(ABC):
         )
         if key != self._cycle:
             # In another plane the cycle would drill along its normal.
-            head = [self.plane_words(Plane.XY), self.mode(block.rate.mode), "G99"]
+            head = [self.plane_words(ArcPlane.XY), self.mode(block.rate.mode), "G99"]
             words = [*head, self.cycle_codes[block.kind], *words]
             words += [
                 f"Z{self.number(block.bottom_z, self.places)}",
@@ -265,11 +265,11 @@ class IsoCode(ABC):
         words: list[str] = []
         at = self.at
         if end[0] != at[0]:
-            x = end[0] if self.machine is Machine.MILL else 2.0 * end[0]
+            x = end[0] if self.machine is MachineType.MILL else 2.0 * end[0]
             words.append(f"X{self.number(x, self.places)}")
-        if end[1] != at[1] and self.machine is Machine.MILL:
+        if end[1] != at[1] and self.machine is MachineType.MILL:
             words.append(f"Y{self.number(end[1], self.places)}")
-        elif end[1] and self.machine is Machine.LATHE:
+        elif end[1] and self.machine is MachineType.LATHE:
             raise PostError(f"y = {end[1]:g} mm: a lathe has no y")
         if end[2] != at[2]:
             words.append(f"Z{self.number(end[2], self.places)}")
@@ -300,7 +300,7 @@ class IsoCode(ABC):
         self.machine = block.machine
         return self.start(block.name)
 
-    def plane_words(self, plane: Plane) -> str:
+    def plane_words(self, plane: ArcPlane) -> str:
         """Word of a plane when it is new."""
         return self.modal.word("plane", PLANE_CODES[plane])
 
@@ -315,7 +315,7 @@ class IsoCode(ABC):
         return [pending]
 
     def _surface_speed(self, block: SurfaceSpeed) -> Iterator[str]:
-        if self.machine is Machine.MILL:
+        if self.machine is MachineType.MILL:
             raise PostError("constant surface speed: a milling machine has none")
         limit = ""
         if block.limit is not None:
@@ -323,9 +323,6 @@ class IsoCode(ABC):
         speed = decimal(m_min_from_speed(block.speed), self.speed_places)
         self.is_surface_speed = True
         return self.surface_speed(speed, limit, SENSE_CODES[block.sense])
-
-    def _spindle_off(self, _: SpindleOff) -> Iterator[str]:
-        return self.line("M5")
 
     def _retract(self, block: Retract) -> Iterator[str]:
         if block.z != self.at[2]:
@@ -361,7 +358,7 @@ class IsoCode(ABC):
         turn = self.turn_words(block)
         yield from self.line(plane, mode, motion, *words, *centre, *turn, self.rate(block.rate))
 
-    def _threading(self, block: Threading) -> Iterator[str]:
+    def _threading(self, block: ThreadingMove) -> Iterator[str]:
         start = self.known()
         head, *lead = self.thread_words(start, block)
         words = self.coordinates(block.end)
@@ -371,20 +368,14 @@ class IsoCode(ABC):
 
     def _rigid_tap(self, block: RigidTap) -> Iterator[str]:
         yield from self.rapid(Rapid(end=block.start))
-        if self.machine is Machine.MILL:
-            yield from self.line(self.plane_words(Plane.XY))
+        if self.machine is MachineType.MILL:
+            yield from self.line(self.plane_words(ArcPlane.XY))
         yield from self.rigid_tap(block)
         self.modal.forget("motion", "F")
 
     def known(self) -> Point:
-        """Where the tool is."""
+        """Position of the tool, which must be known."""
         x, y, z = self.at
         if x is None or y is None or z is None:
             raise PostError("a cut from an unknown position")
         return x, y, z
-
-    def _stop(self, _: ProgramStop) -> Iterator[str]:
-        return self.line("M0")
-
-    def _optional_stop(self, _: OptionalStop) -> Iterator[str]:
-        return self.line("M1")

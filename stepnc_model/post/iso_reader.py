@@ -8,7 +8,6 @@ Coordinates are absolute and metric; arc centres are relative to the start.
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Mapping
-from math import hypot
 from typing import ClassVar
 
 from stepnc_model.errors import PostError
@@ -20,29 +19,37 @@ from stepnc_model.post.blocks import (
     CoolantKind,
     DrillingCycle,
     Linear,
-    Machine,
-    OptionalStop,
+    MachineType,
+    OptionalStopBlock,
     Pause,
     ProgramEnd,
-    ProgramStop,
+    ProgramStopBlock,
     Rapid,
     Rate,
     RateMode,
     Retract,
     RigidTap,
-    Sense,
+    SpindleDirection,
     SpindleOff,
     SpindleOn,
     SpindleOrient,
     SurfaceSpeed,
-    Threading,
+    ThreadingMove,
     ToolChange,
+    expanded,
 )
-from stepnc_model.post.cycles import expanded
-from stepnc_model.post.grid import FULL, sweep
-from stepnc_model.post.iso_acts import KINDS, MODES, MOTIONS, PLANES, SENSES, TAPS, Act
-from stepnc_model.post.iso_words import Words, pairs, whole
-from stepnc_model.toolpath.path import CycleKind, Plane, Point
+from stepnc_model.post.grid import FULL, turn_between
+from stepnc_model.post.words import (
+    MOTIONS,
+    SENSES,
+    TAPS,
+    GCode,
+    GCodeAction,
+    LineWords,
+    pairs,
+    whole,
+)
+from stepnc_model.toolpath.path import ArcPlane, CycleKind, Point
 from stepnc_model.units import rev_s_from_rpm, speed_from_m_min, speed_from_mm_min
 
 ROUND = 0.01
@@ -57,7 +64,7 @@ COMMENT = re.compile(r"\(([^()]*)\)")
 class IsoReader(ABC):
     """Reader of one program. Running state: what is in force, and where the tool is."""
 
-    codes: Mapping[Machine, Mapping[str, Act]] = {}
+    codes: Mapping[MachineType, Mapping[str, GCode]] = {}
     coolants: Mapping[str, frozenset[CoolantKind]] = {
         "M7": frozenset({CoolantKind.MIST}),
         "M8": frozenset({CoolantKind.FLOOD}),
@@ -68,17 +75,17 @@ class IsoReader(ABC):
     head: ClassVar[re.Pattern[str]] = re.compile("%")
     """lines that hold no words"""
 
-    def __init__(self, machine: Machine) -> None:
+    def __init__(self, machine: MachineType) -> None:
         self.machine = machine
         self.at: Point = (0.0, 0.0, 0.0)
-        self.plane = Plane.XY if machine is Machine.MILL else Plane.ZX
+        self.plane = ArcPlane.XY if machine is MachineType.MILL else ArcPlane.ZX
         self.mode = RateMode.PER_MINUTE
-        self.motion: Act | None = None
+        self.motion: GCode | None = None
         self.limit: float | None = None
         self.is_surface_speed = False
         self.speed: float | None = None
-        self.sense: Sense | None = None
-        self.is_diameter = machine is Machine.LATHE
+        self.sense: SpindleDirection | None = None
+        self.is_diameter = machine is MachineType.LATHE
         self.returns_to_start = True
         self.feed: float | None = None
         self._tool: int | None = None
@@ -107,29 +114,29 @@ class IsoReader(ABC):
             yield self.comment(found[1])
         text = COMMENT.sub(" ", line).strip()
         if text and not self.head.fullmatch(text):
-            yield from self.block(Words(pairs(text)))
+            yield from self.block(LineWords(pairs(text)))
 
     def comment(self, text: str) -> Block:
-        """What a comment says."""
+        """Text of a comment."""
         return Comment(text=text)
 
-    def seconds(self, words: Words) -> float:
+    def seconds(self, words: LineWords) -> float:
         """Duration of a dwell."""
         return words.need("P", "G4")
 
     @abstractmethod
-    def lead(self, end: Point, words: Words) -> float:
+    def lead(self, end: Point, words: LineWords) -> float:
         """Lead of a thread along the axis that moves most, mm."""
 
     @abstractmethod
-    def tap(self, words: Words, act: Act) -> Iterator[Block]:
+    def tap(self, words: LineWords, act: GCode) -> Iterator[Block]:
         """Blocks of a rigid tap."""
 
-    def surface_limit(self, words: Words) -> float | None:
+    def surface_limit(self, words: LineWords) -> float | None:
         """Greatest speed at constant surface speed, rev/s."""
         return self.limit
 
-    def tool(self, words: Words) -> Iterator[Block]:
+    def tool(self, words: LineWords) -> Iterator[Block]:
         """Tool words: T chooses, M6 changes."""
         number = words.take("T")
         if number is not None:
@@ -141,22 +148,22 @@ class IsoReader(ABC):
             self.sense = None
             yield ToolChange(number=self._tool)
 
-    def extra(self, words: Words) -> Iterator[Block]:
-        """What else a dialect has in a block."""
+    def extra(self, words: LineWords) -> Iterator[Block]:
+        """Further blocks that a dialect has."""
         yield from ()
 
     # What they share.
 
-    def block(self, words: Words) -> Iterator[Block]:
+    def block(self, words: LineWords) -> Iterator[Block]:
         """Blocks of the words of one line."""
         words.take("N")
         acts = [self._act(code) for code in words.codes]
         self.settle(acts, words)
         yield from self.tool(words)
-        yield from self._spindle(words, changed=Act.SURFACE_SPEED in acts)
+        yield from self._spindle(words, changed=GCodeAction.SURFACE_SPEED in acts)
         yield from self._switches(words)
         yield from self.extra(words)
-        if Act.DWELL in acts:
+        if GCodeAction.DWELL in acts:
             yield Pause(seconds=self.seconds(words))
         yield from self._motion(acts, words)
         yield from self._stops(words)
@@ -172,49 +179,49 @@ class IsoReader(ABC):
             return Rate(value=speed_from_mm_min(self.feed))
         return Rate(value=self.feed, mode=RateMode.PER_REVOLUTION)
 
-    def end(self, words: Words) -> Point:
-        """Where the axis words lead."""
+    def end(self, words: LineWords) -> Point:
+        """Target of the axis words."""
         x, y, z = self.at
         given = words.take("X")
         if given is not None:
             x = 0.5 * given if self.is_diameter else given
-        if self.machine is Machine.MILL:
+        if self.machine is MachineType.MILL:
             given = words.take("Y")
             y = y if given is None else given
         given = words.take("Z")
         return x, y, z if given is None else given
 
-    def _act(self, code: str) -> Act:
+    def _act(self, code: str) -> GCode:
         act = self.codes[self.machine].get(code)
         if act is None:
             raise PostError(f"word {code}: not known on this {self.machine}")
         return act
 
-    def settle(self, acts: list[Act], words: Words) -> None:
+    def settle(self, acts: list[GCode], words: LineWords) -> None:
         """Take in what holds from here on."""
-        if any(sum(act in group for act in acts) > 1 for group in (PLANES, MODES)):
+        if any(sum(isinstance(act, kind) for act in acts) > 1 for kind in (ArcPlane, RateMode)):
             raise PostError("two G codes of one group in one block")
         for act in acts:
-            if act in PLANES:
-                self.plane = PLANES[act]
-            elif act in MODES and MODES[act] is not self.mode:
-                self.mode, self.feed = MODES[act], None
-            elif act in {Act.TO_RETRACT, Act.TO_START}:
-                self.returns_to_start = act is Act.TO_START
-            elif act is Act.SPEED_LIMIT:
+            if isinstance(act, ArcPlane):
+                self.plane = act
+            elif isinstance(act, RateMode) and act is not self.mode:
+                self.mode, self.feed = act, None
+            elif act in {GCodeAction.TO_RETRACT, GCodeAction.TO_START}:
+                self.returns_to_start = act is GCodeAction.TO_START
+            elif act is GCodeAction.SPEED_LIMIT:
                 self.limit = rev_s_from_rpm(words.need("S", "G50"))
-            elif act is Act.SURFACE_SPEED:
+            elif act is GCodeAction.SURFACE_SPEED:
                 self.is_surface_speed = True
                 self.limit = self.surface_limit(words)
-            elif act is Act.SPINDLE_SPEED:
+            elif act is GCodeAction.SPINDLE_SPEED:
                 self.is_surface_speed = False
-            elif act is Act.DIAMETER:
-                self.machine, self.is_diameter = Machine.LATHE, True
-            elif act is Act.LENGTH:
+            elif act is GCodeAction.DIAMETER:
+                self.machine, self.is_diameter = MachineType.LATHE, True
+            elif act is GCodeAction.LENGTH:
                 words.need("H", "G43")
         self.feed = words.take("F") if "F" in words else self.feed
 
-    def _spindle(self, words: Words, *, changed: bool) -> Iterator[Block]:
+    def _spindle(self, words: LineWords, *, changed: bool) -> Iterator[Block]:
         if sum(code == "M5" or code in SENSES for code in words.functions) > 1:
             raise PostError("two words for the spindle in one block")
         speed = words.take("S")
@@ -233,7 +240,7 @@ class IsoReader(ABC):
             yield turning
 
     def turning(self) -> SpindleOn | SurfaceSpeed | None:
-        """What the spindle does, or None while it stands."""
+        """Spindle mode, or None while it stands."""
         if self.sense is None:
             return None
         if self.speed is None:
@@ -243,7 +250,7 @@ class IsoReader(ABC):
             return SurfaceSpeed(speed=speed, limit=self.limit, sense=self.sense)
         return SpindleOn(speed=rev_s_from_rpm(self.speed), sense=self.sense)
 
-    def _switches(self, words: Words) -> Iterator[Block]:
+    def _switches(self, words: LineWords) -> Iterator[Block]:
         """Coolant, orientation, and what changes nothing."""
         for code in list(words.functions):
             if code in self.coolant_ends:
@@ -258,46 +265,46 @@ class IsoReader(ABC):
             if code in self.coolant_ends or code in self.coolants:
                 yield Coolant(kinds=self._coolant)
 
-    def _motion(self, acts: list[Act], words: Words) -> Iterator[Block]:
+    def _motion(self, acts: list[GCode], words: LineWords) -> Iterator[Block]:
         """The motion that the block names, or the one in force when axes move."""
         named = [act for act in acts if act in MOTIONS]
         if len(named) > 1:
             raise PostError("two motions in one block")
-        if Act.CANCEL in acts:
+        if GCodeAction.CANCEL in acts:
             self.motion, self._cycle = None, None
         if named:
-            if named[0] not in KINDS:
+            if not isinstance(named[0], CycleKind):
                 self._cycle = None
             self.motion = named[0]
         elif not any(letter in words for letter in "XYZ"):
             return
         yield from self._moved(words)
 
-    def _moved(self, words: Words) -> Iterator[Block]:
+    def _moved(self, words: LineWords) -> Iterator[Block]:
         motion = self.motion
         if motion is None:
             raise PostError("axes move, but no motion is in force")
-        if motion in KINDS:
-            yield from self._drilled(words, KINDS[motion])
+        if isinstance(motion, CycleKind):
+            yield from self._drilled(words, motion)
         elif motion in TAPS:
             self.motion = None
             yield from self.tap(words, motion)
-        elif motion is Act.RAPID:
+        elif motion is GCodeAction.RAPID:
             yield self._rapid(words)
-        elif motion is Act.THREAD:
+        elif motion is GCodeAction.THREAD:
             yield self._thread(words)
-        elif motion is Act.LINEAR:
+        elif motion is GCodeAction.LINEAR:
             self.at = self.end(words)
             yield Linear(end=self.at, rate=self.rate())
         else:
-            yield self._arc(words, 1.0 if motion is Act.COUNTERCLOCKWISE else -1.0)
+            yield self._arc(words, 1.0 if motion is GCodeAction.COUNTERCLOCKWISE else -1.0)
 
-    def _rapid(self, words: Words) -> Block:
+    def _rapid(self, words: LineWords) -> Block:
         is_retract = "X" not in words and "Y" not in words
         self.at = self.end(words)
         return Retract(z=self.at[2]) if is_retract else Rapid(end=self.at)
 
-    def _thread(self, words: Words) -> Block:
+    def _thread(self, words: LineWords) -> Block:
         end = self.end(words)
         if end == self.at:
             raise PostError("a thread leads to where the tool is")
@@ -305,34 +312,26 @@ class IsoReader(ABC):
         if lead <= 0.0:
             raise PostError(f"a thread with a lead of {lead:g} mm: it must be positive")
         self.at = end
-        return Threading(end=end, lead=lead)
+        return ThreadingMove(end=end, lead=lead)
 
-    def turns(self, words: Words) -> int:
+    def turns(self, words: LineWords) -> int:
         """Full turns of an arc, besides what its end points say."""
         given = words.take("P")
         return 0 if given is None else whole(given, "P") - 1
 
-    def _arc(self, words: Words, sense: float) -> Block:
+    def _arc(self, words: LineWords, sense: float) -> Block:
         start, end = self.at, self.end(words)
         first, second, _ = self.plane.axes
         centre = list(start)
         for axis in (first, second):
             centre[axis] += words.take("IJK"[axis]) or 0.0
         middle = (centre[0], centre[1], centre[2])
-        radii = [
-            hypot(p[first] - middle[first], p[second] - middle[second]) for p in (start, end)
-        ]
-        if min(radii) <= 0.0 or abs(radii[0] - radii[1]) > ROUND:
-            raise PostError(
-                f"no arc: its radii are {radii[0]:.4f} and {radii[1]:.4f} mm, "
-                f"{ROUND:g} mm may lie between them"
-            )
-        angle = sweep(start, end, middle, self.plane, sense=sense)
-        turn = sense * (angle + self.turns(words) * FULL)
+        turn = turn_between(start, end, middle, self.plane, sense=sense, slack=ROUND)
+        turn += sense * self.turns(words) * FULL
         self.at = end
         return Circular(end=end, centre=middle, turn=turn, plane=self.plane, rate=self.rate())
 
-    def _drilled(self, words: Words, kind: CycleKind) -> Iterator[Block]:
+    def _drilled(self, words: LineWords, kind: CycleKind) -> Iterator[Block]:
         """A canned cycle, at the position given."""
         x, y, bottom = self.end(words) if "Z" in words else (*self.end(words)[:2], None)
         last = self._cycle if self._cycle is not None and self._cycle.kind is kind else None
@@ -357,7 +356,7 @@ class IsoReader(ABC):
         """The way to a cycle, the cycle, and the way back."""
         start_z = self.at[2]
         x, y = cycle.at
-        if self.plane is not Plane.XY:
+        if self.plane is not ArcPlane.XY:
             raise PostError(f"a drilling cycle in the plane {self.plane}: it is read in XY")
         if cycle.bottom_z >= cycle.retract_z:
             raise PostError("a drilling cycle must lead down")
@@ -372,21 +371,21 @@ class IsoReader(ABC):
         if back != cycle.retract_z:
             yield Retract(z=back)
 
-    def cycle_dwell(self, words: Words) -> float | None:
+    def cycle_dwell(self, words: LineWords) -> float | None:
         """Dwell of a cycle, s."""
         return self.seconds(words) if "P" in words else None
 
-    def tapped(self, bottom: float, lead: float, sense: Sense) -> Block:
+    def tapped(self, bottom: float, lead: float, sense: SpindleDirection) -> Block:
         """A rigid tap where the tool is."""
         if not self.speed or lead <= 0.0:
             raise PostError("a rigid tap without S, or without a lead")
         speed = rev_s_from_rpm(self.speed)
         return RigidTap(start=self.at, bottom_z=bottom, lead=lead, speed=speed, sense=sense)
 
-    def _stops(self, words: Words) -> Iterator[Block]:
-        stops: dict[str, type[ProgramStop | OptionalStop | ProgramEnd]] = {
-            "M0": ProgramStop,
-            "M1": OptionalStop,
+    def _stops(self, words: LineWords) -> Iterator[Block]:
+        stops: dict[str, type[ProgramStopBlock | OptionalStopBlock | ProgramEnd]] = {
+            "M0": ProgramStopBlock,
+            "M1": OptionalStopBlock,
             "M2": ProgramEnd,
             "M30": ProgramEnd,
         }

@@ -14,21 +14,29 @@ from stepnc_model.post.blocks import (
     Block,
     Circular,
     Comment,
-    Machine,
+    MachineType,
     Message,
     ProgramEnd,
     RigidTap,
-    Threading,
+    ThreadingMove,
     ToolChange,
 )
 from stepnc_model.post.canonical import synchronised
 from stepnc_model.post.grid import FULL
-from stepnc_model.post.iso_acts import CANNED, COMMON, LENGTHS, PER_TIME, Act
 from stepnc_model.post.iso_code import SENSE_CODES, IsoCode
 from stepnc_model.post.iso_reader import IsoReader
-from stepnc_model.post.iso_words import Words
-from stepnc_model.post.words import ascii_text, bracketed
-from stepnc_model.toolpath.path import CycleKind, Plane, Point
+from stepnc_model.post.words import (
+    CANNED,
+    COMMON,
+    LENGTHS,
+    PER_TIME,
+    GCode,
+    GCodeAction,
+    LineWords,
+    ascii_text,
+    bracketed,
+)
+from stepnc_model.toolpath.path import ArcPlane, CycleKind, Point
 from stepnc_model.units import rev_s_from_rpm
 
 LONGEST = 200
@@ -58,9 +66,9 @@ class LinuxCnc(IsoCode):
         CycleKind.DWELL,
         CycleKind.BORE_STOP,
     })
-    wide_codes: ClassVar[Mapping[Machine, str]] = {
-        Machine.MILL: "G17 G21 G40 G49 G54 G80 G90 G91.1 G94 G97",
-        Machine.LATHE: "G18 G21 G40 G49 G54 G7 G80 G90 G91.1 G94 G97",
+    wide_codes: ClassVar[Mapping[MachineType, str]] = {
+        MachineType.MILL: "G17 G21 G40 G49 G54 G80 G90 G91.1 G94 G97",
+        MachineType.LATHE: "G18 G21 G40 G49 G54 G7 G80 G90 G91.1 G94 G97",
     }
 
     def shaped(self, blocks: Iterable[Block]) -> Iterator[Block]:
@@ -71,8 +79,8 @@ class LinuxCnc(IsoCode):
         """Percent sign, name, modes."""
         yield "%"
         yield self.text(name)
-        is_lathe = self.machine is Machine.LATHE
-        self.plane_words(Plane.ZX if is_lathe else Plane.XY)
+        is_lathe = self.machine is MachineType.LATHE
+        self.plane_words(ArcPlane.ZX if is_lathe else ArcPlane.XY)
         self.modal.set("mode", "G94")
         yield from self.line(self.wide_codes[self.machine])
 
@@ -101,7 +109,7 @@ class LinuxCnc(IsoCode):
         """G96 with its limit."""
         return self.line("G96", f"D{limit}" if limit else "", f"S{speed}", sense)
 
-    def thread_words(self, start: Point, block: Threading) -> list[str]:
+    def thread_words(self, start: Point, block: ThreadingMove) -> list[str]:
         """G33 with the lead along the path."""
         lead = synchronised(start, block.end, block.lead)
         return ["G33", f"K{self.number(lead, 4)}"]
@@ -121,18 +129,18 @@ class LinuxCnc(IsoCode):
 class LinuxCncReader(IsoReader):
     """Reader of LinuxCNC's G-code."""
 
-    codes: Mapping[Machine, Mapping[str, Act]] = {
+    codes: Mapping[MachineType, Mapping[str, GCode]] = {
         machine: COMMON
         | PER_TIME
         | LENGTHS
         | CANNED
         | {
-            "G7": Act.DIAMETER,
-            "G33": Act.THREAD,
-            "G33.1": Act.TAP,
-            "G91.1": Act.NOTHING,
+            "G7": GCodeAction.DIAMETER,
+            "G33": GCodeAction.THREAD,
+            "G33.1": GCodeAction.TAP,
+            "G91.1": GCodeAction.NOTHING,
         }
-        for machine in Machine
+        for machine in MachineType
     }
 
     def comment(self, text: str) -> Block:
@@ -141,16 +149,16 @@ class LinuxCncReader(IsoReader):
             return Message(text=text[4:])
         return Comment(text=text)
 
-    def lead(self, end: Point, words: Words) -> float:
+    def lead(self, end: Point, words: LineWords) -> float:
         """K, along the path."""
         return along_path(self.at, end, words.need("K", "G33"))
 
-    def surface_limit(self, words: Words) -> float | None:
+    def surface_limit(self, words: LineWords) -> float | None:
         """D of the same block, or none."""
         limit = words.take("D")
         return None if limit is None else rev_s_from_rpm(limit)
 
-    def tap(self, words: Words, act: Act) -> Iterator[Block]:
+    def tap(self, words: LineWords, act: GCode) -> Iterator[Block]:
         """G33.1, in the sense of the spindle."""
         if self.sense is None:
             raise PostError("G33.1 while the spindle stands")

@@ -4,11 +4,13 @@ Between workingsteps the tool rises to the highest security plane first, then mo
 then down. Tools change there: where a machine has its own place for it, M6 or the turret must
 know. Tools are numbered from 1 in the order of their first use; the list stands at the
 head of the program.
+
+Moves that differ only in whether they touch material are one: a control need not know.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
-from math import isfinite
+from math import dist, isfinite
 
 from stepnc_model.entities.entity import Entity
 from stepnc_model.errors import PostError, StepNcError
@@ -20,13 +22,13 @@ from stepnc_model.post.blocks import (
     Coolant,
     DrillingCycle,
     Linear,
-    Machine,
+    MachineType,
     Message,
-    OptionalStop,
+    OptionalStopBlock,
     Pause,
     ProgramEnd,
     ProgramStart,
-    ProgramStop,
+    ProgramStopBlock,
     Rapid,
     Rate,
     RateMode,
@@ -36,32 +38,82 @@ from stepnc_model.post.blocks import (
     SpindleOn,
     SpindleOrient,
     SurfaceSpeed,
-    Threading,
+    ThreadingMove,
     ToolChange,
 )
-from stepnc_model.post.conditions import Conditions, conditions, constant_speed, coolant_of
-from stepnc_model.post.unsplit import unsplit
+from stepnc_model.post.modal_state import ModalState, conditions, constant_speed, coolant_of
 from stepnc_model.program import Program
 from stepnc_model.tool import tool_of
-from stepnc_model.toolpath.function import LEFT_OUT, Function
 from stepnc_model.toolpath.path import (
-    Cycle,
+    LEFT_OUT,
+    CannedCycle,
     CycleKind,
     Dwell,
     Feed,
+    Function,
     Move,
+    MoveType,
     Point,
     SpindleCommand,
-    SpindleSpeed,
+    SpindleSpeedChange,
     Step,
     ToolPath,
 )
 
+STRAIGHT = 1e-9
+"""mm by which two lines may be longer than the one from end to end"""
+
+INTERPOLATED = {MoveType.CONTACT, MoveType.NO_CONTACT}
+
+
+def unsplit(start: Point, steps: Sequence[Step]) -> Iterator[Step]:
+    """Steps with the cuts between contact and air taken out."""
+    held: Move | None = None
+    for step in steps:
+        if held is not None:
+            joined = _joined(start, held, step) if isinstance(step, Move) else None
+            if joined is not None:
+                held = joined
+                continue
+            yield held
+            start = held.end
+            held = None
+        if isinstance(step, Move):
+            held = step
+        else:
+            yield step
+    if held is not None:
+        yield held
+
+
+def _joined(start: Point, one: Move, other: Move) -> Move | None:
+    """Both as one move, or None where they are two."""
+    if one.type is other.type or {one.type, other.type} != INTERPOLATED:
+        return None
+    if one.feed != other.feed:
+        return None
+    if one.arc is None and other.arc is None:
+        way = dist(start, one.end) + dist(one.end, other.end)
+        return other if way - dist(start, other.end) <= STRAIGHT else None
+    if one.arc is None or other.arc is None or one.arc.plane is not other.arc.plane:
+        return None
+    first, second, normal = one.arc.plane.axes
+    is_one_circle = all(
+        abs(one.arc.centre[axis] - other.arc.centre[axis]) <= STRAIGHT
+        for axis in (first, second)
+    )
+    is_flat = start[normal] == one.end[normal] == other.end[normal]
+    turns = one.arc.turn, other.arc.turn
+    if not is_one_circle or not is_flat or turns[0] * turns[1] <= 0.0:
+        return None
+    return replace(other, arc=replace(other.arc, turn=sum(turns)))
+
+
 STOPS = frozenset({"OPTIONAL_STOP", "PROGRAM_STOP"})
 
 FUNCTIONS: dict[str, Callable[[Function], Block]] = {
-    "OPTIONAL_STOP": lambda _: OptionalStop(),
-    "PROGRAM_STOP": lambda _: ProgramStop(),
+    "OPTIONAL_STOP": lambda _: OptionalStopBlock(),
+    "PROGRAM_STOP": lambda _: ProgramStopBlock(),
     LEFT_OUT: lambda _: Comment(text="THIS WORKINGSTEP IS LEFT OUT"),
     "DISPLAY_MESSAGE": lambda function: Message(text=function.text or function.id),
 }
@@ -109,7 +161,7 @@ def _is_turning(paths: Sequence[ToolPath | Function]) -> bool:
 
 def _turns_first(path: ToolPath) -> bool:
     """Whether a path begins with a spindle speed of its own."""
-    return bool(path.steps) and isinstance(path.steps[0], SpindleSpeed)
+    return bool(path.steps) and isinstance(path.steps[0], SpindleSpeedChange)
 
 
 def _safe_z(path: ToolPath) -> float:
@@ -123,7 +175,7 @@ class _Sequence:
     def __init__(self, program: Program, paths: Sequence[ToolPath | Function]) -> None:
         self.program = program
         self.paths = paths
-        self.machine = Machine.LATHE if _is_turning(paths) else Machine.MILL
+        self.machine = MachineType.LATHE if _is_turning(paths) else MachineType.MILL
         cuts = [path for path in paths if isinstance(path, ToolPath)]
         self.numbers = tool_numbers(cuts)
         self.safe_z = max(map(_safe_z, cuts), default=0.0)
@@ -134,7 +186,7 @@ class _Sequence:
         self.turning: SpindleOn | SurfaceSpeed | SpindleOff | SpindleOrient | None = None
         """what the spindle does; None: unknown"""
         self.coolant = Coolant()
-        self._known: dict[Feed, Conditions] = {}
+        self._known: dict[Feed, ModalState] = {}
         self._notes: set[str] = set()
 
     def blocks(self, name: str) -> Iterator[Block]:
@@ -178,7 +230,7 @@ class _Sequence:
         """One workingstep."""
         yield Comment(text=path.id, workingstep=path.id)
         beside = max(abs(point[1]) for point in (path.start, *(m.end for m in path.moves)))
-        if self.machine is Machine.LATHE and beside > ON_LATHE:
+        if self.machine is MachineType.LATHE and beside > ON_LATHE:
             raise PostError(f"y = {beside:g} mm: the program turns, and a lathe has no y")
         self._known.clear()
         if path.tool_ref is not None and path.tool_ref != self.tool:
@@ -207,7 +259,7 @@ class _Sequence:
                 index = cycle.last + 1
 
     def _change(self, ref: Ref[Entity]) -> Iterator[Block]:
-        """Everything off, up, and the new tool in."""
+        """Tool change: all off, up, and the new tool in."""
         yield from self._spindle(SpindleOff())
         yield from self._cool(Coolant())
         if self.at is not None:
@@ -234,7 +286,7 @@ class _Sequence:
             yield from self._move(step)
         elif isinstance(step, Dwell):
             yield Pause(seconds=self._seconds(step))
-        elif isinstance(step, SpindleSpeed):
+        elif isinstance(step, SpindleSpeedChange):
             yield from self._take(self._conditions(Feed(technology=step.technology)))
         elif step is SpindleCommand.STOP:
             yield from self._spindle(SpindleOff())
@@ -259,7 +311,7 @@ class _Sequence:
         if found.lead is not None:
             yield from self._constant(move)
             self.at = move.end
-            yield Threading(end=move.end, lead=found.lead)
+            yield ThreadingMove(end=move.end, lead=found.lead)
             return
         self.at = move.end
         rate = self._rate(found)
@@ -271,7 +323,7 @@ class _Sequence:
                 end=move.end, centre=arc.centre, turn=arc.turn, plane=arc.plane, rate=rate
             )
 
-    def _rate(self, found: Conditions) -> Rate:
+    def _rate(self, found: ModalState) -> Rate:
         """A feed that a control can run."""
         if found.rate is None or not isfinite(found.rate.value) or found.rate.value <= 0.0:
             raise PostError(f"a cut without feed: {found.note or 'the feed is 0'}")
@@ -291,7 +343,7 @@ class _Sequence:
                 yield Comment(text="constant spindle speed for the thread")
                 yield from self._spindle(fixed)
 
-    def _cycle(self, cycle: Cycle, steps: Sequence[Step]) -> Iterator[Block]:
+    def _cycle(self, cycle: CannedCycle, steps: Sequence[Step]) -> Iterator[Block]:
         """A cycle of the control, with what it stands for; a rigid tap has nothing else."""
         if self.at is None:
             raise PostError("a cycle before the first move")
@@ -316,7 +368,9 @@ class _Sequence:
             expansion=expansion,
         )
 
-    def _tap(self, cycle: Cycle, found: Conditions, at: tuple[float, float]) -> Iterator[Block]:
+    def _tap(
+        self, cycle: CannedCycle, found: ModalState, at: tuple[float, float]
+    ) -> Iterator[Block]:
         spindle = self.programmed
         if not isinstance(spindle, SpindleOn):
             raise PostError("a rigid tap needs a constant spindle speed")
@@ -336,7 +390,7 @@ class _Sequence:
         # Some controls leave the spindle standing.
         self.turning = None
 
-    def _conditions(self, feed: Feed) -> Conditions:
+    def _conditions(self, feed: Feed) -> ModalState:
         """Feed and spindle, looked up once a path."""
         found = self._known.get(feed)
         if found is None:
@@ -345,8 +399,8 @@ class _Sequence:
             self._known[feed] = found
         return found
 
-    def _take(self, found: Conditions) -> Iterator[Block]:
-        """What a technology changes: the spindle follows when it asks for something new."""
+    def _take(self, found: ModalState) -> Iterator[Block]:
+        """Blocks for a change of technology: the spindle follows when it differs."""
         if found.note and found.note not in self._notes:
             self._notes.add(found.note)
             yield Comment(text=found.note)

@@ -5,7 +5,7 @@ Strict: a line that is not known is an error, and so is an arc whose radii diffe
 
 import re
 from collections.abc import Callable, Iterable, Iterator
-from math import cos, hypot, radians, sin
+from math import cos, radians, sin
 
 from stepnc_model.errors import PostError
 from stepnc_model.post.blocks import (
@@ -16,26 +16,26 @@ from stepnc_model.post.blocks import (
     CoolantKind,
     DrillingCycle,
     Linear,
-    Machine,
-    OptionalStop,
+    MachineType,
+    OptionalStopBlock,
     Pause,
     ProgramEnd,
-    ProgramStop,
+    ProgramStopBlock,
     Rapid,
     Rate,
     RateMode,
     Retract,
     RigidTap,
-    Sense,
+    SpindleDirection,
     SpindleOff,
     SpindleOn,
     SpindleOrient,
     ToolChange,
+    expanded,
 )
-from stepnc_model.post.cycles import expanded
-from stepnc_model.post.grid import sweep
-from stepnc_model.post.iso_words import NUMBER, number_of, shown, whole
-from stepnc_model.toolpath.path import CycleKind, Plane, Point
+from stepnc_model.post.grid import turn_between
+from stepnc_model.post.words import NUMBER, number_of, shown, whole
+from stepnc_model.toolpath.path import ArcPlane, CycleKind, Point
 from stepnc_model.units import rev_s_from_rpm, speed_from_mm_min
 
 ROUND = 0.016
@@ -53,7 +53,7 @@ SILENT = re.compile(
     r"(?:BEGIN|END) PGM \S+ MM|CYCL DEF 9\.0 DWELL TIME|"
     r"CYCL DEF 13\.0 ORIENTATION|CYCL DEF 13\.1 ANGLE 0"
 )
-PLANES = {"XY": Plane.XY, "XZ": Plane.ZX, "YZ": Plane.YZ}
+PLANES = {"XY": ArcPlane.XY, "XZ": ArcPlane.ZX, "YZ": ArcPlane.YZ}
 
 READ = frozenset({
     "Q200", "Q201", "Q202", "Q203", "Q206", "Q211", "Q239", "Q256", "Q257", "Q258", "Q259",
@@ -67,8 +67,8 @@ ZERO = frozenset({"Q204", "Q205", "Q208", "Q210", "Q212"})
 class HeidenhainReader:
     """Reader of one program. Running state: what is in force, and where the tool is."""
 
-    def __init__(self, machine: Machine) -> None:
-        if machine is Machine.LATHE:
+    def __init__(self, machine: MachineType) -> None:
+        if machine is MachineType.LATHE:
             raise PostError("Klartext is read for mills only")
         self.at: Point = (0.0, 0.0, 0.0)
         self.speed: float | None = None
@@ -76,15 +76,15 @@ class HeidenhainReader:
         self.centre: dict[str, float] = {}
         self._cycle: tuple[str, dict[str, float]] | None = None
         self._functions: dict[str, Callable[[], Block]] = {
-            "M3": lambda: self._spindle(Sense.CLOCKWISE),
-            "M4": lambda: self._spindle(Sense.COUNTERCLOCKWISE),
+            "M3": lambda: self._spindle(SpindleDirection.CLOCKWISE),
+            "M4": lambda: self._spindle(SpindleDirection.COUNTERCLOCKWISE),
             "M5": SpindleOff,
             "M8": lambda: Coolant(kinds=frozenset({CoolantKind.FLOOD})),
             "M9": Coolant,
             "M19": SpindleOrient,
-            "STOP": ProgramStop,
-            "M0": ProgramStop,
-            "M1": OptionalStop,
+            "STOP": ProgramStopBlock,
+            "M0": ProgramStopBlock,
+            "M1": OptionalStopBlock,
             "M2": ProgramEnd,
             "M30": ProgramEnd,
         }
@@ -144,7 +144,7 @@ class HeidenhainReader:
         if number is not None:
             yield ToolChange(number=whole(number_of("TOOL CALL ", number), "TOOL CALL "))
 
-    def _spindle(self, sense: Sense) -> Block:
+    def _spindle(self, sense: SpindleDirection) -> Block:
         return SpindleOn(speed=self._rpm(), sense=sense)
 
     def _rpm(self) -> float:
@@ -200,7 +200,7 @@ class HeidenhainReader:
             return Linear(end=self.at, rate=self._feed())
         return Retract(z=self.at[2]) if is_retract else Rapid(end=self.at)
 
-    def _middle(self) -> tuple[Plane, Point]:
+    def _middle(self) -> tuple[ArcPlane, Point]:
         """Plane and centre of the last CC."""
         plane = PLANES.get("".join(sorted(self.centre)))
         if plane is None:
@@ -214,24 +214,16 @@ class HeidenhainReader:
         plane, centre = self._middle()
         sense = _sense(words)
         start, end = self.at, self._end(words)
-        first, second, normal = plane.axes
-        radii = [
-            hypot(p[first] - centre[first], p[second] - centre[second]) for p in (start, end)
-        ]
-        if min(radii) <= 0.0 or abs(radii[0] - radii[1]) > ROUND:
-            raise PostError(
-                f"no arc: its radii are {radii[0]:.4f} and {radii[1]:.4f} mm, "
-                f"{ROUND:g} mm may lie between them"
-            )
+        turn = turn_between(start, end, centre, plane, sense=sense, slack=ROUND)
+        normal = plane.axes[2]
         if start[normal] != end[normal]:
             raise PostError("C leads out of the plane of its CC")
         self.at = end
-        turn = sense * sweep(start, end, centre, plane, sense=sense)
         return Circular(end=end, centre=centre, turn=turn, plane=plane, rate=self._feed())
 
     def _helix(self, words: dict[str, str]) -> Block:
         plane, centre = self._middle()
-        if "IPA" not in words or plane is not Plane.XY:
+        if "IPA" not in words or plane is not ArcPlane.XY:
             raise PostError("CP is read with IPA, about a CC in x and y")
         turn, sense = radians(number_of("IPA", words.pop("IPA"))), _sense(words)
         rise = number_of("IZ", words.pop("IZ", "0"))
@@ -268,7 +260,9 @@ class HeidenhainReader:
                 bottom_z=bottom,
                 lead=abs(values["Q239"]),
                 speed=self._rpm(),
-                sense=Sense.CLOCKWISE if values["Q239"] > 0.0 else Sense.COUNTERCLOCKWISE,
+                sense=SpindleDirection.CLOCKWISE
+                if values["Q239"] > 0.0
+                else SpindleDirection.COUNTERCLOCKWISE,
             )
             return
         if values["Q206"] <= 0.0:

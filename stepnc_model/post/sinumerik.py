@@ -16,26 +16,35 @@ from stepnc_model.post.blocks import (
     Circular,
     Comment,
     DrillingCycle,
-    Machine,
+    MachineType,
     Message,
     ProgramEnd,
     Rapid,
     RateMode,
     Retract,
     RigidTap,
-    Sense,
+    SpindleDirection,
     SpindleOn,
     SpindleOrient,
-    Threading,
+    ThreadingMove,
     ToolChange,
 )
 from stepnc_model.post.grid import FULL, NARROW, end_of, turns
-from stepnc_model.post.iso_acts import COMMON, PER_TIME, Act
 from stepnc_model.post.iso_code import IsoCode
 from stepnc_model.post.iso_reader import ROUND, IsoReader
-from stepnc_model.post.iso_words import NUMBER, Words, number_of, pairs, whole
-from stepnc_model.post.words import ascii_text
-from stepnc_model.toolpath.path import CycleKind, Plane, Point
+from stepnc_model.post.words import (
+    COMMON,
+    NUMBER,
+    PER_TIME,
+    GCode,
+    GCodeAction,
+    LineWords,
+    ascii_text,
+    number_of,
+    pairs,
+    whole,
+)
+from stepnc_model.toolpath.path import ArcPlane, CycleKind, Point
 from stepnc_model.units import rev_s_from_rpm
 
 LONGEST = 150
@@ -76,8 +85,8 @@ class Sinumerik(IsoCode):
     def start(self, name: str) -> Iterator[str]:
         """Name and modes."""
         yield self.text(name)
-        is_lathe = self.machine is Machine.LATHE
-        self.plane_words(Plane.ZX if is_lathe else Plane.XY)
+        is_lathe = self.machine is MachineType.LATHE
+        self.plane_words(ArcPlane.ZX if is_lathe else ArcPlane.XY)
         self.modal.set("mode", "G94")
         yield from self.line("G18" if is_lathe else "G17", "G40 G54 G710 G90 G94")
         if is_lathe:
@@ -98,7 +107,9 @@ class Sinumerik(IsoCode):
 
     def tool_change(self, block: ToolChange) -> Iterator[str]:
         """Tool, then its edge 1; a turret turns at T."""
-        yield from self.line(f"T{block.number}", "M6" if self.machine is Machine.MILL else "")
+        yield from self.line(
+            f"T{block.number}", "M6" if self.machine is MachineType.MILL else ""
+        )
         yield from self.line("D1")
         self.pend("")
 
@@ -127,7 +138,7 @@ class Sinumerik(IsoCode):
         """F of a G4 is in s."""
         return f"F{self.number(value, 3)}"
 
-    def thread_words(self, start: Point, block: Threading) -> list[str]:
+    def thread_words(self, start: Point, block: ThreadingMove) -> list[str]:
         """G33 with the lead of the axis that moves most."""
         moves = [abs(e - s) for s, e in zip(start, block.end, strict=True)]
         letter = "IJK"[moves.index(max(moves))]
@@ -135,7 +146,7 @@ class Sinumerik(IsoCode):
 
     def rigid_tap(self, block: RigidTap) -> Iterator[str]:
         """G331 down and G332 up; a negative lead cuts a left-hand thread."""
-        sign = 1.0 if block.sense is Sense.CLOCKWISE else -1.0
+        sign = 1.0 if block.sense is SpindleDirection.CLOCKWISE else -1.0
         lead = f"K{self.number(sign * block.lead, 4)}"
         bottom = f"Z{self.number(block.bottom_z, self.places)}"
         top = f"Z{self.number(block.start[2], self.places)}"
@@ -155,7 +166,7 @@ class Sinumerik(IsoCode):
     def drilling_cycle(self, block: DrillingCycle) -> Iterator[str]:
         """A call where the tool is; its feed is that in force."""
         yield from self.rapid(Rapid(end=(*block.at, block.retract_z)))
-        plane, mode = self.plane_words(Plane.XY), self.mode(block.rate.mode)
+        plane, mode = self.plane_words(ArcPlane.XY), self.mode(block.rate.mode)
         yield from self.line(plane, mode, self.rate(block.rate))
         arguments = ",".join(self._arguments(block)).rstrip(",")
         self.modal.forget("motion")
@@ -189,16 +200,16 @@ CALL = re.compile(r"(?:N\d+\s*)?CYCLE(8[1235])\(([^()]*)\)")
 MESSAGE = re.compile(r'(?:N\d+\s*)?MSG\("([^"]*)"\)')
 ASSIGNED = re.compile(rf"\b(LIMS|SPOS|TURN)\s*=\s*({NUMBER})")
 DIAMETER = re.compile(r"\bDIAMON\b")
-CODES: dict[str, Act] = (
+CODES: dict[str, GCode] = (
     COMMON
     | PER_TIME
     | {
-        "G33": Act.THREAD,
-        "G90": Act.NOTHING,
-        "G331": Act.TAP,
-        "G332": Act.TAP_OUT,
-        "G710": Act.NOTHING,
-        "G961": Act.SURFACE_SPEED,
+        "G33": GCodeAction.THREAD,
+        "G90": GCodeAction.NOTHING,
+        "G331": GCodeAction.TAP,
+        "G332": GCodeAction.TAP_OUT,
+        "G710": GCodeAction.NOTHING,
+        "G961": GCodeAction.SURFACE_SPEED,
     }
 )
 
@@ -206,9 +217,9 @@ CODES: dict[str, Act] = (
 class SinumerikReader(IsoReader):
     """Reader of Sinumerik code."""
 
-    codes: Mapping[Machine, Mapping[str, Act]] = dict.fromkeys(Machine, CODES)
+    codes: Mapping[MachineType, Mapping[str, GCode]] = dict.fromkeys(MachineType, CODES)
 
-    def __init__(self, machine: Machine) -> None:
+    def __init__(self, machine: MachineType) -> None:
         super().__init__(machine)
         self.returns_to_start = False
         self._assigned: dict[str, float] = {}
@@ -232,44 +243,44 @@ class SinumerikReader(IsoReader):
     def _assignments(self, code: str) -> Iterator[Block]:
         """Words with more than one letter, then the others."""
         if DIAMETER.search(code):
-            self.machine, self.is_diameter = Machine.LATHE, True
+            self.machine, self.is_diameter = MachineType.LATHE, True
             code = DIAMETER.sub(" ", code)
         self._assigned = {}
         for name, text in ASSIGNED.findall(code):
             if name in self._assigned:
                 raise PostError(f"word {name}={text}: a second {name} in one block")
             self._assigned[name] = number_of(f"{name}=", text)
-        words = Words(pairs(ASSIGNED.sub(" ", code)))
+        words = LineWords(pairs(ASSIGNED.sub(" ", code)))
         if "LIMS" in self._assigned:
             self.limit = rev_s_from_rpm(whole(self._assigned.pop("LIMS"), "LIMS="))
         yield from self.block(words)
         if self._assigned:
             raise PostError(f"word {next(iter(self._assigned))}=: nothing here uses it")
 
-    def settle(self, acts: list[Act], words: Words) -> None:
+    def settle(self, acts: list[GCode], words: LineWords) -> None:
         """G94 to G97 are one group; F of a G4 is no feed."""
-        if Act.DWELL in acts:
+        if GCodeAction.DWELL in acts:
             self._pause = words.need("F", "G4")
-        if Act.PER_MINUTE in acts or Act.PER_REVOLUTION in acts:
+        if RateMode.PER_MINUTE in acts or RateMode.PER_REVOLUTION in acts:
             self.is_surface_speed = False
         if "G961" in words.codes:
-            acts.append(Act.PER_MINUTE)
-        elif Act.SURFACE_SPEED in acts or Act.SPINDLE_SPEED in acts:
-            acts.append(Act.PER_REVOLUTION)
+            acts.append(RateMode.PER_MINUTE)
+        elif GCodeAction.SURFACE_SPEED in acts or GCodeAction.SPINDLE_SPEED in acts:
+            acts.append(RateMode.PER_REVOLUTION)
         super().settle(acts, words)
 
-    def seconds(self, words: Words) -> float:
+    def seconds(self, words: LineWords) -> float:
         """F, in s."""
         return self._pause
 
-    def tool(self, words: Words) -> Iterator[Block]:
+    def tool(self, words: LineWords) -> Iterator[Block]:
         """T and M6, or T alone on a lathe; D is the edge."""
         words.take("D")
-        if self.machine is Machine.LATHE and "T" in words:
+        if self.machine is MachineType.LATHE and "T" in words:
             words.functions.append("M6")
         return super().tool(words)
 
-    def extra(self, words: Words) -> Iterator[Block]:
+    def extra(self, words: LineWords) -> Iterator[Block]:
         """Spindle at an angle."""
         angle = self._assigned.pop("SPOS", None)
         if angle:
@@ -277,26 +288,28 @@ class SinumerikReader(IsoReader):
         if angle is not None:
             yield SpindleOrient()
 
-    def turns(self, words: Words) -> int:
+    def turns(self, words: LineWords) -> int:
         """TURN=, full turns besides the arc itself."""
         given = self._assigned.pop("TURN", 0.0)
         return whole(given, "TURN=") if given else 0
 
-    def lead(self, end: Point, words: Words) -> float:
+    def lead(self, end: Point, words: LineWords) -> float:
         """I, J or K, of the axis that moves most."""
         moves = [abs(e - s) for s, e in zip(self.at, end, strict=True)]
         return words.need("IJK"[moves.index(max(moves))], "G33")
 
-    def tap(self, words: Words, act: Act) -> Iterator[Block]:
+    def tap(self, words: LineWords, act: GCode) -> Iterator[Block]:
         """G331 down and G332 up make one tap."""
         z, lead = words.need("Z", "a tap"), words.need("K", "a tap")
-        if act is Act.TAP:
+        if act is GCodeAction.TAP:
             self._tap = (z, lead)
             return
         if self._tap is None or abs(z - self.at[2]) > ROUND or lead != self._tap[1]:
             raise PostError("G332 must lead back to where G331 began, with the same lead")
         bottom, self._tap = self._tap[0], None
-        self.sense = Sense.CLOCKWISE if lead > 0.0 else Sense.COUNTERCLOCKWISE
+        self.sense = (
+            SpindleDirection.CLOCKWISE if lead > 0.0 else SpindleDirection.COUNTERCLOCKWISE
+        )
         yield self.tapped(bottom, abs(lead), self.sense)
 
     def _called(self, number: str, texts: list[str]) -> Iterator[Block]:

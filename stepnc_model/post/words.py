@@ -1,10 +1,21 @@
-"""Words of NC code: numbers, texts, and the memory of what is in force."""
+"""Words of NC code: numbers, texts, the memory of what is in force, and the codes of ISO 6983.
 
+A line of G-code is letters with numbers, each taken once. What the codes of the dialects do has
+names of its own; codes that most dialects share stand here.
+"""
+
+import re
 import unicodedata
+from collections.abc import Iterator
+from enum import Enum, auto
+
+from stepnc_model.errors import PostError
+from stepnc_model.post.blocks import RateMode, SpindleDirection
+from stepnc_model.toolpath.path import ArcPlane, CycleKind
 
 
 class Modal:
-    """What is in force: a word is written when it says something new. Running state."""
+    """Modal words: a word is written only when its value changes. Running state."""
 
     def __init__(self) -> None:
         self._words: dict[str, str] = {}
@@ -51,3 +62,187 @@ def bracketed(text: str, longest: int) -> str:
     """A comment in round brackets, which it must not hold itself."""
     inner = ascii_text(text).replace("(", "[").replace(")", "]")
     return f"({inner[:longest]})"
+
+
+NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)"
+WORD = re.compile(rf"\s*([A-Z])\s*({NUMBER})")
+
+LARGEST = 1e9
+"""no word of NC code means more: coordinates are mm"""
+
+UNSIGNED = frozenset("DFHNPQST")
+"""words that are never negative: feeds, speeds, tools, pauses"""
+
+LONGEST = 60
+"""characters of a line that a message shows"""
+
+
+class LineWords:
+    """The words of a line. Running state: what was taken is gone."""
+
+    def __init__(self, pairs: Iterator[tuple[str, str]]) -> None:
+        self.codes: list[str] = []
+        """G words, shortened: ``G1``"""
+        self.functions: list[str] = []
+        """M words, shortened: ``M3``"""
+        self.pointless: set[str] = set()
+        """letters of numbers without a point: some controls count those in thousandths"""
+        self._values: dict[str, float] = {}
+        for letter, text in pairs:
+            value = number_of(letter, text)
+            if "." not in text:
+                self.pointless.add(letter)
+            if letter in {"G", "M"}:
+                kind = self.codes if letter == "G" else self.functions
+                kind.append(f"{letter}{value:g}")
+            elif letter in self._values:
+                raise PostError(f"word {letter}{text}: a second {letter} in one block")
+            elif letter in UNSIGNED and value < 0.0:
+                raise PostError(f"word {letter}{text}: must not be negative")
+            else:
+                self._values[letter] = value
+
+    def __contains__(self, letter: str) -> bool:
+        return letter in self._values
+
+    def take(self, letter: str) -> float | None:
+        """Value of a word, which is used up by this."""
+        return self._values.pop(letter, None)
+
+    def need(self, letter: str, purpose: str) -> float:
+        """Value of a word that must be there."""
+        value = self.take(letter)
+        if value is None:
+            raise PostError(f"{purpose}: the word {letter} is missing")
+        return value
+
+    def finish(self) -> None:
+        """Nothing may be left over."""
+        if self._values:
+            words = " ".join(f"{letter}{value:g}" for letter, value in self._values.items())
+            raise PostError(f"word {words}: nothing in this block uses it")
+
+
+def pairs(text: str) -> Iterator[tuple[str, str]]:
+    """Letters and numbers of a line without comments.
+
+    Raises
+    ------
+    PostError
+        At what is no word.
+    """
+    at = 0
+    end = len(text.rstrip())
+    while at < end:
+        found = WORD.match(text, at)
+        if found is None:
+            raise PostError(f"'{shown(text[at:end])}': no word of NC code")
+        yield found[1], found[2]
+        at = found.end()
+
+
+def number_of(word: str, text: str) -> float:
+    """Value of a word.
+
+    Raises
+    ------
+    PostError
+        When no machine is so large.
+    """
+    value = float(text)
+    if not abs(value) <= LARGEST:
+        raise PostError(f"word {word}{shown(text)}: beyond {LARGEST:g}")
+    return value
+
+
+def shown(text: str) -> str:
+    """Beginning of a line, as messages show it."""
+    plain = " ".join(text.split())
+    return plain if len(plain) <= LONGEST else f"{plain[:LONGEST]}…"
+
+
+def whole(value: float, word: str) -> int:
+    """A number that must be whole and positive, as tools and turns are."""
+    if value != int(value) or value < 1.0:
+        raise PostError(f"word {word}{value:g}: must be a whole number above 0")
+    return int(value)
+
+
+class GCodeAction(Enum):
+    """Action of a G code."""
+
+    NOTHING = auto()
+    """says what is so anyway: metric, absolute, zero points, no cutter compensation"""
+    RAPID = auto()
+    LINEAR = auto()
+    CLOCKWISE = auto()
+    COUNTERCLOCKWISE = auto()
+    THREAD = auto()
+    TAP = auto()
+    LEFT_TAP = auto()
+    TAP_OUT = auto()
+    """the way out of a tap, where it is a block of its own"""
+    DWELL = auto()
+    SURFACE_SPEED = auto()
+    SPINDLE_SPEED = auto()
+    SPEED_LIMIT = auto()
+    LENGTH = auto()
+    DIAMETER = auto()
+    CANCEL = auto()
+    TO_RETRACT = auto()
+    TO_START = auto()
+
+
+GCode = GCodeAction | ArcPlane | RateMode | CycleKind
+"""what a G code stands for: an action, or a plane, a mode of feed, a drilling cycle"""
+
+
+COMMON: dict[str, GCode] = {
+    "G0": GCodeAction.RAPID,
+    "G1": GCodeAction.LINEAR,
+    "G2": GCodeAction.CLOCKWISE,
+    "G3": GCodeAction.COUNTERCLOCKWISE,
+    "G4": GCodeAction.DWELL,
+    "G17": ArcPlane.XY,
+    "G18": ArcPlane.ZX,
+    "G19": ArcPlane.YZ,
+    "G40": GCodeAction.NOTHING,
+    "G54": GCodeAction.NOTHING,
+    "G96": GCodeAction.SURFACE_SPEED,
+    "G97": GCodeAction.SPINDLE_SPEED,
+}
+PER_TIME: dict[str, GCode] = {
+    "G94": RateMode.PER_MINUTE,
+    "G95": RateMode.PER_REVOLUTION,
+}
+CANNED: dict[str, GCode] = {
+    "G73": CycleKind.CHIP_BREAK,
+    "G80": GCodeAction.CANCEL,
+    "G81": CycleKind.DRILL,
+    "G82": CycleKind.DWELL,
+    "G83": CycleKind.PECK,
+    "G85": CycleKind.BORE,
+    "G86": CycleKind.BORE_STOP,
+    "G98": GCodeAction.TO_START,
+    "G99": GCodeAction.TO_RETRACT,
+}
+LENGTHS: dict[str, GCode] = {
+    "G21": GCodeAction.NOTHING,
+    "G43": GCodeAction.LENGTH,
+    "G49": GCodeAction.NOTHING,
+    "G90": GCodeAction.NOTHING,
+}
+
+MOTIONS = frozenset({
+    GCodeAction.RAPID,
+    GCodeAction.LINEAR,
+    GCodeAction.CLOCKWISE,
+    GCodeAction.COUNTERCLOCKWISE,
+    GCodeAction.THREAD,
+    GCodeAction.TAP,
+    GCodeAction.LEFT_TAP,
+    GCodeAction.TAP_OUT,
+    *CycleKind,
+})
+TAPS = frozenset({GCodeAction.TAP, GCodeAction.LEFT_TAP, GCodeAction.TAP_OUT})
+SENSES = {"M3": SpindleDirection.CLOCKWISE, "M4": SpindleDirection.COUNTERCLOCKWISE}

@@ -3,8 +3,14 @@
 ISO 10303-42: polylines, composite and trimmed curves, circles, lines and B-splines, and the
 helix of NIST's ``ex1E.stp``. Circles stay arcs; ellipses and B-splines become chords within
 ``CHORD_TOLERANCE``.
+
+References
+----------
+.. [1] L. Piegl, W. Tiller, "The NURBS Book", 2nd ed., Springer 1997, algorithm A2.1 and
+   eq. (3.1): points of a B-spline curve by de Boor's recursion.
 """
 
+from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -14,6 +20,7 @@ from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.enums import TrimmingPreference
 from stepnc_model.entities.geometry import (
     BSplineCurve,
+    BSplineCurveWithKnots,
     Circle,
     CompositeCurve,
     Ellipse,
@@ -22,13 +29,91 @@ from stepnc_model.entities.geometry import (
     Polyline,
     TrimmedCurve,
 )
-from stepnc_model.errors import PathError
 from stepnc_model.part21.values import Ref, Typed
 from stepnc_model.program import Program
 from stepnc_model.toolpath.frame import Frame, direction_of, frame_of, point_of
-from stepnc_model.toolpath.path import Arc, Feed, Move, MoveType, Plane, Point
-from stepnc_model.toolpath.spline import spline_of
+from stepnc_model.toolpath.path import Arc, ArcPlane, Feed, Move, MoveType, Point
 from stepnc_model.units import rad_from_deg
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Spline:
+    """A curve by its degree, knots and control points."""
+
+    degree: int
+    knots: tuple[float, ...]
+    poles: tuple[Point, ...]
+
+    @property
+    def spans(self) -> tuple[float, ...]:
+        """Parameters where its polynomials meet, from its start to its end."""
+        return tuple(sorted(set(self.knots[self.degree : len(self.poles) + 1])))
+
+    def at(self, parameter: float) -> Point:
+        """Point at a parameter, [1]_."""
+        degree = self.degree
+        last = len(self.poles) - 1
+        span = min(max(bisect_right(self.knots, parameter) - 1, degree), last)
+        points = list(self.poles[span - degree : span + 1])
+        for level in range(1, degree + 1):
+            for i in range(degree, level - 1, -1):
+                low = self.knots[span - degree + i]
+                width = self.knots[span + 1 + i - level] - low
+                part = (parameter - low) / width if width > 0.0 else 0.0
+                a, b = points[i - 1], points[i]
+                points[i] = (
+                    a[0] + part * (b[0] - a[0]),
+                    a[1] + part * (b[1] - a[1]),
+                    a[2] + part * (b[2] - a[2]),
+                )
+        return points[degree]
+
+
+def spline_of(program: Program, ref: Ref[Entity]) -> Spline:
+    """B-spline behind a reference.
+
+    Raises
+    ------
+    PathError
+        When it is none, or its knots and control points do not fit together.
+    """
+    curve = program.get(ref)
+    if not isinstance(curve, BSplineCurve):
+        raise program.path_error("is no B-spline curve", ref)
+    poles = tuple(point_of(program, point) for point in curve.control_points_list)
+    degree = curve.degree
+    if degree < 1 or len(poles) <= degree:
+        raise program.path_error(f"degree {degree} with {len(poles)} control points", ref)
+    knots = _knots(program, ref, curve)
+    if any(a > b for a, b in pairwise(knots)):
+        raise program.path_error("its knots fall: each must be at least the one before", ref)
+    if len(knots) != len(poles) + degree + 1:
+        message = f"{len(knots)} knots for {len(poles)} control points of degree {degree}"
+        raise program.path_error(message, ref)
+    return Spline(degree=degree, knots=knots, poles=poles)
+
+
+def _knots(program: Program, ref: Ref[Entity], curve: BSplineCurve) -> tuple[float, ...]:
+    """Knot vector; open and uniform where the curve spells none out."""
+    if isinstance(curve, BSplineCurveWithKnots):
+        if len(curve.knots) != len(curve.knot_multiplicities):
+            counts = (
+                f"{len(curve.knots)} knots, {len(curve.knot_multiplicities)} multiplicities"
+            )
+            raise program.path_error(counts, ref)
+        for times in curve.knot_multiplicities:
+            if not 1 <= times <= curve.degree + 1:
+                message = f"multiplicity {times}: 1 to {curve.degree + 1} for its degree"
+                raise program.path_error(message, ref)
+        return tuple(
+            float(knot)
+            for knot, times in zip(curve.knots, curve.knot_multiplicities, strict=True)
+            for _ in range(times)
+        )
+    count, degree = len(curve.control_points_list), curve.degree
+    inner = tuple(float(index) for index in range(1, count - degree))
+    return (0.0,) * (degree + 1) + inner + (float(count - degree),) * (degree + 1)
+
 
 CHORD_TOLERANCE = 1e-3
 """mm between a curve that is no arc and the chords that stand for it"""
@@ -61,7 +146,7 @@ class Bend:
     normal: Point
     """unit vector; counter-clockwise is seen from its tip"""
     turn: float
-    """rad"""
+    """Turn, rad"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -97,14 +182,14 @@ def segments_of(program: Program, ref: Ref[Entity]) -> tuple[Segment, ...]:
     """
     with program.using(ref):
         budget = iter(range(MOST_CURVES))
-        found = _segments(program, ref, _Visit(budget))
+        found = _segments(program, ref, _CurveVisit(budget))
         segments = tuple(segment for segment in found if not _is_point(segment))
     if not segments:
-        raise _fault(program, ref, "has no length")
+        raise program.path_error("has no length", ref)
     for one, other in pairwise(segments):
         gap = dist(one.end, other.start)
         if gap > JOINED:
-            raise _fault(program, ref, f"its parts do not join: a gap of {gap:.4g} mm")
+            raise program.path_error(f"its parts do not join: a gap of {gap:.4g} mm", ref)
     return segments
 
 
@@ -114,7 +199,7 @@ def move_of(segment: Segment, type: MoveType, feed: Feed | None) -> Iterator[Mov
     if bend is None:
         yield Move(end=segment.end, type=type, feed=feed)
         return
-    for plane in Plane:
+    for plane in ArcPlane:
         along = bend.normal[plane.axes[2]]
         if abs(abs(along) - 1.0) < PRINCIPAL:
             turn = bend.turn if along > 0.0 else -bend.turn
@@ -126,21 +211,21 @@ def move_of(segment: Segment, type: MoveType, feed: Feed | None) -> Iterator[Mov
 
 
 @dataclass(frozen=True, slots=True)
-class _Visit:
-    """How deep a curve lies within others, and how many may still be followed."""
+class _CurveVisit:
+    """Nesting level of a curve, and how many more may be followed."""
 
     budget: Iterator[int]
     level: int = 0
 
-    def inner(self) -> "_Visit":
-        return _Visit(self.budget, self.level + 1)
+    def inner(self) -> "_CurveVisit":
+        return _CurveVisit(self.budget, self.level + 1)
 
 
-def _segments(program: Program, ref: Ref[Entity], visit: _Visit) -> Iterator[Segment]:
+def _segments(program: Program, ref: Ref[Entity], visit: _CurveVisit) -> Iterator[Segment]:
     """Lines and arcs of a curve."""
     if visit.level > MOST_NESTED or next(visit.budget, None) is None:
         message = f"contains itself, or more than {MOST_NESTED} levels or {MOST_CURVES} curves"
-        raise _fault(program, ref, message)
+        raise program.path_error(message, ref)
     curve = program.get(ref)
     if isinstance(curve, Polyline):
         points = [point_of(program, point) for point in curve.points]
@@ -155,10 +240,10 @@ def _segments(program: Program, ref: Ref[Entity], visit: _Visit) -> Iterator[Seg
         yield from _spline(program, ref)
     elif isinstance(curve, (Circle, Ellipse)):
         if isinstance(curve, Circle) and not curve.radius > 0.0:
-            raise _fault(program, ref, f"radius {curve.radius:g} mm: it must be positive")
+            raise program.path_error(f"radius {curve.radius:g} mm: it must be positive", ref)
         yield from _conic(program, curve, 0.0, 2.0 * pi)
     else:
-        raise _fault(program, ref, "a curve of this kind cannot be followed")
+        raise program.path_error("a curve of this kind cannot be followed", ref)
 
 
 def _backwards(segments: Sequence[Segment]) -> Iterator[Segment]:
@@ -166,7 +251,7 @@ def _backwards(segments: Sequence[Segment]) -> Iterator[Segment]:
 
 
 def _trimmed(
-    program: Program, ref: Ref[Entity], curve: TrimmedCurve, visit: _Visit
+    program: Program, ref: Ref[Entity], curve: TrimmedCurve, visit: _CurveVisit
 ) -> Iterator[Segment]:
     """Part of a line, circle, ellipse or helix."""
     basis = program.get(curve.basis_curve)
@@ -192,7 +277,7 @@ def _trimmed(
         inner = tuple(_segments(program, curve.basis_curve, visit.inner()))
         yield from inner if sense else _backwards(inner)
     else:
-        raise _fault(program, ref, "a curve of this kind cannot be trimmed")
+        raise program.path_error("a curve of this kind cannot be trimmed", ref)
 
 
 def _trims(curve: TrimmedCurve) -> tuple[tuple[object, ...], tuple[object, ...]]:
@@ -217,7 +302,7 @@ def _parameter(program: Program, ref: Ref[Entity], trims: tuple[object, ...]) ->
         value = trim.value if isinstance(trim, Typed) else trim
         if isinstance(value, (int, float)):
             return float(value)
-    raise _fault(program, ref, "is trimmed by neither point nor parameter")
+    raise program.path_error("is trimmed by neither point nor parameter", ref)
 
 
 def _line_point(
@@ -259,7 +344,7 @@ def _angle(
     if not isinstance(basis, Helix):
         off = max(off, abs(beside))
     if off > ON_CIRCLE:
-        raise _fault(program, ref, f"a trimming point lies {off:.4g} mm beside its circle")
+        raise program.path_error(f"a trimming point lies {off:.4g} mm beside its circle", ref)
     return atan2(b, a)
 
 
@@ -318,7 +403,7 @@ def _helix(
     """Part of a right-hand helix between two points; the rise and the pitch tell the turns."""
     ends = [_cartesian(program, curve, trims) for trims in _trims(curve)]
     if ends[0] is None or ends[1] is None or not helix.pitch:
-        raise _fault(program, ref, "a helix needs a pitch and two trimming points")
+        raise program.path_error("a helix needs a pitch and two trimming points", ref)
     start, end = local(frame, ends[0]), local(frame, ends[1])
     first, second = atan2(start[1], start[0]), atan2(end[1], end[0])
     rise = end[2] - start[2]
@@ -328,7 +413,7 @@ def _helix(
     turn = rest + 2.0 * pi * round((whole - rest) / (2.0 * pi))
     if not abs(turn) <= MOST_TURNS * 2.0 * pi:
         message = f"a pitch of {helix.pitch:g} mm: more than {MOST_TURNS} turns"
-        raise _fault(program, ref, message)
+        raise program.path_error(message, ref)
     bend = Bend(centre=frame.origin, normal=frame.z, turn=turn)
     yield Segment(start=ends[0], end=ends[1], bend=bend)
 
@@ -382,7 +467,3 @@ def _bend_points(segment: Segment, bend: Bend) -> Iterator[Point]:
 def _is_point(segment: Segment) -> bool:
     """A segment without length, as files leave between their curves."""
     return segment.start == segment.end and segment.bend is None
-
-
-def _fault(program: Program, ref: Ref[Entity], message: str) -> PathError:
-    return PathError(message, entity=program.label(ref), line=program.line(ref))

@@ -1,20 +1,40 @@
-"""Coordinate systems: placements of the file as rigid motions, from a feature to the setup.
+"""Coordinate systems and patterns: placements of the file, from a feature to the setup.
 
 ISO 14649-10: a feature is placed on its workpiece or in its compound feature, a workpiece in
 its setup. Tool paths come out in the coordinates of the setup.
+
+A pattern (ISO 14649-10, replicate features) is the places of its copies. How the standard is
+read here, the same for all patterns:
+
+* the base feature is placed relative to its pattern, and is itself the first copy;
+* indices of rows, columns and places on a circle count from 1, the base feature;
+* ``number_of_feature`` of a circle counts the copies that are there: a circle has as many
+  places as copies and omitted ones together;
+* a copy on a circle keeps its orientation, turned by ``base_feature_rotation`` from each
+  place to the next;
+* ``replicate_locations`` are placements of copies in the coordinates of the pattern; the base
+  feature at a place of its own comes before them.
 """
 
-from dataclasses import dataclass
-from math import sqrt
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from itertools import chain
+from math import cos, dist, hypot, sin, sqrt
 
 from stepnc_model.entities.entity import Entity
-from stepnc_model.entities.features import CompoundFeature
+from stepnc_model.entities.executables import Setup
+from stepnc_model.entities.features import (
+    CircularPattern,
+    CompoundFeature,
+    GeneralPattern,
+    RectangularPattern,
+    ReplicateFeature,
+)
 from stepnc_model.entities.geometry import Placement
-from stepnc_model.entities.setup import Setup
-from stepnc_model.errors import PathError
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
-from stepnc_model.toolpath.path import Point
+from stepnc_model.toolpath.path import Point, cross, dot, plus, times
+from stepnc_model.units import rad_from_deg
 
 PARALLEL = 1e-9
 """sine below which two directions are taken as one"""
@@ -81,7 +101,7 @@ def frame_of(program: Program, ref: Ref[Entity] | None) -> Frame:
         return Frame()
     placement = program.get(ref)
     if not isinstance(placement, Placement):
-        raise _fault(program, ref, "is no placement")
+        raise program.path_error("is no placement", ref)
     origin = point_of(program, placement.location)
     # A placement in the plane has no axis, one on an axis has no reference direction.
     z = _direction(program, ref, getattr(placement, "axis", None)) or (0.0, 0.0, 1.0)
@@ -89,18 +109,18 @@ def frame_of(program: Program, ref: Ref[Entity] | None) -> Frame:
     if towards is None:
         is_along_x = abs(z[1]) + abs(z[2]) < PARALLEL
         towards = (0.0, 1.0, 0.0) if is_along_x else (1.0, 0.0, 0.0)
-    across = _dot(towards, z)
+    across = dot(towards, z)
     x = _unit(tuple(t - across * c for t, c in zip(towards, z, strict=True)))
     if x is None:
-        raise _fault(program, ref, "its ref_direction lies along its axis")
-    return Frame(origin=origin, x=x, y=_cross(z, x), z=z)
+        raise program.path_error("its ref_direction lies along its axis", ref)
+    return Frame(origin=origin, x=x, y=cross(z, x), z=z)
 
 
 def point_of(program: Program, ref: Ref[Entity]) -> Point:
     """Coordinates of a point, missing ones 0."""
     coordinates = getattr(program.get(ref), "coordinates", None)
     if coordinates is None:
-        raise _fault(program, ref, "is no point")
+        raise program.path_error("is no point", ref)
     x, y, z = (*coordinates, 0.0, 0.0, 0.0)[:3]
     return float(x), float(y), float(z)
 
@@ -109,7 +129,7 @@ def direction_of(program: Program, ref: Ref[Entity]) -> Point:
     """Unit vector of a direction."""
     found = _direction(program, ref, ref)
     if found is None:
-        raise _fault(program, ref, "is no direction")
+        raise program.path_error("is no direction", ref)
     return found
 
 
@@ -119,7 +139,7 @@ def workpiece_frame(program: Program, setup: Ref[Setup] | None) -> Frame:
         return Frame()
     entity = program.get(setup)
     if not isinstance(entity, Setup):
-        raise _fault(program, setup, "stands where a setup belongs")
+        raise program.path_error("stands where a setup belongs", setup)
     placed = entity.its_workpiece_setup
     if not placed:
         return Frame()
@@ -154,20 +174,16 @@ def feature_frame(program: Program, setup: Ref[Setup] | None, feature: Ref[Entit
     return surrounding_frame(program, setup, feature).inner(frame_of(program, placement))
 
 
-def _fault(program: Program, ref: Ref[Entity], message: str) -> PathError:
-    return PathError(message, entity=program.label(ref), line=program.line(ref))
-
-
 def _direction(program: Program, at: Ref[Entity], ref: Ref[Entity] | None) -> Point | None:
     """Unit vector of a direction that may be absent."""
     if ref is None:
         return None
     ratios = getattr(program.get(ref), "direction_ratios", None)
     if ratios is None:
-        raise _fault(program, at, f"{ref} is no direction")
+        raise program.path_error(f"{ref} is no direction", at)
     unit = _unit((*map(float, ratios), 0.0, 0.0)[:3])
     if unit is None:
-        raise _fault(program, ref, "its ratios are all 0: it points nowhere")
+        raise program.path_error("its ratios are all 0: it points nowhere", ref)
     return unit
 
 
@@ -179,13 +195,203 @@ def _unit(vector: tuple[float, ...]) -> Point | None:
     return vector[0] / size, vector[1] / size, vector[2] / size
 
 
-def _dot(one: Point, other: Point) -> float:
-    return sum(a * b for a, b in zip(one, other, strict=True))
+MAX_COPIES = 10_000
+"""features of one pattern; more is a trap"""
+
+SAME_PLACE = 1e-6
+"""mm between two placements of one and the same copy"""
+
+ON_CIRCLE = 0.01
+"""mm by which the base feature may lie beside the circle that its pattern names"""
 
 
-def _cross(one: Point, other: Point) -> Point:
-    return (
-        one[1] * other[2] - one[2] * other[1],
-        one[2] * other[0] - one[0] * other[2],
-        one[0] * other[1] - one[1] * other[0],
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlacedFeature:
+    """A feature that is no pattern, where it stands."""
+
+    feature: Ref[Entity]
+    frame: Frame
+    """its own, in the coordinates of the setup"""
+
+
+def placements(
+    program: Program, setup: Ref[Setup] | None, feature: Ref[Entity]
+) -> Iterator[PlacedFeature]:
+    """Places of a feature: its own, or those of all copies of a pattern, in order.
+
+    Parameters
+    ----------
+    program : Program
+    setup : Ref or None
+        Setup of the workingstep.
+    feature : Ref
+        A feature, or a pattern of features or of patterns.
+
+    Yields
+    ------
+    PlacedFeature
+        At most ``MAX_COPIES`` of them.
+
+    Raises
+    ------
+    PathError
+        When a pattern contains itself, lacks a size, has no such place as it omits or moves,
+        or has too many copies.
+    """
+    within = surrounding_frame(program, setup, feature)
+    for count, placed in enumerate(_expanded(program, feature, within, ())):
+        if count == MAX_COPIES:
+            raise program.path_error(f"more than {MAX_COPIES} copies", feature)
+        yield placed
+
+
+def _expanded(
+    program: Program, feature: Ref[Entity], within: Frame, outer: tuple[Ref[Entity], ...]
+) -> Iterator[PlacedFeature]:
+    """Copies of a feature that is placed within a frame."""
+    if feature in outer:
+        raise program.path_error("contains itself", feature, "replicate_base_feature")
+    entity = program.get(feature)
+    own = frame_of(program, getattr(entity, "feature_placement", None))
+    if not isinstance(entity, ReplicateFeature):
+        yield PlacedFeature(feature=feature, frame=within.inner(own))
+        return
+    pattern = within.inner(own)
+    base = entity.replicate_base_feature
+    first = frame_of(program, getattr(program.get(base), "feature_placement", None))
+    undone = first.inverse()
+    with program.using(feature):
+        copies = _copies(program, feature, entity, first)
+        for copy in copies:
+            # The base places itself: what is left is the way from it to the copy.
+            shifted = pattern.inner(copy.inner(undone))
+            yield from _expanded(program, base, shifted, (*outer, feature))
+
+
+def _copies(
+    program: Program, ref: Ref[Entity], pattern: ReplicateFeature, first: Frame
+) -> Iterator[Frame]:
+    """Frames of the copies in the coordinates of their pattern."""
+    if isinstance(pattern, GeneralPattern):
+        return _general(program, pattern, first)
+    if isinstance(pattern, CircularPattern):
+        return _circular(program, ref, pattern, first)
+    if isinstance(pattern, RectangularPattern):
+        return _rectangular(program, ref, pattern, first)
+    raise program.path_error("a pattern of this kind cannot be laid out", ref)
+
+
+def _general(program: Program, pattern: GeneralPattern, first: Frame) -> Iterator[Frame]:
+    """Base feature and copies, each once."""
+    done: list[Frame] = []
+    copies = (frame_of(program, each) for each in pattern.replicate_locations)
+    for frame in chain((first,), copies):
+        if not any(_is_same(frame, other) for other in done):
+            done.append(frame)
+            yield frame
+
+
+def _circular(
+    program: Program, ref: Ref[Entity], pattern: CircularPattern, first: Frame
+) -> Iterator[Frame]:
+    """Copies about the z axis of the pattern, counter-clockwise."""
+    missing = {program.get(each).index for each in pattern.missing_base_feature}
+    places = pattern.number_of_feature + len(missing)
+    _check_count(program, ref, places, "number_of_feature")
+    offsets = [program.get(each) for each in pattern.relocated_base_feature]
+    extra = {each.index: each.angular_offset for each in offsets}
+    for index in missing | extra.keys():
+        _check_index(program, ref, index, places)
+    base = _on_circle(program, ref, pattern, first)
+    for index in range(1, places + 1):
+        if index not in missing:
+            around = (index - 1) * pattern.angle_increment + extra.get(index, 0.0)
+            about = (index - 1) * (pattern.base_feature_rotation or 0.0)
+            yield _turned(base, around=rad_from_deg(around), about=rad_from_deg(about))
+
+
+def _on_circle(
+    program: Program, ref: Ref[Entity], pattern: CircularPattern, first: Frame
+) -> Frame:
+    """Base feature on the circle: where it is placed, else on the x axis of the pattern."""
+    away = hypot(first.origin[0], first.origin[1])
+    if pattern.base_feature_diameter is None:
+        return first
+    radius = 0.5 * program.get(pattern.base_feature_diameter).theoretical_size
+    if away < ON_CIRCLE:
+        return replace(first, origin=(radius, 0.0, first.origin[2]))
+    if abs(away - radius) > ON_CIRCLE:
+        message = f"radius {radius:g} mm, but the base feature lies {away:g} mm from the centre"
+        raise program.path_error(message, ref, "base_feature_diameter")
+    return first
+
+
+def _turned(frame: Frame, *, around: float, about: float) -> Frame:
+    """A frame moved around the z axis, and turned about its own."""
+    return Frame(
+        origin=_rotated(frame.origin, around),
+        x=_rotated(frame.x, about),
+        y=_rotated(frame.y, about),
+        z=_rotated(frame.z, about),
     )
+
+
+def _rectangular(
+    program: Program, ref: Ref[Entity], pattern: RectangularPattern, first: Frame
+) -> Iterator[Frame]:
+    """Copies row by row, each row along its direction."""
+    rows = 1 if pattern.number_of_rows is None else pattern.number_of_rows
+    columns = pattern.number_of_columns
+    _check_count(program, ref, rows, "number_of_rows")
+    _check_count(program, ref, columns, "number_of_columns")
+    _check_count(program, ref, rows * columns, "number_of_columns")
+    along = direction_of(program, pattern.its_direction)
+    column_step = times(along, program.get(pattern.spacing).theoretical_size)
+    row_step = (0.0, 0.0, 0.0)
+    if rows > 1:
+        if pattern.row_spacing is None or pattern.row_layout_direction is None:
+            raise program.path_error("several rows need a spacing and a direction", ref)
+        across = direction_of(program, pattern.row_layout_direction)
+        row_step = times(across, program.get(pattern.row_spacing).theoretical_size)
+    missing = {
+        (omit.row_index, omit.column_index)
+        for omit in map(program.get, pattern.missing_base_feature)
+    }
+    extra = {
+        (each.row_index, each.column_index): times(
+            direction_of(program, each.offset_direction), each.offset_distance
+        )
+        for each in map(program.get, pattern.relocated_base_feature)
+    }
+    for row, column in missing | extra.keys():
+        _check_index(program, ref, row, rows)
+        _check_index(program, ref, column, columns)
+    for row in range(1, rows + 1):
+        for column in range(1, columns + 1):
+            if (row, column) not in missing:
+                origin = plus(first.origin, times(row_step, row - 1))
+                origin = plus(origin, times(column_step, column - 1))
+                origin = plus(origin, extra.get((row, column), (0.0, 0.0, 0.0)))
+                yield replace(first, origin=origin)
+
+
+def _check_count(program: Program, ref: Ref[Entity], count: int, attribute: str) -> None:
+    if not 1 <= count <= MAX_COPIES:
+        message = f"{count} copies: a pattern has 1 to {MAX_COPIES}"
+        raise program.path_error(message, ref, attribute)
+
+
+def _check_index(program: Program, ref: Ref[Entity], index: int, count: int) -> None:
+    if not 1 <= index <= count:
+        message = f"index {index}: the places of this pattern count from 1 to {count}"
+        raise program.path_error(message, ref)
+
+
+def _rotated(vector: Point, angle: float) -> Point:
+    a, b, c = vector
+    return a * cos(angle) - b * sin(angle), a * sin(angle) + b * cos(angle), c
+
+
+def _is_same(one: Frame, other: Frame) -> bool:
+    pairs = ((one.origin, other.origin), (one.x, other.x), (one.z, other.z))
+    return all(dist(a, b) < SAME_PLACE for a, b in pairs)

@@ -7,36 +7,33 @@ with the rest: the other workingsteps do not depend on it.
 from collections.abc import Callable, Iterator, Mapping
 from typing import NoReturn
 
-from stepnc_model.entities.drilling import DrillingTypeOperation
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.executables import (
-    NonSequential,
-    RapidMovement,
-    Workplan,
-)
-from stepnc_model.entities.functions import (
     DisplayMessage,
+    NonSequential,
     OptionalStop,
     ProgramStop,
+    RapidMovement,
+    Setup,
+    Workplan,
 )
-from stepnc_model.entities.setup import Setup
+from stepnc_model.entities.milling import DrillingTypeOperation
 from stepnc_model.entities.turning import TurningMachiningOperation
 from stepnc_model.errors import PathError, SchemaError
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Executable, Program, Workingstep
+from stepnc_model.program import Program, ProgramLine, ResolvedWorkingstep
 from stepnc_model.toolpath.explicit.operation import explicit_path, rapid_movement_path
-from stepnc_model.toolpath.function import Function
 from stepnc_model.toolpath.hole.operation import hole_path
-from stepnc_model.toolpath.job import job_of
 from stepnc_model.toolpath.milling.operation import milling_path
-from stepnc_model.toolpath.path import ToolPath
+from stepnc_model.toolpath.path import Function, ToolPath
+from stepnc_model.toolpath.task import job_of
 from stepnc_model.toolpath.turning.operation import turning_path
 
-OnFault = Callable[[Executable, SchemaError], None]
+OnFault = Callable[[ProgramLine, SchemaError], None]
 """where executables go for which no path can be made, with the reason"""
 
 
-def raised(_executable: Executable, error: SchemaError) -> NoReturn:
+def raised(_executable: ProgramLine, error: SchemaError) -> NoReturn:
     """End with the first executable for which no path can be made."""
     raise error
 
@@ -85,7 +82,9 @@ def generate(program: Program, on_fault: OnFault = raised) -> Iterator[ToolPath 
             on_fault(executable, error)
 
 
-def require_ready(program: Program, step: Workingstep, missing: Mapping[int, str]) -> None:
+def require_ready(
+    program: Program, step: ResolvedWorkingstep, missing: Mapping[int, str]
+) -> None:
     """Refuse to go on with a feature on which an earlier workingstep was left out.
 
     A finishing cutter or a reamer would meet what the one before it should have removed.
@@ -102,7 +101,7 @@ def require_ready(program: Program, step: Workingstep, missing: Mapping[int, str
             raise PathError(message, entity=program.label(at), line=program.line(at))
 
 
-def workingstep_path(program: Program, step: Workingstep) -> ToolPath:
+def workingstep_path(program: Program, step: ResolvedWorkingstep) -> ToolPath:
     """Tool path of one workingstep: the one of the file, else one made from its feature.
 
     Raises
@@ -122,7 +121,7 @@ def workingstep_path(program: Program, step: Workingstep) -> ToolPath:
         return milling_path(job)
 
 
-def _other(program: Program, executable: Executable) -> Iterator[ToolPath | Function]:
+def _other(program: Program, executable: ProgramLine) -> Iterator[ToolPath | Function]:
     """An executable that is no usable workingstep."""
     fault = program.fault_of(executable.ref)
     if fault is not None:
@@ -141,7 +140,7 @@ def _other(program: Program, executable: Executable) -> Iterator[ToolPath | Func
         raise program.error(message, executable.ref)
 
 
-def _function(executable: Executable, entity: Entity) -> Function:
+def _function(executable: ProgramLine, entity: Entity) -> Function:
     """A stop, a message, or a movement that is left to the control."""
     return Function(
         ref=executable.ref,
@@ -151,7 +150,7 @@ def _function(executable: Executable, entity: Entity) -> Function:
     )
 
 
-def _new_setup(program: Program, step: Workingstep) -> Function:
+def _new_setup(program: Program, step: ResolvedWorkingstep) -> Function:
     """A stop where the workpiece has to be clamped anew."""
     name = program.get(step.setup).its_id if step.setup is not None else ""
     return Function(

@@ -5,6 +5,9 @@ machine-monitoring data from STEP-NC", Int. J. Prod. Res. 54 (2016) 4487-4505, s
 approach, retract, rapid, interpolation in contact and not in contact; each interpolation is
 linear or circular. Coordinates are those of the setup, mm; on a lathe x is the radius, y is 0
 and z the spindle axis, away from the chuck.
+
+NC functions between workingsteps, which a control does besides cutting (ISO 14649-10), are
+here too, and vectors of three numbers.
 """
 
 from collections.abc import Iterator
@@ -25,7 +28,7 @@ FARTHEST = 1e5
 
 
 class MoveType(StrEnum):
-    """What a move is for."""
+    """Purpose of a move."""
 
     APPROACH = "approach"
     """to the first cut, down into the material if need be"""
@@ -39,7 +42,7 @@ class MoveType(StrEnum):
     """interpolation that cuts"""
 
 
-class Plane(StrEnum):
+class ArcPlane(StrEnum):
     """Plane of an arc; counter-clockwise is seen from the tip of its normal."""
 
     XY = "XY"
@@ -58,13 +61,13 @@ class Feed:
 
     technology: Ref[Entity]
     ratio: float = 1.0
-    """of the programmed feed"""
+    """Ratio of the programmed feed"""
     speed_ratio: float = 1.0
-    """of the programmed spindle speed"""
+    """Speed ratio of the programmed spindle speed"""
     per_revolution: float | None = None
-    """mm; overrides the programmed feed"""
+    """Per revolution, mm; overrides the programmed feed"""
     velocity: float | None = None
-    """mm/s; overrides the programmed feed"""
+    """Velocity, mm/s; overrides the programmed feed"""
     is_synchronised: bool = False
     """bound to the angle of the spindle: threads"""
     is_plunge: bool = False
@@ -73,13 +76,13 @@ class Feed:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Arc:
-    """How a move bends: about a centre, with a rise along the normal when it is a helix."""
+    """Arc of a move: about a centre, with a rise along the normal when it is a helix."""
 
     centre: Point
     """its coordinate along the normal of the plane means nothing"""
     turn: float
-    """rad, positive counter-clockwise; more than 2π for several turns"""
-    plane: Plane = Plane.XY
+    """Turn, rad, positive counter-clockwise; more than 2π for several turns"""
+    plane: ArcPlane = ArcPlane.XY
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -102,7 +105,7 @@ class Dwell:
 
 
 class SpindleCommand(StrEnum):
-    """What the spindle does between moves."""
+    """Command to the spindle between moves."""
 
     START = "start"
     """in the direction of cutting"""
@@ -112,13 +115,13 @@ class SpindleCommand(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class SpindleSpeed:
+class SpindleSpeedChange:
     """The spindle turns as a technology programs it, from here on, also in rapid."""
 
     technology: Ref[Entity]
 
 
-Step = Move | Dwell | SpindleCommand | SpindleSpeed
+Step = Move | Dwell | SpindleCommand | SpindleSpeedChange
 
 
 class CycleKind(StrEnum):
@@ -135,7 +138,7 @@ class CycleKind(StrEnum):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Cycle:
+class CannedCycle:
     """A run of steps that a control can make with one of its own cycles."""
 
     kind: CycleKind
@@ -144,25 +147,25 @@ class Cycle:
     last: int
     """index of the last one: back on the retract plane"""
     retract_z: float
-    """mm, of the retract plane"""
+    """Retract z, mm, of the retract plane"""
     bottom_z: float
-    """mm"""
+    """Bottom z, mm"""
     feed: Feed
     step_depth: float = 0.0
-    """mm of each peck"""
+    """Step depth, mm of each peck"""
     retract_distance: float = 0.0
-    """mm of a short retract"""
+    """Retract distance, mm of a short retract"""
     dwell: float = 0.0
-    """s at the bottom"""
+    """Dwell, s at the bottom"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ToolPath:
-    """What the tool does in one workingstep: from the security plane and back to it."""
+    """Tool path of one workingstep: from the security plane and back to it."""
 
     workingstep: Ref[Entity]
     id: str
-    """of the workingstep"""
+    """Id of the workingstep"""
     operation_ref: Ref[Entity]
     tool_ref: Ref[Entity] | None
     """None: a rapid movement with whatever tool there is"""
@@ -173,7 +176,7 @@ class ToolPath:
     steps: tuple[Step, ...]
     safe_z: float | None = None
     """height over which the tool comes and goes; that of the start unless given"""
-    cycles: tuple[Cycle, ...] = ()
+    cycles: tuple[CannedCycle, ...] = ()
     findings: tuple[Finding, ...] = ()
     """what was assumed"""
 
@@ -192,7 +195,7 @@ class ToolPath:
 
     @property
     def end(self) -> Point:
-        """Where the path ends."""
+        """End of the path."""
         return next((move.end for move in reversed(self.moves)), self.start)
 
     def segments(self) -> Iterator[tuple[Point, Move]]:
@@ -247,3 +250,48 @@ def points_along(start: Point, move: Move, *, step: float) -> Iterator[Point]:
             point[normal] = start[normal] + part * rise
             yield point[0], point[1], point[2]
     yield move.end
+
+
+LEFT_OUT = "LEFT_OUT"
+"""keyword that no file has: here a workingstep is missing"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Function:
+    """One NC function in the order of the program."""
+
+    ref: Ref[Entity]
+    keyword: str
+    """EXPRESS name in capitals, ``OPTIONAL_STOP``"""
+    id: str
+    text: str = ""
+    """Text of a message"""
+
+
+def plus(one: Point, other: Point) -> Point:
+    """Sum of two vectors."""
+    return one[0] + other[0], one[1] + other[1], one[2] + other[2]
+
+
+def minus(one: Point, other: Point) -> Point:
+    """Difference of two vectors."""
+    return one[0] - other[0], one[1] - other[1], one[2] - other[2]
+
+
+def times(vector: Point, factor: float) -> Point:
+    """Vector times a number."""
+    return vector[0] * factor, vector[1] * factor, vector[2] * factor
+
+
+def dot(one: Point, other: Point) -> float:
+    """Scalar product."""
+    return sum(a * b for a, b in zip(one, other, strict=True))
+
+
+def cross(one: Point, other: Point) -> Point:
+    """Vector product."""
+    return (
+        one[1] * other[2] - one[2] * other[1],
+        one[2] * other[0] - one[0] * other[2],
+        one[0] * other[1] - one[1] * other[0],
+    )

@@ -7,21 +7,21 @@ from typing import Any
 
 import numpy as np
 
-from controller.aims import Aims, Step
-from controller.cycle import Cycle
-from controller.law import Law, Plant, Situation
+from controller.cycle import LoopCycle
+from controller.law import ControlLaw, Plant, Situation
 from controller.laws.log_pi import LogPI
 from controller.loop import Loop
-from controller.orders import Event, EventKind
+from controller.loop_settings import LoopSettings, LoopStep
+from controller.orders import EventKind, LoopEvent
 from controller.ports import Floats, Reading
 from controller.preview import Preview
 from controller.reference import ForceBound, Reference
 from controller.source import Dynamometer, Source
-from optimiser.limit import LimitName
-from simulator.plant.controlled import Bench, ControlledMachine
+from optimiser.problem import LimitName
+from simulator.plant.controlled import ControlledMachine, Instrumentation
 from simulator.plant.course import NominalCourse
 from simulator.plant.dynamometer import DYNAMOMETER, POWER_METER, Acquisition, Instrument
-from simulator.plant.hidden import Hidden
+from simulator.plant.hidden import HiddenTruth
 from tests.simulator.plant.courses import EXPONENT
 
 SET_POINT = 400.0
@@ -51,9 +51,9 @@ def reference(
     )
 
 
-def step(of: Reference) -> Step:
+def step(of: Reference) -> LoopStep:
     """The slot of :mod:`tests.simulator.plant.courses`."""
-    return Step(reference=of, exponent=EXPONENT, tool="mill", diameter=10.0)
+    return LoopStep(reference=of, exponent=EXPONENT, tool="mill", diameter=10.0)
 
 
 class Watched:
@@ -90,11 +90,11 @@ class Hostile:
     wishes: tuple[float, ...]
 
     def begin(self, _override: float) -> int:
-        """See :class:`controller.law.Law`."""
+        """See :class:`controller.law.ControlLaw`."""
         return 0
 
     def decide(self, state: int, _at: Situation) -> tuple[int, float]:
-        """See :class:`controller.law.Law`."""
+        """See :class:`controller.law.ControlLaw`."""
         return state + 1, self.wishes[state % len(self.wishes)]
 
 
@@ -105,20 +105,20 @@ class Rig:
     machine: ControlledMachine
     sensor: Watched
     loop: Loop
-    cycles: list[Cycle] = field(default_factory=list)
+    cycles: list[LoopCycle] = field(default_factory=list)
 
     @property
-    def events(self) -> list[Event]:
+    def events(self) -> list[LoopEvent]:
         """All that were told."""
         return [event for cycle in self.cycles for event in cycle.events]
 
-    def told(self, kind: EventKind) -> list[Event]:
+    def told(self, kind: EventKind) -> list[LoopEvent]:
         """Those of a kind."""
         return [event for event in self.events if event.kind is kind]
 
     def run(self, until: float = inf, *, most: int = 100_000) -> "Rig":
         """To a time or so many cycles, or to the end of the program or its stop."""
-        while self.machine.time < until and not self.loop.is_stopped:
+        while self.machine.time < until and not self.loop.state.is_stopped:
             if len(self.cycles) >= most:
                 break
             cycle = self.loop.cycle()
@@ -127,25 +127,25 @@ class Rig:
             self.cycles.append(cycle)
         return self
 
-    def between(self, begin: float, end: float) -> list[Cycle]:
+    def between(self, begin: float, end: float) -> list[LoopCycle]:
         """Cycles that ended between two times, s."""
         return [each for each in self.cycles if begin < each.reading.time <= end]
 
 
 def rig(
     course: NominalCourse,
-    hidden: Hidden | None = None,
+    hidden: HiddenTruth | None = None,
     *,
-    steps: Sequence[Step] | None = None,
-    law: Callable[[Plant], Law[Any]] = lambda plant: LogPI(plant=plant),
-    aims: Aims | None = None,
+    steps: Sequence[LoopStep] | None = None,
+    law: Callable[[Plant], ControlLaw[Any]] = lambda plant: LogPI(plant=plant),
+    settings: LoopSettings | None = None,
     instrument: Instrument = DYNAMOMETER,
     source: Source | None = None,
     seed: int = 0,
 ) -> Rig:
     """Everything plugged together; log-PI, and a dynamometer with noise, unless said."""
-    bench = Bench(dynamometer=Instrument(), power_meter=POWER_METER, seed=seed)
-    machine = ControlledMachine(course, Hidden() if hidden is None else hidden, bench)
+    bench = Instrumentation(dynamometer=Instrument(), power_meter=POWER_METER, seed=seed)
+    machine = ControlledMachine(course, HiddenTruth() if hidden is None else hidden, bench)
     sensor = Watched(machine, instrument, seed=seed)
     loop = Loop(
         sensor,
@@ -159,6 +159,6 @@ def rig(
             land_force=course.land_force,
             arcs=course.arcs,
         ),
-        aims=Aims(look_ahead=0) if aims is None else aims,
+        settings=LoopSettings(look_ahead=0) if settings is None else settings,
     )
     return Rig(machine=machine, sensor=sensor, loop=loop)

@@ -10,15 +10,15 @@ from math import inf, pi
 
 import numpy as np
 
-from controller.aims import Aims, Step
 from controller.laws.choice import LawName, law_named
 from controller.loop import Loop
+from controller.loop_settings import LoopSettings, LoopStep
 from controller.orders import EventKind
 from controller.source import Dynamometer
 from service.control.setup import preview_of
-from simulator.plant.controlled import Bench, ControlledMachine
+from simulator.plant.controlled import ControlledMachine, Instrumentation
 from simulator.plant.course import NominalCourse
-from simulator.plant.hidden import Change, Changed, Hidden
+from simulator.plant.hidden import HiddenChange, HiddenQuantity, HiddenTruth
 
 WITHIN = 3.0
 """revolutions in which a lost tooth is to be found"""
@@ -39,8 +39,8 @@ class Job:
     """A program under control."""
 
     course: NominalCourse
-    steps: Sequence[Step]
-    aims: Aims
+    steps: Sequence[LoopStep]
+    settings: LoopSettings
 
     def stretch(self, first: int, beyond: int) -> "Job":
         """Some cells of the course."""
@@ -52,17 +52,17 @@ class Job:
         columns["until"] = columns["until"] - begin
         return replace(self, course=NominalCourse(**columns))
 
-    def loop(self, hidden: Hidden, *, seed: int) -> tuple[ControlledMachine, Loop]:
+    def loop(self, hidden: HiddenTruth, *, seed: int) -> tuple[ControlledMachine, Loop]:
         """A machine and its loop at the beginning."""
-        machine = ControlledMachine(self.course, hidden, Bench(seed=seed))
+        machine = ControlledMachine(self.course, hidden, Instrumentation(seed=seed))
         loop = Loop(
             machine,
             machine,
-            source=Dynamometer(self.aims.chips),
+            source=Dynamometer(self.settings.chips),
             law=lambda plant: law_named(LawName.LOG_PI, plant, has_preview=False),
             steps=self.steps,
             preview=preview_of(self.course),
-            aims=self.aims,
+            settings=self.settings,
         )
         return machine, loop
 
@@ -97,7 +97,7 @@ class Found:
 
     share: float
     """of the feed per tooth that the tooth would have taken, least in the revolutions in which
-    it is to be found; 0: it was not in the work all the time"""
+    it is to be found; 0: it was not in the work all the time, or hardly anything was"""
     revolutions: float
     """until it was found; infinite: it was not, or another tooth was named"""
     was_stopped: bool = False
@@ -116,13 +116,13 @@ class Found:
 
 def healthy(job: Job, *, eccentricity: float, seed: int) -> Healthy:
     """Run a stretch with a whole cutter."""
-    _, loop = job.loop(Hidden(eccentricity=eccentricity), seed=seed)
+    _, loop = job.loop(HiddenTruth(eccentricity=eccentricity), seed=seed)
     revolutions, why = 0, ""
-    while not loop.is_stopped:
+    while not loop.state.is_stopped:
         cycle = loop.cycle()
         if cycle is None:
             break
-        if cycle.revolution is not None and cycle.revolution.force > job.aims.chips:
+        if cycle.revolution is not None and cycle.revolution.force > job.settings.chips:
             revolutions += 1
         why = next((each.text for each in cycle.events if each.kind is EventKind.STOP), why)
     return Healthy(revolutions=revolutions, stopped_by=why)
@@ -131,16 +131,18 @@ def healthy(job: Job, *, eccentricity: float, seed: int) -> Healthy:
 def lost(loss: Loss) -> Found:
     """Run a stretch in which a tooth breaks, and a little on."""
     course = loss.job.course
-    hidden = Hidden(eccentricity=loss.eccentricity)
+    hidden = HiddenTruth(eccentricity=loss.eccentricity)
     machine, loop = loss.job.loop(hidden, seed=loss.seed)
-    while not loop.is_stopped and machine.share * course.duration < loss.time:
+    while not loop.state.is_stopped and machine.share * course.duration < loss.time:
         if loop.cycle() is None:
             break
-    if loop.is_stopped:
+    if loop.state.is_stopped:
         return Found(share=0.0, revolutions=inf, was_stopped=True)
-    machine.change(Change(time=machine.time, what=Changed.TOOTH, value=float(loss.tooth)))
+    machine.change(
+        HiddenChange(time=machine.time, what=HiddenQuantity.TOOTH, value=float(loss.tooth))
+    )
     begin, least, turned = machine.time, inf, 0.0
-    while not loop.is_stopped and turned < AFTER:
+    while not loop.state.is_stopped and turned < AFTER:
         cycle = loop.cycle()
         if cycle is None:
             break
@@ -148,8 +150,12 @@ def lost(loss: Loss) -> Found:
         turned = (reading.time - begin) * reading.spindle_speed
         if turned <= WITHIN + _EXACT:
             cell = machine.truth.cell
-            share = taken(course, cell, loss, override=reading.override)
-            least = min(least, share if machine.truth.force > loss.job.aims.chips else 0.0)
+            least = min(least, taken(course, cell, loss, override=reading.override))
+            if (
+                cycle.revolution is not None
+                and cycle.revolution.force <= loss.job.settings.chips
+            ):
+                least = 0.0
         for event in cycle.events:
             name = f"tooth {loss.tooth + 1} of "
             if event.kind is EventKind.BREAKAGE and event.text.startswith(name):

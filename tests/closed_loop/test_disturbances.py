@@ -7,14 +7,14 @@ from math import inf
 import numpy as np
 import pytest
 
-from controller.aims import Aims
-from controller.guard import Band, Holding
+from controller.guard import OverrideBand, OverrideReason
+from controller.loop_settings import LoopSettings
 from controller.orders import EventKind
 from controller.ports import Floats
 from controller.reference import Reference
 from simulator.plant.course import NominalCourse
 from simulator.plant.dynamometer import DYNAMOMETER, Instrument
-from simulator.plant.hidden import Change, Changed, Hidden
+from simulator.plant.hidden import HiddenChange, HiddenQuantity, HiddenTruth
 from tests.closed_loop.rig import SET_POINT, Rig, rig, step
 from tests.simulator.plant.courses import EXPONENT, course
 
@@ -30,8 +30,8 @@ def cut(force: float = SET_POINT, cells: int = 500) -> Floats:
     return np.concatenate([AIR, np.full(cells, force)])
 
 
-def changed(what: Changed, value: float, **more: float) -> Hidden:
-    return Hidden(changes=(Change(time=RISE, what=what, value=value),), **more)
+def changed(what: HiddenQuantity, value: float, **more: float) -> HiddenTruth:
+    return HiddenTruth(changes=(HiddenChange(time=RISE, what=what, value=value),), **more)
 
 
 def forces(done: Rig, last: int) -> Floats:
@@ -64,7 +64,7 @@ def test_a_quiet_cut_is_held_at_its_set_point_without_a_word() -> None:
 @pytest.mark.parametrize("factor", [1.5, 2.0])
 def test_a_deeper_cut_is_held_back_once_and_then_kept(factor: float, lag: float) -> None:
     """The loop takes the lag for 0.06 s: half and twice of it do not matter."""
-    done = rig(course(cut()), changed(Changed.DEPTH, factor, servo_lag=lag)).run()
+    done = rig(course(cut()), changed(HiddenQuantity.DEPTH, factor, servo_lag=lag)).run()
     told = kinds(done)
     assert (told[EventKind.HOLD], told[EventKind.RESUME]) == (1, 1)
     assert told[EventKind.HARDNESS] == 1
@@ -77,7 +77,7 @@ def test_a_deeper_cut_is_held_back_once_and_then_kept(factor: float, lag: float)
 
 
 def test_harder_work_is_told_and_needs_no_hold() -> None:
-    done = rig(course(cut()), changed(Changed.HARDNESS, 1.3)).run()
+    done = rig(course(cut()), changed(HiddenQuantity.HARDNESS, 1.3)).run()
     told = kinds(done)
     assert (told[EventKind.HARDNESS], told[EventKind.HOLD]) == (1, 0)
     assert "harder" in done.told(EventKind.HARDNESS)[0].text
@@ -85,7 +85,7 @@ def test_harder_work_is_told_and_needs_no_hold() -> None:
 
 
 def test_wear_is_no_change_of_the_work() -> None:
-    done = rig(course(cut(cells=1500)), Hidden(wear_rate=0.004)).run()
+    done = rig(course(cut(cells=1500)), HiddenTruth(wear_rate=0.004)).run()
     assert done.machine.truth.flank_wear > 0.05
     assert kinds(done) == {EventKind.WORKINGSTEP: 1}
     assert forces(done, 50).mean() == pytest.approx(SET_POINT, rel=0.01)
@@ -103,14 +103,14 @@ def test_lost_samples_hold_no_feed(missing: float) -> None:
 def test_with_hardly_a_sample_the_override_is_the_safe_one() -> None:
     done = rig(course(cut(cells=400)), instrument=replace(DYNAMOMETER, missing=0.9)).run()
     late = done.between(3.0, inf)
-    assert {each.allowed.holding for each in late} == {Holding.SILENCE}
+    assert {each.allowed.holding for each in late} == {OverrideReason.SILENCE}
     assert {each.allowed.override for each in late} == {0.5}
 
 
 def test_a_silent_sensor_means_the_safe_override_until_it_speaks_again() -> None:
-    done = rig(course(cut()), changed(Changed.SILENCE, 1.5)).run()
+    done = rig(course(cut()), changed(HiddenQuantity.SILENCE, 1.5)).run()
     (silence,) = done.told(EventKind.SILENCE)
-    assert silence.time == pytest.approx(RISE + Band().silence, abs=0.03)
+    assert silence.time == pytest.approx(RISE + OverrideBand().sensor_timeout, abs=0.03)
     blind = done.between(silence.time, RISE + 1.5)
     assert {each.allowed.override for each in blind} == {0.5}
     assert forces(done, 50).mean() == pytest.approx(SET_POINT, rel=0.01)
@@ -152,7 +152,7 @@ def test_cells_without_a_force_in_a_cut_pass() -> None:
 
 def test_a_set_point_that_the_band_cannot_reach_is_told_once() -> None:
     """Four times the force at a floor of 20 % is 1.1 times the set point."""
-    done = rig(course(cut(cells=300)), Hidden(force_factor=4.0)).run()
+    done = rig(course(cut(cells=300)), HiddenTruth(force_factor=4.0)).run()
     told = kinds(done)
     assert told[EventKind.UNREACHABLE] == 1
     assert (told[EventKind.HOLD], told[EventKind.STOP]) == (1, 0)
@@ -165,8 +165,10 @@ def test_where_the_floor_would_be_an_overload_the_override_goes_below_it(
     factor: float,
 ) -> None:
     """Resting just below the overload, without a second hold."""
-    aims = Aims(look_ahead=0, band=Band(floor=0.8))
-    done = rig(course(cut(cells=200)), Hidden(force_factor=factor), aims=aims).run(20.0)
+    settings = LoopSettings(look_ahead=0, band=OverrideBand(floor=0.8))
+    done = rig(course(cut(cells=200)), HiddenTruth(force_factor=factor), settings=settings).run(
+        20.0
+    )
     told = kinds(done)
     assert (told[EventKind.UNREACHABLE], told[EventKind.HOLD]) == (1, 1)
     assert forces(done, 50).std() < 0.02 * SET_POINT
@@ -176,14 +178,14 @@ def test_where_the_floor_would_be_an_overload_the_override_goes_below_it(
 
 def test_a_force_at_the_edge_of_a_warning_does_not_flood_the_reader() -> None:
     """1.2 times the set point is over it: noise would tell so 50 times a second."""
-    aims = Aims(look_ahead=0, band=Band(floor=1.0, ceiling=1.0))
-    done = rig(course(cut(cells=3000)), Hidden(force_factor=1.2), aims=aims).run()
+    settings = LoopSettings(look_ahead=0, band=OverrideBand(floor=1.0, ceiling=1.0))
+    done = rig(course(cut(cells=3000)), HiddenTruth(force_factor=1.2), settings=settings).run()
     assert len(done.events) <= 36 * done.machine.time / 60.0
 
 
 def test_a_band_of_one_override_leaves_the_programs_feed() -> None:
-    aims = Aims(look_ahead=0, band=Band(floor=1.0, ceiling=1.0))
-    done = rig(course(cut()), aims=aims).run()
+    settings = LoopSettings(look_ahead=0, band=OverrideBand(floor=1.0, ceiling=1.0))
+    done = rig(course(cut()), settings=settings).run()
     assert {each.allowed.override for each in done.cycles} == {1.0}
 
 
@@ -204,7 +206,7 @@ def test_feeds_too_short_for_a_revolution_are_watched_all_the_same() -> None:
 
 def test_runout_is_no_overload_for_ever() -> None:
     """A tooth that takes half as much again as the mean at the set point."""
-    done = rig(course(cut(force=300.0)), Hidden(eccentricity=0.012)).run()
+    done = rig(course(cut(force=300.0)), HiddenTruth(eccentricity=0.012)).run()
     assert kinds(done)[EventKind.HOLD] <= 1
     assert forces(done, 50).mean() > 0.6 * SET_POINT
 
@@ -230,6 +232,6 @@ def test_a_force_below_zero_is_no_force() -> None:
 
 
 def test_a_tool_in_danger_below_the_band_stops_the_program() -> None:
-    done = rig(course(cut(force=3000.0, cells=6000)), Hidden(servo_lag=0.06)).run()
+    done = rig(course(cut(force=3000.0, cells=6000)), HiddenTruth(servo_lag=0.06)).run()
     assert kinds(done)[EventKind.STOP] == 1
     assert done.machine.share < 1.0

@@ -9,13 +9,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from controller.aims import Aims
-from controller.guard import SUDDEN_RATIO, Band
+from controller.guard import SUDDEN_RATIO, OverrideBand
+from controller.loop_settings import LoopSettings
 from controller.source import DrivePower, Source
-from simulator.plant.course import NominalCourse
+from simulator.plant.course import EngagedTeeth, NominalCourse, pattern
 from simulator.plant.dynamometer import DYNAMOMETER
-from simulator.plant.hidden import Change, Changed, Hidden
-from simulator.plant.pattern import Teeth, pattern
+from simulator.plant.hidden import HiddenChange, HiddenQuantity, HiddenTruth
 from tests.closed_loop.rig import BREAKAGE, Hostile, Rig, reference, rig, step
 from tests.simulator.plant.courses import EXPONENT, FEED, course
 
@@ -72,7 +71,7 @@ class Danger:
     @property
     def share(self) -> float:
         """Of the tooth that takes most in the mean, at override 1."""
-        teeth = Teeth(
+        teeth = EngagedTeeth(
             count=self.teeth,
             entry_angle=0.0,
             exit_angle=pi,
@@ -102,18 +101,20 @@ class Danger:
     def run(self, wishes: Sequence[float], *, source: Source | None = None) -> Rig:
         """With a law that wants this."""
         per_tooth = FEED / (self.teeth * self.speed)
-        hidden = Hidden(
+        hidden = HiddenTruth(
             force_factor=self.hidden,
             eccentricity=0.5 * self.runout * per_tooth,
             servo_lag=self.lag,
-            changes=(Change(time=self.rise, what=Changed.DEPTH, value=self.sudden),),
+            changes=(
+                HiddenChange(time=self.rise, what=HiddenQuantity.DEPTH, value=self.sudden),
+            ),
         )
         made = rig(
             self.path,
             hidden,
             steps=[step(reference(set_point=self.set_point))],
             law=lambda _plant: Hostile(wishes=tuple(wishes)),
-            aims=Aims(look_ahead=0, band=Band(ceiling=self.ceiling)),
+            settings=LoopSettings(look_ahead=0, band=OverrideBand(ceiling=self.ceiling)),
             seed=self.seed,
             instrument=replace(DYNAMOMETER, lag=self.late / (self.teeth * self.speed)),
             source=source,

@@ -13,7 +13,7 @@ import pytest
 from controller.laws.choice import LawName
 from controller.orders import Criterion
 from controller.preview import LOOK_AHEAD
-from simulator.plant.hidden import Hidden
+from simulator.plant.hidden import HiddenTruth
 from tests.closed_loop.trials import (
     GAINS,
     GUARDED,
@@ -79,7 +79,7 @@ def test_no_variant_of_the_machine_makes_it_unstable(name: LawName) -> None:
 @pytest.mark.parametrize("lag", [min(LAGS), max(LAGS)])
 def test_preview_stays_stable_in_the_corners(name: LawName, gain: float, lag: float) -> None:
     """All fifteen are tried by the benchmark."""
-    hidden = Hidden(force_factor=gain, servo_lag=lag * REVOLUTION)
+    hidden = HiddenTruth(force_factor=gain, servo_lag=lag * REVOLUTION)
     assert not is_restless(run(name, replace(KNOWN, look_ahead=LOOK_AHEAD, hidden=hidden)))
 
 
@@ -148,7 +148,7 @@ def test_eight_revolutions_of_look_ahead_see_enough() -> None:
         scores = [
             scored(LawName.LOG_PI, replace(KNOWN, look_ahead=look_ahead, hidden=hidden))
             for hidden in (
-                Hidden(force_factor=factor, servo_lag=lag * REVOLUTION)
+                HiddenTruth(force_factor=factor, servo_lag=lag * REVOLUTION)
                 for factor, lag in product((0.7, 1.4), (1.5, 6.0))
             )
         ]

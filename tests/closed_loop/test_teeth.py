@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from benchmarks.breakage import KINDS, MOST_ECCENTRIC, ROUGHING, Bracket, bracket, lost_tooth
-from tests.closed_loop.teeth import CUTTING, Loss, healthy, taken
+from tests.closed_loop.teeth import CUTTING, Loss, healthy, lost, taken
 
 CELLS = 300
 """3 s of each workingstep"""
@@ -33,6 +33,26 @@ def test_teeth_that_are_lost_at_any_time_are_found_within_three_revolutions() ->
     cutting = [each for each in found if each.is_decidable]
     assert len(cutting) >= 6
     assert all(each.is_in_time for each in cutting)
+
+
+def test_a_loss_that_holds_the_feed_is_found_during_the_hold(part: Bracket) -> None:
+    """The tooth after it takes two chips in a full slot, and runout adds to them."""
+    rows, course = part.rough["MILL SLOT"], part.job.course
+    deep = rows[course.force[rows] > 0.95 * course.force[rows].max()]
+    first = int(deep[len(deep) // 2])
+    found = [
+        lost(
+            Loss(
+                job=part.job.stretch(first, first + 200),
+                time=1.0,
+                tooth=3,
+                eccentricity=eccentricity,
+                seed=1,
+            )
+        )
+        for eccentricity in (0.014, 0.016, 0.018)
+    ]
+    assert all(each.is_decidable and each.is_in_time for each in found)
 
 
 def test_a_tooth_that_runout_keeps_out_of_the_work_is_undecidable(part: Bracket) -> None:

@@ -13,28 +13,28 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from controller.aims import Aims, Step
-from controller.guard import Band
-from controller.law import Law, Plant, Situation
+from controller.guard import OverrideBand
+from controller.law import ControlLaw, Plant, Situation
 from controller.laws.choice import LawName, law_named
 from controller.loop import Loop
+from controller.loop_settings import LoopSettings, LoopStep
 from controller.orders import Criterion, EventKind
 from controller.ports import Override, Sensor
 from controller.preview import Preview
 from controller.reference import Reference
 from controller.source import Dynamometer
 from simulator.motion.segments import Floats
-from simulator.plant.controlled import Bench, ControlledMachine
+from simulator.plant.controlled import ControlledMachine, Instrumentation
 from simulator.plant.course import NominalCourse
 from simulator.plant.dynamometer import DYNAMOMETER
-from simulator.plant.hidden import Change, Changed, Hidden
+from simulator.plant.hidden import HiddenChange, HiddenQuantity, HiddenTruth
 from tests.simulator.plant.courses import EXPONENT, LAND_SHARE, SPEED, TEETH, course
 
 LAWS = tuple(name for name in LawName if name is not LawName.NONE)
 
 REVOLUTION = 1.0 / SPEED
 PLANT = Plant(exponent=EXPONENT, lag=3.0)
-"""what laws are tuned for: the lag of the aims at this speed"""
+"""what laws are tuned for: the lag of the settings at this speed"""
 STRETCH = 60
 """revolutions at each depth while the force is at its set point"""
 PER_DEPTH = 500.0
@@ -47,9 +47,9 @@ AIR = 51
 """cells before the entry; odd, so that it falls into the middle of a revolution"""
 ENTRY = AIR * CELL
 
-LOOSE = Band(floor=0.1, ceiling=2.0, rise=100.0, overload_ratio=100.0)
+LOOSE = OverrideBand(floor=0.1, ceiling=2.0, rise=100.0, overload_ratio=100.0)
 """the guard stands aside: what is seen is the law"""
-GUARDED = Band(floor=0.1, ceiling=2.0)
+GUARDED = OverrideBand(floor=0.1, ceiling=2.0)
 
 SETTLED = 0.05
 """of the set point; noise moves the true force by less than a tenth of that"""
@@ -77,11 +77,11 @@ class Trial:
     """mm, as the program has them"""
     lengths: tuple[float, ...] = ()
     """mm of depth by which the length of each is reckoned; empty: ``depths``"""
-    hidden: Hidden = field(default_factory=Hidden)
-    bench: Bench = field(default_factory=lambda: Bench(seed=1))
+    hidden: HiddenTruth = field(default_factory=HiddenTruth)
+    bench: Instrumentation = field(default_factory=lambda: Instrumentation(seed=1))
     look_ahead: int = 0
     """revolutions; 0: the law is told nothing"""
-    band: Band = LOOSE
+    band: OverrideBand = LOOSE
     criterion: Criterion = Criterion.TC
     teeth: int = TEETH
 
@@ -91,38 +91,42 @@ def _override(depth: float) -> float:
     return float((SET_POINT / (PER_DEPTH * depth)) ** (1.0 / EXPONENT))
 
 
-def _changes(what: Changed, *values: float) -> tuple[Change, ...]:
+def _changes(what: HiddenQuantity, *values: float) -> tuple[HiddenChange, ...]:
     """One change after each stretch."""
     times = (ENTRY + STRETCH * REVOLUTION * (row + 1) for row in range(len(values)))
     return tuple(
-        Change(time=time, what=what, value=value)
+        HiddenChange(time=time, what=what, value=value)
         for time, value in zip(times, values, strict=True)
     )
 
 
-def _silence(revolution: int) -> Hidden:
+def _silence(revolution: int) -> HiddenTruth:
     """A sensor that is silent for 0.3 s from a revolution of the cut on."""
     time = ENTRY + revolution * REVOLUTION
-    return Hidden(changes=(Change(time=time, what=Changed.SILENCE, value=0.3),))
+    return HiddenTruth(
+        changes=(HiddenChange(time=time, what=HiddenQuantity.SILENCE, value=0.3),)
+    )
 
 
 WEAR = 0.3 * SET_POINT / (LAND_SHARE * PER_DEPTH * 4.0)
 """mm of flank wear that adds 30 % of the set point where the cut is deepest"""
 
-LOSSY = Bench(dynamometer=replace(DYNAMOMETER, missing=0.2), seed=1)
+LOSSY = Instrumentation(dynamometer=replace(DYNAMOMETER, missing=0.2), seed=1)
 
 KNOWN = Trial()
 UNKNOWN = Trial(
     depths=(2.0, 2.0, 2.0),
     lengths=(2.0, 4.0, 1.0),
-    hidden=Hidden(changes=_changes(Changed.DEPTH, 2.0, 0.5)),
+    hidden=HiddenTruth(changes=_changes(HiddenQuantity.DEPTH, 2.0, 0.5)),
 )
-HARDER = Trial(depths=(2.0, 2.0), hidden=Hidden(changes=_changes(Changed.HARDNESS, 1.3)))
-WORN = Trial(hidden=Hidden(wear_rate=WEAR / (3 * STRETCH * REVOLUTION)))
+HARDER = Trial(
+    depths=(2.0, 2.0), hidden=HiddenTruth(changes=_changes(HiddenQuantity.HARDNESS, 1.3))
+)
+WORN = Trial(hidden=HiddenTruth(wear_rate=WEAR / (3 * STRETCH * REVOLUTION)))
 LOST = Trial(bench=LOSSY, hidden=_silence(STRETCH // 6))
 BLIND = Trial(bench=LOSSY, hidden=_silence(STRETCH - 5))
-SOFT = Trial(hidden=Hidden(force_factor=0.7))
-HARD = Trial(hidden=Hidden(force_factor=1.4))
+SOFT = Trial(hidden=HiddenTruth(force_factor=0.7))
+HARD = Trial(hidden=HiddenTruth(force_factor=1.4))
 
 TRIALS: dict[str, Trial] = {
     "(a) depth 2 → 4 → 1 mm, known to the program": KNOWN,
@@ -190,7 +194,7 @@ class Score:
 class _Listening:
     """A law, and what it was asked. Running state."""
 
-    def __init__(self, law: Law[Any], situations: list[Situation]) -> None:
+    def __init__(self, law: ControlLaw[Any], situations: list[Situation]) -> None:
         self._law, self._situations = law, situations
 
     def begin(self, override: float) -> Any:
@@ -221,15 +225,15 @@ def machine(trial: Trial) -> ControlledMachine:
     return ControlledMachine(planned(trial), trial.hidden, trial.bench)
 
 
-def law_of(name: LawName, trial: Trial) -> Law[Any]:
+def law_of(name: LawName, trial: Trial) -> ControlLaw[Any]:
     """A law, tuned for what the loop takes the machine for."""
     return law_named(name, PLANT, has_preview=trial.look_ahead > 0)
 
 
-def loop(on: Plugged, law: Law[Any], trial: Trial) -> Loop:
+def loop(on: Plugged, law: ControlLaw[Any], trial: Trial) -> Loop:
     """The loop of a trial."""
     program = planned(trial)
-    step = Step(reference=Reference(workingstep="trial"), exponent=EXPONENT)
+    step = LoopStep(reference=Reference(workingstep="trial"), exponent=EXPONENT)
     return Loop(
         on,
         on,
@@ -242,7 +246,7 @@ def loop(on: Plugged, law: Law[Any], trial: Trial) -> Loop:
             land_force=program.land_force,
             arcs=program.arcs,
         ),
-        aims=Aims(
+        settings=LoopSettings(
             set_point=SET_POINT,
             band=trial.band,
             look_ahead=trial.look_ahead,
@@ -257,9 +261,9 @@ def run(name: LawName, trial: Trial) -> Run:
     looped = loop(on, _Listening(law_of(name, trial), asked), trial)
     rows: list[tuple[float, ...]] = []
     holds = 0
-    while not looped.is_stopped and (cycle := looped.cycle()) is not None:
+    while not looped.state.is_stopped and (cycle := looped.cycle()) is not None:
         load = float(on.course.force[on.truth.cell])
-        load *= on.factors[Changed.DEPTH] * on.factors[Changed.HARDNESS]
+        load *= on.factors[HiddenQuantity.DEPTH] * on.factors[HiddenQuantity.HARDNESS]
         measured = np.nan if cycle.revolution is None else cycle.revolution.force
         overrides = cycle.reading.override, cycle.allowed.override
         rows.append((on.truth.force, load, *overrides, measured))
@@ -275,7 +279,7 @@ def run(name: LawName, trial: Trial) -> Run:
         command=grid[:, -1, 3],
         measured=grid[:, -1, 4],
         holds=holds,
-        is_stopped=looped.is_stopped,
+        is_stopped=looped.state.is_stopped,
         situations=tuple(asked),
     )
 

@@ -7,17 +7,17 @@ from typing import Any
 
 import numpy as np
 
-from controller.aims import Aims, Step
-from controller.cycle import Cycle
+from controller.cycle import LoopCycle
 from controller.errors import MachineLost
-from controller.law import Law, Plant, Situation
+from controller.law import ControlLaw, Plant, Situation
 from controller.loop import Loop
-from controller.orders import Event, EventKind
+from controller.loop_settings import LoopSettings, LoopStep
+from controller.orders import EventKind, LoopEvent
 from controller.ports import Reading, Sensor
 from controller.preview import Preview
 from controller.reference import ForceBound, Reference
 from controller.source import Dynamometer
-from optimiser.limit import LimitName
+from optimiser.problem import LimitName
 from simulator.physics.tooth_means import Arcs
 
 SPINDLE_SPEED = 50.0
@@ -92,10 +92,10 @@ class Wishing:
     told: list[Situation] = field(default_factory=list)
 
     def begin(self, _override: float) -> None:
-        """See :class:`controller.law.Law`."""
+        """See :class:`controller.law.ControlLaw`."""
 
     def decide(self, state: None, at: Situation) -> tuple[None, float]:
-        """See :class:`controller.law.Law`."""
+        """See :class:`controller.law.ControlLaw`."""
         self.told.append(at)
         return state, self.wish
 
@@ -104,12 +104,12 @@ ENTRY = np.full(1, 2.0)
 """rad, where the arc of contact begins everywhere"""
 
 
-def step(**more: Any) -> Step:
+def step(**more: Any) -> LoopStep:
     """A workingstep with a set point of 400 N and a strength of 2000 N."""
     bound = ForceBound(name=LimitName.MOTOR_POWER, words="motor power", force=SET_POINT)
     values: dict[str, Any] = {"workingstep": "SLOT", "bounds": (bound,), "breakage": 2000.0}
     reference = Reference(**(values | more))
-    return Step(reference=reference, exponent=0.8, tool="mill", diameter=10.0)
+    return LoopStep(reference=reference, exponent=0.8, tool="mill", diameter=10.0)
 
 
 @dataclass(kw_only=True)
@@ -118,7 +118,7 @@ class Plugged:
 
     loop: Loop
     port: Port
-    cycles: list[Cycle] = field(default_factory=list)
+    cycles: list[LoopCycle] = field(default_factory=list)
 
     @property
     def kinds(self) -> list[EventKind]:
@@ -126,7 +126,7 @@ class Plugged:
         return [event.kind for event in self.events]
 
     @property
-    def events(self) -> list[Event]:
+    def events(self) -> list[LoopEvent]:
         """All so far."""
         return [event for cycle in self.cycles for event in cycle.events]
 
@@ -144,9 +144,9 @@ class Plugged:
 def plugged(
     readings: Iterable[Reading],
     *,
-    law: Law[Any] | Callable[[Plant], Law[Any]] = Wishing(wish=1.0),
-    steps: Sequence[Step] | None = None,
-    aims: Aims | None = None,
+    law: ControlLaw[Any] | Callable[[Plant], ControlLaw[Any]] = Wishing(wish=1.0),
+    steps: Sequence[LoopStep] | None = None,
+    settings: LoopSettings | None = None,
     sensor: Sensor | None = None,
     is_lost: bool = False,
 ) -> Plugged:
@@ -163,6 +163,6 @@ def plugged(
             force=np.array([SET_POINT]),
             arcs=Arcs(entry_angle=ENTRY, exit_angle=ENTRY + 0.5, lag=np.zeros(1)),
         ),
-        aims=Aims(look_ahead=0) if aims is None else aims,
+        settings=LoopSettings(look_ahead=0) if settings is None else settings,
     )
     return Plugged(loop=loop, port=port)

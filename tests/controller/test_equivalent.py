@@ -3,18 +3,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from controller.aims import Aims, Step
 from controller.equivalent import equivalent, weighed
+from controller.loop_settings import LoopSettings, LoopStep
 from controller.preview import Preview
 from controller.reference import ForceBound, Reference
-from optimiser.limit import LimitName
+from optimiser.problem import LimitName
 from tests.controller.shown import turn
 
 POWER = ForceBound(name=LimitName.MOTOR_POWER, words="motor power", force=1000.0)
 BENDING = ForceBound(
     name=LimitName.TOOL_DEFLECTION, words="tool deflection", force=400.0, peak=800.0
 )
-STEP = Step(reference=Reference(workingstep="x", bounds=(BENDING, POWER)))
+STEP = LoopStep(reference=Reference(workingstep="x", bounds=(BENDING, POWER)))
 PLAIN = Preview(
     until=np.arange(1.0, 5.0),
     force=np.array([100.0, 100.0, 100.0, 100.0]),
@@ -25,7 +25,7 @@ PLAIN = Preview(
 
 
 def test_forces_that_use_the_same_share_of_their_bounds_count_alike() -> None:
-    found = equivalent(PLAIN, [STEP], Aims())
+    found = equivalent(PLAIN, [STEP], LoopSettings())
     # 100 N of 400 N; of 800 N, as the slot has no peaks; of 100 N.
     assert found.force.tolist() == [100.0, 50.0, 400.0, 100.0]
     shares = found.force[:3] / 400.0
@@ -35,37 +35,37 @@ def test_forces_that_use_the_same_share_of_their_bounds_count_alike() -> None:
 def test_what_bends_a_wall_counts_by_its_own_force() -> None:
     """At the plan's place 100 N of 400 N; a thin wall takes twice the share of its mean."""
     at_wall = replace(BENDING, peak=0.0, wall=200.0)
-    step = Step(reference=Reference(workingstep="x", bounds=(at_wall, POWER)))
+    step = LoopStep(reference=Reference(workingstep="x", bounds=(at_wall, POWER)))
     plain = replace(PLAIN, wall=np.array([0.5, 0.0, 1.0, 1.0]))
-    found = equivalent(plain, [step], Aims())
+    found = equivalent(plain, [step], LoopSettings())
     # In the slot only the motor's power counts: 100 N of 1000 N.
     assert found.force.tolist() == [100.0, 40.0, 200.0, 100.0]
-    without = equivalent(PLAIN, [step], Aims())
+    without = equivalent(PLAIN, [step], LoopSettings())
     assert without.force.tolist() == [40.0, 40.0, 40.0, 100.0]
 
 
 def test_less_motor_power_bounds_the_slot() -> None:
-    found = equivalent(PLAIN, [STEP], Aims(power_factor=0.5))
+    found = equivalent(PLAIN, [STEP], LoopSettings(power_factor=0.5))
     assert found.force[1] == pytest.approx(400.0 * 100.0 / 500.0)
     bound = STEP.reference.bound(power_factor=0.3)
     assert bound is not None
-    least = equivalent(PLAIN, [STEP], Aims(power_factor=0.3))
+    least = equivalent(PLAIN, [STEP], LoopSettings(power_factor=0.3))
     # 300 N is the bound that forces are told in: of power, but for the sliver's 100 N.
     assert bound.force == 300.0
     assert least.force[:3] == pytest.approx([100.0, 100.0, 300.0])
 
 
 def test_a_set_point_of_the_users_own_is_a_plain_force() -> None:
-    assert equivalent(PLAIN, [STEP], Aims(set_point=500.0)) is PLAIN
+    assert equivalent(PLAIN, [STEP], LoopSettings(set_point=500.0)) is PLAIN
 
 
 def test_without_bounds_forces_count_as_they_are() -> None:
     free = replace(STEP, reference=Reference(workingstep="x"))
-    assert equivalent(PLAIN, [free], Aims()).force.tolist() == PLAIN.force.tolist()
+    assert equivalent(PLAIN, [free], LoopSettings()).force.tolist() == PLAIN.force.tolist()
 
 
 def test_a_reading_is_weighed_with_what_is_cut() -> None:
-    found = equivalent(PLAIN, [STEP], Aims())
+    found = equivalent(PLAIN, [STEP], LoopSettings())
     assert found.weight_between(0.0, 1.0) == pytest.approx(1.0)
     assert found.weight_between(0.5, 1.5) == pytest.approx(0.75)
     (shown,) = turn(np.array([[100.0, 200.0]]))
@@ -75,6 +75,6 @@ def test_a_reading_is_weighed_with_what_is_cut() -> None:
 
 def test_a_sliver_without_force_does_not_count() -> None:
     sliver = replace(PLAIN, force=np.array([100.0, 1e-3, 1e-3, 0.0]))
-    found = equivalent(sliver, [STEP], Aims())
+    found = equivalent(sliver, [STEP], LoopSettings())
     assert found.weight_between(0.5, 2.5) == pytest.approx(1.0, rel=1e-3)
     assert found.weight_between(3.5, 3.6) == 1.0

@@ -4,14 +4,14 @@ from math import inf, nan
 import numpy as np
 import pytest
 
-from controller.aims import Aims, Step
 from controller.errors import MachineLost
-from controller.guard import Band, Holding
+from controller.guard import OverrideBand, OverrideReason
 from controller.law import Plant
+from controller.loop_settings import LoopSettings, LoopStep
 from controller.orders import Criterion, CriterionTo, EventKind, MotorPowerTo, SwitchTo
 from controller.ports import Reading
 from controller.reference import ForceBound, Reference
-from optimiser.limit import LimitName
+from optimiser.problem import LimitName
 from tests.controller.plugged import (
     PERIOD,
     SET_POINT,
@@ -24,7 +24,7 @@ from tests.controller.plugged import (
     step,
 )
 
-BLIND = Band().silence
+BLIND = OverrideBand().sensor_timeout
 """s"""
 
 
@@ -32,7 +32,7 @@ def even(revolutions: int, force: float = 300.0, **more: object) -> list[Reading
     return [reading(force, **more)] * (revolutions * TEETH)
 
 
-def holdings(of: Plugged) -> set[Holding]:
+def holdings(of: Plugged) -> set[OverrideReason]:
     return {cycle.allowed.holding for cycle in of.cycles}
 
 
@@ -42,7 +42,7 @@ def test_the_override_is_commanded_each_cycle_and_the_law_asked_each_revolution(
     assert run.port.overrides == [cycle.allowed.override for cycle in run.cycles]
     assert len(run.port.overrides) == 10 * TEETH
     assert len(law.told) == 10
-    assert run.loop.override == 1.1
+    assert run.loop.state.override == 1.1
     assert {each.force for each in law.told} == {300.0}
     assert {each.set_point for each in law.told} == {SET_POINT}
 
@@ -57,11 +57,11 @@ def test_what_the_last_revolution_of_a_cut_raised_is_not_kept_in_the_air() -> No
     law = Wishing(wish=0.6)
     run = plugged([*even(5), *even(1, 20.0), *even(3, 0.0)], law=law)
     run.run(5 * TEETH)
-    assert run.loop.override == 0.6
+    assert run.loop.state.override == 0.6
     object.__setattr__(law, "wish", 0.7)
     run.run(TEETH)
-    assert run.loop.override == 0.7
-    assert run.run().loop.override == 0.6
+    assert run.loop.state.override == 0.7
+    assert run.run().loop.state.override == 0.6
 
 
 def test_a_law_is_tuned_for_the_process_and_tuned_once() -> None:
@@ -77,7 +77,7 @@ def test_a_law_is_tuned_for_the_process_and_tuned_once() -> None:
 
 def test_a_preview_is_told_when_it_is_asked_for() -> None:
     law = Wishing(wish=1.0)
-    plugged(even(3), law=law, aims=Aims(look_ahead=5)).run()
+    plugged(even(3), law=law, settings=LoopSettings(look_ahead=5)).run()
     assert law.told[-1].expected == SET_POINT
     assert law.told[-1].ahead == (SET_POINT,) * 5
 
@@ -85,7 +85,7 @@ def test_a_preview_is_told_when_it_is_asked_for() -> None:
 def test_an_overload_holds_the_feed_within_its_tooth_period() -> None:
     run = plugged([*even(5), reading(601.0)], law=Wishing(wish=1.0)).run()
     assert run.cycles[-1].allowed == replace(
-        run.cycles[-1].allowed, override=0.0, holding=Holding.OVERLOAD
+        run.cycles[-1].allowed, override=0.0, holding=OverrideReason.OVERLOAD
     )
     assert run.kinds == [EventKind.WORKINGSTEP, EventKind.HOLD]
 
@@ -97,7 +97,7 @@ def test_a_hold_ends_when_a_whole_revolution_is_below_the_set_point() -> None:
     assert run.kinds[-2:] == [EventKind.HOLD, EventKind.RESUME]
     # 0.8 times the set point, had it been kept from where the feed was held.
     expected = 0.9 * (0.8 * SET_POINT / 700.0) ** (1.0 / 0.8)
-    assert run.loop.override == pytest.approx(expected)
+    assert run.loop.state.override == pytest.approx(expected)
 
 
 def test_a_hold_ends_when_the_axes_stand_whatever_is_read() -> None:
@@ -118,7 +118,7 @@ def test_too_many_holds_stop_the_program_for_good() -> None:
     run = plugged([*even(3), *overload * 4, *even(3), *even(3, 0.0, workingstep=0)]).run()
     assert run.kinds.count(EventKind.HOLD) == 4
     assert run.kinds[-1] is EventKind.STOP
-    assert run.loop.is_stopped
+    assert run.loop.state.is_stopped
     assert set(run.port.overrides[-6 * TEETH :]) == {0.0}
 
 
@@ -127,7 +127,7 @@ def test_holds_of_one_workingstep_do_not_count_in_the_next() -> None:
     second = [replace(each, workingstep=2) for each in [*even(3), *overload * 3]]
     run = plugged([*even(3), *overload * 3, *second], steps=[step(), step()]).run()
     assert run.kinds.count(EventKind.HOLD) == 6
-    assert not run.loop.is_stopped
+    assert not run.loop.state.is_stopped
 
 
 def test_a_workingstep_begins_at_the_programs_feed_or_below_its_ceiling() -> None:
@@ -159,25 +159,25 @@ def test_what_belongs_to_no_workingstep_is_left_alone() -> None:
 def test_switched_off_the_program_runs_at_its_own_feed_until_switched_on() -> None:
     run = plugged(even(60), law=Wishing(wish=0.5))
     run.run(10).loop.order(SwitchTo(is_on=False))
-    assert run.run(20).loop.override == 1.0
-    assert run.cycles[-1].allowed.holding is Holding.OFF
+    assert run.run(20).loop.state.override == 1.0
+    assert run.cycles[-1].allowed.holding is OverrideReason.OFF
     run.loop.order(SwitchTo(is_on=True))
-    assert run.run(20).loop.override == 0.5
+    assert run.run(20).loop.state.override == 0.5
     assert run.kinds.count(EventKind.ORDER) == 2
 
 
 def test_switched_off_the_loop_holds_no_feed() -> None:
-    run = plugged(even(9, 3000.0), aims=Aims(is_on=False)).run()
+    run = plugged(even(9, 3000.0), settings=LoopSettings(is_on=False)).run()
     assert set(run.port.overrides) == {1.0}
 
 
 def test_quality_never_exceeds_the_programs_feed() -> None:
     run = plugged(even(60), law=Wishing(wish=1.2))
-    assert run.run(20).loop.override == 1.2
+    assert run.run(20).loop.state.override == 1.2
     run.loop.order(CriterionTo(criterion=Criterion.QC))
-    assert run.run(TEETH).loop.override == 1.0
+    assert run.run(TEETH).loop.state.override == 1.0
     run.loop.order(CriterionTo(criterion=Criterion.TC))
-    assert run.run(TEETH).loop.override == 1.2
+    assert run.run(TEETH).loop.state.override == 1.2
 
 
 def test_a_share_of_the_power_is_that_share_of_the_set_point_where_power_binds() -> None:
@@ -200,14 +200,14 @@ def test_less_power_is_no_overload_of_a_force_that_was_none() -> None:
 
 
 def test_more_power_comes_slowly() -> None:
-    run = plugged(even(60, 100.0), aims=Aims(look_ahead=0, power_factor=0.5))
+    run = plugged(even(60, 100.0), settings=LoopSettings(look_ahead=0, power_factor=0.5))
     run.run(10).loop.order(MotorPowerTo(factor=1.0))
     assert run.run(TEETH).cycles[-1].set_point < 0.56 * SET_POINT
     assert run.run(8 * TEETH).cycles[-1].set_point == SET_POINT
 
 
 def test_a_set_point_that_was_asked_for_counts_instead_of_the_plans() -> None:
-    run = plugged(even(5), aims=Aims(look_ahead=0, set_point=250.0)).run()
+    run = plugged(even(5), settings=LoopSettings(look_ahead=0, set_point=250.0)).run()
     assert run.cycles[-1].set_point == 250.0
     assert "250 N as asked for" in run.events[0].text
 
@@ -233,7 +233,7 @@ def test_silence_is_said_once_and_means_the_safe_override() -> None:
     first = 5 * TEETH + count
     assert set(run.port.overrides[: first - 1]) == {1.0}
     assert set(run.port.overrides[first + 1 : first + count - 1]) == {0.5}
-    assert run.loop.override == pytest.approx(0.5 * 1.25**3)
+    assert run.loop.state.override == pytest.approx(0.5 * 1.25**3)
 
 
 def test_a_sensor_that_repeats_itself_is_silent() -> None:
@@ -245,7 +245,7 @@ def test_a_sensor_that_repeats_itself_is_silent() -> None:
             return self.last
 
     run = plugged([], sensor=Stuck(even(5))).run(2.0 * BLIND / PERIOD)
-    assert run.loop.override == 0.5
+    assert run.loop.state.override == 0.5
     assert EventKind.SILENCE in run.kinds
 
 
@@ -253,8 +253,8 @@ def test_teeth_that_never_make_a_revolution_are_silence_as_well() -> None:
     odd = [replace(each, teeth=4) for each in even(100)]
     every_other = [replace(each, period=4 * PERIOD) for each in odd]
     run = plugged([*even(5), *every_other]).run()
-    assert holdings(run) >= {Holding.SILENCE}
-    assert run.loop.override == 0.5
+    assert holdings(run) >= {OverrideReason.SILENCE}
+    assert run.loop.state.override == 0.5
 
 
 def test_a_lost_machine_was_commanded_the_safe_override_before_it_is_told() -> None:
@@ -299,7 +299,7 @@ def test_noise_in_the_air_teaches_nothing_of_the_teeth() -> None:
     noise = [reading(force) for force in (3.0, -2.9)] * 200
     run = plugged([*noise, *even(3, 550.0), reading(610.0)]).run()
     assert run.kinds.count(EventKind.HOLD) == 1
-    assert run.cycles[-1].allowed.holding is Holding.OVERLOAD
+    assert run.cycles[-1].allowed.holding is OverrideReason.OVERLOAD
 
 
 def test_a_broken_tooth_stops_the_program() -> None:
@@ -307,7 +307,7 @@ def test_a_broken_tooth_stops_the_program() -> None:
     broken = [reading(0.0), reading(560.0)] * 10
     run = plugged([*whole, *broken]).run()
     assert run.kinds[-2:] == [EventKind.BREAKAGE, EventKind.STOP]
-    assert run.loop.is_stopped
+    assert run.loop.state.is_stopped
     assert run.port.overrides[-1] == 0.0
 
 
@@ -316,23 +316,23 @@ def test_rapids_forget_the_cut() -> None:
     rapid = reading(0.0, can_override=False, period=0.25)
     run = plugged([*even(5), *[rapid] * 8, *even(1, 0.0)], law=law).run()
     assert run.kinds == [EventKind.WORKINGSTEP]
-    assert run.loop.override == 0.6
+    assert run.loop.state.override == 0.6
 
 
 @pytest.mark.parametrize(
     "change",
     [{"power_factor": 0.0}, {"set_point": nan}, {"servo_lag": 0.0}, {"chips": -1.0}],
 )
-def test_impossible_aims_are_refused(change: dict[str, float]) -> None:
+def test_impossible_settings_are_refused(change: dict[str, float]) -> None:
     with pytest.raises(ValueError, match="must be positive"):
-        Aims(**change)  # type: ignore[arg-type]
+        LoopSettings(**change)  # type: ignore[arg-type]
 
 
 def test_a_look_ahead_into_the_past_is_refused() -> None:
     with pytest.raises(ValueError, match="look-ahead"):
-        Aims(look_ahead=-1)
+        LoopSettings(look_ahead=-1)
 
 
 def test_an_exponent_of_nothing_is_refused() -> None:
     with pytest.raises(ValueError, match="exponent"):
-        Step(reference=Reference(workingstep="x"), exponent=0.0)
+        LoopStep(reference=Reference(workingstep="x"), exponent=0.0)

@@ -4,15 +4,15 @@ from math import inf, log
 import numpy as np
 import pytest
 
-from controller.guard import Keeping
+from controller.guard import WorkingstepBounds
 from controller.monitor import CALM, PAUSE, REACH, Monitor
-from controller.orders import Event, EventKind
+from controller.orders import EventKind, LoopEvent
 from controller.preview import Expected
 from controller.signal import Revolution
 from simulator.physics.tooth_means import Arcs
 from tests.controller.shown import REVOLUTION
 
-KEEP = Keeping(set_point=400.0, breakage=2000.0, floor=0.2, ceiling=1.2, exponent=0.8)
+KEEP = WorkingstepBounds(set_point=400.0, breakage=2000.0, floor=0.2, ceiling=1.2, exponent=0.8)
 PERIOD = REVOLUTION.period
 LAND_SHARE = 1.85
 
@@ -20,10 +20,9 @@ LAND_SHARE = 1.85
 class Watching:
     """A monitor that is shown one revolution after another."""
 
-    def __init__(self, keep: Keeping = KEEP) -> None:
-        self.monitor = Monitor()
-        self.monitor.begin("mill")
-        self.events: list[Event] = []
+    def __init__(self, keep: WorkingstepBounds = KEEP) -> None:
+        self.monitor = Monitor().begun("mill")
+        self.events: list[LoopEvent] = []
         self.keep = keep
         self._time = 0.0
 
@@ -36,7 +35,11 @@ class Watching:
             tooth_means=np.full(4, force),
             **more,  # type: ignore[arg-type]
         )
-        self.events += self.monitor.seen(shown, self.keep, ratio=ratio, land_share=LAND_SHARE)
+        self.look(self.monitor.seen(shown, self.keep, ratio=ratio, land_share=LAND_SHARE))
+
+    def look(self, monitor: Monitor) -> None:
+        self.monitor = monitor
+        self.events += monitor.events
 
     @property
     def kinds(self) -> list[EventKind]:
@@ -74,7 +77,7 @@ def test_a_set_point_out_of_reach_is_told_once_in_a_workingstep() -> None:
         watching.show(450.0, override=0.2)
     assert watching.kinds == [EventKind.UNREACHABLE]
     assert "450 N at an override of 20 %" in watching.events[0].text
-    watching.monitor.begin("mill")
+    watching.monitor = watching.monitor.begun("mill")
     for _ in range(REACH):
         watching.show(450.0, override=0.2)
     assert watching.kinds == [EventKind.UNREACHABLE] * 2
@@ -129,8 +132,8 @@ def test_a_worn_out_tool_is_told_once_in_its_life() -> None:
     watching = Watching()
     for wear in np.linspace(0.0, 0.33, 6000):
         watching.show(390.0, ratio=log(1.0 + LAND_SHARE * wear))
-    watching.monitor.begin("drill")
-    watching.monitor.begin("mill")
+    watching.monitor = watching.monitor.begun("drill")
+    watching.monitor = watching.monitor.begun("mill")
     for flicker in range(400):
         wear = 0.33 if flicker % 2 else 0.25
         watching.show(390.0, ratio=log(1.0 + LAND_SHARE * wear))
@@ -150,7 +153,7 @@ def turned(watching: Watching, *means: float, time: float = 1.0) -> None:
     """One revolution more of teeth that take so much."""
     taken = np.array(means)
     shown = replace(REVOLUTION, time=time, force=float(taken.mean()), tooth_means=taken)
-    watching.events += watching.monitor.seen(shown, KEEP, ratio=None, expected=THIN)
+    watching.look(watching.monitor.seen(shown, KEEP, ratio=None, expected=THIN))
 
 
 def test_a_broken_tooth_is_told_once_with_its_number_and_its_force() -> None:
@@ -164,7 +167,7 @@ def test_a_broken_tooth_is_told_once_with_its_number_and_its_force() -> None:
         "tooth 2 of 4 takes no chip: 0.00 of the mean force while tooth 2 was the last to "
         "enter, 1.00 with whole teeth"
     )
-    assert watching.monitor.is_broken
+    assert watching.monitor.breakage.is_broken
 
 
 def test_the_way_out_of_a_cut_and_the_way_in_are_no_broken_tooth() -> None:
@@ -175,7 +178,7 @@ def test_the_way_out_of_a_cut_and_the_way_in_are_no_broken_tooth() -> None:
             turned(watching, 400.0, 400.0, 400.0, 400.0)
         for _ in range(2):
             turned(watching, 400.0, 0.0, 400.0, 400.0)
-            watching.monitor.out_of_cut()
+            watching.monitor = watching.monitor.out_of_cut()
     assert watching.events == []
 
 
@@ -203,6 +206,6 @@ def test_each_tool_has_its_own_life() -> None:
     watching = Watching()
     for _ in range(60):
         watching.show(390.0, ratio=0.2)
-    watching.monitor.begin("drill")
+    watching.monitor = watching.monitor.begun("drill")
     assert watching.monitor.lives["drill"].readings == 0
     assert watching.monitor.lives["mill"].readings == 60

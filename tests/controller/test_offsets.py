@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 
 from controller.offsets import OUTLIER, Offsets, judged, misfits, unknown
 from controller.ports import Floats
-from controller.tooth_shares import Shares, shares_of
+from controller.tooth_shares import ToothShares, shares_of
 from tests.controller.cutter import EXPONENT, FEED_PER_TOOTH, Cutter, noisy, shown
 
 
-def shares(cutter: Cutter, forces: Floats, *, feed: float = FEED_PER_TOOTH) -> Shares:
+def shares(cutter: Cutter, forces: Floats, *, feed: float = FEED_PER_TOOTH) -> ToothShares:
     revolution = shown(forces, feed=feed)
     return shares_of(revolution, cutter.expected, exponent=EXPONENT, change=0.0)
 

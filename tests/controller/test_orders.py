@@ -1,6 +1,13 @@
 import pytest
 
-from controller.orders import Criterion, CriterionTo, Event, EventKind, MotorPowerTo, SwitchTo
+from controller.orders import (
+    Criterion,
+    CriterionTo,
+    EventKind,
+    LoopEvent,
+    MotorPowerTo,
+    SwitchTo,
+)
 
 
 def test_orders_of_the_same_wish_are_equal() -> None:
@@ -10,7 +17,9 @@ def test_orders_of_the_same_wish_are_equal() -> None:
 
 
 def test_an_event_says_when_what_and_why() -> None:
-    event = Event(time=1.5, kind=EventKind.HOLD, text="force 900 N exceeds 600 N: feed held")
+    event = LoopEvent(
+        time=1.5, kind=EventKind.HOLD, text="force 900 N exceeds 600 N: feed held"
+    )
     assert (event.time, event.kind.value) == (1.5, "hold")
 
 

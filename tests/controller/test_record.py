@@ -3,9 +3,9 @@ from math import inf, log, nan
 
 import pytest
 
-from controller.cycle import Cycle
-from controller.guard import Allowed
-from controller.record import OVER, Record, Recorder
+from controller.cycle import LoopCycle
+from controller.guard import AllowedOverride
+from controller.record import EXCESS_RATIO, Recorder, RunRecord
 from tests.controller.plugged import reading
 from tests.controller.shown import REVOLUTION
 
@@ -13,12 +13,12 @@ FORCES = (100.0, 420.0, 500.0)
 OVERRIDES = (1.0, 0.8, 0.6)
 
 
-def cycle(number: int, **more: float) -> Cycle:
+def cycle(number: int, **more: float) -> LoopCycle:
     """A cycle of 20 ms that completes a revolution of 20 mm/s."""
     revolution = replace(REVOLUTION, **more)  # type: ignore[arg-type]
-    return Cycle(
+    return LoopCycle(
         reading=reading(0.0, workingstep=number, period=0.02),
-        allowed=Allowed(override=1.0),
+        allowed=AllowedOverride(override=1.0),
         set_point=400.0,
         revolution=revolution,
         expected=400.0,
@@ -27,7 +27,7 @@ def cycle(number: int, **more: float) -> Cycle:
     )
 
 
-def recorded(*cycles: Cycle) -> dict[int, Record]:
+def recorded(*cycles: LoopCycle) -> dict[int, RunRecord]:
     recorder = Recorder(10.0)
     for each in cycles:
         recorder.add(each)
@@ -52,7 +52,7 @@ def test_a_workingstep_is_summed_up_in_closed_form() -> None:
     assert record.force == pytest.approx(340.0)
     assert record.excess == pytest.approx(0.02 * (20.0 + 100.0))
     # 420 N are the set point and its twentieth.
-    assert pytest.approx(420.0) == OVER * 400.0
+    assert pytest.approx(420.0) == EXCESS_RATIO * 400.0
     assert record.over_time == pytest.approx(0.02)
     assert record.override == pytest.approx(0.8)
     assert (record.least, record.greatest) == (0.6, 1.0)

@@ -12,12 +12,12 @@ from controller.reference import (
     Reference,
     reference_of,
 )
-from optimiser.advice import Advice, Load, State
-from optimiser.formulate import Task
-from optimiser.limit import Limit, LimitName, Monomial, Sense
+from optimiser.advice import Advice, EvaluatedSetting, LimitLoad
+from optimiser.formulate import OptimisationTask
 from optimiser.loads import cutting_force, shank_force, wall_force
 from optimiser.modes import Mode
-from optimiser.optimise import optimise
+from optimiser.optimise import optimise_program
+from optimiser.problem import BoundSide, Limit, LimitName, Monomial
 from optimiser.source import from_features
 from simulator.library import load_machine
 from simulator.matching import match_material
@@ -32,16 +32,16 @@ VMC = load_machine("vmc15")
 def advices(part: str, machine: str = "vmc15") -> dict[str, Advice]:
     """What is said of a part in C45 as it is programmed, by the workingstep's name."""
     text = (PARTS / f"{part}.stpnc").read_bytes()
-    plan = optimise(
+    plan = optimise_program(
         Program(Part21File.from_bytes(text, name=part), name=part),
         machine=load_machine(machine),
         material=match_material(["C45"]),
-        task=Task(mode=Mode.TC, safety=0.5, free=frozenset(), source=from_features),
+        task=OptimisationTask(mode=Mode.TC, safety=0.5, free=frozenset(), source=from_features),
     )
     return {advice.workingstep.id: advice for advice in plan.advices}
 
 
-def state(advice: Advice) -> State:
+def state(advice: Advice) -> EvaluatedSetting:
     assert advice.before is not None
     return advice.before
 
@@ -51,7 +51,9 @@ def bounds(reference: Reference) -> dict[LimitName, float]:
     return {each.name: each.force for each in reversed(reference.bounds)}
 
 
-def loads(advice: Advice, name: LimitName, sense: Sense = Sense.AT_MOST) -> list[Load]:
+def loads(
+    advice: Advice, name: LimitName, sense: BoundSide = BoundSide.AT_MOST
+) -> list[LimitLoad]:
     return [
         load
         for load in state(advice).loads
@@ -147,15 +149,15 @@ def test_the_ceiling_of_a_finished_bar_is_that_of_its_roughness() -> None:
 
 def test_the_floor_is_that_of_the_thinnest_chip() -> None:
     advice = advices("bracket")["ROUGH FACE"]
-    (load,) = loads(advice, LimitName.CHIP_THICKNESS, Sense.AT_LEAST)
+    (load,) = loads(advice, LimitName.CHIP_THICKNESS, BoundSide.AT_LEAST)
     assert reference_of(advice).floor == pytest.approx(load.bound / load.value)
 
 
-def roughness(bound: float) -> Load:
+def roughness(bound: float) -> LimitLoad:
     """Of 0.001·f² and an offset of 0.0004 mm."""
     monomial = Monomial(coefficient=1e-3, offset=4e-4, feed_exponent=2.0)
     limit = Limit(name=LimitName.ROUGHNESS, load=monomial, bound=bound, unit="µm")
-    return Load(limit=limit, value=5e-4, bound=bound)
+    return LimitLoad(limit=limit, value=5e-4, bound=bound)
 
 
 def test_a_roughness_that_no_feed_attains_does_not_stop_the_feed() -> None:

@@ -6,9 +6,9 @@ import pytest
 
 from controller.ports import Reading
 from controller.source import DrivePower, Dynamometer
-from simulator.plant.controlled import Bench, ControlledMachine
+from simulator.plant.controlled import ControlledMachine, Instrumentation
 from simulator.plant.dynamometer import DYNAMOMETER, Instrument
-from simulator.plant.hidden import Hidden
+from simulator.plant.hidden import HiddenTruth
 from tests.controller.plugged import SPINDLE_SPEED, reading
 from tests.controller.shown import turn
 from tests.simulator.plant.courses import course, levels
@@ -25,8 +25,10 @@ def readings(power_meter: Instrument) -> list[Reading]:
     """A rapid of 10 s, and a cut of 400 N for 10 s."""
     can_override = np.arange(2000) >= 1000
     path = course(levels(0.0, 400.0, cells=1000), can_override=can_override)
-    bench = Bench(dynamometer=DYNAMOMETER, power_meter=power_meter, efficiency=EFFICIENCY)
-    machine = ControlledMachine(path, Hidden(), bench)
+    bench = Instrumentation(
+        dynamometer=DYNAMOMETER, power_meter=power_meter, efficiency=EFFICIENCY
+    )
+    machine = ControlledMachine(path, HiddenTruth(), bench)
     found = []
     while (each := machine.read()) is not None:
         found.append(each)

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from controller.ports import Floats
 from controller.tool_life import (
     ToolLife,
-    Watchfulness,
+    WearMonitorSettings,
     compared_anew,
     lived,
     new_tool,
@@ -20,8 +20,8 @@ from simulator.physics.tool_life import LIFE_CRITERION
 LAND_SHARE = 1.85
 """1/mm, what flank wear adds to the ratio: as in steel at a chip of about 0.1 mm"""
 
-LEARNING = Watchfulness().learning
-MEMORY = Watchfulness().memory
+LEARNING = WearMonitorSettings().learning
+MEMORY = WearMonitorSettings().memory
 
 
 def lifetime(ratios: Floats, life: ToolLife | None = None) -> list[ToolLife]:
@@ -48,7 +48,7 @@ def test_wear_is_what_the_ratio_gains_over_what_a_millimetre_adds(
     vb: float, work: float, share: float
 ) -> None:
     """Whatever the work is like, and however thin the chips are."""
-    by = Watchfulness(allowance=1e3)
+    by = WearMonitorSettings(allowance=1e3)
     life = new_tool()
     for _ in range(LEARNING):
         life = lived(life, log(work), land_share=share, by=by)
@@ -134,7 +134,7 @@ def test_change_of_the_work_is_no_wear_at_all_without_noise(factor: float) -> No
 
 def test_change_is_seen_after_as_many_revolutions_as_the_sum_takes() -> None:
     """Without noise, away from the learning: n·(δ − allowance) > decision, the mean moving."""
-    by = Watchfulness()
+    by = WearMonitorSettings()
     for factor in (1.1, 1.3):
         ratios = np.where(np.arange(400) < 300, 1.0, factor)
         seen = next(row for row, life in enumerate(lifetime(ratios)) if life.changes)
@@ -178,4 +178,4 @@ def test_ratio_is_one_before_anything_was_measured() -> None:
 @pytest.mark.parametrize("name", ["memory", "learning", "allowance", "decision"])
 def test_watchfulness_is_positive(name: str) -> None:
     with pytest.raises(ValueError, match=f"{name} 0 must be greater"):
-        Watchfulness(**{name: 0})
+        WearMonitorSettings(**{name: 0})

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from controller.preview import Expected
-from controller.tooth_shares import LEAST_CHIP, Shares, force_ratio, shares_of
+from controller.tooth_shares import LEAST_CHIP, ToothShares, force_ratio, shares_of
 from tests.controller.cutter import EXPONENT, Cutter, shown
 from tests.controller.shown import SPINDLE_SPEED
 
@@ -19,7 +19,7 @@ ERROR = np.array([0.0, 40.0, 0.0, 0.0])
 """N by which the expected force of a tooth period may err"""
 
 
-def seen(factor: float = 1.0, *, expected: Expected = CUTTER.expected) -> Shares:
+def seen(factor: float = 1.0, *, expected: Expected = CUTTER.expected) -> ToothShares:
     revolution = shown(factor * CUTTER.forces())
     return shares_of(revolution, expected, exponent=EXPONENT, change=0.0)
 

@@ -13,7 +13,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from controller.law import Law, Situation
+from controller.law import ControlLaw, Situation
 from controller.ports import Floats
 
 S = TypeVar("S")
@@ -126,7 +126,7 @@ class Score:
     mean_override: float
 
 
-def run(law: Law[S], trial: Trial) -> Run:
+def run(law: ControlLaw[S], trial: Trial) -> Run:
     """The law in the loop with the plant."""
     count = len(trial.depths)
     noise = np.random.default_rng(trial.seed).normal(0.0, trial.noise, count)
@@ -205,6 +205,6 @@ def variants(trial: Trial) -> list[Trial]:
     return [replace(trial, gain=gain, lag=lag) for gain, lag in product(GAINS, LAGS)]
 
 
-def unstable(law: Law[S], trial: Trial) -> list[Trial]:
+def unstable(law: ControlLaw[S], trial: Trial) -> list[Trial]:
     """Those of the fifteen variants that never come to rest."""
     return [each for each in variants(trial) if is_restless(run(law, each))]

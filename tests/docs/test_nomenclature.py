@@ -107,3 +107,10 @@ def test_names_at_the_edge_exist_and_carry_the_unit(edge: str) -> None:
 def test_no_name_stands_twice() -> None:
     names = [row[0] for row in rows()]
     assert len(names) == len(set(names))
+
+
+def test_classes_of_the_words_are_classes_of_the_code() -> None:
+    words = PAGE.read_text(encoding="utf-8").split("## Words")[1].split("EXPRESS names")[0]
+    named = set(re.findall(r"`([A-Z][A-Za-z]+)`", words))
+    assert named
+    assert named <= {node.name for node in nodes() if isinstance(node, ast.ClassDef)}

@@ -14,12 +14,12 @@ from docs.hooks.command_page import EXIT_CODES, VARIABLES, command_page, command
 from docs.hooks.decision_pages import decision_files, decision_page
 from docs.hooks.entity_page import CLASSES, SCHEMA, entity_page
 from docs.hooks.error_page import error_classes, error_page
+from docs.hooks.express.reader import read_schemas
 from docs.hooks.markdown import cell, code
 from docs.hooks.rest_page import openapi_document, operations, rest_page
 from service.cli import options
 from service.cli.main import parser
 from stepnc_model.errors import Severity, StepNcError
-from stepnc_model.express.reader import read_schemas
 from tests.docs.pages import DOCS, ROOT
 
 PACKAGES = ("stepnc_model", "simulator", "optimiser", "controller", "kbe", "service")

@@ -9,13 +9,13 @@ from pathlib import Path
 import pytest
 
 from service.cli.serve import USUAL_RATE
-from service.depot.jobs import MOST_WAITING, OWNERS
 from service.jobs.runner import LONGEST, LONGEST_PACED, MOST_PACED
 from service.live.series import MOST_BYTES
-from service.rest.protocol import HEAD_S
+from service.rest.http_protocol import HEAD_S
 from service.rest.settings import Settings
+from service.session.runner import FORGOTTEN_AFTER, MOST_ROWS
 from service.simulation.live import MOST_SAMPLES
-from service.steering.helm import FORGOTTEN_AFTER, MOST_ROWS
+from service.storage.jobs import MOST_WAITING, OWNERS
 from tests.docs.pages import DOCS, ROOT, blocks
 from tests.service.rest.server import Server
 
@@ -41,10 +41,10 @@ def test_bounds_are_those_of_the_program() -> None:
     for words in (
         f"{settings.upload_bytes >> 20} MB (`--upload-mb`)",
         f"{USUAL_RATE:g} requests a second (`--rate`)",
-        f"a head within {HEAD_S:g} s, a body within {settings.body_s:g} s",
+        f"header within {HEAD_S:g} s, body within {settings.body_s:g} s",
         f"{MOST_WAITING} jobs",
-        f"{LONGEST / 3600:g} h; {LONGEST_PACED / 3600:g} h where",
-        f"{MOST_PACED} of these at once",
+        f"{LONGEST / 3600:g} h; {LONGEST_PACED / 3600:g} h for runs",
+        f"{MOST_PACED} of them at once",
         f"{MOST_SAMPLES // 1_000_000} million rows or samples; {MOST_BYTES >> 20} MB of rows",
     ):
         assert words in PAGE

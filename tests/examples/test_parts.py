@@ -12,13 +12,13 @@ from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.features import ClosedPocket, MachiningFeature, OpenPocket
 from stepnc_model.entities.geometry import Axis2Placement3d, Block, CartesianPoint
 from stepnc_model.entities.milling import MillingMachiningOperation
-from stepnc_model.entities.surfaces import SurfaceTextureParameter
+from stepnc_model.entities.profiles import SurfaceTextureParameter
 from stepnc_model.entities.technology import MillingTechnology
-from stepnc_model.entities.turning_strategies import ThreadStrategy, UnidirectionalTurning
+from stepnc_model.entities.turning import ThreadStrategy, UnidirectionalTurning
 from stepnc_model.entities.turning_tools import TurningThreadingTool
 from stepnc_model.part21.values import Ref, Value
 from stepnc_model.program import Program
-from stepnc_model.technology import Quantity, programmed
+from stepnc_model.technology import ProgrammedQuantity, programmed
 from stepnc_model.tool import tool_of
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
@@ -93,7 +93,7 @@ def test_paper002_has_the_numbers_of_table_2() -> None:
     tool = tool_of(program, step.tool_ref)
     (block,) = all_of(program, Block)
     technology = programmed(program, step.technology_ref)
-    assert technology.speed.quantity is Quantity.CUTTING_SPEED
+    assert technology.speed.quantity is ProgrammedQuantity.CUTTING_SPEED
     assert technology.speed.value * 60.0 / 1000.0 == pytest.approx(35.0)
     assert technology.spindle_speed(tool.diameter) * 60.0 == pytest.approx(618.9, abs=0.05)
     assert getattr(step.operation, "axial_cutting_depth", None) == 3.0
@@ -105,7 +105,7 @@ def test_paper000_has_the_numbers_of_section_4_1() -> None:
     (step,) = program.workingsteps
     (strategy,) = all_of(program, UnidirectionalTurning)
     technology = programmed(program, step.technology_ref)
-    assert technology.feed.quantity is Quantity.FEED_PER_REVOLUTION
+    assert technology.feed.quantity is ProgrammedQuantity.FEED_PER_REVOLUTION
     assert technology.feed.value == 0.25
     assert 2.0 * pi * technology.spindle_speed(50.0) == pytest.approx(166.5)
     assert (strategy.cutting_depth, strategy.overcut_length) == ((2.5,), 2.0)
@@ -118,7 +118,7 @@ def test_paper003_has_the_numbers_of_section_4_3(case: int, feed: float, depth: 
     (block,) = all_of(program, Block)
     tool = tool_of(program, step.tool_ref)
     technology = programmed(program, step.technology_ref)
-    assert technology.feed.quantity is Quantity.FEED
+    assert technology.feed.quantity is ProgrammedQuantity.FEED
     assert technology.feed.value * 60.0 == pytest.approx(feed)
     assert technology.spindle_speed(tool.diameter) * 60.0 == pytest.approx(1750.0)
     assert getattr(step.operation, "axial_cutting_depth", None) == depth
@@ -243,7 +243,7 @@ def test_thread_is_cut_to_its_depth(shaft: Program) -> None:
 def test_thread_feeds_one_pitch_a_revolution(shaft: Program) -> None:
     (tool,) = all_of(shaft, TurningThreadingTool)
     technology = programmed(shaft, shaft.workingsteps[-1].technology_ref)
-    assert technology.feed.quantity is Quantity.FEED_PER_REVOLUTION
+    assert technology.feed.quantity is ProgrammedQuantity.FEED_PER_REVOLUTION
     assert technology.feed.value == tool.threading_pitch
     assert technology.is_synchronised
     assert technology.inhibition

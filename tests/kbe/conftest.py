@@ -19,11 +19,11 @@ from kbe.store import Store, open_store
 from stepnc_model.entities.optimisation import FaceMillingImmersion
 from stepnc_model.outcome import (
     Context,
-    Correction,
+    EvaluatedQuantity,
     FeatureFacts,
     ForceRatio,
+    LearnedCorrection,
     ProcessOutcome,
-    Quantity,
 )
 
 NOON = datetime(2026, 3, 5, 12, 0, tzinfo=UTC)
@@ -37,14 +37,14 @@ POCKET = ProcessOutcome(
     mode="TC",
     specific_force=1700.0,
     cutting_speed=3000.0,
-    step_depth=Quantity(predicted=4.0, measured=4.0),
-    feed_per_tooth=Quantity(predicted=0.1, measured=0.08),
+    step_depth=EvaluatedQuantity(predicted=4.0, measured=4.0),
+    feed_per_tooth=EvaluatedQuantity(predicted=0.1, measured=0.08),
     immersion=FaceMillingImmersion.FULL_IMMERSION,
     strategy="contour_parallel",
-    roughness=Quantity(predicted=0.0016),
-    time=Quantity(predicted=50.0, measured=55.0),
-    force=Quantity(predicted=800.0, measured=900.0),
-    feed=Quantity(predicted=16.0, measured=14.0),
+    roughness=EvaluatedQuantity(predicted=0.0016),
+    time=EvaluatedQuantity(predicted=50.0, measured=55.0),
+    force=EvaluatedQuantity(predicted=800.0, measured=900.0),
+    feed=EvaluatedQuantity(predicted=16.0, measured=14.0),
     force_bound=950.0,
     force_ratio=ForceRatio(log_mean=0.12, log_deviation=0.05, readings=2200),
     trace="run-1.parquet",
@@ -53,7 +53,7 @@ POCKET = ProcessOutcome(
     recorded_by="virtual machine",
 )
 
-PROPOSAL = Correction(
+PROPOSAL = LearnedCorrection(
     context=POCKET.context,
     log_centre=0.12,
     log_scale=0.03,
@@ -88,7 +88,7 @@ def outcome() -> ProcessOutcome:
 
 
 @pytest.fixture(scope="session")
-def proposal() -> Correction:
+def proposal() -> LearnedCorrection:
     return PROPOSAL
 
 

@@ -6,16 +6,16 @@ from datetime import UTC, datetime, timedelta
 from stepnc_model.entities.optimisation import FaceMillingImmersion
 from stepnc_model.outcome import (
     Context,
-    Correction,
+    EvaluatedQuantity,
     FeatureFacts,
     ForceRatio,
+    LearnedCorrection,
     ProcessOutcome,
-    Quantity,
 )
 
 START = datetime(2026, 3, 2, 8, 0, tzinfo=UTC)
 CONTEXT = Context(machine="vmc15", material="C45", tool="MILL 18")
-UNKNOWN = Quantity()
+UNKNOWN = EvaluatedQuantity()
 
 SLOT = ProcessOutcome(
     context=CONTEXT,
@@ -26,8 +26,8 @@ SLOT = ProcessOutcome(
     mode="TC",
     specific_force=1000.0,
     cutting_speed=583.0,
-    step_depth=Quantity(predicted=3.0, measured=3.0),
-    feed_per_tooth=Quantity(predicted=0.4, measured=0.33),
+    step_depth=EvaluatedQuantity(predicted=3.0, measured=3.0),
+    feed_per_tooth=EvaluatedQuantity(predicted=0.4, measured=0.33),
     immersion=FaceMillingImmersion.FULL_IMMERSION,
     strategy="unidirectional",
     roughness=UNKNOWN,
@@ -62,9 +62,9 @@ def with_ratio(
     return replace(cut, force_ratio=ratio)
 
 
-def deviating(share: float) -> Quantity:
+def deviating(share: float) -> EvaluatedQuantity:
     """A quantity that was off its plan by a share."""
-    return Quantity(predicted=100.0, measured=100.0 * (1.0 + share))
+    return EvaluatedQuantity(predicted=100.0, measured=100.0 * (1.0 + share))
 
 
 def correction(
@@ -74,9 +74,9 @@ def correction(
     degrees: float = 8.0,
     outcomes: int = 12,
     confidence: float = 0.9,
-) -> Correction:
+) -> LearnedCorrection:
     """A correction of the context of all these outcomes."""
-    return Correction(
+    return LearnedCorrection(
         context=CONTEXT,
         log_centre=log_centre,
         log_scale=log_scale,

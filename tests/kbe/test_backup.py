@@ -20,11 +20,11 @@ from kbe.errors import (
     StoreTooNew,
     StoreUnavailable,
 )
-from kbe.place import parsed_place
 from kbe.rows import outcome_row
 from kbe.schema import VERSION_TABLE, outcome
 from kbe.store import Store, open_store
-from stepnc_model.outcome import Correction, ProcessOutcome
+from kbe.store_location import parsed_place
+from stepnc_model.outcome import LearnedCorrection, ProcessOutcome
 
 OutcomeMaker = Callable[..., list[ProcessOutcome]]
 UrlMaker = Callable[[], str]
@@ -32,7 +32,7 @@ UrlMaker = Callable[[], str]
 LATER = datetime(2026, 4, 1, tzinfo=UTC)
 
 
-def fill(store: Store, outcomes: list[ProcessOutcome], proposal: Correction) -> None:
+def fill(store: Store, outcomes: list[ProcessOutcome], proposal: LearnedCorrection) -> None:
     """Everything that a store can hold; ids with a gap, as PostgreSQL leaves after an error."""
     store.add(outcomes)
     with writing(store.engine, store.place) as connection:
@@ -47,7 +47,7 @@ def fill(store: Store, outcomes: list[ProcessOutcome], proposal: Correction) -> 
 
 
 @pytest.fixture
-def full(store: Store, outcomes: OutcomeMaker, proposal: Correction) -> Store:
+def full(store: Store, outcomes: OutcomeMaker, proposal: LearnedCorrection) -> Store:
     fill(store, outcomes(1010), proposal)
     return store
 
@@ -61,7 +61,7 @@ def folder(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def file(
-    sqlite_place: UrlMaker, folder: Path, outcomes: OutcomeMaker, proposal: Correction
+    sqlite_place: UrlMaker, folder: Path, outcomes: OutcomeMaker, proposal: LearnedCorrection
 ) -> str:
     """A backup of a store in SQLite."""
     path = str(folder / "monday.db")
@@ -78,7 +78,7 @@ def target(request: pytest.FixtureRequest) -> str:
 
 
 def test_all_comes_back_from_each_database_to_each(
-    full: Store, folder: Path, target: str, proposal: Correction, outcomes: OutcomeMaker
+    full: Store, folder: Path, target: str, proposal: LearnedCorrection, outcomes: OutcomeMaker
 ) -> None:
     file = folder / "monday.db"
     assert backup(full, str(file)) == content(full)

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kbe.bound import BoundUse, is_overplanned, is_wasted, share_of, time_to_win, used
-from stepnc_model.outcome import ProcessOutcome, Quantity
+from stepnc_model.outcome import EvaluatedQuantity, ProcessOutcome
 from tests.kbe.cuts import SLOT
 
 
@@ -17,9 +17,9 @@ def cut(
 ) -> ProcessOutcome:
     return replace(
         SLOT,
-        force=Quantity(predicted=predicted, measured=measured),
+        force=EvaluatedQuantity(predicted=predicted, measured=measured),
         force_bound=bound,
-        time=Quantity(predicted=60.0, measured=60.0),
+        time=EvaluatedQuantity(predicted=60.0, measured=60.0),
     )
 
 
@@ -58,7 +58,7 @@ def test_without_bound_or_force_nothing_is_known(outcome: ProcessOutcome) -> Non
 
 
 def test_time_that_was_not_measured_cannot_be_won() -> None:
-    assert time_to_win(replace(cut(500.0), time=Quantity())) == 0.0
+    assert time_to_win(replace(cut(500.0), time=EvaluatedQuantity())) == 0.0
 
 
 @given(measured=st.floats(0.0, 5000.0))

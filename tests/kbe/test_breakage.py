@@ -29,6 +29,7 @@ UrlMaker = Callable[[], str]
 
 FILLER = """
 import os, pickle, resource, sys
+sys.dont_write_bytecode = True
 from contextlib import closing
 from pathlib import Path
 from kbe.errors import StoreFull

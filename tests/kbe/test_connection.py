@@ -8,8 +8,8 @@ from sqlalchemy import text
 
 from kbe.connection import connected, reading, snapshot, writing
 from kbe.errors import DriverMissing, StoreBusy
-from kbe.place import parsed_place
 from kbe.store import Store, open_store
+from kbe.store_location import parsed_place
 
 
 def test_sqlite_writes_ahead_and_syncs_every_commit(tmp_path: Path) -> None:

@@ -13,17 +13,17 @@ from scipy import stats
 from kbe.corrections import (
     NEVER,
     Admission,
+    ExclusionReason,
+    FactorPrior,
     Forgetting,
-    Learned,
+    LearnedFactor,
     Learning,
-    Prior,
-    Reason,
     learned,
     own_variance,
     refusal,
 )
 from kbe.factor import distribution, factor_at
-from stepnc_model.outcome import Context, Correction, ForceRatio, ProcessOutcome
+from stepnc_model.outcome import Context, ForceRatio, LearnedCorrection, ProcessOutcome
 from tests.kbe.cuts import CONTEXT, SLOT, after, in_run, with_ratio
 
 UNFORGETTING = Learning(forgetting=NEVER)
@@ -42,14 +42,14 @@ def runs_of(ratios: Sequence[float], *, deviation: float = 0.0) -> list[ProcessO
     ]
 
 
-def only(outcomes: Sequence[ProcessOutcome], learning: Learning | None = None) -> Learned:
+def only(outcomes: Sequence[ProcessOutcome], learning: Learning | None = None) -> LearnedFactor:
     (found,) = learned(outcomes, at=after(len(outcomes)), learning=learning)
     return found
 
 
 def correction_of(
     outcomes: Sequence[ProcessOutcome], learning: Learning | None = None
-) -> Correction:
+) -> LearnedCorrection:
     found = only(outcomes, learning).correction
     assert found is not None
     return found
@@ -57,7 +57,7 @@ def correction_of(
 
 def repeated(
     count: int, draw: Callable[[np.random.Generator, int], list[ProcessOutcome]]
-) -> tuple[list[Learned], np.random.Generator]:
+) -> tuple[list[LearnedFactor], np.random.Generator]:
     """What is learned in each of 500 repetitions of some runs."""
     random = np.random.default_rng(count)
     found = [only(draw(random, count), UNFORGETTING) for _ in range(REPETITIONS)]
@@ -69,12 +69,12 @@ def one_cut_a_run(random: np.random.Generator, count: int) -> list[ProcessOutcom
 
 
 @pytest.fixture(scope="module", params=[3, 4, 5])
-def few_runs(request: pytest.FixtureRequest) -> tuple[list[Learned], np.random.Generator]:
+def few_runs(request: pytest.FixtureRequest) -> tuple[list[LearnedFactor], np.random.Generator]:
     return repeated(request.param, one_cut_a_run)
 
 
 def test_truth_is_found_after_few_runs(
-    few_runs: tuple[list[Learned], np.random.Generator],
+    few_runs: tuple[list[LearnedFactor], np.random.Generator],
 ) -> None:
     """As well as a mean of n runs can: 5 % scatter leaves 5 %/√n, within 3 % by the normal law.
 
@@ -90,7 +90,7 @@ def test_truth_is_found_after_few_runs(
 
 
 def test_interval_covers_the_truth_nine_times_in_ten(
-    few_runs: tuple[list[Learned], np.random.Generator],
+    few_runs: tuple[list[LearnedFactor], np.random.Generator],
 ) -> None:
     """At least: here the prior's guess of the scatter is right, which no interval can know."""
     found, _ = few_runs
@@ -99,7 +99,7 @@ def test_interval_covers_the_truth_nine_times_in_ten(
 
 
 def test_correction_covers_the_next_run_nine_times_in_ten(
-    few_runs: tuple[list[Learned], np.random.Generator],
+    few_runs: tuple[list[LearnedFactor], np.random.Generator],
 ) -> None:
     found, random = few_runs
     laws = [distribution(each.correction) for each in found if each.correction]
@@ -113,7 +113,7 @@ def test_correction_covers_the_next_run_nine_times_in_ten(
 
 def test_coverage_is_exact_when_truths_are_as_the_prior_says() -> None:
     random = np.random.default_rng(8)
-    prior = Prior()
+    prior = FactorPrior()
     learning = Learning(forgetting=NEVER, admission=Admission(wildest=inf))
     held = 0
     for _ in range(REPETITIONS):
@@ -245,8 +245,8 @@ def test_knowledge_fades_towards_the_prior_and_not_beyond() -> None:
     assert scales == sorted(scales)
     (never,) = learned(outcomes, at=after(100_000))
     assert never.mean.centre == pytest.approx(0.0, abs=1e-9)
-    assert never.mean.scale == pytest.approx(Prior().deviation)
-    assert never.mean.degrees == pytest.approx(Prior().degrees)
+    assert never.mean.scale == pytest.approx(FactorPrior().deviation)
+    assert never.mean.degrees == pytest.approx(FactorPrior().degrees)
 
 
 def test_clock_set_back_forgets_nothing() -> None:
@@ -263,17 +263,19 @@ def reading(log_mean: float, *, deviation: float = 0.1, readings: int = 400) -> 
 @pytest.mark.parametrize(
     ("ratio", "reason"),
     [
-        (None, Reason.NO_RATIO),
-        (reading(float("nan")), Reason.NOT_FINITE),
-        (reading(0.1, deviation=float("inf")), Reason.NOT_FINITE),
-        (reading(0.1, readings=19), Reason.FEW_READINGS),
+        (None, ExclusionReason.NO_RATIO),
+        (reading(float("nan")), ExclusionReason.NOT_FINITE),
+        (reading(0.1, deviation=float("inf")), ExclusionReason.NOT_FINITE),
+        (reading(0.1, readings=19), ExclusionReason.FEW_READINGS),
         (reading(0.1, readings=20), None),
-        (reading(log(5.1)), Reason.WILD),
-        (reading(-log(5.1)), Reason.WILD),
+        (reading(log(5.1)), ExclusionReason.WILD),
+        (reading(-log(5.1)), ExclusionReason.WILD),
         (reading(log(4.9)), None),
     ],
 )
-def test_what_is_left_out_has_a_reason(ratio: ForceRatio | None, reason: Reason | None) -> None:
+def test_what_is_left_out_has_a_reason(
+    ratio: ForceRatio | None, reason: ExclusionReason | None
+) -> None:
     assert refusal(ratio, Admission()) is reason
 
 
@@ -287,9 +289,9 @@ def test_left_out_outcomes_are_counted_and_change_nothing() -> None:
     ]
     (found,) = learned([*bad, *good], at=after(2))
     assert found.report.left_out == {
-        Reason.NO_RATIO: 1,
-        Reason.FEW_READINGS: 1,
-        Reason.WILD: 2,
+        ExclusionReason.NO_RATIO: 1,
+        ExclusionReason.FEW_READINGS: 1,
+        ExclusionReason.WILD: 2,
     }
     assert found.report.used == 2
     assert found.correction == only(good).correction
@@ -298,9 +300,9 @@ def test_left_out_outcomes_are_counted_and_change_nothing() -> None:
 def test_context_without_usable_outcome_has_no_proposal() -> None:
     found = only([in_run(0)])
     assert found.correction is None
-    assert found.report.left_out == {Reason.NO_RATIO: 1}
+    assert found.report.left_out == {ExclusionReason.NO_RATIO: 1}
     assert found.report.runs == 0
-    assert found.mean.scale == pytest.approx(Prior().deviation)
+    assert found.mean.scale == pytest.approx(FactorPrior().deviation)
 
 
 def test_correlated_readings_are_worth_less() -> None:

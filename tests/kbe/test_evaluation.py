@@ -18,10 +18,10 @@ from kbe.evaluation import (
     ordered,
     selected,
 )
-from kbe.grade import Grade
+from kbe.grade import EvaluationGrade
 from kbe.side import Knowledge
 from kbe.statistics import Evaluated
-from stepnc_model.outcome import Context, FeatureFacts, ProcessOutcome, Quantity
+from stepnc_model.outcome import Context, EvaluatedQuantity, FeatureFacts, ProcessOutcome
 from tests.kbe.cuts import CONTEXT, SLOT, correction, deviating, in_run
 
 FINE = replace(
@@ -29,8 +29,8 @@ FINE = replace(
     workingstep="WS SLOT 2 FINISH",
     is_finishing=True,
     mode="QC",
-    step_depth=Quantity(predicted=1.5, measured=1.5),
-    feed_per_tooth=Quantity(predicted=0.1, measured=0.1),
+    step_depth=EvaluatedQuantity(predicted=1.5, measured=1.5),
+    feed_per_tooth=EvaluatedQuantity(predicted=0.1, measured=0.1),
 )
 POCKET = FeatureFacts(id="Pocket_1", kind="closed_pocket", length=120.0, width=150.0)
 
@@ -50,7 +50,7 @@ def test_row_of_the_paper_has_both_sides() -> None:
     assert (row.kind, row.length, row.width, row.total_depth) == ("slot", 150.0, 100.0, 20.0)
     assert row.roughing is not None
     assert row.finishing is not None
-    assert row.roughing.feed_per_tooth == Quantity(predicted=0.4, measured=0.33)
+    assert row.roughing.feed_per_tooth == EvaluatedQuantity(predicted=0.4, measured=0.33)
     assert row.finishing.feed_per_tooth.predicted == 0.1
     assert row.finishing.step_depth.predicted == 1.5
     assert row.sides == (row.roughing, row.finishing)
@@ -202,9 +202,9 @@ def test_grade_of_a_row_is_the_worse_of_its_sides() -> None:
     rough = replace(SLOT, force=deviating(0.3))
     fine = replace(FINE, force=deviating(0.01))
     (row,) = evaluation([rough, fine])
-    assert row.grade is Grade.D
+    assert row.grade is EvaluationGrade.D
     (measured,) = evaluation([SLOT, fine])
-    assert measured.grade is Grade.A
+    assert measured.grade is EvaluationGrade.A
 
 
 @pytest.mark.parametrize(

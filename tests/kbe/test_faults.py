@@ -18,8 +18,8 @@ from kbe.errors import (
     StoreUnavailable,
 )
 from kbe.faults import fault, translated
-from kbe.place import parsed_place
 from kbe.store import Store, open_store
+from kbe.store_location import parsed_place
 
 FILE = parsed_place("kbe.db")
 SERVER = parsed_place("postgresql://ann:secret@db/kbe")

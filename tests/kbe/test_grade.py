@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from kbe.bound import BoundUse
-from kbe.grade import Grade, grade
+from kbe.grade import EvaluationGrade, grade
 from kbe.statistics import DeviationStatistics, DeviationTally, Evaluated
 
 NOTHING = DeviationTally().statistics()
@@ -26,50 +26,50 @@ def group(
 @pytest.mark.parametrize(
     ("mean", "wanted"),
     [
-        (0.0, Grade.A),
-        (0.049, Grade.A),
-        (-0.06, Grade.B),
-        (0.11, Grade.C),
-        (-0.19, Grade.C),
-        (0.21, Grade.D),
-        (5.0, Grade.D),
+        (0.0, EvaluationGrade.A),
+        (0.049, EvaluationGrade.A),
+        (-0.06, EvaluationGrade.B),
+        (0.11, EvaluationGrade.C),
+        (-0.19, EvaluationGrade.C),
+        (0.21, EvaluationGrade.D),
+        (5.0, EvaluationGrade.D),
     ],
 )
-def test_letters_are_of_the_deviation(mean: float, wanted: Grade) -> None:
+def test_letters_are_of_the_deviation(mean: float, wanted: EvaluationGrade) -> None:
     assert grade(group(Evaluated.FORCE, mean), NO_BOUND) is wanted
 
 
 def test_scatter_about_a_right_mean_is_no_good_prediction() -> None:
-    assert grade(group(Evaluated.TIME, 0.0, 0.15), NO_BOUND) is Grade.C
+    assert grade(group(Evaluated.TIME, 0.0, 0.15), NO_BOUND) is EvaluationGrade.C
     assert hypot(0.08, 0.08) > 0.1
-    assert grade(group(Evaluated.TIME, 0.08, 0.08), NO_BOUND) is Grade.C
+    assert grade(group(Evaluated.TIME, 0.08, 0.08), NO_BOUND) is EvaluationGrade.C
 
 
 def test_worst_quantity_counts() -> None:
     mixed = group(Evaluated.FEED, 0.01) | {
         Evaluated.TIME: group(Evaluated.TIME, 0.15)[Evaluated.TIME]
     }
-    assert grade(mixed, NO_BOUND) is Grade.C
+    assert grade(mixed, NO_BOUND) is EvaluationGrade.C
 
 
 def test_smoother_than_planned_is_no_fault() -> None:
-    assert grade(group(Evaluated.ROUGHNESS, -0.4), NO_BOUND) is Grade.A
-    assert grade(group(Evaluated.ROUGHNESS, 0.4), NO_BOUND) is Grade.D
+    assert grade(group(Evaluated.ROUGHNESS, -0.4), NO_BOUND) is EvaluationGrade.A
+    assert grade(group(Evaluated.ROUGHNESS, 0.4), NO_BOUND) is EvaluationGrade.D
 
 
 def test_nothing_measured_is_no_grade() -> None:
-    assert grade(dict.fromkeys(Evaluated, NOTHING), NO_BOUND) is Grade.UNKNOWN
+    assert grade(dict.fromkeys(Evaluated, NOTHING), NO_BOUND) is EvaluationGrade.UNKNOWN
 
 
 def test_one_violation_is_enough_and_one_waste_of_many_is_not() -> None:
     good = group(Evaluated.FORCE, 0.0)
-    assert grade(good, BoundUse(known=100, violated=1, wasted=99)) is Grade.VIOLATED
-    assert grade(good, BoundUse(known=9, wasted=5)) is Grade.WASTED
-    assert grade(good, BoundUse(known=9, wasted=4)) is Grade.A
+    assert grade(good, BoundUse(known=100, violated=1, wasted=99)) is EvaluationGrade.VIOLATED
+    assert grade(good, BoundUse(known=9, wasted=5)) is EvaluationGrade.WASTED
+    assert grade(good, BoundUse(known=9, wasted=4)) is EvaluationGrade.A
 
 
 @given(near=st.floats(0.0, 1.0), more=st.floats(0.0, 1.0))
 def test_greater_deviation_has_no_better_grade(near: float, more: float) -> None:
-    worst_first = list(Grade)
+    worst_first = list(EvaluationGrade)
     one, other = (grade(group(Evaluated.FORCE, mean), NO_BOUND) for mean in (near, near + more))
     assert worst_first.index(other) <= worst_first.index(one)

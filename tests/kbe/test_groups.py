@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from kbe.groups import Spread, spread
 from kbe.store import Store
-from stepnc_model.outcome import Context, ProcessOutcome, Quantity
+from stepnc_model.outcome import Context, EvaluatedQuantity, ProcessOutcome
 
 MEASURED = (880.0, 1010.0, None, 925.0, 800.0)
 """N, where 800 was predicted"""
@@ -20,8 +20,8 @@ def test_group_counts_and_averages(store: Store, outcome: ProcessOutcome) -> Non
     store.add([
         replace(
             outcome,
-            force=Quantity(predicted=800.0, measured=force),
-            feed=Quantity(measured=14.0),
+            force=EvaluatedQuantity(predicted=800.0, measured=force),
+            feed=EvaluatedQuantity(measured=14.0),
             recorded_at=outcome.recorded_at + timedelta(hours=(3 * index) % 5),
         )
         for index, force in enumerate(MEASURED)

@@ -13,12 +13,12 @@ from hypothesis import strategies as st
 from kbe.errors import StoreDamaged, UnknownCorrection
 from kbe.ledger import Standing
 from kbe.store import Store, open_store
-from stepnc_model.outcome import Correction
+from stepnc_model.outcome import LearnedCorrection
 
 LATER = datetime(2026, 4, 1, tzinfo=UTC)
 
 
-def test_proposal_is_not_in_force(store: Store, proposal: Correction) -> None:
+def test_proposal_is_not_in_force(store: Store, proposal: LearnedCorrection) -> None:
     id_ = store.propose(proposal)
     (entry,) = store.corrections()
     assert (entry.id, entry.correction, entry.standing) == (id_, proposal, Standing.PROPOSED)
@@ -26,7 +26,9 @@ def test_proposal_is_not_in_force(store: Store, proposal: Correction) -> None:
     assert store.accepted(proposal.context) is None
 
 
-def test_accepted_is_in_force_with_who_and_when(store: Store, proposal: Correction) -> None:
+def test_accepted_is_in_force_with_who_and_when(
+    store: Store, proposal: LearnedCorrection
+) -> None:
     store.accept(store.propose(proposal), by="Ann", at=LATER)
     found = store.accepted(proposal.context)
     assert found == replace(proposal, accepted_by="Ann", accepted_at=LATER)
@@ -34,7 +36,7 @@ def test_accepted_is_in_force_with_who_and_when(store: Store, proposal: Correcti
 
 
 def test_withdrawing_puts_the_one_before_in_force_again(
-    store: Store, proposal: Correction
+    store: Store, proposal: LearnedCorrection
 ) -> None:
     first, second = (
         store.propose(replace(proposal, log_centre=centre)) for centre in (0.1, 0.2)
@@ -54,7 +56,7 @@ def test_withdrawing_puts_the_one_before_in_force_again(
     assert entry.correction.accepted_at is None
 
 
-def in_force(store: Store, proposal: Correction) -> float | None:
+def in_force(store: Store, proposal: LearnedCorrection) -> float | None:
     found = store.accepted(proposal.context)
     return None if found is None else found.log_centre
 
@@ -75,7 +77,7 @@ TOOLS = count()
 @settings(max_examples=40)
 @given(steps=steps)
 def test_in_force_is_the_last_accepted_not_withdrawn(
-    shared: Store, proposal: Correction, steps: list[tuple[bool, int]]
+    shared: Store, proposal: LearnedCorrection, steps: list[tuple[bool, int]]
 ) -> None:
     """Against a list from which a withdrawn one is taken, and to whose end an accepted goes."""
     own = replace(proposal, context=replace(proposal.context, tool=f"endmill {next(TOOLS)}"))
@@ -92,13 +94,13 @@ def test_in_force_is_the_last_accepted_not_withdrawn(
 
 
 def test_decision_needs_a_correction_a_person_and_a_zone(
-    store: Store, proposal: Correction
+    store: Store, proposal: LearnedCorrection
 ) -> None:
     id_ = store.propose(proposal)
     with pytest.raises(UnknownCorrection) as caught:
         store.accept(id_ + 1, by="Ann", at=LATER)
     assert caught.value.id == id_ + 1
-    with pytest.raises(ValueError, match="name who decides"):
+    with pytest.raises(ValueError, match="name of the person who decides"):
         store.withdraw(id_, by=" ", at=LATER)
     # Once stored it could never be read again, nor taken away.
     with pytest.raises(ValueError, match="cannot be stored as text"):
@@ -108,7 +110,7 @@ def test_decision_needs_a_correction_a_person_and_a_zone(
     assert store.corrections()[0].standing is Standing.PROPOSED
 
 
-def test_proposal_cannot_be_accepted_already(store: Store, proposal: Correction) -> None:
+def test_proposal_cannot_be_accepted_already(store: Store, proposal: LearnedCorrection) -> None:
     with pytest.raises(ValueError, match="proposed before"):
         store.propose(replace(proposal, accepted_by="Ann", accepted_at=LATER))
     assert store.corrections() == ()
@@ -119,9 +121,9 @@ def test_proposal_cannot_be_accepted_already(store: Store, proposal: Correction)
     [{"log_scale": 0.0}, {"degrees": 0.0}, {"log_centre": 1e6}, {"confidence": 7.0}],
 )
 def test_a_correction_that_nobody_learned_is_damage(
-    tmp_path: Path, proposal: Correction, wrong: dict[str, float]
+    tmp_path: Path, proposal: LearnedCorrection, wrong: dict[str, float]
 ) -> None:
     with open_store(str(tmp_path / "store.db")) as store:
         store.propose(replace(proposal, **wrong))  # type: ignore[arg-type]
-        with pytest.raises(StoreDamaged, match="none that was learned"):
+        with pytest.raises(StoreDamaged, match="was not proposed by a review"):
             store.corrections()

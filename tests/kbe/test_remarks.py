@@ -9,7 +9,7 @@ from kbe.bound import BoundUse
 from kbe.moments import Trend
 from kbe.remarks import Action, Evidence, Remark, is_pending, remarks
 from kbe.statistics import DeviationStatistics, DeviationTally, Evaluated
-from stepnc_model.outcome import Correction
+from stepnc_model.outcome import LearnedCorrection
 from tests.kbe.cuts import correction
 
 NOTHING = DeviationTally().statistics()
@@ -31,8 +31,8 @@ def evidence(
     deviations: dict[Evaluated, DeviationStatistics] | None = None,
     *,
     bound: BoundUse | None = None,
-    proposed: Correction | None = None,
-    accepted: Correction | None = None,
+    proposed: LearnedCorrection | None = None,
+    accepted: LearnedCorrection | None = None,
 ) -> Evidence:
     return Evidence(
         deviations=dict.fromkeys(Evaluated, NOTHING) | (deviations or {}),
@@ -97,7 +97,7 @@ def test_accepted_factor_is_pending_no_more() -> None:
     ],
 )
 def test_force_off_its_plan_without_a_new_factor(
-    proposed: Correction | None, accepted: Correction | None, action: Action
+    proposed: LearnedCorrection | None, accepted: LearnedCorrection | None, action: Action
 ) -> None:
     given = evidence({Evaluated.FORCE: seen(0.3)}, proposed=proposed, accepted=accepted)
     assert only(given).action is action

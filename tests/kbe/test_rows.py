@@ -12,11 +12,11 @@ from kbe.rows import CORRECTION, EVALUATED, OUTCOME, outcome_row, utc
 from stepnc_model.entities.optimisation import FaceMillingImmersion
 from stepnc_model.outcome import (
     Context,
-    Correction,
+    EvaluatedQuantity,
     FeatureFacts,
     ForceRatio,
+    LearnedCorrection,
     ProcessOutcome,
-    Quantity,
 )
 
 texts = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"), max_size=9)
@@ -25,7 +25,7 @@ numbers = st.floats(-1e40, 1e40).filter(lambda value: value == 0.0 or abs(value)
 maybe = st.none() | numbers
 zones = st.integers(-840, 840).map(lambda east: timezone(timedelta(minutes=east)))
 times = st.datetimes(datetime(1971, 1, 1), datetime(2100, 1, 1), timezones=zones)
-quantities = st.builds(Quantity, predicted=maybe, measured=maybe)
+quantities = st.builds(EvaluatedQuantity, predicted=maybe, measured=maybe)
 contexts = st.builds(Context, machine=texts, material=texts, tool=texts)
 features = st.builds(
     FeatureFacts, id=texts, kind=texts, length=maybe, width=maybe, total_depth=maybe
@@ -59,7 +59,7 @@ outcomes = st.builds(
     recorded_by=texts,
 )
 corrections = st.builds(
-    Correction,
+    LearnedCorrection,
     context=contexts,
     log_centre=numbers,
     log_scale=numbers,
@@ -78,7 +78,7 @@ def test_outcome_comes_back_from_its_row(outcome: ProcessOutcome) -> None:
 
 
 @given(correction=corrections)
-def test_correction_comes_back_from_its_row(correction: Correction) -> None:
+def test_correction_comes_back_from_its_row(correction: LearnedCorrection) -> None:
     assert CORRECTION.noun(list(CORRECTION.row(correction).values())) == correction
 
 
@@ -109,13 +109,13 @@ def test_no_two_attributes_share_a_column() -> None:
 
 @pytest.mark.parametrize("value", [nan, inf, -inf])
 def test_number_that_is_none_is_refused(outcome: ProcessOutcome, value: float) -> None:
-    strange = replace(outcome, force=Quantity(predicted=value))
+    strange = replace(outcome, force=EvaluatedQuantity(predicted=value))
     with pytest.raises(ValueError, match="force_predicted_n"):
         outcome_row(strange)
 
 
 def test_impossible_ratio_is_refused(outcome: ProcessOutcome) -> None:
-    strange = replace(outcome, feed=Quantity(predicted=1e-300, measured=1e300))
+    strange = replace(outcome, feed=EvaluatedQuantity(predicted=1e-300, measured=1e300))
     with pytest.raises(ValueError, match="feed: no measurement"):
         outcome_row(strange)
 

@@ -6,12 +6,12 @@ from math import exp, log
 import pytest
 from scipy import stats
 
-from kbe.grade import Grade
+from kbe.grade import EvaluationGrade
 from kbe.remarks import Action
 from kbe.side import TYPES, Knowledge, QuantityTally, Side, SideTally
 from kbe.statistics import Evaluated
 from stepnc_model.entities.optimisation import FaceMillingImmersion
-from stepnc_model.outcome import ProcessOutcome, Quantity
+from stepnc_model.outcome import EvaluatedQuantity, ProcessOutcome
 from tests.kbe.cuts import CONTEXT, SLOT, after, correction, deviating, in_run
 
 
@@ -28,12 +28,12 @@ def test_first_row_of_the_papers_table() -> None:
     assert found.specific_force == 1000.0
     assert found.cutting_speed == 583.0
     assert found.step_depth.predicted == 3.0
-    assert found.feed_per_tooth == Quantity(predicted=0.4, measured=0.33)
+    assert found.feed_per_tooth == EvaluatedQuantity(predicted=0.4, measured=0.33)
     assert [TYPES[each] for each in found.immersions] == ["d_s1"]
     assert found.strategies == ("unidirectional",)
     assert found.modes == ("TC",)
     assert (found.outcomes, found.runs) == (1, 1)
-    assert found.grade is Grade.UNKNOWN
+    assert found.grade is EvaluationGrade.UNKNOWN
 
 
 def test_every_immersion_has_a_type() -> None:
@@ -74,7 +74,7 @@ def test_deviations_grade_and_remarks_are_of_the_outcomes() -> None:
     found = side_of(*outcomes, knowledge=Knowledge(proposed={CONTEXT: proposed}))
     assert found.deviations[Evaluated.FORCE].mean == pytest.approx(0.23)
     assert found.deviations[Evaluated.TIME].missing == 12
-    assert found.grade is Grade.D
+    assert found.grade is EvaluationGrade.D
     assert found.is_pending
     assert [each.action for each in found.remarks] == [Action.ACCEPT_FACTOR]
     assert "force 23 % above plan in 12 of 12 runs" in str(found.remarks[0])
@@ -92,7 +92,7 @@ def test_accepted_factor_is_compared_with_the_learned_one() -> None:
 def test_force_above_its_bound_violates() -> None:
     outcome = replace(SLOT, force=deviating(0.1), force_bound=100.0)
     found = side_of(outcome)
-    assert found.grade is Grade.VIOLATED
+    assert found.grade is EvaluationGrade.VIOLATED
     assert found.bound.highest == pytest.approx(1.1)
 
 
@@ -109,11 +109,11 @@ def test_side_without_outcome_is_refused() -> None:
 def test_like_is_compared_with_like() -> None:
     """A large cut that was only planned must not make the others look slow."""
     tally = QuantityTally()
-    tally.add(Quantity(predicted=9.0))
-    assert tally.quantity() == Quantity(predicted=9.0)
-    tally.add(Quantity(predicted=0.4, measured=0.3))
-    tally.add(Quantity(predicted=0.6, measured=0.5))
+    tally.add(EvaluatedQuantity(predicted=9.0))
+    assert tally.quantity() == EvaluatedQuantity(predicted=9.0)
+    tally.add(EvaluatedQuantity(predicted=0.4, measured=0.3))
+    tally.add(EvaluatedQuantity(predicted=0.6, measured=0.5))
     found = tally.quantity()
     assert found.predicted == pytest.approx(0.5)
     assert found.measured == pytest.approx(0.4)
-    assert QuantityTally().quantity() == Quantity()
+    assert QuantityTally().quantity() == EvaluatedQuantity()

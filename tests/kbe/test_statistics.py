@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from kbe.statistics import DeviationTally, Evaluated, quantity_of, statistics
-from stepnc_model.outcome import ProcessOutcome, Quantity
+from kbe.statistics import DeviationStatistics, DeviationTally, Evaluated, quantity_of
+from stepnc_model.outcome import EvaluatedQuantity, ProcessOutcome
 from tests.kbe.cuts import SLOT, deviating, in_run
 
 
@@ -20,6 +20,17 @@ def forces(runs: list[list[float]]) -> list[ProcessOutcome]:
         for number, run in enumerate(runs)
         for share in run
     ]
+
+
+def statistics(outcomes: list[ProcessOutcome], which: Evaluated) -> DeviationStatistics:
+    """Deviations of one quantity; a run is new when its id is not that of the one before."""
+    tally = DeviationTally()
+    number, last = -1, None
+    for outcome in outcomes:
+        number += outcome.run != last
+        last = outcome.run
+        tally.add(quantity_of(outcome, which).deviation, run=number)
+    return tally.statistics()
 
 
 SHARES = st.floats(-0.5, 1.0)
@@ -56,7 +67,7 @@ def test_force_that_rises_is_a_trend() -> None:
 def test_missing_values_are_counted_and_leave_their_runs_in_place() -> None:
     """Runs 0, 2 and 3 of a line through all four: the slope is still that of the line."""
     outcomes = forces([[0.0], [0.9], [0.2], [0.3]])
-    outcomes[1] = replace(outcomes[1], force=Quantity(predicted=100.0))
+    outcomes[1] = replace(outcomes[1], force=EvaluatedQuantity(predicted=100.0))
     found = statistics(outcomes, Evaluated.FORCE)
     assert (found.count, found.missing, found.runs) == (3, 1, 3)
     assert found.trend is not None

@@ -15,7 +15,7 @@ from kbe.errors import StoreDamaged, StoreUnavailable
 from kbe.schema import outcome as outcome_table
 from kbe.selection import Selection
 from kbe.store import AT_ONCE, Store, open_store
-from stepnc_model.outcome import Context, ProcessOutcome, Quantity
+from stepnc_model.outcome import Context, EvaluatedQuantity, ProcessOutcome
 
 OutcomeMaker = Callable[..., list[ProcessOutcome]]
 
@@ -65,7 +65,7 @@ def test_every_text_number_and_time_comes_back_to_the_last_bit(  # noqa: PLR0917
         program=text,
         run=f"run {store.count()}",
         specific_force=number,
-        step_depth=Quantity(measured=number),
+        step_depth=EvaluatedQuantity(measured=number),
         immersion=outcome.immersion if immersion else None,
         force_ratio=replace(outcome.force_ratio, readings=count) if immersion else None,
         recorded_at=outcome.recorded_at + timedelta(microseconds=microseconds),
@@ -75,7 +75,7 @@ def test_every_text_number_and_time_comes_back_to_the_last_bit(  # noqa: PLR0917
 
 
 def test_batch_is_kept_whole_or_not_at_all(store: Store, outcomes: OutcomeMaker) -> None:
-    bad = replace(outcomes(1)[0], force=Quantity(measured=float("nan")))
+    bad = replace(outcomes(1)[0], force=EvaluatedQuantity(measured=float("nan")))
     with pytest.raises(ValueError, match="nan"):
         store.add([*outcomes(3), bad])
     assert store.count() == 0

@@ -3,20 +3,20 @@
 import pytest
 
 from optimiser.advice import Plan
-from optimiser.formulate import Task
+from optimiser.formulate import OptimisationTask
 from tests.optimiser.plans import measured
 
 
 @pytest.fixture(scope="session")
 def bracket() -> Plan:
-    return measured("bracket", Task())
+    return measured("bracket", OptimisationTask())
 
 
 @pytest.fixture(scope="session")
 def shaft() -> Plan:
-    return measured("shaft", Task())
+    return measured("shaft", OptimisationTask())
 
 
 @pytest.fixture(scope="session")
 def paper() -> Plan:
-    return measured("paper002", Task())
+    return measured("paper002", OptimisationTask())

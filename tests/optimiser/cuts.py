@@ -4,10 +4,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 from math import radians
 
-from optimiser.conditions import Conditions
+from optimiser.conditions import CuttingConditions
 from optimiser.cut import Cut, CutKind, Texture
-from optimiser.limit import Limit, LimitName, Sense
-from optimiser.problem import Setting
+from optimiser.problem import BoundSide, Limit, LimitName, Setting
 from simulator.library import find_grade, load_machine, load_material
 from simulator.physics.engagement import unidirectional
 from simulator.spec import CuttingMaterial, ToolKind
@@ -59,9 +58,11 @@ TURNED = replace(
 )
 
 
-def conditions(kind: ToolKind = ToolKind.ENDMILL, roughness: float | None = None) -> Conditions:
+def conditions(
+    kind: ToolKind = ToolKind.ENDMILL, roughness: float | None = None
+) -> CuttingConditions:
     """Carbide in C45 on the machining centre of the library."""
-    return Conditions(
+    return CuttingConditions(
         machine=load_machine("vmc15"),
         material=load_material("c45"),
         cutting_material=CuttingMaterial.CARBIDE,
@@ -71,7 +72,7 @@ def conditions(kind: ToolKind = ToolKind.ENDMILL, roughness: float | None = None
 
 
 CARBIDE = conditions()
-PAPER = Conditions(
+PAPER = CuttingConditions(
     machine=load_machine("paper002"),
     material=load_material("paper002"),
     cutting_material=CuttingMaterial.HSS,
@@ -84,6 +85,8 @@ def names(limits: Sequence[Limit]) -> set[LimitName]:
     return {limit.name for limit in limits}
 
 
-def named(limits: Sequence[Limit], name: LimitName, sense: Sense = Sense.AT_MOST) -> Limit:
+def named(
+    limits: Sequence[Limit], name: LimitName, sense: BoundSide = BoundSide.AT_MOST
+) -> Limit:
     (found,) = (limit for limit in limits if limit.name is name and limit.sense is sense)
     return found

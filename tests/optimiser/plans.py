@@ -4,10 +4,10 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
-from optimiser.advice import Advice, Plan, State
-from optimiser.formulate import Task
+from optimiser.advice import Advice, EvaluatedSetting, Plan
+from optimiser.formulate import OptimisationTask
 from optimiser.modes import Free
-from optimiser.optimise import optimise
+from optimiser.optimise import optimise_program
 from optimiser.source import from_features
 from simulator.library import load_machine
 from simulator.matching import match_material
@@ -33,10 +33,12 @@ def edited(name: str, *changes: tuple[str, str]) -> Program:
 
 
 @cache
-def measured(name: str, task: Task, *changes: tuple[str, str], machine: str = "") -> Plan:
+def measured(
+    name: str, task: OptimisationTask, *changes: tuple[str, str], machine: str = ""
+) -> Plan:
     """Advice along the real paths."""
     usual, material = USUAL[name]
-    return optimise(
+    return optimise_program(
         edited(name, *changes),
         machine=load_machine(machine or usual),
         material=match_material([material]),
@@ -44,7 +46,9 @@ def measured(name: str, task: Task, *changes: tuple[str, str], machine: str = ""
     )
 
 
-def plan_of(name: str, task: Task, *changes: tuple[str, str], machine: str = "") -> Plan:
+def plan_of(
+    name: str, task: OptimisationTask, *changes: tuple[str, str], machine: str = ""
+) -> Plan:
     """Advice by the features."""
     return measured(name, replace(task, source=from_features), *changes, machine=machine)
 
@@ -54,11 +58,11 @@ def advice_of(plan: Plan, name: str) -> Advice:
     return found
 
 
-def after(advice: Advice) -> State:
+def after(advice: Advice) -> EvaluatedSetting:
     assert advice.after is not None
     return advice.after
 
 
-def before(advice: Advice) -> State:
+def before(advice: Advice) -> EvaluatedSetting:
     assert advice.before is not None
     return advice.before

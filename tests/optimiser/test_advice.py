@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from optimiser.advice import Load, Plan, Status
-from optimiser.formulate import Task
-from optimiser.limit import Limit, LimitName, Monomial, Sense
-from optimiser.optimise import optimise
+from optimiser.advice import AdviceStatus, LimitLoad, Plan
+from optimiser.formulate import OptimisationTask
+from optimiser.optimise import optimise_program
+from optimiser.problem import BoundSide, Limit, LimitName, Monomial
 from simulator.library import load_machine
 from simulator.matching import match_material
 from stepnc_model.program import Program
@@ -18,11 +18,11 @@ PART = Path(__file__).parents[2] / "examples" / "parts" / "bracket.stpnc"
 
 @pytest.fixture(scope="module")
 def plan() -> Plan:
-    return optimise(
+    return optimise_program(
         Program.load(PART),
         machine=load_machine("vmc15"),
         material=match_material(["C45"]),
-        task=Task(),
+        task=OptimisationTask(),
         selected=lambda step: step.id in {"ROUGH FACE", "ROUGH POCKET", "REAM HOLE 1"},
     )
 
@@ -30,15 +30,15 @@ def plan() -> Plan:
 @pytest.mark.parametrize(
     ("sense", "value", "margin"),
     [
-        (Sense.AT_MOST, 150.0, 0.25),
-        (Sense.AT_MOST, 200.0, 0.0),
-        (Sense.AT_MOST, 250.0, -0.25),
-        (Sense.AT_LEAST, 250.0, 0.25),
-        (Sense.AT_LEAST, 150.0, -0.25),
+        (BoundSide.AT_MOST, 150.0, 0.25),
+        (BoundSide.AT_MOST, 200.0, 0.0),
+        (BoundSide.AT_MOST, 250.0, -0.25),
+        (BoundSide.AT_LEAST, 250.0, 0.25),
+        (BoundSide.AT_LEAST, 150.0, -0.25),
     ],
 )
 def test_margin_is_the_share_of_the_bound_that_is_left(
-    sense: Sense, value: float, margin: float
+    sense: BoundSide, value: float, margin: float
 ) -> None:
     limit = Limit(
         name=LimitName.CUTTING_FORCE,
@@ -47,7 +47,7 @@ def test_margin_is_the_share_of_the_bound_that_is_left(
         unit="N",
         sense=sense,
     )
-    load = Load(limit=limit, value=value, bound=200.0)
+    load = LimitLoad(limit=limit, value=value, bound=200.0)
     assert load.margin == pytest.approx(margin)
 
 
@@ -61,13 +61,13 @@ def test_times_are_summed_over_the_workingsteps(plan: Plan) -> None:
 
 
 def test_untouched_workingstep_takes_as_long_as_before(plan: Plan) -> None:
-    (reaming,) = (each for each in plan.advices if each.status is Status.UNTOUCHED)
+    (reaming,) = (each for each in plan.advices if each.status is AdviceStatus.UNTOUCHED)
     assert reaming.after == reaming.before
 
 
 def test_infeasible_workingstep_counts_as_programmed(plan: Plan) -> None:
     first, *others = plan.advices
-    failed = replace(first, status=Status.INFEASIBLE, after=None)
+    failed = replace(first, status=AdviceStatus.INFEASIBLE, after=None)
     changed = replace(plan, advices=(failed, *others))
     assert changed.is_infeasible
     assert not plan.is_infeasible

@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from optimiser.advice import Status
+from optimiser.advice import AdviceStatus
 from optimiser.chip_load import GREATEST_THINNING, feed_factor
-from optimiser.formulate import Task
-from optimiser.limit import LimitName, Sense
+from optimiser.formulate import OptimisationTask
+from optimiser.problem import BoundSide, LimitName
 from simulator.physics.engagement import unidirectional
 from simulator.spec import FeedWindow
 from tests.optimiser.plans import advice_of, after, before, measured, plan_of
@@ -47,7 +47,7 @@ def test_a_wider_cut_bears_no_higher_feed(narrow: float, wide: float) -> None:
 
 def test_the_widest_and_the_thickest_place_of_the_path_count() -> None:
     """A contour of 0.3 mm is met more deeply in its inner corners than along its walls."""
-    cut = advice_of(measured("bracket", Task()), "FINISH CONTOUR").cut
+    cut = advice_of(measured("bracket", OptimisationTask()), "FINISH CONTOUR").cut
     assert cut is not None
     assert cut.chip_sine is not None
     assert cut.width_ratio is not None
@@ -59,12 +59,12 @@ def test_the_widest_and_the_thickest_place_of_the_path_count() -> None:
 
 def test_chip_load_follows_the_engagement() -> None:
     """0.12 mm a tooth in a full slot of 12 mm before; 0.75 of it is Helical's factor."""
-    plan = measured("bracket", Task())
+    plan = measured("bracket", OptimisationTask())
     slot = advice_of(plan, "MILL SLOT")
     (bound,) = (
         load.bound
         for load in after(slot).loads
-        if load.limit.name is LimitName.FEED_PER_TOOTH and load.limit.sense is Sense.AT_MOST
+        if load.limit.name is LimitName.FEED_PER_TOOTH and load.limit.sense is BoundSide.AT_MOST
         if load.limit.words == "feed per tooth"
     )
     assert bound == pytest.approx(0.75 * 0.12)
@@ -75,23 +75,23 @@ def test_chip_load_follows_the_engagement() -> None:
 
 def test_no_feed_is_below_the_least_at_which_edges_cut() -> None:
     """FINISH FACE had 0.037 mm a tooth where the catalogue begins at 0.08."""
-    for advice in measured("bracket", Task()).advices:
-        if advice.status is Status.ADVISED:
+    for advice in measured("bracket", OptimisationTask()).advices:
+        if advice.status is AdviceStatus.ADVISED:
             for load in after(advice).loads:
                 if load.limit.words.endswith("against rubbing"):
                     assert load.value >= load.bound * (1.0 - 1e-9)
-    face = advice_of(measured("bracket", Task()), "FINISH FACE")
+    face = advice_of(measured("bracket", OptimisationTask()), "FINISH FACE")
     assert after(face).setting.feed >= 0.08
 
 
 def test_roughness_and_rubbing_may_exclude_each_other() -> None:
     """Ra 0.1 µm is finer than any corner leaves at a feed that still cuts."""
-    advice = advice_of(plan_of("bracket", Task(roughness=0.1e-3)), "FINISH FACE")
-    assert advice.status is Status.INFEASIBLE
+    advice = advice_of(plan_of("bracket", OptimisationTask(roughness=0.1e-3)), "FINISH FACE")
+    assert advice.status is AdviceStatus.INFEASIBLE
 
 
 def test_papers_have_no_chip_load_by_engagement() -> None:
-    advice = advice_of(plan_of("bracket", Task(), machine="paper002"), "MILL SLOT")
+    advice = advice_of(plan_of("bracket", OptimisationTask(), machine="paper002"), "MILL SLOT")
     assert advice.cut is not None
     assert not any("rubbing" in load.limit.words for load in before(advice).loads)
     assert advice.cut.helix_angle == 0.0

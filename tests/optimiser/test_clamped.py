@@ -7,7 +7,7 @@ import pytest
 from optimiser.clamped import ClampedStocks, met_by
 from simulator.library import load_machine
 from simulator.motion.segments import lines
-from simulator.motion.tool_path import Leg, Run
+from simulator.motion.tool_path import Leg, ToolPathRun
 from simulator.removal.engage import MillingStock
 from simulator.removal.lathe import TurningStock
 from simulator.removal.zmap import MOST_CELLS
@@ -25,11 +25,11 @@ def program(part: str, *change: str) -> Program:
     return Program(Part21File.from_bytes(text.encode(), name=part), name=part)
 
 
-def straight(*points: tuple[float, float, float], speed: float = 5.0) -> Run:
+def straight(*points: tuple[float, float, float], speed: float = 5.0) -> ToolPathRun:
     """A path that ends nowhere near a control."""
     segments = lines(points, speed=speed)
     count = len(segments)
-    return Run(
+    return ToolPathRun(
         moves=(),
         segments=segments,
         spindle=segments.speed,

@@ -1,12 +1,12 @@
 """Conditions of a cut without anything of their own: custom and nominal."""
 
-from optimiser.conditions import GREATEST_DEFLECTION, Conditions, PermittedDeflection
+from optimiser.conditions import GREATEST_DEFLECTION, CuttingConditions, PermittedDeflection
 from simulator.library import load_machine, load_material
 from simulator.spec import CuttingMaterial
 
 
 def test_what_is_not_said_is_custom_and_nominal() -> None:
-    at = Conditions(
+    at = CuttingConditions(
         machine=load_machine("vmc15"),
         material=load_material("c45"),
         cutting_material=CuttingMaterial.CARBIDE,

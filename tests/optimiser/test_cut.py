@@ -4,7 +4,7 @@ from dataclasses import FrozenInstanceError, replace
 
 import pytest
 
-from optimiser.cut import Cut, CutKind, Place, Texture
+from optimiser.cut import CriticalPlace, Cut, CutKind, Texture
 from optimiser.problem import Setting
 from simulator.physics.engagement import full_immersion
 from simulator.spec import ToolKind
@@ -44,7 +44,7 @@ def test_equal_cuts_are_equal() -> None:
 def test_the_hardest_place_is_that_of_the_engagement() -> None:
     assert CUT.hardest is None
     place = replace(CUT, engagement=full_immersion(), depth_share=1.5).hardest
-    assert place == Place(engagement=full_immersion(), depth_share=1.5)
+    assert place == CriticalPlace(engagement=full_immersion(), depth_share=1.5)
 
 
 def test_a_cut_is_air_where_it_is_known_to_remove_nothing() -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from optimiser.cut import Cut, CutKind
-from optimiser.estimate_hole import CLEARANCE, hole_cut
+from optimiser.estimate import CLEARANCE, hole_cut
 from simulator.spec import ToolKind
 from stepnc_model.errors import Finding, SchemaError
 from stepnc_model.part21.reader import Part21File

@@ -6,13 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from optimiser.conditions import Conditions
+from optimiser.conditions import CuttingConditions
 from optimiser.cut import Cut, CutKind
-from optimiser.formulate import Task, problem_of, state_of
-from optimiser.limit import LimitName
+from optimiser.formulate import OptimisationTask, problem_of, state_of
 from optimiser.modes import Free
-from optimiser.optimise import optimise
-from optimiser.problem import Setting
+from optimiser.optimise import optimise_program
+from optimiser.problem import LimitName, Setting
 from simulator.library import load_machine, load_material
 from simulator.matching import match_material
 from simulator.physics.engagement import full_immersion
@@ -21,15 +20,15 @@ from stepnc_model.program import Program
 from stepnc_model.tool import Tool
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
-TASK = Task()
+TASK = OptimisationTask()
 
 
-def plan(task: Task, name: str = "bracket", machine: str = "vmc15"):  # type: ignore[no-untyped-def]
+def plan(task: OptimisationTask, name: str = "bracket", machine: str = "vmc15"):  # type: ignore[no-untyped-def]
     program = Program.load(PARTS / f"{name}.stpnc")
     material = program.material()
     assert material is not None
     match = match_material((material.standard_identifier, material.material_identifier))
-    return optimise(program, machine=load_machine(machine), material=match, task=task)
+    return optimise_program(program, machine=load_machine(machine), material=match, task=task)
 
 
 def test_a_feed_that_is_not_free_stays_and_only_depth_is_chosen() -> None:
@@ -83,14 +82,14 @@ def test_an_idle_machine_draws_its_standby_power() -> None:
 
 
 def test_a_correction_is_looked_up_by_tool() -> None:
-    task = Task(force_factors={"MILL 18MM": 1.31})
+    task = OptimisationTask(force_factors={"MILL 18MM": 1.31})
     assert task.force_factor("MILL 18MM") == 1.31
     assert task.force_factor("mill 18mm") == 1.0
 
 
 def test_a_task_keeps_the_factors_it_was_given() -> None:
     factors = {"MILL 18MM": 1.31}
-    task = Task(force_factors=factors)
+    task = OptimisationTask(force_factors=factors)
     factors["MILL 18MM"] = 2.0
     assert task.force_factor("MILL 18MM") == 1.31
     with pytest.raises(TypeError):
@@ -98,17 +97,20 @@ def test_a_task_keeps_the_factors_it_was_given() -> None:
 
 
 def test_tasks_are_equal_and_hashed_by_value() -> None:
-    one, other = Task(force_factors={"a": 1.2}), Task(force_factors={"a": 1.2})
+    one, other = (
+        OptimisationTask(force_factors={"a": 1.2}),
+        OptimisationTask(force_factors={"a": 1.2}),
+    )
     assert one == other
     assert hash(one) == hash(other)
-    assert one != Task()
+    assert one != OptimisationTask()
     assert replace(one, front=True).force_factor("a") == 1.2
 
 
 @pytest.mark.parametrize("factor", [0.0, -1.0, float("inf"), float("nan")])
 def test_a_factor_that_no_force_can_have_is_refused(factor: float) -> None:
     with pytest.raises(ValueError, match="tool 'a': a factor on k_c of"):
-        Task(force_factors={"a": factor})
+        OptimisationTask(force_factors={"a": factor})
 
 
 def test_a_plunge_has_its_thrust_and_power_and_no_part_in_the_cutting_force() -> None:
@@ -128,7 +130,7 @@ def test_a_plunge_has_its_thrust_and_power_and_no_part_in_the_cutting_force() ->
     down = replace(
         cut, kind=CutKind.DRILLING, tool=replace(mill, point_angle=pi), engagement=None
     )
-    at = Conditions(
+    at = CuttingConditions(
         machine=load_machine("vmc15"),
         material=load_material("c45"),
         cutting_material=CuttingMaterial.CARBIDE,

@@ -5,11 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from optimiser.advice import Advice, Point
-from optimiser.formulate import Task
+from optimiser.advice import Advice, ParetoPoint
+from optimiser.formulate import OptimisationTask
 from optimiser.front import POINTS
 from optimiser.modes import Free, Mode
-from optimiser.optimise import optimise
+from optimiser.optimise import optimise_program
 from simulator.library import load_machine
 from simulator.matching import match_material
 from stepnc_model.program import Program
@@ -19,17 +19,19 @@ PARTS = Path(__file__).parents[2] / "examples" / "parts"
 
 def advice(name: str, *free: Free, mode: Mode = Mode.TC, tool_change: float = 0.0) -> Advice:
     program = Program.load(PARTS / "bracket.stpnc")
-    plan = optimise(
+    plan = optimise_program(
         program,
         machine=load_machine("vmc15"),
         material=match_material(("C45",)),
-        task=Task(mode=mode, front=True, free=frozenset(free), tool_change=tool_change),
+        task=OptimisationTask(
+            mode=mode, front=True, free=frozenset(free), tool_change=tool_change
+        ),
         selected=lambda step: step.id == name,
     )
     return plan.advices[0]
 
 
-def measures(point: Point) -> tuple[float, float, float]:
+def measures(point: ParetoPoint) -> tuple[float, float, float]:
     return point.state.time, point.state.roughness or 0.0, point.state.energy
 
 

@@ -8,12 +8,11 @@ import numpy as np
 import pytest
 
 from optimiser.cut import Cut, CutKind
-from optimiser.hardest import Met, bending, greatest_section, weighted_volume
+from optimiser.hardest import PathContacts, bending, greatest_section, weighted_volume
 from optimiser.hardest import with_hardest as with_hardest_and_bent
 from optimiser.problem import Setting
 from simulator.physics.engagement import full_immersion
-from simulator.removal.stations import CutKind as StationKind
-from simulator.removal.stations import Stations, stretch_lengths
+from simulator.removal.stations import StationKind, Stations, stretch_lengths
 from simulator.spec import Kienzle, ToolKind
 from stepnc_model.tool import Tool
 
@@ -39,7 +38,7 @@ def met(
     stretch: float = 2.0,
     diameter: float = 10.0,
     chips: Sequence[float] = (0.5,),
-) -> Met:
+) -> PathContacts:
     """Stations of section, depth, entry and exit, one after another on one segment."""
     section, depth, entry, leave = np.array(rows).T
     count = len(section)
@@ -58,10 +57,10 @@ def met(
         chip_ratio=np.resize(chips, count),
         diameter=np.full(count, diameter),
     )
-    return Met(stations=stations, length=stretch_lengths(stations), cell=0.1)
+    return PathContacts(stations=stations, length=stretch_lengths(stations), cell=0.1)
 
 
-def with_hardest(cut: Cut, met: Met, kienzle: Kienzle, *, depth: float) -> Cut:
+def with_hardest(cut: Cut, met: PathContacts, kienzle: Kienzle, *, depth: float) -> Cut:
     bent = bending(cut, met.stations, kienzle)
     return with_hardest_and_bent(cut, met, kienzle, depth=depth, bent=bent)
 
@@ -218,7 +217,7 @@ DRILL = replace(
 )
 
 
-def drilled(*rings: tuple[float, float]) -> Met:
+def drilled(*rings: tuple[float, float]) -> PathContacts:
     """Stations of a drill between inner and outer diameters."""
     inner, outer = np.array(rings).T
     rows = [

@@ -8,16 +8,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from optimiser.advice import Plan, Status
+from optimiser.advice import AdviceStatus, Plan
+from optimiser.bar_grip import BarGrip
 from optimiser.conditions import PermittedDeflection
-from optimiser.cut import CutKind, Turned
-from optimiser.formulate import Task, problem_of
-from optimiser.grip import Grip
+from optimiser.cut import CutKind, TurnedBar
+from optimiser.formulate import OptimisationTask, problem_of
 from optimiser.holding import chuck_limits, holding_limits, holding_load
-from optimiser.limit import LimitName
 from optimiser.limits import force_load
 from optimiser.modes import Free, Mode
-from optimiser.optimise import optimise
+from optimiser.optimise import optimise_program
+from optimiser.problem import LimitName
 from optimiser.source import from_features
 from optimiser.workingstep import solve
 from simulator.errors import LibraryError
@@ -48,14 +48,14 @@ CHUCK = Chuck(
     jaw_mass=0.9,
     jaw_radius=63.0,
 )
-GRIP = Grip(size=GripSize(diameter=60.0, length=30.0), face=-120.0, front=2.0)
+GRIP = BarGrip(size=GripSize(diameter=60.0, length=30.0), face=-120.0, front=2.0)
 LATHE = replace(
     conditions(ToolKind.TURNING),
     machine=load_machine("lathe22"),
     holding=CHUCK,
     grip=GRIP,
 )
-BAR = Turned(
+BAR = TurnedBar(
     sections=(BarSection(start=0.0, end=152.0, outer=40.0),),
     back=-150.0,
     low=-110.0,
@@ -65,9 +65,13 @@ SHAFT_TURNED = replace(TURNED, turned=BAR)
 
 
 @cache
-def shaft(*holdings: Holding, task: Task = Task(), tail_stock: str = ".F.") -> Plan:  # noqa: B008 (frozen)
+def shaft(
+    *holdings: Holding,
+    task: OptimisationTask = OptimisationTask(),  # noqa: B008 (frozen)
+    tail_stock: str = ".F.",
+) -> Plan:
     functions = "#330=TURNING_MACHINE_FUNCTIONS(.T.,.FLOOD.,$,(),.T.,$,$,(),"
-    return optimise(
+    return optimise_program(
         edited("shaft", (f"{functions}.F.,", f"{functions}{tail_stock},")),
         machine=replace(load_machine("lathe22"), holdings=holdings),
         material=match_material(["42CrMo4"]),
@@ -81,7 +85,7 @@ def test_turning_no_chuck_no_bar() -> None:
     spindle = plan.machine.spindle
     radius = 0.8
     for advice in plan.advices:
-        if advice.status is not Status.ADVISED:
+        if advice.status is not AdviceStatus.ADVISED:
             continue
         state, cut = after(advice), advice.cut
         assert cut is not None
@@ -150,11 +154,11 @@ def test_a_table_that_names_the_setup_goes_before_one_that_names_none() -> None:
 def test_a_chuck_that_cannot_be_judged_names_the_key() -> None:
     program = edited("shaft", ("$,$,#33,(#36));", "$,$,#33,());"))
     with pytest.raises(LibraryError, match="jaw_face_z_mm: missing, and the bar"):
-        optimise(
+        optimise_program(
             program,
             machine=replace(load_machine("lathe22"), holdings=(CHUCK,)),
             material=match_material(["42CrMo4"]),
-            task=Task(),
+            task=OptimisationTask(),
         )
 
 
@@ -257,7 +261,7 @@ def test_a_speed_at_which_the_chuck_hardly_holds_is_lowered() -> None:
     at = replace(LATHE, holding=heavy)
     fast = replace(SHAFT_TURNED, programmed=replace(TURNED.programmed, speed=40.0))
     assert usable_speed(heavy) < 40.0
-    problem = problem_of(fast, at, Task())
+    problem = problem_of(fast, at, OptimisationTask())
     assert problem.speeds == (usable_speed(heavy),)
 
 
@@ -266,14 +270,14 @@ def test_free_speed_finds_what_a_grid_of_speeds_finds() -> None:
     heavy = replace(CHUCK, jaw_mass=5.0)
     at = replace(LATHE, holding=heavy, grip=replace(GRIP, front=-60.0))
     cut = replace(TURNED, turned=replace(BAR, high=-60.0), diameter=60.0, total_depth=4.0)
-    free = problem_of(cut, at, Task(free=ALL_FREE))
+    free = problem_of(cut, at, OptimisationTask(free=ALL_FREE))
     best = solve(free, Mode.TC)
     low, high = free.speeds[0], free.speeds[-1]
     times = []
     for row in range(401):
         speed = low * (high / low) ** (row / 400)
         given = replace(cut, programmed=replace(cut.programmed, speed=speed))
-        times.append(solve(problem_of(given, at, Task()), Mode.TC).time)
+        times.append(solve(problem_of(given, at, OptimisationTask()), Mode.TC).time)
     assert min(times) <= best.time * (1.0 + 1e-9)
     assert best.time <= 1.03 * min(times)
     assert {LimitName.CHUCK_TORQUE, LimitName.TILTING_MOMENT} & {
@@ -328,11 +332,11 @@ def test_weak_clamps_bound_the_bracket_and_a_note_tells_what_is_asked() -> None:
     clamp = Clamp(holding_force=8_000.0, friction=0.15, source="test")
     mill = load_machine("vmc15")
     plans = [
-        optimise(
+        optimise_program(
             edited("bracket"),
             machine=machine,
             material=match_material(["C45"]),
-            task=Task(free=frozenset({Free.FEED}), source=from_features),
+            task=OptimisationTask(free=frozenset({Free.FEED}), source=from_features),
             selected=lambda step: step.id == "ROUGH POCKET",
         )
         for machine in (mill, replace(mill, holdings=(clamp,)))
@@ -351,7 +355,7 @@ def test_weak_clamps_bound_the_bracket_and_a_note_tells_what_is_asked() -> None:
 def test_a_wiper_allows_twice_the_feed_for_the_same_roughness() -> None:
     name, asked = "FINISHING TOOL, CARBIDE P15", 1.6e-3
     plain, wiped = (
-        advice_of(shaft(task=Task(wipers=wipers)), "FINISH CONTOUR")
+        advice_of(shaft(task=OptimisationTask(wipers=wipers)), "FINISH CONTOUR")
         for wipers in (frozenset[str](), frozenset({name}))
     )
     assert after(wiped).setting.feed == pytest.approx(2.0 * after(plain).setting.feed)
@@ -360,7 +364,7 @@ def test_a_wiper_allows_twice_the_feed_for_the_same_roughness() -> None:
 
 
 def test_idling_leaves_less_of_the_drive() -> None:
-    problem = problem_of(SHAFT_TURNED, LATHE, Task())
+    problem = problem_of(SHAFT_TURNED, LATHE, OptimisationTask())
     (speed,) = problem.speeds
     power = named(problem.stretches[0], LimitName.MOTOR_POWER)
     spindle = LATHE.machine.spindle
@@ -371,9 +375,11 @@ def test_idling_leaves_less_of_the_drive() -> None:
 
 def test_power_counts_where_the_path_turns_fastest() -> None:
     """The drive falls from 22 kW at 3000 rpm to 18 kW at 4000 rpm."""
-    (speed,) = problem_of(SHAFT_TURNED, LATHE, Task()).speeds
+    (speed,) = problem_of(SHAFT_TURNED, LATHE, OptimisationTask()).speeds
     spindle, top = LATHE.machine.spindle, 200.0 / 3.0
     cut = replace(SHAFT_TURNED, turned=replace(BAR, speed_ratio=top / speed))
-    power = named(problem_of(cut, LATHE, Task()).stretches[0], LimitName.MOTOR_POWER)
+    power = named(
+        problem_of(cut, LATHE, OptimisationTask()).stretches[0], LimitName.MOTOR_POWER
+    )
     left = available_power(spindle, top) - float(idle_power(spindle, top))
     assert power.full_bound_at(speed) == pytest.approx(left)

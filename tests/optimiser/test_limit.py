@@ -6,13 +6,13 @@ from random import Random
 import pytest
 
 from benchmarks.problems import random_problem
-from optimiser.limit import ROUNDING, Limit, LimitName, Monomial, Sense, SpeedCurve
+from optimiser.problem import ROUNDING, BoundSide, Limit, LimitName, Monomial, SpeedCurve
 
 FORCE = Monomial(coefficient=2000.0, offset=30.0, feed_exponent=0.75, depth_exponent=1.0)
 
 
 def limit(
-    load: Monomial = FORCE, *, bound: float = 500.0, sense: Sense = Sense.AT_MOST
+    load: Monomial = FORCE, *, bound: float = 500.0, sense: BoundSide = BoundSide.AT_MOST
 ) -> Limit:
     return Limit(name=LimitName.CUTTING_FORCE, load=load, bound=bound, unit="N", sense=sense)
 
@@ -113,16 +113,16 @@ def test_load_of_no_depth_is_the_same_at_depth() -> None:
 @pytest.mark.parametrize(
     ("sense", "share", "holds"),
     [
-        (Sense.AT_MOST, 0.999, True),
-        (Sense.AT_MOST, 1.0 + 0.5 * ROUNDING, True),
-        (Sense.AT_MOST, 1.001, False),
-        (Sense.AT_LEAST, 1.001, True),
-        (Sense.AT_LEAST, 1.0 - 0.5 * ROUNDING, True),
-        (Sense.AT_LEAST, 0.999, False),
+        (BoundSide.AT_MOST, 0.999, True),
+        (BoundSide.AT_MOST, 1.0 + 0.5 * ROUNDING, True),
+        (BoundSide.AT_MOST, 1.001, False),
+        (BoundSide.AT_LEAST, 1.001, True),
+        (BoundSide.AT_LEAST, 1.0 - 0.5 * ROUNDING, True),
+        (BoundSide.AT_LEAST, 0.999, False),
     ],
 )
 def test_bound_holds_on_its_side_up_to_rounding(
-    sense: Sense, share: float, holds: bool
+    sense: BoundSide, share: float, holds: bool
 ) -> None:
     feed = limit(Monomial(coefficient=1.0, feed_exponent=1.0), bound=0.2, sense=sense)
     assert feed.holds(0.2 * share, 1.0, 1.0) is holds

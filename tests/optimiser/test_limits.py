@@ -10,7 +10,6 @@ from optimiser import loads
 from optimiser.chip_load import FINISH_NOSE_FEED, ROUGH_NOSE_FEED
 from optimiser.conditions import GREATEST_DEFLECTION, PermittedDeflection
 from optimiser.cut import Texture
-from optimiser.limit import Limit, LimitName, Sense
 from optimiser.limits import (
     cutting_speed_window,
     force_factor,
@@ -21,6 +20,7 @@ from optimiser.limits import (
     speed_range,
     spindle_limits,
 )
+from optimiser.problem import BoundSide, Limit, LimitName
 from simulator.physics.engagement import bilateral, full_immersion, unidirectional
 from simulator.physics.strength import STICK_OUT
 from simulator.spec import ToolKind
@@ -106,7 +106,7 @@ def test_feed_of_an_insert_stays_below_its_nose() -> None:
 def test_chip_floor_grows_the_feed_of_a_narrow_cut() -> None:
     """h_m = f_z·C/φ: a tenth of the diameter has C = 0.2 over 36.87 degrees."""
     cut = replace(CUT, engagement=unidirectional(1.2, 12.0))
-    floor = named(limits_of(cut, CARBIDE), LimitName.CHIP_THICKNESS, Sense.AT_LEAST)
+    floor = named(limits_of(cut, CARBIDE), LimitName.CHIP_THICKNESS, BoundSide.AT_LEAST)
     assert CARBIDE.grade is not None
     ratio = 0.2 / (36.8699 * pi / 180.0)
     expected = CARBIDE.grade.min_chip_thickness / ratio
@@ -272,7 +272,7 @@ def test_half_the_feed_is_not_asked_where_the_edges_would_rub(
     if share is not None:
         assert down == pytest.approx(share * highest)
     else:
-        chip = named(limits, LimitName.CHIP_THICKNESS, Sense.AT_LEAST)
+        chip = named(limits, LimitName.CHIP_THICKNESS, BoundSide.AT_LEAST)
         assert down == pytest.approx(chip.feed_at_bound(3.0, 60.0))
         assert 0.5 * highest < down < highest
 

@@ -6,7 +6,7 @@ from math import cos, pi, radians, sin
 import pytest
 
 from optimiser import loads
-from optimiser.cut import Cut, CutKind, Place
+from optimiser.cut import CriticalPlace, Cut, CutKind
 from optimiser.problem import Setting
 from simulator.physics import drilling, milling, turning
 from simulator.physics.engagement import Engagement, full_immersion, unidirectional
@@ -222,7 +222,7 @@ def test_turning_a_deeper_place_loads_in_proportion() -> None:
 
 
 def test_the_shank_bends_where_it_is_bent_most() -> None:
-    narrow = Place(engagement=unidirectional(2.0, 20.0), depth_share=3.0)
+    narrow = CriticalPlace(engagement=unidirectional(2.0, 20.0), depth_share=3.0)
     cut = replace(milled(full_immersion()), shank=narrow, helix_angle=0.5)
     mill = discs(narrow.engagement, depth=6.0, helix=0.5)
     expected = 1500.0 * 0.1**0.78 * mill.peak()
@@ -231,7 +231,7 @@ def test_the_shank_bends_where_it_is_bent_most() -> None:
 
 
 def test_the_wall_is_spoilt_where_it_is_made() -> None:
-    narrow = Place(engagement=unidirectional(2.0, 20.0), depth_share=3.0)
+    narrow = CriticalPlace(engagement=unidirectional(2.0, 20.0), depth_share=3.0)
     cut = replace(milled(full_immersion()), wall=narrow, helix_angle=0.5)
     mill = discs(narrow.engagement, depth=6.0, helix=0.5)
     expected = 1500.0 * 0.1**0.78 * mill.wall(pi)

@@ -14,7 +14,7 @@ from simulator.removal.engage import MillingStock
 from simulator.removal.lathe import TurningStock
 from simulator.spec import Kienzle
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program, Workingstep
+from stepnc_model.program import Program, ResolvedWorkingstep
 from stepnc_model.toolpath.generate import workingstep_path
 from stepnc_model.toolpath.path import length
 
@@ -43,7 +43,7 @@ def cuts_of(part: str, machine: str, *change: str) -> tuple[MeasuredCuts, dict[s
     return source, found
 
 
-def step_of(read: Program, name: str) -> Workingstep:
+def step_of(read: Program, name: str) -> ResolvedWorkingstep:
     (found,) = (step for step in read.workingsteps if step.id == name)
     return found
 

@@ -4,19 +4,19 @@ from dataclasses import replace
 
 from optimiser.measured_modes import measured_modes, what_is_measured
 from simulator.library import load_machine
-from simulator.spec import Direction, Machine, VibratingPart, VibrationMode
+from simulator.spec import Machine, ModeDirection, VibratingPart, VibrationMode
 from tests.optimiser.cuts import CUT, DRILLED, TURNED
 
 MODE = VibrationMode(
     part=VibratingPart.TOOL,
     tool="mill",
-    direction=Direction.XY,
+    direction=ModeDirection.XY,
     natural_frequency=900.0,
     damping_ratio=0.03,
     stiffness=12_000.0,
     source="tap test",
 )
-WORK = replace(MODE, part=VibratingPart.WORKPIECE, tool="", direction=Direction.X)
+WORK = replace(MODE, part=VibratingPart.WORKPIECE, tool="", direction=ModeDirection.X)
 
 
 def machine(*modes: VibrationMode) -> Machine:
@@ -39,10 +39,10 @@ def test_workpiece_and_tool_give_together() -> None:
 
 
 def test_a_mill_does_not_feel_modes_along_its_axis_nor_a_lathe_those_across() -> None:
-    assert measured_modes(CUT, machine(replace(MODE, direction=Direction.Z))) is None
+    assert measured_modes(CUT, machine(replace(MODE, direction=ModeDirection.Z))) is None
     insert = replace(MODE, tool="insert")
-    assert measured_modes(TURNED, machine(replace(insert, direction=Direction.Y))) is None
-    found = measured_modes(TURNED, machine(replace(insert, direction=Direction.Z)))
+    assert measured_modes(TURNED, machine(replace(insert, direction=ModeDirection.Y))) is None
+    found = measured_modes(TURNED, machine(replace(insert, direction=ModeDirection.Z)))
     assert found is not None
     assert len(found.along_axis) == 1
 

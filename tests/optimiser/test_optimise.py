@@ -8,11 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from optimiser.advice import Plan, Status
-from optimiser.formulate import Task
-from optimiser.limit import LimitName
+from optimiser.advice import AdviceStatus, Plan
+from optimiser.formulate import OptimisationTask
 from optimiser.modes import Free, Mode
-from optimiser.optimise import DEFAULT_QUALITY, optimise
+from optimiser.optimise import DEFAULT_QUALITY, optimise_program
+from optimiser.problem import LimitName
 from optimiser.source import from_features
 from simulator.library import load_machine
 from simulator.matching import match_material
@@ -51,12 +51,12 @@ def test_paper_002_runs_at_290_mm_min_at_its_motor_power(paper: Plan) -> None:
 @pytest.mark.parametrize("mode", list(Mode))
 @pytest.mark.parametrize("name", ["bracket", "shaft"])
 def test_advice_keeps_every_limit_that_the_feed_or_the_depth_can_keep(
-    name: str, mode: Mode, plan: Callable[[str, Task], Plan]
+    name: str, mode: Mode, plan: Callable[[str, OptimisationTask], Plan]
 ) -> None:
     """A programmed speed outside its window is a warning, where the speed is not free."""
     not_free = {LimitName.CUTTING_SPEED, LimitName.SPINDLE_SPEED}
-    for advice in plan(name, Task(mode=mode)).advices:
-        if advice.status is not Status.ADVISED:
+    for advice in plan(name, OptimisationTask(mode=mode)).advices:
+        if advice.status is not AdviceStatus.ADVISED:
             continue
         for load in after(advice).loads:
             assert load.margin >= -1e-9 or load.limit.name in not_free
@@ -64,14 +64,14 @@ def test_advice_keeps_every_limit_that_the_feed_or_the_depth_can_keep(
 
 @pytest.mark.parametrize("name", ["bracket", "shaft"])
 def test_advice_with_all_free_keeps_every_limit(name: str) -> None:
-    for advice in plan_of(name, Task(free=ALL_FREE)).advices:
-        if advice.status is Status.ADVISED:
+    for advice in plan_of(name, OptimisationTask(free=ALL_FREE)).advices:
+        if advice.status is AdviceStatus.ADVISED:
             assert min(load.margin for load in after(advice).loads) >= -1e-9
 
 
 def test_every_reason_names_the_limit_that_is_reached(bracket: Plan) -> None:
     for advice in bracket.advices:
-        if advice.status is Status.ADVISED:
+        if advice.status is AdviceStatus.ADVISED:
             assert advice.active is not None
             assert advice.reason.startswith(advice.active_words)
             margins = [
@@ -84,15 +84,15 @@ def test_every_reason_names_the_limit_that_is_reached(bracket: Plan) -> None:
 
 def test_inhibited_feed_is_untouched_and_said(bracket: Plan) -> None:
     advice = advice_of(bracket, "REAM HOLE 1")
-    assert advice.status is Status.UNTOUCHED
+    assert advice.status is AdviceStatus.UNTOUCHED
     assert "inhibit_feedrate_override" in advice.reason
-    assert "nobody may touch this feed" in advice.reason
+    assert "the program locks this feed" in advice.reason
     assert after(advice) == before(advice)
 
 
 def test_thread_is_untouched_and_said(shaft: Plan) -> None:
     advice = advice_of(shaft, "THREAD M30 X 2")
-    assert advice.status is Status.UNTOUCHED
+    assert advice.status is AdviceStatus.UNTOUCHED
     assert advice.reason == "the feed is bound to the pitch of the thread"
     assert advice.before is None
 
@@ -102,8 +102,8 @@ def test_feed_synchronised_with_the_spindle_is_untouched() -> None:
         "#311=MILLING_TECHNOLOGY(0.0053,.TCP.,$,-38.,$,.F.,",
         "#311=MILLING_TECHNOLOGY(0.0053,.TCP.,$,-38.,$,.T.,",
     )
-    advice = advice_of(plan_of("bracket", Task(), change), "DRILL HOLE 1")
-    assert advice.status is Status.UNTOUCHED
+    advice = advice_of(plan_of("bracket", OptimisationTask(), change), "DRILL HOLE 1")
+    assert advice.status is AdviceStatus.UNTOUCHED
     assert "pitch" in advice.reason
 
 
@@ -115,7 +115,7 @@ def test_roughness_of_the_file_is_kept(shaft: Plan) -> None:
 
 def test_roughness_that_the_programmed_feed_passes_is_said() -> None:
     """Ra = 0.12²/(18·√3·0.8) mm and the floor of 0.2 µm."""
-    plan = plan_of("shaft", Task(roughness=0.5e-3))
+    plan = plan_of("shaft", OptimisationTask(roughness=0.5e-3))
     advice = advice_of(plan, "FINISH CONTOUR")
     assert before(advice).roughness == pytest.approx(0.7774e-3, rel=1e-3)
     assert after(advice).roughness == pytest.approx(0.5e-3)
@@ -132,7 +132,7 @@ def test_parallel_land_of_a_face_mill_bounds_the_feed_per_revolution(bracket: Pl
 
 
 def test_roughness_of_the_user_goes_before_that_of_the_file() -> None:
-    plan = plan_of("shaft", Task(roughness=2.5e-3))
+    plan = plan_of("shaft", OptimisationTask(roughness=2.5e-3))
     assert after(advice_of(plan, "FINISH CONTOUR")).roughness == pytest.approx(2.5e-3)
     texts = [str(finding) for finding in plan.findings]
     said = "Ra 2.5 µm as asked for is coarser than Ra 1.6 µm in the file"
@@ -143,7 +143,7 @@ def test_what_the_advice_leaves_out_of_range_is_said(bracket: Plan) -> None:
     """The speed is not free: 99.9 m/min stays below the window until it is."""
     text = "as programmed and as advised: cutting speed 99.9 m/min is below 200 m/min"
     assert any(text in str(finding) for finding in bracket.findings)
-    freed = plan_of("bracket", Task(free=ALL_FREE))
+    freed = plan_of("bracket", OptimisationTask(free=ALL_FREE))
     assert not any("as advised" in str(finding) for finding in freed.findings)
 
 
@@ -154,13 +154,13 @@ def test_totals_say_what_they_leave_out(bracket: Plan, shaft: Plan) -> None:
 
 
 def test_roughing_keeps_no_roughness() -> None:
-    plan = plan_of("bracket", Task(roughness=0.8e-3))
+    plan = plan_of("bracket", OptimisationTask(roughness=0.8e-3))
     names = {load.limit.name for load in after(advice_of(plan, "ROUGH FACE")).loads}
     assert LimitName.ROUGHNESS not in names
 
 
 def test_quality_nobody_asked_for_is_the_default_and_said() -> None:
-    plan = plan_of("shaft", Task(mode=Mode.QC))
+    plan = plan_of("shaft", OptimisationTask(mode=Mode.QC))
     roughness = after(advice_of(plan, "FINISH FACE")).roughness
     assert roughness is not None
     assert roughness <= DEFAULT_QUALITY * (1.0 + 1e-9)
@@ -171,8 +171,8 @@ def test_quality_nobody_asked_for_is_the_default_and_said() -> None:
 @pytest.mark.parametrize("name", ["bracket", "shaft"])
 def test_quality_is_never_slower_than_it_must(name: str) -> None:
     """The roughness, or another limit, is at its bound."""
-    for advice in plan_of(name, Task(mode=Mode.QC)).advices:
-        if advice.status is Status.ADVISED:
+    for advice in plan_of(name, OptimisationTask(mode=Mode.QC)).advices:
+        if advice.status is AdviceStatus.ADVISED:
             margins = [
                 abs(load.margin)
                 for load in after(advice).loads
@@ -182,9 +182,9 @@ def test_quality_is_never_slower_than_it_must(name: str) -> None:
 
 
 def test_quality_equals_time_where_the_same_roughness_is_asked_for() -> None:
-    task = Task(roughness=1.6e-3)
+    task = OptimisationTask(roughness=1.6e-3)
     fast = plan_of("bracket", task)
-    good = plan_of("bracket", Task(mode=Mode.QC, roughness=1.6e-3))
+    good = plan_of("bracket", OptimisationTask(mode=Mode.QC, roughness=1.6e-3))
     assert good.time_after == pytest.approx(fast.time_after)
 
 
@@ -193,10 +193,10 @@ def test_quality_equals_time_where_the_same_roughness_is_asked_for() -> None:
 def test_energy_critical_never_needs_more_energy_than_time_critical(
     name: str, free: frozenset[Free]
 ) -> None:
-    fast = plan_of(name, Task(free=free))
-    frugal = plan_of(name, Task(mode=Mode.EC, free=free))
+    fast = plan_of(name, OptimisationTask(free=free))
+    frugal = plan_of(name, OptimisationTask(mode=Mode.EC, free=free))
     for one, other in zip(fast.advices, frugal.advices, strict=True):
-        if one.status is Status.ADVISED:
+        if one.status is AdviceStatus.ADVISED:
             assert after(other).energy <= after(one).energy * (1.0 + 1e-8)
             assert after(one).time <= after(other).time * (1.0 + 1e-8)
 
@@ -234,7 +234,7 @@ def test_a_finish_is_not_slowed_by_a_deflection_that_does_not_exist(
 
 def test_one_step_more_of_the_active_limit_saves_time(bracket: Plan) -> None:
     for advice in bracket.advices:
-        if advice.status is Status.ADVISED:
+        if advice.status is AdviceStatus.ADVISED:
             assert advice.saving_of_one_more > 0.0
 
 
@@ -245,14 +245,14 @@ def test_machine_of_twice_the_power_runs_twice_the_feed(tmp_path: Path) -> None:
     assert "power_kw = 0.29" in source
     machine = tmp_path / "double.toml"
     machine.write_text(source.replace("power_kw = 0.29", "power_kw = 0.58"))
-    (advice,) = plan_of("paper002", Task(), machine=str(machine)).advices
+    (advice,) = plan_of("paper002", OptimisationTask(), machine=str(machine)).advices
     assert mm_min_from_speed(after(advice).feed) == pytest.approx(580.0)
 
 
 def test_accepted_correction_lowers_the_feed_at_the_power_limit() -> None:
-    (first,) = plan_of("paper002", Task()).advices
+    (first,) = plan_of("paper002", OptimisationTask()).advices
     assert first.force_factor == 1.0
-    plan = plan_of("paper002", Task(force_factors={first.tool.id: 1.42}))
+    plan = plan_of("paper002", OptimisationTask(force_factors={first.tool.id: 1.42}))
     (advice,) = plan.advices
     assert advice.force_factor == 1.42
     assert mm_min_from_speed(after(advice).feed) == pytest.approx(290.0 / 1.42)
@@ -262,7 +262,7 @@ def test_accepted_correction_lowers_the_feed_at_the_power_limit() -> None:
 
 def test_accepted_correction_of_one_tool_leaves_the_others() -> None:
     plain, corrected = (
-        plan_of("bracket", Task(source=from_features, force_factors=factors))
+        plan_of("bracket", OptimisationTask(source=from_features, force_factors=factors))
         for factors in ({}, {"END MILL 12MM": 1.31})
     )
     notes = [each.message for each in corrected.findings if "k_c ×" in each.message]
@@ -280,7 +280,7 @@ def test_accepted_correction_of_one_tool_leaves_the_others() -> None:
 def test_tool_without_a_material_is_taken_as_carbide_and_said() -> None:
     plan = plan_of(
         "bracket",
-        Task(),
+        OptimisationTask(),
         ("#423=CUTTING_COMPONENT(85.,#490,$,$,$);", "#423=CUTTING_COMPONENT(85.,$,$,$,$);"),
     )
     texts = [str(finding) for finding in plan.findings]
@@ -290,7 +290,7 @@ def test_tool_without_a_material_is_taken_as_carbide_and_said() -> None:
 def test_tool_without_teeth_is_taken_with_one_and_said() -> None:
     plan = plan_of(
         "paper002",
-        Task(),
+        OptimisationTask(),
         ("#51=TAPERED_ENDMILL(#52,4,", "#51=TAPERED_ENDMILL(#52,$,"),
     )
     (advice,) = plan.advices
@@ -310,19 +310,19 @@ def test_tool_without_teeth_is_taken_with_one_and_said() -> None:
 def test_nothing_is_advised_for_another_kind_of_machine(
     part: str, machine: str, reason: str
 ) -> None:
-    plan = plan_of(part, Task(), machine=machine)
+    plan = plan_of(part, OptimisationTask(), machine=machine)
     assert plan.is_infeasible
-    assert plan.advices[0].status is Status.INFEASIBLE
+    assert plan.advices[0].status is AdviceStatus.INFEASIBLE
     assert plan.advices[0].reason == reason
     assert plan.advices[0].after is None
 
 
 def test_only_selected_workingsteps_are_advised() -> None:
-    plan = optimise(
+    plan = optimise_program(
         edited("bracket"),
         machine=load_machine("vmc15"),
         material=match_material(["C45"]),
-        task=Task(),
+        task=OptimisationTask(),
         selected=lambda step: step.id == "MILL SLOT",
     )
     assert [advice.workingstep.id for advice in plan.advices] == ["MILL SLOT"]
@@ -330,13 +330,13 @@ def test_only_selected_workingsteps_are_advised() -> None:
 
 @pytest.mark.parametrize("name", ["bracket", "paper002", "shaft"])
 def test_same_inputs_give_the_same_plan(name: str) -> None:
-    again = measured.__wrapped__(name, Task())
-    assert measured(name, Task()).advices == again.advices
+    again = measured.__wrapped__(name, OptimisationTask())
+    assert measured(name, OptimisationTask()).advices == again.advices
 
 
 @pytest.mark.parametrize("name", ["bracket", "shaft"])
 def test_front_trades_time_for_roughness(name: str) -> None:
-    plan = plan_of(name, Task(front=True))
+    plan = plan_of(name, OptimisationTask(front=True))
     fronts = [advice.front for advice in plan.advices if len(advice.front) > 2]
     assert fronts
     for front in fronts:

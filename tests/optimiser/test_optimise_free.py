@@ -4,10 +4,10 @@ from math import pi, sqrt
 
 import pytest
 
-from optimiser.advice import Plan, Status
-from optimiser.formulate import Task
-from optimiser.limit import LimitName
+from optimiser.advice import AdviceStatus, Plan
+from optimiser.formulate import OptimisationTask
 from optimiser.modes import Free
+from optimiser.problem import LimitName
 from tests.optimiser.plans import (
     ALL_FREE,
     advice_of,
@@ -18,9 +18,9 @@ from tests.optimiser.plans import (
 
 
 def test_feed_that_is_not_free_stays() -> None:
-    plan = plan_of("bracket", Task(free=frozenset({Free.DEPTH})))
+    plan = plan_of("bracket", OptimisationTask(free=frozenset({Free.DEPTH})))
     advice = advice_of(plan, "ROUGH POCKET")
-    assert advice.status is Status.ADVISED
+    assert advice.status is AdviceStatus.ADVISED
     assert after(advice).setting.feed == pytest.approx(before(advice).setting.feed)
     assert after(advice).setting.passes < before(advice).setting.passes
     assert advice.active is LimitName.PROGRAMMED_FEED
@@ -28,9 +28,9 @@ def test_feed_that_is_not_free_stays() -> None:
 
 def test_programmed_feed_that_breaks_a_limit_is_infeasible_when_it_is_not_free() -> None:
     """The cap and the held feed conflict."""
-    plan = plan_of("shaft", Task(free=frozenset({Free.DEPTH}), roughness=0.5e-3))
+    plan = plan_of("shaft", OptimisationTask(free=frozenset({Free.DEPTH}), roughness=0.5e-3))
     advice = advice_of(plan, "FINISH CONTOUR")
-    assert advice.status is Status.INFEASIBLE
+    assert advice.status is AdviceStatus.INFEASIBLE
     assert plan.is_infeasible
     assert advice.after is None
     for part in ("roughness", "0.5 µm", "programmed feed", "0.12 mm"):
@@ -38,9 +38,9 @@ def test_programmed_feed_that_breaks_a_limit_is_infeasible_when_it_is_not_free()
 
 
 def test_depth_that_is_not_free_stays() -> None:
-    plan = plan_of("bracket", Task(free=frozenset({Free.FEED})))
+    plan = plan_of("bracket", OptimisationTask(free=frozenset({Free.FEED})))
     for advice in plan.advices:
-        if advice.status is Status.ADVISED:
+        if advice.status is AdviceStatus.ADVISED:
             setting, given = after(advice).setting, before(advice).setting
             assert (setting.depth, setting.passes) == (given.depth, given.passes)
 
@@ -52,13 +52,16 @@ def test_speed_that_is_not_free_stays(bracket: Plan) -> None:
 
 def test_free_speed_lies_in_the_window_of_the_tool() -> None:
     """End mills of carbide in C45: 200 to 250 m/min."""
-    advice = advice_of(plan_of("bracket", Task(free=ALL_FREE)), "ROUGH POCKET")
+    advice = advice_of(plan_of("bracket", OptimisationTask(free=ALL_FREE)), "ROUGH POCKET")
     velocity = pi * 12.0 * after(advice).setting.speed * 60.0 / 1000.0
     assert 200.0 - 1e-6 <= velocity <= 250.0 + 1e-6
 
 
 def test_free_speed_is_never_slower_where_the_programmed_one_is_allowed() -> None:
-    fixed, free = plan_of("bracket", Task()), plan_of("bracket", Task(free=ALL_FREE))
+    fixed, free = (
+        plan_of("bracket", OptimisationTask()),
+        plan_of("bracket", OptimisationTask(free=ALL_FREE)),
+    )
     compared = 0
     for one, other in zip(fixed.advices, free.advices, strict=True):
         is_allowed = all(
@@ -66,14 +69,14 @@ def test_free_speed_is_never_slower_where_the_programmed_one_is_allowed() -> Non
             for load in before(one).loads
             if load.limit.name is LimitName.CUTTING_SPEED
         )
-        if one.status is Status.ADVISED and is_allowed:
+        if one.status is AdviceStatus.ADVISED and is_allowed:
             compared += 1
             assert after(other).time <= after(one).time * (1.0 + 1e-8)
     assert compared >= 2
 
 
 def test_finishing_operations_keep_their_depth() -> None:
-    plan = plan_of("bracket", Task(free=ALL_FREE))
+    plan = plan_of("bracket", OptimisationTask(free=ALL_FREE))
     for name in ("FINISH CONTOUR", "FINISH POCKET", "DRILL HOLE 1"):
         advice = advice_of(plan, name)
         assert after(advice).setting.depth == before(advice).setting.depth
@@ -81,8 +84,8 @@ def test_finishing_operations_keep_their_depth() -> None:
 
 def test_floor_of_a_bottom_and_side_finish_limits_the_feed_too() -> None:
     """Eight millimetres of floor instead of 0.2 mm."""
-    thin = plan_of("bracket", Task())
-    thick = plan_of("bracket", Task(), ("4.,6.,0.3,0.2", "4.,6.,0.3,8."))
+    thin = plan_of("bracket", OptimisationTask())
+    thick = plan_of("bracket", OptimisationTask(), ("4.,6.,0.3,0.2", "4.,6.,0.3,8."))
     name = "FINISH POCKET"
     forces = [after(advice_of(plan, name)).cutting_force for plan in (thin, thick)]
     assert forces[1] > 5.0 * forces[0]
@@ -91,6 +94,8 @@ def test_floor_of_a_bottom_and_side_finish_limits_the_feed_too() -> None:
 def test_roughness_of_the_floor_limits_the_feed_too() -> None:
     """The floor's Ra 0.4 µm at a corner of 0.2 mm; 0.2 µm of it are there at any feed."""
     wide = ("#510=PLUS_MINUS_VALUE(0.1,0.1,3)", "#510=PLUS_MINUS_VALUE(0.2,0.2,3)")
-    advice = advice_of(plan_of("bracket", Task(roughness=0.4e-3), wide), "FINISH POCKET")
+    advice = advice_of(
+        plan_of("bracket", OptimisationTask(roughness=0.4e-3), wide), "FINISH POCKET"
+    )
     assert advice.active is LimitName.ROUGHNESS
     assert after(advice).setting.feed == pytest.approx(sqrt(18 * sqrt(3) * 0.2 * 0.2e-3))

@@ -2,18 +2,18 @@
 
 import pytest
 
-from optimiser.advice import Plan, Status
-from optimiser.formulate import Task
-from optimiser.limit import LimitName
-from optimiser.optimise import optimise
+from optimiser.advice import AdviceStatus, Plan
+from optimiser.formulate import OptimisationTask
+from optimiser.optimise import optimise_program
+from optimiser.problem import LimitName
 from service.records import changes_of
 from simulator.library import load_machine
 from simulator.matching import match_material
 from stepnc_model import writeback
+from stepnc_model.file_profile import FileProfile
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
 from stepnc_model.units import mm_min_from_speed
-from stepnc_model.writeback import Profile
 from tests.optimiser.plans import (
     USUAL,
     advice_of,
@@ -40,17 +40,17 @@ def test_the_first_cut_of_a_pocket_is_protected_like_a_slot(bracket: Plan) -> No
 
 def test_advice_that_was_taken_is_given_again_in_the_same_time(bracket: Plan) -> None:
     """The time of the advice is that of the path which the written file gives."""
-    for name, plan in (("bracket", bracket), ("shaft", measured("shaft", Task()))):
+    for name, plan in (("bracket", bracket), ("shaft", measured("shaft", OptimisationTask()))):
         usual, material = USUAL[name]
-        data = writeback.write(edited(name), changes_of(plan), Profile.OPTIMISATION)
-        again = optimise(
+        data = writeback.write(edited(name), changes_of(plan), FileProfile.OPTIMISATION)
+        again = optimise_program(
             Program(Part21File.from_bytes(data, name=name), name=name),
             machine=load_machine(usual),
             material=match_material([material]),
-            task=Task(),
+            task=OptimisationTask(),
         )
         for one, other in zip(plan.advices, again.advices, strict=True):
-            if one.status is Status.ADVISED:
+            if one.status is AdviceStatus.ADVISED:
                 assert before(other).time == pytest.approx(after(one).time, rel=1e-6)
                 assert after(other).setting.passes == after(one).setting.passes
                 assert after(other).feed == pytest.approx(after(one).feed, rel=0.02)
@@ -63,10 +63,10 @@ def test_a_workingstep_that_meets_nothing_keeps_its_feed_and_says_so() -> None:
          "#2=WORKPLAN('MAIN WORKPLAN',(#3,#4),$,#20,$);\n"
          "#4=MACHINING_WORKINGSTEP('AGAIN',#22,#30,#40,$);"),
     )  # fmt: skip
-    plan = measured("paper002", Task(), *twice)
+    plan = measured("paper002", OptimisationTask(), *twice)
     first, second = plan.advices
-    assert first.status is Status.ADVISED
-    assert second.status is Status.UNTOUCHED
+    assert first.status is AdviceStatus.ADVISED
+    assert second.status is AdviceStatus.UNTOUCHED
     assert second.reason == "the tool meets no material: the feed stays as programmed"
     assert after(second).setting == before(second).setting
     assert after(second).motor_power == 0.0
@@ -75,7 +75,7 @@ def test_a_workingstep_that_meets_nothing_keeps_its_feed_and_says_so() -> None:
 
 
 def test_without_a_stock_the_engagement_is_estimated_and_said() -> None:
-    plan = measured("paper002", Task(), ("0.1,$,$,#13,());", "0.1,$,$,$,());"))
+    plan = measured("paper002", OptimisationTask(), ("0.1,$,$,#13,());", "0.1,$,$,$,());"))
     (advice,) = plan.advices
     assert mm_min_from_speed(after(advice).feed) == pytest.approx(290.0)
     texts = [str(finding) for finding in plan.findings]
@@ -85,7 +85,7 @@ def test_without_a_stock_the_engagement_is_estimated_and_said() -> None:
 def test_without_a_path_everything_is_estimated_and_said() -> None:
     """No path lies between a feature and a retract plane below it."""
     below = ("'ROUGH THE FACE',10.,$,#50", "'ROUGH THE FACE',-10.,$,#50")
-    plan = measured("paper002", Task(), below)
+    plan = measured("paper002", OptimisationTask(), below)
     (advice,) = plan.advices
     assert mm_min_from_speed(after(advice).feed) == pytest.approx(290.0)
     assert after(advice).time == pytest.approx(318.0 / 290.0 * 60.0)

@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from optimiser.other_depth import with_depth
+from optimiser.measured import with_depth
 from stepnc_model.errors import PathError
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program, Workingstep
+from stepnc_model.program import Program, ResolvedWorkingstep
 from stepnc_model.toolpath.generate import workingstep_path
 from stepnc_model.toolpath.path import Point
 
@@ -22,12 +22,12 @@ def program(part: str, *change: str) -> Program:
     return Program(Part21File.from_bytes(text.encode(), name=part), name=part)
 
 
-def step_of(part: Program, name: str) -> Workingstep:
+def step_of(part: Program, name: str) -> ResolvedWorkingstep:
     (found,) = (step for step in part.workingsteps if step.id == name)
     return found
 
 
-def points(part: Program, step: Workingstep) -> list[Point]:
+def points(part: Program, step: ResolvedWorkingstep) -> list[Point]:
     return [move.end for move in workingstep_path(part, step).moves]
 
 

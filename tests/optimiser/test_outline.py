@@ -4,7 +4,7 @@ from math import pi, sqrt
 
 import pytest
 
-from optimiser.outline import Outline, circle_outline, closed_outline, open_outline
+from optimiser.region import BoundarySize, circle_outline, closed_outline, open_outline
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
@@ -37,13 +37,13 @@ def program(*lines: str) -> Program:
     return Program(Part21File.from_bytes(data.encode()))
 
 
-def closed(line: str) -> Outline:
+def closed(line: str) -> BoundarySize:
     return closed_outline(program(f"#20={line};"), Ref(20))
 
 
 def test_a_rectangle() -> None:
     outline = closed("RECTANGULAR_CLOSED_PROFILE($,#6,#7)")
-    assert outline == Outline(area=600.0, length=100.0, width=20.0)
+    assert outline == BoundarySize(area=600.0, length=100.0, width=20.0)
 
 
 def test_a_circle() -> None:

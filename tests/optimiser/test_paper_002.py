@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from optimiser.conditions import Conditions
+from optimiser.conditions import CuttingConditions
 from optimiser.cut import Cut, CutKind
-from optimiser.limit import LimitName
 from optimiser.limits import limits_of, power_load, segment_at, spindle_limits
 from optimiser.modes import Mode
-from optimiser.problem import Cost, Problem, Setting
+from optimiser.problem import Cost, LimitName, Problem, Setting
 from optimiser.workingstep import (
     solve,
     widened,
@@ -64,7 +63,7 @@ def paper_problem(
         engagement=arc,
         depth_bound=deepest,
     )
-    at = Conditions(
+    at = CuttingConditions(
         machine=load_machine("paper002"),
         material=load_material("paper002"),
         cutting_material=CuttingMaterial.HSS,

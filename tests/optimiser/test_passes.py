@@ -5,12 +5,12 @@ from dataclasses import replace
 
 import pytest
 
-from optimiser.conditions import Conditions
+from optimiser.conditions import CuttingConditions
 from optimiser.cut import Cut, CutKind
 from optimiser.errors import Infeasible
-from optimiser.formulate import Task, problem_of
+from optimiser.formulate import OptimisationTask, problem_of
 from optimiser.modes import Free
-from optimiser.passes import Asked, Told, best_of
+from optimiser.passes import AdviceContext, PassCountOptimum, best_of
 from optimiser.problem import Setting
 from optimiser.side_by_side import Result
 from optimiser.source import CutSource
@@ -18,7 +18,7 @@ from simulator.library import load_machine, load_material
 from simulator.physics.engagement import full_immersion
 from simulator.spec import CuttingMaterial, Kienzle, ToolKind
 from stepnc_model.errors import Finding
-from stepnc_model.program import Workingstep
+from stepnc_model.program import ResolvedWorkingstep
 from stepnc_model.tool import Tool
 
 CUT = Cut(
@@ -33,7 +33,7 @@ CUT = Cut(
     engagement=full_immersion(),
     rest_time=1.0,
 )
-AT = Conditions(
+AT = CuttingConditions(
     machine=load_machine("paper002"),
     material=replace(load_material("paper002"), max_feed_per_tooth=0.4),
     cutting_material=CuttingMaterial.HSS,
@@ -49,38 +49,38 @@ class Ways:
         self.factors = factors
         self.asked: list[int] = []
 
-    def cut(self, _step: Workingstep) -> tuple[Cut, list[Finding]]:
+    def cut(self, _step: ResolvedWorkingstep) -> tuple[Cut, list[Finding]]:
         return self.at(_step, CUT, CUT.programmed), []
 
-    def at(self, _step: Workingstep, cut: Cut, setting: Setting) -> Cut:
+    def at(self, _step: ResolvedWorkingstep, cut: Cut, setting: Setting) -> Cut:
         self.asked.append(setting.passes)
         return replace(cut, length=300.0 * self.factors.get(setting.passes, 1.0))
 
-    def leave_out(self, step: Workingstep) -> None:
+    def leave_out(self, step: ResolvedWorkingstep) -> None:
         raise NotImplementedError
 
     def each(
-        self, steps: Sequence[Workingstep], do: Callable[[Workingstep], Result]
+        self, steps: Sequence[ResolvedWorkingstep], do: Callable[[ResolvedWorkingstep], Result]
     ) -> Iterator[Result]:
         raise NotImplementedError
 
 
-def best(source: CutSource, task: Task, cut: Cut = CUT) -> Told:
-    step: Workingstep = None  # type: ignore[assignment]
-    asked = Asked(step=step, at=AT, task=task, cuts=source)
+def best(source: CutSource, task: OptimisationTask, cut: Cut = CUT) -> PassCountOptimum:
+    step: ResolvedWorkingstep = None  # type: ignore[assignment]
+    asked = AdviceContext(step=step, at=AT, task=task, cuts=source)
     return best_of(cut, problem_of(cut, AT, task), asked)
 
 
 def test_passes_that_are_alike_are_told_by_the_closed_form() -> None:
     """Power is in proportion to feed times depth: only the rest counts, so one pass."""
-    told = best(Ways({}), Task())
+    told = best(Ways({}), OptimisationTask())
     assert told.optimum.solution.setting.passes == 1
 
 
 def test_a_proposal_that_turns_out_longer_is_refused() -> None:
     """One pass is proposed; its path is five times as long, and the programmed four stay."""
     source = Ways(dict.fromkeys((1, 2, 3), 5.0))
-    told = best(source, Task())
+    told = best(source, OptimisationTask())
     setting = told.optimum.solution.setting
     assert setting.passes == 4
     assert source.asked[-1] == 4
@@ -88,7 +88,7 @@ def test_a_proposal_that_turns_out_longer_is_refused() -> None:
 
 
 def test_time_is_that_of_the_path_at_the_advice() -> None:
-    told = best(Ways({1: 1.005}), Task())
+    told = best(Ways({1: 1.005}), OptimisationTask())
     solution = told.optimum.solution
     feed = 4.0 * solution.setting.feed * solution.setting.speed
     assert solution.setting.passes == 1
@@ -97,7 +97,7 @@ def test_time_is_that_of_the_path_at_the_advice() -> None:
 
 def test_a_depth_that_is_not_free_is_told_once() -> None:
     source = Ways({})
-    told = best(source, Task(free=frozenset({Free.FEED})))
+    told = best(source, OptimisationTask(free=frozenset({Free.FEED})))
     assert told.optimum.solution.setting.passes == 4
     assert set(source.asked) == {4}
 
@@ -105,19 +105,19 @@ def test_a_depth_that_is_not_free_is_told_once() -> None:
 def test_a_programmed_number_that_breaks_a_limit_is_left() -> None:
     """Four passes are too deep for the edge; the first feasible number is taken."""
     short = replace(CUT, depth_bound=2.0)
-    assert best(Ways({}), Task(), short).optimum.solution.setting.passes == 6
+    assert best(Ways({}), OptimisationTask(), short).optimum.solution.setting.passes == 6
 
 
 def test_no_number_of_passes_is_infeasible() -> None:
     short = replace(CUT, depth_bound=0.01)
     with pytest.raises(Infeasible):
-        best(Ways({}), Task(), short)
+        best(Ways({}), OptimisationTask(), short)
     with pytest.raises(Infeasible):
-        best(Ways({}), Task(free=frozenset({Free.FEED})), short)
+        best(Ways({}), OptimisationTask(free=frozenset({Free.FEED})), short)
 
 
 def test_prices_come_with_tools_that_wear_out() -> None:
-    told = best(Ways({}), Task(tool_change=10.0, free=frozenset(Free)))
+    told = best(Ways({}), OptimisationTask(tool_change=10.0, free=frozenset(Free)))
     assert told.optimum.solution.setting.feed > 0.0
 
 
@@ -127,8 +127,8 @@ def asked_of(source: Ways, programmed: int, *, k_c11: float, rest: float) -> set
     at = replace(AT, material=steel)
     given = replace(CUT.programmed, passes=programmed, depth=12.0 / programmed)
     cut = replace(CUT, rest_time=rest, programmed=given)
-    step: Workingstep = None  # type: ignore[assignment]
-    asked = Asked(step=step, at=at, task=Task(), cuts=source)
+    step: ResolvedWorkingstep = None  # type: ignore[assignment]
+    asked = AdviceContext(step=step, at=at, task=OptimisationTask(), cuts=source)
     told = best_of(cut, problem_of(cut, at, asked.task), asked)
     assert told.optimum.solution.setting.passes in source.asked
     return set(source.asked)

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from optimiser.path_length import path_length
-from stepnc_model.entities.toolpaths import ToolpathList
+from optimiser.estimate import path_length
+from stepnc_model.entities.operations import ToolpathList
 from stepnc_model.program import Program
 
 CORPUS = Path(__file__).parents[3] / "shared" / "corpus" / "iso14649"

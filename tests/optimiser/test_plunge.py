@@ -8,12 +8,11 @@ import numpy as np
 import pytest
 
 from optimiser.cut import Cut, CutKind
-from optimiser.hardest import Met
+from optimiser.hardest import PathContacts
 from optimiser.plunge import CORE, plunge_of
 from optimiser.problem import Setting
 from simulator.physics.engagement import full_immersion
-from simulator.removal.stations import CutKind as StationKind
-from simulator.removal.stations import Stations
+from simulator.removal.stations import StationKind, Stations
 from simulator.spec import ToolKind
 from stepnc_model.tool import Tool
 
@@ -32,7 +31,9 @@ MILL = Cut(
 )
 
 
-def met(section: float, inner: float, *, kind: StationKind = StationKind.DRILLING) -> Met:
+def met(
+    section: float, inner: float, *, kind: StationKind = StationKind.DRILLING
+) -> PathContacts:
     """One stretch of 2 mm whose lips cut from an inner radius to the rim of 5 mm."""
     one = np.ones(1)
     stations = Stations(
@@ -49,7 +50,7 @@ def met(section: float, inner: float, *, kind: StationKind = StationKind.DRILLIN
         chip_ratio=one,
         diameter=(5.0 + inner) * one,
     )
-    return Met(stations=stations, length=2.0 * one, cell=0.2)
+    return PathContacts(stations=stations, length=2.0 * one, cell=0.2)
 
 
 BOUND = np.array([True])
@@ -81,5 +82,7 @@ def test_a_pilot_hole_is_taken_off() -> None:
     ],
     ids=["beside the core", "a sliver", "a ramp", "a feed of its own", "a drill"],
 )
-def test_what_is_no_plunge_at_the_feed_of_the_cut(cut: Cut, found: Met, bound: bool) -> None:
+def test_what_is_no_plunge_at_the_feed_of_the_cut(
+    cut: Cut, found: PathContacts, bound: bool
+) -> None:
     assert plunge_of(cut, found, np.array([bound])) is None

@@ -8,13 +8,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from optimiser.advice import Advice
-from optimiser.conditions import Conditions
-from optimiser.cut import Cut, WayIn
-from optimiser.formulate import Task
-from optimiser.limit import LimitName
+from optimiser.conditions import CuttingConditions
+from optimiser.cut import Cut, PlungeEngagement
+from optimiser.formulate import OptimisationTask
 from optimiser.limits import PLUNGE_FEED_RATIO
 from optimiser.modes import Free, Mode
 from optimiser.plunge_feed import CAUTIOUS_FEED_RATIO, plunge_limits, with_plunge_feed
+from optimiser.problem import LimitName
 from simulator.physics.drilling import DrillingCut, drilling_torque, lip_thrust
 from tests.optimiser.cuts import CARBIDE, CUT, PAPER
 from tests.optimiser.plans import advice_of, after, before, measured
@@ -22,9 +22,9 @@ from tests.optimiser.plans import advice_of, after, before, measured
 ISCAR = 0.01
 """feed per tooth over the diameter of carbide end mills in steel, ISCAR's table"""
 
-DOWN = replace(CUT, way_in=WayIn(drilled=(CUT.as_drill,), reaches_axis=True))
+DOWN = replace(CUT, way_in=PlungeEngagement(drilled=(CUT.as_drill,), reaches_axis=True))
 SINE = sin(radians(3.0))
-SLOPE = WayIn(ramp=replace(CUT.bare, engagement=CUT.engagement), sine=SINE)
+SLOPE = PlungeEngagement(ramp=replace(CUT.bare, engagement=CUT.engagement), sine=SINE)
 RAMPED = replace(CUT, way_in=SLOPE)
 KNOWN = replace(CARBIDE, centre_cutting=True)
 OPEN = ("ROUGH OPEN POCKET", "FINISH OPEN POCKET")
@@ -32,13 +32,13 @@ RAMP = ("'ROUGH OPEN POCKET',10.,$,#430,#305,#330,5.,#340,",
         "'ROUGH OPEN POCKET',10.,$,#430,#305,#330,5.,#342,")  # fmt: skip
 
 
-def plunge_feed(cut: Cut, at: Conditions, speed: float = CUT.programmed.speed) -> float:
+def plunge_feed(cut: Cut, at: CuttingConditions, speed: float = CUT.programmed.speed) -> float:
     found = with_plunge_feed(cut, at, replace(cut.programmed, speed=speed)).plunge_feed
     assert found is not None
     return found
 
 
-def weak(at: Conditions, force: float) -> Conditions:
+def weak(at: CuttingConditions, force: float) -> CuttingConditions:
     return replace(at, machine=replace(at.machine, max_cutting_force=force))
 
 
@@ -52,7 +52,11 @@ def drilled_at(feed: float) -> DrillingCut:
     )
 
 
-def of(name: str, task: Task = Task(), *changes: tuple[str, str]) -> Advice:  # noqa: B008
+def of(
+    name: str,
+    task: OptimisationTask = OptimisationTask(),  # noqa: B008 (frozen)
+    *changes: tuple[str, str],
+) -> Advice:
     return advice_of(measured("bracket", task, *changes), name)
 
 
@@ -66,7 +70,7 @@ def test_one_feed_for_plunge_and_cut_up_to_half_the_feed_per_tooth_vertically() 
     """Each has its own: the pass of a pocket feeds as fast whatever way leads down to it."""
     plunged, ramped = (
         of("ROUGH OPEN POCKET"),
-        advice_of(measured("bracket", Task(), RAMP), "ROUGH OPEN POCKET"),
+        advice_of(measured("bracket", OptimisationTask(), RAMP), "ROUGH OPEN POCKET"),
     )
     assert own_feed(plunged) == pytest.approx(CAUTIOUS_FEED_RATIO * ISCAR * 10.0)
     assert after(plunged).setting.feed == pytest.approx(after(ramped).setting.feed, rel=0.02)
@@ -76,7 +80,7 @@ def test_one_feed_for_plunge_and_cut_up_to_half_the_feed_per_tooth_vertically() 
 
 
 def test_a_cutter_that_is_known_to_cut_over_centre_plunges_at_half_the_feed() -> None:
-    task = Task(centre_cutting={"END MILL 10MM": True})
+    task = OptimisationTask(centre_cutting={"END MILL 10MM": True})
     for name in OPEN:
         advice = of(name, task)
         assert own_feed(advice) == pytest.approx(PLUNGE_FEED_RATIO * ISCAR * 10.0)
@@ -87,11 +91,11 @@ def test_a_cutter_that_is_known_to_cut_over_centre_plunges_at_half_the_feed() ->
 @pytest.mark.parametrize("mode", [Mode.QC, Mode.EC])
 def test_every_mode_plunges_alike(mode: Mode) -> None:
     for name in OPEN:
-        assert own_feed(of(name, Task(mode=mode))) == own_feed(of(name))
+        assert own_feed(of(name, OptimisationTask(mode=mode))) == own_feed(of(name))
 
 
 def test_a_held_feed_holds_the_plunge_too() -> None:
-    state = after(of("ROUGH OPEN POCKET", Task(free=frozenset({Free.DEPTH}))))
+    state = after(of("ROUGH OPEN POCKET", OptimisationTask(free=frozenset({Free.DEPTH}))))
     assert state.setting.plunge_feed == state.setting.feed == pytest.approx(0.03)
 
 
@@ -124,14 +128,17 @@ def test_half_a_section_takes_half_the_thrust() -> None:
             each.name: each.load.value(0.02, 1.0, 50.0)
             for each in plunge_limits(cut, KNOWN, 50.0)
         }
-        for cut in (DOWN, replace(DOWN, way_in=WayIn(drilled=(half,), reaches_axis=True)))
+        for cut in (
+            DOWN,
+            replace(DOWN, way_in=PlungeEngagement(drilled=(half,), reaches_axis=True)),
+        )
     ]
     for name in (LimitName.CUTTING_FORCE, LimitName.MOTOR_POWER):
         assert loads[1][name] == pytest.approx(0.5 * loads[0][name])
 
 
 def test_what_is_planed_off_beside_the_axis_keeps_the_feed_of_the_catalogue() -> None:
-    beside = replace(CUT, way_in=WayIn(drilled=(CUT.as_drill,)))
+    beside = replace(CUT, way_in=PlungeEngagement(drilled=(CUT.as_drill,)))
     assert plunge_feed(beside, CARBIDE) == pytest.approx(ISCAR * 12.0)
 
 

@@ -4,8 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from optimiser.limit import Limit, LimitName, Monomial, SpeedCurve
-from optimiser.problem import Cost, Problem, Setting
+from optimiser.problem import Cost, Limit, LimitName, Monomial, Problem, Setting, SpeedCurve
 
 POWER = Monomial(coefficient=40.0, feed_exponent=1.0, depth_exponent=1.0, speed_exponent=1.0)
 COST = Cost(

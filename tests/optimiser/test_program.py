@@ -8,8 +8,8 @@ import pytest
 from benchmarks.problems import random_problem
 from optimiser import program, workingstep
 from optimiser.errors import Infeasible
-from optimiser.limit import Limit, LimitName, Monomial
 from optimiser.modes import Mode
+from optimiser.problem import Limit, LimitName, Monomial
 from tests.optimiser.test_workingstep import with_lobes
 
 CASES = 540

@@ -9,13 +9,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from optimiser.cut import Cut, CutKind, Reached
-from optimiser.hardest import KINDS, Bending, Met
-from optimiser.reached import Ride, with_reached
-from simulator.motion.exact_stop import ExactStop
-from simulator.motion.motion import AxisLimits
-from simulator.motion.segments import Segments, lines
-from simulator.motion.tool_path import Leg, Run
+from optimiser.cut import Cut, CutKind, ReachedLoads
+from optimiser.hardest import KINDS, Bending, PathContacts
+from optimiser.reached import MachineRun, with_reached
+from simulator.motion.control import ExactStop
+from simulator.motion.segments import AxisLimits, Segments, lines
+from simulator.motion.tool_path import Leg, ToolPathRun
 from simulator.removal.stations import Stations, stretch_lengths
 from tests.optimiser.cuts import CUT, DRILLED, TURNED
 
@@ -29,17 +28,17 @@ HELD = AxisLimits(
 
 def ride(
     path: Segments | None = None, *, feed: float = FEED, spindle: Sequence[float] = (SPINDLE,)
-) -> Ride:
+) -> MachineRun:
     """Along 100 mm unless another path is given, in one leg."""
     path = lines([(0, 0, 0), (100, 0, 0)], speed=FEED) if path is None else path
-    run = Run(
+    run = ToolPathRun(
         moves=(),
         segments=path,
         spindle=np.resize(spindle, len(path)),
         is_clockwise=True,
         legs=(Leg(first=0, last=len(path), wait=0.0),),
     )
-    return Ride(run=run, control=ExactStop(), limits=HELD, feed=feed, spindle=SPINDLE)
+    return MachineRun(run=run, control=ExactStop(), limits=HELD, feed=feed, spindle=SPINDLE)
 
 
 def met(
@@ -48,7 +47,7 @@ def met(
     segment: Sequence[int] = (0,),
     growth: Sequence[float] = (0.0,),
     diameter: Sequence[float] = (),
-) -> Met:
+) -> PathContacts:
     """Stations by the end of their stretch in mm and the section there in mm²."""
     ends, section = np.array(rows).T
     count = len(ends)
@@ -67,7 +66,7 @@ def met(
         chip_ratio=ones,
         diameter=np.resize(diameter or (cut.force_diameter,), count),
     )
-    return Met(stations=stations, length=stretch_lengths(stations), cell=0.1)
+    return PathContacts(stations=stations, length=stretch_lengths(stations), cell=0.1)
 
 
 def bent(*walls: float) -> Bending:
@@ -75,7 +74,9 @@ def bent(*walls: float) -> Bending:
     return Bending(at=np.arange(len(walls)), shank=np.ones(len(walls)), wall=np.array(walls))
 
 
-def reached(cut: Cut, path: Met, how: Ride, bending: Bending | None = None) -> Cut:
+def reached(
+    cut: Cut, path: PathContacts, how: MachineRun, bending: Bending | None = None
+) -> Cut:
     return with_reached(cut, path, bending or bent(), how, exponent=EXPONENT)
 
 
@@ -174,7 +175,7 @@ def test_a_turned_cut_learns_where_its_power_is_greatest() -> None:
     assert found.power_speed == pytest.approx(1.0 / 1.5)
     # The force times this diameter, at the spindle speed of the cut.
     assert found.power_diameter == pytest.approx(60.0 / 1.5)
-    assert found.reached == Reached()
+    assert found.reached == ReachedLoads()
 
 
 def test_a_drill_at_its_feed_has_the_chip_of_its_feed() -> None:
@@ -219,4 +220,4 @@ def test_at_the_programmed_feed_no_share_is_above_one(
 
 def test_a_cut_keeps_all_else() -> None:
     found = reached(CUT, met(CUT, (99.5, 0), (100, 6)), ride())
-    assert replace(found, reached=Reached()) == CUT
+    assert replace(found, reached=ReachedLoads()) == CUT

@@ -1,12 +1,11 @@
 """What features ask to be removed, against numbers worked out from their dimensions."""
 
-from math import pi, radians, sin, sqrt, tan
+from math import pi, sin, sqrt, tan
 from pathlib import Path
 
 import pytest
 
-from optimiser.outline import vee_angle
-from optimiser.region import DEFAULT_STEP_WIDTH, Region, feature_depth, region_of
+from optimiser.region import DEFAULT_STEP_WIDTH, FeatureRegion, region_of
 from stepnc_model.entities.entity import Entity
 from stepnc_model.errors import SchemaError
 from stepnc_model.part21.reader import Part21File
@@ -94,11 +93,6 @@ def test_vee_slot_is_as_wide_as_its_depth_opens_it() -> None:
     assert region_of(program, SLOT).width == pytest.approx(12.0)
 
 
-def test_vee_angle_is_read_in_degrees_and_in_radians() -> None:
-    assert vee_angle(60.0) == pytest.approx(radians(60.0))
-    assert vee_angle(radians(60.0)) == pytest.approx(radians(60.0))
-
-
 def test_step_reaches_to_the_side_of_the_stock(bracket: Program) -> None:
     """The stock ends at x = 153 mm, 15 mm from the edge at 138 mm."""
     region = region_of(bracket, STEP)
@@ -135,7 +129,7 @@ def test_hole_is_a_circle(bracket: Program) -> None:
     assert region.depth == 40.0
 
 
-def boundary(profile: str, more: str = "") -> Region:
+def boundary(profile: str, more: str = "") -> FeatureRegion:
     """The pocket with another boundary and without its island."""
     program = edited(
         ("#148=RECTANGULAR_CLOSED_PROFILE($,#149,#180);", f"#148={profile};"),
@@ -219,11 +213,6 @@ def test_boss_is_cut_along_its_outline(bracket: Program) -> None:
     region = region_of(bracket, Ref[Entity](190))
     assert region.perimeter == pytest.approx(pi * 16.0)
     assert region.area == 0.0
-
-
-def test_depth_is_where_the_depth_plane_lies(bracket: Program) -> None:
-    depths = [feature_depth(bracket, ref) for ref in (FACE, CONTOUR, STEP, SLOT, POCKET)]
-    assert depths == [2.0, 20.0, 8.0, 6.0, 12.0]
 
 
 def test_feature_without_depth_removes_nothing() -> None:

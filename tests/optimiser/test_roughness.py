@@ -9,12 +9,12 @@ from hypothesis import strategies as st
 
 from optimiser import loads
 from optimiser.cut import Texture
-from optimiser.limit import LimitName
 from optimiser.limits import (
     drill_point,
     force_factor,
     limits_of,
 )
+from optimiser.problem import LimitName
 from optimiser.roughness import roughness_limit, roughness_load, surface_limits
 from simulator.physics.surface import RA_FLOOR
 from simulator.spec import ToolKind

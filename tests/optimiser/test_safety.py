@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import lognorm
 
-from optimiser.advice import Plan, Status
-from optimiser.formulate import Task
-from optimiser.limit import SCALES_WITH_FORCE, LimitName
+from optimiser.advice import AdviceStatus, Plan
+from optimiser.formulate import OptimisationTask
+from optimiser.problem import SCALES_WITH_FORCE, LimitName
 from optimiser.safety import safety_factor
 from tests.optimiser.plans import advice_of, after, measured, plan_of
 
@@ -25,7 +25,7 @@ def test_factor_is_the_quantile_of_a_lognormal_k_c(spread: float, quantile: floa
 
 def test_nominal_plans_have_no_factor() -> None:
     assert safety_factor(0.2, 0.5) == 1.0
-    plan = plan_of("bracket", Task(safety=0.5))
+    plan = plan_of("bracket", OptimisationTask(safety=0.5))
     assert {advice.safety_factor for advice in plan.advices} == {1.0}
     assert {advice.cost_of_safety for advice in plan.advices} == {0.0}
 
@@ -33,7 +33,7 @@ def test_nominal_plans_have_no_factor() -> None:
 @pytest.mark.parametrize("quantile", [0.49, 0.9991, float("nan")])
 def test_other_quantiles_are_refused(quantile: float) -> None:
     with pytest.raises(ValueError, match=r"0\.5 to 0\.999"):
-        Task(safety=quantile)
+        OptimisationTask(safety=quantile)
 
 
 def active_shares(plan: Plan) -> list[float]:
@@ -45,7 +45,7 @@ def active_shares(plan: Plan) -> list[float]:
             if load.limit.name is advice.active
         )
         for advice in plan.advices
-        if advice.status is Status.ADVISED and advice.active in SCALES_WITH_FORCE
+        if advice.status is AdviceStatus.ADVISED and advice.active in SCALES_WITH_FORCE
     ]
 
 
@@ -54,7 +54,7 @@ def test_every_bound_has_a_margin_for_the_spread_of_k_c(
     safety: float, passed: float, within: float
 ) -> None:
     """Of 200 draws of k_c, one from each half per cent, so many pass a bound that holds."""
-    plan = measured("bracket", Task(safety=safety))
+    plan = measured("bracket", OptimisationTask(safety=safety))
     assert plan.material.material.spread == 0.2
     quantiles = (np.arange(200) + np.random.default_rng(7).random(200)) / 200.0
     draws = lognorm.ppf(quantiles, s=log(1.2))
@@ -65,14 +65,17 @@ def test_every_bound_has_a_margin_for_the_spread_of_k_c(
 
 def test_margin_costs_what_a_nominal_plan_saves() -> None:
     """By features, where nothing but the setting changes the time."""
-    safe, nominal = plan_of("bracket", Task()), plan_of("bracket", Task(safety=0.5))
+    safe, nominal = (
+        plan_of("bracket", OptimisationTask()),
+        plan_of("bracket", OptimisationTask(safety=0.5)),
+    )
     cost = sum(advice.cost_of_safety for advice in safe.advices)
     assert cost > 10.0
     assert cost == pytest.approx(safe.time_after - nominal.time_after, rel=1e-6)
 
 
 def test_loads_are_told_nominal_and_bounds_in_full() -> None:
-    advice = advice_of(plan_of("bracket", Task()), "MILL SLOT")
+    advice = advice_of(plan_of("bracket", OptimisationTask()), "MILL SLOT")
     (load,) = (
         each for each in after(advice).loads if each.limit.name is LimitName.TOOL_DEFLECTION
     )
@@ -84,7 +87,7 @@ def test_loads_are_told_nominal_and_bounds_in_full() -> None:
 
 def test_what_was_learned_of_a_tool_has_its_own_interval() -> None:
     tool = "END MILL 12MM"
-    task = Task(force_factors={tool: 1.1}, learned_safety_factors={tool: 1.05})
+    task = OptimisationTask(force_factors={tool: 1.1}, learned_safety_factors={tool: 1.05})
     factors = {
         advice.tool.id: advice.safety_factor for advice in plan_of("bracket", task).advices
     }
@@ -96,5 +99,5 @@ def test_what_was_learned_of_a_tool_has_its_own_interval() -> None:
     ("part", "machine"), [("paper002", "paper002"), ("bracket", "paper002")]
 )
 def test_papers_keep_their_limits_alone(part: str, machine: str) -> None:
-    plan = plan_of(part, Task(), machine=machine)
+    plan = plan_of(part, OptimisationTask(), machine=machine)
     assert {advice.safety_factor for advice in plan.advices} == {1.0}

@@ -13,14 +13,14 @@ import pytest
 from benchmarks.plates import plate
 from optimiser import side_by_side as module
 from optimiser.advice import Plan
-from optimiser.formulate import Task
+from optimiser.formulate import OptimisationTask
 from optimiser.modes import Mode
-from optimiser.optimise import optimise
+from optimiser.optimise import optimise_program
 from optimiser.side_by_side import LEAST, one_by_one, side_by_side
 from simulator.library import load_machine
 from simulator.matching import match_material
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program, Workingstep
+from stepnc_model.program import Program, ResolvedWorkingstep
 
 FEW = 8
 """workingsteps of a half that go to another process in a program that is really planned"""
@@ -61,11 +61,14 @@ class Shelf:
         return self.last
 
     def is_apart(
-        self, step: Workingstep, trace: tuple[int, int], others: Sequence[tuple[int, int]]
+        self,
+        step: ResolvedWorkingstep,
+        trace: tuple[int, int],
+        others: Sequence[tuple[int, int]],
     ) -> bool:
         return all(trace[0] != other[0] for other in others)
 
-    def repeat(self, step: Workingstep, trace: tuple[int, int]) -> None:
+    def repeat(self, step: ResolvedWorkingstep, trace: tuple[int, int]) -> None:
         self.content[trace[0]] = trace[1]
 
 
@@ -164,11 +167,11 @@ def children() -> set[str]:
 def planned(text: str) -> Plan:
     """Advice for a program."""
     program = Program(Part21File.from_bytes(text.encode(), name="plate"), name="plate")
-    return optimise(
+    return optimise_program(
         program,
         machine=load_machine("vmc15"),
         material=match_material(["C45"]),
-        task=Task(mode=Mode.TC),
+        task=OptimisationTask(mode=Mode.TC),
     )
 
 

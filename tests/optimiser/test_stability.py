@@ -5,12 +5,12 @@ from math import inf, pi
 
 import pytest
 
-from optimiser.conditions import Conditions
+from optimiser.conditions import CuttingConditions
 from optimiser.cut import Cut
-from optimiser.formulate import Task, problem_of
-from optimiser.limit import LimitName
+from optimiser.formulate import OptimisationTask, problem_of
 from optimiser.modes import Free
-from optimiser.optimise import optimise
+from optimiser.optimise import optimise_program
+from optimiser.problem import LimitName
 from optimiser.source import from_features
 from optimiser.stability import (
     FREQUENCY_TOLERANCE,
@@ -24,13 +24,13 @@ from simulator.library import find_grade, load_machine, load_material
 from simulator.matching import match_material
 from simulator.physics.cutting import chip_stiffness
 from simulator.physics.engagement import mean_chip_ratio, unidirectional
-from simulator.physics.receptance import Structure
+from simulator.physics.receptance import ModalStructure
 from simulator.physics.stability import DynamicCut, least_stable_depth
 from simulator.physics.turning_stability import orthogonal_limit
 from simulator.spec import (
     CuttingMaterial,
-    Direction,
     Machine,
+    ModeDirection,
     ToolKind,
     VibratingPart,
     VibrationMode,
@@ -41,7 +41,7 @@ from tests.optimiser.plans import ALL_FREE, advice_of, after, edited
 MODE = VibrationMode(
     part=VibratingPart.TOOL,
     tool="MILL",
-    direction=Direction.XY,
+    direction=ModeDirection.XY,
     natural_frequency=900.0,
     damping_ratio=0.03,
     stiffness=12_000.0,
@@ -54,11 +54,11 @@ ALUMINIUM = replace(
 )
 
 
-def on(*modes: VibrationMode, at: Conditions = CARBIDE) -> Conditions:
+def on(*modes: VibrationMode, at: CuttingConditions = CARBIDE) -> CuttingConditions:
     return replace(at, machine=replace(at.machine, modes=modes))
 
 
-def known(cut: Cut, at: Conditions) -> Stability:
+def known(cut: Cut, at: CuttingConditions) -> Stability:
     found = stability_of(cut, at)
     assert found is not None
     return found
@@ -104,7 +104,7 @@ def test_measured_modes_bound_the_depth_by_speed() -> None:
         stiffness=767.0,
         radial_ratio=168.8 / 767.0,
     )
-    least = least_stable_depth(dynamic, Structure(x=(MODE,), y=(MODE,)))
+    least = least_stable_depth(dynamic, ModalStructure(x=(MODE,), y=(MODE,)))
     assert min(limit.curve.bounds) == pytest.approx(least, rel=1e-3)
     found = known(CUT, at)
     assert (found.basis, found.reason) == (Basis.MEASURED, "1 measured mode")
@@ -129,7 +129,7 @@ def test_a_measured_linear_edge_gives_the_stiffness_else_the_slope_of_kienzle() 
     dynamic = DynamicCut(
         engagement=CUT.engagement, teeth=4, stiffness=stiffness, radial_ratio=0.3
     )
-    expected = least_stable_depth(dynamic, Structure(x=(MODE,), y=(MODE,)))
+    expected = least_stable_depth(dynamic, ModalStructure(x=(MODE,), y=(MODE,)))
     assert known(CUT, on(MODE)).least == pytest.approx(expected)
 
 
@@ -184,12 +184,12 @@ def test_the_workpiece_gives_beside_the_tool_and_alone() -> None:
 
 
 def test_a_direction_without_modes_is_told() -> None:
-    found = known(CUT, on(replace(MODE, direction=Direction.X)))
+    found = known(CUT, on(replace(MODE, direction=ModeDirection.X)))
     assert found.reason == "1 measured mode, y taken as rigid"
 
 
 def test_a_mode_along_the_spindle_does_not_bound_a_mill() -> None:
-    assert stability_limits(CUT, on(replace(MODE, direction=Direction.Z))) == ()
+    assert stability_limits(CUT, on(replace(MODE, direction=ModeDirection.Z))) == ()
 
 
 def test_thin_cuts_are_not_judged_by_zero_order() -> None:
@@ -235,7 +235,7 @@ def test_lobes_bear_a_frequency_that_is_a_little_off() -> None:
 
 
 def test_turning_is_bounded_by_one_depth_at_any_speed() -> None:
-    mode = replace(MODE, tool="insert", direction=Direction.Z, stiffness=25_000.0)
+    mode = replace(MODE, tool="insert", direction=ModeDirection.Z, stiffness=25_000.0)
     at = replace(
         on(mode, at=replace(CARBIDE, machine=load_machine("lathe22"))),
         grade=find_grade(ToolKind.TURNING, CuttingMaterial.CARBIDE, "P"),
@@ -253,14 +253,14 @@ def test_turning_is_bounded_by_one_depth_at_any_speed() -> None:
 
 
 def test_turning_slower_than_a_short_wave_is_damped() -> None:
-    mode = replace(MODE, tool="insert", direction=Direction.Z, natural_frequency=30_000.0)
+    mode = replace(MODE, tool="insert", direction=ModeDirection.Z, natural_frequency=30_000.0)
     at = on(mode, at=replace(CARBIDE, machine=load_machine("lathe22")))
     assert stability_limits(TURNED, at) == ()
     assert known(TURNED, at).basis is Basis.NOT_USED
 
 
 def test_a_turning_tool_that_gives_only_along_its_edge_is_not_limited() -> None:
-    mode = replace(MODE, tool="insert", direction=Direction.X)
+    mode = replace(MODE, tool="insert", direction=ModeDirection.X)
     at = on(mode, at=replace(CARBIDE, machine=load_machine("lathe22")))
     assert stability_limits(TURNED, at) == ()
 
@@ -278,7 +278,7 @@ def test_a_tool_is_estimated_once_by_its_hardest_cut() -> None:
 
 
 def test_the_problem_of_a_cut_holds_the_bound() -> None:
-    task = Task(free=ALL_FREE)
+    task = OptimisationTask(free=ALL_FREE)
     assert problem_of(CUT, on(MODE), task).curved is not None
     assert problem_of(CUT, CARBIDE, task).curved is None
 
@@ -291,11 +291,11 @@ def tapped() -> Machine:
 
 def test_a_slot_deep_as_its_tool_is_no_longer_advised_where_modes_are_measured() -> None:
     """Aluminium, all free: 20 mm in one pass before, stable passes at a lobe after."""
-    task = Task(free=ALL_FREE, source=from_features)
+    task = OptimisationTask(free=ALL_FREE, source=from_features)
     material = match_material(["al7075"])
     program = edited("bracket")
     plans = [
-        optimise(program, machine=machine, material=material, task=task)
+        optimise_program(program, machine=machine, material=material, task=task)
         for machine in (load_machine("vmc15"), tapped())
     ]
     unbounded, bounded = (advice_of(plan, "ROUGH CONTOUR") for plan in plans)
@@ -320,8 +320,8 @@ def test_a_slot_deep_as_its_tool_is_no_longer_advised_where_modes_are_measured()
 def test_a_held_speed_takes_more_passes_and_a_held_depth_says_what_would_be_stable() -> None:
     program, material = edited("bracket"), match_material(["al7075"])
     for free in (frozenset({Free.FEED, Free.DEPTH}), frozenset({Free.FEED})):
-        task = Task(free=free, source=from_features)
-        plan = optimise(program, machine=tapped(), material=material, task=task)
+        task = OptimisationTask(free=free, source=from_features)
+        plan = optimise_program(program, machine=tapped(), material=material, task=task)
         advice = advice_of(plan, "ROUGH CONTOUR")
         assert any(
             "as programmed: stability allows" in finding.message for finding in plan.findings

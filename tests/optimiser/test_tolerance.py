@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 
 from optimiser.advice import Plan
 from optimiser.conditions import GREATEST_DEFLECTION, PermittedDeflection
-from optimiser.formulate import Task
-from optimiser.limit import LimitName
+from optimiser.formulate import OptimisationTask
+from optimiser.problem import LimitName
 from optimiser.tolerance import GREATEST_AT_WALL, permitted_deflection
 from stepnc_model.errors import Finding, Severity
 from stepnc_model.program import Program
@@ -210,7 +210,7 @@ def test_bound_grows_with_the_tolerance_up_to_its_greatest(one: float, other: fl
 
 
 def test_advice_keeps_the_bound_and_names_its_origin() -> None:
-    plan = plan_of("bracket", Task(safety=0.5))
+    plan = plan_of("bracket", OptimisationTask(safety=0.5))
     advice = advice_of(plan, "MILL SLOT")
     (load,) = (
         load for load in after(advice).loads if load.limit.name is LimitName.TOOL_DEFLECTION
@@ -225,13 +225,13 @@ def test_advice_keeps_the_bound_and_names_its_origin() -> None:
 
 def test_tolerance_that_no_cut_can_keep_is_a_conflict_that_names_it() -> None:
     tight = (USUAL, "#510=PLUS_MINUS_VALUE(0.001,0.001,4);")
-    advice = advice_of(plan_of("bracket", Task(), tight), "FINISH POCKET")
+    advice = advice_of(plan_of("bracket", OptimisationTask(), tight), "FINISH POCKET")
     assert advice.status.value == "infeasible"
     assert "tool deflection" in advice.reason
 
 
 def test_material_of_a_paper_has_no_tolerance() -> None:
-    plan = plan_of("paper002", Task())
+    plan = plan_of("paper002", OptimisationTask())
     assert notes(plan, "leaves the wall") == 0
     assert notes(plan, "ISO 2768") == 0
 

@@ -5,11 +5,11 @@ from itertools import pairwise
 import pytest
 
 from optimiser.advice import Plan
-from optimiser.cut import Turned
+from optimiser.cut import TurnedBar
 from tests.optimiser.plans import advice_of
 
 
-def turned(plan: Plan, name: str) -> Turned:
+def turned(plan: Plan, name: str) -> TurnedBar:
     cut = advice_of(plan, name).cut
     assert cut is not None
     assert cut.turned is not None

@@ -2,7 +2,7 @@
 
 import pytest
 
-from optimiser.wall import wall_sizes
+from optimiser.tolerance import wall_sizes
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
 from tests.optimiser.plans import edited

@@ -10,9 +10,17 @@ from numpy.typing import NDArray
 from benchmarks.problems import random_problem
 from optimiser.errors import Infeasible, OptimisationError
 from optimiser.least_cost import least_cost
-from optimiser.limit import Limit, LimitName, Monomial, Sense, SpeedCurve
 from optimiser.modes import Mode
-from optimiser.problem import Cost, Problem, Setting
+from optimiser.problem import (
+    BoundSide,
+    Cost,
+    Limit,
+    LimitName,
+    Monomial,
+    Problem,
+    Setting,
+    SpeedCurve,
+)
 from optimiser.workingstep import (
     Solution,
     conflict,
@@ -62,7 +70,7 @@ def brute_cost(problem: Problem, mode: Mode, passes: Floats, speeds: Floats) -> 
             continue
         rest = np.maximum((room - load.offset) / load.coefficient, 0.0)
         feed = rest ** (1.0 / load.feed_exponent)
-        if limit.sense is Sense.AT_MOST:
+        if limit.sense is BoundSide.AT_MOST:
             highest = np.where(where, np.minimum(highest, feed), highest)
         else:
             lowest = np.where(where, np.maximum(lowest, feed), lowest)
@@ -233,8 +241,8 @@ def depth_limit(bound: float) -> Limit:
     return Limit(name=LimitName.AXIAL_DEPTH, load=load, bound=bound, unit="mm")
 
 
-def feed_limit(bound: float, sense: Sense = Sense.AT_MOST) -> Limit:
-    name = LimitName.FEED_PER_TOOTH if sense is Sense.AT_MOST else LimitName.CHIP_THICKNESS
+def feed_limit(bound: float, sense: BoundSide = BoundSide.AT_MOST) -> Limit:
+    name = LimitName.FEED_PER_TOOTH if sense is BoundSide.AT_MOST else LimitName.CHIP_THICKNESS
     load = Monomial(coefficient=1.0, feed_exponent=1.0)
     return Limit(name=name, load=load, bound=bound, unit="mm", sense=sense, step=0.01)
 
@@ -296,7 +304,7 @@ def test_depth_limit_with_free_passes_takes_one_more_pass() -> None:
 
 def test_conflict_names_cap_and_floor_with_numbers_and_units() -> None:
     """Ra bound to 0.04 mm of feed against a chip of at least 0.06 mm."""
-    problem = simple(feed_limit(0.04), feed_limit(0.06, Sense.AT_LEAST))
+    problem = simple(feed_limit(0.04), feed_limit(0.06, BoundSide.AT_LEAST))
     with pytest.raises(Infeasible) as caught:
         solve(problem, Mode.TC)
     text = str(caught.value)
@@ -313,7 +321,7 @@ def test_conflict_tells_numbers_in_the_users_unit() -> None:
         unit="kW",
         scale=1e-3,
     )
-    problem = simple(power, feed_limit(0.06, Sense.AT_LEAST), greatest=0)
+    problem = simple(power, feed_limit(0.06, BoundSide.AT_LEAST), greatest=0)
     assert "0.29 kW" in str(conflict(problem))
 
 
@@ -344,12 +352,12 @@ def test_nothing_that_limits_the_feed_is_an_error() -> None:
 
 def test_a_floor_alone_does_not_limit_the_feed() -> None:
     with pytest.raises(OptimisationError, match="nothing limits the feed"):
-        solve(simple(feed_limit(0.01, Sense.AT_LEAST)), Mode.TC)
+        solve(simple(feed_limit(0.01, BoundSide.AT_LEAST)), Mode.TC)
 
 
 def test_told_names_load_and_bound() -> None:
     assert told(depth_limit(5.0), 6.0, 20.0) == "axial depth 6 mm exceeds 5 mm"
-    floor = feed_limit(0.01, Sense.AT_LEAST)
+    floor = feed_limit(0.01, BoundSide.AT_LEAST)
     assert told(floor, 0.004, 20.0) == "chip thickness 0.004 mm is below 0.01 mm"
 
 

@@ -6,10 +6,10 @@ from typing import Any
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stepnc_model.binding import Model, bind, keyword_of, to_parameters
+from stepnc_model.binding import Model, bind, to_parameters
 from stepnc_model.entities.catalogue import classes
+from stepnc_model.entities.conversion import AttributeSlot, slots_of
 from stepnc_model.entities.entity import Entity
-from stepnc_model.entities.slots import Slot, slots_of
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Enumeration, Real, Ref, Typed, Value
 from stepnc_model.part21.writer import format_value
@@ -40,7 +40,7 @@ VALUES: st.SearchStrategy[Value] = st.recursive(
 )
 
 
-def values_of(slot: Slot) -> st.SearchStrategy[Any]:
+def values_of(slot: AttributeSlot) -> st.SearchStrategy[Any]:
     choices = [PLAIN[kind] for kind in slot.plain]
     if slot.references:
         choices.append(st.integers(2, 99).map(Ref[object]))
@@ -66,7 +66,7 @@ any_entity = st.sampled_from([cls.keyword for cls in ENTITIES]).flatmap(entities
 @given(any_entity)
 @settings(max_examples=300, deadline=None)
 def test_entity_survives_writing_and_reading(entity: Entity) -> None:
-    text = keyword_of(entity).encode() + format_value(to_parameters(entity))
+    text = entity.keyword.encode() + format_value(to_parameters(entity))
     data = b"ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\n#1=" + text
     data += b";\nENDSEC;\nEND-ISO-10303-21;\n"
     assert Model(Part21File.from_bytes(data)).entity(1) == entity

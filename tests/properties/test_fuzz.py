@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from service import usecases
 from service.contents import check
 from stepnc_model.errors import StepNcError
+from tests.asking import asked_advice
 
 ROOT = Path(__file__).parents[2]
 SAMPLES = sorted((ROOT / "examples" / "parts").glob("*.stpnc"))
@@ -89,7 +90,7 @@ def read_and_optimise(data: bytes, units: str = "iso") -> None:
         with suppress(StepNcError):
             check(path, units=units)
         with suppress(StepNcError):
-            usecases.optimise(usecases.Request(file=path, units=units, dry_run=True))
+            usecases.optimise(*asked_advice(file=path, units=units, dry_run=True))
         assert [each.name for each in Path(folder).iterdir()] == ["part.stpnc"]
 
 

@@ -9,18 +9,19 @@ from pathlib import Path
 import pytest
 
 from stepnc_model.errors import PostError
-from stepnc_model.post.blocks import Cycles, Machine
+from stepnc_model.post.blocks import Cycles, MachineType
 from stepnc_model.post.canonical import Canonical
-from stepnc_model.post.controls import Control, read, write
+from stepnc_model.post.dialect import Dialect
+from stepnc_model.post.dialects import read, write
 from stepnc_model.post.neutral import blocks_of
 from stepnc_model.program import Program
 from stepnc_model.toolpath.generate import generate
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
-PROGRAMS = [(Machine.MILL, control, cycles) for control in Control for cycles in Cycles] + [
-    (Machine.LATHE, control, Cycles.EXPANDED)
-    for control in Control
-    if control is not Control.HEIDENHAIN
+PROGRAMS = [(MachineType.MILL, control, cycles) for control in Dialect for cycles in Cycles] + [
+    (MachineType.LATHE, control, Cycles.EXPANDED)
+    for control in Dialect
+    if control is not Dialect.HEIDENHAIN
 ]
 
 CHARACTERS = "XYZFSGMTNRIJKPQHLABCODE0123456789.-+()%;=,\"'#[]* \t<>/$\\\x00é²٣~\u2028"
@@ -35,9 +36,9 @@ QUIET = {"COMMENT", "MESSAGE"}
 
 
 @cache
-def code_of(machine: Machine, control: Control, cycles: Cycles) -> tuple[str, ...]:
+def code_of(machine: MachineType, control: Dialect, cycles: Cycles) -> tuple[str, ...]:
     """NC code of an example: each kind of line a few times, so that it is short."""
-    name = "bracket" if machine is Machine.MILL else "shaft"
+    name = "bracket" if machine is MachineType.MILL else "shaft"
     program = Program.load(PARTS / f"{name}.stpnc")
     blocks = blocks_of(program, list(generate(program)), name="P")
     lines = list(write(blocks, control, cycles=cycles))
@@ -78,7 +79,7 @@ def require_finite(commands: tuple[Canonical, ...]) -> None:
 
 @pytest.mark.parametrize(("machine", "control", "cycles"), PROGRAMS)
 def test_damaged_code_is_read_or_refused_with_its_line(
-    machine: Machine, control: Control, cycles: Cycles
+    machine: MachineType, control: Dialect, cycles: Cycles
 ) -> None:
     code = code_of(machine, control, cycles)
     for seed in range(RUNS):
@@ -94,7 +95,7 @@ def test_damaged_code_is_read_or_refused_with_its_line(
 
 @pytest.mark.parametrize(("machine", "control", "cycles"), PROGRAMS)
 def test_a_word_that_no_control_knows_is_never_skipped(
-    machine: Machine, control: Control, cycles: Cycles
+    machine: MachineType, control: Dialect, cycles: Cycles
 ) -> None:
     code = code_of(machine, control, cycles)
     bare = [at for at, line in enumerate(code) if line and not re.search(r"[;(%]", line)]
@@ -110,27 +111,27 @@ def test_a_word_that_no_control_knows_is_never_skipped(
 @pytest.mark.parametrize(
     ("control", "lines", "words"),
     [
-        (Control.LINUXCNC, ["O100 CALL"], "no word of NC code"),
-        (Control.FANUC, ["O1 G0 X5"], "nothing in this block uses it"),
-        (Control.FANUC, ["M3 M4 S100"], "two words for the spindle"),
-        (Control.FANUC, ["G17 G18"], "two G codes of one group"),
-        (Control.FANUC, ["G0 X" + "9" * 400], "beyond 1e"),
-        (Control.FANUC, ["G1 X5 F-100"], "word F-100: must not be negative"),
-        (Control.LINUXCNC, ["G33 K1"], "a thread leads to where the tool is"),
-        (Control.LINUXCNC, ["G33 Z-5 K-1"], "it must be positive"),
-        (Control.LINUXCNC, ["F60 G83 X0 Y0 Z-1000 R1 Q0.0001"], "pecks: 10000 at most"),
-        (Control.SINUMERIK, ["SPOS=90"], "an angle of 0 is read"),
-        (Control.HEIDENHAIN, ["0 TOOL CALL " + "9" * 5000 + " Z S100"], "beyond 1e"),
-        (Control.HEIDENHAIN, ["0 CC X+1 FMAX"], "CC needs two"),
-        (Control.HEIDENHAIN, ["0 L X+ FMAX"], "not known here"),
-        (Control.HEIDENHAIN, ["0 CYCL DEF 200 DRILLING Q200=+0 what?"], "not known in a cycle"),
-        (Control.HEIDENHAIN, ["0 CYCL DEF 200 DRILLING Q204=+50"], "Q204=+50: not read"),
-        (Control.CANONICAL, ["1 STRAIGHT_FEED(1E999, 0, 0)"], "must be numbers"),
-        (Control.CANONICAL, ["1 ARC_FEED(1, 1, 0, 0, 1.5, 0)"], "whole ones are needed"),
+        (Dialect.LINUXCNC, ["O100 CALL"], "no word of NC code"),
+        (Dialect.FANUC, ["O1 G0 X5"], "nothing in this block uses it"),
+        (Dialect.FANUC, ["M3 M4 S100"], "two words for the spindle"),
+        (Dialect.FANUC, ["G17 G18"], "two G codes of one group"),
+        (Dialect.FANUC, ["G0 X" + "9" * 400], "beyond 1e"),
+        (Dialect.FANUC, ["G1 X5 F-100"], "word F-100: must not be negative"),
+        (Dialect.LINUXCNC, ["G33 K1"], "a thread leads to where the tool is"),
+        (Dialect.LINUXCNC, ["G33 Z-5 K-1"], "it must be positive"),
+        (Dialect.LINUXCNC, ["F60 G83 X0 Y0 Z-1000 R1 Q0.0001"], "pecks: 10000 at most"),
+        (Dialect.SINUMERIK, ["SPOS=90"], "an angle of 0 is read"),
+        (Dialect.HEIDENHAIN, ["0 TOOL CALL " + "9" * 5000 + " Z S100"], "beyond 1e"),
+        (Dialect.HEIDENHAIN, ["0 CC X+1 FMAX"], "CC needs two"),
+        (Dialect.HEIDENHAIN, ["0 L X+ FMAX"], "not known here"),
+        (Dialect.HEIDENHAIN, ["0 CYCL DEF 200 DRILLING Q200=+0 what?"], "not known in a cycle"),
+        (Dialect.HEIDENHAIN, ["0 CYCL DEF 200 DRILLING Q204=+50"], "Q204=+50: not read"),
+        (Dialect.CANONICAL, ["1 STRAIGHT_FEED(1E999, 0, 0)"], "must be numbers"),
+        (Dialect.CANONICAL, ["1 ARC_FEED(1, 1, 0, 0, 1.5, 0)"], "whole ones are needed"),
     ],
 )
 def test_what_is_no_code_is_refused_with_what_is_wrong(
-    control: Control, lines: list[str], words: str
+    control: Dialect, lines: list[str], words: str
 ) -> None:
     with pytest.raises(PostError, match=re.escape(words)) as caught:
         read(lines, control)

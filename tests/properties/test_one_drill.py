@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 
 from optimiser import loads
 from optimiser.limits import drill_point, force_factor, force_load
-from simulator.machine.cutting import Edge, cutting_loads
-from simulator.removal.stations import CutKind, Stations
+from simulator.machine.cutting import CuttingEdge, cutting_loads
+from simulator.removal.stations import StationKind, Stations
 from tests.optimiser.cuts import DRILLED, conditions
 
 AT = conditions(DRILLED.tool_kind)
@@ -41,7 +41,7 @@ def test_force_thrust_and_power_of_a_hole_are_the_same_on_both_sides(
     stations = Stations(
         segment=np.array([0]),
         station=np.array([1.0]),
-        kind=np.array([int(CutKind.DRILLING)]),
+        kind=np.array([int(StationKind.DRILLING)]),
         **{name: np.array([value]) for name, value in column.items()},
         **{name: np.zeros(1) for name in none},
     )
@@ -51,7 +51,7 @@ def test_force_thrust_and_power_of_a_hole_are_the_same_on_both_sides(
         np.array([0]),
         speed=np.array([feed * teeth * speed]),
         spindle_speed=np.array([speed]),
-        edge=Edge(
+        edge=CuttingEdge(
             teeth=teeth, kienzle=AT.material.kienzle, factor=force_factor(AT), point=point
         ),
     )

@@ -9,9 +9,8 @@ from hypothesis import strategies as st
 
 from benchmarks.problems import random_problem
 from optimiser.errors import Infeasible
-from optimiser.limit import LimitName, Sense
 from optimiser.modes import Mode
-from optimiser.problem import Problem
+from optimiser.problem import BoundSide, LimitName, Problem
 from optimiser.workingstep import Solution, solve, widened
 
 seeds = st.integers(0, 10**9)
@@ -64,7 +63,7 @@ def test_speed_passes_and_depth_stay_within_what_is_free(
 def test_chip_never_gets_thinner_than_its_floor(seed: int, free_speed: bool) -> None:
     problem = problem_of(seed, free_speed=free_speed)
     at = solution_of(problem, Mode.TC).setting
-    (floor,) = (limit for limit in problem.limits if limit.sense is Sense.AT_LEAST)
+    (floor,) = (limit for limit in problem.limits if limit.sense is BoundSide.AT_LEAST)
     assert floor.load.value(at.feed, at.depth, at.speed) >= floor.bound * (1.0 - 1e-9)
 
 

@@ -139,7 +139,7 @@ def originals() -> list[bytes]:
 
 def exercise(file: Part21File) -> None:
     """Use all that a file offers; only malformed instances may refuse."""
-    file.header()
+    assert isinstance(file.schemas, tuple)
     edits = Edits(file)
     added = edits.add("ADDED", ())
     for id in file.ids():

@@ -11,12 +11,12 @@ import pytest
 from stepnc_model.errors import SchemaError, StepNcError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.post.blocks import Cycles
-from stepnc_model.post.controls import Control, write
+from stepnc_model.post.dialect import Dialect
+from stepnc_model.post.dialects import write
 from stepnc_model.post.neutral import blocks_of
-from stepnc_model.program import Executable, Program
-from stepnc_model.toolpath.function import Function
+from stepnc_model.program import Program, ProgramLine
 from stepnc_model.toolpath.generate import generate
-from stepnc_model.toolpath.path import ToolPath
+from stepnc_model.toolpath.path import Function, ToolPath
 
 ROOT = Path(__file__).parents[2]
 FILES = {
@@ -68,7 +68,7 @@ def require_finite(items: list[ToolPath | Function]) -> None:
 
 def post(program: Program, items: list[ToolPath | Function]) -> None:
     """NC code for every control, or a refusal in one line."""
-    for control in Control:
+    for control in Dialect:
         for cycles in Cycles:
             refusal = ""
             try:
@@ -80,7 +80,7 @@ def post(program: Program, items: list[ToolPath | Function]) -> None:
             assert "\n" not in refusal
 
 
-def take(faults: list[SchemaError], _executable: Executable, fault: SchemaError) -> None:
+def take(faults: list[SchemaError], _executable: ProgramLine, fault: SchemaError) -> None:
     """Keep the reason why something was left out."""
     faults.append(fault)
 

@@ -22,7 +22,7 @@ from simulator.physics import (
 )
 from simulator.physics.drilling import DrillingCut
 from simulator.physics.engagement import Engagement
-from simulator.physics.flutes import CuttingEdges, Law
+from simulator.physics.flutes import CuttingEdges, ForceLaw
 from simulator.physics.milling import MillingCut
 from simulator.physics.tooth_forces import one_place, peak_resultant, wall_force
 from simulator.spec import Kienzle, LinearEdge, Spindle, SpindlePoint, Taylor
@@ -130,7 +130,7 @@ def test_peak_of_a_helix_lies_below_the_chips_of_all_teeth_in_cut(
     kienzle: Kienzle, cut: MillingCut, helix: float, diameter: float
 ) -> None:
     """Straight edges reach one tooth's force, and a helix never all of those on its arc."""
-    law = Law(exponent=1.0 - kienzle.m_c)
+    law = ForceLaw(exponent=1.0 - kienzle.m_c)
     arc = cut.engagement
     at = one_place(arc.entry_angle, arc.exit_angle, axial_depth=cut.axial_depth)
     edges = CuttingEdges(

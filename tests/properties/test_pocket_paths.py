@@ -22,7 +22,7 @@ from stepnc_model.toolpath.milling.contour import (
     shape,
     vertices,
 )
-from stepnc_model.toolpath.milling.cover import Pass, area_of, rings, swept
+from stepnc_model.toolpath.milling.cover import MillingPass, area_of, rings, swept
 from stepnc_model.toolpath.milling.offset import erode, rounded
 from stepnc_model.toolpath.milling.strokes import scan, zigzags
 
@@ -75,7 +75,7 @@ def pockets(draw: st.DrawFn) -> list[Loop]:
     return walls
 
 
-def lines(passes: tuple[Pass, ...]) -> shapely.MultiLineString:
+def lines(passes: tuple[MillingPass, ...]) -> shapely.MultiLineString:
     found = []
     for each in passes:
         points = [*vertices(each.chain, tolerance=FINE), each.chain[-1].end]
@@ -88,7 +88,7 @@ def solid_of(walls: list[Loop]) -> Polygon:
     return Polygon(shape(walls[0], tolerance=FINE).exterior.coords, holes)
 
 
-def check_swept(walls: list[Loop], passes: tuple[Pass, ...], radius: float) -> None:
+def check_swept(walls: list[Loop], passes: tuple[MillingPass, ...], radius: float) -> None:
     """Every centre that keeps clear of the walls is covered to its rim; no pass gouges."""
     area = solid_of(walls)
     trace = lines(passes)
@@ -109,7 +109,7 @@ def check_swept(walls: list[Loop], passes: tuple[Pass, ...], radius: float) -> N
     assert shapely.dwithin(shapely.points(at), trace, radius + CLOSE).all()
 
 
-def check_arcs(passes: tuple[Pass, ...]) -> None:
+def check_arcs(passes: tuple[MillingPass, ...]) -> None:
     """At least nine tenths of the length along which a pass bends is made of arcs."""
     curved = in_arcs = 0.0
     for each in passes:
@@ -160,7 +160,7 @@ def test_strokes_with_a_pass_along_the_wall_sweep_it_too(
     loops = erode(walls, radius)
     assume(loops)
     strokes = zigzags(scan(loops, along=rect(1.0, angle), step=step), loops)
-    walled = tuple(Pass(loop, is_closed=True) for loop in loops)
+    walled = tuple(MillingPass(loop, is_closed=True) for loop in loops)
     check_swept(walls, (*strokes, *walled), radius)
 
 

@@ -15,12 +15,11 @@ from numpy.typing import NDArray
 
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
-from stepnc_model.toolpath.job import job_of
 from stepnc_model.toolpath.path import MoveType, Point, ToolPath, points_along
+from stepnc_model.toolpath.task import job_of
 from stepnc_model.toolpath.turning.offset import grown
 from stepnc_model.toolpath.turning.operation import turning_path
-from stepnc_model.toolpath.turning.piece import Piece, arc_pieces
-from stepnc_model.toolpath.turning.profile import highest
+from stepnc_model.toolpath.turning.profile import ProfilePiece, arc_pieces, highest
 
 Floats = NDArray[np.float64]
 
@@ -295,15 +294,15 @@ def test_paths_are_finite_and_end_where_they_start(contour: Contour) -> None:
 
 
 @st.composite
-def surfaces(draw: st.DrawFn) -> list[Piece]:
+def surfaces(draw: st.DrawFn) -> list[ProfilePiece]:
     """Lines and arcs, one after the other towards +u."""
     spot = (0.0, 10.0)
-    pieces: list[Piece] = []
+    pieces: list[ProfilePiece] = []
     for _ in range(draw(st.integers(1, 6))):
         end = (spot[0] + draw(st.integers(5, 60)) / 10.0, draw(st.integers(50, 150)) / 10.0)
         bend = draw(st.sampled_from([0.0, 0.6, 1.2, -0.6, -1.2]))
         if bend == 0.0:
-            pieces.append(Piece(start=spot, end=end))
+            pieces.append(ProfilePiece(start=spot, end=end))
         else:
             middle = (0.5 * (spot[0] + end[0]), 0.5 * (spot[1] + end[1]))
             away = 0.5 / tan(0.5 * bend)
@@ -319,7 +318,7 @@ def surfaces(draw: st.DrawFn) -> list[Piece]:
 @settings(max_examples=100, deadline=None)
 @given(surfaces(), st.sampled_from([0.2, 0.8, 2.0]))
 def test_a_grown_surface_is_where_a_rolling_disc_has_its_centre(
-    pieces: list[Piece], radius: float
+    pieces: list[ProfilePiece], radius: float
 ) -> None:
     """Against every spot of the surface, sampled: the highest disc about any of them."""
     spots = np.array([piece.point(i / 200.0) for piece in pieces for i in range(201)])

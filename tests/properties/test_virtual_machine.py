@@ -8,24 +8,24 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from simulator.library import load_machine
-from simulator.machine.cutting import Edge
-from simulator.machine.episode import Episode
+from simulator.machine.cutting import CuttingEdge
 from simulator.machine.interpreter import interpret
-from simulator.machine.samples import Execution, Samples, joined
+from simulator.machine.samples import Episode, Execution, Samples, joined
 from simulator.machine.sensing import Sampler, sensed
 from simulator.machine.totals import Total, added
-from simulator.machine.virtual import LoadedTool, Setup, VirtualMachine
-from simulator.motion.control import Control, control_model
-from simulator.motion.motion import axis_limits
+from simulator.machine.virtual import LoadedTool, MachineSetup, VirtualMachine
+from simulator.motion.control import control_model
+from simulator.motion.model_name import ControlModelName
+from simulator.motion.segments import axis_limits
 from simulator.removal.cutter import Cutter
 from simulator.removal.engage import MillingStock
 from simulator.spec import Kienzle
 from stepnc_model.post import blocks as nc
-from stepnc_model.stock import Stock
+from stepnc_model.program import Stock
 
 MACHINE = load_machine("vmc15")
 LIMITS = axis_limits(MACHINE)
-EDGE = Edge(teeth=2, kienzle=Kienzle(k_c11=1500.0, m_c=0.25))
+EDGE = CuttingEdge(teeth=2, kienzle=Kienzle(k_c11=1500.0, m_c=0.25))
 TOOLS = {
     number: LoadedTool(number=number, id=f"T{number}", shape=Cutter(diameter=6.0), edge=EDGE)
     for number in (1, 2)
@@ -42,24 +42,28 @@ RATES = st.sampled_from([
 BLOCKS = st.one_of(
     st.builds(nc.Rapid, end=POINTS),
     st.builds(nc.Linear, end=POINTS, rate=RATES),
-    st.builds(nc.SpindleOn, speed=st.floats(5.0, 300.0), sense=st.sampled_from(list(nc.Sense))),
+    st.builds(
+        nc.SpindleOn,
+        speed=st.floats(5.0, 300.0),
+        sense=st.sampled_from(list(nc.SpindleDirection)),
+    ),
     st.builds(nc.Pause, seconds=st.floats(0.0, 2.0)),
     st.builds(nc.ToolChange, number=st.sampled_from([1, 2])),
     st.builds(nc.Retract, z=st.just(20.0)),
     st.just(nc.Coolant(kinds=frozenset({nc.CoolantKind.FLOOD}))),
     st.just(nc.Coolant()),
-    st.just(nc.ProgramStop()),
+    st.just(nc.ProgramStopBlock()),
     st.builds(nc.Comment, text=st.just(""), workingstep=st.sampled_from(["A", "B"])),
 )
 PROGRAMS = st.lists(BLOCKS, max_size=12).map(lambda body: [nc.SpindleOn(speed=40.0), *body])
-CONTROLS = st.sampled_from(list(Control))
+CONTROLS = st.sampled_from(list(ControlModelName))
 
 Run = tuple[VirtualMachine, list[Episode], MillingStock]
 
 
-def run(blocks: list[nc.Block], control: Control) -> Run:
+def run(blocks: list[nc.Block], control: ControlModelName) -> Run:
     stock = MillingStock(STOCK, cell=0.5)
-    setup = Setup(
+    setup = MachineSetup(
         machine=MACHINE,
         control=control_model(control, LIMITS),
         tools=TOOLS,
@@ -76,7 +80,7 @@ def sampled(episodes: list[Episode], rate: float) -> Samples:
 
 @settings(max_examples=40, deadline=None)
 @given(blocks=PROGRAMS, control=CONTROLS)
-def test_a_run_is_whole(blocks: list[nc.Block], control: Control) -> None:
+def test_a_run_is_whole(blocks: list[nc.Block], control: ControlModelName) -> None:
     virtual, episodes, _ = run(blocks, control)
     assert [e.begin for e in episodes] == [0.0, *(e.end for e in episodes[:-1])]
     assert episodes[-1].state.execution is Execution.PROGRAM_COMPLETED
@@ -100,7 +104,7 @@ def test_a_run_is_whole(blocks: list[nc.Block], control: Control) -> None:
 
 @settings(max_examples=25, deadline=None)
 @given(blocks=PROGRAMS, control=CONTROLS)
-def test_position_is_continuous(blocks: list[nc.Block], control: Control) -> None:
+def test_position_is_continuous(blocks: list[nc.Block], control: ControlModelName) -> None:
     _, episodes, _ = run(blocks, control)
     last: Samples | None = None
     for episode in episodes:
@@ -116,7 +120,9 @@ def test_position_is_continuous(blocks: list[nc.Block], control: Control) -> Non
 
 @settings(max_examples=20, deadline=None)
 @given(blocks=PROGRAMS, control=CONTROLS)
-def test_totals_are_those_of_dense_samples(blocks: list[nc.Block], control: Control) -> None:
+def test_totals_are_those_of_dense_samples(
+    blocks: list[nc.Block], control: ControlModelName
+) -> None:
     _, episodes, _ = run(blocks, control)
     total = Total()
     for episode in episodes:
@@ -141,7 +147,7 @@ def test_totals_are_those_of_dense_samples(blocks: list[nc.Block], control: Cont
 @given(blocks=PROGRAMS)
 def test_exact_stop_removes_what_the_map_loses(blocks: list[nc.Block]) -> None:
     """Unless the spindle stands, of which nothing is known."""
-    virtual, episodes, stock = run(blocks, Control.EXACT_STOP)
+    virtual, episodes, stock = run(blocks, ControlModelName.EXACT_STOP)
     total = Total()
     for episode in episodes:
         total = added(total, episode, MACHINE)
@@ -153,7 +159,9 @@ def test_exact_stop_removes_what_the_map_loses(blocks: list[nc.Block]) -> None:
 
 @settings(max_examples=10, deadline=None)
 @given(blocks=PROGRAMS, control=CONTROLS, rate=st.sampled_from([1.0, 40.0]))
-def test_same_program_same_bytes(blocks: list[nc.Block], control: Control, rate: float) -> None:
+def test_same_program_same_bytes(
+    blocks: list[nc.Block], control: ControlModelName, rate: float
+) -> None:
     one, other = (sampled(run(blocks, control)[1], rate) for _ in range(2))
     for each in fields(Samples):
         assert getattr(one, each.name).tobytes() == getattr(other, each.name).tobytes()

@@ -8,11 +8,12 @@ from hypothesis import strategies as st
 
 from stepnc_model import writeback
 from stepnc_model.entities.optimisation import FaceMillingImmersion
+from stepnc_model.file_profile import FileProfile
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
-from stepnc_model.record import MODES, Record
+from stepnc_model.record import MODES, AdviceRecord
 from stepnc_model.technology import programmed
-from stepnc_model.writeback import Change, Profile, rounded
+from stepnc_model.writeback import WorkingstepUpdate, rounded
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 SAMPLES = {path.stem: path.read_bytes() for path in sorted(PARTS.glob("*.stpnc"))}
@@ -20,17 +21,17 @@ SAMPLES = {path.stem: path.read_bytes() for path in sorted(PARTS.glob("*.stpnc")
 NUMBERS = st.floats(allow_nan=False, allow_infinity=False)
 POSITIVE = st.floats(1e-9, 1e9)
 TEXTS = st.text(st.characters(exclude_categories=["Cs"]), max_size=8)
-PROFILES = st.sampled_from(Profile)
+PROFILES = st.sampled_from(FileProfile)
 NAMES = st.sampled_from(sorted(SAMPLES))
 
 
 @st.composite
-def records(draw: st.DrawFn) -> Record:
+def records(draw: st.DrawFn) -> AdviceRecord:
     """Any record; the angle of contact and the name of the immersion come together."""
     faces = st.tuples(NUMBERS, st.sampled_from(FaceMillingImmersion).map(str))
     angle, immersion = draw(faces | st.just((None, None)))
     number = st.none() | NUMBERS
-    return Record(
+    return AdviceRecord(
         mode=draw(st.sampled_from(sorted(MODES))),
         id=draw(TEXTS),
         description=draw(TEXTS),
@@ -62,11 +63,11 @@ def program_of(data: bytes) -> Program:
     return Program(Part21File.from_bytes(data))
 
 
-def converted(data: bytes, profile: Profile) -> bytes:
+def converted(data: bytes, profile: FileProfile) -> bytes:
     return writeback.convert(program_of(data), profile)
 
 
-def changes(draw: Any, program: Program) -> list[Change]:
+def changes(draw: Any, program: Program) -> list[WorkingstepUpdate]:
     """Advice for some of the workingsteps, in the order of the program."""
     steps = range(len(program.workingsteps))
     chosen = draw(st.lists(st.sampled_from(steps), unique=True, min_size=1, max_size=4))
@@ -75,7 +76,7 @@ def changes(draw: Any, program: Program) -> list[Change]:
         step = program.workingsteps[place]
         conditions = programmed(program, step.technology_ref)
         advice.append(
-            Change(
+            WorkingstepUpdate(
                 workingstep=step,
                 programmed=conditions,
                 record=draw(records()),
@@ -87,11 +88,11 @@ def changes(draw: Any, program: Program) -> list[Change]:
     return advice
 
 
-def again(program: Program, advice: list[Change]) -> list[Change]:
+def again(program: Program, advice: list[WorkingstepUpdate]) -> list[WorkingstepUpdate]:
     """The same advice for the program as it was written."""
     steps = {step.ref: step for step in program.workingsteps}
     return [
-        Change(
+        WorkingstepUpdate(
             workingstep=steps[each.workingstep.ref],
             programmed=programmed(program, steps[each.workingstep.ref].technology_ref),
             record=each.record,
@@ -106,7 +107,7 @@ def again(program: Program, advice: list[Change]) -> list[Change]:
 @settings(max_examples=40, deadline=None)
 @given(st.data(), NAMES, PROFILES)
 def test_every_record_is_read_as_it_was_written(
-    data: st.DataObject, name: str, profile: Profile
+    data: st.DataObject, name: str, profile: FileProfile
 ) -> None:
     program = program_of(SAMPLES[name])
     advice = changes(data.draw, program)
@@ -119,7 +120,7 @@ def test_every_record_is_read_as_it_was_written(
 @settings(max_examples=40, deadline=None)
 @given(st.data(), NAMES, PROFILES)
 def test_the_numbers_advised_are_programmed_and_all_others_stay(
-    data: st.DataObject, name: str, profile: Profile
+    data: st.DataObject, name: str, profile: FileProfile
 ) -> None:
     program = program_of(SAMPLES[name])
     advice = {each.workingstep.ref: each for each in changes(data.draw, program)}
@@ -143,7 +144,7 @@ def test_the_numbers_advised_are_programmed_and_all_others_stay(
 @settings(max_examples=40, deadline=None)
 @given(st.data(), NAMES, PROFILES)
 def test_the_same_advice_twice_gives_the_same_bytes(
-    data: st.DataObject, name: str, profile: Profile
+    data: st.DataObject, name: str, profile: FileProfile
 ) -> None:
     program = program_of(SAMPLES[name])
     advice = changes(data.draw, program)
@@ -155,31 +156,31 @@ def test_the_same_advice_twice_gives_the_same_bytes(
 @settings(max_examples=40, deadline=None)
 @given(st.data(), NAMES, PROFILES)
 def test_conversion_keeps_records_and_is_stable(
-    data: st.DataObject, name: str, profile: Profile
+    data: st.DataObject, name: str, profile: FileProfile
 ) -> None:
     program = program_of(SAMPLES[name])
     once = writeback.write(program, changes(data.draw, program), profile)
     wanted = writeback.records(program_of(once))
     assert converted(once, profile) == once
-    for other in Profile:
+    for other in FileProfile:
         assert writeback.records(program_of(converted(once, other))) == wanted
 
 
 @settings(max_examples=30, deadline=None)
 @given(st.data(), NAMES, PROFILES)
 def test_a_file_is_the_same_after_it_was_in_another_profile(
-    data: st.DataObject, name: str, profile: Profile
+    data: st.DataObject, name: str, profile: FileProfile
 ) -> None:
     program = program_of(SAMPLES[name])
     once = writeback.write(program, changes(data.draw, program), profile)
-    for other in Profile:
+    for other in FileProfile:
         assert converted(converted(once, other), profile) == once
 
 
 @settings(max_examples=30, deadline=None)
 @given(st.data(), NAMES, PROFILES)
 def test_no_instance_and_no_comment_of_the_file_is_lost(
-    data: st.DataObject, name: str, profile: Profile
+    data: st.DataObject, name: str, profile: FileProfile
 ) -> None:
     program = program_of(SAMPLES[name])
     once = writeback.write(program, changes(data.draw, program), profile)

@@ -4,12 +4,12 @@ from pathlib import Path
 
 import pytest
 
-from stepnc_model.post.blocks import Linear, Rapid, Sense, SpindleOff, SpindleOn
+from stepnc_model.post.blocks import Linear, Rapid, SpindleDirection, SpindleOff, SpindleOn
 from stepnc_model.post.neutral import blocks_of
 from stepnc_model.program import Program
 from stepnc_model.toolpath.frame import compound_of
 from stepnc_model.toolpath.generate import generate, workingstep_path
-from stepnc_model.toolpath.job import job_of
+from stepnc_model.toolpath.task import job_of
 
 EXAMPLE = Path(__file__).parents[3] / "shared" / "corpus" / "iso14649" / "EXAMPLE3.stp"
 
@@ -26,8 +26,8 @@ def test_the_tool_folds_in_and_out_by_the_sense_of_its_spindle() -> None:
         block for block in blocks if isinstance(block, (SpindleOn, Rapid, Linear, SpindleOff))
     ]
     turning = None
-    through: list[Sense] = []
-    cutting: list[Sense] = []
+    through: list[SpindleDirection] = []
+    cutting: list[SpindleDirection] = []
     for block in events:
         if isinstance(block, SpindleOn):
             turning = block.sense
@@ -35,8 +35,8 @@ def test_the_tool_folds_in_and_out_by_the_sense_of_its_spindle() -> None:
             cutting.append(turning)
         elif isinstance(block, Rapid) and turning is not None and block.end[2] < -100.0:
             through.append(turning)
-    assert cutting == [Sense.COUNTERCLOCKWISE]
-    assert through[0] is Sense.CLOCKWISE
+    assert cutting == [SpindleDirection.COUNTERCLOCKWISE]
+    assert through[0] is SpindleDirection.CLOCKWISE
 
 
 def test_the_tool_comes_over_the_security_plane() -> None:

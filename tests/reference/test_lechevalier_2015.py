@@ -15,10 +15,11 @@ import pytest
 from numpy.typing import NDArray
 from pyarrow import parquet
 
-from service.simulation.run import SimulationRequest, simulate
+from service.simulation.run import simulate
 from simulator.library import load_machine
 from simulator.physics.axis import axis_power
 from stepnc_model.units import rev_s_from_rpm
+from tests.asking import asked_simulation
 
 SLOT = Path(__file__).parents[2] / "examples" / "parts" / "paper003_case1.stpnc"
 DIAMETER, TEETH = 8.0, 4
@@ -71,7 +72,7 @@ def run(cut: tuple[float, float, float], folder: Path, rate: float = 1000.0) -> 
     part, output = folder / "slot.stpnc", folder / "run.parquet"
     part.write_text(text, encoding="utf-8")
     simulate(
-        SimulationRequest(
+        *asked_simulation(
             file=part, machine="paper003", control="exact-stop", rate=rate, output=output
         )
     )

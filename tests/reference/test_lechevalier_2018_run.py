@@ -14,14 +14,15 @@ import pytest
 from numpy.typing import NDArray
 from pyarrow import parquet
 
-from service.simulation.run import Simulation, SimulationRequest, simulate
+from service.simulation.run import Simulation, simulate
 from simulator.library import load_machine
 from simulator.machine.interpreter import interpret
 from simulator.machine.totals import Total, added
-from simulator.machine.virtual import Setup, VirtualMachine
-from simulator.motion.exact_stop import ExactStop
+from simulator.machine.virtual import MachineSetup, VirtualMachine
+from simulator.motion.control import ExactStop
 from stepnc_model.post.blocks import Coolant, CoolantKind, Linear, Rapid, Rate
 from stepnc_model.units import speed_from_mm_min
+from tests.asking import asked_simulation
 
 ROOT = Path(__file__).parents[2]
 PARTS = ROOT / "examples" / "parts"
@@ -92,7 +93,7 @@ CASES = (
 
 def run(case: Case, folder: Path, material: str = "") -> tuple[Simulation, Columns]:
     output = folder / "run.parquet"
-    request = SimulationRequest(
+    request = asked_simulation(
         file=PARTS / f"paper003_case{case.number}.stpnc",
         machine="paper003",
         material=material,
@@ -100,7 +101,7 @@ def run(case: Case, folder: Path, material: str = "") -> tuple[Simulation, Colum
         control="exact-stop",
         output=output,
     )
-    simulation = simulate(request)
+    simulation = simulate(*request)
     table = parquet.read_table(output)
     return simulation, {name: table[name].to_numpy() for name in table.column_names}
 
@@ -159,7 +160,7 @@ def total_of(*moves: Rapid | Linear) -> Total:
     machine = load_machine("paper003")
     coolant = Coolant(kinds=frozenset({CoolantKind.FLOOD}))
     blocks = enumerate((coolant, Rapid(end=(0.0, 0.0, 0.0)), *moves), 1)
-    virtual = VirtualMachine(Setup(machine=machine, control=ExactStop()))
+    virtual = VirtualMachine(MachineSetup(machine=machine, control=ExactStop()))
     total = Total()
     for episode in virtual.run(interpret(blocks, machine)):
         total = added(total, episode, machine)

@@ -16,7 +16,8 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from stepnc_model.post.canonical import Canonical
-from stepnc_model.post.controls import Control, read, write
+from stepnc_model.post.dialect import Dialect
+from stepnc_model.post.dialects import read, write
 from stepnc_model.post.neutral import blocks_of
 from stepnc_model.program import Program
 from stepnc_model.toolpath.generate import generate
@@ -60,14 +61,14 @@ class Cut:
 @cache
 def nist() -> tuple[Canonical, ...]:
     text = (CORPUS / "ex1.canonical.txt").read_text()
-    return read(text.splitlines(), Control.CANONICAL)
+    return read(text.splitlines(), Dialect.CANONICAL)
 
 
 @cache
 def ours() -> tuple[Canonical, ...]:
     program = Program.load(CORPUS / "ex1.stp")
     blocks = blocks_of(program, list(generate(program)), name="ex1")
-    return read(write(blocks, Control.CANONICAL), Control.CANONICAL)
+    return read(write(blocks, Dialect.CANONICAL), Dialect.CANONICAL)
 
 
 def cuts(commands: tuple[Canonical, ...]) -> Iterator[Cut]:

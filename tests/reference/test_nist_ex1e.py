@@ -18,8 +18,8 @@ import pytest
 from stepnc_model.program import Program
 from stepnc_model.toolpath.explicit.operation import explicit_path, rapid_movement_path
 from stepnc_model.toolpath.hole.operation import hole_path
-from stepnc_model.toolpath.job import job_of
 from stepnc_model.toolpath.path import Move, MoveType, Point, SpindleCommand, ToolPath
+from stepnc_model.toolpath.task import job_of
 
 CORPUS = Path(__file__).parents[3] / "shared" / "corpus" / "iso14649"
 EXPLICIT, FEATURES, CANONICAL = (

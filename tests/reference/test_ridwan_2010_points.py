@@ -66,7 +66,7 @@ class Point:
     removal_rate: float
     feed: float
     """mm/rev"""
-    is_over: bool
+    is_overloaded: bool
 
 
 def points() -> Iterator[tuple[str, Point]]:
@@ -83,7 +83,7 @@ def points() -> Iterator[tuple[str, Point]]:
                 power=fmean(row.spindle_power_true for row in rows),
                 removal_rate=fmean(row.removal_rate for row in rows),
                 feed=fmean(row.feed_actual for row in rows) / TURNS,
-                is_over=run.status().is_over,
+                is_overloaded=run.status().is_overloaded,
             ),
         )
 
@@ -120,7 +120,7 @@ def test_every_point_is_that_of_the_equations(at: dict[str, Point], name: str) -
         feed * TURNS * DIAMETER * inputs.axial_depth_mm, rel=NOISE
     )
     # "In the graph, the warning is always kept in Safe Limit."
-    assert not point.is_over
+    assert not point.is_overloaded
 
 
 def test_1_to_2_a_smaller_depth_raises_the_chip_load_at_the_same_force(

@@ -15,9 +15,10 @@ import pytest
 from numpy.typing import NDArray
 from pyarrow import parquet
 
-from service.simulation.run import Simulation, SimulationRequest, simulate
+from service.simulation.run import Simulation, simulate
 from simulator.library import load_machine
 from simulator.machine_toml import machine_toml
+from tests.asking import asked_simulation
 
 ROOT = Path(__file__).parents[2]
 PART = ROOT / "examples" / "parts" / "paper000.stpnc"
@@ -44,10 +45,10 @@ Columns = dict[str, NDArray[Any]]
 
 
 def run(output: Path, machine: str = "paper000") -> tuple[Simulation, Columns]:
-    request = SimulationRequest(
+    request = asked_simulation(
         file=PART, machine=machine, rate=RATE, control="exact-stop", output=output
     )
-    simulation = simulate(request)
+    simulation = simulate(*request)
     table = parquet.read_table(output)
     return simulation, {name: table[name].to_numpy() for name in table.column_names}
 

@@ -18,10 +18,10 @@ from simulator.physics.engagement import (
     full_immersion,
     unidirectional,
 )
-from simulator.physics.receptance import Structure
+from simulator.physics.receptance import ModalStructure
 from simulator.physics.stability import DynamicCut, stable_depths
 from simulator.physics.turning_stability import orthogonal_limit
-from simulator.spec import Direction, VibratingPart, VibrationMode
+from simulator.spec import ModeDirection, VibratingPart, VibrationMode
 from tests.reference.semidiscretisation import Case, is_border, multiplier, with_engagement
 
 MASS, FREQUENCY, DAMPING = 0.03993, 922.0, 0.011
@@ -39,7 +39,7 @@ TWO = replace(ONE, mass=(MASS,) * 2, frequency=(FREQUENCY,) * 2, damping=(DAMPIN
 MODE = VibrationMode(
     part=VibratingPart.TOOL,
     tool="benchmark",
-    direction=Direction.XY,
+    direction=ModeDirection.XY,
     natural_frequency=FREQUENCY,
     damping_ratio=DAMPING,
     stiffness=MASS * (2.0 * pi * FREQUENCY) ** 2 / 1e3,
@@ -60,14 +60,14 @@ def test_the_judge_meets_the_printed_multipliers(depth_mm: float, printed: float
 
 def zero_order(
     engagement: Engagement, *, mode: VibrationMode = MODE, teeth: int = 2
-) -> Structure:
-    return Structure(x=(mode,), y=(mode,))
+) -> ModalStructure:
+    return ModalStructure(x=(mode,), y=(mode,))
 
 
 def depths_at(rpm: list[float], engagement: Engagement) -> list[float]:
     """Stable depths by zero order, mm."""
     cut = DynamicCut(engagement=engagement, teeth=2, stiffness=600.0, radial_ratio=1.0 / 3.0)
-    depths = stable_depths(cut, Structure(x=(MODE,), y=(MODE,)), SPEEDS)
+    depths = stable_depths(cut, ModalStructure(x=(MODE,), y=(MODE,)), SPEEDS)
     return [float(np.interp(each / 60.0, SPEEDS, depths)) for each in rpm]
 
 
@@ -125,7 +125,7 @@ def test_a_usual_end_mill_agrees_with_the_judge_within_a_few_per_cent(damping: f
         MODE, natural_frequency=frequency, damping_ratio=damping, stiffness=stiffness
     )
     dynamic = DynamicCut(engagement=cut, teeth=4, stiffness=767.0, radial_ratio=168.8 / 767.0)
-    depths = stable_depths(dynamic, Structure(x=(mode,), y=(mode,)), SPEEDS)
+    depths = stable_depths(dynamic, ModalStructure(x=(mode,), y=(mode,)), SPEEDS)
     for rpm in (7_000.0, 8_500.0, 10_500.0, 12_000.0, 17_000.0):
         found = float(np.interp(rpm / 60.0, SPEEDS, depths))
         assert is_border(case, rpm=rpm, depth=found / 1e3, within=0.05), f"{rpm} rpm"
@@ -137,7 +137,7 @@ def test_turning_meets_the_printed_closed_form() -> None:
     k = 22.6 N/µm, ζ = 0.012, K_f = 1000 N/mm²: 0.549 mm."""
     mode = replace(
         MODE,
-        direction=Direction.Z,
+        direction=ModeDirection.Z,
         natural_frequency=250.0,
         damping_ratio=0.012,
         stiffness=22_600.0,

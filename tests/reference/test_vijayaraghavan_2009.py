@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from simulator.library import load_machine
-from simulator.motion.control import Control, control_model
-from simulator.motion.motion import AxisLimits, axis_limits
-from simulator.motion.segments import lines
+from simulator.motion.control import control_model
+from simulator.motion.model_name import ControlModelName
+from simulator.motion.segments import AxisLimits, axis_limits, lines
 from stepnc_model.units import mm_min_from_speed, speed_from_mm_min
 from tests.oracles import motion as moves
 
@@ -50,7 +50,7 @@ def feed_on_circle(
     *,
     radius: float = 1.0,
     commanded: float = COMMANDED,
-    control: Control = Control.FIR,
+    control: ControlModelName = ControlModelName.FIR,
 ) -> float:
     """in/min in the middle of chords of a circle, inches and in/min."""
     angles = 2.0 * asin(0.5 * spacing / radius) * np.arange(COUNT + 1)
@@ -71,10 +71,10 @@ def test_a_thousandth_of_an_inch_allows_14_8_inches_a_minute() -> None:
     assert mm_min_from_speed(speed) / MM_PER_INCH == pytest.approx(14.847, rel=1e-4)
 
 
-@pytest.mark.parametrize("control", [Control.FIR, Control.JUNCTION])
+@pytest.mark.parametrize("control", [ControlModelName.FIR, ControlModelName.JUNCTION])
 @pytest.mark.parametrize(("spacing", "printed"), list(TABLE_2.items())[1:])
 def test_feed_of_every_spacing_is_print_s_to_what_its_line_errs(
-    mill: AxisLimits, spacing: float, printed: float, control: Control
+    mill: AxisLimits, spacing: float, printed: float, control: ControlModelName
 ) -> None:
     """Its line lies 0.5 to 6.1 % above its table; the motion is the line."""
     feed = feed_on_circle(mill, spacing, control=control)

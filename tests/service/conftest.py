@@ -9,25 +9,25 @@ import numpy as np
 import pytest
 
 from kbe.store import open_store
-from service.buckets import Trace
+from service.buckets import BucketedRun
 from service.calibration.run import CalibrationResult, CycleTime
-from service.control.run import ControlRequest, ControlRun, control
-from service.simulation.run import Simulation, SimulationRequest
+from service.control.run import ControlRun, control
+from service.simulation.run import Simulation
 from service.simulation.setup import CodeRequest
 from service.simulation.trace import TraceKeeper
-from simulator.calibration.delay import Delay
-from simulator.calibration.estimates import Calibration, Estimate
-from simulator.calibration.features import Parameter
+from simulator.calibration.calibrated import Delay
+from simulator.calibration.features import Calibration, Estimate, Parameter
 from simulator.calibration.held_out import HeldOut
 from simulator.calibration.measured_run import Component
 from simulator.calibration.skill import Skill
 from simulator.library import load_machine
 from simulator.machine.samples import Samples
 from simulator.machine.totals import Energy, Peak, Total
-from simulator.motion.control import Control
+from simulator.motion.model_name import ControlModelName
 from simulator.motion.segments import Floats
 from stepnc_model.errors import Finding, Severity
 from stepnc_model.outcome import ProcessOutcome
+from tests.asking import AskedControl, asked_control
 from tests.service.shop import shop
 
 NAME = "<script>alert('a & b')</script>"
@@ -109,7 +109,7 @@ def simulation() -> Simulation:
     return Simulation(
         program="a&b <i>.stpnc",
         machine=load_machine("vmc15"),
-        control=Control.FIR,
+        control=ControlModelName.FIR,
         totals=(("", idle), (NAME, rough), ("FINISH", finish)),
         findings=(
             Finding(severity=Severity.WARNING, message="spares <b>no</b> tool", line=7),
@@ -119,7 +119,7 @@ def simulation() -> Simulation:
 
 
 @pytest.fixture(scope="session")
-def trace() -> Trace:
+def trace() -> BucketedRun:
     """100 s at 10 Hz."""
     time = np.arange(1001) / 10.0
     keeper = TraceKeeper()
@@ -166,7 +166,7 @@ G0 Z5
 M30
 """
 
-Controlled = Callable[..., ControlRequest]
+Controlled = Callable[..., AskedControl]
 
 
 @pytest.fixture(scope="session")
@@ -176,9 +176,8 @@ def controlled(tmp_path_factory: pytest.TempPathFactory) -> Controlled:
     code.write_text(CONTROLLED, encoding="ascii")
     program = Path(__file__).parents[2] / "examples" / "parts" / "paper003_case1.stpnc"
 
-    def request(**changed: object) -> ControlRequest:
-        asked = SimulationRequest(file=program, code=CodeRequest(code=code), machine="vmc15")
-        return ControlRequest(simulation=asked, **changed)  # type: ignore[arg-type]
+    def request(**changed: object) -> AskedControl:
+        return asked_control(program, code=CodeRequest(code=code), machine="vmc15", **changed)  # type: ignore[arg-type]
 
     return request
 
@@ -188,7 +187,7 @@ def control_run(controlled: Controlled, tmp_path_factory: pytest.TempPathFactory
     """That slot with a harder second half, kept for plots."""
     report = tmp_path_factory.mktemp("report") / "run.html"
     words = ("hardness:+40%@7.5s", "kc:1.1", "mode:QC@900s")
-    return control(controlled(disturbances=words, report=report, set_point=400.0))
+    return control(*controlled(disturbances=words, report=report, set_point=400.0))
 
 
 @pytest.fixture(scope="session")

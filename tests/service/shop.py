@@ -15,10 +15,10 @@ from random import Random
 from stepnc_model.entities.optimisation import FaceMillingImmersion
 from stepnc_model.outcome import (
     Context,
+    EvaluatedQuantity,
     FeatureFacts,
     ForceRatio,
     ProcessOutcome,
-    Quantity,
 )
 
 BEGIN = datetime(2026, 1, 5, 6, 0, tzinfo=UTC)
@@ -152,19 +152,23 @@ def _outcome(
         mode="QC" if fine else "TC",
         specific_force=k_c,
         cutting_speed=speed * 1000.0 / 60.0,
-        step_depth=Quantity(predicted=cut.depth, measured=cut.depth),
-        feed_per_tooth=Quantity(
+        step_depth=EvaluatedQuantity(predicted=cut.depth, measured=cut.depth),
+        feed_per_tooth=EvaluatedQuantity(
             predicted=cut.feed_per_tooth, measured=cut.feed_per_tooth * slow
         ),
         immersion=cut.immersion,
         strategy=cut.strategy,
-        roughness=Quantity(
+        roughness=EvaluatedQuantity(
             predicted=0.0016 if fine else None,
             measured=0.0016 * exp(random.gauss(0.04, 0.08)) if fine else None,
         ),
-        time=Quantity(predicted=cut.time, measured=cut.time * (0.85 / slow + 0.15) * 1.02),
-        force=Quantity(predicted=cut.force, measured=cut.force * tools_own * held * slip),
-        feed=Quantity(predicted=16.0, measured=16.0 * slow),
+        time=EvaluatedQuantity(
+            predicted=cut.time, measured=cut.time * (0.85 / slow + 0.15) * 1.02
+        ),
+        force=EvaluatedQuantity(
+            predicted=cut.force, measured=cut.force * tools_own * held * slip
+        ),
+        feed=EvaluatedQuantity(predicted=16.0, measured=16.0 * slow),
         force_bound=cut.bound,
         force_ratio=ForceRatio(
             log_mean=log(tools_own) + random.gauss(0.0, 0.005),

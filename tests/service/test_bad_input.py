@@ -1,7 +1,6 @@
 """Whatever is wrong: an exit code, one line that says what and where, and nothing written."""
 
 import re
-import resource
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from service.cli.main import main, optimise_main
+from tests.full_disk import files_of_at_most
 from tests.rights import Capability, without
 
 ROOT = Path(__file__).parents[2]
@@ -267,10 +267,10 @@ def test_numbers_of_another_unit_profile_are_refused_and_the_profile_named(
         (("--machine", "vmc51"), "unknown machine 'vmc51'; known: vmc15"),
         (("--machine", "nowhere.toml"), "nowhere.toml: cannot be read: No such file"),
         (("--machine", "nowhere.xml"), "nowhere.xml: cannot be read: No such file"),
-        (("--roughness", "0"), "roughness 0 µm: it must be positive"),
-        (("--roughness", "-1.6"), "roughness -1.6 µm: it must be positive"),
-        (("--roughness", "nan"), "roughness nan µm: it must be positive"),
-        (("--roughness", "1e400"), "roughness inf µm: it must be positive"),
+        (("--roughness", "0"), "roughness 0 µm: it must be above 0 to 1000 µm"),
+        (("--roughness", "-1.6"), "roughness -1.6 µm: it must be above 0 to 1000 µm"),
+        (("--roughness", "nan"), "roughness nan µm: it must be above 0 to 1000 µm"),
+        (("--roughness", "1e400"), "roughness inf µm: it must be above 0 to 1000 µm"),
         (("--workingstep", "nope"), "no workingstep 'nope'; known: 'ROUGH THE FACE' (#3)"),
         (("--workingstep", "#40"), "no workingstep '#40'; known: 'ROUGH THE FACE' (#3)"),
         (("--in-place", "-o", "x"), "--in-place and --output exclude each other"),
@@ -428,12 +428,8 @@ def test_the_input_is_never_the_output_when_it_is_read_through_a_link(
 def test_a_disk_that_takes_no_more_leaves_everything_as_it_was(
     refused: Optimise, options: tuple[str, ...]
 ) -> None:
-    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (1_000, hard))
-    try:
+    with files_of_at_most(1_000):
         answer = refused(*options)
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
     assert "File too large" in answer.error
 
 

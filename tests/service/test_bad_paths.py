@@ -112,7 +112,7 @@ FEED = "#304=MILLING_TECHNOLOGY(0.0064,.TCP.,$,-40."
         (("#527,#528)", "#527)"), "does not close: a gap of 14.14 mm"),
         (("(#521,#522,#523,", "(#521,#522,"), "do not join: a gap of 70 mm"),
         ((DEPTH, "'',(0.,0.,-60.)"), "z = -60 mm lies below the workpiece"),
-        ((DEPTH, "'',(0.,0.,0.)"), "depth 0 mm: it must be positive"),
+        ((DEPTH, "'',(0.,0.,0.)"), "depth 0 mm removes nothing: it must be positive"),
         (("#141,#143,(#190)", "#141,$,(#190)"), "#140 CLOSED_POCKET.depth: has no depth"),
         (("'ROUGH POCKET',10.", "'ROUGH POCKET',-10."), "-10 mm: the retract plane"),
         (("'DRILL HOLE 1',5.", "'DRILL HOLE 1',-50."), "-50 mm: it must lie above"),

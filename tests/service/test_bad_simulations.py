@@ -5,7 +5,6 @@ a fault in the middle of a program stays readable beside the output, under anoth
 """
 
 import re
-import resource
 import signal
 import subprocess
 import sys
@@ -18,9 +17,11 @@ from pyarrow import csv, parquet
 
 from service.cli.main import main
 from service.simulation import timeline_file
-from service.simulation.run import SimulationRequest, simulate
+from service.simulation.run import simulate
 from service.simulation.setup import CodeRequest
 from stepnc_model.errors import StepNcError, WriteError
+from tests.asking import asked_simulation
+from tests.full_disk import files_of_at_most
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 
@@ -169,7 +170,7 @@ def test_code_that_is_only_strange_is_run(code: Path, text: str) -> None:
 def test_cutting_with_a_standing_spindle_is_said(code: Path) -> None:
     code.write_text(START.replace("S3000 M3\n", "") + CUT + END, encoding="ascii")
     request = CodeRequest(code=code, tools=code.with_name("tools.toml"), stock=STOCK)
-    run = simulate(SimulationRequest(code=request, machine="vmc15", material="c45"))
+    run = simulate(*asked_simulation(code=request, machine="vmc15", material="c45"))
     assert "warning: line 5: cuts while the spindle stands" in "\n".join(map(str, run.findings))
     assert run.whole.force.value == 0.0
 
@@ -184,10 +185,10 @@ def test_cutting_with_a_standing_spindle_is_said(code: Path) -> None:
         ({"rate": "-10"}, "rate -10 Hz"),
         ({"rate": "nan"}, "rate nan Hz"),
         ({"rate": "inf"}, "rate inf Hz"),
-        ({"seed": "-1"}, "seed -1: it must be at least 0"),
+        ({"seed": "-1"}, "seed -1: it must be 0 to 2"),
         ({"missing": "1"}, "missing 1: it must be at least 0 and below 1"),
         ({"missing": "nan"}, "missing nan"),
-        ({"deviation-mm": "inf"}, "deviation inf mm: it must be above 0, at most 10 mm"),
+        ({"deviation-mm": "inf"}, "deviation inf mm: it must be above 0 to 10 mm"),
         ({"filter-s": "1e-300,1e-300"}, "filter times 1e-300 and 1e-300 s: 1e-06 to 100 s"),
         ({"filter-s": "1"}, "filter times '1': 2 numbers with commas between them"),
         ({"zero": "nan,0,0"}, "zero 'nan,0,0': 3 numbers with commas between them"),
@@ -342,21 +343,16 @@ def test_a_disk_that_fills_leaves_the_old_run(code: Path, suffix: str) -> None:
     path.write_text("old", encoding="ascii")
     before = sorted(code.parent.iterdir())
     tools = code.with_name("tools.toml")
-    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (5_000, hard))
-    try:
-        with pytest.raises(WriteError, match=f"run{suffix}: .*too large"):
-            simulate(
-                SimulationRequest(
-                    code=CodeRequest(code=code, tools=tools, stock=STOCK),
-                    machine="vmc15",
-                    material="c45",
-                    rate=1_000.0,
-                    output=path,
-                )
+    with files_of_at_most(5_000), pytest.raises(WriteError, match=f"run{suffix}: .*too large"):
+        simulate(
+            *asked_simulation(
+                code=CodeRequest(code=code, tools=tools, stock=STOCK),
+                machine="vmc15",
+                material="c45",
+                rate=1_000.0,
+                output=path,
             )
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+        )
     assert path.read_text(encoding="ascii") == "old"
     assert sorted(code.parent.iterdir()) == before
 
@@ -402,7 +398,7 @@ def test_memory_does_not_grow_with_the_program(
         long_program(code, moves)
         tracemalloc.start()
         request = CodeRequest(code=code)
-        simulate(SimulationRequest(code=request, machine="vmc15", rate=5.0, output=output))
+        simulate(*asked_simulation(code=request, machine="vmc15", rate=5.0, output=output))
         _, most = tracemalloc.get_traced_memory()
         tracemalloc.stop()
         return most
@@ -414,8 +410,8 @@ def test_memory_does_not_grow_with_the_program(
 def test_many_moves_without_a_pause_are_run(code: Path) -> None:
     moves = 45_000
     code.write_text(START + "G1 F3000\n" + "X0\nX0.1\n" * (moves // 2) + END, encoding="ascii")
-    request = SimulationRequest(code=CodeRequest(code=code), machine="vmc15")
-    run = simulate(request)
+    request = asked_simulation(code=CodeRequest(code=code), machine="vmc15")
+    run = simulate(*request)
     assert run.whole.duration > moves * 0.1 / 50.0
 
 
@@ -424,7 +420,7 @@ def test_errors_are_of_the_project(code: Path) -> None:
     tools = code.with_name("tools.toml")
     with pytest.raises(StepNcError) as caught:
         simulate(
-            SimulationRequest(
+            *asked_simulation(
                 code=CodeRequest(code=code, tools=tools), machine="vmc15", material="c45"
             )
         )

@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from service.buckets import MOST, Buckets, Trace
+from service.buckets import MOST, BucketedRun, Buckets
 from simulator.motion.segments import Floats
 
 
-def traced(time: Floats, values: Floats, ends: tuple[int, ...] = ()) -> Trace:
+def traced(time: Floats, values: Floats, ends: tuple[int, ...] = ()) -> BucketedRun:
     buckets = Buckets(values.shape[1])
     for begin, end in pairwise((0, *sorted(ends), len(time))):
         buckets.add(time[begin:end], values[begin:end])

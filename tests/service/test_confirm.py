@@ -11,13 +11,13 @@ import pytest
 from service import usecases
 from service.cli.main import optimise_main
 from service.confirmation import PASSED, Confirmation, ConfirmedStep, Figure
-from service.tables import print_plan
-from service.usecases import Outcome, Request
-from service.wire import plan_json
+from service.plan_output import plan_json, print_plan
+from service.usecases import OptimiseResult
 from simulator.errors import SimulationError
 from stepnc_model.errors import StepNcError
 from stepnc_model.program import Program
-from stepnc_model.toolpath.job import stock_of
+from stepnc_model.toolpath.task import stock_of
+from tests.asking import asked_advice
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 OK, LIMIT_EXCEEDED = 0, 5
@@ -43,12 +43,14 @@ def part(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def outcome(part: Path) -> Outcome:
-    return usecases.optimise(Request(file=part, machine="vmc15", dry_run=True, confirm=True))
+def outcome(part: Path) -> OptimiseResult:
+    return usecases.optimise(
+        *asked_advice(file=part, machine="vmc15", dry_run=True, confirm=True)
+    )
 
 
 @pytest.fixture(scope="module")
-def confirmation(outcome: Outcome) -> Confirmation:
+def confirmation(outcome: OptimiseResult) -> Confirmation:
     assert outcome.confirmation is not None
     return outcome.confirmation
 
@@ -73,7 +75,7 @@ def test_every_workingstep_has_every_figure(confirmation: Confirmation) -> None:
 
 
 def test_what_was_promised_is_what_the_plan_says(
-    outcome: Outcome, confirmation: Confirmation
+    outcome: OptimiseResult, confirmation: Confirmation
 ) -> None:
     for advice, step in zip(outcome.plan.advices, confirmation.steps, strict=True):
         assert advice.after is not None
@@ -132,7 +134,7 @@ def test_the_ratio_of_nothing_is_none() -> None:
     assert figure(promised=0.0).ratio is None
 
 
-def test_json_holds_promise_finding_ratio_and_bound(outcome: Outcome) -> None:
+def test_json_holds_promise_finding_ratio_and_bound(outcome: OptimiseResult) -> None:
     found: dict[str, Any] = json.loads(plan_json(outcome.plan, outcome.confirmation))
     assert found["confirmation"]["passed"] == []
     for step in found["confirmation"]["workingsteps"]:
@@ -147,14 +149,14 @@ def test_json_holds_promise_finding_ratio_and_bound(outcome: Outcome) -> None:
 
 
 def test_a_bound_that_is_passed_is_said_and_is_the_exit_code(
-    outcome: Outcome,
+    outcome: OptimiseResult,
     part: Path,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     step = ConfirmedStep(id="ROUGH FACE", figures=(figure(found=130.0, bound=110.0),))
     worse = replace(outcome, confirmation=Confirmation(steps=(step,)))
-    monkeypatch.setattr(usecases, "optimise", lambda request, tell: worse)
+    monkeypatch.setattr(usecases, "optimise", lambda request, files, tell: worse)
     with pytest.raises(SystemExit) as stopped:
         optimise_main([str(part), "--confirm", "--dry-run"])
     assert stopped.value.code == LIMIT_EXCEEDED
@@ -164,10 +166,12 @@ def test_a_bound_that_is_passed_is_said_and_is_the_exit_code(
 
 
 def test_a_machine_without_axes_is_refused_before_anything_is_planned() -> None:
-    asked = Request(file=PARTS / "paper002.stpnc", machine="paper002", confirm=True)
+    asked = asked_advice(
+        PARTS / "paper002.stpnc", machine="paper002", dry_run=True, confirm=True
+    )
     told: list[str] = []
     with pytest.raises(SimulationError, match="nothing of its axes X, Y, Z"):
-        usecases.optimise(replace(asked, dry_run=True), tell=told.append)
+        usecases.optimise(*asked, tell=told.append)
     assert told == []
 
 
@@ -176,11 +180,15 @@ def test_a_program_that_draws_no_raw_part_needs_one(part: Path, tmp_path: Path) 
     text = part.read_text(encoding="ascii")
     assert ",0.05,$,$,#33,(" in text
     bare.write_text(text.replace(",0.05,$,$,#33,(", ",0.05,$,$,$,("), encoding="ascii")
-    asked = Request(file=bare, machine="vmc15", dry_run=True, confirm=True)
+    asked = asked_advice(file=bare, machine="vmc15", dry_run=True, confirm=True)
     with pytest.raises(StepNcError, match=r"cannot be confirmed.*--stock"):
-        usecases.optimise(asked)
+        usecases.optimise(*asked)
     with pytest.raises(StepNcError, match="draws its own raw part"):
-        usecases.optimise(replace(asked, file=part, stock="0,0,0,1,1,1"))
+        usecases.optimise(
+            *asked_advice(
+                part, machine="vmc15", dry_run=True, confirm=True, stock="0,0,0,1,1,1"
+            )
+        )
 
 
 def test_a_raw_part_that_is_named_is_the_one_that_the_file_would_draw(
@@ -192,12 +200,12 @@ def test_a_raw_part_that_is_named_is_the_one_that_the_file_would_draw(
     named = stock_of(Program.load(part), None)
     assert named is not None
     numbers = ",".join(map(str, (*named.low, *named.high)))
-    asked = Request(file=bare, machine="vmc15", dry_run=True, confirm=True, stock=numbers)
-    assert usecases.optimise(asked).confirmation == confirmation
+    asked = asked_advice(file=bare, machine="vmc15", dry_run=True, confirm=True, stock=numbers)
+    assert usecases.optimise(*asked).confirmation == confirmation
 
 
 def test_without_it_nothing_is_run(part: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    outcome = usecases.optimise(Request(file=part, machine="vmc15", dry_run=True))
+    outcome = usecases.optimise(*asked_advice(file=part, machine="vmc15", dry_run=True))
     assert outcome.confirmation is None
     print_plan(outcome.plan, outcome.confirmation)
     assert "promised" not in capsys.readouterr().out

@@ -2,13 +2,13 @@
 
 import errno
 import os
-import resource
 from pathlib import Path
 
 import pytest
 
 from service.files import read_bytes, write_atomically
 from stepnc_model.errors import StepNcError, WriteError
+from tests.full_disk import files_of_at_most
 
 
 def names(folder: Path) -> list[str]:
@@ -50,13 +50,8 @@ def test_who_reads_the_old_file_reads_it_to_its_end(tmp_path: Path) -> None:
 def test_a_file_that_outgrows_its_quota_leaves_the_old_one(tmp_path: Path) -> None:
     path = tmp_path / "old"
     path.write_bytes(b"old")
-    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (1_000, hard))
-    try:
-        with pytest.raises(WriteError, match=r"old: File too large"):
-            write_atomically(path, b"x" * 5_000)
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    with files_of_at_most(1_000), pytest.raises(WriteError, match=r"old: File too large"):
+        write_atomically(path, b"x" * 5_000)
     assert path.read_bytes() == b"old"
     assert names(tmp_path) == ["old"]
 

@@ -12,15 +12,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from service.flat_file import Field, Format, Row, csv_lines, json_lines, write_rows
+from service.flat_file import FileColumn, Format, Row, csv_lines, json_lines, write_rows
 from stepnc_model.errors import WriteError
 
 FIELDS = (
-    Field(name="name", kind=str),
-    Field(name="force_n", kind=float),
-    Field(name="count", kind=int),
-    Field(name="is_whole", kind=bool),
-    Field(name="at", kind=datetime),
+    FileColumn(name="name", kind=str),
+    FileColumn(name="force_n", kind=float),
+    FileColumn(name="count", kind=int),
+    FileColumn(name="is_whole", kind=bool),
+    FileColumn(name="at", kind=datetime),
 )
 
 texts = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"))

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 from service.numbers import LEAST_SIZE, numbers_in, require_size, stock_in
 from stepnc_model.errors import StepNcError
-from stepnc_model.stock import Stock
+from stepnc_model.program import Stock
 from stepnc_model.toolpath.path import FARTHEST
 
 

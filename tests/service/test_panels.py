@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from service.buckets import Buckets
-from service.panels import BLUE, MOST_BANDS, Panels, Stretch, key
+from service.panels import BLUE, MOST_BANDS, Panels, TimeSpan, key
 
 
 def panels(last: float = 100.0) -> Panels:
@@ -15,8 +15,8 @@ def panels(last: float = 100.0) -> Panels:
 
 
 STEPS = (
-    Stretch(name="A <b>", begin=0.0, duration=40.0),
-    Stretch(name="B", begin=40.0, duration=60.0),
+    TimeSpan(name="A <b>", begin=0.0, duration=40.0),
+    TimeSpan(name="B", begin=40.0, duration=60.0),
 )
 
 

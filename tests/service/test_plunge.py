@@ -12,10 +12,11 @@ from service.cli.main import main, optimise_main
 from service.confirmation import ConfirmedStep
 from service.paths.toolpaths import nc_lines, paths_of, with_feeds
 from service.reading import read_program
-from service.usecases import Outcome, Request
+from service.usecases import OptimiseResult
 from stepnc_model import writeback
-from stepnc_model.post.controls import Control
-from stepnc_model.writeback import Profile
+from stepnc_model.file_profile import FileProfile
+from stepnc_model.post.dialect import Dialect
+from tests.asking import asked_advice
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 STEPS = ("ROUGH OPEN POCKET", "FINISH OPEN POCKET")
@@ -42,21 +43,21 @@ def part(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def outcome(part: Path) -> Outcome:
-    return usecases.optimise(Request(file=part, machine="vmc15", confirm=True))
+def outcome(part: Path) -> OptimiseResult:
+    return usecases.optimise(*asked_advice(file=part, machine="vmc15", confirm=True))
 
 
-def written(outcome: Outcome) -> Path:
+def written(outcome: OptimiseResult) -> Path:
     assert outcome.written is not None
     return outcome.written
 
 
-def advices(outcome: Outcome) -> dict[str, Advice]:
+def advices(outcome: OptimiseResult) -> dict[str, Advice]:
     found = {each.workingstep.id: each for each in outcome.plan.advices}
     return {name: found[name] for name in STEPS}
 
 
-def advised(outcome: Outcome) -> dict[str, float]:
+def advised(outcome: OptimiseResult) -> dict[str, float]:
     """Feed per tooth straight down, mm."""
     found = {}
     for name, each in advices(outcome).items():
@@ -66,12 +67,14 @@ def advised(outcome: Outcome) -> dict[str, float]:
     return found
 
 
-def pockets(outcome: Outcome) -> list[ConfirmedStep]:
+def pockets(outcome: OptimiseResult) -> list[ConfirmedStep]:
     assert outcome.confirmation is not None
     return [step for step in outcome.confirmation.steps if step.id in STEPS]
 
 
-def test_plan_and_run_agree_in_time_thrust_and_power_of_a_plunge(outcome: Outcome) -> None:
+def test_plan_and_run_agree_in_time_thrust_and_power_of_a_plunge(
+    outcome: OptimiseResult,
+) -> None:
     for step in pockets(outcome):
         of = {each.key: each for each in step.figures}
         assert of["time_s"].found == pytest.approx(of["time_s"].promised, rel=0.01)
@@ -81,9 +84,9 @@ def test_plan_and_run_agree_in_time_thrust_and_power_of_a_plunge(outcome: Outcom
             assert of[key].found == pytest.approx(of[key].promised, rel=0.05), (step.id, key)
 
 
-@pytest.mark.parametrize("profile", list(Profile))
+@pytest.mark.parametrize("profile", list(FileProfile))
 def test_the_record_carries_it_in_either_profile(
-    outcome: Outcome, tmp_path: Path, profile: Profile
+    outcome: OptimiseResult, tmp_path: Path, profile: FileProfile
 ) -> None:
     converted = tmp_path / "converted.stpnc"
     program = read_program(written(outcome), units="iso")
@@ -94,9 +97,11 @@ def test_the_record_carries_it_in_either_profile(
     assert told[2:] == pytest.approx(list(advised(outcome).values()))
 
 
-def test_advice_that_was_taken_is_given_again(outcome: Outcome, tmp_path: Path) -> None:
+def test_advice_that_was_taken_is_given_again(outcome: OptimiseResult, tmp_path: Path) -> None:
     output = tmp_path / "again.stpnc"
-    again = usecases.optimise(Request(file=written(outcome), machine="vmc15", output=output))
+    again = usecases.optimise(
+        *asked_advice(file=written(outcome), machine="vmc15", output=output)
+    )
     for name, each in advices(again).items():
         assert each.before is not None
         assert each.after is not None
@@ -105,9 +110,9 @@ def test_advice_that_was_taken_is_given_again(outcome: Outcome, tmp_path: Path) 
     assert advised(again) == pytest.approx(advised(outcome))
 
 
-@pytest.mark.parametrize("control", list(Control))
+@pytest.mark.parametrize("control", list(Dialect))
 def test_the_code_of_every_control_feeds_slower_down_and_as_the_cut_after_it(
-    outcome: Outcome, control: Control
+    outcome: OptimiseResult, control: Dialect
 ) -> None:
     program = read_program(written(outcome), units="iso")
     paths = with_feeds(paths_of(program, tell=lambda _: None), keep_going=False)
@@ -171,7 +176,7 @@ def test_a_tool_table_says_whether_a_tool_cuts_over_centre(
 
 
 def test_a_plunge_feed_that_is_not_positive_is_refused(
-    outcome: Outcome, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    outcome: OptimiseResult, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     text = written(outcome).read_text(encoding="ascii")
     wrong, output = tmp_path / "wrong.stpnc", tmp_path / "out.ngc"

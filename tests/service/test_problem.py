@@ -26,7 +26,7 @@ from service.errors import (
     Unauthorised,
     Unavailable,
 )
-from service.problem import plain_problem, problem_of, status_of, title_and_detail, type_of
+from service.problem import plain_problem, problem_of, status_of, type_of
 from simulator.errors import LibraryError, OutOfTravel, UnknownMachine
 from stepnc_model.errors import Part21Error, SchemaError, StepNcError, WriteError
 
@@ -126,7 +126,6 @@ def test_a_problem_without_an_error() -> None:
         "detail": "why",
         "errors": [1],
     }
-    assert title_and_detail(found) == "Invalid request: why"
 
 
 def test_every_error_of_the_service_has_a_line_of_its_own_in_the_table() -> None:

@@ -15,8 +15,8 @@ LOADS, TIME = 0.05, 0.01
 def run(name: str) -> Confirmation:
     if name == EX1.name and not EX1.exists():
         pytest.skip("ex1.stp is not beside the project")
-    (part,) = (part for part in PARTS if part.file.name == name)
-    return confirmed(part)
+    (part,) = (part for part in PARTS if part[0].name == name)
+    return confirmed(*part)
 
 
 def figures(name: str) -> Iterator[tuple[str, Figure]]:

@@ -4,19 +4,20 @@ from pathlib import Path
 
 import pytest
 
-from service.usecases import Request, optimise
+from service.usecases import optimise
 from stepnc_model import writeback
 from stepnc_model.entities.tools import MillingCuttingTool, MillingToolBody
 from stepnc_model.program import Program
-from stepnc_model.record import Record
+from stepnc_model.record import AdviceRecord
 from stepnc_model.technology import programmed
+from tests.asking import asked_advice
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 
 
-def written(name: str, folder: Path, **options: str) -> tuple[Program, dict[int, Record]]:
+def written(name: str, folder: Path, **options: str) -> tuple[Program, dict[int, AdviceRecord]]:
     output = folder / "out.stpnc"
-    optimise(Request(file=PARTS / f"{name}.stpnc", output=output, **options))  # type: ignore[arg-type]
+    optimise(*asked_advice(file=PARTS / f"{name}.stpnc", output=output, **options))  # type: ignore[arg-type]
     program = Program.load(output)
     return program, writeback.records(program)
 

@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from service.usecases import Request, optimise
+from service.usecases import optimise
+from tests.asking import asked_advice
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 
@@ -16,7 +17,7 @@ def page(tmp_path_factory: pytest.TempPathFactory) -> str:
     source = folder / "a&b <i>.stpnc"
     source.write_bytes((PARTS / "bracket.stpnc").read_bytes())
     report = folder / "page.html"
-    optimise(Request(file=source, report=report, pareto=True))
+    optimise(*asked_advice(file=source, report=report, pareto=True))
     return report.read_text(encoding="utf-8")
 
 
@@ -28,7 +29,7 @@ def own(page: str) -> str:
 def test_every_workingstep_has_a_row_with_its_reason(page: str) -> None:
     assert page.count("<tr><td>") == 16
     assert "353.7 → 1237.9" in page
-    assert "untouched: inhibit_feedrate_override: nobody may touch this feed" in page
+    assert "untouched: inhibit_feedrate_override: the program locks this feed" in page
 
 
 def test_all_five_plots_are_drawn(page: str) -> None:

@@ -7,7 +7,7 @@ import pytest
 
 from simulator.errors import LibraryError
 from simulator.grade_file import read_grades
-from simulator.spec import Grade, ToolKind
+from simulator.spec import ToolGrade, ToolKind
 from simulator.toml_file import read_toml
 
 GOOD = """
@@ -31,7 +31,7 @@ source = "shop"
 """
 
 
-def grades_of(text: str, folder: Path) -> tuple[Grade, ...]:
+def grades_of(text: str, folder: Path) -> tuple[ToolGrade, ...]:
     path = folder / "drill.toml"
     path.write_text(text, encoding="utf-8")
     return read_grades(read_toml(path), ToolKind.DRILL)

@@ -19,7 +19,7 @@ from simulator.library import (
     material_names,
 )
 from simulator.matching import match_material
-from simulator.spec import CuttingMaterial, ToolBody, ToolKind
+from simulator.spec import CuttingMaterial, ToolConstruction, ToolKind
 from simulator.toml_file import read_toml
 from stepnc_model.plausibility import MAX_CUTTING_SPEED
 from stepnc_model.units import m_min_from_speed
@@ -133,7 +133,10 @@ def test_an_end_mill_and_a_face_mill_of_carbide_have_different_speeds() -> None:
     inserts = find_window(material, ToolKind.FACEMILL, CARBIDE)
     assert solid is not None
     assert inserts is not None
-    assert (solid.tool_body, inserts.tool_body) == (ToolBody.SOLID, ToolBody.INDEXABLE)
+    assert (solid.tool_body, inserts.tool_body) == (
+        ToolConstruction.SOLID,
+        ToolConstruction.INDEXABLE,
+    )
     assert m_min_from_speed(solid.max_cutting_speed or 0) == pytest.approx(250)
     assert m_min_from_speed(inserts.max_cutting_speed or 0) == pytest.approx(280)
 
@@ -141,7 +144,7 @@ def test_an_end_mill_and_a_face_mill_of_carbide_have_different_speeds() -> None:
 def test_the_other_window_serves_where_a_source_gives_only_one() -> None:
     window = find_window(load_material("inconel718"), ToolKind.TURNING, CARBIDE)
     assert window is not None
-    assert window.tool_body is ToolBody.SOLID
+    assert window.tool_body is ToolConstruction.SOLID
 
 
 def test_a_material_without_a_window_says_so() -> None:
@@ -200,8 +203,8 @@ def test_hardened_materials_are_below_the_one_table_that_measurements_passed(nam
 def test_the_windows_are_those_of_the_source_table() -> None:
     columns = {
         (HSS, None): "Vc_HSS",
-        (CARBIDE, ToolBody.SOLID): "Vc_solid_carbide",
-        (CARBIDE, ToolBody.INDEXABLE): "Vc_indexable_carbide",
+        (CARBIDE, ToolConstruction.SOLID): "Vc_solid_carbide",
+        (CARBIDE, ToolConstruction.INDEXABLE): "Vc_indexable_carbide",
         (CERAMIC, None): "Vc_ceramic",
     }
     for row in rows():

@@ -11,9 +11,9 @@ from simulator.physics.axis import axis_power, motor_speed
 from simulator.physics.spindle_motion import spindle_power
 from simulator.spec import (
     AxisDrive,
-    Direction,
     Machine,
     MachineKind,
+    ModeDirection,
     VibratingPart,
     VibrationMode,
 )
@@ -238,7 +238,7 @@ def test_measured_modes_are_read_in_canonical_units(tmp_path: Path) -> None:
         part=VibratingPart.TOOL,
         tool="END MILL 20MM",
         tool_diameter=20.0,
-        direction=Direction.XY,
+        direction=ModeDirection.XY,
         natural_frequency=922.0,
         damping_ratio=0.011,
         stiffness=1_340.0,

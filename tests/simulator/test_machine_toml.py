@@ -16,9 +16,9 @@ from simulator.machine_toml import machine_toml
 from simulator.spec import (
     Axis,
     AxisDrive,
-    Direction,
     Machine,
     MachineKind,
+    ModeDirection,
     Spindle,
     SpindlePoint,
     VibratingPart,
@@ -92,7 +92,7 @@ WORK_MODES = st.just({"part": VibratingPart.WORKPIECE})
 MODES = st.builds(
     lambda of, **numbers: VibrationMode(**of, **numbers),
     TOOL_MODES | WORK_MODES,
-    direction=st.sampled_from(Direction),
+    direction=st.sampled_from(ModeDirection),
     natural_frequency=within(allowed.FREQUENCY),
     damping_ratio=within(allowed.DAMPING),
     stiffness=within(allowed.STIFFNESS).map(n_mm_from_n_um),

@@ -7,7 +7,7 @@ import pytest
 
 from simulator.errors import LibraryError
 from simulator.library import load_material
-from simulator.spec import CuttingMaterial, Material, ToolBody
+from simulator.spec import CuttingMaterial, ToolConstruction, WorkMaterial
 
 GOOD = """
 title = "My steel"
@@ -47,7 +47,7 @@ source = "catalogue"
 """
 
 
-def material_of(text: str, folder: Path) -> Material:
+def material_of(text: str, folder: Path) -> WorkMaterial:
     path = folder / "my.toml"
     path.write_text(text, encoding="utf-8")
     return load_material(str(path))
@@ -62,7 +62,7 @@ def test_a_users_own_file_is_read_in_canonical_units(tmp_path: Path) -> None:
     window = material.windows[0]
     assert (window.cutting_material, window.tool_body) == (
         CuttingMaterial.CARBIDE,
-        ToolBody.INDEXABLE,
+        ToolConstruction.INDEXABLE,
     )
     assert (window.min_cutting_speed, window.max_cutting_speed) == (2000.0, 4000.0)
     assert window.taylor is not None

@@ -7,13 +7,13 @@ import pytest
 
 from simulator.machine.samples import (
     Condition,
-    Direction,
     Execution,
     PathMode,
     Rotation,
     Samples,
+    TravelDirection,
 )
-from simulator.timeline import COLUMNS, Column
+from simulator.timeline import COLUMNS, DataItem
 
 NAMED = {column.name: column for column in COLUMNS}
 
@@ -26,7 +26,7 @@ def test_names_are_unique() -> None:
 
 
 @pytest.mark.parametrize("column", COLUMNS, ids=lambda column: column.name)
-def test_source_is_a_column_of_the_samples(column: Column) -> None:
+def test_source_is_a_column_of_the_samples(column: DataItem) -> None:
     assert hasattr(Samples, column.source)
     has_three = column.source in {"position", "velocity", "direction", "axis_power"}
     assert has_three == (column.axis is not None)
@@ -48,8 +48,8 @@ def test_axes_are_in_order() -> None:
         ("execution", Execution),
         ("path_mode", PathMode),
         ("overload", Condition),
-        ("x_axis_direction", Direction),
-        ("z_axis_direction", Direction),
+        ("x_axis_direction", TravelDirection),
+        ("z_axis_direction", TravelDirection),
         ("rotary_direction", Rotation),
     ],
 )

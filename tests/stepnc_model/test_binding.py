@@ -4,18 +4,22 @@ from pathlib import Path
 
 import pytest
 
-from stepnc_model.binding import Model, bind, keyword_of, to_parameters
+from stepnc_model.binding import Model, bind, to_parameters
 from stepnc_model.entities.adaptive import AdaptiveMillingTechnology
-from stepnc_model.entities.drilling import BackBoring, Drilling, Tapping
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.enums import SpeedName, StrokeConnectionStrategy, ToolReferencePoint
 from stepnc_model.entities.executables import Workplan
 from stepnc_model.entities.geometry import CartesianPoint, ElementarySurface, Plane
-from stepnc_model.entities.milling import BottomAndSideRoughMilling, PlaneFinishMilling
-from stepnc_model.entities.operations import MachiningOperation
-from stepnc_model.entities.strategies import BidirectionalMilling
+from stepnc_model.entities.milling import (
+    BackBoring,
+    BidirectionalMilling,
+    BottomAndSideRoughMilling,
+    Drilling,
+    PlaneFinishMilling,
+    Tapping,
+)
+from stepnc_model.entities.operations import CutterLocationTrajectory, MachiningOperation
 from stepnc_model.entities.technology import MillingTechnology
-from stepnc_model.entities.toolpaths import CutterLocationTrajectory
 from stepnc_model.entities.tools import BoringTool, CuttingComponent, MillingCuttingTool
 from stepnc_model.errors import Finding, SchemaError, Severity
 from stepnc_model.part21.reader import Part21File
@@ -281,7 +285,7 @@ def test_older_keyword_gives_the_newer_entity() -> None:
     model = model_of("#1=BIDIRECTIONAL(0.05,.T.,$,.LEFT.,.STRAIGHTLINE.);")
     strategy = model.get(Ref[BidirectionalMilling](1))
     assert strategy.its_stroke_connection_strategy is StrokeConnectionStrategy.STRAIGHTLINE
-    assert keyword_of(strategy) == "BIDIRECTIONAL_MILLING"
+    assert strategy.keyword == "BIDIRECTIONAL_MILLING"
 
 
 def test_entity_is_given_back_as_parameters() -> None:

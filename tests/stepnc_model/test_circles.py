@@ -2,7 +2,7 @@
 
 import pytest
 
-from stepnc_model.circles import circles
+from stepnc_model.binding import circles
 
 
 @pytest.mark.parametrize(

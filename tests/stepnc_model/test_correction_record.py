@@ -9,9 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from stepnc_model.correction_record import RecordedCorrection
-from stepnc_model.outcome import Context, Correction
-from stepnc_model.outcome_record import read_outcomes, write_outcomes
+from stepnc_model.outcome import Context, LearnedCorrection
+from stepnc_model.outcome_record import RecordedCorrection, read_outcomes, write_outcomes
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
 
@@ -22,7 +21,7 @@ PAPER = (PARTS / "paper002.stpnc").read_bytes()
 NOON = datetime(2026, 3, 1, 12, 0, tzinfo=timezone(timedelta(hours=1)))
 CONTEXT = Context(machine="vmc15", material="C45", tool="END MILL 12MM")
 
-CORRECTION = Correction(
+CORRECTION = LearnedCorrection(
     context=CONTEXT,
     log_centre=log(1.31),
     log_scale=0.02,
@@ -35,7 +34,7 @@ CORRECTION = Correction(
 )
 
 
-def written(data: bytes, *corrections: Correction) -> bytes:
+def written(data: bytes, *corrections: LearnedCorrection) -> bytes:
     return write_outcomes(Program(Part21File.from_bytes(data)), [], corrections)
 
 
@@ -133,7 +132,7 @@ TIMES = st.datetimes(timezones=st.just(UTC))
 
 
 @st.composite
-def corrections(draw: st.DrawFn) -> Correction:
+def corrections(draw: st.DrawFn) -> LearnedCorrection:
     texts = st.sampled_from(["a", "it's", "Fräser Ø10"])
     accepted = draw(st.booleans())
     return replace(
@@ -149,7 +148,9 @@ def corrections(draw: st.DrawFn) -> Correction:
 
 @given(st.lists(corrections(), max_size=5))
 @settings(max_examples=50)
-def test_of_any_corrections_the_newest_of_each_context_stands(given: list[Correction]) -> None:
+def test_of_any_corrections_the_newest_of_each_context_stands(
+    given: list[LearnedCorrection],
+) -> None:
     data = written(PAPER, *given)
     assert written(data, *given) == data
     one_by_one = PAPER
@@ -169,6 +170,6 @@ def test_of_any_corrections_the_newest_of_each_context_stands(given: list[Correc
             assert standing[0].factor == pytest.approx(factors[-1])
 
 
-def when(correction: Correction) -> datetime:
+def when(correction: LearnedCorrection) -> datetime:
     assert correction.accepted_at is not None
     return correction.accepted_at

@@ -4,13 +4,14 @@ from pathlib import Path
 
 import pytest
 
-from service.usecases import Request, optimise
+from service.usecases import optimise
 from stepnc_model import writeback
 from stepnc_model.errors import SchemaError
+from stepnc_model.file_profile import FileProfile
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
 from stepnc_model.technology import programmed
-from stepnc_model.writeback import Profile
+from tests.asking import asked_advice
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 TECHNOLOGY = b"#41=MILLING_TECHNOLOGY($,.TCP.,0.583333333333333,$,0.05,.F.,.F.,.F.,$);"
@@ -30,17 +31,17 @@ def with_step(data: bytes, step: bytes, more: bytes = b"") -> bytes:
     return data.replace(STEP, STEP + b"\n" + step + more)
 
 
-def optimised(data: bytes, folder: Path, profile: Profile, **options: object) -> bytes:
+def optimised(data: bytes, folder: Path, profile: FileProfile, **options: object) -> bytes:
     source, output = folder / "in.stpnc", folder / "out.stpnc"
     source.write_bytes(data)
-    request = Request(
+    request = asked_advice(
         file=source,
         output=output,
         profile=profile.value,
         machine="paper002",
         **options,  # type: ignore[arg-type]
     )
-    optimise(request)
+    optimise(*request)
     return output.read_bytes()
 
 
@@ -61,14 +62,14 @@ def test_a_feed_inside_a_shared_technology_changes_for_one_operation_only(
         b"#4=MACHINING_WORKINGSTEP('AGAIN',#22,#30,#45,$);",
         second,
     )
-    after = feeds(optimised(data, tmp_path, Profile.STANDARD, workingsteps=("#3",)))
+    after = feeds(optimised(data, tmp_path, FileProfile.STANDARD, workingsteps=("#3",)))
     assert after["ROUGH THE FACE"] == pytest.approx(0.1171, rel=1e-3)
     assert after["AGAIN"] == pytest.approx(0.05)
 
 
-@pytest.mark.parametrize("profile", list(Profile))
+@pytest.mark.parametrize("profile", list(FileProfile))
 def test_one_operation_of_two_workingsteps_carries_one_record(
-    profile: Profile, tmp_path: Path
+    profile: FileProfile, tmp_path: Path
 ) -> None:
     data = with_step(paper002(), b"#4=MACHINING_WORKINGSTEP('AGAIN',#22,#30,#40,$);")
     once = optimised(data, tmp_path, profile)
@@ -79,13 +80,15 @@ def test_one_operation_of_two_workingsteps_carries_one_record(
 def test_an_operation_without_machine_functions_is_refused_by_name(tmp_path: Path) -> None:
     data = paper002().replace(b"#50,#41,#42,$,#43", b"#50,#41,$,$,#43")
     with pytest.raises(SchemaError, match="#40 PLANE_ROUGH_MILLING") as caught:
-        optimised(data, tmp_path, Profile.STANDARD)
+        optimised(data, tmp_path, FileProfile.STANDARD)
     assert caught.value.attribute == "its_machine_functions"
 
 
-@pytest.mark.parametrize("profile", list(Profile))
+@pytest.mark.parametrize("profile", list(FileProfile))
 @pytest.mark.parametrize("end", [b"#44,3.);", b"#44);"])
-def test_a_short_operation_is_filled_up(profile: Profile, end: bytes, tmp_path: Path) -> None:
+def test_a_short_operation_is_filled_up(
+    profile: FileProfile, end: bytes, tmp_path: Path
+) -> None:
     data = paper002().replace(b"#44,3.,0.);", end)
     once = optimised(data, tmp_path, profile)
     assert len(writeback.records(Program(Part21File.from_bytes(once)))) == 1
@@ -96,6 +99,6 @@ def test_the_printed_place_of_a_record_is_left_and_depths_stay_in_theirs(
     tmp_path: Path,
 ) -> None:
     source = (Path(__file__).parents[1] / "data" / "fig11.stpnc").read_bytes()
-    text = optimised(source, tmp_path, Profile.OPTIMISATION, material="paper002").decode()
+    text = optimised(source, tmp_path, FileProfile.OPTIMISATION, material="paper002").decode()
     line = next(line for line in text.splitlines() if line.startswith("#20="))
     assert "#41, $,#60, #61, #42, 3., $, #" in line

@@ -1,7 +1,6 @@
 """The first findings of each severity, and how many more."""
 
-from stepnc_model.errors import Finding, Severity
-from stepnc_model.finding_list import MOST_FINDINGS, FindingList
+from stepnc_model.errors import MOST_FINDINGS, Finding, FindingList, Severity
 
 
 def finding(severity: Severity, line: int) -> Finding:

@@ -9,15 +9,23 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from service.usecases import Request, optimise
+from service.usecases import optimise
 from stepnc_model import writeback
 from stepnc_model.errors import SchemaError
-from stepnc_model.outcome import Context, Correction, FeatureFacts, ProcessOutcome, Quantity
+from stepnc_model.file_profile import FileProfile
+from stepnc_model.outcome import (
+    Context,
+    EvaluatedQuantity,
+    FeatureFacts,
+    LearnedCorrection,
+    ProcessOutcome,
+)
 from stepnc_model.outcome_record import read_outcomes, write_outcomes
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
-from stepnc_model.writeback import SCHEMA, Profile
+from stepnc_model.writeback import SCHEMA
+from tests.asking import asked_advice
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 BRACKET = (PARTS / "bracket.stpnc").read_bytes()
@@ -25,7 +33,7 @@ PAPER = (PARTS / "paper002.stpnc").read_bytes()
 
 NOON = datetime(2026, 3, 1, 12, 0, tzinfo=timezone(timedelta(hours=1)))
 CONTEXT = Context(machine="vmc15", material="C45", tool="END MILL 12MM")
-NOTHING = Quantity()
+NOTHING = EvaluatedQuantity()
 
 OUTCOME = ProcessOutcome(
     context=CONTEXT,
@@ -36,14 +44,14 @@ OUTCOME = ProcessOutcome(
     mode="TC",
     specific_force=1500.0,
     cutting_speed=1666.0,
-    step_depth=Quantity(predicted=4.0, measured=4.0),
+    step_depth=EvaluatedQuantity(predicted=4.0, measured=4.0),
     feed_per_tooth=NOTHING,
     immersion=None,
     strategy="contour_parallel",
-    roughness=Quantity(measured=1.6e-3),
-    time=Quantity(predicted=130.0, measured=131.5),
-    force=Quantity(predicted=900.0, measured=950.0),
-    feed=Quantity(measured=17.0),
+    roughness=EvaluatedQuantity(measured=1.6e-3),
+    time=EvaluatedQuantity(predicted=130.0, measured=131.5),
+    force=EvaluatedQuantity(predicted=900.0, measured=950.0),
+    feed=EvaluatedQuantity(measured=17.0),
     force_bound=1000.0,
     force_ratio=None,
     trace="runs/1.parquet",
@@ -52,7 +60,7 @@ OUTCOME = ProcessOutcome(
     recorded_by="operator",
 )
 
-CORRECTION = Correction(
+CORRECTION = LearnedCorrection(
     context=CONTEXT,
     log_centre=log(1.31),
     log_scale=0.02,
@@ -69,9 +77,9 @@ def program_of(data: bytes) -> Program:
     return Program(Part21File.from_bytes(data), name="part")
 
 
-def written(data: bytes, *given: ProcessOutcome | Correction) -> bytes:
+def written(data: bytes, *given: ProcessOutcome | LearnedCorrection) -> bytes:
     outcomes = [each for each in given if isinstance(each, ProcessOutcome)]
-    corrections = [each for each in given if isinstance(each, Correction)]
+    corrections = [each for each in given if isinstance(each, LearnedCorrection)]
     return write_outcomes(program_of(data), outcomes, corrections)
 
 
@@ -169,10 +177,13 @@ def test_an_id_of_two_operations_is_refused() -> None:
 @pytest.mark.parametrize(
     ("wrong", "message"),
     [
-        (replace(OUTCOME, time=Quantity(measured=-1.0)), "a machining time of -1 s"),
-        (replace(OUTCOME, force=Quantity(measured=float("nan"))), "a cutting force of nan N"),
-        (replace(OUTCOME, feed=Quantity(measured=0.0)), "a feed of 0 m/s"),
-        (replace(OUTCOME, roughness=Quantity(measured=0.0)), "a roughness of 0 µm"),
+        (replace(OUTCOME, time=EvaluatedQuantity(measured=-1.0)), "a machining time of -1 s"),
+        (
+            replace(OUTCOME, force=EvaluatedQuantity(measured=float("nan"))),
+            "a cutting force of nan N",
+        ),
+        (replace(OUTCOME, feed=EvaluatedQuantity(measured=0.0)), "a feed of 0 m/s"),
+        (replace(OUTCOME, roughness=EvaluatedQuantity(measured=0.0)), "a roughness of 0 µm"),
         (replace(OUTCOME, recorded_at=NOON.replace(tzinfo=None)), "has no time zone"),
         (replace(CORRECTION, log_centre=1000.0), "a factor on k_c of inf"),
         (replace(CORRECTION, log_centre=-1000.0), "a factor on k_c of 0"),
@@ -182,7 +193,7 @@ def test_an_id_of_two_operations_is_refused() -> None:
     ],
 )
 def test_numbers_that_the_schema_forbids_are_refused(
-    wrong: ProcessOutcome | Correction, message: str
+    wrong: ProcessOutcome | LearnedCorrection, message: str
 ) -> None:
     with pytest.raises(ValueError, match=message):
         written(BRACKET, wrong)
@@ -208,13 +219,13 @@ class TestProfiles:
         outcome = replace(OUTCOME, workingstep=program_of(data).workingsteps[0].id)
         with pytest.raises(SchemaError, match="convert the program to profile 'optimisation'"):
             written(data, outcome)
-        other = writeback.convert(program_of(data), Profile.OPTIMISATION)
+        other = writeback.convert(program_of(data), FileProfile.OPTIMISATION)
         assert len(read_outcomes(program_of(written(other, outcome))).outcomes) == 1
 
     def test_a_program_with_outcomes_has_no_profile_standard(self, tmp_path: Path) -> None:
         data = written(BRACKET, OUTCOME)
         with pytest.raises(SchemaError, match="OUTCOME: has no form in profile 'standard'"):
-            writeback.convert(program_of(data), Profile.STANDARD)
+            writeback.convert(program_of(data), FileProfile.STANDARD)
         with pytest.raises(SchemaError, match="has no form in profile 'standard'"):
             optimised(written(PAPER, CORRECTION), tmp_path, profile="standard")
 
@@ -222,7 +233,7 @@ class TestProfiles:
         data = optimised(PAPER, tmp_path)
         outcome = replace(OUTCOME, workingstep=program_of(data).workingsteps[0].id)
         data = written(data, outcome)
-        without = writeback.convert(program_of(data), Profile.OPTIMISATION)
+        without = writeback.convert(program_of(data), FileProfile.OPTIMISATION)
         assert SCHEMA in Part21File.from_bytes(without).schemas
         assert len(read_outcomes(program_of(without)).outcomes) == 1
 
@@ -230,7 +241,7 @@ class TestProfiles:
 def optimised(data: bytes, folder: Path, *, profile: str = "optimisation") -> bytes:
     source, output = folder / "in.stpnc", folder / "out.stpnc"
     source.write_bytes(data)
-    optimise(Request(file=source, output=output, profile=profile, machine=""))
+    optimise(*asked_advice(file=source, output=output, profile=profile, machine=""))
     return output.read_bytes()
 
 
@@ -259,10 +270,10 @@ def outcomes(draw: st.DrawFn) -> ProcessOutcome:
     return replace(
         OUTCOME,
         workingstep=draw(st.sampled_from(STEPS)),
-        time=Quantity(measured=draw(MEASURED)),
-        force=Quantity(measured=draw(MEASURED)),
-        feed=Quantity(measured=draw(MEASURED)),
-        roughness=Quantity(measured=draw(MEASURED)),
+        time=EvaluatedQuantity(measured=draw(MEASURED)),
+        force=EvaluatedQuantity(measured=draw(MEASURED)),
+        feed=EvaluatedQuantity(measured=draw(MEASURED)),
+        roughness=EvaluatedQuantity(measured=draw(MEASURED)),
         trace=draw(TEXTS),
         recorded_at=draw(TIMES),
     )

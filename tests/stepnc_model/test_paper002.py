@@ -15,7 +15,7 @@ from stepnc_model.entities.optimisation import (
     MainCuttingPower,
     TimeCriticalOptimisation,
 )
-from stepnc_model.paper002 import INLINED, RULE, Reading, read_printed
+from stepnc_model.paper002 import INLINED, RULE, ConsistentRecord, read_printed
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Enumeration, Real, Ref, Value
 from stepnc_model.program import Program
@@ -28,7 +28,7 @@ def figure() -> Part21File:
     return Part21File.from_bytes(FIGURE.read_bytes(), name=FIGURE.name)
 
 
-def read(figure: Part21File, number: int) -> Reading:
+def read(figure: Part21File, number: int) -> ConsistentRecord:
     reading = read_printed(
         figure.keyword(number),
         figure.parameters(number),

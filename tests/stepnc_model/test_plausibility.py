@@ -4,12 +4,13 @@ from pathlib import Path
 
 import pytest
 
-from service.usecases import Request, optimise
+from service.usecases import optimise
 from stepnc_model.errors import SchemaError, Severity
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.plausibility import RULE, implausible, refusal
 from stepnc_model.program import Program
-from stepnc_model.unit_profiles import ISO, PROFILES, UnitProfile
+from stepnc_model.units import ISO, PROFILES, UnitProfile
+from tests.asking import asked_advice
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 CORPUS = Path(__file__).parents[3] / "shared" / "corpus" / "iso14649"
@@ -197,7 +198,7 @@ class TestPublicFiles:
             pytest.skip(f"{name}.p21 is not beside the project")
         output = tmp_path / "out.stpnc"
         with pytest.raises(SchemaError) as caught:
-            optimise(Request(file=path, output=output))
+            optimise(*asked_advice(file=path, output=output))
         assert number in str(caught.value)
         assert f"plausible with --units {fitting}" in str(caught.value)
         assert caught.value.entity.endswith("MILLING_TECHNOLOGY")

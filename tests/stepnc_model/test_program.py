@@ -7,8 +7,8 @@ import pytest
 from stepnc_model.errors import Part21Error, SchemaError, Severity
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Program, Workingstep
-from stepnc_model.unit_profiles import PROFILES
+from stepnc_model.program import Program, ResolvedWorkingstep
+from stepnc_model.units import PROFILES
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 
@@ -263,7 +263,7 @@ class TestWorkingstep:
     def test_it_knows_what_it_refers_to(self) -> None:
         program = program_of(PROJECT, plan(2, 10), step(10), *COMMON)
         (found,) = program.workingsteps
-        assert isinstance(found, Workingstep)
+        assert isinstance(found, ResolvedWorkingstep)
         assert (found.tool_ref, found.technology_ref) == (Ref(61), Ref(64))
         assert (found.operation_ref, found.functions_ref) == (Ref(66), Ref(65))
         assert (found.features, found.operation_type) == ((Ref(60),), "drilling")

@@ -18,7 +18,7 @@ from stepnc_model.part21.writer import Edits
 from stepnc_model.record import (
     MODES,
     PREFIX,
-    Record,
+    AdviceRecord,
     parameters_of,
     read_entities,
     read_parameters,
@@ -34,7 +34,7 @@ NUMBERS = st.floats(allow_nan=False, allow_infinity=False)
 TEXTS = st.text(st.characters(exclude_categories=["Cs"]), max_size=20)
 IMMERSIONS = st.sampled_from(sorted(FaceMillingImmersion))
 
-RECORD = Record(
+RECORD = AdviceRecord(
     mode="TC",
     id="ROUGH THE FACE",
     description="as fast as the spindle allows",
@@ -63,11 +63,11 @@ RECORD = Record(
     programmed_axial_depth=3.0,
     plunge_feed_per_tooth=0.02,
 )
-OPTIONAL = tuple(each.name for each in fields(Record) if each.default is None)
+OPTIONAL = tuple(each.name for each in fields(AdviceRecord) if each.default is None)
 
 
 @st.composite
-def records(draw: st.DrawFn) -> Record:
+def records(draw: st.DrawFn) -> AdviceRecord:
     """Any record; the angle of contact and the name of the immersion come together."""
     faces = st.tuples(NUMBERS, IMMERSIONS.map(str)) | st.just((None, None))
     values: dict[str, Any] = {
@@ -75,25 +75,25 @@ def records(draw: st.DrawFn) -> Record:
         "number_of_passes": draw(st.integers(0, 10**6)),
     }
     values["contact_angle"], values["immersion"] = draw(faces)
-    for each in fields(Record):
+    for each in fields(AdviceRecord):
         if each.name in values:
             continue
         strategy: st.SearchStrategy[Any] = NUMBERS if "unit" in each.metadata else TEXTS
         values[each.name] = draw(st.none() | strategy if each.default is None else strategy)
-    return Record(**values)
+    return AdviceRecord(**values)
 
 
-def through_entities(record: Record) -> Record | None:
+def through_entities(record: AdviceRecord) -> AdviceRecord | None:
     edits = Edits(Part21File.from_bytes(EMPTY))
     ref = write_entities(record, edits)
     return read_entities(Model(Part21File.from_bytes(edits.apply())), ref)
 
 
-def through_parameters(record: Record) -> Record | None:
+def through_parameters(record: AdviceRecord) -> AdviceRecord | None:
     return read_parameters(values_of(record))
 
 
-def values_of(record: Record) -> dict[str, float | str]:
+def values_of(record: AdviceRecord) -> dict[str, float | str]:
     """Parameters by their names without the prefix."""
     found: dict[str, float | str] = {}
     for parameter in parameters_of(record):
@@ -108,15 +108,15 @@ def values_of(record: Record) -> dict[str, float | str]:
 
 class TestLossless:
     @given(records())
-    def test_any_record_through_entities(self, record: Record) -> None:
+    def test_any_record_through_entities(self, record: AdviceRecord) -> None:
         assert through_entities(record) == record
 
     @given(records())
-    def test_any_record_through_parameters(self, record: Record) -> None:
+    def test_any_record_through_parameters(self, record: AdviceRecord) -> None:
         assert through_parameters(record) == record
 
     @given(records())
-    def test_any_record_through_both(self, record: Record) -> None:
+    def test_any_record_through_both(self, record: AdviceRecord) -> None:
         first = through_entities(record)
         assert first is not None
         second = through_parameters(first)
@@ -161,7 +161,7 @@ class TestParameters:
         assert all(each.parameter_name.startswith(PREFIX) for each in parameters_of(RECORD))
 
     def test_one_for_each_number_or_word(self) -> None:
-        assert len(list(parameters_of(RECORD))) == len(fields(Record))
+        assert len(list(parameters_of(RECORD))) == len(fields(AdviceRecord))
 
     def test_what_is_absent_is_not_written(self) -> None:
         assert "surface_roughness" not in values_of(replace(RECORD, surface_roughness=None))

@@ -4,21 +4,24 @@ from pathlib import Path
 
 import pytest
 
-from service.usecases import Request, optimise
+from service.usecases import optimise
 from stepnc_model import writeback
+from stepnc_model.file_profile import FileProfile
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
 from stepnc_model.record_edit import has_parameters
-from stepnc_model.writeback import Profile
+from tests.asking import asked_advice
 
 PAPER002 = Path(__file__).parents[2] / "examples" / "parts" / "paper002.stpnc"
 FIG11 = Path(__file__).parents[1] / "data" / "fig11.stpnc"
 
 
-def optimised(profile: Profile, folder: Path) -> bytes:
+def optimised(profile: FileProfile, folder: Path) -> bytes:
     output = folder / "out.stpnc"
-    request = Request(file=PAPER002, output=output, machine="paper002", profile=profile.value)
-    optimise(request)
+    request = asked_advice(
+        file=PAPER002, output=output, machine="paper002", profile=profile.value
+    )
+    optimise(*request)
     return output.read_bytes()
 
 
@@ -41,11 +44,11 @@ def program_of(data: bytes) -> Program:
 def test_damaged_parameters_are_no_record_and_stay(
     old: bytes, new: bytes, tmp_path: Path
 ) -> None:
-    data = optimised(Profile.STANDARD, tmp_path)
+    data = optimised(FileProfile.STANDARD, tmp_path)
     assert old in data
     damaged = data.replace(old, new)
     assert writeback.records(program_of(damaged)) == {}
-    assert writeback.convert(program_of(damaged), Profile.OPTIMISATION) == damaged
+    assert writeback.convert(program_of(damaged), FileProfile.OPTIMISATION) == damaged
 
 
 @pytest.mark.parametrize(
@@ -60,20 +63,20 @@ def test_damaged_parameters_are_no_record_and_stay(
 def test_incomplete_entities_are_no_record_and_stay(
     old: bytes, new: bytes, tmp_path: Path
 ) -> None:
-    data = optimised(Profile.OPTIMISATION, tmp_path)
+    data = optimised(FileProfile.OPTIMISATION, tmp_path)
     assert old in data
     damaged = data.replace(old, new)
     assert writeback.records(program_of(damaged)) == {}
-    assert writeback.convert(program_of(damaged), Profile.STANDARD) == damaged
+    assert writeback.convert(program_of(damaged), FileProfile.STANDARD) == damaged
 
 
 def test_what_paper_002_prints_is_not_converted_away() -> None:
     data = FIG11.read_bytes()
-    assert writeback.convert(program_of(data), Profile.STANDARD) == data
+    assert writeback.convert(program_of(data), FileProfile.STANDARD) == data
 
 
-@pytest.mark.parametrize("profile", Profile)
-def test_only_profile_standard_has_parameters(profile: Profile, tmp_path: Path) -> None:
+@pytest.mark.parametrize("profile", FileProfile)
+def test_only_profile_standard_has_parameters(profile: FileProfile, tmp_path: Path) -> None:
     program = program_of(optimised(profile, tmp_path))
-    assert has_parameters(program) is (profile is Profile.STANDARD)
+    assert has_parameters(program) is (profile is FileProfile.STANDARD)
     assert not has_parameters(program_of(PAPER002.read_bytes()))

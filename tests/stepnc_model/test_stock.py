@@ -8,9 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program
-from stepnc_model.stock import Stock
-from stepnc_model.toolpath.job import stock_of
+from stepnc_model.program import Program, Stock
+from stepnc_model.toolpath.task import stock_of
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 BOX = Stock(low=(-3.0, -3.0, -40.0), high=(153.0, 93.0, 2.0))

@@ -8,8 +8,8 @@ from stepnc_model.errors import SchemaError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
-from stepnc_model.technology import Number, Programmed, Quantity, programmed
-from stepnc_model.unit_profiles import ISO, PROFILES, UnitProfile
+from stepnc_model.technology import Number, Programmed, ProgrammedQuantity, programmed
+from stepnc_model.units import ISO, PROFILES, UnitProfile
 
 HEADER = (
     "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('MACHINING_SCHEMA'));\nENDSEC;\nDATA;\n"
@@ -77,14 +77,14 @@ class TestMilling:
         assert conditions.feed == Number(
             ref=Ref(10),
             attribute="feedrate",
-            quantity=Quantity.FEED,
+            quantity=ProgrammedQuantity.FEED,
             value=40.0,
             scale=1000.0,
         )
         assert conditions.speed == Number(
             ref=Ref(10),
             attribute="spindle",
-            quantity=Quantity.SPINDLE_SPEED,
+            quantity=ProgrammedQuantity.SPINDLE_SPEED,
             value=12.0,
             scale=-1.0,
         )
@@ -94,15 +94,15 @@ class TestMilling:
 
     def test_cutting_speed_and_feed_per_tooth(self) -> None:
         conditions = milling("$", "2.5", "$", "0.1")
-        assert conditions.feed.quantity is Quantity.FEED_PER_TOOTH
+        assert conditions.feed.quantity is ProgrammedQuantity.FEED_PER_TOOTH
         assert (conditions.feed.value, conditions.feed.attribute) == (0.1, "feedrate_per_tooth")
-        assert conditions.speed.quantity is Quantity.CUTTING_SPEED
+        assert conditions.speed.quantity is ProgrammedQuantity.CUTTING_SPEED
         assert (conditions.speed.value, conditions.speed.attribute) == (2500.0, "cutspeed")
 
     def test_with_both_speeds_the_spindle_counts(self) -> None:
         conditions = milling(cutspeed="2.5")
         assert conditions.has_both_speeds
-        assert conditions.speed.quantity is Quantity.SPINDLE_SPEED
+        assert conditions.speed.quantity is ProgrammedQuantity.SPINDLE_SPEED
 
     def test_one_speed_is_not_both(self) -> None:
         assert not milling().has_both_speeds
@@ -150,16 +150,16 @@ class TestUnits:
     @pytest.mark.parametrize(
         ("name", "quantity", "value"),
         [
-            ("iso", Quantity.FEED, 120.0),
-            ("rpm-mmin", Quantity.FEED, 0.002),
-            ("rpm-mmtooth", Quantity.FEED_PER_TOOTH, 0.12),
-            ("rpm-mmrev", Quantity.FEED_PER_REVOLUTION, 0.12),
-            ("revs-mmtooth", Quantity.FEED_PER_TOOTH, 0.12),
-            ("revs-mmrev", Quantity.FEED_PER_REVOLUTION, 0.12),
+            ("iso", ProgrammedQuantity.FEED, 120.0),
+            ("rpm-mmin", ProgrammedQuantity.FEED, 0.002),
+            ("rpm-mmtooth", ProgrammedQuantity.FEED_PER_TOOTH, 0.12),
+            ("rpm-mmrev", ProgrammedQuantity.FEED_PER_REVOLUTION, 0.12),
+            ("revs-mmtooth", ProgrammedQuantity.FEED_PER_TOOTH, 0.12),
+            ("revs-mmrev", ProgrammedQuantity.FEED_PER_REVOLUTION, 0.12),
         ],
     )
     def test_what_a_feedrate_of_0_12_means(
-        self, name: str, quantity: Quantity, value: float
+        self, name: str, quantity: ProgrammedQuantity, value: float
     ) -> None:
         feed = milling("0.12", units=PROFILES[name]).feed
         assert feed.quantity is quantity
@@ -205,8 +205,8 @@ class TestAdaptive:
 
     def test_cutting_speed_and_feed_per_tooth(self) -> None:
         conditions = adaptive("CUTSPEED(.T.,2.5)", "FEEDRATE_PER_TOOTH(.T.,0.1)")
-        assert conditions.feed.quantity is Quantity.FEED_PER_TOOTH
-        assert conditions.speed.quantity is Quantity.CUTTING_SPEED
+        assert conditions.feed.quantity is ProgrammedQuantity.FEED_PER_TOOTH
+        assert conditions.speed.quantity is ProgrammedQuantity.CUTTING_SPEED
         assert (conditions.feed.value, conditions.speed.value) == (0.1, 2500.0)
 
     def test_a_feed_that_may_not_adapt_is_inhibited(self) -> None:
@@ -242,11 +242,11 @@ class TestTurning:
         assert conditions.speed == Number(
             ref=Ref(11),
             attribute="rot_speed",
-            quantity=Quantity.SPINDLE_SPEED,
+            quantity=ProgrammedQuantity.SPINDLE_SPEED,
             value=25.0,
             scale=-1.0,
         )
-        assert conditions.feed.quantity is Quantity.FEED_PER_REVOLUTION
+        assert conditions.feed.quantity is ProgrammedQuantity.FEED_PER_REVOLUTION
         assert conditions.feed.value == 0.2
         assert conditions.max_spindle_speed is None
 

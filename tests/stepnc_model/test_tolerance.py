@@ -11,8 +11,8 @@ from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
 from stepnc_model.tolerance import (
     GREATEST_GRADE,
+    FileTolerance,
     Tolerance,
-    Written,
     general_tolerance,
     standard_tolerance,
     tolerance_findings,
@@ -33,7 +33,7 @@ def program_of(length: str, tolerance: str = "") -> Program:
     return Program(Part21File.from_bytes(data.encode(), name="part"), name="part")
 
 
-def written(tolerance: str, size: str = "25.") -> Written:
+def written(tolerance: str, size: str = "25.") -> FileTolerance:
     program = program_of(f"TOLERANCED_LENGTH_MEASURE({size},#4)", f"#4={tolerance};")
     return written_tolerance(program, Ref[TolerancedLengthMeasure](3))
 
@@ -88,7 +88,7 @@ def test_tolerance_is_read(text: str, half_width: float, code: str) -> None:
 
 def test_length_without_a_tolerance_has_none() -> None:
     program = program_of("TOLERANCED_LENGTH_MEASURE(25.,$)")
-    assert written_tolerance(program, Ref[TolerancedLengthMeasure](3)) == Written(
+    assert written_tolerance(program, Ref[TolerancedLengthMeasure](3)) == FileTolerance(
         tolerance=None
     )
 
@@ -142,7 +142,7 @@ def test_tolerance_that_is_not_there_is_told_at_the_length() -> None:
 
 def test_what_is_no_toleranced_length_has_no_tolerance() -> None:
     program = program_of("CARTESIAN_POINT('',(0.,0.,0.))")
-    assert written_tolerance(program, Ref[TolerancedLengthMeasure](3)) == Written(
+    assert written_tolerance(program, Ref[TolerancedLengthMeasure](3)) == FileTolerance(
         tolerance=None
     )
 

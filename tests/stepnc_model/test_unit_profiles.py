@@ -2,7 +2,7 @@
 
 import pytest
 
-from stepnc_model.unit_profiles import ISO, PROFILES, FeedUnit
+from stepnc_model.units import ISO, PROFILES, FeedUnit
 
 
 def test_the_standard_writes_metres_per_second_and_revolutions_per_second() -> None:

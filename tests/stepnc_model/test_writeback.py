@@ -6,13 +6,15 @@ from pathlib import Path
 
 import pytest
 
-from service.usecases import Request, convert, optimise
+from service.usecases import convert, optimise
 from stepnc_model import writeback
+from stepnc_model.file_profile import FileProfile
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
-from stepnc_model.record import Record
+from stepnc_model.record import AdviceRecord
 from stepnc_model.technology import programmed
-from stepnc_model.writeback import SCHEMA, Profile
+from stepnc_model.writeback import SCHEMA
+from tests.asking import asked_advice
 from tests.stepnc_model.written import (
     ADAPTIVE,
     BOTH_WAYS,
@@ -42,7 +44,7 @@ class TestConversion:
     @pytest.mark.parametrize("name", PARTS_NAMES)
     @pytest.mark.parametrize(("profile", "other"), BOTH_WAYS)
     def test_there_and_back_gives_the_same_bytes(
-        self, name: str, profile: Profile, other: Profile
+        self, name: str, profile: FileProfile, other: FileProfile
     ) -> None:
         data = optimised(part(name), profile)
         there = converted(data, other)
@@ -51,7 +53,7 @@ class TestConversion:
 
     @pytest.mark.parametrize(("profile", "other"), BOTH_WAYS)
     def test_ex1_there_and_back_gives_the_same_bytes(
-        self, profile: Profile, other: Profile
+        self, profile: FileProfile, other: FileProfile
     ) -> None:
         data = optimised(ex1(), profile)
         assert converted(converted(data, other), profile) == data
@@ -59,7 +61,7 @@ class TestConversion:
     @pytest.mark.parametrize("name", PARTS_NAMES)
     @pytest.mark.parametrize(("profile", "other"), BOTH_WAYS)
     def test_conversion_gives_what_the_other_profile_would_have_written(
-        self, name: str, profile: Profile, other: Profile
+        self, name: str, profile: FileProfile, other: FileProfile
     ) -> None:
         data = optimised(part(name), profile)
         assert converted(data, other) == optimised(part(name), other)
@@ -67,7 +69,7 @@ class TestConversion:
     @pytest.mark.parametrize("name", PARTS_NAMES)
     @pytest.mark.parametrize("profile", PROFILES)
     def test_into_the_same_profile_gives_the_same_bytes(
-        self, name: str, profile: Profile
+        self, name: str, profile: FileProfile
     ) -> None:
         data = optimised(part(name), profile)
         assert converted(data, profile) == data
@@ -75,7 +77,7 @@ class TestConversion:
     @pytest.mark.parametrize("name", PARTS_NAMES)
     @pytest.mark.parametrize(("profile", "other"), BOTH_WAYS)
     def test_the_records_stay_the_same(
-        self, name: str, profile: Profile, other: Profile
+        self, name: str, profile: FileProfile, other: FileProfile
     ) -> None:
         data = optimised(part(name), profile)
         records = writeback.records(program_of(data))
@@ -91,16 +93,16 @@ class TestConversion:
         assert one == two
 
     @pytest.mark.parametrize("profile", PROFILES)
-    def test_a_file_without_records_keeps_its_bytes(self, profile: Profile) -> None:
+    def test_a_file_without_records_keeps_its_bytes(self, profile: FileProfile) -> None:
         for name in PARTS_NAMES:
             assert converted(part(name), profile) == part(name)
 
     def test_the_verb_writes_what_the_model_converts(self, tmp_path: Path) -> None:
-        data = optimised(part("paper002"), Profile.OPTIMISATION)
+        data = optimised(part("paper002"), FileProfile.OPTIMISATION)
         source, target = tmp_path / "in.stpnc", tmp_path / "standard.stpnc"
         source.write_bytes(data)
-        convert(source, profile="standard", output=target)
-        assert target.read_bytes() == converted(data, Profile.STANDARD)
+        convert(source, profile=FileProfile.STANDARD, output=target)
+        assert target.read_bytes() == converted(data, FileProfile.STANDARD)
 
 
 class TestAgain:
@@ -108,18 +110,20 @@ class TestAgain:
     @pytest.mark.parametrize("profile", PROFILES)
     @pytest.mark.parametrize("mode", ["TC", "EC"])
     def test_optimising_twice_gives_the_same_bytes(
-        self, name: str, profile: Profile, mode: str
+        self, name: str, profile: FileProfile, mode: str
     ) -> None:
         once = optimised(part(name), profile, mode=mode)
         assert optimised(once, profile, mode=mode) == once
 
     @pytest.mark.parametrize("profile", PROFILES)
-    def test_ex1_twice_gives_the_same_bytes(self, profile: Profile) -> None:
+    def test_ex1_twice_gives_the_same_bytes(self, profile: FileProfile) -> None:
         once = optimised(ex1(), profile)
         assert optimised(once, profile) == once
 
     @pytest.mark.parametrize("profile", PROFILES)
-    def test_writing_the_same_advice_twice_gives_the_same_bytes(self, profile: Profile) -> None:
+    def test_writing_the_same_advice_twice_gives_the_same_bytes(
+        self, profile: FileProfile
+    ) -> None:
         for name in PARTS_NAMES:
             once = write_first(part(name), profile, feed=0.07)
             assert write_first(once, profile, feed=0.07) == once
@@ -128,7 +132,7 @@ class TestAgain:
     @pytest.mark.parametrize("profile", PROFILES)
     @pytest.mark.parametrize("again", PROFILES)
     def test_the_first_programmed_values_survive(
-        self, name: str, profile: Profile, again: Profile
+        self, name: str, profile: FileProfile, again: FileProfile
     ) -> None:
         once = optimised(part(name), profile, mode="TC")
         twice = optimised(once, again, mode="EC")
@@ -139,7 +143,7 @@ class TestAgain:
             assert _programmed(last[id]) == _programmed(record)
 
     def test_the_first_programmed_values_are_those_of_the_file(self) -> None:
-        data = optimised(part("paper002"), Profile.OPTIMISATION)
+        data = optimised(part("paper002"), FileProfile.OPTIMISATION)
         (record,) = writeback.records(program_of(data)).values()
         assert record.programmed_cutspeed == pytest.approx(0.583333333333333, rel=1e-14)
         assert record.programmed_feedrate_per_tooth == 0.05
@@ -147,15 +151,15 @@ class TestAgain:
         assert (record.programmed_feedrate, record.programmed_spindle) == (None, None)
 
     def test_a_record_takes_the_place_of_the_old_one(self) -> None:
-        once = write_first(part("paper002"), Profile.OPTIMISATION, feed=0.07)
-        twice = write_first(once, Profile.OPTIMISATION, feed=0.08)
+        once = write_first(part("paper002"), FileProfile.OPTIMISATION, feed=0.07)
+        twice = write_first(once, FileProfile.OPTIMISATION, feed=0.08)
         assert len(instances(twice)) == len(instances(once))
         file = Part21File.from_bytes(twice)
         assert len(file.ids_of("TIME_CRITICAL_OPTIMISATION")) == 1
         assert file.schemas.count(SCHEMA) == 1
 
 
-def _programmed(record: Record) -> tuple[float | None, ...]:
+def _programmed(record: AdviceRecord) -> tuple[float | None, ...]:
     return (
         record.programmed_feedrate,
         record.programmed_feedrate_per_tooth,
@@ -168,7 +172,7 @@ def _programmed(record: Record) -> tuple[float | None, ...]:
 class TestOnlyWhatChanges:
     def test_ex1_differs_in_edited_and_added_instances_only(self) -> None:
         before = ex1()
-        after = optimised(before, Profile.STANDARD)
+        after = optimised(before, FileProfile.STANDARD)
         file = Part21File.from_bytes(before)
         allowed = {"MILLING_TECHNOLOGY"}
         for id, text in changed(before, after).items():
@@ -179,24 +183,24 @@ class TestOnlyWhatChanges:
         assert min(added(before, after)) > max(instances(before))
 
     @pytest.mark.parametrize("profile", PROFILES)
-    def test_ex1_keeps_its_lines_and_comments_in_order(self, profile: Profile) -> None:
+    def test_ex1_keeps_its_lines_and_comments_in_order(self, profile: FileProfile) -> None:
         before = ex1()
         after = optimised(before, profile)
         lines = untouched_lines(before, after)
         assert len(lines) > 150
-        if profile is Profile.OPTIMISATION:
+        if profile is FileProfile.OPTIMISATION:
             lines = [line for line in lines if not line.startswith(b"FILE_SCHEMA")]
         assert stand_in_order(lines, after)
 
     @pytest.mark.parametrize("name", PARTS_NAMES)
     def test_a_standard_file_keeps_every_line_that_is_not_edited(self, name: str) -> None:
         before = part(name)
-        after = optimised(before, Profile.STANDARD)
+        after = optimised(before, FileProfile.STANDARD)
         assert stand_in_order(untouched_lines(before, after), after)
 
     @pytest.mark.parametrize("name", PARTS_NAMES)
     @pytest.mark.parametrize("profile", PROFILES)
-    def test_what_is_added_stands_at_the_end(self, name: str, profile: Profile) -> None:
+    def test_what_is_added_stands_at_the_end(self, name: str, profile: FileProfile) -> None:
         before = part(name)
         after = optimised(before, profile)
         file = Part21File.from_bytes(after)
@@ -206,7 +210,7 @@ class TestOnlyWhatChanges:
 
     def test_only_the_technology_changes_when_only_the_feed_changes(self) -> None:
         before = part("paper002")
-        after = write_first(before, Profile.STANDARD, feed=0.125)
+        after = write_first(before, FileProfile.STANDARD, feed=0.125)
         edits = changed(before, after)
         operation = edits.pop(40)
         assert without_functions(operation) == without_functions(OPERATION)
@@ -214,14 +218,14 @@ class TestOnlyWhatChanges:
 
     def test_the_entities_are_one_surplus_parameter_of_the_operation(self) -> None:
         before = part("paper002")
-        after = write_first(before, Profile.OPTIMISATION, feed=0.125)
+        after = write_first(before, FileProfile.OPTIMISATION, feed=0.125)
         edits = changed(before, after)
         assert re.fullmatch(re.escape(OPERATION[:-2]) + rb", ?#\d+\);", edits.pop(40))
         assert list(edits) == [41]
 
     @pytest.mark.parametrize("profile", PROFILES)
     def test_an_advice_of_the_programmed_numbers_edits_no_technology(
-        self, profile: Profile
+        self, profile: FileProfile
     ) -> None:
         before = part("paper002")
         assert list(changed(before, write_first(before, profile))) == [40]
@@ -242,7 +246,7 @@ class TestOnlyWhatChanges:
         assert b",0.333333333333,.F." in after
 
     @pytest.mark.parametrize("profile", PROFILES)
-    def test_crlf_is_kept(self, profile: Profile) -> None:
+    def test_crlf_is_kept(self, profile: FileProfile) -> None:
         before = part("paper002").replace(b"\n", b"\r\n")
         after = optimised(before, profile)
         assert after.count(b"\n") == after.count(b"\r\n") > before.count(b"\r\n")
@@ -258,7 +262,7 @@ class TestForbidden:
         ids=["reamed holes", "thread"],
     )
     def test_an_inhibited_feed_stays_byte_for_byte(
-        self, profile: Profile, name: str, ids: tuple[int, ...]
+        self, profile: FileProfile, name: str, ids: tuple[int, ...]
     ) -> None:
         before = part(name)
         after = optimised(before, profile)
@@ -272,7 +276,7 @@ class TestForbidden:
         forbidden = forbidden.replace(b"#47", b"#99").replace(b"TOOTH(.T.", b"TOOTH(.F.")
         own = SECOND.replace(b"#50,#41", b"#50,#48")
         before = shared.replace(SECOND, own + b"\n" + forbidden)
-        after = optimised(before, Profile.STANDARD)
+        after = optimised(before, FileProfile.STANDARD)
         old, new = instances(before), instances(after)
         assert 40 in changed(before, after)
         assert [new[id] for id in (45, 48, 98, 99)] == [old[id] for id in (45, 48, 98, 99)]
@@ -280,7 +284,7 @@ class TestForbidden:
 
 class TestShared:
     @pytest.mark.parametrize("profile", PROFILES)
-    def test_the_other_operation_keeps_its_numbers(self, profile: Profile) -> None:
+    def test_the_other_operation_keeps_its_numbers(self, profile: FileProfile) -> None:
         before = two_operations()
         after = write_first(before, profile, feed=0.125, speed=0.75)
         assert instances(after)[41] == TECHNOLOGY
@@ -292,7 +296,7 @@ class TestShared:
         assert (numbers.feed.value, numbers.speed.value) == (0.125, 750.0)
 
     @pytest.mark.parametrize("profile", PROFILES)
-    def test_the_last_operation_keeps_the_instance(self, profile: Profile) -> None:
+    def test_the_last_operation_keeps_the_instance(self, profile: FileProfile) -> None:
         program = program_of(two_operations())
         one, two = program.workingsteps
         data = writeback.write(
@@ -318,13 +322,13 @@ class TestShared:
                 (change_of(program, step, feed=0.3), None),
             )
         ]
-        data = writeback.write(program, changes, Profile.OPTIMISATION)
+        data = writeback.write(program, changes, FileProfile.OPTIMISATION)
         (record,) = writeback.records(program_of(data)).values()
         assert record.plunge_feed_per_tooth == 0.025
 
     def test_shared_machine_functions_stay_as_they_are(self) -> None:
         before = two_operations()
-        after = write_first(before, Profile.STANDARD, feed=0.125)
+        after = write_first(before, FileProfile.STANDARD, feed=0.125)
         assert instances(after)[42] == instances(before)[42]
         assert program_of(after).workingsteps[1].functions_ref == Ref(42)
 
@@ -333,7 +337,7 @@ class TestShared:
     ) -> None:
         source, output = tmp_path / "in.stpnc", tmp_path / "out.stpnc"
         source.write_bytes(part("bracket"))
-        optimise(Request(file=source, output=output, workingsteps=("ROUGH CONTOUR",)))
+        optimise(*asked_advice(file=source, output=output, workingsteps=("ROUGH CONTOUR",)))
         before, after = program_of(part("bracket")), program_of(output.read_bytes())
         for old, new in zip(before.workingsteps, after.workingsteps, strict=True):
             told = programmed(before, old.technology_ref), programmed(after, new.technology_ref)

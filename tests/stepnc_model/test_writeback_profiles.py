@@ -3,12 +3,13 @@
 import pytest
 
 from stepnc_model import writeback
+from stepnc_model.file_profile import FileProfile
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
 from stepnc_model.record import PREFIX
 from stepnc_model.record_edit import RECORD_KEYWORDS
 from stepnc_model.technology import programmed
-from stepnc_model.writeback import SCHEMA, Profile
+from stepnc_model.writeback import SCHEMA
 from tests.stepnc_model.written import (
     PARTS_NAMES,
     PROFILES,
@@ -30,7 +31,7 @@ class TestTurning:
         program = program_of(part("shaft"))
         step = next(each for each in program.workingsteps if int(each.operation_ref) == 202)
         data = writeback.write(
-            program, [change_of(program, step, depth=1.25)], Profile.STANDARD
+            program, [change_of(program, step, depth=1.25)], FileProfile.STANDARD
         )
         edits = changed(part("shaft"), data)
         assert edits.keys() == {202, 352}
@@ -45,7 +46,7 @@ class TestTurning:
         data = writeback.write(
             program,
             [change_of(program, program.workingsteps[0], depth=1.25)],
-            Profile.STANDARD,
+            FileProfile.STANDARD,
         )
         assert instances(data)[350] == instances(before)[350]
         assert instances(data)[201] == instances(before)[201]
@@ -56,7 +57,9 @@ class TestTurning:
         before = part("shaft")
         program = program_of(before)
         data = writeback.write(
-            program, [change_of(program, program.workingsteps[0], speed=2.0)], Profile.STANDARD
+            program,
+            [change_of(program, program.workingsteps[0], speed=2.0)],
+            FileProfile.STANDARD,
         )
         after = program_of(data)
         assert instances(data)[310] == instances(before)[310]
@@ -73,11 +76,11 @@ class TestTurning:
 class TestProfiles:
     @pytest.mark.parametrize("name", PARTS_NAMES)
     def test_standard_has_no_entities_of_the_optimisation(self, name: str) -> None:
-        data = optimised(part(name), Profile.STANDARD)
+        data = optimised(part(name), FileProfile.STANDARD)
         self.assert_standard(data, before=part(name))
 
     def test_ex1_as_standard_has_none_either(self) -> None:
-        self.assert_standard(optimised(ex1(), Profile.STANDARD), before=ex1())
+        self.assert_standard(optimised(ex1(), FileProfile.STANDARD), before=ex1())
 
     @staticmethod
     def assert_standard(data: bytes, *, before: bytes) -> None:
@@ -90,7 +93,7 @@ class TestProfiles:
 
     @pytest.mark.parametrize("name", PARTS_NAMES)
     def test_an_operation_has_no_surplus_parameter_in_the_standard(self, name: str) -> None:
-        data = optimised(part(name), Profile.STANDARD)
+        data = optimised(part(name), FileProfile.STANDARD)
         before = Part21File.from_bytes(part(name))
         after = Part21File.from_bytes(data)
         for id in before.ids():
@@ -99,20 +102,20 @@ class TestProfiles:
     @pytest.mark.parametrize("name", PARTS_NAMES)
     def test_standard_parameters_are_prefixed(self, name: str) -> None:
         before = part(name)
-        new = added(before, optimised(before, Profile.STANDARD)).values()
+        new = added(before, optimised(before, FileProfile.STANDARD)).values()
         parameters = [text for text in new if b"_PARAMETER(" in text]
         assert parameters
         assert all(f"('{PREFIX}".encode() in text for text in parameters)
 
     @pytest.mark.parametrize("name", PARTS_NAMES)
     def test_optimisation_names_its_schema_last(self, name: str) -> None:
-        data = optimised(part(name), Profile.OPTIMISATION)
+        data = optimised(part(name), FileProfile.OPTIMISATION)
         old = Part21File.from_bytes(part(name)).schemas
         assert Part21File.from_bytes(data).schemas == (*old, SCHEMA)
 
     @pytest.mark.parametrize("profile", PROFILES)
     @pytest.mark.parametrize("name", PARTS_NAMES)
-    def test_what_is_written_has_no_new_warning(self, name: str, profile: Profile) -> None:
+    def test_what_is_written_has_no_new_warning(self, name: str, profile: FileProfile) -> None:
         after = program_of(optimised(part(name), profile))
         before = program_of(part(name))
         assert [each.message for each in after.findings()] == [
@@ -124,30 +127,30 @@ class TestProfiles:
         functions = b"#42=MILLING_MACHINE_FUNCTIONS(.T.,$,$,.F.,$,(),.T.,$,$,());"
         with_model = functions.replace(b"$,());", b"#96,());")
         before = part("paper002").replace(functions, model + with_model)
-        after = write_first(before, Profile.STANDARD, feed=0.125)
+        after = write_first(before, FileProfile.STANDARD, feed=0.125)
         assert len(Part21File.from_bytes(after).ids_of("PROCESS_MODEL")) == 1
-        back = converted(converted(after, Profile.OPTIMISATION), Profile.OPTIMISATION)
+        back = converted(converted(after, FileProfile.OPTIMISATION), FileProfile.OPTIMISATION)
         assert instances(back)[97] == b"#97=PROCESS_MODEL('mine.ini','force');"
 
     def test_other_functions_of_the_file_are_kept(self) -> None:
         functions = b"#42=MILLING_MACHINE_FUNCTIONS(.T.,$,$,.F.,$,(),.T.,$,$,());"
         mine = functions.replace(b"());", b"(#96));") + b"\n#96=DESCRIPTIVE_PARAMETER('a','b');"
         before = part("paper002").replace(functions, mine)
-        after = write_first(before, Profile.STANDARD, feed=0.125)
+        after = write_first(before, FileProfile.STANDARD, feed=0.125)
         program = program_of(after)
         (step,) = program.workingsteps
         assert step.functions_ref is not None
         other = program.file.parameters(int(step.functions_ref))[-1]
         assert isinstance(other, tuple)
         assert other[0] == Ref(96)
-        back = converted(after, Profile.OPTIMISATION)
+        back = converted(after, FileProfile.OPTIMISATION)
         assert b"#96=DESCRIPTIVE_PARAMETER('a','b');" in back
         assert instances(back)[42] == mine.split(b"\n")[0]
 
     def test_without_advice_nothing_is_written(self) -> None:
         for name in PARTS_NAMES:
             program = program_of(part(name))
-            assert writeback.write(program, [], Profile.OPTIMISATION) == part(name)
+            assert writeback.write(program, [], FileProfile.OPTIMISATION) == part(name)
 
 
 def test_a_file_without_records_has_none() -> None:

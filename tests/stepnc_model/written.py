@@ -7,22 +7,24 @@ from tempfile import TemporaryDirectory
 
 import pytest
 
-from service.usecases import Request, optimise
+from service.usecases import optimise
 from stepnc_model import writeback
+from stepnc_model.file_profile import FileProfile
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.program import Program, Workingstep
-from stepnc_model.record import Record
+from stepnc_model.program import Program, ResolvedWorkingstep
+from stepnc_model.record import AdviceRecord
 from stepnc_model.technology import programmed
-from stepnc_model.writeback import Change, Profile
+from stepnc_model.writeback import WorkingstepUpdate
+from tests.asking import asked_advice
 
 PARTS = Path(__file__).parents[2] / "examples" / "parts"
 EX1 = Path(__file__).parents[3] / "shared" / "corpus" / "iso14649" / "ex1.stp"
 
 PARTS_NAMES = ("bracket", "paper002", "shaft")
-PROFILES = tuple(Profile)
+PROFILES = tuple(FileProfile)
 BOTH_WAYS = (PROFILES, PROFILES[::-1])
 
-RECORD = Record(
+RECORD = AdviceRecord(
     mode="TC",
     id="OP",
     description="as fast as it goes",
@@ -80,29 +82,29 @@ def program_of(data: bytes) -> Program:
 
 
 @cache
-def optimised(data: bytes, profile: Profile, *, mode: str = "TC") -> bytes:
+def optimised(data: bytes, profile: FileProfile, *, mode: str = "TC") -> bytes:
     """What ``optimise`` makes of a file; many tests look at the same."""
     with TemporaryDirectory() as folder:
         source, output = Path(folder) / "in.stpnc", Path(folder) / "out.stpnc"
         source.write_bytes(data)
-        optimise(Request(file=source, output=output, profile=profile.value, mode=mode))
+        optimise(*asked_advice(file=source, output=output, profile=profile.value, mode=mode))
         return output.read_bytes()
 
 
-def converted(data: bytes, profile: Profile) -> bytes:
+def converted(data: bytes, profile: FileProfile) -> bytes:
     return writeback.convert(program_of(data), profile)
 
 
 def change_of(
     program: Program,
-    step: Workingstep,
+    step: ResolvedWorkingstep,
     *,
     feed: float | None = None,
     speed: float | None = None,
     depth: float | None = None,
-) -> Change:
+) -> WorkingstepUpdate:
     conditions = programmed(program, step.technology_ref)
-    return Change(
+    return WorkingstepUpdate(
         workingstep=step,
         programmed=conditions,
         record=RECORD,
@@ -112,7 +114,9 @@ def change_of(
     )
 
 
-def write_first(data: bytes, profile: Profile = Profile.STANDARD, **numbers: float) -> bytes:
+def write_first(
+    data: bytes, profile: FileProfile = FileProfile.STANDARD, **numbers: float
+) -> bytes:
     """Change of the first workingstep alone."""
     program = program_of(data)
     change = change_of(program, program.workingsteps[0], **numbers)

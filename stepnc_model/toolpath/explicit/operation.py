@@ -14,19 +14,23 @@ from collections.abc import Sequence
 
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.executables import RapidMovement
-from stepnc_model.entities.toolpaths import Toolpath, ToolpathList
+from stepnc_model.entities.operations import Toolpath, ToolpathList
 from stepnc_model.entities.turning import TurningMachiningOperation
-from stepnc_model.errors import PathError
 from stepnc_model.part21.values import Ref
-from stepnc_model.program import Executable, Program
-from stepnc_model.toolpath.explicit.walk import Surroundings, Walk
-from stepnc_model.toolpath.frame import Frame, compound_of, frame_of, workpiece_frame
-from stepnc_model.toolpath.job import Job, stock_of
+from stepnc_model.program import Program, ProgramLine
+from stepnc_model.toolpath.explicit.path_builder import ExplicitPathBuilder, PathSurroundings
+from stepnc_model.toolpath.frame import (
+    Frame,
+    compound_of,
+    frame_of,
+    placements,
+    workpiece_frame,
+)
 from stepnc_model.toolpath.path import Point, ToolPath
-from stepnc_model.toolpath.pattern import placements
+from stepnc_model.toolpath.task import ToolPathTask, stock_of
 
 
-def explicit_path(job: Job) -> ToolPath:
+def explicit_path(job: ToolPathTask) -> ToolPath:
     """Tool path of an operation that has one in the file, exactly as given.
 
     It starts at the first point of the first trajectory and ends at the last point of the
@@ -35,7 +39,7 @@ def explicit_path(job: Job) -> ToolPath:
 
     Parameters
     ----------
-    job : Job
+    job : ToolPathTask
 
     Returns
     -------
@@ -47,7 +51,7 @@ def explicit_path(job: Job) -> ToolPath:
         When the operation has no path, or one that cannot be followed.
     """
     step = job.step
-    around = Surroundings(
+    around = PathSurroundings(
         program=job.program,
         security_z=job.security_z,
         stock=job.stock,
@@ -72,13 +76,13 @@ def explicit_path(job: Job) -> ToolPath:
         )
 
 
-def rapid_movement_path(program: Program, executable: Executable) -> ToolPath | None:
+def rapid_movement_path(program: Program, executable: ProgramLine) -> ToolPath | None:
     """Path of a ``RAPID_MOVEMENT`` or ``RETURN_HOME``, all of it in rapid.
 
     Parameters
     ----------
     program : Program
-    executable : Executable
+    executable : ProgramLine
 
     Returns
     -------
@@ -94,12 +98,12 @@ def rapid_movement_path(program: Program, executable: Executable) -> ToolPath | 
     ref = executable.ref
     movement = program.get(ref)
     if not isinstance(movement, RapidMovement):
-        raise _fault(program, ref, "is no rapid movement")
+        raise program.path_error("is no rapid movement", ref)
     if movement.its_toolpath is None:
         return None
     with program.using(ref):
         plane = frame_of(program, program.get(movement.its_secplane).position)
-        around = Surroundings(
+        around = PathSurroundings(
             program=program,
             security_z=plane.origin[2],
             stock=stock_of(program, executable.setup),
@@ -124,22 +128,22 @@ def rapid_movement_path(program: Program, executable: Executable) -> ToolPath | 
 
 
 def _walked(
-    around: Surroundings,
+    around: PathSurroundings,
     paths: Sequence[Ref[Toolpath]],
     frames: Sequence[Frame],
     *,
     at: Ref[Entity],
-) -> tuple[Walk, Point]:
+) -> tuple[ExplicitPathBuilder, Point]:
     """Paths followed in each of some frames, and where they start."""
-    walk = Walk(around)
+    walk = ExplicitPathBuilder(around)
     for frame in frames:
         walk.follow(paths, frame)
     if walk.start is None:
-        raise _fault(around.program, at, "its tool path leads nowhere", "its_toolpath")
+        raise around.program.path_error("its tool path leads nowhere", at, "its_toolpath")
     return walk, walk.start
 
 
-def _frames(job: Job) -> tuple[Frame, ...]:
+def _frames(job: ToolPathTask) -> tuple[Frame, ...]:
     """Frames that the path is followed in: one for each copy of a pattern.
 
     A path for an element of a compound feature is given in the coordinates of the compound:
@@ -158,12 +162,6 @@ def _paths(
 ) -> tuple[Ref[Toolpath], ...]:
     """Tool paths in their order."""
     if paths is None:
-        raise _fault(program, ref, "has no tool path of its own", "its_toolpath")
+        raise program.path_error("has no tool path of its own", ref, "its_toolpath")
     with program.using(paths):
         return tuple(program.get(paths).its_list)
-
-
-def _fault(program: Program, ref: Ref[Entity], message: str, attribute: str = "") -> PathError:
-    return PathError(
-        message, entity=program.label(ref), attribute=attribute, line=program.line(ref)
-    )

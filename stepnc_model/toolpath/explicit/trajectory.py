@@ -1,28 +1,159 @@
-"""Trajectories of the file as lines and arcs of the tool's tip, in the setup.
+"""Trajectories of the file as lines and arcs of the tool's tip, and their feeds.
 
 ISO 14649-10: by the tool centre point, by the point where cutter and surface touch, or by the
 axes of the machine.
+
+A feed is rapid, a factor, or a curve of factors along the way (``its_speed``). What is left out
+comes from the technology of the tool path, else from that of the operation. A
+``toolpath_speed`` is a B-spline of one coordinate, the factor on the feedrate; its parameter
+runs evenly along the path.
 """
 
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import dist, hypot
+from math import ceil, cos, dist, hypot, inf, sin
 
 from stepnc_model.entities.entity import Entity
+from stepnc_model.entities.enums import SpeedName, ToolpathType
 from stepnc_model.entities.geometry import BSplineCurve, Polyline
-from stepnc_model.entities.toolpaths import (
+from stepnc_model.entities.operations import (
     AxisTrajectory,
     CurveWithNormalVector,
     CutterContactTrajectory,
     CutterLocationTrajectory,
+    Toolpath,
+    ToolpathSpeed,
     Trajectory,
 )
-from stepnc_model.errors import PathError
-from stepnc_model.part21.values import Ref
+from stepnc_model.part21.values import Ref, Typed
 from stepnc_model.program import Program
 from stepnc_model.tool import Tool
-from stepnc_model.toolpath.curve import Segment, segments_of
+from stepnc_model.toolpath.curve import Segment, Spline, segments_of, spline_of
 from stepnc_model.toolpath.frame import Frame, point_of
-from stepnc_model.toolpath.path import Point
+from stepnc_model.toolpath.path import Feed, Move, MoveType, Point, length
+
+PIECES = 64
+"""pieces of a path along which a curve of factors is sampled, at least"""
+
+TYPES = {
+    ToolpathType.APPROACH: MoveType.APPROACH,
+    ToolpathType.LIFT: MoveType.RETRACT,
+    ToolpathType.CONNECT: MoveType.NO_CONTACT,
+    ToolpathType.NON_CONTACT: MoveType.NO_CONTACT,
+    ToolpathType.CONTACT: MoveType.CONTACT,
+    ToolpathType.TRAJECTORY_PATH: MoveType.CONTACT,
+}
+"""what the moves of a tool path at feed are for"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MoveSpeeds:
+    """Feeds of the moves of one tool path."""
+
+    type: MoveType
+    feed: Feed | None
+    """None: rapid"""
+    factors: Spline | None = None
+    """on the feed, along the path"""
+
+
+def pace_of(program: Program, ref: Ref[Toolpath], technology: Ref[Entity] | None) -> MoveSpeeds:
+    """Pace of a tool path.
+
+    Parameters
+    ----------
+    program : Program
+    ref : Ref
+    technology : Ref or None
+        Of the operation; None for a rapid movement, where everything is rapid.
+
+    Raises
+    ------
+    PathError
+        When the factor on the feed is not positive.
+    """
+    path = program.get(ref)
+    type = TYPES.get(path.its_type, MoveType.CONTACT)
+    speed = path.its_speed
+    if technology is None or speed is SpeedName.RAPID:
+        is_own = type in {MoveType.APPROACH, MoveType.RETRACT}
+        return MoveSpeeds(type=type if is_own else MoveType.RAPID, feed=None)
+    feed = Feed(technology=path.its_technology or technology)
+    if speed is None:
+        return MoveSpeeds(type=type, feed=feed)
+    if isinstance(speed, Ref):
+        entity: Entity = program.get(speed)
+        if not isinstance(entity, ToolpathSpeed):
+            raise program.path_error(f"{speed} is no speed", ref, "its_speed")
+        factors = spline_of(program, entity.speed)
+        for factor, *others in factors.poles:
+            _check(program, ref, factor)
+            if any(others):
+                raise program.path_error(
+                    "factors on the feed have one coordinate", ref, "its_speed"
+                )
+        return MoveSpeeds(type=type, feed=feed, factors=factors)
+    value = speed.value if isinstance(speed, Typed) else speed
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise program.path_error(f"{value} is no factor on the feed", ref, "its_speed")
+    _check(program, ref, float(value))
+    return MoveSpeeds(type=type, feed=replace(feed, ratio=float(value)))
+
+
+def paced(start: Point, moves: Sequence[Move], factors: Spline) -> Iterator[Move]:
+    """Moves in pieces, each with the factor of its middle.
+
+    Parameters
+    ----------
+    start : Point
+        Where the first move starts.
+    moves : sequence of Move
+        All of one tool path, at feed.
+    factors : Spline
+    """
+    starts = [start, *(move.end for move in moves[:-1])]
+    lengths = [length(at, move) for at, move in zip(starts, moves, strict=True)]
+    whole = sum(lengths)
+    low, high = factors.spans[0], factors.spans[-1]
+    done = 0.0
+    for at, move, size in zip(starts, moves, lengths, strict=True):
+        count = max(1, ceil(PIECES * size / whole)) if whole > 0.0 else 1
+        for index, piece in enumerate(_pieces(at, move, count)):
+            middle = done + (index + 0.5) / count * size
+            part = middle / whole if whole > 0.0 else 0.0
+            factor = factors.at(low + part * (high - low))[0]
+            feed = piece.feed and replace(piece.feed, ratio=piece.feed.ratio * factor)
+            yield replace(piece, feed=feed)
+        done += size
+
+
+def _pieces(start: Point, move: Move, count: int) -> Iterator[Move]:
+    """A move in pieces of equal length."""
+    arc = move.arc and replace(move.arc, turn=move.arc.turn / count)
+    for index in range(1, count):
+        yield replace(move, end=_point_at(start, move, index / count), arc=arc)
+    yield replace(move, arc=arc)
+
+
+def _point_at(start: Point, move: Move, part: float) -> Point:
+    """Point at a part of a line, an arc or a helix."""
+    point = [a + part * (b - a) for a, b in zip(start, move.end, strict=True)]
+    if move.arc is not None:
+        first, second, _ = move.arc.plane.axes
+        centre, turned = move.arc.centre, part * move.arc.turn
+        u, v = start[first] - centre[first], start[second] - centre[second]
+        point[first] = centre[first] + u * cos(turned) - v * sin(turned)
+        point[second] = centre[second] + u * sin(turned) + v * cos(turned)
+    return point[0], point[1], point[2]
+
+
+def _check(program: Program, ref: Ref[Entity], factor: float) -> None:
+    if not 0.0 < factor < inf:
+        raise program.path_error(
+            f"factor {factor:g} on the feed: it must be positive", ref, "its_speed"
+        )
+
 
 AXES = ("X", "Y", "Z")
 
@@ -72,7 +203,7 @@ def trajectory_segments(
         else:
             segments = _contact(program, ref, trajectory, frame=frame, tool=tool)
     else:
-        raise _fault(program, ref, "a trajectory of this kind cannot be followed")
+        raise program.path_error("a trajectory of this kind cannot be followed", ref)
     if trajectory.its_direction is False:
         return tuple(segment.reversed() for segment in reversed(segments))
     return segments
@@ -84,19 +215,19 @@ def _axes(
     """Polylines of single axes, point by point at the same time."""
     names = [name.strip().upper() for name in trajectory.axis_list]
     if len(set(names)) != len(names) or not set(names) <= set(AXES):
-        raise _fault(program, ref, f"axes {', '.join(names)}: of X, Y and Z, each once")
+        raise program.path_error(f"axes {', '.join(names)}: of X, Y and Z, each once", ref)
     if len(names) != len(trajectory.commands):
         counts = f"{len(names)} axes, {len(trajectory.commands)} commands"
-        raise _fault(program, ref, counts)
+        raise program.path_error(counts, ref)
     if at is None and len(names) < len(AXES):
-        raise _fault(program, ref, "does not say where its other axes are")
+        raise program.path_error("does not say where its other axes are", ref)
     columns = {
         AXES.index(name): _values(program, ref, command)
         for name, command in zip(names, trajectory.commands, strict=True)
     }
     counts_of = {len(values) for values in columns.values()}
     if len(counts_of) != 1:
-        raise _fault(program, ref, "its axes have different numbers of points")
+        raise program.path_error("its axes have different numbers of points", ref)
     rest = at or (0.0, 0.0, 0.0)
     x, y, z = (columns.get(axis, [rest[axis]] * max(counts_of)) for axis in range(3))
     points = list(zip(x, y, z, strict=True))
@@ -122,13 +253,13 @@ def _contact(
     curve = program.get(trajectory.basiccurve)
     if not isinstance(curve, CurveWithNormalVector):
         message = "has no surface normals: the tool's place beside the surface is not known"
-        raise _fault(program, ref, message)
+        raise program.path_error(message, ref)
     if tool is None or tool.diameter <= 0.0:
-        raise _fault(program, ref, "needs a rotating tool")
+        raise program.path_error("needs a rotating tool", ref)
     contacts = _points(program, ref, curve.basiccurve)
     normals = _points(program, ref, curve.surface_normal)
     if len(contacts) != len(normals):
-        raise _fault(program, ref, f"{len(contacts)} points, but {len(normals)} normals")
+        raise program.path_error(f"{len(contacts)} points, but {len(normals)} normals", ref)
     points = [
         _tip(program, ref, tool, contact=frame.point(contact), normal=frame.direction(normal))
         for contact, normal in zip(contacts, normals, strict=True)
@@ -140,7 +271,7 @@ def _points(program: Program, ref: Ref[Entity], curve: Ref[Entity]) -> list[Poin
     """Points of a polyline: other curves have no normal for each of their points."""
     line = program.get(curve)
     if not isinstance(line, Polyline):
-        raise _fault(program, ref, f"{curve} is no polyline: only those are followed here")
+        raise program.path_error(f"{curve} is no polyline: only those are followed here", ref)
     return [point_of(program, point) for point in line.points]
 
 
@@ -154,14 +285,14 @@ def _tip(
     """
     size = dist(normal, (0.0, 0.0, 0.0))
     if size <= 0.0:
-        raise _fault(program, ref, "a surface normal is 0: it points nowhere")
+        raise program.path_error("a surface normal is 0: it points nowhere", ref)
     x, y, z = (part / size for part in normal)
     corner = tool.corner_radius or 0.0
     flat = 0.5 * tool.diameter - corner
     across = hypot(x, y)
     if flat > UPRIGHT and across < UPRIGHT:
         message = "a flat tool on level ground: the normal does not tell where its axis is"
-        raise _fault(program, ref, message)
+        raise program.path_error(message, ref)
     aside = corner + (flat / across if flat > UPRIGHT else 0.0)
     return contact[0] + aside * x, contact[1] + aside * y, contact[2] + corner * (z - 1.0)
 
@@ -178,12 +309,8 @@ def _check_axis(
     elif isinstance(axis, BSplineCurve):
         ends = axis.control_points_list
     else:
-        raise _fault(program, ref, "its tool axis is no polyline or B-spline")
+        raise program.path_error("its tool axis is no polyline or B-spline", ref)
     for end in ends:
         x, y, z = frame.direction(point_of(program, end))
         if z <= 0.0 or hypot(x, y) > UPRIGHT * z:
-            raise _fault(program, ref, "its tool axis leans: paths are those of three axes")
-
-
-def _fault(program: Program, ref: Ref[Entity], message: str) -> PathError:
-    return PathError(message, entity=program.label(ref), line=program.line(ref))
+            raise program.path_error("its tool axis leans: paths are those of three axes", ref)

@@ -19,32 +19,156 @@ How a file is read here:
   ``oriented_spindle_stop`` of the machine functions.
 
 Tools whose edge folds away need no shift; their paths are for the file to give.
+
+A bore reaches from its shoulder down to its mouth, at the back of the part. A feature whose
+axis points up begins at the shoulder and goes down to its depth plane; one whose axis points
+down, seen from behind, begins at the mouth.
 """
 
 from collections.abc import Iterator
 from dataclasses import dataclass
 from math import hypot, inf, tan
 
-from stepnc_model.entities.drilling import (
+from stepnc_model.entities.entity import Entity
+from stepnc_model.entities.features import CompoundFeature, RoundHole
+from stepnc_model.entities.milling import (
     BackBoring,
     CenterDrilling,
     CounterSinking,
     DrillingTypeOperation,
+    DrillingTypeStrategy,
 )
-from stepnc_model.entities.features import RoundHole
-from stepnc_model.entities.strategies import DrillingTypeStrategy
 from stepnc_model.entities.technology import MillingMachineFunctions
 from stepnc_model.entities.tools import MillingCuttingTool
 from stepnc_model.errors import Finding
+from stepnc_model.outline import feature_depth
+from stepnc_model.part21.values import Ref
 from stepnc_model.tool import tool_of
-from stepnc_model.toolpath.course import Course
-from stepnc_model.toolpath.frame import PARALLEL, compound_of, direction_of
-from stepnc_model.toolpath.hole.cycle import HoleCut, dwell
-from stepnc_model.toolpath.hole.depth import TOLERANCE, lip_angle
-from stepnc_model.toolpath.hole.feature import Hole, feature_depth, narrowest_of, size_of
-from stepnc_model.toolpath.hole.feed import retract_feed
-from stepnc_model.toolpath.job import Job
+from stepnc_model.toolpath.frame import (
+    PARALLEL,
+    Frame,
+    PlacedFeature,
+    compound_of,
+    direction_of,
+    frame_of,
+    placements,
+    surrounding_frame,
+)
+from stepnc_model.toolpath.hole.cycle import HoleCut, dwell, retract_feed
+from stepnc_model.toolpath.hole.feature import (
+    TOLERANCE,
+    Hole,
+    lip_angle,
+    narrowest_of,
+    size_of,
+    tolerance_of,
+)
 from stepnc_model.toolpath.path import MoveType, SpindleCommand
+from stepnc_model.toolpath.task import PathBuilder, ToolPathTask
+
+
+def back_holes(job: ToolPathTask) -> Iterator[Hole]:
+    """Bores at the back of holes, in the order of the file.
+
+    Each one's top is its shoulder, its depth the way from there down to its mouth.
+
+    Yields
+    ------
+    Hole
+
+    Raises
+    ------
+    PathError
+        When there is none, its axis does not lie along the tool, or it lacks a size.
+    """
+    if not job.step.features:
+        raise job.fault("has no feature: nothing tells where to bore", job.step.ref)
+    for feature in job.step.features:
+        for placed in placements(job.program, job.step.setup, feature):
+            with job.program.using(placed.feature):
+                yield _hole(job, placed)
+
+
+def _hole(job: ToolPathTask, placed: PlacedFeature) -> Hole:
+    """One bore, or the element of a compound feature that opens at the back."""
+    named = job.program.get(placed.feature)
+    ref, frame = placed.feature, placed.frame
+    if isinstance(named, CompoundFeature):
+        ref = _element(job, placed, named)
+        frame = _inner(job, placed.frame, ref)
+    entity = job.program.get(ref)
+    shoulder, mouth = _ends(job, ref, frame)
+    x, y, _ = frame.origin
+    diameter = size_of(job, ref, entity) if isinstance(entity, RoundHole) else None
+    bottom = getattr(entity, "bottom_condition", None)
+    return Hole(
+        ref=ref,
+        frame=placed.frame,
+        top=(x, y, shoulder),
+        entry_z=_entry(job, placed, max(shoulder, mouth)),
+        depth=shoulder - mouth,
+        diameter=diameter,
+        narrowest=diameter,
+        tolerance=tolerance_of(job, entity),
+        bottom=job.program.get(bottom) if bottom is not None else None,
+    )
+
+
+def _element(
+    job: ToolPathTask, placed: PlacedFeature, compound: CompoundFeature
+) -> Ref[Entity]:
+    """Hole of a compound feature that opens lowest; of several the tapered or widest one."""
+    found: dict[Ref[Entity], tuple[float, bool, float]] = {}
+    for ref in compound.elements:
+        entity = job.program.get(ref)
+        if isinstance(entity, RoundHole):
+            _, mouth = _ends(job, ref, _inner(job, placed.frame, ref))
+            is_tapered = entity.change_in_diameter is not None
+            found[ref] = (-round(mouth, 6), is_tapered, size_of(job, ref, entity))
+    if not found:
+        message = "has no round hole among its elements"
+        raise job.fault(message, placed.feature, "elements")
+    return max(found, key=found.__getitem__)
+
+
+def _ends(job: ToolPathTask, ref: Ref[Entity], frame: Frame) -> tuple[float, float]:
+    """Heights of a bore's shoulder and mouth."""
+    if abs(frame.z[0]) + abs(frame.z[1]) > PARALLEL:
+        along = ", ".join(f"{part:.4g}" for part in frame.z)
+        message = (
+            f"its axis ({along}) does not lie along the tool: a setup of its own is needed"
+        )
+        raise job.fault(message, ref)
+    depth = feature_depth(job.program, ref)
+    if depth is None:
+        raise job.fault("has no depth: nothing tells where its other end is", ref, "depth")
+    z = frame.origin[2]
+    return (z, z - depth) if frame.is_upright else (z + depth, z)
+
+
+def _entry(job: ToolPathTask, placed: PlacedFeature, own: float) -> float:
+    """Height where the tool enters: the top of the compound feature, else of the stock."""
+    named = job.program.get(placed.feature)
+    frame = placed.frame
+    if not isinstance(named, CompoundFeature):
+        ref = compound_of(job.program, placed.feature)
+        if ref is None:
+            return own if job.stock is None else max(own, job.stock.high[2])
+        named = job.program.get(ref)
+        frame = surrounding_frame(job.program, job.step.setup, placed.feature)
+    tops = (
+        max(_ends(job, ref, _inner(job, frame, ref)))
+        for ref in named.elements
+        if isinstance(job.program.get(ref), RoundHole)
+    )
+    return max(own, frame.origin[2], *tops)
+
+
+def _inner(job: ToolPathTask, compound: Frame, ref: Ref[Entity]) -> Frame:
+    """Frame of an element, by that of its compound feature."""
+    placement = getattr(job.program.get(ref), "feature_placement", None)
+    return compound.inner(frame_of(job.program, placement))
+
 
 SHIFT_CLEARANCE = 0.5
 """mm between the edge and the wall of the hole that it passes, customary"""
@@ -55,7 +179,7 @@ MOUTH_CLEARANCE = 1.0
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Bore:
-    """How one hole is bored from behind; mm, heights are those of the tip."""
+    """Back boring of one hole; mm, heights are those of the tip."""
 
     shift: tuple[float, float]
     """from the axis, away from the edge"""
@@ -65,7 +189,7 @@ class Bore:
     """where the edge reaches the shoulder"""
 
 
-def bore_of(job: Job, operation: DrillingTypeOperation, hole: Hole) -> Bore:
+def bore_of(job: ToolPathTask, operation: DrillingTypeOperation, hole: Hole) -> Bore:
     """Shift and heights of a bore.
 
     Raises
@@ -88,7 +212,7 @@ def bore_of(job: Job, operation: DrillingTypeOperation, hole: Hole) -> Bore:
     )
 
 
-def bore_back(course: Course, cut: HoleCut) -> None:
+def bore_back(course: PathBuilder, cut: HoleCut) -> None:
     """Bore one hole; the tool stands above it on the retract plane, and ends there."""
     bore = bore_of(cut.job, cut.operation, cut.hole)
     above, below = cut.hole.at(cut.retract_z), cut.hole.at(bore.below_z)
@@ -110,9 +234,9 @@ def bore_back(course: Course, cut: HoleCut) -> None:
 
 
 def back_findings(
-    job: Job, operation: DrillingTypeOperation, hole: Hole, bore: Bore
+    job: ToolPathTask, operation: DrillingTypeOperation, hole: Hole, bore: Bore
 ) -> Iterator[Finding]:
-    """What is assumed of a bore, and what a machinist would want to see.
+    """Assumptions on a bore, and remarks for a machinist.
 
     Yields
     ------
@@ -149,7 +273,7 @@ def back_findings(
         yield job.warning(text, hole.ref, "depth")
 
 
-def _length(job: Job, operation: DrillingTypeOperation, hole: Hole) -> float:
+def _length(job: ToolPathTask, operation: DrillingTypeOperation, hole: Hole) -> float:
     """Length of the bore from its mouth, which must leave a shoulder."""
     at = job.step.operation_ref
     given = operation.cutting_depth
@@ -167,7 +291,7 @@ def _length(job: Job, operation: DrillingTypeOperation, hole: Hole) -> float:
     return length
 
 
-def _is_reduced(job: Job, operation: DrillingTypeOperation) -> bool:
+def _is_reduced(job: ToolPathTask, operation: DrillingTypeOperation) -> bool:
     """Whether a strategy asks for other feeds or speeds at the start or the end."""
     ref = operation.its_machining_strategy
     strategy = job.program.get(ref) if ref is not None else None
@@ -187,7 +311,7 @@ def _mouth_z(hole: Hole) -> float:
     return hole.top[2] - (hole.depth or 0.0)
 
 
-def _passed(job: Job, operation: DrillingTypeOperation, hole: Hole) -> float:
+def _passed(job: ToolPathTask, operation: DrillingTypeOperation, hole: Hole) -> float:
     """Diameter in mm of the hole that the tool passes on its way."""
     at = job.step.operation_ref
     given = operation.previous_diameter
@@ -201,17 +325,17 @@ def _passed(job: Job, operation: DrillingTypeOperation, hole: Hole) -> float:
     return min(widths)
 
 
-def _narrower(job: Job, hole: Hole) -> Iterator[float]:
+def _narrower(job: ToolPathTask, hole: Hole) -> Iterator[float]:
     """Least diameters of the other holes of the same compound feature."""
     ref = compound_of(job.program, hole.ref)
     for element in job.program.get(ref).elements if ref is not None else ():
         entity = job.program.get(element)
         if element != hole.ref and isinstance(entity, RoundHole):
             width = size_of(job, element, entity)
-            yield narrowest_of(job, entity, width, feature_depth(job, element))
+            yield narrowest_of(job, entity, width, feature_depth(job.program, element))
 
 
-def _drilled(job: Job) -> list[float]:
+def _drilled(job: ToolPathTask) -> list[float]:
     """Diameters of the tools that went through the same feature before, narrow ones first."""
     return sorted(
         tool_of(job.program, before.tool_ref).diameter
@@ -221,7 +345,7 @@ def _drilled(job: Job) -> list[float]:
     )
 
 
-def _check_tool(job: Job, hole: Hole, passed: float) -> None:
+def _check_tool(job: ToolPathTask, hole: Hole, passed: float) -> None:
     """Refuse a tool that bores nothing, too much, or has an edge on the other side too."""
     at, width = job.step.operation_ref, job.tool.diameter
     if width <= passed + TOLERANCE:
@@ -239,7 +363,7 @@ def _check_tool(job: Job, hole: Hole, passed: float) -> None:
         raise job.fault(message, job.step.tool_ref, "its_tool_body")
 
 
-def _check_bar(job: Job, shift: float, passed: float) -> None:
+def _check_bar(job: ToolPathTask, shift: float, passed: float) -> None:
     """Refuse a bar that does not pass the hole beside its axis."""
     bar = _bar(job)
     if shift + 0.5 * (bar or 0.0) > 0.5 * passed + TOLERANCE:
@@ -249,7 +373,7 @@ def _check_bar(job: Job, shift: float, passed: float) -> None:
         raise job.fault(message, job.step.tool_ref, attribute)
 
 
-def _bar(job: Job) -> float | None:
+def _bar(job: ToolPathTask) -> float | None:
     """Diameter in mm of the bar that carries the edge."""
     tool = job.program.get(job.step.tool_ref)
     if not isinstance(tool, MillingCuttingTool):
@@ -261,8 +385,8 @@ def _bar(job: Job) -> float | None:
     return bar
 
 
-def _direction(job: Job) -> tuple[float, float] | None:
-    """Where the edge of the stopped tool points, across its axis; None where nothing tells."""
+def _direction(job: ToolPathTask) -> tuple[float, float] | None:
+    """Direction of the edge of the stopped tool, across its axis; None where it is unknown."""
     tool = job.program.get(job.step.tool_ref)
     ref = (
         tool.direction_for_spindle_orientation if isinstance(tool, MillingCuttingTool) else None
@@ -279,7 +403,7 @@ def _direction(job: Job) -> tuple[float, float] | None:
     return x / size, y / size
 
 
-def _edge(job: Job, passed: float) -> float | None:
+def _edge(job: ToolPathTask, passed: float) -> float | None:
     """Height in mm of the boring edge above the tip; None where nothing tells."""
     angle = lip_angle(job)
     if angle > 0.0:
@@ -287,7 +411,7 @@ def _edge(job: Job, passed: float) -> float | None:
     return job.tool.cutting_edge_length
 
 
-def _clearance(job: Job, operation: DrillingTypeOperation) -> float:
+def _clearance(job: ToolPathTask, operation: DrillingTypeOperation) -> float:
     """Way in mm from the back of the part down to where the edge is clear of it."""
     overcut = operation.overcut_length or MOUTH_CLEARANCE
     if not 0.0 < overcut < inf:

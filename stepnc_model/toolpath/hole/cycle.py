@@ -1,25 +1,135 @@
-"""What a tool does in one hole, from the retract plane and back to it.
+"""Moves of a tool in one hole, from the retract plane and back to it.
 
 ISO 14649-11: on its way out a tool feeds. Cycles of controls that drill, and those that stop
 the spindle, come out in rapid; they are named all the same where ``feed_on_retract`` is not
 given, for they leave the same hole.
+
+Feeds may be reduced where a drill enters and where it leaves. ISO 14649-11,
+``drilling_type_strategy``: the values at the start hold down to ``depth_of_start``, those at
+the end from ``depth_of_end`` on. Both depths are those of the full diameter, below the top of
+the hole; so NIST's interpreter reads them as well.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 
-from stepnc_model.entities.drilling import (
+from stepnc_model.entities.entity import Entity
+from stepnc_model.entities.milling import (
     BoringOperation,
     DrillingTypeOperation,
+    DrillingTypeStrategy,
     MultistepDrilling,
     Tapping,
 )
 from stepnc_model.entities.technology import MillingMachineFunctions
-from stepnc_model.toolpath.course import Course
-from stepnc_model.toolpath.hole.feature import Hole
-from stepnc_model.toolpath.hole.feed import Stage, retract_feed
-from stepnc_model.toolpath.job import Job
-from stepnc_model.toolpath.path import Cycle, CycleKind, Feed, MoveType, SpindleCommand
+from stepnc_model.technology import programmed
+from stepnc_model.toolpath.hole.feature import Depth, Hole
+from stepnc_model.toolpath.path import CannedCycle, CycleKind, Feed, MoveType, SpindleCommand
+from stepnc_model.toolpath.task import PathBuilder, ToolPathTask
+
+PERCENT = 100.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FeedStage:
+    """One feed, down to a height of the tip."""
+
+    end_z: float
+    """End z, mm"""
+    feed: Feed
+
+
+def stages_of(
+    job: ToolPathTask, operation: DrillingTypeOperation, hole: Hole, depth: Depth
+) -> tuple[FeedStage, ...]:
+    """Feeds from the top of a hole to its bottom, in order.
+
+    Raises
+    ------
+    PathError
+        When a reduction is no ratio, or a tap has no pitch.
+    """
+    bottom = hole.top[2] - depth.tip
+    if isinstance(operation, Tapping):
+        return (FeedStage(end_z=bottom, feed=_thread_feed(job)),)
+    if operation.its_machining_strategy is None:
+        return (FeedStage(end_z=bottom, feed=job.feed),)
+    strategy: Entity = job.program.get(operation.its_machining_strategy)
+    if not isinstance(strategy, DrillingTypeStrategy):
+        message = "is no strategy of drilling"
+        raise job.fault(message, operation.its_machining_strategy)
+    start = _reduced(job, operation, strategy, "start")
+    end = _reduced(job, operation, strategy, "end")
+    point = depth.tip - depth.full
+    stages: list[FeedStage] = []
+    height = inf
+    for limit, feed in (
+        (strategy.depth_of_start, start),
+        (strategy.depth_of_end if end != job.feed else None, job.feed),
+        (depth.full, end if strategy.depth_of_end is not None else job.feed),
+    ):
+        if limit is None:
+            continue
+        end_z = max(bottom, hole.top[2] - limit - point)
+        if end_z < min(height, hole.top[2]):
+            stages.append(FeedStage(end_z=end_z, feed=feed))
+            height = end_z
+    return _merged(stages)
+
+
+def retract_feed(job: ToolPathTask, operation: DrillingTypeOperation, last: Feed) -> Feed:
+    """Feed out of the hole: ``feed_on_retract`` times the programmed one, else that itself.
+
+    The spindle keeps the speed that it has at the bottom.
+    """
+    ratio = operation.feed_on_retract
+    if ratio is None:
+        return replace(last, ratio=1.0)
+    if not 0.0 < ratio < inf:
+        message = f"{ratio:g}: it must be positive"
+        raise job.fault(message, job.step.operation_ref, "feed_on_retract")
+    return replace(last, ratio=1.0 if last.is_synchronised else ratio)
+
+
+def _reduced(
+    job: ToolPathTask,
+    operation: DrillingTypeOperation,
+    strategy: DrillingTypeStrategy,
+    where: str,
+) -> Feed:
+    """Programmed feed and speed, times the ratios at the start or at the end."""
+    ratios = []
+    for name in (f"reduced_feed_at_{where}", f"reduced_cut_at_{where}"):
+        ratio = getattr(strategy, name)
+        if ratio is None:
+            ratio = 1.0
+        elif 1.0 < ratio <= PERCENT:
+            # Files of the draft of 2001 write percent.
+            ratio /= PERCENT
+        if not 0.0 < ratio <= 1.0:
+            message = f"{ratio:g}: a ratio from 0 to 1, or percent up to 100"
+            raise job.fault(message, job.step.operation_ref, name)
+        ratios.append(ratio)
+    return replace(job.feed, ratio=ratios[0], speed_ratio=ratios[1])
+
+
+def _merged(stages: list[FeedStage]) -> tuple[FeedStage, ...]:
+    """Stages without those that the next one continues."""
+    kept = [
+        stage
+        for stage, following in zip(stages, [*stages[1:], None], strict=True)
+        if following is None or following.feed != stage.feed
+    ]
+    return tuple(kept)
+
+
+def _thread_feed(job: ToolPathTask) -> Feed:
+    """One pitch per revolution: the programmed feed over the programmed speed."""
+    values = programmed(job.program, job.step.technology_ref)
+    speed = values.spindle_speed(job.tool.diameter)
+    pitch = values.feed_per_tooth(speed, job.tool.teeth) * job.tool.teeth
+    return Feed(technology=job.step.technology_ref, per_revolution=pitch, is_synchronised=True)
+
 
 PECK_CLEARANCE = 1.0
 """mm above the last depth where a drill that comes back begins to feed, customary"""
@@ -34,13 +144,13 @@ SAME_DEPTH = 1e-6
 class HoleCut:
     """One hole with what its making needs; heights in mm, in the setup."""
 
-    job: Job
+    job: ToolPathTask
     operation: DrillingTypeOperation
     hole: Hole
     retract_z: float
     bottom_z: float
-    """of the tip"""
-    stages: tuple[Stage, ...]
+    """Bottom z of the tip"""
+    stages: tuple[FeedStage, ...]
 
     @property
     def feed(self) -> Feed:
@@ -49,11 +159,11 @@ class HoleCut:
 
     @property
     def is_one_feed(self) -> bool:
-        """Whether one feed goes all the way."""
+        """Whether one feed holds for the whole depth."""
         return len(self.stages) == 1
 
 
-def cut_hole(course: Course, cut: HoleCut) -> None:
+def cut_hole(course: PathBuilder, cut: HoleCut) -> None:
     """Make one hole; the tool stands above it on the retract plane, and ends there."""
     if isinstance(cut.operation, Tapping):
         _tap(course, cut)
@@ -65,7 +175,7 @@ def cut_hole(course: Course, cut: HoleCut) -> None:
         _drill(course, cut)
 
 
-def _drill(course: Course, cut: HoleCut) -> None:
+def _drill(course: PathBuilder, cut: HoleCut) -> None:
     """In and out."""
     first = course.count
     feed_to(course, cut, cut.bottom_z)
@@ -80,7 +190,7 @@ def _drill(course: Course, cut: HoleCut) -> None:
         _name_cycle(course, cut, CycleKind.BORE, first)
 
 
-def _peck(course: Course, cut: HoleCut, operation: MultistepDrilling) -> None:
+def _peck(course: PathBuilder, cut: HoleCut, operation: MultistepDrilling) -> None:
     """Step by step, with a short retract that breaks the chip or a full one that clears it.
 
     ISO 14649-11: a retract distance of 0 or less means the retract plane. The depths are those
@@ -128,7 +238,7 @@ def _pecks(cut: HoleCut, operation: MultistepDrilling) -> list[float]:
     return heights
 
 
-def _bore(course: Course, cut: HoleCut, operation: BoringOperation) -> None:
+def _bore(course: PathBuilder, cut: HoleCut, operation: BoringOperation) -> None:
     """In and out, with a test cut before and a stop of the spindle where they are given."""
     if operation.depth_of_testcut:
         _test_cut(course, cut, operation, operation.depth_of_testcut)
@@ -159,7 +269,9 @@ def _is_oriented(cut: HoleCut) -> bool:
     )
 
 
-def _test_cut(course: Course, cut: HoleCut, operation: BoringOperation, depth: float) -> None:
+def _test_cut(
+    course: PathBuilder, cut: HoleCut, operation: BoringOperation, depth: float
+) -> None:
     """A short cut, then out of the way to be measured, ISO 14649-11."""
     z = cut.hole.top[2] - depth
     if not cut.bottom_z < z < cut.hole.top[2]:
@@ -181,7 +293,7 @@ def _test_cut(course: Course, cut: HoleCut, operation: BoringOperation, depth: f
     course.rapid(cut.hole.at(cut.retract_z))
 
 
-def _tap(course: Course, cut: HoleCut) -> None:
+def _tap(course: PathBuilder, cut: HoleCut) -> None:
     """In by one pitch per revolution, and out the same way with the spindle reversed."""
     first = course.count
     feed_to(course, cut, cut.bottom_z)
@@ -192,7 +304,7 @@ def _tap(course: Course, cut: HoleCut) -> None:
     _name_cycle(course, cut, CycleKind.TAP, first)
 
 
-def feed_to(course: Course, cut: HoleCut, z: float) -> None:
+def feed_to(course: PathBuilder, cut: HoleCut, z: float) -> None:
     """Down to a height, with the feed of each stage."""
     for stage in cut.stages:
         if course.at[2] > stage.end_z + SAME_DEPTH and course.at[2] > z + SAME_DEPTH:
@@ -200,13 +312,13 @@ def feed_to(course: Course, cut: HoleCut, z: float) -> None:
             course.line(end, MoveType.CONTACT, stage.feed)
 
 
-def retract(course: Course, cut: HoleCut) -> None:
+def retract(course: PathBuilder, cut: HoleCut) -> None:
     """Out to the retract plane at a feed."""
     feed = retract_feed(cut.job, cut.operation, cut.feed)
     course.line(cut.hole.at(cut.retract_z), MoveType.RETRACT, feed)
 
 
-def dwell(course: Course, cut: HoleCut, seconds: float | None, attribute: str) -> None:
+def dwell(course: PathBuilder, cut: HoleCut, seconds: float | None, attribute: str) -> None:
     """Pause where one is given."""
     if not seconds:
         return
@@ -216,7 +328,7 @@ def dwell(course: Course, cut: HoleCut, seconds: float | None, attribute: str) -
     course.dwell(seconds=seconds)
 
 
-def _name_cycle(course: Course, cut: HoleCut, kind: CycleKind, first: int) -> None:
+def _name_cycle(course: PathBuilder, cut: HoleCut, kind: CycleKind, first: int) -> None:
     """Say that the steps since the first one are a cycle of controls."""
     operation = cut.operation
     step_depth = retract_distance = 0.0
@@ -224,7 +336,7 @@ def _name_cycle(course: Course, cut: HoleCut, kind: CycleKind, first: int) -> No
         step_depth = operation.depth_of_step
         retract_distance = max(0.0, operation.retract_distance or 0.0)
     course.cycle(
-        Cycle(
+        CannedCycle(
             kind=kind,
             first=first,
             last=course.count - 1,

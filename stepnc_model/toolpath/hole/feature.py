@@ -1,35 +1,56 @@
-"""Holes of a workingstep: where they stand, how wide and how deep the file says they are.
+"""Holes of a workingstep: where they stand, how wide they are, and how deep a tool goes.
 
 Round holes, the elements of counterbored and countersunk holes, patterns of them, and other
 features whose placement and depth plane make them a place to drill (ISO 14649-10).
+
+ISO 14649-10: the depth of a hole is the length of its cylindrical part, from its placement to
+its depth plane. ISO 14649-11: ``cutting_depth`` is measured from where the cylindrical part of
+the tool begins, of a centre drill from its tip. A countersink, whose cylinder may stay above
+the part, is measured like a centre drill here.
 """
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from math import inf, pi, tan
+from math import cos, inf, pi, sqrt, tan
 
-from stepnc_model.entities.bottoms import ThroughBottomCondition, ThroughPocketBottomCondition
-from stepnc_model.entities.drilling import (
-    CenterDrilling,
-    CounterSinking,
-    DrillingTypeOperation,
-)
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.features import CompoundFeature, RoundHole
 from stepnc_model.entities.geometry import CartesianPoint
 from stepnc_model.entities.measures import PlusMinusValue
-from stepnc_model.entities.profiles import AngleTaper
+from stepnc_model.entities.milling import (
+    Boring,
+    CenterDrilling,
+    CounterSinking,
+    Drilling,
+    DrillingOperation,
+    DrillingTypeOperation,
+    MultistepDrilling,
+    Reaming,
+    ThreadDrilling,
+)
+from stepnc_model.entities.profiles import (
+    AngleTaper,
+    ConicalHoleBottom,
+    SphericalHoleBottom,
+    ThroughBottomCondition,
+    ThroughPocketBottomCondition,
+)
+from stepnc_model.entities.tools import BallEndmill, MillingCuttingTool, MillingToolBody
+from stepnc_model.errors import Finding
+from stepnc_model.outline import feature_depth
 from stepnc_model.part21.values import Ref
+from stepnc_model.tool import LEAST_TOP_ANGLE_DEG, body_of
 from stepnc_model.toolpath.frame import (
     Frame,
+    PlacedFeature,
     compound_of,
     frame_of,
+    placements,
     point_of,
     surrounding_frame,
 )
-from stepnc_model.toolpath.job import Job
 from stepnc_model.toolpath.path import Point
-from stepnc_model.toolpath.pattern import Placed, placements
+from stepnc_model.toolpath.task import ToolPathTask
 from stepnc_model.units import rad_from_deg
 
 SINK_TOOLS = ("COUNTERSINK", "COUNTERBORE", "BACKSIDE_COUNTERSINK", "BACKSIDE_COUNTERBORE")
@@ -46,13 +67,13 @@ class Hole:
     ref: Ref[Entity]
     """the round hole, or the feature that is drilled into"""
     frame: Frame
-    """of the feature that the workingstep names"""
+    """Frame of the feature that the workingstep names"""
     top: Point
     """centre where its depth counts from"""
     entry_z: float
     """where a tool meets the part: the top of the compound feature that it belongs to"""
     depth: float | None
-    """of its cylindrical part, below the top; None where the file gives none"""
+    """Depth of its cylindrical part, below the top; None where the file gives none"""
     diameter: float | None
     """at the top; None for a feature that is no round hole"""
     narrowest: float | None
@@ -63,24 +84,24 @@ class Hole:
 
     @property
     def is_tapered(self) -> bool:
-        """Whether it narrows."""
+        """Whether the hole narrows."""
         return self.narrowest != self.diameter
 
     @property
     def is_through(self) -> bool:
-        """Whether it has no bottom."""
+        """Whether it is a through hole."""
         return isinstance(self.bottom, (ThroughBottomCondition, ThroughPocketBottomCondition))
 
     def at(self, z: float) -> Point:
         """Point on its axis."""
         return self.top[0], self.top[1], z
 
-    def point(self, job: Job, ref: Ref[CartesianPoint]) -> Point:
+    def point(self, job: ToolPathTask, ref: Ref[CartesianPoint]) -> Point:
         """A point given in the coordinates of the feature."""
         return self.frame.point(point_of(job.program, ref))
 
 
-def holes_of(job: Job, operation: DrillingTypeOperation) -> Iterator[Hole]:
+def holes_of(job: ToolPathTask, operation: DrillingTypeOperation) -> Iterator[Hole]:
     """Holes that an operation makes, in the order of the file.
 
     Raises
@@ -95,7 +116,7 @@ def holes_of(job: Job, operation: DrillingTypeOperation) -> Iterator[Hole]:
             yield _hole(job, operation, placed)
 
 
-def _hole(job: Job, operation: DrillingTypeOperation, placed: Placed) -> Hole:
+def _hole(job: ToolPathTask, operation: DrillingTypeOperation, placed: PlacedFeature) -> Hole:
     """One hole, or the element of a compound feature that is meant."""
     frame = placed.frame
     if not frame.is_upright:
@@ -116,7 +137,7 @@ def _hole(job: Job, operation: DrillingTypeOperation, placed: Placed) -> Hole:
         return _sized(job, element, placed, inner, entry_z=frame.origin[2])
 
 
-def _entry(job: Job, placed: Placed) -> float:
+def _entry(job: ToolPathTask, placed: PlacedFeature) -> float:
     """Height of the compound feature around a feature that is named by itself."""
     own = placed.frame.origin[2]
     if compound_of(job.program, placed.feature) is None:
@@ -126,7 +147,7 @@ def _entry(job: Job, placed: Placed) -> float:
 
 
 def _element(
-    job: Job,
+    job: ToolPathTask,
     operation: DrillingTypeOperation,
     ref: Ref[Entity],
     elements: Sequence[Ref[Entity]],
@@ -152,23 +173,25 @@ def _element(
     return min(fitting, key=fitting.__getitem__)
 
 
-def _fits(job: Job, width: float) -> bool:
+def _fits(job: ToolPathTask, width: float) -> bool:
     return job.tool.diameter <= width + DEFAULT_TOLERANCE
 
 
-def _height(job: Job, element: Ref[Entity]) -> float:
+def _height(job: ToolPathTask, element: Ref[Entity]) -> float:
     placement = getattr(job.program.get(element), "feature_placement", None)
     return frame_of(job.program, placement).origin[2]
 
 
-def _has_taper(job: Job, element: Ref[Entity]) -> bool:
+def _has_taper(job: ToolPathTask, element: Ref[Entity]) -> bool:
     return getattr(job.program.get(element), "change_in_diameter", None) is not None
 
 
-def _sized(job: Job, ref: Ref[Entity], placed: Placed, own: Frame, *, entry_z: float) -> Hole:
+def _sized(
+    job: ToolPathTask, ref: Ref[Entity], placed: PlacedFeature, own: Frame, *, entry_z: float
+) -> Hole:
     """A hole with its sizes; its depth counts from the top of the feature that is named."""
     entity = job.program.get(ref)
-    depth = feature_depth(job, ref)
+    depth = feature_depth(job.program, ref)
     diameter = narrowest = None
     if isinstance(entity, RoundHole):
         diameter = size_of(job, ref, entity)
@@ -189,25 +212,7 @@ def _sized(job: Job, ref: Ref[Entity], placed: Placed, own: Frame, *, entry_z: f
     )
 
 
-def feature_depth(job: Job, ref: Ref[Entity]) -> float | None:
-    """Depth of a feature: where its depth plane lies in its own coordinates.
-
-    Files write the plane below the placement, at a negative z; the positive depth of an older
-    draft means the same.
-    """
-    plane = getattr(job.program.get(ref), "depth", None)
-    if plane is None:
-        return None
-    position = frame_of(job.program, job.program.get(plane).position)
-    depth = abs(position.origin[2])
-    if not 0.0 < depth < inf:
-        raise job.fault(
-            f"depth {depth:g} mm removes nothing: it must be positive", ref, "depth"
-        )
-    return depth
-
-
-def size_of(job: Job, ref: Ref[Entity], hole: RoundHole) -> float:
+def size_of(job: ToolPathTask, ref: Ref[Entity], hole: RoundHole) -> float:
     """Diameter at the top."""
     diameter = float(job.program.get(hole.diameter).theoretical_size)
     if not 0.0 < diameter < inf:
@@ -215,7 +220,9 @@ def size_of(job: Job, ref: Ref[Entity], hole: RoundHole) -> float:
     return diameter
 
 
-def narrowest_of(job: Job, hole: RoundHole, diameter: float, depth: float | None) -> float:
+def narrowest_of(
+    job: ToolPathTask, hole: RoundHole, diameter: float, depth: float | None
+) -> float:
     """Diameter at the depth plane of a tapered hole; its own where it does not narrow."""
     if hole.change_in_diameter is None:
         return diameter
@@ -228,7 +235,7 @@ def narrowest_of(job: Job, hole: RoundHole, diameter: float, depth: float | None
     return min(diameter, max(0.0, end))
 
 
-def tolerance_of(job: Job, entity: Entity) -> float:
+def tolerance_of(job: ToolPathTask, entity: Entity) -> float:
     """Upper limit of a hole's diameter."""
     if isinstance(entity, RoundHole):
         given = job.program.get(entity.diameter).implicit_tolerance
@@ -236,3 +243,213 @@ def tolerance_of(job: Job, entity: Entity) -> float:
         if isinstance(limits, PlusMinusValue):
             return max(DEFAULT_TOLERANCE, limits.upper_limit)
     return DEFAULT_TOLERANCE
+
+
+TOLERANCE = 1e-6
+"""mm"""
+
+FITTING = (Drilling, MultistepDrilling, Reaming, Boring, ThreadDrilling)
+"""operations whose tool must not be wider than the hole"""
+
+TAPERED_TOOLS = ("TAPERED_DRILL", "TAPERED_REAMER")
+"""tools that may be wider than the narrow end of a taper"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Depth:
+    """Depths below the top of a hole, mm."""
+
+    full: float
+    """Full of the full diameter of the tool; negative when it stays above the hole"""
+    tip: float
+    """Tip of the tip of the tool"""
+
+
+def depth_of(job: ToolPathTask, operation: DrillingTypeOperation, hole: Hole) -> Depth:
+    """Depth of an operation in a hole.
+
+    Raises
+    ------
+    PathError
+        When the depth is missing or not positive, the tool is wider than the hole, or a blind
+        hole would leave the workpiece.
+    """
+    _check_width(job, operation, hole)
+    point = tip_length(job)
+    given = operation.cutting_depth
+    if given is not None and not 0.0 < given < inf:
+        message = f"{given:g} mm removes nothing: it must be positive"
+        raise job.fault(message, job.step.operation_ref, "cutting_depth")
+    if isinstance(operation, (CenterDrilling, CounterSinking)):
+        is_sink = isinstance(operation, CounterSinking)
+        tip = given or (_sink(job, hole) if is_sink else _centre(job, point))
+    elif given is not None:
+        tip = given + point
+    elif hole.is_through:
+        tip = _bottom(job, hole) + _overcut(job, operation) + point
+    else:
+        tip = _bottom(job, hole) + min(point, _below(job, hole))
+    depth = Depth(full=tip - point, tip=tip)
+    _check_stock(job, hole, depth)
+    return depth
+
+
+def tip_length(job: ToolPathTask) -> float:
+    """Height in mm from the tip of the tool to its full diameter.
+
+    With the angle α between lip and face plane it is ``R·tan α``. With a rounded corner of
+    radius r whose centre stands e beside the axis, the tool of APT, it is the height of that
+    centre, ``e·tan α + r/cos α``; a corner without a centre touches the cylinder, e = R − r.
+    """
+    body = _body(job)
+    radius = 0.5 * job.tool.diameter
+    if isinstance(body, BallEndmill):
+        return radius
+    angle = lip_angle(job)
+    dimension = job.program.get(body.dimension)
+    corner = dimension.edge_radius or 0.0
+    if corner <= 0.0:
+        return radius * tan(angle)
+    centre = dimension.edge_center_horizontal or max(0.0, radius - corner)
+    return centre * tan(angle) + corner / cos(angle)
+
+
+def depth_findings(
+    job: ToolPathTask, operation: DrillingTypeOperation, hole: Hole, depth: Depth
+) -> list[Finding]:
+    """Remarks for a machinist."""
+    found = list(_bottom_findings(job, operation, hole, depth))
+    edge = job.tool.cutting_edge_length
+    if edge is not None and isinstance(operation, DrillingOperation) and depth.tip > edge:
+        text = f"cutting edge of {edge:g} mm for a depth of {depth.tip:.4g} mm"
+        found.append(job.warning(text, job.step.tool_ref))
+    tool = job.program.get(job.step.tool_ref)
+    overall = tool.overall_assembly_length if isinstance(tool, MillingCuttingTool) else None
+    if overall and depth.tip > overall:
+        text = f"{overall:g} mm of tool for a depth of {depth.tip:.4g} mm"
+        found.append(job.warning(text, job.step.tool_ref, "overall_assembly_length"))
+    return found
+
+
+def _bottom_findings(
+    job: ToolPathTask, operation: DrillingTypeOperation, hole: Hole, depth: Depth
+) -> Iterator[Finding]:
+    """Remark on a full diameter that does not end where the hole does."""
+    if hole.depth is None or isinstance(operation, (CenterDrilling, CounterSinking)):
+        return
+    if not hole.is_through and depth.full > hole.depth + TOLERANCE:
+        text = f"{depth.full:g} mm is deeper than the hole of {hole.depth:g} mm"
+        yield job.warning(text, attribute="cutting_depth")
+    if operation.cutting_depth is None and depth.full < hole.depth - TOLERANCE:
+        text = (
+            "the tip stops on the bottom: the full diameter ends "
+            f"{hole.depth - depth.full:.4g} mm above the depth of the hole"
+        )
+        yield job.note(text, hole.ref, "bottom_condition")
+
+
+def _check_width(job: ToolPathTask, operation: DrillingTypeOperation, hole: Hole) -> None:
+    """Refuse a tool that is wider than the hole."""
+    if hole.diameter is None or hole.narrowest is None or not isinstance(operation, FITTING):
+        return
+    width = hole.diameter if job.tool.keyword in TAPERED_TOOLS else hole.narrowest
+    if job.tool.diameter > width + hole.tolerance:
+        message = (
+            f"tool of {job.tool.diameter:g} mm for a hole of {width:g} mm "
+            f"that may be {hole.tolerance:g} mm wider"
+        )
+        raise job.fault(message, job.step.operation_ref, "its_tool")
+
+
+def _check_stock(job: ToolPathTask, hole: Hole, depth: Depth) -> None:
+    """Refuse a hole whose depth leaves the workpiece through its bottom.
+
+    A through hole ends there; what its tool needs to break through is no depth of the hole.
+    """
+    if job.stock is None:
+        return
+    full = (hole.depth or 0.0) if hole.is_through else depth.full
+    reach, bottom = hole.top[2] - full, job.stock.low[2]
+    if reach < bottom - TOLERANCE:
+        kind = "through" if hole.is_through else "blind"
+        message = (
+            f"a {kind} hole down to z = {reach:g} mm leaves the workpiece, "
+            f"whose bottom lies at z = {bottom:g} mm"
+        )
+        raise job.fault(message, hole.ref, "depth")
+
+
+def _bottom(job: ToolPathTask, hole: Hole) -> float:
+    """Depth of the hole, which must be known."""
+    if hole.depth is None:
+        raise job.fault("has no depth, and the operation no cutting_depth", hole.ref, "depth")
+    return hole.depth
+
+
+def _body(job: ToolPathTask) -> MillingToolBody:
+    """Body of a rotating tool."""
+    body = body_of(job.program, job.step.tool_ref)
+    if body is None:
+        raise job.fault("is no rotating tool: it drills no hole", job.step.tool_ref)
+    return body
+
+
+def lip_angle(job: ToolPathTask) -> float:
+    """Angle in rad between lip and face plane; small numbers are radians already."""
+    ref = _body(job).dimension
+    top = job.program.get(ref).tool_top_angle or 0.0
+    angle = top if top < LEAST_TOP_ANGLE_DEG else rad_from_deg(top)
+    if not 0.0 <= angle < 0.5 * pi:
+        message = f"{top:g}: the angle between lip and face plane is 0 to 90 degrees"
+        raise job.fault(message, ref, "tool_top_angle")
+    return angle
+
+
+def _overcut(job: ToolPathTask, operation: DrillingTypeOperation) -> float:
+    """Way in mm that the full diameter goes on below a through hole."""
+    overcut = operation.overcut_length or 0.0
+    if not 0.0 <= overcut < inf:
+        message = f"{overcut:g} mm: it must not be negative"
+        raise job.fault(message, job.step.operation_ref, "overcut_length")
+    return overcut
+
+
+def _below(job: ToolPathTask, hole: Hole) -> float:
+    """Depth in mm to which the bottom of a blind hole lets a tip go below the depth plane.
+
+    A flat bottom, with or without a corner radius, ends there: no tip may pass it. A conical
+    one is what a drill leaves, ISO 14649-10: the cone begins there and is the drill's own. A
+    spherical one reaches down by the height of its cap.
+    """
+    if isinstance(hole.bottom, ConicalHoleBottom):
+        return inf
+    if isinstance(hole.bottom, SphericalHoleBottom) and hole.diameter is not None:
+        sphere = job.program.get(hole.bottom.radius).theoretical_size
+        radius = 0.5 * hole.diameter
+        if not radius - TOLERANCE <= sphere < inf:
+            message = f"sphere of radius {sphere:g} mm below a hole of radius {radius:g} mm"
+            raise job.fault(message, hole.ref, "bottom_condition")
+        return sphere - sqrt(max(0.0, sphere**2 - radius**2))
+    return 0.0
+
+
+def _sink(job: ToolPathTask, hole: Hole) -> float:
+    """Depth of a countersink's tip when its cone is as wide as the sink at the top."""
+    if hole.diameter is None or not hole.is_tapered:
+        message = "needs a cutting_depth: the hole has no taper that tells how wide the sink is"
+        raise job.fault(message, job.step.operation_ref, "cutting_depth")
+    if hole.diameter > job.tool.diameter + TOLERANCE:
+        message = f"tool of {job.tool.diameter:g} mm for a sink of {hole.diameter:g} mm"
+        raise job.fault(message, job.step.operation_ref, "its_tool")
+    angle = lip_angle(job)
+    if angle <= 0.0:
+        raise job.fault("has no point that could sink a cone", job.step.tool_ref)
+    return tip_length(job) - 0.5 * (job.tool.diameter - hole.diameter) * tan(angle)
+
+
+def _centre(job: ToolPathTask, point: float) -> float:
+    """Depth of a centre drill's tip: its own point, up to the full diameter."""
+    if point <= 0.0:
+        message = "needs a cutting_depth: the tool has no point that tells how deep"
+        raise job.fault(message, job.step.operation_ref, "cutting_depth")
+    return point

@@ -2,34 +2,294 @@
 
 Over the hole on the security plane, in rapid down to the retract plane, into the hole and back,
 to the next hole. Not one rapid goes below the retract plane, but those of a drill that pecks.
+
+In thread drilling one tool drills a hole and mills its thread on a helix. The tool drills along
+the axis, and mills the thread on its way out. With ``helical_movement_on_forward`` it needs the
+helix on its way in as well: there it cuts, and out it goes through the thread that it has cut.
+
+The thread is the feature itself, or the one whose ``applied_shape`` is the hole. The programmed
+point runs at ``(D_thread − D_tool)/2`` from the axis. A half circle of half that radius leads
+from the axis onto the helix, tangentially, while the tool goes a quarter of a turn about the
+axis: it rises a quarter of the pitch, and stays in the thread. It leaves the same way.
+
+A right-hand thread goes up counter-clockwise, which is climb milling with a right-hand tool.
+The lowest full tooth is where the tip of the tool ends, so any number of teeth above it follows
+in the same groove. A blind hole is left by one pitch before the tool moves sideways.
+
+``number_of_threads`` is the pitch in metric units, and the threads per inch in English ones
+(ISO 14649-10).
 """
 
 from collections.abc import Iterator
-from math import hypot, inf
+from dataclasses import dataclass, replace
+from math import ceil, hypot, inf, pi
 
-from stepnc_model.entities.drilling import BackBoring, DrillingTypeOperation, ThreadDrilling
-from stepnc_model.toolpath.course import Course
+from stepnc_model.entities.features import DefinedThread, RoundHole, Thread
+from stepnc_model.entities.milling import BackBoring, DrillingTypeOperation, ThreadDrilling
+from stepnc_model.outline import feature_depth
+from stepnc_model.part21.values import Ref
 from stepnc_model.toolpath.frame import point_of
-from stepnc_model.toolpath.hole.back import back_findings, bore_back, bore_of
-from stepnc_model.toolpath.hole.back_feature import back_holes
-from stepnc_model.toolpath.hole.cycle import HoleCut, cut_hole
-from stepnc_model.toolpath.hole.depth import depth_findings, depth_of
-from stepnc_model.toolpath.hole.feature import Hole, holes_of
-from stepnc_model.toolpath.hole.feed import Stage, stages_of
-from stepnc_model.toolpath.hole.thread import drill_thread, threaded_holes
-from stepnc_model.toolpath.job import DEFAULT_CLEARANCE, Job
-from stepnc_model.toolpath.path import ToolPath
+from stepnc_model.toolpath.hole.back import back_findings, back_holes, bore_back, bore_of
+from stepnc_model.toolpath.hole.cycle import (
+    FeedStage,
+    HoleCut,
+    cut_hole,
+    dwell,
+    feed_to,
+    retract,
+    stages_of,
+)
+from stepnc_model.toolpath.hole.feature import (
+    TOLERANCE,
+    Hole,
+    depth_findings,
+    depth_of,
+    holes_of,
+    size_of,
+    tip_length,
+)
+from stepnc_model.toolpath.path import MoveType, ToolPath
+from stepnc_model.toolpath.task import DEFAULT_CLEARANCE, PathBuilder, ToolPathTask
+
+LEAST_RADIUS = 0.02
+"""mm from the axis to the helix; controls take smaller arcs as points"""
+
+MOST_TURNS = 1000
+
+INCH = 25.4
+"""mm, by definition"""
+
+PITCHES = ("MM", "MILLIMETRE", "MILLIMETER", "PITCH")
+"""units that make ``number_of_threads`` a pitch in mm"""
+
+DENSITIES = ("INCH", "IN", "1/INCH", "1/IN", "TPI")
+"""units that make it a number of threads per inch"""
+
+LEFT = ("LEFT", "LEFT HAND", "LH", "L")
+RIGHT = ("RIGHT", "RIGHT HAND", "RH", "R", "")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ThreadHelix:
+    """A thread as the way of the tip; mm."""
+
+    radius: float
+    pitch: float
+    turns: int
+    low_z: float
+    """Low z of the tip, where the turns end below"""
+    sense: float
+    """1 for a right-hand thread, −1 for a left-hand one"""
+
+    @property
+    def high_z(self) -> float:
+        """Of the tip, where the turns end above."""
+        return self.low_z + self.turns * self.pitch
+
+
+def threaded_holes(job: ToolPathTask, operation: DrillingTypeOperation) -> Iterator[Hole]:
+    """Holes that are drilled and threaded; where a thread is named, those that it lies in.
+
+    Yields
+    ------
+    Hole
+
+    Raises
+    ------
+    PathError
+        When there is none, its axis does not lie along the tool, or it lacks a size.
+    """
+    for hole in holes_of(job, operation):
+        thread = job.program.get(hole.ref)
+        shape = thread.applied_shape[0] if isinstance(thread, Thread) else hole.ref
+        entity = job.program.get(shape)
+        if shape == hole.ref or not isinstance(entity, RoundHole):
+            yield hole
+            continue
+        depth = feature_depth(job.program, shape)
+        below = hole.top[2] - job.frame(shape).origin[2]
+        diameter = size_of(job, shape, entity)
+        yield replace(
+            hole,
+            ref=shape,
+            depth=None if depth is None else depth + below,
+            diameter=diameter,
+            narrowest=diameter,
+            bottom=job.program.get(entity.bottom_condition),
+        )
+
+
+def drill_thread(course: PathBuilder, cut: HoleCut, operation: ThreadDrilling) -> None:
+    """Drill and thread one hole; the tool stands above it, and ends there.
+
+    Raises
+    ------
+    PathError
+        When no thread is there, or the tool and the thread do not fit.
+    """
+    if operation.helical_movement_on_forward:
+        _thread_in_and_out(course, cut)
+    else:
+        _drill_in_thread_out(course, cut)
+    retract(course, cut)
+
+
+def _drill_in_thread_out(course: PathBuilder, cut: HoleCut) -> None:
+    """Along the axis to the bottom, and up on the helix."""
+    pitch = _pitch(cut)
+    teeth_top_z = cut.hole.top[2] - tip_length(cut.job)
+    free_z = cut.bottom_z if cut.hole.is_through else cut.bottom_z + pitch
+    wanted_z = teeth_top_z - _length(cut)
+    start_z = max(free_z, wanted_z)
+    if start_z > wanted_z + TOLERANCE:
+        text = f"the thread ends {start_z - wanted_z:.4g} mm above its length: no room below it"
+        course.find(cut.job.warning(text, cut.hole.ref))
+    helix = _helix(cut, low_z=start_z + 0.25 * pitch, clear_z=teeth_top_z)
+    feed_to(course, cut, cut.bottom_z)
+    _pause(course, cut)
+    course.line(cut.hole.at(start_z), MoveType.NO_CONTACT)
+    _onto(course, cut, helix, rise=1.0)
+    _turns(course, cut, helix, rise=1.0, type=MoveType.CONTACT)
+    _off(course, cut, helix)
+
+
+def _thread_in_and_out(course: PathBuilder, cut: HoleCut) -> None:
+    """Down on the helix, and up through the thread."""
+    helix = _helix(cut, low_z=cut.bottom_z, clear_z=cut.hole.top[2])
+    if helix.radius > 0.5 * cut.job.tool.diameter:
+        message = (
+            f"on a helix of radius {helix.radius:g} mm a tool of {cut.job.tool.diameter:g} mm "
+            "leaves a core"
+        )
+        raise cut.job.fault(message, cut.job.step.operation_ref, "its_tool")
+    if not cut.is_one_feed:
+        text = "one feed on the helix: reductions at start and end are not used"
+        course.find(cut.job.note(text, attribute="its_machining_strategy"))
+    course.line(cut.hole.at(helix.high_z + 0.25 * helix.pitch), MoveType.NO_CONTACT)
+    _onto(course, cut, helix, rise=-1.0)
+    _turns(course, cut, helix, rise=-1.0, type=MoveType.CONTACT)
+    _pause(course, cut)
+    _turns(course, cut, helix, rise=1.0, type=MoveType.NO_CONTACT)
+    _off(course, cut, helix)
+
+
+def _helix(cut: HoleCut, *, low_z: float, clear_z: float) -> ThreadHelix:
+    """Whole turns of the tip, from one height up to another or just above."""
+    pitch = _pitch(cut)
+    turns = max(1, ceil((clear_z - low_z) / pitch - TOLERANCE))
+    if turns > MOST_TURNS:
+        message = f"{turns} turns of {pitch:g} mm: {MOST_TURNS} at most"
+        raise cut.job.fault(message, _thread_ref(cut), "number_of_threads")
+    return ThreadHelix(
+        radius=_radius(cut), pitch=pitch, turns=turns, low_z=low_z, sense=_sense(cut)
+    )
+
+
+def _onto(course: PathBuilder, cut: HoleCut, helix: ThreadHelix, *, rise: float) -> None:
+    """Half a circle from the axis onto the helix, up or down."""
+    x, y, z = course.at
+    end = (x + helix.radius, y, z + rise * 0.25 * helix.pitch)
+    centre = (x + 0.5 * helix.radius, y, z)
+    course.arc(end, MoveType.CONTACT, centre=centre, turn=rise * helix.sense * pi)
+
+
+def _turns(
+    course: PathBuilder, cut: HoleCut, helix: ThreadHelix, *, rise: float, type: MoveType
+) -> None:
+    """All turns of the helix, up or down."""
+    x, y, z = course.at
+    end = (x, y, helix.high_z if rise > 0.0 else helix.low_z)
+    turn = rise * helix.sense * 2.0 * pi * helix.turns
+    course.arc(end, type, centre=cut.hole.at(z), turn=turn)
+
+
+def _off(course: PathBuilder, cut: HoleCut, helix: ThreadHelix) -> None:
+    """Half a circle from the helix up to the axis."""
+    x, y, z = course.at
+    end = cut.hole.at(z + 0.25 * helix.pitch)
+    centre = (x - 0.5 * helix.radius, y, z)
+    course.arc(end, MoveType.NO_CONTACT, centre=centre, turn=helix.sense * pi)
+
+
+def _pause(course: PathBuilder, cut: HoleCut) -> None:
+    dwell(course, cut, cut.operation.dwell_time_bottom, "dwell_time_bottom")
+
+
+def _thread_ref(cut: HoleCut) -> Ref[Thread]:
+    """Thread of a hole: one that the workingstep names before others that lie on it."""
+    threads = cut.job.program.model.of_type(Thread)
+    found = [ref for ref, thread in threads if cut.hole.ref in (ref, *thread.applied_shape)]
+    named = [ref for ref in found if ref in cut.job.step.features]
+    if not found:
+        message = (
+            "no thread names it as its applied_shape: nothing tells a pitch (number_of_threads)"
+        )
+        raise cut.job.fault(message, cut.hole.ref)
+    return (named or found)[0]
+
+
+def _pitch(cut: HoleCut) -> float:
+    """Pitch in mm, by the unit of the thread's number."""
+    ref = _thread_ref(cut)
+    number = cut.job.program.get(cut.job.program.get(ref).number_of_threads)
+    value, unit = number.its_parameter_value, number.its_parameter_unit.strip().upper()
+    if not 0.0 < value < inf:
+        raise cut.job.fault(f"{value:g}: it must be positive", ref, "number_of_threads")
+    if unit in PITCHES:
+        return value
+    if unit in DENSITIES:
+        return INCH / value
+    message = f"unit '{unit}': a pitch in MM, or threads per INCH"
+    raise cut.job.fault(message, ref, "number_of_threads")
+
+
+def _sense(cut: HoleCut) -> float:
+    """1 for a right-hand thread, −1 for a left-hand one."""
+    ref = _thread_ref(cut)
+    hand = cut.job.program.get(cut.job.program.get(ref).thread_hand).descriptive_string
+    text = hand.strip().upper().replace("-", " ").replace("_", " ")
+    if text not in (*LEFT, *RIGHT):
+        raise cut.job.fault(f"'{hand}': LEFT or RIGHT", ref, "thread_hand")
+    return -1.0 if text in LEFT else 1.0
+
+
+def _radius(cut: HoleCut) -> float:
+    """Radius in mm of the helix of the tool's axis."""
+    ref = _thread_ref(cut)
+    thread = cut.job.program.get(ref)
+    major, width = thread.major_diameter, cut.job.tool.diameter
+    if not 0.0 < major < inf:
+        raise cut.job.fault(f"{major:g} mm: it must be positive", ref, "major_diameter")
+    radius = 0.5 * (major - width)
+    if radius < LEAST_RADIUS:
+        message = f"tool of {width:g} mm for a thread of {major:g} mm leaves no way round"
+        raise cut.job.fault(message, cut.job.step.operation_ref, "its_tool")
+    minor = thread.minor_diameter if isinstance(thread, DefinedThread) else None
+    if minor and width > minor + cut.hole.tolerance:
+        message = f"tool of {width:g} mm for a thread whose minor diameter is {minor:g} mm"
+        raise cut.job.fault(message, cut.job.step.operation_ref, "its_tool")
+    return radius
+
+
+def _length(cut: HoleCut) -> float:
+    """Length of the thread from its top, mm."""
+    ref = _thread_ref(cut)
+    length = cut.job.program.get(cut.job.program.get(ref).partial_profile).effective_length
+    if not 0.0 < length < inf:
+        raise cut.job.fault(f"{length:g} mm: it must be positive", ref, "partial_profile")
+    return length
+
 
 ON_AXIS = 1e-3
 """mm by which a start point may lie beside the axis of its hole"""
 
 
-def hole_path(job: Job) -> ToolPath:
+def hole_path(job: ToolPathTask) -> ToolPath:
     """Tool path of an operation of the drilling family.
 
     Parameters
     ----------
-    job : Job
+    job : ToolPathTask
 
     Returns
     -------
@@ -48,7 +308,7 @@ def hole_path(job: Job) -> ToolPath:
         holes = tuple(_holes(job, operation))
         if not holes:
             raise job.fault("its pattern omits every hole", job.step.features[0])
-        course = Course(job, holes[0].at(job.security_z))
+        course = PathBuilder(job, holes[0].at(job.security_z))
         _notes(course, job, operation)
         cuts = [_cut(course, job, operation, hole) for hole in holes]
         for last, cut in zip([None, *cuts[:-1]], cuts, strict=True):
@@ -60,7 +320,7 @@ def hole_path(job: Job) -> ToolPath:
         return course.finished()
 
 
-def _holes(job: Job, operation: DrillingTypeOperation) -> Iterator[Hole]:
+def _holes(job: ToolPathTask, operation: DrillingTypeOperation) -> Iterator[Hole]:
     """Holes that the operation makes."""
     if isinstance(operation, BackBoring):
         return back_holes(job)
@@ -69,7 +329,7 @@ def _holes(job: Job, operation: DrillingTypeOperation) -> Iterator[Hole]:
     return holes_of(job, operation)
 
 
-def _make(course: Course, cut: HoleCut) -> None:
+def _make(course: PathBuilder, cut: HoleCut) -> None:
     """Make one hole; the tool stands above it on the retract plane, and ends there."""
     if isinstance(cut.operation, BackBoring):
         bore_back(course, cut)
@@ -79,8 +339,8 @@ def _make(course: Course, cut: HoleCut) -> None:
         cut_hole(course, cut)
 
 
-def _notes(course: Course, job: Job, operation: DrillingTypeOperation) -> None:
-    """What is assumed about the operation as a whole."""
+def _notes(course: PathBuilder, job: ToolPathTask, operation: DrillingTypeOperation) -> None:
+    """Assumptions on the operation as a whole."""
     if operation.retract_plane is None:
         text = f"no retract plane: {DEFAULT_CLEARANCE:g} mm above the feature assumed"
         course.find(job.note(text, attribute="retract_plane"))
@@ -91,8 +351,10 @@ def _notes(course: Course, job: Job, operation: DrillingTypeOperation) -> None:
             course.find(job.warning(text, attribute="start_point"))
 
 
-def _cut(course: Course, job: Job, operation: DrillingTypeOperation, hole: Hole) -> HoleCut:
-    """How one hole is made."""
+def _cut(
+    course: PathBuilder, job: ToolPathTask, operation: DrillingTypeOperation, hole: Hole
+) -> HoleCut:
+    """Moves that make one hole."""
     if isinstance(operation, BackBoring):
         return _back_cut(course, job, operation, hole)
     depth = depth_of(job, operation, hole)
@@ -108,8 +370,10 @@ def _cut(course: Course, job: Job, operation: DrillingTypeOperation, hole: Hole)
     )
 
 
-def _back_cut(course: Course, job: Job, operation: BackBoring, hole: Hole) -> HoleCut:
-    """How one hole is bored from behind."""
+def _back_cut(
+    course: PathBuilder, job: ToolPathTask, operation: BackBoring, hole: Hole
+) -> HoleCut:
+    """Moves that bore one hole from behind."""
     bore = bore_of(job, operation, hole)
     for finding in back_findings(job, operation, hole, bore):
         course.find(finding)
@@ -119,11 +383,11 @@ def _back_cut(course: Course, job: Job, operation: BackBoring, hole: Hole) -> Ho
         hole=hole,
         retract_z=_retract_z(job, operation, hole),
         bottom_z=bore.below_z,
-        stages=(Stage(end_z=bore.below_z, feed=job.feed),),
+        stages=(FeedStage(end_z=bore.below_z, feed=job.feed),),
     )
 
 
-def _retract_z(job: Job, operation: DrillingTypeOperation, hole: Hole) -> float:
+def _retract_z(job: ToolPathTask, operation: DrillingTypeOperation, hole: Hole) -> float:
     """Height of the retract plane, which never lies above the security plane."""
     above = operation.retract_plane
     if above is None:
@@ -140,7 +404,7 @@ def _retract_z(job: Job, operation: DrillingTypeOperation, hole: Hole) -> float:
     return min(hole.entry_z + above, job.security_z)
 
 
-def _link(course: Course, last: HoleCut, cut: HoleCut) -> None:
+def _link(course: PathBuilder, last: HoleCut, cut: HoleCut) -> None:
     """Over to the next hole: on the retract plane where no stock can stand in the way."""
     height = max(last.retract_z, cut.retract_z)
     stock = cut.job.stock

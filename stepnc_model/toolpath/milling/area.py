@@ -1,4 +1,4 @@
-"""What a milling feature asks to be removed: walls and floor in the setup, level by level.
+"""Areas that a milling feature removes: walls and floor in the setup, level by level.
 
 The walls of an area stand around it, the area on their left. A wall may lean, or run into the
 floor with a radius, so the area shrinks with depth: each wall knows its inset at a height.
@@ -11,8 +11,8 @@ from math import inf, sqrt, tan
 from stepnc_model.entities.entity import Entity
 from stepnc_model.part21.values import Ref
 from stepnc_model.toolpath.milling.contour import TINY, Chain, Loop
-from stepnc_model.toolpath.milling.cutter import Cutter
 from stepnc_model.toolpath.milling.offset import erode
+from stepnc_model.toolpath.milling.strategy import EndMillShape
 from stepnc_model.units import rad_from_deg
 
 SAMPLES = 24
@@ -36,13 +36,13 @@ class Wall:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Bar:
+class TeeSlotUndercut:
     """The wide part of a tee slot, at its floor."""
 
     width: float
-    """mm"""
+    """Width, mm"""
     depth: float
-    """mm, its height above the floor"""
+    """Depth, mm, its height above the floor"""
     is_open: bool
     """at both ends"""
 
@@ -65,8 +65,8 @@ class Area:
     """how far the slot goes on beyond the ends of its centre line, mm"""
     rises: tuple[Inset, Inset] | None = None
     """how much of each end of a slot stands in it at a height above the floor, mm"""
-    bar: Bar | None = None
-    """of a tee slot"""
+    bar: TeeSlotUndercut | None = None
+    """Bar of a tee slot"""
     solid: Loop | None = None
     """the material of an area with open sides, without what the tool needs to run out"""
     outside: Chain = ()
@@ -77,7 +77,7 @@ class Area:
         """From the top to the floor, mm."""
         return self.top - self.bottom
 
-    def boundaries(self, z: float, cutter: Cutter) -> tuple[Loop, ...]:
+    def boundaries(self, z: float, cutter: EndMillShape) -> tuple[Loop, ...]:
         """Walls for a flat cutter of the same radius that has its tip at z.
 
         Empty where the walls leave no room, or where there are none.
@@ -111,7 +111,7 @@ class Flank:
     top: float
     bottom: float
     width: float | None = None
-    """mm to be removed beside it, where the feature says so"""
+    """Width, mm to be removed beside it, where the feature says so"""
 
     @property
     def depth(self) -> float:
@@ -147,8 +147,8 @@ def rounding(height: float, radius: float) -> float:
     return radius - chord(radius, height)
 
 
-def extra(inset: Inset, cutter: Cutter, *, bottom: float, top: float) -> float:
-    """How much further than its radius a cutter must stay from a wall, mm.
+def extra(inset: Inset, cutter: EndMillShape, *, bottom: float, top: float) -> float:
+    """Distance beyond its radius that a cutter must keep from a wall, mm.
 
     The largest sum of the wall's inset and the cutter's reach over the heights from its tip,
     ``bottom``, up to ``top``, less the radius.

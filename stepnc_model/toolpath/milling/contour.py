@@ -26,14 +26,14 @@ REMEMBERED = 256
 
 
 @dataclass(frozen=True, slots=True)
-class Edge:
+class ContourEdge:
     """A line, or an arc when it has a centre."""
 
     start: complex
     end: complex
     centre: complex | None = None
     turn: float = 0.0
-    """rad, positive counter-clockwise"""
+    """Turn, rad, positive counter-clockwise"""
 
     @property
     def length(self) -> float:
@@ -56,36 +56,36 @@ class Edge:
         outward = self.at(part) - self.centre
         return outward / abs(outward) * (1j if self.turn > 0.0 else -1j)
 
-    def between(self, low: float, high: float) -> "Edge":
+    def between(self, low: float, high: float) -> "ContourEdge":
         """Piece between two parts of the length; its ends are exact where they are its own."""
-        return Edge(
+        return ContourEdge(
             start=self.start if low <= 0.0 else self.at(low),
             end=self.end if high >= 1.0 else self.at(high),
             centre=self.centre,
             turn=self.turn * (high - low),
         )
 
-    def reversed(self) -> "Edge":
+    def reversed(self) -> "ContourEdge":
         """The same way back."""
-        return Edge(start=self.end, end=self.start, centre=self.centre, turn=-self.turn)
+        return ContourEdge(start=self.end, end=self.start, centre=self.centre, turn=-self.turn)
 
 
-Chain = tuple[Edge, ...]
+Chain = tuple[ContourEdge, ...]
 """edges one after another"""
 
 Loop = Chain
 """edges that come back to where they start"""
 
 
-def line(start: complex, end: complex) -> Edge:
+def line(start: complex, end: complex) -> ContourEdge:
     """A straight edge."""
-    return Edge(start, end)
+    return ContourEdge(start, end)
 
 
 def circle(centre: complex, radius: float) -> Loop:
     """A circle counter-clockwise, in two halves."""
     right, left = centre + radius, centre - radius
-    return (Edge(right, left, centre, pi), Edge(left, right, centre, pi))
+    return (ContourEdge(right, left, centre, pi), ContourEdge(left, right, centre, pi))
 
 
 def polygon(points: Sequence[complex]) -> Loop:
@@ -94,9 +94,9 @@ def polygon(points: Sequence[complex]) -> Loop:
     return tuple(line(a, b) for a, b in zip(points, ends, strict=True) if abs(a - b) > TINY)
 
 
-def halved(chain: Iterable[Edge]) -> Chain:
+def halved(chain: Iterable[ContourEdge]) -> Chain:
     """The same way, no arc of it longer than half a turn."""
-    found: list[Edge] = []
+    found: list[ContourEdge] = []
     for edge in chain:
         count = max(1, ceil(abs(edge.turn) / pi - TINY))
         parts = [i / count for i in range(count + 1)]
@@ -109,7 +109,7 @@ def reversed_chain(chain: Chain) -> Chain:
     return tuple(edge.reversed() for edge in reversed(chain))
 
 
-def chain_length(chain: Iterable[Edge]) -> float:
+def chain_length(chain: Iterable[ContourEdge]) -> float:
     """Length, mm."""
     return sum(edge.length for edge in chain)
 
@@ -218,7 +218,7 @@ def nearest(chain: Chain, point: complex) -> tuple[int, float]:
     return index, parts[index]
 
 
-def _foot(edge: Edge, point: complex) -> float:
+def _foot(edge: ContourEdge, point: complex) -> float:
     """Part of an edge's length nearest to a point."""
     if edge.centre is None:
         way = edge.end - edge.start

@@ -38,26 +38,26 @@ MOST_RINGS = 2000
 
 
 @dataclass(frozen=True, slots=True)
-class Pass:
+class MillingPass:
     """One cut at constant depth: a loop, or a chain with two ends."""
 
     chain: Chain
     is_closed: bool
 
-    def from_near(self, point: complex | None) -> "Pass":
+    def from_near(self, point: complex | None) -> "MillingPass":
         """The same pass, a loop started where it comes nearest to a point."""
         if point is None or not self.is_closed:
             return self
-        return Pass(rotated_to(self.chain, point), is_closed=True)
+        return MillingPass(rotated_to(self.chain, point), is_closed=True)
 
     @property
     def start(self) -> complex:
-        """Where it starts."""
+        """First point."""
         return self.chain[0].start
 
     @property
     def end(self) -> complex:
-        """Where it ends."""
+        """Last point."""
         return self.chain[-1].end
 
 
@@ -72,7 +72,7 @@ class _Node:
 
 def rings(
     walls: Sequence[Loop], *, distance: float, radius: float, step: float
-) -> tuple[Pass, ...]:
+) -> tuple[MillingPass, ...]:
     """Passes that clear an area, from the inside out.
 
     Parameters
@@ -88,7 +88,7 @@ def rings(
 
     Returns
     -------
-    tuple of Pass
+    tuple of MillingPass
         Outer passes counter-clockwise, passes around islands clockwise. Empty when the cutter
         does not fit in.
     """
@@ -98,13 +98,15 @@ def rings(
 @lru_cache(maxsize=REMEMBERED)
 def _rings(
     walls: tuple[Loop, ...], distance: float, radius: float, step: float
-) -> tuple[Pass, ...]:
+) -> tuple[MillingPass, ...]:
     """The same of walls that can be remembered."""
     levels = list(_levels(walls, distance, step))
     if not levels:
         return ()
     nodes = _tree(levels)
-    ordered = [Pass(loop, is_closed=True) for node in nodes for loop in _inside_out(node)]
+    ordered = [
+        MillingPass(loop, is_closed=True) for node in nodes for loop in _inside_out(node)
+    ]
     if step <= radius * (1.0 + TINY):
         return tuple(ordered)
     between = (erode(walls, distance + (i + 0.5) * step) for i in range(len(levels)))
@@ -112,7 +114,9 @@ def _rings(
     return tuple(_interleaved(ordered, extra))
 
 
-def swept(passes: Sequence[Pass], radius: float, *, tolerance: float = CHORD) -> BaseGeometry:
+def swept(
+    passes: Sequence[MillingPass], radius: float, *, tolerance: float = CHORD
+) -> BaseGeometry:
     """Area that a cutter sweeps along passes."""
     return shapely.union_all([
         LineString(_coordinates(each.chain, tolerance)).buffer(radius, quad_segs=32)
@@ -192,11 +196,11 @@ def _uncut(
     levels: Sequence[tuple[Loop, ...]],
     between: Iterable[tuple[Loop, ...]],
     radius: float,
-) -> list[Pass]:
+) -> list[MillingPass]:
     """Passes through what the rings leave: rings half way between two levels, then strokes."""
-    passes = [Pass(loop, is_closed=True) for loops in levels for loop in loops]
+    passes = [MillingPass(loop, is_closed=True) for loops in levels for loop in loops]
     left = _parts(area_of(levels[0]).difference(swept(passes, radius)))
-    found: list[Pass] = []
+    found: list[MillingPass] = []
     if not left:
         return found
     for loop in (loop for loops in between for loop in loops):
@@ -206,20 +210,20 @@ def _uncut(
             whole = [part for part in left if reached.covers(part)]
             # A ring is worth its way only where it runs through what is left.
             if sum(part.length for part in whole) >= 0.5 * trace.length:
-                found.append(Pass(loop, is_closed=True))
+                found.append(MillingPass(loop, is_closed=True))
                 left = [part for part in left if not reached.covers(part)]
     for part in left:
         found += _through(part, radius)
     return found
 
 
-def _through(part: Polygon, radius: float) -> list[Pass]:
+def _through(part: Polygon, radius: float) -> list[MillingPass]:
     """A stroke through a part that is left, or passes along its edge and within."""
     stroke = _axis(part)
     if stroke is not None and stroke.buffer(radius * 0.999).covers(part):
         (x0, y0), (x1, y1) = stroke.coords
-        return [Pass((line(complex(x0, y0), complex(x1, y1)),), is_closed=False)]
-    found: list[Pass] = []
+        return [MillingPass((line(complex(x0, y0), complex(x1, y1)),), is_closed=False)]
+    found: list[MillingPass] = []
     stack = [part]
     while stack:
         piece = stack.pop()
@@ -229,7 +233,7 @@ def _through(part: Polygon, radius: float) -> list[Pass]:
         edges = tuple(line(a, b) for a, b in pairwise(points) if abs(a - b) > TINY)
         if not edges:
             continue
-        found.append(Pass(edges, is_closed=True))
+        found.append(MillingPass(edges, is_closed=True))
         stack += _parts(piece.difference(ring.buffer(radius * 0.97)))
     return found
 
@@ -255,13 +259,13 @@ def _axis(part: Polygon) -> LineString | None:
     return None
 
 
-def _interleaved(ordered: list[Pass], extra: list[Pass]) -> Iterator[Pass]:
+def _interleaved(ordered: list[MillingPass], extra: list[MillingPass]) -> Iterator[MillingPass]:
     """Each extra pass before the first ring that runs close to it."""
     if not extra:
         yield from ordered
         return
     traces = [LineString(_coordinates(each.chain, 0.1)) for each in ordered]
-    places: dict[int, list[Pass]] = {}
+    places: dict[int, list[MillingPass]] = {}
     for each in extra:
         trace = LineString(_coordinates(each.chain, 0.1))
         gaps = [trace.distance(other) for other in traces]

@@ -1,4 +1,4 @@
-"""How the tool comes down to a pass and how it leaves it (ISO 14649-11 approach and retract).
+"""Approach to a pass and retract from it (ISO 14649-11).
 
 Plunges go down to the level of a pass: along the tool's axis, down a ramp along the pass
 itself, down a helix, or to and fro. Air strategies come down beside the pass and meet it along
@@ -9,7 +9,8 @@ from cmath import rect
 from dataclasses import dataclass, replace
 from math import ceil, pi, tan
 
-from stepnc_model.entities.approach import (
+from stepnc_model.entities.entity import Entity
+from stepnc_model.entities.milling import (
     AlongPath,
     ApRetractAngle,
     ApRetractTangent,
@@ -17,22 +18,20 @@ from stepnc_model.entities.approach import (
     PlungeRamp,
     PlungeZigzag,
 )
-from stepnc_model.entities.entity import Entity
 from stepnc_model.part21.values import Ref
-from stepnc_model.toolpath.course import Course
-from stepnc_model.toolpath.job import Job
 from stepnc_model.toolpath.milling.contour import (
     TINY,
     Chain,
-    Edge,
+    ContourEdge,
     chain_length,
     divided,
     line,
     reversed_chain,
 )
-from stepnc_model.toolpath.milling.cover import Pass
-from stepnc_model.toolpath.milling.room import Room
+from stepnc_model.toolpath.milling.cover import MillingPass
+from stepnc_model.toolpath.milling.layer import CentreArea
 from stepnc_model.toolpath.path import MoveType, Point
+from stepnc_model.toolpath.task import PathBuilder, ToolPathTask
 from stepnc_model.units import rad_from_deg
 
 STEEPEST_DEG = 89.0
@@ -56,18 +55,18 @@ class Heights:
     above: float
     """just above the material of this level"""
     level: float
-    """of the pass"""
+    """Level of the pass"""
 
 
 def enter(
-    course: Course,
-    job: Job,
-    cut: Pass,
+    course: PathBuilder,
+    job: ToolPathTask,
+    cut: MillingPass,
     *,
     heights: Heights,
-    room: Room,
+    room: CentreArea,
     approach: Ref[Entity] | None,
-) -> Pass:
+) -> MillingPass:
     """Bring the tool to the start of a pass; what is left of the pass to be cut."""
     strategy = job.program.get(approach) if approach is not None else None
     if isinstance(strategy, AlongPath):
@@ -90,18 +89,18 @@ def enter(
 
 
 def leave(
-    course: Course,
-    job: Job,
-    cut: Pass,
+    course: PathBuilder,
+    job: ToolPathTask,
+    cut: MillingPass,
     *,
     heights: Heights,
-    room: Room,
+    room: CentreArea,
     retract: Ref[Entity] | None,
 ) -> None:
     """Take the tool from the end of a pass to the height of travel."""
     strategy = job.program.get(retract) if retract is not None else None
     if isinstance(strategy, (ApRetractAngle, ApRetractTangent)):
-        back = Pass(reversed_chain(cut.chain), cut.is_closed)
+        back = MillingPass(reversed_chain(cut.chain), cut.is_closed)
         mirrored = replace(room, side=-room.side)
         way = reversed_chain(_lead(strategy, back, mirrored))
         if way:
@@ -118,7 +117,7 @@ def leave(
     course.rapid((x, y, heights.travel), MoveType.RETRACT)
 
 
-def trace(course: Course, chain: Chain, *, z: float, end_z: float, type: MoveType) -> None:
+def trace(course: PathBuilder, chain: Chain, *, z: float, end_z: float, type: MoveType) -> None:
     """Follow a chain, rising or sinking evenly along its length."""
     total = chain_length(chain)
     done = 0.0
@@ -133,7 +132,7 @@ def trace(course: Course, chain: Chain, *, z: float, end_z: float, type: MoveTyp
             course.arc(end, type, centre=centre, turn=edge.turn)
 
 
-def _over(course: Course, at: complex, heights: Heights) -> None:
+def _over(course: PathBuilder, at: complex, heights: Heights) -> None:
     """Sideways at the height of travel, then down to just above the material."""
     x, y = at.real, at.imag
     course.rapid((x, y, max(course.at[2], heights.travel)))
@@ -143,21 +142,21 @@ def _over(course: Course, at: complex, heights: Heights) -> None:
     course.line((x, y, min(heights.above, heights.retract)), MoveType.NO_CONTACT)
 
 
-def _down(course: Course, at: complex, heights: Heights) -> None:
+def _down(course: PathBuilder, at: complex, heights: Heights) -> None:
     """Straight down to the level of the pass."""
     _over(course, at, heights)
     course.line((at.real, at.imag, heights.level), MoveType.APPROACH)
 
 
 def _slanted(
-    course: Course,
-    job: Job,
-    cut: Pass,
+    course: PathBuilder,
+    job: ToolPathTask,
+    cut: MillingPass,
     strategy: PlungeRamp | PlungeHelix | PlungeZigzag,
     *,
     heights: Heights,
-    room: Room,
-) -> Pass:
+    room: CentreArea,
+) -> MillingPass:
     """Down at an angle: a helix, round and round a loop, or to and fro."""
     length = (heights.above - heights.level) / tan(rad_from_deg(strategy.angle))
     if isinstance(strategy, PlungeHelix):
@@ -179,18 +178,22 @@ def _slanted(
     return cut
 
 
-def _around(course: Course, cut: Pass, heights: Heights, length: float) -> Pass:
+def _around(
+    course: PathBuilder, cut: MillingPass, heights: Heights, length: float
+) -> MillingPass:
     """Down along a loop; the loop from where the level is reached."""
     laps, rest = divmod(length, chain_length(cut.chain))
     head, tail = divided(cut.chain, rest)
     _over(course, cut.start, heights)
     way = (*cut.chain * int(laps), *head)
     trace(course, way, z=heights.above, end_z=heights.level, type=MoveType.APPROACH)
-    return Pass((*tail, *head), is_closed=True)
+    return MillingPass((*tail, *head), is_closed=True)
 
 
-def _zigzag(course: Course, cut: Pass, heights: Heights, length: float, limit: float) -> None:
-    """To and fro along the beginning of the pass, back at its start on the level."""
+def _zigzag(
+    course: PathBuilder, cut: MillingPass, heights: Heights, length: float, limit: float
+) -> None:
+    """Move to and fro along the beginning of the pass, back at its start on the level."""
     count = max(1, ceil(0.5 * length / limit - TINY))
     way, _ = divided(cut.chain, 0.5 * length / count)
     legs = (way, reversed_chain(way)) * count
@@ -205,10 +208,10 @@ def _zigzag(course: Course, cut: Pass, heights: Heights, length: float, limit: f
 
 
 def _helix(
-    course: Course,
-    cut: Pass,
+    course: PathBuilder,
+    cut: MillingPass,
     heights: Heights,
-    room: Room,
+    room: CentreArea,
     *,
     radius: float | None,
     length: float,
@@ -230,7 +233,9 @@ def _helix(
     return True
 
 
-def _helix_centre(cut: Pass, room: Room, radius: float | None) -> tuple[complex, float] | None:
+def _helix_centre(
+    cut: MillingPass, room: CentreArea, radius: float | None
+) -> tuple[complex, float] | None:
     """Centre and radius of a circle through the start that stays in the room."""
     size = radius or 0.0
     along = cut.chain[0].along(0.0)
@@ -246,7 +251,9 @@ def _helix_centre(cut: Pass, room: Room, radius: float | None) -> tuple[complex,
     return None
 
 
-def _lead(strategy: ApRetractAngle | ApRetractTangent, cut: Pass, room: Room) -> Chain:
+def _lead(
+    strategy: ApRetractAngle | ApRetractTangent, cut: MillingPass, room: CentreArea
+) -> Chain:
     """Way onto the start of a pass from its free side; empty when there is no room."""
     at, along = cut.start, cut.chain[0].along(0.0)
     if isinstance(strategy, ApRetractTangent):
@@ -255,7 +262,7 @@ def _lead(strategy: ApRetractAngle | ApRetractTangent, cut: Pass, room: Room) ->
             return ()
         centre = at + room.side * along * radius
         turn = 0.5 * pi if room.side.imag > 0.0 else -0.5 * pi
-        way: Chain = (Edge(centre + (at - centre) * rect(1.0, -turn), at, centre, turn),)
+        way: Chain = (ContourEdge(centre + (at - centre) * rect(1.0, -turn), at, centre, turn),)
     else:
         length = strategy.travel_length or 0.0
         if length <= TINY:

@@ -1,19 +1,20 @@
-"""One level of an area: its passes in their order."""
+"""One level of an area: its passes in their order, and where the cutter's centre may be."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import ceil
+from functools import lru_cache
+from math import ceil, inf
 
 import numpy as np
+import shapely
 
 from stepnc_model.toolpath.curve import JOINED
-from stepnc_model.toolpath.job import Job
 from stepnc_model.toolpath.milling.area import Area, upright
-from stepnc_model.toolpath.milling.arrays import Edges, distances
 from stepnc_model.toolpath.milling.contour import (
+    REMEMBERED,
     TINY,
     Chain,
-    Edge,
+    ContourEdge,
     Loop,
     chain_length,
     moved,
@@ -22,13 +23,97 @@ from stepnc_model.toolpath.milling.contour import (
     vertices,
 )
 from stepnc_model.toolpath.milling.contour import area as contour_area
-from stepnc_model.toolpath.milling.cover import Pass, area_of, rings, swept
-from stepnc_model.toolpath.milling.cutter import Cutter, run_out
-from stepnc_model.toolpath.milling.offset import erode, offset
-from stepnc_model.toolpath.milling.room import Room, nowhere, within
-from stepnc_model.toolpath.milling.spiral import spirals
-from stepnc_model.toolpath.milling.strokes import Stroke, rows_at, scan, singles, zigzags
-from stepnc_model.toolpath.milling.way import Covering, Way
+from stepnc_model.toolpath.milling.cover import MillingPass, area_of, rings, swept
+from stepnc_model.toolpath.milling.offset import ContourEdges, distances, erode, offset
+from stepnc_model.toolpath.milling.strategy import (
+    Covering,
+    EndMillShape,
+    ResolvedStrategy,
+    run_out,
+)
+from stepnc_model.toolpath.milling.strokes import (
+    Stroke,
+    rows_at,
+    scan,
+    singles,
+    spirals,
+    zigzags,
+)
+from stepnc_model.toolpath.task import ToolPathTask
+
+CHORD = 1e-4
+"""mm of tolerance where a point is looked for in an area"""
+
+HAIR = CHORD
+"""mm; a point nearer to the boundary than this lies on it: chords cannot tell"""
+
+SHORTEST = 0.02
+"""mm; between points of a way so close it cannot come nearer by more than a hair"""
+
+Clearance = Callable[[complex], float]
+"""how far a point lies from the boundary of the room, mm; negative outside"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CentreArea:
+    """Area in which the centre of the cutter may be."""
+
+    clearance: Clearance
+    side: complex = 1j
+    """i when the free side is on the left of the way, -i when it is on the right"""
+
+    def holds(self, chain: Chain) -> bool:
+        """Whether a way stays within."""
+        return all(self._holds(edge) for edge in chain)
+
+    def _holds(self, edge: ContourEdge) -> bool:
+        """The clearance changes by no more than the way: halves until that settles it."""
+        parts = [(0.0, 1.0)]
+        while parts:
+            low, high = parts.pop()
+            middle, size = 0.5 * (low + high), (high - low) * edge.length
+            gap = self.clearance(edge.at(middle))
+            if gap < -HAIR:
+                return False
+            if gap < 0.5 * size and size > SHORTEST:
+                parts += [(low, middle), (middle, high)]
+        return all(self.clearance(point) >= -HAIR for point in (edge.start, edge.end))
+
+    def holds_circle(self, centre: complex, radius: float) -> bool:
+        """Whether a circle lies within."""
+        return self.clearance(centre) >= radius - HAIR
+
+
+def nowhere(_point: complex) -> float:
+    """No room beside the pass: the cutter is as wide as its slot."""
+    return -inf
+
+
+def within(loops: Sequence[Loop]) -> Clearance:
+    """Room that lies on the left of loops."""
+    return _within(tuple(loops))
+
+
+@lru_cache(maxsize=REMEMBERED)
+def _within(loops: tuple[Loop, ...]) -> Clearance:
+    """The same of loops that can be remembered."""
+    edges = ContourEdges.of([edge for loop in loops for edge in loop])
+    area = area_of(loops, tolerance=CHORD)
+    shapely.prepare(area)
+
+    def clearance(point: complex) -> float:
+        gap = float(distances(np.array([point]), edges)[0])
+        is_inside = gap <= HAIR or shapely.contains_xy(area, point.real, point.imag)
+        return gap if is_inside else -gap
+
+    return clearance
+
+
+def beside(wall: Chain, distance: float) -> Clearance:
+    """Room that keeps a distance from a wall."""
+    edges = ContourEdges.of(wall)
+    return lambda point: float(distances(np.array([point]), edges)[0]) - distance
+
 
 JUST_FITS = 1e-3
 """mm; a slot narrower than the tool by no more than this is as wide as the tool"""
@@ -42,15 +127,15 @@ MOST_ROWS = 10_000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Level:
+class CutLevel:
     """One height, and the cutter that comes there."""
 
     z: float
     above: float
     """z of the material over this level"""
-    cutter: Cutter
+    cutter: EndMillShape
     allowance: float
-    """mm left on the walls"""
+    """Allowance, mm left on the walls"""
 
     @property
     def distance(self) -> float:
@@ -69,8 +154,8 @@ class Layer:
     z: float
     above: float
     """z of the material over this level"""
-    passes: tuple[Pass, ...]
-    room: Room
+    passes: tuple[MillingPass, ...]
+    room: CentreArea
     loops: tuple[Loop, ...] = ()
     """boundary of where the centre may be, when it is known"""
     solid: tuple[Loop, ...] = ()
@@ -79,7 +164,9 @@ class Layer:
     """every pass begins and ends beside the part, straight down and up"""
 
 
-def clear(job: Job, area: Area, level: Level, way: Way) -> Layer | None:
+def clear(
+    job: ToolPathTask, area: Area, level: CutLevel, way: ResolvedStrategy
+) -> Layer | None:
     """Passes that clear a level; None when the cutter does not fit in."""
     if area.face is not None:
         return _face(job, area, level, way)
@@ -92,7 +179,7 @@ def clear(job: Job, area: Area, level: Level, way: Way) -> Layer | None:
     return _layer(area, level, passes, loops, is_left=way.is_counter_clockwise)
 
 
-def wall_passes(area: Area, level: Level, way: Way) -> Layer | None:
+def wall_passes(area: Area, level: CutLevel, way: ResolvedStrategy) -> Layer | None:
     """Passes along the walls of a level; None when the cutter does not fit in."""
     boundaries = area.boundaries(level.z, level.cutter)
     loops = erode(boundaries, level.distance)
@@ -101,14 +188,14 @@ def wall_passes(area: Area, level: Level, way: Way) -> Layer | None:
     else:
         passes = _narrow(area, level, boundaries)
     if not way.has_wall_on_right:
-        passes = tuple(Pass(reversed_chain(cut.chain), cut.is_closed) for cut in passes)
+        passes = tuple(MillingPass(reversed_chain(cut.chain), cut.is_closed) for cut in passes)
     return _layer(area, level, passes, loops, is_left=way.has_wall_on_right)
 
 
 def _layer(
     area: Area,
-    level: Level,
-    passes: tuple[Pass, ...],
+    level: CutLevel,
+    passes: tuple[MillingPass, ...],
     loops: tuple[Loop, ...],
     *,
     is_left: bool,
@@ -120,7 +207,9 @@ def _layer(
         z=level.z,
         above=level.above,
         passes=passes,
-        room=Room(clearance=within(loops) if loops else nowhere, side=1j if is_left else -1j),
+        room=CentreArea(
+            clearance=within(loops) if loops else nowhere, side=1j if is_left else -1j
+        ),
         loops=loops,
         solid=level.touching(area.solid),
     )
@@ -128,14 +217,14 @@ def _layer(
 
 def _covered(
     area: Area,
-    level: Level,
+    level: CutLevel,
     boundaries: tuple[Loop, ...],
     loops: tuple[Loop, ...],
-    way: Way,
-) -> tuple[Pass, ...]:
+    way: ResolvedStrategy,
+) -> tuple[MillingPass, ...]:
     """Passes of an area with walls, as the strategy wants them."""
     radius = level.cutter.radius
-    walls = tuple(_turned(Pass(loop, is_closed=True), way) for loop in loops)
+    walls = tuple(_turned(MillingPass(loop, is_closed=True), way) for loop in loops)
     if way.covering in {Covering.DEFAULT, Covering.RINGS, Covering.SPIRAL}:
         return _rings(boundaries, level, loops, way)
     if way.covering is Covering.MIDDLE:
@@ -153,8 +242,11 @@ def _covered(
 
 
 def _rings(
-    boundaries: tuple[Loop, ...], level: Level, loops: tuple[Loop, ...], way: Way
-) -> tuple[Pass, ...]:
+    boundaries: tuple[Loop, ...],
+    level: CutLevel,
+    loops: tuple[Loop, ...],
+    way: ResolvedStrategy,
+) -> tuple[MillingPass, ...]:
     """Rings within rings, in the order and the sense of the strategy."""
     radius = level.cutter.radius
     found = rings(boundaries, distance=level.distance, radius=radius, step=way.step)
@@ -164,19 +256,21 @@ def _rings(
     return tuple(ordered)
 
 
-def _turned(cut: Pass, way: Way) -> Pass:
+def _turned(cut: MillingPass, way: ResolvedStrategy) -> MillingPass:
     """A pass that runs around its area as the strategy wants it."""
     if way.is_counter_clockwise or not cut.is_closed:
         return cut
-    return Pass(reversed_chain(cut.chain), is_closed=True)
+    return MillingPass(reversed_chain(cut.chain), is_closed=True)
 
 
-def _strokes(loops: Sequence[Loop], way: Way) -> tuple[Pass, ...]:
+def _strokes(loops: Sequence[Loop], way: ResolvedStrategy) -> tuple[MillingPass, ...]:
     """Strokes over an area."""
     return _joined(scan(loops, along=way.along, step=way.step), loops, way)
 
 
-def _joined(rows: list[list[Stroke]], loops: Sequence[Loop], way: Way) -> tuple[Pass, ...]:
+def _joined(
+    rows: list[list[Stroke]], loops: Sequence[Loop], way: ResolvedStrategy
+) -> tuple[MillingPass, ...]:
     """Rows in the order of the strategy, one way or to and fro."""
     ordered = rows if way.steps_left else rows[::-1]
     if not way.is_lifted:
@@ -185,12 +279,14 @@ def _joined(rows: list[list[Stroke]], loops: Sequence[Loop], way: Way) -> tuple[
     if way.covering is Covering.ONE_WAY:
         return passes
     return tuple(
-        each if index % 2 == 0 else Pass(reversed_chain(each.chain), is_closed=False)
+        each if index % 2 == 0 else MillingPass(reversed_chain(each.chain), is_closed=False)
         for index, each in enumerate(passes)
     )
 
 
-def _face(job: Job, area: Area, level: Level, way: Way) -> Layer | None:
+def _face(
+    job: ToolPathTask, area: Area, level: CutLevel, way: ResolvedStrategy
+) -> Layer | None:
     """Passes over a face, the tool running over its edge."""
     face = area.face
     assert face is not None
@@ -207,11 +303,14 @@ def _face(job: Job, area: Area, level: Level, way: Way) -> Layer | None:
             rows_at(loops, _rows(job, face, way, radius), along=way.along), loops, way
         )
         around = [loop for loop in loops if contour_area(loop) < 0.0]
-        passes = (*passes, *(_turned(Pass(loop, is_closed=True), way) for loop in around))
+        passes = (
+            *passes,
+            *(_turned(MillingPass(loop, is_closed=True), way) for loop in around),
+        )
     return _layer(area, level, passes, loops, is_left=way.is_counter_clockwise)
 
 
-def _rows(job: Job, face: Loop, way: Way, radius: float) -> list[float]:
+def _rows(job: ToolPathTask, face: Loop, way: ResolvedStrategy, radius: float) -> list[float]:
     """Places of the strokes across a face: full steps, overhanging equally on both sides."""
     turned = moved(face, turned=way.along.conjugate())
     heights = [point.imag for point in vertices(turned, tolerance=1e-3)]
@@ -226,47 +325,51 @@ def _rows(job: Job, face: Loop, way: Way, radius: float) -> list[float]:
     return [first + index * way.step for index in range(count)]
 
 
-def _narrow(area: Area, level: Level, boundaries: tuple[Loop, ...]) -> tuple[Pass, ...]:
+def _narrow(
+    area: Area, level: CutLevel, boundaries: tuple[Loop, ...]
+) -> tuple[MillingPass, ...]:
     """One pass where the cutter just fits; none where it does not."""
     loops = erode(boundaries, level.distance - JUST_FITS)
     if not loops:
         return ()
     middle = _middle(area, level, boundaries)
-    return middle or tuple(Pass(loop, is_closed=True) for loop in loops)
+    return middle or tuple(MillingPass(loop, is_closed=True) for loop in loops)
 
 
-def _middle(area: Area, level: Level, boundaries: tuple[Loop, ...]) -> tuple[Pass, ...]:
+def _middle(
+    area: Area, level: CutLevel, boundaries: tuple[Loop, ...]
+) -> tuple[MillingPass, ...]:
     """The centre line of a slot, run out at open ends and short of the walls at others."""
     middle = area.middle
     if middle is None:
         return ()
     if abs(middle[-1].end - middle[0].start) < JOINED:
-        return (Pass(middle, is_closed=True),)
+        return (MillingPass(middle, is_closed=True),)
     short = level.distance + _inset(boundaries, area)
     first, last = (
         end - short - rise(level.z - area.bottom)
         for end, rise in zip(area.ends, area.rises or (upright, upright), strict=True)
     )
     chain = stretched(middle, first, last)
-    return (Pass(chain, is_closed=False),) if chain else ()
+    return (MillingPass(chain, is_closed=False),) if chain else ()
 
 
-def _along_walls(area: Area, loop: Loop, boundaries: Sequence[Loop]) -> list[Pass]:
+def _along_walls(area: Area, loop: Loop, boundaries: Sequence[Loop]) -> list[MillingPass]:
     """A ring without the parts of it that follow no wall, beyond an open side."""
     outside = area.outside
     if not outside:
-        return [Pass(loop, is_closed=True)]
+        return [MillingPass(loop, is_closed=True)]
     middles = np.array([edge.at(0.5) for edge in loop], dtype=complex)
     walls = [edge for each in boundaries for edge in each]
     is_wall = (
-        distances(middles, Edges.of(outside))
-        > distances(middles, Edges.of(walls)) + _inset(boundaries, area) + 1e-6
+        distances(middles, ContourEdges.of(outside))
+        > distances(middles, ContourEdges.of(walls)) + _inset(boundaries, area) + 1e-6
     )
     if is_wall.all():
-        return [Pass(loop, is_closed=True)]
+        return [MillingPass(loop, is_closed=True)]
     # Start behind a part that follows no wall, so that no chain is cut in two.
     first = int(np.flatnonzero(~is_wall)[-1]) + 1
-    chains: list[list[Edge]] = [[]]
+    chains: list[list[ContourEdge]] = [[]]
     for index in range(len(loop)):
         at = (first + index) % len(loop)
         if is_wall[at]:
@@ -274,14 +377,14 @@ def _along_walls(area: Area, loop: Loop, boundaries: Sequence[Loop]) -> list[Pas
         elif chains[-1]:
             chains.append([])
     return [
-        Pass(tuple(chain), is_closed=False)
+        MillingPass(tuple(chain), is_closed=False)
         for chain in chains
         if chain and chain_length(chain) > 1e-3
     ]
 
 
 def _inset(boundaries: Sequence[Loop], area: Area) -> float:
-    """How far the first wall has moved in at this level, mm."""
+    """Distance that the first wall has moved in at this level, mm."""
     loop: Chain = area.walls[0].loop
     point = boundaries[0][0].at(0.5)
-    return float(distances(np.array([point]), Edges.of(loop))[0])
+    return float(distances(np.array([point]), ContourEdges.of(loop))[0])

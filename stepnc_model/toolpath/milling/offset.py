@@ -5,7 +5,8 @@ other or the wall. Its erosion by d is bounded by points whose distance from the
 exactly d. Such points lie on the offset of an edge, or on the arc about a vertex where the
 region is not convex. All of those curves are split where they meet, and the pieces whose middle
 is nearer than d to any edge are dropped: what is left are the rings. Nothing is approximated
-by chords, and an offset of an offset is never taken.
+by chords, and an offset of an offset is never taken. Crossings of many edges at once, and
+distances of points from them, come first.
 
 References
 ----------
@@ -14,25 +15,239 @@ References
 """
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
+from math import pi
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 
-from stepnc_model.toolpath.milling.arrays import Edges, crossings, distances
 from stepnc_model.toolpath.milling.contour import (
     REMEMBERED,
     TINY,
     Chain,
-    Edge,
+    ContourEdge,
+    Floats,
     Loop,
+    Points,
     area,
     chain_length,
     halved,
     reversed_chain,
     shape,
 )
+
+ON = 1e-9
+"""relative slack of a crossing at the very end of an edge"""
+
+
+@dataclass(frozen=True, slots=True)
+class ContourEdges:
+    """Edges as columns, each (N,)."""
+
+    start: Points
+    end: Points
+    centre: Points
+    """of lines: 0"""
+    radius: Floats
+    """Radius, mm, of lines: 0"""
+    turn: Floats
+    """Turn, rad, of lines: 0"""
+
+    @classmethod
+    def of(cls, edges: Sequence[ContourEdge]) -> "ContourEdges":
+        """Columns of a list of edges."""
+        start = np.array([edge.start for edge in edges], dtype=complex)
+        centre = np.array(
+            [0j if edge.centre is None else edge.centre for edge in edges], dtype=complex
+        )
+        turn = np.array([edge.turn for edge in edges], dtype=float)
+        return cls(
+            start=start,
+            end=np.array([edge.end for edge in edges], dtype=complex),
+            centre=centre,
+            radius=np.where(turn == 0.0, 0.0, np.abs(start - centre)),
+            turn=turn,
+        )
+
+    def pick(self, index: NDArray[np.intp]) -> "ContourEdges":
+        """Some of the edges, by their indices."""
+        return ContourEdges(
+            self.start[index],
+            self.end[index],
+            self.centre[index],
+            self.radius[index],
+            self.turn[index],
+        )
+
+    def boxes(self) -> tuple[Floats, Floats, Floats, Floats]:
+        """Least x, least y, greatest x, greatest y; arcs by a box that surely holds them."""
+        middle = self.start + 0.5 * (self.end - self.start)
+        arc = self.turn != 0.0
+        spoke = np.where(arc, self.start - self.centre, 0.0)
+        middle = np.where(arc, self.centre + spoke * np.exp(0.5j * self.turn), middle)
+        # The sagitta bounds how far an arc of half a turn bulges beyond its three points.
+        bulge = np.abs(middle - 0.5 * (self.start + self.end))
+        xs = np.stack([self.start.real, self.end.real, middle.real])
+        ys = np.stack([self.start.imag, self.end.imag, middle.imag])
+        return (
+            xs.min(0) - bulge,
+            ys.min(0) - bulge,
+            xs.max(0) + bulge,
+            ys.max(0) + bulge,
+        )
+
+
+def distances(points: Points, edges: ContourEdges) -> Floats:
+    """Distance of each point from the nearest of the edges, mm, (M,)."""
+    found = np.full(len(points), np.inf)
+    is_line = edges.turn == 0.0
+    lines, arcs = edges.pick(np.flatnonzero(is_line)), edges.pick(np.flatnonzero(~is_line))
+    if len(lines.start):
+        way = lines.end - lines.start
+        part = ((points[:, None] - lines.start) / way).real
+        foot = lines.start + np.clip(part, 0.0, 1.0) * way
+        found = np.minimum(found, np.abs(points[:, None] - foot).min(1))
+    if len(arcs.start):
+        spoke = (points[:, None] - arcs.centre) / (arcs.start - arcs.centre)
+        part = _part(spoke, arcs.turn)
+        beside = np.abs(np.abs(spoke) - 1.0) * arcs.radius
+        ends = np.minimum(
+            np.abs(points[:, None] - arcs.start), np.abs(points[:, None] - arcs.end)
+        )
+        found = np.minimum(found, np.where(part <= 1.0, beside, ends).min(1))
+    return found
+
+
+def crossings(edges: Sequence[ContourEdge]) -> list[list[float]]:
+    """For each edge the parts of its length where another one crosses or touches it."""
+    return _found(len(edges), *_pairs(ContourEdges.of(edges), None))
+
+
+def crossings_with(
+    edges: Sequence[ContourEdge], others: Sequence[ContourEdge]
+) -> list[list[float]]:
+    """For each edge the parts of its length where one of the others crosses or touches it."""
+    return _found(len(edges), *_pairs(ContourEdges.of(edges), ContourEdges.of(others)))
+
+
+def _found(count: int, index: NDArray[np.intp], parts: Floats) -> list[list[float]]:
+    """Parts sorted by edge, each edge's in order."""
+    order = np.lexsort((parts, index))
+    bounds = np.searchsorted(index[order], np.arange(count + 1))
+    values = parts[order].tolist()
+    return [values[a:b] for a, b in pairwise(bounds)]
+
+
+def _pairs(edges: ContourEdges, others: ContourEdges | None) -> tuple[NDArray[np.intp], Floats]:
+    """Edge index and part of every crossing; both of a pair where there are no others."""
+    second = edges if others is None else others
+    ax0, ay0, ax1, ay1 = edges.boxes()
+    bx0, by0, bx1, by1 = second.boxes()
+    near = (
+        (ax0[:, None] <= bx1 + ON)
+        & (bx0 <= ax1[:, None] + ON)
+        & (ay0[:, None] <= by1 + ON)
+        & (by0 <= ay1[:, None] + ON)
+    )
+    if others is None:
+        near = np.triu(near, 1)
+    i, j = np.nonzero(near)
+    a, b = edges.pick(i), second.pick(j)
+    hits = _meet(a, b)
+    owners, parts = [], []
+    for where in hits:
+        pa, pb = _part_of(a, where), _part_of(b, where)
+        good = np.isfinite(pa) & np.isfinite(pb)
+        owners.append(i[good])
+        parts.append(pa[good])
+        if others is None:
+            owners.append(j[good])
+            parts.append(pb[good])
+    return np.concatenate(owners), np.concatenate(parts)
+
+
+def _meet(a: ContourEdges, b: ContourEdges) -> tuple[Points, Points]:
+    """Two points (or NaN) where the lines or circles of pairs of edges meet."""
+    first = np.full(len(a.start), np.nan + 0j)
+    second = first.copy()
+    a_line, b_line = a.turn == 0.0, b.turn == 0.0
+    with np.errstate(divide="ignore", invalid="ignore"):
+        pick = np.flatnonzero(a_line & b_line)
+        first[pick] = _line_line(a.pick(pick), b.pick(pick))
+        for lines, arcs, chosen in ((a, b, a_line & ~b_line), (b, a, ~a_line & b_line)):
+            pick = np.flatnonzero(chosen)
+            first[pick], second[pick] = _line_circle(lines.pick(pick), arcs.pick(pick))
+        pick = np.flatnonzero(~a_line & ~b_line)
+        first[pick], second[pick] = _circle_circle(a.pick(pick), b.pick(pick))
+    return first, second
+
+
+def _line_line(a: ContourEdges, b: ContourEdges) -> Points:
+    """Crossing of two lines; NaN for parallel ones."""
+    u, v = a.end - a.start, b.end - b.start
+    cross = (u.conj() * v).imag
+    flat = np.abs(cross) <= 1e-12 * np.abs(u) * np.abs(v)
+    part = ((b.start - a.start).conj() * v).imag / np.where(flat, np.nan, cross)
+    return a.start + part * u
+
+
+def _line_circle(lines: ContourEdges, arcs: ContourEdges) -> tuple[Points, Points]:
+    """Crossings of a line and a circle; a near miss of a tangent counts as a touch."""
+    way = (lines.end - lines.start) / np.abs(lines.end - lines.start)
+    from_centre = (lines.start - arcs.centre) / way
+    half = _half_chord(arcs.radius, from_centre.imag)
+    foot = lines.start - from_centre.real * way
+    return foot + half * way, foot - half * way
+
+
+def _circle_circle(a: ContourEdges, b: ContourEdges) -> tuple[Points, Points]:
+    """Crossings of two circles; NaN for concentric ones."""
+    between = b.centre - a.centre
+    gap = np.abs(between)
+    gap = np.where(gap < 1e-9, np.nan, gap)
+    along = (gap**2 + a.radius**2 - b.radius**2) / (2.0 * gap)
+    half = _half_chord(a.radius, along)
+    way = between / gap
+    return a.centre + (along + 1j * half) * way, a.centre + (along - 1j * half) * way
+
+
+def _half_chord(radius: Floats, distance: Floats) -> Floats:
+    """Half of the chord of a circle at a distance from its centre."""
+    square = radius**2 - distance**2
+    touch = np.abs(square) <= 1e-9 * np.maximum(radius, 1e-3)
+    chord: Floats = np.where(touch, 0.0, np.sqrt(np.where(square < 0.0, np.nan, square)))
+    return chord
+
+
+def _part_of(edges: ContourEdges, where: Points) -> Floats:
+    """Part of each edge's length at a point on its line or circle; NaN beyond its ends."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        on_line = ((where - edges.start) / (edges.end - edges.start)).real
+        spoke = (where - edges.centre) / (edges.start - edges.centre)
+        part = np.where(edges.turn == 0.0, on_line, _part(spoke, edges.turn))
+        length = np.where(
+            edges.turn == 0.0,
+            np.abs(edges.end - edges.start),
+            edges.radius * np.abs(edges.turn),
+        )
+        slack = 1e-7 / np.maximum(length, 1e-7)
+        # Just before the start an arc's part is almost a whole turn.
+        whole = np.where(edges.turn == 0.0, np.inf, 2.0 * pi / np.abs(edges.turn))
+        part = np.where(part > whole - slack, 0.0, part)
+    inside = (part >= -slack) & (part <= 1.0 + slack)
+    return np.where(inside, np.clip(part, 0.0, 1.0), np.nan)
+
+
+def _part(spoke: Points, turn: Floats) -> Floats:
+    """Part of an arc's turn at a spoke relative to its start; above 1 beyond the arc."""
+    sign = np.where(turn < 0.0, -1.0, 1.0)
+    size = np.where(turn == 0.0, 1.0, np.abs(turn))
+    angle: Floats = (np.angle(spoke) * sign) % (2.0 * pi) / size
+    return angle
+
 
 SLACK = 1e-7
 """mm by which a piece may be nearer than the offset asks for"""
@@ -123,8 +338,8 @@ def contains(
 
 
 def _apart(
-    candidates: Sequence[Edge], sources: Sequence[Edge], distance: float
-) -> tuple[list[Edge], list[complex]]:
+    candidates: Sequence[ContourEdge], sources: Sequence[ContourEdge], distance: float
+) -> tuple[list[ContourEdge], list[complex]]:
     """Pieces of the candidates that keep the distance from the sources, with their middles."""
     pieces = [
         piece
@@ -134,11 +349,11 @@ def _apart(
     if not pieces:
         return [], []
     middles = np.array([piece.at(0.5) for piece in pieces], dtype=complex)
-    keep = np.flatnonzero(distances(middles, Edges.of(sources)) >= distance - SLACK)
+    keep = np.flatnonzero(distances(middles, ContourEdges.of(sources)) >= distance - SLACK)
     return [pieces[index] for index in keep], middles[keep].tolist()
 
 
-def _parallels(chain: Chain, distance: float, *, is_closed: bool) -> list[Edge]:
+def _parallels(chain: Chain, distance: float, *, is_closed: bool) -> list[ContourEdge]:
     """Edges at a distance to the left, and arcs about the vertices that are not convex."""
     sides = (_parallel(edge, distance) for edge in chain)
     found = [side for side in sides if side is not None]
@@ -147,7 +362,7 @@ def _parallels(chain: Chain, distance: float, *, is_closed: bool) -> list[Edge]:
         if bend < -SMOOTH:
             at = edge.end
             found.append(
-                Edge(
+                ContourEdge(
                     start=at + 1j * distance * edge.along(1.0),
                     end=at + 1j * distance * following.along(0.0),
                     centre=at,
@@ -157,17 +372,17 @@ def _parallels(chain: Chain, distance: float, *, is_closed: bool) -> list[Edge]:
     return found
 
 
-def _parallel(edge: Edge, distance: float) -> Edge | None:
+def _parallel(edge: ContourEdge, distance: float) -> ContourEdge | None:
     """The edge at a distance to its left; None when an arc shrinks to nothing."""
     if edge.centre is None:
         aside = 1j * distance * edge.along(0.0)
-        return Edge(edge.start + aside, edge.end + aside)
+        return ContourEdge(edge.start + aside, edge.end + aside)
     radius = abs(edge.start - edge.centre)
     size = radius - distance if edge.turn > 0.0 else radius + distance
     if size <= SHORTEST:
         return None
     scale = size / radius
-    return Edge(
+    return ContourEdge(
         start=edge.centre + scale * (edge.start - edge.centre),
         end=edge.centre + scale * (edge.end - edge.centre),
         centre=edge.centre,
@@ -175,7 +390,7 @@ def _parallel(edge: Edge, distance: float) -> Edge | None:
     )
 
 
-def _split(edge: Edge, parts: list[float]) -> list[Edge]:
+def _split(edge: ContourEdge, parts: list[float]) -> list[ContourEdge]:
     """The edge cut at some parts of its length."""
     least = SHORTEST / max(edge.length, SHORTEST)
     cuts = [0.0]
@@ -188,7 +403,7 @@ def _split(edge: Edge, parts: list[float]) -> list[Edge]:
     return [edge.between(low, high) for low, high in pairwise(cuts)]
 
 
-def _stitched(pieces: list[Edge]) -> tuple[Loop, ...]:
+def _stitched(pieces: list[ContourEdge]) -> tuple[Loop, ...]:
     """Loops of pieces whose ends meet; what does not close or bounds nothing is dropped."""
     loops: list[Loop] = []
     pieces = _pruned(pieces)
@@ -200,7 +415,7 @@ def _stitched(pieces: list[Edge]) -> tuple[Loop, ...]:
     return tuple(loops)
 
 
-def _pruned(pieces: list[Edge]) -> list[Edge]:
+def _pruned(pieces: list[ContourEdge]) -> list[ContourEdge]:
     """The pieces without those that lead nowhere.
 
     Where two edges are almost in line, the pieces behind their crossing are nearer than the
@@ -217,7 +432,7 @@ def _pruned(pieces: list[Edge]) -> list[Edge]:
         keep = leads
 
 
-def _chained(pieces: list[Edge]) -> tuple[Chain, ...]:
+def _chained(pieces: list[ContourEdge]) -> tuple[Chain, ...]:
     """Chains of pieces whose ends meet, each from an end that no other piece leads to."""
     if not pieces:
         return ()
@@ -228,7 +443,7 @@ def _chained(pieces: list[Edge]) -> tuple[Chain, ...]:
     return tuple(tuple(_merged(chain)) for chain in _chains(pieces, firsts))
 
 
-def _chains(pieces: list[Edge], firsts: Iterable[int]) -> Iterator[list[Edge]]:
+def _chains(pieces: list[ContourEdge], firsts: Iterable[int]) -> Iterator[list[ContourEdge]]:
     """From each first piece on, whatever starts where the last one ends."""
     starts = np.array([piece.start for piece in pieces], dtype=complex)
     is_free = np.ones(len(pieces), dtype=bool)
@@ -248,31 +463,31 @@ def _chains(pieces: list[Edge], firsts: Iterable[int]) -> Iterator[list[Edge]]:
         yield chain
 
 
-def _closed(chain: list[Edge]) -> Loop:
+def _closed(chain: list[ContourEdge]) -> Loop:
     """The loop with each edge ending exactly where the next one starts."""
     merged = _merged(chain)
     ends = [*(edge.start for edge in merged[1:]), merged[0].start]
     return tuple(
-        Edge(edge.start, end, edge.centre, edge.turn)
+        ContourEdge(edge.start, end, edge.centre, edge.turn)
         for edge, end in zip(merged, ends, strict=True)
         # Where ends are brought together a piece of a few rounding errors may vanish.
         if edge.centre is not None or abs(end - edge.start) > TINY
     )
 
 
-def _merged(chain: list[Edge]) -> list[Edge]:
+def _merged(chain: list[ContourEdge]) -> list[ContourEdge]:
     """The chain with edges that continue each other made one."""
-    merged: list[Edge] = []
+    merged: list[ContourEdge] = []
     for edge in chain:
         if merged and _continues(merged[-1], edge):
             last = merged.pop()
-            merged.append(Edge(last.start, edge.end, last.centre, last.turn + edge.turn))
+            merged.append(ContourEdge(last.start, edge.end, last.centre, last.turn + edge.turn))
         else:
             merged.append(edge)
     return merged
 
 
-def _continues(one: Edge, other: Edge) -> bool:
+def _continues(one: ContourEdge, other: ContourEdge) -> bool:
     """Whether two edges are parts of one line, or of one arc of half a turn at most."""
     if one.centre is None or other.centre is None:
         if one.centre is not other.centre:

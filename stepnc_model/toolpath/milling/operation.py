@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 from math import ceil
 
-from stepnc_model.entities.approach import PlungeToolaxis
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.milling import (
     BottomAndSideFinishMilling,
@@ -19,27 +18,29 @@ from stepnc_model.entities.milling import (
     PlaneFinishMilling,
     PlaneMilling,
     PlaneRoughMilling,
+    PlungeToolaxis,
     SideFinishMilling,
     SideMilling,
     Two5dMillingOperation,
 )
-from stepnc_model.toolpath.course import Course
-from stepnc_model.toolpath.job import ABOVE_STOCK, DEFAULT_CLEARANCE, Job
+from stepnc_model.toolpath.frame import placements
 from stepnc_model.toolpath.milling.area import Area, Flank
-from stepnc_model.toolpath.milling.clip import Piece, pieces
 from stepnc_model.toolpath.milling.contour import TINY, Chain, line
-from stepnc_model.toolpath.milling.cover import Pass
-from stepnc_model.toolpath.milling.cutter import Cutter, cutter_of
+from stepnc_model.toolpath.milling.cover import MillingPass
 from stepnc_model.toolpath.milling.enter import Heights, enter, leave, trace
-from stepnc_model.toolpath.milling.flank import flank_layer
-from stepnc_model.toolpath.milling.layer import Layer, Level, clear, wall_passes
+from stepnc_model.toolpath.milling.flank import flank_layer, tee_layers
+from stepnc_model.toolpath.milling.layer import CutLevel, Layer, clear, wall_passes
 from stepnc_model.toolpath.milling.offset import contains
 from stepnc_model.toolpath.milling.shapes import shapes
-from stepnc_model.toolpath.milling.strokes import is_inside
-from stepnc_model.toolpath.milling.tee import tee_layers
-from stepnc_model.toolpath.milling.way import Way, way_of
+from stepnc_model.toolpath.milling.strategy import (
+    EndMillShape,
+    ResolvedStrategy,
+    cutter_of,
+    way_of,
+)
+from stepnc_model.toolpath.milling.strokes import ClippedChain, is_inside, pieces
 from stepnc_model.toolpath.path import MoveType, ToolPath
-from stepnc_model.toolpath.pattern import placements
+from stepnc_model.toolpath.task import ABOVE_STOCK, DEFAULT_CLEARANCE, PathBuilder, ToolPathTask
 
 T_SLOT_MILL = "T_SLOT_MILL"
 """body of the only tool that makes the bar of a tee slot"""
@@ -58,13 +59,13 @@ MOST_LEVELS = 1000
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Allowance:
-    """What an operation leaves, mm."""
+    """Allowance of an operation, mm."""
 
     side: float
     bottom: float
 
 
-def milling_path(job: Job) -> ToolPath:
+def milling_path(job: ToolPathTask) -> ToolPath:
     """Tool path of a milling workingstep.
 
     Raises
@@ -90,7 +91,7 @@ def milling_path(job: Job) -> ToolPath:
     if not found:
         raise job.fault("has no feature: nothing tells what to cut", job.step.ref)
     first = found[0][1][0].passes[0].start
-    course = Course(job, (first.real, first.imag, job.security_z))
+    course = PathBuilder(job, (first.real, first.imag, job.security_z))
     for finding in way.findings:
         course.find(finding)
     for shape, _ in found:
@@ -123,7 +124,7 @@ def milling_path(job: Job) -> ToolPath:
     return course.finished()
 
 
-def _warn_beside_stock(course: Course, job: Job, shape: Area | Flank) -> None:
+def _warn_beside_stock(course: PathBuilder, job: ToolPathTask, shape: Area | Flank) -> None:
     """Say that a feature lies wholly beside the stock: a placement may count twice."""
     if job.stock is None:
         return
@@ -138,8 +139,8 @@ def _warn_beside_stock(course: Course, job: Job, shape: Area | Flank) -> None:
             return
 
 
-def allowance_of(job: Job, operation: Entity) -> Allowance:
-    """What an operation leaves on walls and floor.
+def allowance_of(job: ToolPathTask, operation: Entity) -> Allowance:
+    """Allowance of an operation on walls and floor.
 
     Raises
     ------
@@ -165,7 +166,9 @@ def levels(top: float, bottom: float, depth: float) -> list[float]:
     return [top + (bottom - top) * (index + 1) / count for index in range(count)]
 
 
-def _layers(job: Job, shape: Area | Flank, cutter: Cutter, way: Way) -> Iterator[Layer]:
+def _layers(
+    job: ToolPathTask, shape: Area | Flank, cutter: EndMillShape, way: ResolvedStrategy
+) -> Iterator[Layer]:
     """Passes of one shape, from the top down as far as the cutter fits in."""
     if isinstance(shape, Area) and shape.bar is not None and job.tool.keyword == T_SLOT_MILL:
         yield from tee_layers(job, shape, shape.bar, cutter)
@@ -176,7 +179,7 @@ def _layers(job: Job, shape: Area | Flank, cutter: Cutter, way: Way) -> Iterator
     above, count = start, 0
     depth = _axial_depth(job, start - floor)
     for z in _heights(job, shape, allowance, start=start, floor=floor, depth=depth):
-        level = Level(z=z, above=above, cutter=cutter, allowance=allowance.side)
+        level = CutLevel(z=z, above=above, cutter=cutter, allowance=allowance.side)
         layer = _layer(job, shape, level, way, floor=floor, earlier=earlier)
         if layer is None or not layer.passes:
             break
@@ -191,7 +194,7 @@ def _layers(job: Job, shape: Area | Flank, cutter: Cutter, way: Way) -> Iterator
 
 
 def _heights(
-    job: Job,
+    job: ToolPathTask,
     shape: Area | Flank,
     allowance: Allowance,
     *,
@@ -219,10 +222,10 @@ def _heights(
 
 
 def _layer(
-    job: Job,
+    job: ToolPathTask,
     shape: Area | Flank,
-    level: Level,
-    way: Way,
+    level: CutLevel,
+    way: ResolvedStrategy,
     *,
     floor: float,
     earlier: Allowance | None,
@@ -243,8 +246,8 @@ def _layer(
     return clear(job, shape, level, way)
 
 
-def _earlier(job: Job) -> Allowance | None:
-    """What the last earlier operation of the same kind left on the feature, or None."""
+def _earlier(job: ToolPathTask) -> Allowance | None:
+    """Allowance of the last earlier operation of the same kind on the feature, or None."""
     kinds = (PlaneMilling, SideMilling, BottomAndSideMilling)
     for step in reversed(job.program.before(job.step)):
         if isinstance(step.operation, kinds):
@@ -253,7 +256,7 @@ def _earlier(job: Job) -> Allowance | None:
 
 
 def _span(
-    job: Job, shape: Area | Flank, allowance: Allowance, earlier: Allowance | None
+    job: ToolPathTask, shape: Area | Flank, allowance: Allowance, earlier: Allowance | None
 ) -> tuple[float, float]:
     """Heights between which the operation removes material."""
     floor = shape.bottom + allowance.bottom
@@ -273,7 +276,7 @@ def _span(
     return start, floor
 
 
-def _axial_depth(job: Job, total: float) -> float:
+def _axial_depth(job: ToolPathTask, total: float) -> float:
     """Depth of a level: as programmed, else what the cutting edge reaches, mm."""
     depth = getattr(job.step.operation, "axial_cutting_depth", None)
     if depth is None:
@@ -287,7 +290,7 @@ def _axial_depth(job: Job, total: float) -> float:
     return float(depth)
 
 
-def _retract_z(job: Job, course: Course, shape: Area | Flank) -> float:
+def _retract_z(job: ToolPathTask, course: PathBuilder, shape: Area | Flank) -> float:
     """Height of the retract plane over a shape."""
     distance = job.step.operation.retract_plane
     if distance is None:
@@ -311,17 +314,17 @@ def _retract_z(job: Job, course: Course, shape: Area | Flank) -> float:
 
 
 def _cut_layer(
-    course: Course,
-    job: Job,
+    course: PathBuilder,
+    job: ToolPathTask,
     operation: Two5dMillingOperation,
     layer: Layer,
     *,
     heights: Heights,
-    way: Way,
+    way: ResolvedStrategy,
 ) -> None:
     """All passes of one level."""
     room = layer.room
-    last: Pass | None = None
+    last: MillingPass | None = None
     for cut in layer.passes:
         here = complex(course.at[0], course.at[1])
         current = cut if last is None else cut.from_near(here)
@@ -341,7 +344,11 @@ def _cut_layer(
 
 
 def _warn_of_plunge(
-    course: Course, job: Job, operation: Two5dMillingOperation, layer: Layer, cut: Pass
+    course: PathBuilder,
+    job: ToolPathTask,
+    operation: Two5dMillingOperation,
+    layer: Layer,
+    cut: MillingPass,
 ) -> None:
     """Say that an end mill goes straight down into solid material, where it does."""
     if not isinstance(operation, (PlaneRoughMilling, BottomAndSideRoughMilling)):
@@ -355,22 +362,24 @@ def _warn_of_plunge(
         course.find(job.warning(text, attribute="approach"))
 
 
-def _cut(course: Course, chain: Chain, layer: Layer) -> None:
+def _cut(course: PathBuilder, chain: Chain, layer: Layer) -> None:
     """Follow a pass, through material and through air."""
-    found = pieces(chain, layer.solid) if layer.solid else [Piece(chain, is_inside=True)]
+    found = pieces(chain, layer.solid) if layer.solid else [ClippedChain(chain, is_inside=True)]
     for piece in found:
         type = MoveType.CONTACT if piece.is_inside else MoveType.NO_CONTACT
         trace(course, piece.chain, z=layer.z, end_z=layer.z, type=type)
 
 
-def _travel_z(job: Job, retract_z: float) -> float:
+def _travel_z(job: ToolPathTask, retract_z: float) -> float:
     """Height at which the tool moves sideways: over the stock, which may stand higher."""
     if job.stock is None or retract_z >= job.stock.high[2] + ABOVE_STOCK:
         return retract_z
     return max(job.security_z, job.stock.high[2] + ABOVE_STOCK)
 
 
-def _is_linked(here: complex, following: Pass, layer: Layer, way: Way) -> bool:
+def _is_linked(
+    here: complex, following: MillingPass, layer: Layer, way: ResolvedStrategy
+) -> bool:
     """Whether the way to the next pass may be made at the feed."""
     distance = abs(following.start - here)
     if distance < TINY:

@@ -1,48 +1,78 @@
-"""Profiles and courses of travel of ISO 14649-10 as plane contours in the setup, mm.
+"""Profiles, courses of travel and slots of ISO 14649-10 as plane contours in the setup, mm.
 
 Rectangles lie about the origin of their placement, the length along x. A polygon has a corner
 on x. Angles are in degrees.
+
+A slot is an open profile swept along a course of travel. The course runs through the middle of
+the profile. An open end is run out of; a radiused end is a half circle about the end of the
+course, beyond it; a flat end stops there. So does a Woodruff end at the top, and runs down to
+the floor along the arc that a disc leaves. The width of a profile is the one at the top; angles
+of walls are from the vertical.
 """
 
 from cmath import rect
-from math import cos, pi
+from collections.abc import Sequence
+from itertools import pairwise
+from math import cos, pi, tan
 
 from stepnc_model.entities.entity import Entity
-from stepnc_model.entities.measures import NumericParameter, TolerancedLengthMeasure
+from stepnc_model.entities.features import Slot
 from stepnc_model.entities.profiles import (
     CircularClosedProfile,
     ClosedProfile,
     CompleteCircularPath,
+    FlatSlotEndType,
     GeneralClosedProfile,
     GeneralPath,
     GeneralProfile,
     LinearPath,
+    LoopSlotEndType,
     NgonClosedProfile,
+    OpenSlotEndType,
     PartialCircularPath,
     PartialCircularProfile,
+    RadiusedSlotEndType,
     RectangularClosedProfile,
+    RoundedUProfile,
+    SquareUProfile,
+    TeeProfile,
+    VeeProfile,
+    WoodruffSlotEndType,
 )
+from stepnc_model.outline import MOST, size, vee_angle
 from stepnc_model.part21.values import Ref
 from stepnc_model.toolpath.curve import JOINED, Segment, move_of, segments_of
 from stepnc_model.toolpath.frame import Frame, direction_of, frame_of
-from stepnc_model.toolpath.job import Job
+from stepnc_model.toolpath.milling.area import (
+    Area,
+    Inset,
+    TeeSlotUndercut,
+    Wall,
+    chord,
+    rounding,
+    upright,
+)
 from stepnc_model.toolpath.milling.contour import (
     TINY,
     Chain,
-    Edge,
+    ContourEdge,
     Loop,
+    chain_length,
     circle,
+    clockwise,
     counter_clockwise,
     halved,
     line,
     polygon,
+    reversed_chain,
     shape,
+    stretched,
 )
-from stepnc_model.toolpath.path import MoveType, Plane, Point
+from stepnc_model.toolpath.milling.offset import beside, erode, rounded
+from stepnc_model.toolpath.milling.strategy import run_out
+from stepnc_model.toolpath.path import ArcPlane, MoveType, Point
+from stepnc_model.toolpath.task import ToolPathTask
 from stepnc_model.units import rad_from_deg
-
-MOST = 1e6
-"""mm; nothing longer is a length of a part, nothing lies further away"""
 
 FLATTEST_DEG = 89.0
 """degrees from the vertical"""
@@ -51,33 +81,7 @@ CHORD = 1e-3
 """mm of tolerance where an outline is looked at as a polygon"""
 
 
-def size(job: Job, ref: Ref[TolerancedLengthMeasure] | None, owner: Ref[Entity]) -> float:
-    """Theoretical size of a toleranced length that an entity cannot do without, mm."""
-    if ref is None:
-        raise job.fault("lacks a size", owner)
-    value = job.program.get(ref).theoretical_size
-    if value is None or not 0.0 < value < MOST:
-        raise job.fault(f"size {value} mm: it must be positive", ref, "theoretical_size")
-    return float(value)
-
-
-def parameter(job: Job, ref: Ref[NumericParameter]) -> float:
-    """Value of a numeric parameter, mm."""
-    value = job.program.get(ref).its_parameter_value
-    if value is None or not 0.0 < value < MOST:
-        raise job.fault(f"{value} mm: it must be positive", ref, "its_parameter_value")
-    return float(value)
-
-
-def given(job: Job, ref: Ref[TolerancedLengthMeasure] | None) -> float:
-    """A size that may be absent or 0, mm."""
-    value = (job.program.get(ref).theoretical_size or 0.0) if ref is not None else 0.0
-    if ref is not None and not 0.0 <= value < MOST:
-        raise job.fault(f"size {value:g} mm: it must not be negative", ref, "theoretical_size")
-    return float(value)
-
-
-def slope_of(job: Job, slope: float | None, ref: Ref[Entity]) -> float:
+def slope_of(job: ToolPathTask, slope: float | None, ref: Ref[Entity]) -> float:
     """Lean of a wall in degrees from the vertical; 0 where none is given."""
     value = slope or 0.0
     if not 0.0 <= value < FLATTEST_DEG:
@@ -89,13 +93,13 @@ def slope_of(job: Job, slope: float | None, ref: Ref[Entity]) -> float:
     return float(value)
 
 
-def require_simple(job: Job, loop: Loop, ref: Ref[Entity]) -> None:
+def require_simple(job: ToolPathTask, loop: Loop, ref: Ref[Entity]) -> None:
     """Refuse a boundary that crosses itself."""
     if not shape(loop, tolerance=CHORD).is_valid:
         raise job.fault("its boundary crosses itself", ref)
 
 
-def require_upright(job: Job, frame: Frame, ref: Ref[Entity]) -> None:
+def require_upright(job: ToolPathTask, frame: Frame, ref: Ref[Entity]) -> None:
     """Refuse a feature whose z axis does not point against the tool."""
     if not frame.is_upright:
         x, y, z = frame.z
@@ -107,7 +111,7 @@ def require_upright(job: Job, frame: Frame, ref: Ref[Entity]) -> None:
         )
 
 
-def closed_outline(job: Job, ref: Ref[ClosedProfile], frame: Frame) -> Loop:
+def closed_outline(job: ToolPathTask, ref: Ref[ClosedProfile], frame: Frame) -> Loop:
     """Boundary of a closed profile, counter-clockwise.
 
     Raises
@@ -119,12 +123,14 @@ def closed_outline(job: Job, ref: Ref[ClosedProfile], frame: Frame) -> Loop:
     placed = frame.inner(frame_of(job.program, profile.placement))
     require_upright(job, placed, ref)
     if isinstance(profile, RectangularClosedProfile):
-        half_x = 0.5 * size(job, profile.profile_length, ref)
-        half_y = 0.5 * size(job, profile.profile_width, ref)
+        half_x = 0.5 * size(job.program, profile.profile_length, ref)
+        half_y = 0.5 * size(job.program, profile.profile_width, ref)
         corners = [(-half_x, -half_y), (half_x, -half_y), (half_x, half_y), (-half_x, half_y)]
         return polygon([_on_plane(placed, corner) for corner in corners])
     if isinstance(profile, CircularClosedProfile):
-        return circle(_on_plane(placed, (0.0, 0.0)), 0.5 * size(job, profile.diameter, ref))
+        return circle(
+            _on_plane(placed, (0.0, 0.0)), 0.5 * size(job.program, profile.diameter, ref)
+        )
     if isinstance(profile, NgonClosedProfile):
         return _ngon(job, ref, profile, placed)
     if isinstance(profile, GeneralClosedProfile):
@@ -136,7 +142,7 @@ def closed_outline(job: Job, ref: Ref[ClosedProfile], frame: Frame) -> Loop:
     raise job.fault("is no closed profile", ref)
 
 
-def open_outline(job: Job, ref: Ref[Entity], frame: Frame) -> Chain:
+def open_outline(job: ToolPathTask, ref: Ref[Entity], frame: Frame) -> Chain:
     """Curve of an open profile that lies on the plane."""
     profile = job.program.get(ref)
     placed = frame.inner(frame_of(job.program, getattr(profile, "placement", None)))
@@ -144,27 +150,27 @@ def open_outline(job: Job, ref: Ref[Entity], frame: Frame) -> Chain:
     if isinstance(profile, GeneralProfile):
         return _chain(job, profile.its_profile, placed)
     if isinstance(profile, PartialCircularProfile):
-        radius = size(job, profile.radius, ref)
+        radius = size(job.program, profile.radius, ref)
         return _arc(placed, radius, rad_from_deg(profile.sweep_angle))
     raise job.fault("an open boundary of this kind cannot be followed", ref)
 
 
-def course(job: Job, ref: Ref[Entity], frame: Frame) -> Chain:
+def course(job: ToolPathTask, ref: Ref[Entity], frame: Frame) -> Chain:
     """Curve along which a profile is swept."""
     path = job.program.get(ref)
     placed = frame.inner(frame_of(job.program, getattr(path, "placement", None)))
     require_upright(job, placed, ref)
     if isinstance(path, LinearPath):
-        length = size(job, path.distance, ref)
+        length = size(job.program, path.distance, ref)
         x, y, z = direction_of(job.program, path.its_direction)
         if abs(z) > TINY:
             raise job.fault("leads out of its plane", ref, "its_direction")
         ends = [(0.0, 0.0), (length * x, length * y)]
         return (line(*(_on_plane(placed, end) for end in ends)),)
     if isinstance(path, CompleteCircularPath):
-        return circle(_on_plane(placed, (0.0, 0.0)), size(job, path.radius, ref))
+        return circle(_on_plane(placed, (0.0, 0.0)), size(job.program, path.radius, ref))
     if isinstance(path, PartialCircularPath):
-        return _arc(placed, size(job, path.radius, ref), rad_from_deg(path.sweep_angle))
+        return _arc(placed, size(job.program, path.radius, ref), rad_from_deg(path.sweep_angle))
     if isinstance(path, GeneralPath):
         return _chain(job, path.swept_path, placed)
     raise job.fault("is no course of travel", ref)
@@ -172,21 +178,21 @@ def course(job: Job, ref: Ref[Entity], frame: Frame) -> Chain:
 
 def chain_of(segments: tuple[Segment, ...]) -> Chain:
     """The segments seen along z."""
-    edges: list[Edge] = []
+    edges: list[ContourEdge] = []
     for segment in segments:
         at = segment.start
         for move in move_of(segment, MoveType.CONTACT, None):
             start, end = complex(at[0], at[1]), complex(move.end[0], move.end[1])
-            if move.arc is not None and move.arc.plane is Plane.XY:
+            if move.arc is not None and move.arc.plane is ArcPlane.XY:
                 centre = complex(move.arc.centre[0], move.arc.centre[1])
-                edges.append(Edge(start, end, centre, move.arc.turn))
+                edges.append(ContourEdge(start, end, centre, move.arc.turn))
             elif abs(end - start) > TINY:
                 edges.append(line(start, end))
             at = move.end
     return _joined(edges)
 
 
-def _chain(job: Job, ref: Ref[Entity], frame: Frame) -> Chain:
+def _chain(job: ToolPathTask, ref: Ref[Entity], frame: Frame) -> Chain:
     """A curve of the file in the setup, seen along z."""
     segments = segments_of(job.program, ref)
     chain = halved(chain_of(tuple(segment.within(frame) for segment in segments)))
@@ -198,22 +204,24 @@ def _chain(job: Job, ref: Ref[Entity], frame: Frame) -> Chain:
     return chain
 
 
-def _joined(edges: list[Edge]) -> Chain:
+def _joined(edges: list[ContourEdge]) -> Chain:
     """The edges with each starting exactly where the one before ends; the rest is rounding."""
     found = [edge for edge in edges if edge.length > TINY]
     starts = [found[0].start, *(edge.end for edge in found[:-1])] if found else []
     return tuple(
-        Edge(start, edge.end, edge.centre, edge.turn)
+        ContourEdge(start, edge.end, edge.centre, edge.turn)
         for start, edge in zip(starts, found, strict=True)
     )
 
 
-def _ngon(job: Job, ref: Ref[Entity], profile: NgonClosedProfile, frame: Frame) -> Loop:
+def _ngon(
+    job: ToolPathTask, ref: Ref[Entity], profile: NgonClosedProfile, frame: Frame
+) -> Loop:
     """Regular polygon by its circumscribed circle or its width across flats."""
     sides = profile.number_of_sides
     if sides is None or not 3 <= sides <= 1000:
         raise job.fault(f"{sides} sides: a polygon has 3 at least", ref, "number_of_sides")
-    radius = 0.5 * size(job, profile.diameter, ref)
+    radius = 0.5 * size(job.program, profile.diameter, ref)
     if not profile.circumscribed_or_across_flats:
         radius /= cos(pi / sides)
     corners = [rect(radius, 2.0 * pi * index / sides) for index in range(sides)]
@@ -224,10 +232,240 @@ def _arc(frame: Frame, radius: float, sweep: float) -> Chain:
     """Arc about the origin of a frame, from its x axis."""
     start, centre = _on_plane(frame, (radius, 0.0)), _on_plane(frame, (0.0, 0.0))
     end = centre + (start - centre) * rect(1.0, sweep)
-    return halved([Edge(start, end, centre, sweep)])
+    return halved([ContourEdge(start, end, centre, sweep)])
 
 
 def _on_plane(frame: Frame, at: tuple[float, float]) -> complex:
     """A point of a frame seen along z."""
     point: Point = frame.point((at[0], at[1], 0.0))
     return complex(point[0], point[1])
+
+
+ROUNDEST = 1e-3
+"""mm by which the radius of a corner stays below half the width"""
+
+
+def slot_area(
+    job: ToolPathTask, ref: Ref[Entity], slot: Slot, frame: Frame, bottom: float
+) -> Area:
+    """Area of a slot.
+
+    Raises
+    ------
+    PathError
+        When it has no width, or turns more sharply than half its width.
+    """
+    top = frame.origin[2]
+    middle = course(job, slot.course_of_travel, frame)
+    half, inset = _section(job, slot.swept_shape, top - bottom)
+    ends = [job.program.get(end) for end in slot.end_conditions]
+    outside: Chain = ()
+    beyond = (0.0, 0.0)
+    rises: tuple[Inset, Inset] = (upright, upright)
+    stops: list[Wall] = []
+    if abs(middle[-1].end - middle[0].start) < JOINED:
+        loops = _ring(middle, half)
+    elif any(isinstance(end, LoopSlotEndType) for end in ends):
+        gap = abs(middle[-1].end - middle[0].start)
+        raise job.fault(f"its course does not close: a gap of {gap:.4g} mm", ref)
+    else:
+        # One end condition stands for both ends.
+        pair = [*ends, *ends][:2] if ends else [OpenSlotEndType(), OpenSlotEndType()]
+        first, last = (_beyond(job, end, half) for end in pair)
+        beyond = (first, last)
+        loops, outside = _band(job, ref, middle, half, pair)
+        before, after = (_rise(job, end, top - bottom) for end in pair)
+        rises = (before, after)
+        ways = (reversed_chain(middle), middle)
+        stops = [
+            Wall(loop=_stop(way), inset=rise)
+            for way, rise in zip(ways, rises, strict=True)
+            if rise is not upright
+        ]
+    if not loops:
+        raise job.fault(f"its course turns more sharply than its half width {half:g} mm", ref)
+    return Area(
+        ref=ref,
+        walls=(*(Wall(loop=loop, inset=inset) for loop in loops), *stops),
+        top=top,
+        bottom=bottom,
+        solid=_solid(middle, half) if outside else None,
+        outside=outside,
+        middle=middle,
+        ends=beyond,
+        rises=rises,
+        bar=_bar(job, slot.swept_shape, is_open=len(outside) > 1),
+    )
+
+
+def _band(
+    job: ToolPathTask, ref: Ref[Entity], middle: Chain, half: float, ends: Sequence[Entity]
+) -> tuple[tuple[Loop, ...], Chain]:
+    """Outline of a slot with two ends, and the edges of it that lie beyond open ends."""
+    before, after = (
+        _beyond(job, end, half) if isinstance(end, OpenSlotEndType) else 0.0 for end in ends
+    )
+    way = stretched(middle, before, after)
+    left = beside(way, half)
+    right = beside(reversed_chain(way), half)
+    if len(left) != 1 or len(right) != 1:
+        return (), ()
+    caps = (
+        _cap(right[0][-1].end, left[0][0].start, way[0].start, ends[0]),
+        _cap(left[0][-1].end, right[0][0].start, way[-1].end, ends[1]),
+    )
+    outside = tuple(
+        edge
+        for cap, end in zip(caps, ends, strict=True)
+        if isinstance(end, OpenSlotEndType)
+        for edge in cap
+    )
+    outline = counter_clockwise(halved((*right[0], *caps[0], *left[0], *caps[1])))
+    radius = min(
+        (_corner(job, end, half) for end in ends if isinstance(end, FlatSlotEndType)),
+        default=0.0,
+    )
+    return (rounded(outline, radius) if radius > 0.0 else (outline,)), outside
+
+
+def _beyond(job: ToolPathTask, end: Entity, half: float) -> float:
+    """Length of a slot beyond the end of its course, mm."""
+    if isinstance(end, OpenSlotEndType):
+        return job.tool.diameter + run_out(job)
+    return half if isinstance(end, RadiusedSlotEndType) else 0.0
+
+
+def _bar(job: ToolPathTask, ref: Ref[Entity], *, is_open: bool) -> TeeSlotUndercut | None:
+    """The wide part of a tee slot."""
+    profile = job.program.get(ref)
+    if not isinstance(profile, TeeProfile):
+        return None
+    return TeeSlotUndercut(
+        width=size(job.program, profile.cross_bar_width, ref),
+        depth=size(job.program, profile.cross_bar_depth, ref),
+        is_open=is_open,
+    )
+
+
+def _rise(job: ToolPathTask, end: Entity, depth: float) -> Inset:
+    """Length of an end within the slot: upright, or the arc of a Woodruff end."""
+    if not isinstance(end, WoodruffSlotEndType):
+        return upright
+    radius = size(job.program, end.radius, job.step.features[0])
+    reach = chord(radius, depth)
+    return lambda height: reach - chord(radius, min(height, depth))
+
+
+def _stop(way: Chain) -> Loop:
+    """Square behind the end of a course, far larger than the slot."""
+    end, along = way[-1].end, way[-1].along(1.0)
+    far = 4.0 * chain_length(way)
+    right, left = end - 1j * far * along, end + 1j * far * along
+    back = 2.0 * far * along
+    return polygon([right, left, left - back, right - back])
+
+
+def _corner(job: ToolPathTask, end: FlatSlotEndType, half: float) -> float:
+    """The smaller radius of the corners of a flat end: nothing is cut into."""
+    radii = []
+    for ref in (end.corner_radius1, end.corner_radius2):
+        radius = (job.program.get(ref).theoretical_size or 0.0) if ref is not None else 0.0
+        if not 0.0 <= radius <= half * (1.0 + 1e-9):
+            raise job.fault(
+                f"corner radius {radius:g} mm: it lies between 0 and half the width of the "
+                f"slot, {half:g} mm",
+                ref,
+                "theoretical_size",
+            )
+        radii.append(radius)
+    # Just below half the width, so that a middle line is left to round about.
+    return min(*radii, half - ROUNDEST)
+
+
+def _solid(middle: Chain, half: float) -> Loop:
+    """The slot between the ends of its course."""
+    left, right = beside(middle, half), beside(reversed_chain(middle), half)
+    caps = (line(right[0][-1].end, left[0][0].start), line(left[0][-1].end, right[0][0].start))
+    return counter_clockwise((*right[0], caps[0], *left[0], caps[1]))
+
+
+def _cap(start: complex, end: complex, centre: complex, kind: Entity) -> Chain:
+    """Line or half circle from one side of a slot to the other, around its end."""
+    if isinstance(kind, RadiusedSlotEndType):
+        # From the right side to the left one behind the start, and the other way round.
+        return halved([ContourEdge(start, end, centre, -pi)])
+    return (line(start, end),)
+
+
+def _ring(middle: Chain, half: float) -> tuple[Loop, ...]:
+    """Outline of a slot that comes back to its start."""
+    loop = counter_clockwise(middle)
+    inner = erode([loop], half)
+    outer = tuple(reversed_chain(each) for each in erode([reversed_chain(loop)], half))
+    return (*outer, *(clockwise(each) for each in inner)) if outer else ()
+
+
+def _section(job: ToolPathTask, ref: Ref[Entity], depth: float) -> tuple[float, Inset]:
+    """Half the width at the top, and the inset of the walls."""
+    profile = job.program.get(ref)
+    if isinstance(profile, (SquareUProfile, TeeProfile)):
+        return 0.5 * size(job.program, profile.width, ref), _square(job, profile, depth)
+    if isinstance(profile, RoundedUProfile):
+        half = 0.5 * size(job.program, profile.width, ref)
+        return half, lambda height: rounding(height, half)
+    if isinstance(profile, VeeProfile):
+        slope = tan(0.5 * vee_angle(profile.profile_angle))
+        return depth * slope, lambda height: max(depth - height, 0.0) * slope
+    if isinstance(profile, PartialCircularProfile):
+        radius = size(job.program, profile.radius, ref)
+        half = chord(radius, depth)
+        return half, lambda height: half - chord(radius, min(height, depth))
+    if isinstance(profile, GeneralProfile):
+        return _general(job, ref, profile, depth)
+    raise job.fault("a slot of this profile cannot be milled", ref)
+
+
+def _square(job: ToolPathTask, profile: SquareUProfile | TeeProfile, depth: float) -> Inset:
+    """The steeper of the two walls counts on both sides: nothing is cut into."""
+    angles = [profile.first_angle or 0.0, profile.second_angle or 0.0]
+    slope = max(
+        tan(rad_from_deg(min(angle, 90.0 - angle) if angle > 45.0 else angle))
+        for angle in angles
+    )
+    radii = (
+        [profile.first_radius, profile.second_radius]
+        if isinstance(profile, SquareUProfile)
+        else []
+    )
+    sizes = [job.program.get(radius).theoretical_size or 0.0 for radius in radii if radius]
+    radius = max(sizes, default=0.0)
+    return lambda height: max(depth - height, 0.0) * slope + rounding(height, radius)
+
+
+def _general(
+    job: ToolPathTask, ref: Ref[Entity], profile: GeneralProfile, depth: float
+) -> tuple[float, Inset]:
+    """Any profile, drawn in the x, z plane about the middle; the narrower side counts twice."""
+    points = []
+    for segment in segments_of(job.program, profile.its_profile):
+        points += [segment.start, segment.end]
+    lowest = min(point[2] for point in points)
+    sides = [
+        [(abs(x), z - lowest) for x, _, z in points if sign * x >= 0.0] for sign in (1.0, -1.0)
+    ]
+    if any(len(side) < 2 for side in sides):
+        raise job.fault("needs a wall on either side of its middle", ref)
+
+    def half(height: float) -> float:
+        return min(_width(sorted(side, key=lambda at: at[1]), height) for side in sides)
+
+    widest = half(depth)
+    return widest, lambda height: widest - half(min(height, depth))
+
+
+def _width(side: Sequence[tuple[float, float]], height: float) -> float:
+    """Half width of one side at a height, linear between its corners."""
+    for (x0, z0), (x1, z1) in pairwise(side):
+        if z0 <= height <= z1 and z1 > z0:
+            return x0 + (x1 - x0) * (height - z0) / (z1 - z0)
+    return side[-1][0] if height > side[-1][1] else max(x for x, z in side if z <= side[0][1])

@@ -2,70 +2,292 @@
 
 A feature lies in its own coordinates, its depth plane below their origin. Pockets are cleared
 to their boundary, bosses stand as islands, faces are swept and run over; outside profiles,
-bosses and steps are cut along.
+bosses and steps are cut along. An open side of a pocket is run out of.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 from math import atan, pi, sqrt, tan
 
-from stepnc_model.entities.bottoms import (
-    ConicalHoleBottom,
-    FlatWithRadiusHoleBottom,
-    HoleBottomCondition,
-    SphericalHoleBottom,
-)
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.features import (
     Boss,
     ClosedPocket,
     CompoundFeature,
     GeneralOutsideProfile,
-    MachiningFeature,
     OpenPocket,
     PlanarFace,
+    Pocket,
     RoundHole,
     ShapeProfile,
     Slot,
     Step,
     TransitionFeature,
 )
-from stepnc_model.entities.profiles import AngleTaper, DiameterTaper
-from stepnc_model.part21.values import Ref
-from stepnc_model.toolpath.frame import Frame, frame_of
-from stepnc_model.toolpath.job import Job
-from stepnc_model.toolpath.milling.area import (
-    Area,
-    Flank,
-    Inset,
-    Wall,
-    chord,
-    leaning,
-    upright,
+from stepnc_model.entities.measures import TolerancedLengthMeasure
+from stepnc_model.entities.profiles import (
+    AngleTaper,
+    ClosedProfile,
+    ConicalHoleBottom,
+    DiameterTaper,
+    FlatWithRadiusHoleBottom,
+    GeneralPocketBottomCondition,
+    HoleBottomCondition,
+    RadiusedPocketBottomCondition,
+    SphericalHoleBottom,
 )
-from stepnc_model.toolpath.milling.contour import Loop, circle, counter_clockwise, polygon
+from stepnc_model.outline import (
+    boundary_of,
+    known_depth,
+    parameter,
+    size,
+    size_or_zero,
+    vee_angle,
+)
+from stepnc_model.part21.values import Ref
+from stepnc_model.toolpath.frame import Frame, frame_of, point_of
+from stepnc_model.toolpath.milling.area import Area, Flank, Inset, Wall, chord, leaning, upright
+from stepnc_model.toolpath.milling.contour import (
+    Chain,
+    Loop,
+    circle,
+    clockwise,
+    counter_clockwise,
+    line,
+    polygon,
+    reversed_chain,
+    shape,
+)
+from stepnc_model.toolpath.milling.offset import rounded
 from stepnc_model.toolpath.milling.outline import (
-    MOST,
     closed_outline,
     course,
-    given,
-    parameter,
+    open_outline,
     require_simple,
     require_upright,
-    size,
     slope_of,
+    slot_area,
 )
-from stepnc_model.toolpath.milling.outside import outside_flank, step_flank
-from stepnc_model.toolpath.milling.pocket import closed_pocket, islands, open_pocket
-from stepnc_model.toolpath.milling.slot import slot_area
+from stepnc_model.toolpath.milling.strategy import run_out
+from stepnc_model.toolpath.task import ToolPathTask
 from stepnc_model.units import rad_from_deg
 
 
-def shapes(job: Job, ref: Ref[Entity], frame: Frame) -> Iterator[Area | Flank]:
-    """What a feature asks to be removed.
+def step_flank(
+    job: ToolPathTask, ref: Ref[Entity], feature: Step, frame: Frame, bottom: float
+) -> Flank:
+    """From the edge to the side of the stock on the right of its sense."""
+    edge = course(job, feature.open_boundary, frame)
+    chain = reversed_chain(edge)
+    width = None
+    if job.stock is not None:
+        out = 1j * chain[0].along(0.0)
+        sides = [
+            complex(x, y)
+            for x in (job.stock.low[0], job.stock.high[0])
+            for y in (job.stock.low[1], job.stock.high[1])
+        ]
+        width = max((out.conjugate() * (side - edge[0].start)).real for side in sides)
+    return Flank(
+        ref=ref,
+        chain=chain,
+        is_closed=False,
+        inset=upright,
+        top=frame.origin[2],
+        bottom=bottom,
+        width=width if width and width > 0.0 else None,
+    )
+
+
+def outside_flank(
+    job: ToolPathTask,
+    ref: Ref[Entity],
+    feature: GeneralOutsideProfile | Boss | ShapeProfile,
+    frame: Frame,
+    bottom: float,
+) -> Flank:
+    """Outline with the part inside; an open one with the part on its left."""
+    boundary = boundary_of(feature)
+    if boundary is None:
+        raise job.fault("has no boundary", ref)
+    is_closed = isinstance(job.program.get(boundary), ClosedProfile)
+    top = frame.origin[2]
+    if is_closed:
+        outline = closed_outline(job, boundary, frame)
+        require_simple(job, outline, ref)
+        chain = clockwise(outline)
+    else:
+        chain = reversed_chain(open_outline(job, boundary, frame))
+    slope = slope_of(job, getattr(feature, "slope", None), ref)
+    return Flank(
+        ref=ref,
+        chain=chain,
+        is_closed=is_closed,
+        inset=leaning(depth=top - bottom, slope_deg=slope),
+        top=top,
+        bottom=bottom,
+    )
+
+
+CHORD = 1e-3
+"""mm of tolerance where an outline is looked at as a polygon"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Island:
+    """Boss that reaches above the floor, and its wall."""
+
+    ref: Ref[Boss]
+    wall: Wall
+
+
+def closed_pocket(
+    job: ToolPathTask, ref: Ref[Entity], feature: ClosedPocket, frame: Frame, bottom: float
+) -> Area:
+    """Area of a pocket with walls all around.
+
+    Raises
+    ------
+    PathError
+        When its boundary crosses itself, or an island touches it.
+    """
+    outline = closed_outline(job, feature.feature_boundary, frame)
+    require_simple(job, outline, ref)
+    area, found = _pocket(job, ref, feature, frame, bottom=bottom, outline=outline)
+    _require_apart(job, area.walls[0].loop, found)
+    return area
+
+
+def open_pocket(
+    job: ToolPathTask, ref: Ref[Entity], feature: OpenPocket, frame: Frame, bottom: float
+) -> Area:
+    """Area of a pocket that the tool runs out of.
+
+    Raises
+    ------
+    PathError
+        When its boundary closes, or crosses itself.
+    """
+    chain = open_outline(job, feature.open_boundary, frame)
+    if abs(chain[0].start - chain[-1].end) < 1e-6:
+        raise job.fault("its boundary closes: an open pocket has an opening", ref)
+    solid = counter_clockwise((*chain, line(chain[-1].end, chain[0].start)))
+    require_simple(job, solid, ref)
+    box = _box(job, chain)
+    outline = counter_clockwise((*chain, *box))
+    require_simple(job, outline, ref)
+    area, _ = _pocket(job, ref, feature, frame, bottom=bottom, outline=outline)
+    return replace(area, solid=solid, outside=(box[1],))
+
+
+def islands(
+    job: ToolPathTask,
+    owner: Ref[Entity],
+    bosses: tuple[Ref[Boss], ...],
+    frame: Frame,
+    bottom: float,
+) -> Iterator[Island]:
+    """Bosses that reach above the floor; they are placed beside the feature, not within it."""
+    # In a pattern or a compound feature the bosses move along with their feature.
+    placement = getattr(job.program.get(owner), "feature_placement", None)
+    beside = frame.inner(frame_of(job.program, placement).inverse())
+    for ref in bosses or ():
+        boss = job.program.get(ref)
+        within = beside.inner(frame_of(job.program, boss.feature_placement))
+        top = within.origin[2]
+        if top <= bottom:
+            continue
+        loop = clockwise(closed_outline(job, boss.its_boundary, within))
+        slope = slope_of(job, boss.slope, ref)
+        inset = leaning(depth=top - bottom, slope_deg=slope)
+        yield Island(ref=ref, wall=Wall(loop=loop, inset=inset, top=top))
+
+
+def _pocket(
+    job: ToolPathTask,
+    ref: Ref[Entity],
+    feature: Pocket,
+    frame: Frame,
+    *,
+    bottom: float,
+    outline: Loop,
+) -> tuple[Area, list[Island]]:
+    """Boundary with rounded corners, islands, and the edge along the floor."""
+    top = frame.origin[2]
+    fillet = size_or_zero(job.program, feature.planar_radius)
+    slope = slope_of(job, feature.slope, ref)
+    inset = leaning(depth=top - bottom, slope_deg=slope, fillet=fillet)
+    loops = _with_corners(job, ref, feature.orthogonal_radius, outline)
+    found = list(islands(job, ref, feature.its_boss, frame, bottom))
+    walls = [*(Wall(loop=loop, inset=inset) for loop in loops), *(one.wall for one in found)]
+    condition = job.program.get(feature.bottom_condition) if feature.bottom_condition else None
+    if isinstance(condition, GeneralPocketBottomCondition):
+        raise job.fault("a floor of any shape cannot be milled yet", ref, "bottom_condition")
+    if isinstance(condition, RadiusedPocketBottomCondition):
+        walls.append(_dish(job, condition, frame, bottom))
+    return Area(ref=ref, walls=tuple(walls), top=top, bottom=bottom), found
+
+
+def _with_corners(
+    job: ToolPathTask,
+    ref: Ref[Entity],
+    radius_ref: Ref[TolerancedLengthMeasure] | None,
+    outline: Loop,
+) -> tuple[Loop, ...]:
+    """The outline with its sharp corners rounded as the feature asks."""
+    radius = size_or_zero(job.program, radius_ref)
+    if radius <= 0.0:
+        return (outline,)
+    loops = rounded(outline, radius)
+    if len(loops) != 1:
+        raise job.fault(
+            f"corners of {radius:g} mm do not fit in its boundary", ref, "orthogonal_radius"
+        )
+    return loops
+
+
+def _dish(
+    job: ToolPathTask, condition: RadiusedPocketBottomCondition, frame: Frame, bottom: float
+) -> Wall:
+    """Floor that is part of a sphere, its lowest point on the depth plane at least."""
+    x, y, z = frame.point(point_of(job.program, condition.floor_radius_center))
+    radius = size(job.program, condition.floor_radius, condition.floor_radius_center)
+    raised = max(z - radius - bottom, 0.0)
+    return Wall(
+        loop=circle(complex(x, y), radius),
+        inset=lambda height: radius - chord(radius, height - raised),
+    )
+
+
+def _box(job: ToolPathTask, chain: Chain) -> Chain:
+    """From the end of an open pocket's wall to its start, by a box in front of the opening."""
+    start, end = chain[0].start, chain[-1].end
+    opening = start - end
+    reach = job.tool.diameter + run_out(job)
+    middle = shape((*chain, line(end, start)), tolerance=CHORD).representative_point()
+    outward = 1j * opening / abs(opening)
+    inside = complex(middle.x, middle.y) - 0.5 * (start + end)
+    if (outward.conjugate() * inside).real > 0.0:
+        outward = -outward
+    before, after = start + reach * outward, end + reach * outward
+    return (line(end, after), line(after, before), line(before, start))
+
+
+def _require_apart(job: ToolPathTask, outline: Loop, found: list[Island]) -> None:
+    """Refuse an island that touches the wall of its pocket."""
+    outer = shape(outline, tolerance=CHORD)
+    for island in found:
+        solid = shape(island.wall.loop, tolerance=CHORD)
+        if outer.exterior.distance(solid) <= CHORD or not outer.covers(solid):
+            raise job.fault("touches the wall of its pocket", island.ref, "its_boundary")
+
+
+def shapes(job: ToolPathTask, ref: Ref[Entity], frame: Frame) -> Iterator[Area | Flank]:
+    """Area and flanks that a feature removes.
 
     Parameters
     ----------
-    job : Job
+    job : ToolPathTask
     ref : Ref
         The feature, no pattern.
     frame : Frame
@@ -87,21 +309,15 @@ def shapes(job: Job, ref: Ref[Entity], frame: Frame) -> Iterator[Area | Flank]:
                 placement = getattr(part, "feature_placement", None)
                 yield from shapes(job, element, frame.inner(frame_of(job.program, placement)))
         return
-    if not isinstance(feature, MachiningFeature):
+    make = next((make for kind, make in MAKERS if isinstance(feature, kind)), None)
+    if make is None:
         raise job.fault("a feature of this kind cannot be milled", ref)
-    bottom = floor_of(job, ref, feature, frame)
-    yield _shape(job, ref, feature, frame, bottom)
+    yield make(job, ref, feature, frame, floor_of(job, ref, frame))
 
 
-def floor_of(job: Job, ref: Ref[Entity], feature: MachiningFeature, frame: Frame) -> float:
+def floor_of(job: ToolPathTask, ref: Ref[Entity], frame: Frame) -> float:
     """Height of a feature's depth plane in the setup, mm."""
-    plane = getattr(feature, "depth", None)
-    if plane is None:
-        raise job.fault("has no depth", ref, "depth")
-    below = frame_of(job.program, job.program.get(plane).position).origin[2]
-    depth = abs(below)
-    if not 0.0 < depth < MOST:
-        raise job.fault(f"depth {depth:g} mm: it must be positive", ref, "depth")
+    depth = known_depth(job.program, ref)
     bottom = frame.origin[2] - depth
     if job.stock is not None and bottom < job.stock.low[2] - 1e-6:
         raise job.fault(
@@ -113,29 +329,9 @@ def floor_of(job: Job, ref: Ref[Entity], feature: MachiningFeature, frame: Frame
     return bottom
 
 
-def _shape(
-    job: Job, ref: Ref[Entity], feature: MachiningFeature, frame: Frame, bottom: float
-) -> Area | Flank:
-    """Area or flank of one feature."""
-    match feature:
-        case PlanarFace():
-            return _face(job, ref, feature, frame, bottom)
-        case ClosedPocket():
-            return closed_pocket(job, ref, feature, frame, bottom)
-        case OpenPocket():
-            return open_pocket(job, ref, feature, frame, bottom)
-        case Slot():
-            return slot_area(job, ref, feature, frame, bottom)
-        case RoundHole():
-            return _hole(job, ref, feature, frame, bottom)
-        case Step():
-            return step_flank(job, ref, feature, frame, bottom)
-        case GeneralOutsideProfile() | Boss() | ShapeProfile():
-            return outside_flank(job, ref, feature, frame, bottom)
-    raise job.fault("a feature of this kind cannot be milled", ref)
-
-
-def _face(job: Job, ref: Ref[Entity], feature: PlanarFace, frame: Frame, bottom: float) -> Area:
+def _face(
+    job: ToolPathTask, ref: Ref[Entity], feature: PlanarFace, frame: Frame, bottom: float
+) -> Area:
     """Rectangle of travel and profile, or the boundary given, around its bosses."""
     if feature.face_boundary is not None:
         face = closed_outline(job, feature.face_boundary, frame)
@@ -154,11 +350,11 @@ def _face(job: Job, ref: Ref[Entity], feature: PlanarFace, frame: Frame, bottom:
     )
 
 
-def _swept(job: Job, feature: PlanarFace, frame: Frame) -> Loop:
+def _swept(job: ToolPathTask, feature: PlanarFace, frame: Frame) -> Loop:
     """Travel times profile; the profile lies across the travel, towards +x, or +y along x."""
     travel = course(job, feature.course_of_travel, frame)
     start, along = travel[0].start, travel[0].end - travel[0].start
-    width = parameter(job, job.program.get(feature.removal_boundary).profile_length)
+    width = parameter(job.program, job.program.get(feature.removal_boundary).profile_length)
     across = -1j * along / abs(along)
     sign = across.real if abs(across.real) > 1e-9 else across.imag
     across = across * width * (1.0 if sign > 0.0 else -1.0)
@@ -167,9 +363,11 @@ def _swept(job: Job, feature: PlanarFace, frame: Frame) -> Loop:
     )
 
 
-def _hole(job: Job, ref: Ref[Entity], feature: RoundHole, frame: Frame, bottom: float) -> Area:
+def _hole(
+    job: ToolPathTask, ref: Ref[Entity], feature: RoundHole, frame: Frame, bottom: float
+) -> Area:
     """Round hole, straight or tapered; a cone or cap lies below its depth plane."""
-    radius = 0.5 * size(job, feature.diameter, ref)
+    radius = 0.5 * size(job.program, feature.diameter, ref)
     top = frame.origin[2]
     centre = complex(frame.origin[0], frame.origin[1])
     angle = 0.0
@@ -179,7 +377,7 @@ def _hole(job: Job, ref: Ref[Entity], feature: RoundHole, frame: Frame, bottom: 
     condition = job.program.get(feature.bottom_condition) if feature.bottom_condition else None
     fillet = 0.0
     if isinstance(condition, FlatWithRadiusHoleBottom):
-        fillet = given(job, condition.corner_radius)
+        fillet = size_or_zero(job.program, condition.corner_radius)
     side = leaning(depth=top - bottom, slope_deg=angle, fillet=fillet)
     deeper, half = _below(job, ref, condition, radius - side(0.0))
 
@@ -191,18 +389,18 @@ def _hole(job: Job, ref: Ref[Entity], feature: RoundHole, frame: Frame, bottom: 
 
 
 def _below(
-    job: Job, ref: Ref[Entity], condition: HoleBottomCondition | None, radius: float
+    job: ToolPathTask, ref: Ref[Entity], condition: HoleBottomCondition | None, radius: float
 ) -> tuple[float, Inset]:
     """Depth of a cone or cap under the cylinder, and its half width over its lowest point."""
     if isinstance(condition, ConicalHoleBottom):
         written = condition.tip_angle or 0.0
-        angle = written if written < pi else rad_from_deg(written)
+        angle = vee_angle(written)
         if not 0.0 < angle < pi:
             raise job.fault(f"a tip of {written:g} degrees is no cone", ref, "bottom_condition")
         deep = radius / tan(0.5 * angle)
         return deep, lambda height: radius * max(height, 0.0) / deep
     if isinstance(condition, SphericalHoleBottom):
-        sphere = size(job, condition.radius, ref)
+        sphere = size(job.program, condition.radius, ref)
         if sphere < radius * (1.0 - 1e-9):
             raise job.fault(
                 f"sphere of radius {sphere:g} mm below a hole of radius {radius:g} mm",
@@ -215,7 +413,7 @@ def _below(
 
 
 def _taper_angle(
-    job: Job,
+    job: ToolPathTask,
     ref: Ref[Entity],
     taper: DiameterTaper | AngleTaper,
     *,
@@ -225,7 +423,21 @@ def _taper_angle(
     """Lean of a tapered hole's wall in degrees."""
     if isinstance(taper, AngleTaper):
         return slope_of(job, taper.angle, ref)
-    final = 0.5 * size(job, taper.final_diameter, ref)
+    final = 0.5 * size(job.program, taper.final_diameter, ref)
     if final > radius:
         raise job.fault("widens with depth: nothing can be milled from above", ref)
     return atan((radius - final) / depth) / rad_from_deg(1.0)
+
+
+MAKERS: tuple[tuple[type[Entity], Callable[..., Area | Flank]], ...] = (
+    (PlanarFace, _face),
+    (ClosedPocket, closed_pocket),
+    (OpenPocket, open_pocket),
+    (Slot, slot_area),
+    (RoundHole, _hole),
+    (Step, step_flank),
+    (GeneralOutsideProfile, outside_flank),
+    (Boss, outside_flank),
+    (ShapeProfile, outside_flank),
+)
+"""what makes an area or a flank of a feature"""

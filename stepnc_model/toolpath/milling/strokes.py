@@ -1,17 +1,20 @@
-"""Parallel strokes over an area, to and fro or one way, linked without leaving the area."""
+"""Passes over an area: parallel strokes, spirals made of rings, and what lies inside of a pass.
 
-from collections.abc import Sequence
+Strokes run to and fro or one way, linked without leaving the area. A spiral's rings go over
+into the next one on a slant, without a stop. Passes are cut where they enter or leave an area.
+"""
+
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import groupby, pairwise
 from math import ceil
 
 import numpy as np
 
-from stepnc_model.toolpath.milling.arrays import crossings_with
 from stepnc_model.toolpath.milling.contour import (
     TINY,
     Chain,
-    Edge,
+    ContourEdge,
     Loop,
     area,
     chain_length,
@@ -19,10 +22,11 @@ from stepnc_model.toolpath.milling.contour import (
     moved,
     nearest,
     reversed_chain,
+    rotated_to,
     vertices,
 )
-from stepnc_model.toolpath.milling.cover import Pass
-from stepnc_model.toolpath.milling.offset import contains
+from stepnc_model.toolpath.milling.cover import MillingPass
+from stepnc_model.toolpath.milling.offset import contains, crossings_with
 
 CHORD = 1e-4
 """mm of tolerance where an area is measured across the strokes"""
@@ -47,10 +51,10 @@ class Stroke:
     high: complex
 
 
-def singles(rows: Sequence[Sequence[Stroke]]) -> tuple[Pass, ...]:
+def singles(rows: Sequence[Sequence[Stroke]]) -> tuple[MillingPass, ...]:
     """Each stroke a pass of its own."""
     return tuple(
-        Pass((line(stroke.low, stroke.high),), is_closed=False)
+        MillingPass((line(stroke.low, stroke.high),), is_closed=False)
         for row in rows
         for stroke in row
     )
@@ -114,7 +118,7 @@ def contains_point(point: complex, loops: Sequence[Loop]) -> bool:
     return _is_within(point, loops)
 
 
-def zigzags(rows: Sequence[Sequence[Stroke]], loops: Sequence[Loop]) -> tuple[Pass, ...]:
+def zigzags(rows: Sequence[Sequence[Stroke]], loops: Sequence[Loop]) -> tuple[MillingPass, ...]:
     """Rows joined to and fro."""
     return tuple(found for cell in _cells(rows) for found in _zigzag(cell, loops))
 
@@ -168,16 +172,16 @@ def _overlap(one: Stroke, other: Stroke) -> bool:
     return ends[0] < abs(one.high - one.low) and ends[1] > 0.0
 
 
-def _zigzag(cell: Sequence[Stroke], loops: Sequence[Loop]) -> list[Pass]:
+def _zigzag(cell: Sequence[Stroke], loops: Sequence[Loop]) -> list[MillingPass]:
     """The strokes of a cell to and fro, joined where a way between them stays inside."""
-    chains: list[list[Edge]] = []
+    chains: list[list[ContourEdge]] = []
     for index, stroke in enumerate(cell):
         ends = (stroke.low, stroke.high) if index % 2 == 0 else (stroke.high, stroke.low)
         way = linked(chains[-1][-1].end, ends[0], loops) if chains else None
         if way is None:
             chains.append([])
         chains[-1] += [*(way or ()), line(*ends)]
-    return [Pass(tuple(chain), is_closed=False) for chain in chains]
+    return [MillingPass(tuple(chain), is_closed=False) for chain in chains]
 
 
 def _along_wall(loop: Loop, start: complex, end: complex) -> Chain | None:
@@ -191,8 +195,8 @@ def _along_wall(loop: Loop, start: complex, end: complex) -> Chain | None:
     if not way:
         return None
     first, last = way[0], way[-1]
-    joined = [Edge(start, first.end, first.centre, first.turn), *way[1:]]
-    joined[-1] = Edge(joined[-1].start, end, last.centre, last.turn)
+    joined = [ContourEdge(start, first.end, first.centre, first.turn), *way[1:]]
+    joined[-1] = ContourEdge(joined[-1].start, end, last.centre, last.turn)
     return tuple(joined)
 
 
@@ -206,3 +210,105 @@ def _between(loop: Loop, first: tuple[int, float], last: tuple[int, float]) -> C
         middle = [loop[(i + k) % len(loop)] for k in range(1, count)]
         pieces = [loop[i].between(p, 1.0), *middle, loop[j].between(0.0, q)]
     return tuple(piece for piece in pieces if piece.length > 1e-7)
+
+
+COARSE_CHORD = 1e-3
+"""mm of tolerance where a point is looked for in an area"""
+
+SHORTEST_PIECE = 0.1
+"""mm; a shorter piece inside is no cut"""
+
+
+@dataclass(frozen=True, slots=True)
+class ClippedChain:
+    """Part of a chain on one side of a boundary."""
+
+    chain: Chain
+    is_inside: bool
+
+
+def pieces(chain: Chain, loops: Sequence[Loop]) -> list[ClippedChain]:
+    """A chain cut at the boundary of an area on the left of every loop."""
+    edges = [edge for loop in loops for edge in loop]
+    parts = crossings_with(chain, edges)
+    split = [piece for edge, at in zip(chain, parts, strict=True) for piece in _split(edge, at)]
+    inside = contains(loops, [piece.at(0.5) for piece in split], tolerance=COARSE_CHORD)
+    pairs = zip(split, inside, strict=True)
+    return [
+        ClippedChain(tuple(edge for edge, _ in group), is_inside)
+        for is_inside, group in groupby(pairs, key=lambda pair: pair[1])
+    ]
+
+
+def inside(cut: MillingPass, loops: Sequence[Loop]) -> list[MillingPass]:
+    """Parts of a pass inside an area; the pass itself where it stays there."""
+    found = pieces(cut.chain, loops)
+    if len(found) == 1:
+        return [cut] if found[0].is_inside else []
+    if cut.is_closed and found[0].is_inside and found[-1].is_inside:
+        last = found.pop()
+        found[0] = ClippedChain((*last.chain, *found[0].chain), is_inside=True)
+    return [
+        MillingPass(piece.chain, is_closed=False)
+        for piece in found
+        if piece.is_inside and chain_length(piece.chain) > SHORTEST_PIECE
+    ]
+
+
+def _split(edge: ContourEdge, parts: list[float]) -> Chain:
+    """The edge cut at some parts of its length."""
+    cuts = [0.0, *(part for part in parts if 1e-9 < part < 1.0 - 1e-9), 1.0]
+    return tuple(edge.between(low, high) for low, high in pairwise(cuts) if high > low)
+
+
+SLANT = 2.0
+"""steps along the way for one step across it"""
+
+FARTHEST = 2.0 * SLANT
+"""steps; rings further apart are no neighbours"""
+
+
+def spirals(
+    rings: Iterable[MillingPass], loops: Sequence[Loop], *, step: float
+) -> tuple[MillingPass, ...]:
+    """Neighbouring rings joined to one pass, in their order; every ring is still run whole.
+
+    Parameters
+    ----------
+    rings : iterable of MillingPass
+        Those that are not closed stay passes of their own.
+    loops : sequence of Loop
+        Boundary of where the cutter's centre may be.
+    step : float, mm
+        Between neighbouring rings.
+    """
+    found: list[list[MillingPass]] = []
+    for ring in rings:
+        following = _following(found[-1][-1], ring, loops, step) if found else None
+        if following is None:
+            found.append([ring])
+        else:
+            found[-1].append(following)
+    return tuple(_joined(run) for run in found)
+
+
+def _following(
+    last: MillingPass, ring: MillingPass, loops: Sequence[Loop], step: float
+) -> MillingPass | None:
+    """The ring from where the slant from the last one meets it; None where there is no way."""
+    if not (last.is_closed and ring.is_closed):
+        return None
+    ahead = last.end + SLANT * step * last.chain[-1].along(1.0)
+    turned = MillingPass(rotated_to(ring.chain, ahead), is_closed=True)
+    is_near = 0.0 < abs(turned.start - last.end) <= FARTHEST * step
+    return turned if is_near and is_inside(last.end, turned.start, loops) else None
+
+
+def _joined(run: Sequence[MillingPass]) -> MillingPass:
+    """A run of rings with the slants between them."""
+    if len(run) == 1:
+        return run[0]
+    chain: Chain = run[0].chain
+    for ring in run[1:]:
+        chain = (*chain, line(chain[-1].end, ring.start), *ring.chain)
+    return MillingPass(chain, is_closed=False)

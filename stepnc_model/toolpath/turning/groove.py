@@ -3,34 +3,116 @@
 Plunges start in the middle, or at the side that the grooving direction comes from, and their
 step leaves no strip. A finish comes down each wall and runs on the floor towards the other
 one, so that the insert is never drawn back over its width.
+
+The programmed point is the insert's left corner, the one at the chuck, as a sharp corner; paths
+are made for the centre of that corner's radius. The insert may be where both of its corners and
+all between them may be.
 """
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 from math import ceil, inf
 
 from stepnc_model.entities.entity import Entity
-from stepnc_model.entities.turning import CuttingIn, Grooving, GroovingFinish
-from stepnc_model.entities.turning_features import Groove
-from stepnc_model.entities.turning_strategies import GroovingStrategy, MultistepGroovingStrategy
+from stepnc_model.entities.turning import (
+    CuttingIn,
+    Groove,
+    Grooving,
+    GroovingFinish,
+    GroovingStrategy,
+    MultistepGroovingStrategy,
+)
+from stepnc_model.entities.turning_tools import GroovingTool
 from stepnc_model.part21.values import Typed
-from stepnc_model.toolpath.course import Course
-from stepnc_model.toolpath.job import Job
 from stepnc_model.toolpath.path import Move, MoveType
-from stepnc_model.toolpath.turning.insert import Insert, insert_of
-from stepnc_model.toolpath.turning.link import direction_in
-from stepnc_model.toolpath.turning.outline import Outline
-from stepnc_model.toolpath.turning.piece import Piece, Spot, crossings
-from stepnc_model.toolpath.turning.plane import HalfPlane
-from stepnc_model.toolpath.turning.profile import Profile, highest
-from stepnc_model.toolpath.turning.region import SEEN
+from stepnc_model.toolpath.task import PathBuilder, ToolPathTask
+from stepnc_model.toolpath.turning.offset import grown
+from stepnc_model.toolpath.turning.outline import FeatureOutline
+from stepnc_model.toolpath.turning.path_builder import RAPID_CLEARANCE, split
+from stepnc_model.toolpath.turning.profile import (
+    HalfPlane,
+    ProfilePiece,
+    RadiusProfile,
+    Spot,
+    crossings,
+    highest,
+    level_line,
+)
+from stepnc_model.toolpath.turning.region import SEEN, TurningBlank, surface_of
 from stepnc_model.toolpath.turning.setting import (
+    allowance_of,
     cumulative,
     cutting_feed,
     depths_of,
+    direction_in,
+    strategy_fault,
+    strategy_of,
 )
-from stepnc_model.toolpath.turning.stock import Bar, allowance_of, operation_of, surface_of
-from stepnc_model.toolpath.turning.walk import RAPID_CLEARANCE, split
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GroovingInsert:
+    """A grooving insert, mm."""
+
+    width: float
+    corner: float
+    """radius of its corners"""
+    reach: float
+    """how deep it may go"""
+
+    @property
+    def flat(self) -> float:
+        """Between the centres of its corners."""
+        return self.width - 2.0 * self.corner
+
+    def rolled(self, profile: RadiusProfile, allowance: float = 0.0) -> RadiusProfile:
+        """Path of the centre of the left corner when the insert touches a profile."""
+        return highest(self._spread(grown(profile, self.corner + allowance)))
+
+    def _spread(self, centres: RadiusProfile) -> list[ProfilePiece]:
+        """The way of both corners, and level lines between equal heights."""
+        pieces = [*centres.pieces, *(_shifted(p, -self.flat) for p in centres.pieces)]
+        for piece in centres.pieces:
+            spots = [piece.start, piece.end]
+            if piece.centre and piece.side > 0 and piece.low < piece.centre[0] < piece.high:
+                spots.append((piece.centre[0], piece.centre[1] + piece.radius))
+            pieces += [level_line(v, u - self.flat, u) for u, v in spots]
+        return pieces
+
+
+def insert_of(job: ToolPathTask) -> GroovingInsert:
+    """Insert of the tool of a grooving operation.
+
+    Raises
+    ------
+    PathError
+        When it is no grooving tool, or has no width.
+    """
+    tool = job.program.get(job.step.tool_ref)
+    if not isinstance(tool, GroovingTool):
+        raise job.fault("is no grooving tool", job.step.tool_ref)
+    width = tool.cutting_width
+    if width is None or not 0.0 < width < 1e3:
+        raise job.fault(f"a width of {width} mm", job.step.tool_ref, "cutting_width")
+    corner = tool.corner_radius
+    corner = job.tool.corner_radius or 0.0 if corner is None else corner
+    if not 0.0 <= 2.0 * corner <= width:
+        message = f"corners of {corner:g} mm on an insert of {width:g} mm"
+        raise job.fault(message, job.step.tool_ref, "corner_radius")
+    reach = tool.maximum_grooving_depth
+    return GroovingInsert(width=float(width), corner=float(corner), reach=float(reach or 1e6))
+
+
+def _shifted(piece: ProfilePiece, by: float) -> ProfilePiece:
+    return ProfilePiece(
+        start=(piece.start[0] + by, piece.start[1]),
+        end=(piece.end[0] + by, piece.end[1]),
+        centre=(piece.centre[0] + by, piece.centre[1]) if piece.centre else None,
+        side=piece.side,
+        radius=piece.radius,
+    )
+
 
 FITS = 1e-6
 """mm by which an insert may be wider than its groove"""
@@ -42,7 +124,9 @@ OVERLAP = 0.8
 class Plunger:
     """Plunges an insert; running state: what it cut so far."""
 
-    def __init__(self, job: Job, course: Course, bar: Bar, insert: Insert) -> None:
+    def __init__(
+        self, job: ToolPathTask, course: PathBuilder, bar: TurningBlank, insert: GroovingInsert
+    ) -> None:
         self.job = job
         self.course = course
         self.insert = insert
@@ -60,7 +144,7 @@ class Plunger:
         for spot in ((at, level), (u, level), (u, self._clear(u, u))):
             self.course.rapid(self.plane.point(spot), kind)
 
-    def down(self, pieces: Sequence[Piece]) -> None:
+    def down(self, pieces: Sequence[ProfilePiece]) -> None:
         """Feed along pieces."""
         for piece in pieces:
             for part, is_contact in split(piece, self.rim):
@@ -82,14 +166,14 @@ class Plunger:
         top = self.rim.at(u)
         start = self._clear(u, u)
         for index, depth in enumerate(depths):
-            self.down([Piece(start=(u, start), end=(u, top - depth))])
+            self.down([ProfilePiece(start=(u, start), end=(u, top - depth))])
             start = top - depth
             if back > 0.0 and index + 1 < len(depths):
                 start = min(start + back, top)
                 self._feed((u, start))
 
     def start_of(self, u: float) -> Spot:
-        """Where a plunge begins."""
+        """Start of a plunge."""
         return u, self._clear(u, u)
 
     def _clear(self, low: float, high: float) -> float:
@@ -102,7 +186,12 @@ class Plunger:
         self.course.add(Move(end=end, type=MoveType.NO_CONTACT, feed=self.feed))
 
 
-def groove(job: Job, course: Course, bar: Bar, outlines: tuple[Outline, ...]) -> None:
+def groove(
+    job: ToolPathTask,
+    course: PathBuilder,
+    bar: TurningBlank,
+    outlines: tuple[FeatureOutline, ...],
+) -> None:
     """Make the path of a grooving or cutting-in operation.
 
     Raises
@@ -122,7 +211,13 @@ def groove(job: Job, course: Course, bar: Bar, outlines: tuple[Outline, ...]) ->
     plunger.go_home()
 
 
-def _groove(job: Job, plunger: Plunger, bar: Bar, outline: Outline, allowance: float) -> None:
+def _groove(
+    job: ToolPathTask,
+    plunger: Plunger,
+    bar: TurningBlank,
+    outline: FeatureOutline,
+    allowance: float,
+) -> None:
     """One groove: plunges, or its walls and floor."""
     insert = plunger.insert
     surface = surface_of((outline,), HalfPlane())
@@ -151,8 +246,8 @@ def _groove(job: Job, plunger: Plunger, bar: Bar, outline: Outline, allowance: f
         _plunge(job, plunger, u, plunger.rim.at(u) - floor)
 
 
-def _mouth(surface: Profile, stock: Profile) -> tuple[float, float]:
-    """Where a groove opens in the stock."""
+def _mouth(surface: RadiusProfile, stock: RadiusProfile) -> tuple[float, float]:
+    """Opening of a groove in the stock."""
     cuts = {end for piece in surface.pieces for end in (piece.low, piece.high)}
     for piece in surface.pieces:
         for other in stock.pieces:
@@ -167,13 +262,13 @@ def _mouth(surface: Profile, stock: Profile) -> tuple[float, float]:
 
 
 def _room(
-    job: Job,
-    insert: Insert,
-    outline: Outline,
+    job: ToolPathTask,
+    insert: GroovingInsert,
+    outline: FeatureOutline,
     mouth: tuple[float, float],
     allowance: float,
 ) -> tuple[float, float]:
-    """Where the centre of the left corner may be between the walls, at their widest."""
+    """Range of the centre of the left corner between the walls, at their widest."""
     width = mouth[1] - mouth[0]
     if width < insert.width + 2.0 * allowance - FITS:
         message = (
@@ -186,7 +281,9 @@ def _room(
     return (low, high) if high > low + FITS else (0.5 * (low + high), 0.5 * (low + high))
 
 
-def _check_depth(job: Job, plunger: Plunger, outline: Outline, depth: float) -> None:
+def _check_depth(
+    job: ToolPathTask, plunger: Plunger, outline: FeatureOutline, depth: float
+) -> None:
     """The insert must reach the floor, and there must be something above it."""
     if depth > plunger.insert.reach + FITS:
         message = (
@@ -198,10 +295,9 @@ def _check_depth(job: Job, plunger: Plunger, outline: Outline, depth: float) -> 
         raise job.fault("there is nothing to remove: the stock lies on the floor", outline.ref)
 
 
-def _places(job: Job, insert: Insert, low: float, high: float) -> list[float]:
-    """Where plunges go down, in their order."""
-    reference = operation_of(job).its_machining_strategy
-    strategy = job.program.get(reference) if reference is not None else None
+def _places(job: ToolPathTask, insert: GroovingInsert, low: float, high: float) -> list[float]:
+    """Positions of the plunges, in their order."""
+    strategy = strategy_of(job)
     step = max(OVERLAP * insert.flat, 0.25 * insert.width)
     direction = None
     if isinstance(strategy, GroovingStrategy):
@@ -210,7 +306,7 @@ def _places(job: Job, insert: Insert, low: float, high: float) -> list[float]:
             step = strategy.travel_distance
             if not 0.0 < step <= insert.width:
                 message = f"a step of {step:g} mm with an insert of {insert.width:g} mm"
-                raise job.fault(message, reference or job.step.ref, "travel_distance")
+                raise strategy_fault(job, message, "travel_distance")
     count = ceil((high - low) / step - FITS)
     if count <= 0:
         return [low]
@@ -221,12 +317,11 @@ def _places(job: Job, insert: Insert, low: float, high: float) -> list[float]:
     return sorted(places, key=lambda u: (round(abs(u - middle), 6), u))
 
 
-def _plunge(job: Job, plunger: Plunger, u: float, depth: float) -> None:
+def _plunge(job: ToolPathTask, plunger: Plunger, u: float, depth: float) -> None:
     """One plunge, in pecks if the strategy says so, and a pause on the floor."""
     if depth <= FITS:
         return
-    reference = operation_of(job).its_machining_strategy
-    strategy = job.program.get(reference) if reference is not None else None
+    strategy = strategy_of(job)
     back = strategy.retract_distance if isinstance(strategy, MultistepGroovingStrategy) else 0.0
     depths = depths_of(job) or ((plunger.insert.width,) if back else ())
     plunger.over(u)
@@ -235,7 +330,7 @@ def _plunge(job: Job, plunger: Plunger, u: float, depth: float) -> None:
     plunger.up(u)
 
 
-def _dwell(job: Job, course: Course) -> None:
+def _dwell(job: ToolPathTask, course: PathBuilder) -> None:
     """Pause on the floor, in seconds or revolutions as the file says."""
     operation = job.step.operation
     written = operation.dwell if isinstance(operation, Grooving) else None
@@ -250,7 +345,9 @@ def _dwell(job: Job, course: Course) -> None:
         course.dwell(seconds=float(value))
 
 
-def _finish(job: Job, plunger: Plunger, centres: Profile, low: float, high: float) -> None:
+def _finish(
+    job: ToolPathTask, plunger: Plunger, centres: RadiusProfile, low: float, high: float
+) -> None:
     """Down the wall at the front and along the floor, then down the one at the chuck."""
     middle = 0.5 * (low + high)
     floor = centres.within(low - FITS, high + FITS)
@@ -261,12 +358,14 @@ def _finish(job: Job, plunger: Plunger, centres: Profile, low: float, high: floa
             continue
         start = side[0].start
         plunger.over(start[0])
-        plunger.down([Piece(start=plunger.start_of(start[0]), end=start), *side])
+        plunger.down([ProfilePiece(start=plunger.start_of(start[0]), end=start), *side])
         _dwell(job, plunger.course)
         plunger.up(side[-1].end[0])
 
 
-def _cut_in(job: Job, plunger: Plunger, outline: Outline, feature: Entity) -> None:
+def _cut_in(
+    job: ToolPathTask, plunger: Plunger, outline: FeatureOutline, feature: Entity
+) -> None:
     """One plunge to the feature's radius; past the axis by the corner where it is 0."""
     insert = plunger.insert
     least = outline.radii[0]

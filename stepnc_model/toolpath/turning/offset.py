@@ -9,8 +9,14 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from math import cos, dist, inf, pi, sin, tan
 
-from stepnc_model.toolpath.turning.piece import Piece, Spot, half_circle
-from stepnc_model.toolpath.turning.profile import Profile, highest, lowest
+from stepnc_model.toolpath.turning.profile import (
+    ProfilePiece,
+    RadiusProfile,
+    Spot,
+    half_circle,
+    highest,
+    lowest,
+)
 
 EVEN = 1e-9
 """mm by which a radius must be more than another one"""
@@ -20,8 +26,8 @@ UPRIGHT_ANGLE = 0.5 * pi - 1e-6
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Edges:
-    """How steeply the edges of an insert rise from its nose, rad from the u axis."""
+class InsertFlanks:
+    """Angles by which the edges of an insert rise from its nose, rad from the u axis."""
 
     ahead: float = 0.5 * pi
     """towards −u"""
@@ -29,36 +35,36 @@ class Edges:
     """towards +u"""
 
 
-def grown(profile: Profile, radius: float) -> Profile:
+def grown(profile: RadiusProfile, radius: float) -> RadiusProfile:
     """Centre of a disc that rolls over a profile."""
     if radius <= EVEN:
         return profile
     return highest(_rolled(profile.chain(), radius, 1))
 
 
-def cut(stock: Profile, path: Sequence[Piece], radius: float) -> Profile:
-    """What is left of a stock where the centre of a nose ran along a path."""
+def cut(stock: RadiusProfile, path: Sequence[ProfilePiece], radius: float) -> RadiusProfile:
+    """Stock after the centre of a nose ran along a path."""
     swept = lowest(_rolled(path, radius, -1))
     left = lowest([*stock.pieces, *swept.pieces])
     return left.within(stock.low, stock.high)
 
 
-def lowered(stock: Profile, surface: Profile) -> Profile:
-    """What is left of a stock when everything above a surface is gone."""
+def lowered(stock: RadiusProfile, surface: RadiusProfile) -> RadiusProfile:
+    """Stock after everything above a surface was removed."""
     left = lowest([*stock.pieces, *surface.pieces])
     return left.within(stock.low, stock.high)
 
 
-def reachable(profile: Profile, edges: Edges) -> Profile:
+def reachable(profile: RadiusProfile, edges: InsertFlanks) -> RadiusProfile:
     """A profile without what the edges of the insert cannot come to."""
-    rays: list[Piece] = []
+    rays: list[ProfilePiece] = []
     for angle, towards in ((edges.behind, -1), (edges.ahead, 1)):
         if angle < UPRIGHT_ANGLE:
             rays += _rays(profile, angle, towards)
     return highest([*profile.pieces, *rays]) if rays else profile
 
 
-def excess(profile: Profile, pieces: Iterable[Piece]) -> float:
+def excess(profile: RadiusProfile, pieces: Iterable[ProfilePiece]) -> float:
     """By how much a profile lies above pieces at most, mm."""
     worst = 0.0
     for piece in pieces:
@@ -68,7 +74,7 @@ def excess(profile: Profile, pieces: Iterable[Piece]) -> float:
     return worst
 
 
-def thickness(stock: Profile, surface: Profile) -> float:
+def thickness(stock: RadiusProfile, surface: RadiusProfile) -> float:
     """Greatest distance from a surface out to the stock over it, mm."""
     chain = surface.chain()
     worst = 0.0
@@ -81,7 +87,7 @@ def thickness(stock: Profile, surface: Profile) -> float:
     return worst
 
 
-def _rolled(chain: Sequence[Piece], radius: float, side: int) -> Iterator[Piece]:
+def _rolled(chain: Sequence[ProfilePiece], radius: float, side: int) -> Iterator[ProfilePiece]:
     """Pieces moved by a radius to the upper or lower side, and circles about the corners."""
     for piece in chain:
         moved = _moved(piece, radius, side)
@@ -93,7 +99,7 @@ def _rolled(chain: Sequence[Piece], radius: float, side: int) -> Iterator[Piece]
         yield half_circle(corner, radius, side)
 
 
-def _moved(piece: Piece, radius: float, side: int) -> Piece | None:
+def _moved(piece: ProfilePiece, radius: float, side: int) -> ProfilePiece | None:
     """One piece along its normal, or nothing where it folds."""
     if piece.is_upright:
         return None
@@ -101,7 +107,7 @@ def _moved(piece: Piece, radius: float, side: int) -> Piece | None:
         length = dist(piece.start, piece.end)
         a, b = piece.end[0] - piece.start[0], piece.end[1] - piece.start[1]
         way = side * radius / length * (1.0 if a > 0.0 else -1.0)
-        return Piece(
+        return ProfilePiece(
             start=(piece.start[0] - b * way, piece.start[1] + a * way),
             end=(piece.end[0] - b * way, piece.end[1] + a * way),
         )
@@ -110,7 +116,7 @@ def _moved(piece: Piece, radius: float, side: int) -> Piece | None:
         return None
     ratio = size / piece.radius
     (a, b), (c, d), (e, f) = piece.start, piece.end, piece.centre
-    return Piece(
+    return ProfilePiece(
         start=(e + (a - e) * ratio, f + (b - f) * ratio),
         end=(e + (c - e) * ratio, f + (d - f) * ratio),
         centre=piece.centre,
@@ -119,7 +125,7 @@ def _moved(piece: Piece, radius: float, side: int) -> Piece | None:
     )
 
 
-def _rays(profile: Profile, angle: float, towards: int) -> Iterator[Piece]:
+def _rays(profile: RadiusProfile, angle: float, towards: int) -> Iterator[ProfilePiece]:
     """Lines that fall at an angle from whatever stands in the way of an edge."""
     slope = tan(angle)
     floor = profile.bottom(profile.low, profile.high)
@@ -128,10 +134,10 @@ def _rays(profile: Profile, angle: float, towards: int) -> Iterator[Piece]:
         room = abs(limit - u)
         reach = min(room, (v - floor) / slope) if slope > 0.0 else room
         if reach > EVEN:
-            yield Piece(start=(u, v), end=(u + towards * reach, v - slope * reach))
+            yield ProfilePiece(start=(u, v), end=(u + towards * reach, v - slope * reach))
 
 
-def _obstacles(profile: Profile, angle: float, towards: int) -> Iterator[Spot]:
+def _obstacles(profile: RadiusProfile, angle: float, towards: int) -> Iterator[Spot]:
     """Corners, and where an arc is as steep as the edge."""
     for piece in profile.pieces:
         yield piece.start

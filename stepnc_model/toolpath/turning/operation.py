@@ -4,37 +4,263 @@ Procedure and types of moves after Shin et al., "Developing a virtual machining 
 generate MTConnect machine-monitoring data from STEP-NC", Int. J. Prod. Res. 54 (2016)
 4487-4505, section 3.2.2: removal volume, offset by the nose, scan lines, net cuts, approach
 and retract, links. What is programmed is the imaginary tool tip: see
-:mod:`stepnc_model.toolpath.turning.plane`.
+:mod:`stepnc_model.toolpath.turning.profile`.
+
+In knurling the wheel is pressed in at the front and fed along once. Contouring and facing make
+scan lines or passes along the contour, and the last pass on it. Facing is contouring seen
+across the spindle axis. Roughing leaves the allowance; what scan lines leave above it goes with
+a last pass along the surface. Finishing follows the whole surface, in as many passes as the
+depth asks for.
 """
 
 from stepnc_model.entities.turning import (
     Contouring,
+    ContouringFinish,
     Facing,
+    FacingFinish,
     Grooving,
+    Knurl,
     Knurling,
     Threading,
 )
 from stepnc_model.entities.turning_tools import TurningMachineCuttingTool
-from stepnc_model.toolpath.course import Course
-from stepnc_model.toolpath.job import DEFAULT_CLEARANCE, Job
-from stepnc_model.toolpath.path import Point, ToolPath
-from stepnc_model.toolpath.turning.contour import contour, plane_of
+from stepnc_model.outline import size_or_zero
+from stepnc_model.toolpath.path import MoveType, Point, ToolPath
+from stepnc_model.toolpath.task import DEFAULT_CLEARANCE, PathBuilder, ToolPathTask
 from stepnc_model.toolpath.turning.groove import groove
-from stepnc_model.toolpath.turning.history import bar_of
-from stepnc_model.toolpath.turning.knurl import knurl
-from stepnc_model.toolpath.turning.outline import Outline, outline_of
-from stepnc_model.toolpath.turning.plane import tip_of
-from stepnc_model.toolpath.turning.setting import clearance_of
-from stepnc_model.toolpath.turning.stock import Bar, operation_of
+from stepnc_model.toolpath.turning.offset import thickness
+from stepnc_model.toolpath.turning.outline import FeatureOutline, outline_of
+from stepnc_model.toolpath.turning.passes import (
+    departure,
+    entrance,
+    oriented,
+    scan,
+    shortened,
+    touching,
+)
+from stepnc_model.toolpath.turning.path_builder import TurningPathBuilder
+from stepnc_model.toolpath.turning.profile import HalfPlane, RadiusProfile, tip_of
+from stepnc_model.toolpath.turning.region import (
+    SEEN,
+    TurningBlank,
+    TurningRegion,
+    bar_of,
+    leftovers,
+    region_of,
+)
+from stepnc_model.toolpath.turning.setting import (
+    MOST_PASSES,
+    TurningSetting,
+    allowance_of,
+    clearance_of,
+    cumulative,
+    direction_in,
+    operation_of,
+    setting_of,
+    strategy_of,
+)
 from stepnc_model.toolpath.turning.thread import thread, threaded_feature
 
+DEEP = 3.0
+"""mm in one pass that a turner would not take unasked"""
 
-def turning_path(job: Job) -> ToolPath:
+
+def contour(
+    job: ToolPathTask,
+    course: PathBuilder,
+    bar: TurningBlank,
+    outlines: tuple[FeatureOutline, ...],
+    plane: HalfPlane,
+) -> None:
+    """Make the path of a contouring or facing operation.
+
+    Raises
+    ------
+    PathError
+        When there is nothing to remove, or the allowance is larger than the stock.
+    """
+    setting = setting_of(job, plane)
+    allowance = allowance_of(job, job.step.operation_ref, job.step.operation)
+    nose = job.tool.corner_radius or 0.0
+    region = region_of(
+        job, bar, outlines, plane=plane, allowance=allowance, overcut=setting.overcut
+    )
+    for finding in (*setting.link.findings, *leftovers(job, region, outlines)):
+        course.find(finding)
+    walk = TurningPathBuilder(course, plane, region.stock, nose=nose, feeds=setting.feeds)
+    # Right at the end stands what is no feature: it is not to be taken off.
+    own = region.surface.within(region.low + SEEN, max(region.low + SEEN, region.own_high))
+    deep = thickness(region.stock, own) if own.pieces else 0.0
+    _check_stock(job, region, deep, allowance)
+    _find_one_pass(job, course, setting, deep - allowance)
+    if isinstance(job.step.operation, (ContouringFinish, FacingFinish)):
+        _finish(job, walk, region, setting, allowance=allowance, total=deep - allowance)
+    elif setting.is_along_contour:
+        _along(job, walk, region, setting, allowance=allowance, total=deep - allowance)
+    else:
+        _scanned(job, walk, region, setting, allowance)
+    departure(job, walk, setting.link)
+    walk.home()
+
+
+def plane_of(job: ToolPathTask, tip: tuple[float, float]) -> HalfPlane:
+    """Facing looks across the axis, contouring along it, unless the feed direction says so."""
+    is_across = isinstance(job.step.operation, Facing)
+    feed = getattr(strategy_of(job), "feed_direction", None)
+    along = direction_in(job, HalfPlane(), feed)
+    if along is not None and isinstance(job.step.operation, Contouring):
+        is_across = abs(along[1]) > abs(along[0])
+    return HalfPlane(is_across=is_across, tip_x=tip[0], tip_z=tip[1])
+
+
+def _check_stock(
+    job: ToolPathTask, region: TurningRegion, deep: float, allowance: float
+) -> None:
+    """There must be something to take off; a finish may follow what is at its size."""
+    is_finish = isinstance(job.step.operation, (ContouringFinish, FacingFinish))
+    if deep <= SEEN and not is_finish:
+        raise job.fault(
+            "there is nothing to remove: the stock lies on the feature", job.step.ref
+        )
+    if allowance >= deep > SEEN:
+        message = f"an allowance of {allowance:g} mm where {deep:.4g} mm of stock stand"
+        raise job.fault(message, job.step.operation_ref, "allowance")
+
+
+def _find_one_pass(
+    job: ToolPathTask, course: PathBuilder, setting: TurningSetting, total: float
+) -> None:
+    """Say so where all is taken at once because nothing tells a depth."""
+    if setting.depths or setting.is_one_pass or total <= SEEN:
+        return
+    text = f"no cutting depth is given: {total:.3g} mm in one pass"
+    find = job.warning if total >= DEEP else job.note
+    course.find(find(text, operation_of(job).its_machining_strategy, "cutting_depth"))
+
+
+def _scanned(
+    job: ToolPathTask,
+    walk: TurningPathBuilder,
+    region: TurningRegion,
+    setting: TurningSetting,
+    allowance: float,
+) -> None:
+    """Scan lines from the outside in, then once along the surface."""
+    centres = region.centres(allowance)
+    bottom = max(
+        centres.bottom(region.low, region.front), region.floor + region.nose + allowance
+    )
+    top = _top(region, centres)
+    sums = cumulative(top - bottom + region.nose, setting.depths)
+    if len(sums) > MOST_PASSES:
+        raise job.fault(f"more than {MOST_PASSES} passes", job.step.operation_ref)
+    for index, depth in enumerate(sums):
+        is_back = setting.is_reversed != (setting.is_to_and_fro and index % 2 == 1)
+        level = top + region.nose - depth
+        scan(walk, centres, level, setting, towards=1 if is_back else -1)
+    _follow(job, walk, region, setting, allowance)
+
+
+def _top(region: TurningRegion, centres: RadiusProfile) -> float:
+    """Greatest v of the stock over the region."""
+    return region.stock.top(centres.low, centres.high)
+
+
+def _along(
+    job: ToolPathTask,
+    walk: TurningPathBuilder,
+    region: TurningRegion,
+    setting: TurningSetting,
+    *,
+    allowance: float,
+    total: float,
+) -> None:
+    """Passes along the contour, each nearer to it."""
+    for depth in cumulative(total, setting.depths):
+        _follow(job, walk, region, setting, allowance + total - depth)
+
+
+def _finish(
+    job: ToolPathTask,
+    walk: TurningPathBuilder,
+    region: TurningRegion,
+    setting: TurningSetting,
+    *,
+    allowance: float,
+    total: float,
+) -> None:
+    """Passes along the contour; the last one touches all of it."""
+    for depth in cumulative(total, setting.depths)[:-1]:
+        _follow(job, walk, region, setting, allowance + total - depth)
+    chain = region.chain(allowance)
+    touched = touching(walk, oriented(chain, towards=-1), setting.overcut)
+    start = max(
+        (piece.high for piece in touched),
+        default=region.own_high + region.nose + setting.overcut,
+    )
+    start = max(start, region.own_high + region.nose + allowance)
+    towards = 1 if setting.is_reversed else -1
+    pieces = oriented(shortened(chain, start), towards=towards)
+    entrance(job, walk, pieces, setting.link)
+    walk.feed(pieces)
+
+
+def _follow(
+    job: ToolPathTask,
+    walk: TurningPathBuilder,
+    region: TurningRegion,
+    setting: TurningSetting,
+    allowance: float,
+) -> None:
+    """Once along the surface where something stands on it."""
+    towards = 1 if setting.is_reversed else -1
+    pieces = touching(walk, oriented(region.chain(allowance), towards=towards), setting.overcut)
+    if pieces:
+        entrance(job, walk, pieces, setting.link)
+        walk.feed(pieces)
+
+
+EVEN = 1e-6
+"""mm between the radii of a cylinder's ends"""
+
+
+def knurl(
+    job: ToolPathTask, course: PathBuilder, bar: TurningBlank, outline: FeatureOutline
+) -> None:
+    """Press in and feed along.
+
+    Raises
+    ------
+    PathError
+        When the feature is no knurl, tells no depth, or is no cylinder.
+    """
+    ref = job.step.features[0]
+    feature = job.program.get(ref)
+    if not isinstance(feature, Knurl) or feature.tooth_depth is None:
+        raise job.fault("a knurl needs a feature with a tooth depth", ref, "tooth_depth")
+    depth = size_or_zero(job.program, feature.tooth_depth)
+    least, radius = outline.radii
+    if radius - least > EVEN:
+        raise job.fault("only a cylinder can be knurled", ref, "base_feature")
+    clearance = clearance_of(job)
+    outside = max(radius, bar.left.top(outline.low, bar.left.high)) + clearance
+    start = course.at
+    course.rapid((outside, 0.0, start[2]), MoveType.APPROACH)
+    course.rapid((outside, 0.0, outline.high), MoveType.APPROACH)
+    course.line((radius, 0.0, outline.high), MoveType.NO_CONTACT)
+    course.line((radius - depth, 0.0, outline.high), MoveType.CONTACT)
+    course.line((radius - depth, 0.0, outline.low), MoveType.CONTACT)
+    course.line((radius, 0.0, outline.low), MoveType.NO_CONTACT)
+    course.rapid((start[0], 0.0, outline.low), MoveType.RETRACT)
+    course.rapid(start, MoveType.RETRACT)
+
+
+def turning_path(job: ToolPathTask) -> ToolPath:
     """Tool path of a turning workingstep.
 
     Parameters
     ----------
-    job : Job
+    job : ToolPathTask
 
     Returns
     -------
@@ -50,7 +276,7 @@ def turning_path(job: Job) -> ToolPath:
     with job.program.using(job.step.operation_ref, *job.step.features):
         outlines = _outlines(job)
         bar = bar_of(job, outlines)
-        course = Course(job, _safe_point(job, bar), is_turning=True)
+        course = PathBuilder(job, _safe_point(job, bar), is_turning=True)
         for finding in bar.findings:
             course.find(finding)
         if operation.retract_plane is None:
@@ -60,7 +286,12 @@ def turning_path(job: Job) -> ToolPath:
     return course.finished()
 
 
-def _make(job: Job, course: Course, bar: Bar, outlines: tuple[Outline, ...]) -> None:
+def _make(
+    job: ToolPathTask,
+    course: PathBuilder,
+    bar: TurningBlank,
+    outlines: tuple[FeatureOutline, ...],
+) -> None:
     """The path by the kind of the operation."""
     operation = job.step.operation
     if isinstance(operation, (Contouring, Facing)):
@@ -82,7 +313,7 @@ def _make(job: Job, course: Course, bar: Bar, outlines: tuple[Outline, ...]) -> 
         raise job.fault("no path is made for this kind of operation", job.step.operation_ref)
 
 
-def _outlines(job: Job) -> tuple[Outline, ...]:
+def _outlines(job: ToolPathTask) -> tuple[FeatureOutline, ...]:
     """Outlines of the features, the foremost one first, all of them within the bar."""
     if not job.step.features:
         raise job.fault("has no feature: nothing tells what to turn", job.step.ref)
@@ -96,14 +327,14 @@ def _outlines(job: Job) -> tuple[Outline, ...]:
     return tuple(sorted(found, key=lambda outline: -outline.high))
 
 
-def _reach(job: Job) -> float:
+def _reach(job: ToolPathTask) -> float:
     """Radius of the bar, or 0 where none is known."""
     if job.stock is None:
         return 0.0
     return job.stock.radius or max(map(abs, (*job.stock.low[:2], *job.stock.high[:2])))
 
 
-def _check_bar(job: Job, outline: Outline) -> None:
+def _check_bar(job: ToolPathTask, outline: FeatureOutline) -> None:
     """A feature must lie within the bar: not behind it, not around it."""
     stock = job.stock
     if stock is None:
@@ -122,7 +353,7 @@ def _check_bar(job: Job, outline: Outline) -> None:
         raise job.fault(f"a radius of {least:g} mm: it must not be negative", outline.ref)
 
 
-def _safe_point(job: Job, bar: Bar) -> Point:
+def _safe_point(job: ToolPathTask, bar: TurningBlank) -> Point:
     """Outside the bar and in front of it."""
     clearance = clearance_of(job)
     front = bar.raw.high + clearance

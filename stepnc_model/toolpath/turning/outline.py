@@ -4,11 +4,16 @@ A feature reaches from its placement against its z axis; its profile lies in its
 or where the profile is placed. The radius of a revolved feature is that of its profile's
 origin. A taper reduces the diameter away from the placement. A shoulder reaches up to the
 outside of the stock.
+
+A groove is placed in its middle; the radius of the feature is that of its bottom. Width and
+angles of a square U are those of its floor and of its walls from the upright; the first wall
+is the one in front. Walls go up to the outside of the stock.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from math import atan2, cos, hypot, sin, tan
+from itertools import pairwise
+from math import acos, atan2, cos, dist, hypot, pi, sin, tan
 
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.geometry import Direction
@@ -17,8 +22,12 @@ from stepnc_model.entities.profiles import (
     GeneralProfile,
     LinearProfile,
     PartialCircularProfile,
+    RoundedUProfile,
+    SquareUProfile,
+    TeeProfile,
+    VeeProfile,
 )
-from stepnc_model.entities.turning_features import (
+from stepnc_model.entities.turning import (
     GeneralRevolution,
     Groove,
     Knurl,
@@ -28,13 +37,195 @@ from stepnc_model.entities.turning_features import (
     RevolvedFlat,
     RevolvedRound,
 )
+from stepnc_model.outline import size_or_zero, vee_angle
 from stepnc_model.part21.values import Ref
 from stepnc_model.toolpath.curve import Bend, Segment, segments_of
 from stepnc_model.toolpath.frame import Frame, frame_of
-from stepnc_model.toolpath.job import Job
-from stepnc_model.toolpath.turning.piece import Piece, arc_pieces
-from stepnc_model.toolpath.turning.sweep import groove_pieces, rounded, size_of, vee_angle
+from stepnc_model.toolpath.task import ToolPathTask
+from stepnc_model.toolpath.turning.profile import ProfilePiece, Spot, arc_pieces
 from stepnc_model.units import rad_from_deg
+
+STRAIGHT = 1e-9
+"""rad between two lines that make no corner"""
+
+
+def groove_pieces(
+    job: ToolPathTask, feature: Groove, frame: Frame, reach: float
+) -> tuple[ProfilePiece, ...]:
+    """Section of a groove, pieces of z and x from the front wall to the one at the chuck."""
+    program = job.program
+    profile = program.get(feature.sweep)
+    _check_face(job, feature, frame)
+    placed = frame.inner(frame_of(program, profile.placement))
+    middle, bottom = placed.origin[2], feature.radius
+    if bottom >= reach:
+        message = (
+            f"its bottom at a radius of {bottom:g} mm lies outside the stock: {reach:g} mm"
+        )
+        raise job.fault(message, feature.sweep)
+    height = reach - bottom
+    if isinstance(profile, SquareUProfile):
+        return tuple(_square(job, profile, (middle, bottom), height))
+    if isinstance(profile, RoundedUProfile):
+        radius = 0.5 * size_or_zero(job.program, profile.width)
+        return tuple(_round(radius, (middle, bottom), height))
+    if isinstance(profile, VeeProfile):
+        return tuple(_vee(job, profile, (middle, bottom), height))
+    if isinstance(profile, PartialCircularProfile):
+        radius, turn = (
+            size_or_zero(job.program, profile.radius),
+            rad_from_deg(profile.sweep_angle),
+        )
+        return tuple(_bowl(radius, turn, (middle, bottom)))
+    if isinstance(profile, GeneralProfile):
+        pieces = tuple(_general(job, feature, profile, placed))
+        _check_open(job, feature, pieces)
+        return pieces
+    if isinstance(profile, TeeProfile):
+        message = "a tee groove is wider below than at its mouth: no plunge comes to it"
+        raise job.fault(message, feature.sweep)
+    raise job.fault("a groove of this profile cannot be turned", feature.sweep)
+
+
+def _check_face(job: ToolPathTask, feature: Groove, frame: Frame) -> None:
+    """Material below the groove, not towards the chuck: it opens outwards."""
+    side = feature.material_side
+    if side is None:
+        return
+    ratios = (*job.program.get(side).direction_ratios, 0.0, 0.0, 0.0)[:3]
+    x, y, z = map(float, ratios)
+    if abs(frame.direction((x, y, z))[2]) > abs(x):
+        message = "its material lies along the axis: a groove on a face is not supported"
+        raise job.fault(message, side)
+
+
+def _check_open(job: ToolPathTask, feature: Groove, pieces: Sequence[ProfilePiece]) -> None:
+    """All of the section must be seen from outside, from one wall to the other."""
+    if not pieces:
+        return
+    towards = 1.0 if pieces[-1].end[0] > pieces[0].start[0] else -1.0
+    if any((piece.end[0] - piece.start[0]) * towards < -STRAIGHT for piece in pieces):
+        message = (
+            "its section opens to a face or is undercut: no plunge from outside comes to it"
+        )
+        raise job.fault(message, feature.sweep)
+
+
+def rounded(corners: Sequence[Spot], radii: Sequence[float]) -> Iterator[ProfilePiece]:
+    """Lines between corners, with an arc of the given radius in each inner corner."""
+    start = corners[0]
+    for index in range(1, len(corners) - 1):
+        before, corner, after = corners[index - 1], corners[index], corners[index + 1]
+        first, second = dist(before, corner), dist(corner, after)
+        p = ((corner[0] - before[0]) / first, (corner[1] - before[1]) / first)
+        q = ((after[0] - corner[0]) / second, (after[1] - corner[1]) / second)
+        cross = p[0] * q[1] - p[1] * q[0]
+        angle = acos(max(-1.0, min(1.0, p[0] * q[0] + p[1] * q[1])))
+        radius = radii[index]
+        if radius <= 0.0 or angle < STRAIGHT:
+            yield ProfilePiece(start=start, end=corner)
+            start = corner
+            continue
+        back = radius * tan(0.5 * angle)
+        sign = 1.0 if cross > 0.0 else -1.0
+        foot = (corner[0] - back * p[0], corner[1] - back * p[1])
+        end = (corner[0] + back * q[0], corner[1] + back * q[1])
+        centre = (foot[0] - sign * radius * p[1], foot[1] + sign * radius * p[0])
+        if dist(start, foot) > STRAIGHT:
+            yield ProfilePiece(start=start, end=foot)
+        yield from arc_pieces(foot, end, centre=centre, turn=sign * angle)
+        start = end
+    if dist(start, corners[-1]) > STRAIGHT:
+        yield ProfilePiece(start=start, end=corners[-1])
+
+
+def _square(
+    job: ToolPathTask, profile: SquareUProfile, foot: Spot, height: float
+) -> Iterator[ProfilePiece]:
+    half = 0.5 * size_or_zero(job.program, profile.width)
+    z, x = foot
+    first, second = (
+        height * tan(rad_from_deg(angle))
+        for angle in (profile.first_angle, profile.second_angle)
+    )
+    corners = [
+        (z + half + first, x + height),
+        (z + half, x),
+        (z - half, x),
+        (z - half - second, x + height),
+    ]
+    radii = [
+        size_or_zero(job.program, profile.first_radius),
+        size_or_zero(job.program, profile.second_radius),
+    ]
+    if sum(radii) > 2.0 * half + STRAIGHT:
+        message = (
+            f"its corners of {radii[0]:g} and {radii[1]:g} mm are wider than {2 * half:g} mm"
+        )
+        raise job.fault(message, profile.width)
+    return rounded(corners, [0.0, *radii, 0.0])
+
+
+def _round(radius: float, foot: Spot, height: float) -> Iterator[ProfilePiece]:
+    z, x = foot
+    centre = (z, x + radius)
+    top = max(x + height, x + radius)
+    if top > x + radius:
+        yield ProfilePiece(start=(z + radius, top), end=(z + radius, x + radius))
+    yield from arc_pieces(
+        (z + radius, x + radius), (z - radius, x + radius), centre=centre, turn=-pi
+    )
+    if top > x + radius:
+        yield ProfilePiece(start=(z - radius, x + radius), end=(z - radius, top))
+
+
+def _vee(
+    job: ToolPathTask, profile: VeeProfile, foot: Spot, height: float
+) -> Iterator[ProfilePiece]:
+    half = 0.5 * vee_angle(profile.profile_angle)
+    tilt = rad_from_deg(profile.tilt_angle or 0.0)
+    radius = size_or_zero(job.program, profile.profile_radius)
+    # The radius is that of the bottom: the corner itself lies below it.
+    apex = foot[1] - radius * (1.0 / sin(half) - 1.0)
+    rise = foot[1] + height - apex
+    if max(abs(tilt + half), abs(tilt - half)) >= 0.5 * pi:
+        raise job.fault("a wall of its vee lies beyond the horizontal", profile.profile_radius)
+    corners = [
+        (foot[0] + rise * tan(half + tilt), apex + rise),
+        (foot[0], apex),
+        (foot[0] - rise * tan(half - tilt), apex + rise),
+    ]
+    return rounded(corners, [0.0, radius, 0.0])
+
+
+def _bowl(radius: float, turn: float, foot: Spot) -> Iterator[ProfilePiece]:
+    z, x = foot
+    centre = (z, x + radius)
+    half = 0.5 * turn
+    ends = [(z + s * radius * sin(half), x + radius - radius * cos(half)) for s in (1.0, -1.0)]
+    return arc_pieces(ends[0], ends[1], centre=centre, turn=-turn)
+
+
+def _general(
+    job: ToolPathTask, feature: Groove, profile: GeneralProfile, frame: Frame
+) -> Iterator[ProfilePiece]:
+    """A curve in the x, z plane of the feature, its x from the bottom up."""
+    pieces: list[ProfilePiece] = []
+    for segment in segments_of(job.program, profile.its_profile):
+        at = segment.within(frame)
+        (z, x), (end_z, end_x) = ((p[2], feature.radius + p[0]) for p in (at.start, at.end))
+        if at.bend is None:
+            pieces.append(ProfilePiece(start=(z, x), end=(end_z, end_x)))
+            continue
+        if abs(abs(at.bend.normal[1]) - 1.0) > STRAIGHT:
+            raise job.fault("an arc does not lie in a plane through the axis", feature.sweep)
+        turn = at.bend.turn if at.bend.normal[1] > 0.0 else -at.bend.turn
+        centre = (at.bend.centre[2], feature.radius + at.bend.centre[0])
+        pieces += arc_pieces((z, x), (end_z, end_x), centre=centre, turn=turn)
+    if any(a.end != b.start and dist(a.end, b.start) > 0.01 for a, b in pairwise(pieces)):
+        raise job.fault("the parts of its profile do not join", feature.sweep)
+    return iter(pieces)
+
 
 IN_PLANE = 1e-3
 """mm by which a profile may leave its plane through the axis"""
@@ -44,11 +235,11 @@ ALONG_AXIS = 1e-6
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Outline:
+class FeatureOutline:
     """Surface of one feature, from the front to the chuck."""
 
     ref: Ref[Entity]
-    pieces: tuple[Piece, ...]
+    pieces: tuple[ProfilePiece, ...]
     """of z and x"""
 
     @property
@@ -68,12 +259,12 @@ class Outline:
         return min(values), max(values)
 
 
-def outline_of(job: Job, ref: Ref[Entity], reach: float) -> Outline:
+def outline_of(job: ToolPathTask, ref: Ref[Entity], reach: float) -> FeatureOutline:
     """Outline of a feature.
 
     Parameters
     ----------
-    job : Job
+    job : ToolPathTask
     ref : Ref
         A turning feature.
     reach : float, mm
@@ -101,10 +292,12 @@ def outline_of(job: Job, ref: Ref[Entity], reach: float) -> Outline:
             pieces = _in_half_plane(job, ref, _segments(job, ref, feature, frame))
     if not pieces:
         raise job.fault("its profile has no length", ref)
-    return Outline(ref=ref, pieces=_front_first(pieces))
+    return FeatureOutline(ref=ref, pieces=_front_first(pieces))
 
 
-def _segments(job: Job, ref: Ref[Entity], feature: Entity, frame: Frame) -> Sequence[Segment]:
+def _segments(
+    job: ToolPathTask, ref: Ref[Entity], feature: Entity, frame: Frame
+) -> Sequence[Segment]:
     """Lines and arcs of a feature in the setup."""
     program = job.program
     if isinstance(feature, OuterDiameter):
@@ -131,22 +324,22 @@ def _segments(job: Job, ref: Ref[Entity], feature: Entity, frame: Frame) -> Sequ
     if isinstance(profile, LinearProfile):
         length = float(program.get(profile.profile_length).its_parameter_value)
         return (Segment(start=(0.0, 0.0, 0.0), end=(length, 0.0, 0.0)).within(plane),)
-    radius = size_of(job, profile.radius)
+    radius = size_or_zero(job.program, profile.radius)
     turn = rad_from_deg(profile.sweep_angle)
     end = (radius * cos(turn), radius * sin(turn), 0.0)
     bend = Bend(centre=(0.0, 0.0, 0.0), normal=(0.0, 0.0, 1.0), turn=turn)
     return (Segment(start=(radius, 0.0, 0.0), end=end, bend=bend).within(plane),)
 
 
-def _cylinder(job: Job, ref: Ref[Entity], feature: OuterDiameter) -> Segment:
+def _cylinder(job: ToolPathTask, ref: Ref[Entity], feature: OuterDiameter) -> Segment:
     """Cylinder or cone, from the placement on."""
-    radius = 0.5 * size_of(job, feature.diameter_at_placement)
-    length = size_of(job, feature.feature_length)
+    radius = 0.5 * size_or_zero(job.program, feature.diameter_at_placement)
+    length = size_or_zero(job.program, feature.feature_length)
     end = radius
     if feature.reduced_size is not None:
         taper = job.program.get(feature.reduced_size)
         if isinstance(taper, DiameterTaper):
-            end = 0.5 * size_of(job, taper.final_diameter)
+            end = 0.5 * size_or_zero(job.program, taper.final_diameter)
         else:
             end = radius - length * tan(rad_from_deg(taper.angle))
     if end < 0.0:
@@ -156,8 +349,8 @@ def _cylinder(job: Job, ref: Ref[Entity], feature: OuterDiameter) -> Segment:
 
 
 def _shouldered(
-    job: Job, feature: OuterDiameterToShoulder, frame: Frame, reach: float
-) -> tuple[Piece, ...]:
+    job: ToolPathTask, feature: OuterDiameterToShoulder, frame: Frame, reach: float
+) -> tuple[ProfilePiece, ...]:
     """Cylinder and shoulder, with the radius between them."""
     program = job.program
     vee = program.get(feature.v_shape_boundary)
@@ -165,19 +358,19 @@ def _shouldered(
         raise job.fault("does not say where the shoulder is", feature.v_shape_boundary)
     start = frame.origin[2]
     end = frame.point(frame_of(program, vee.placement).origin)[2]
-    radius = 0.5 * size_of(job, feature.diameter_at_placement)
+    radius = 0.5 * size_or_zero(job.program, feature.diameter_at_placement)
     angle = vee_angle(vee.profile_angle)
     rise = max(reach - radius, 0.0)
     lean = rise / tan(angle) if abs(sin(angle)) > ALONG_AXIS else 0.0
     towards = 1.0 if start >= end else -1.0
     corners = [(start, radius), (end, radius), (end + towards * lean, radius + rise)]
-    corner = size_of(job, vee.profile_radius) if vee.profile_radius is not None else 0.0
+    corner = size_or_zero(job.program, vee.profile_radius)
     return tuple(rounded(corners, [0.0, corner, 0.0]))
 
 
 def _in_half_plane(
-    job: Job, ref: Ref[Entity], segments: Sequence[Segment]
-) -> tuple[Piece, ...]:
+    job: ToolPathTask, ref: Ref[Entity], segments: Sequence[Segment]
+) -> tuple[ProfilePiece, ...]:
     """Segments in the setup as pieces of z and x, turned about the axis into y = 0."""
     points = [point for segment in segments for point in (segment.start, segment.end)]
     far = max(points, key=lambda point: hypot(point[0], point[1]))
@@ -185,13 +378,13 @@ def _in_half_plane(
     across, along = -sin(angle), cos(angle)
     if any(abs(x * across + y * along) > IN_PLANE for x, y, _ in points):
         raise job.fault("its profile does not lie in a plane through the spindle axis", ref)
-    pieces: list[Piece] = []
+    pieces: list[ProfilePiece] = []
     for segment in segments:
         (z, x), (end_z, end_x) = (
             (p[2], p[0] * along - p[1] * across) for p in (segment.start, segment.end)
         )
         if segment.bend is None:
-            pieces.append(Piece(start=(z, x), end=(end_z, end_x)))
+            pieces.append(ProfilePiece(start=(z, x), end=(end_z, end_x)))
             continue
         centre, normal = segment.bend.centre, segment.bend.normal
         beside = normal[0] * across + normal[1] * along
@@ -203,7 +396,7 @@ def _in_half_plane(
     return tuple(pieces)
 
 
-def _front_first(pieces: Iterable[Piece]) -> tuple[Piece, ...]:
+def _front_first(pieces: Iterable[ProfilePiece]) -> tuple[ProfilePiece, ...]:
     """The pieces from the greater z on; a face from the axis on."""
     forward = tuple(pieces)
     start, end = forward[0].start, forward[-1].end
@@ -212,7 +405,7 @@ def _front_first(pieces: Iterable[Piece]) -> tuple[Piece, ...]:
     return forward
 
 
-def _check_axis(job: Job, ref: Ref[Entity], frame: Frame) -> None:
+def _check_axis(job: ToolPathTask, ref: Ref[Entity], frame: Frame) -> None:
     """The axis of the feature must be that of the spindle."""
     if abs(abs(frame.z[2]) - 1.0) > ALONG_AXIS:
         raise job.fault("its axis is not that of the spindle", ref, "feature_placement")
@@ -222,7 +415,9 @@ def _check_axis(job: Job, ref: Ref[Entity], frame: Frame) -> None:
         raise job.fault(message, ref, "feature_placement")
 
 
-def _check_side(job: Job, ref: Ref[Entity], frame: Frame, side: Ref[Direction] | None) -> None:
+def _check_side(
+    job: ToolPathTask, ref: Ref[Entity], frame: Frame, side: Ref[Direction] | None
+) -> None:
     """Material must lie inside, or towards the chuck."""
     if side is None:
         return

@@ -1,33 +1,178 @@
-"""Passes of a nose: scan lines down to a surface, and passes along it.
+"""Passes of a nose: scan lines down to a surface, passes along it, and the ways between them.
 
 Steps 3 and 4 of Shin et al. (2016), section 3.2.2. A scan line is cut where the centre of the
 nose may be at its level and where it touches the stock; where a line starts behind something
 that stays, the tool comes down along it.
+
+The approach to the first cut and the retract from the last one are as the operation says:
+ISO 14649-11 ``ap_retract_angle`` (straight, at an angle to the path) and
+``ap_retract_tangent`` (a quarter of a circle that meets the path tangentially). The others
+plunge, which a lathe does anyway.
 """
 
 from collections.abc import Sequence
+from math import cos, dist, pi, sin
 
-from stepnc_model.toolpath.turning.onward import onward, step_over
-from stepnc_model.toolpath.turning.piece import Piece, Spot
-from stepnc_model.toolpath.turning.profile import NARROW, Profile
-from stepnc_model.toolpath.turning.setting import Setting
-from stepnc_model.toolpath.turning.walk import TOUCH, Walk, split
+from stepnc_model.entities.milling import (
+    ApproachRetractStrategy,
+    ApRetractAngle,
+    ApRetractTangent,
+)
+from stepnc_model.part21.values import Ref
+from stepnc_model.toolpath.task import ToolPathTask
+from stepnc_model.toolpath.turning.path_builder import (
+    RAPID_CLEARANCE,
+    TOUCH,
+    TurningPathBuilder,
+    split,
+)
+from stepnc_model.toolpath.turning.profile import (
+    NARROW,
+    ProfilePiece,
+    RadiusProfile,
+    Spot,
+    arc_pieces,
+)
+from stepnc_model.toolpath.turning.setting import ALONG, PassLink, TurningSetting, operation_of
+from stepnc_model.units import rad_from_deg
+
+LEAST_LIFT = 0.05
+"""mm off the surface below which no rapid goes back over it"""
+
+BLOCKED = "would run into what is left: the tool goes along the axes, where it is clear"
+
+
+def lift_off(walk: TurningPathBuilder, link: PassLink) -> None:
+    """Leave the surface after a pass; straight out where the lift would cut."""
+    direction = link.lift or _customary(link)
+    end = _moved(walk.at, direction, link.lift_height)
+    if walk.meets(ProfilePiece(start=walk.at, end=end)):
+        if link.lift is not None:
+            _warn(
+                walk,
+                link,
+                "lift_direction",
+                "the lift would run into what is left: straight out",
+            )
+        direction = (0.0, 1.0)
+    walk.lift(direction, link.lift_height)
+
+
+def onward(walk: TurningPathBuilder, link: PassLink, start: Spot) -> None:
+    """Lift, go back and step over to where the next pass starts."""
+    if not walk.has_cut:
+        walk.travel(start)
+        return
+    lift_off(walk, link)
+    back, stepover = link.back, link.stepover
+    is_ahead = (start[0] - walk.at[0]) * link.ahead[0] > TOUCH
+    if back is None or stepover is None or is_ahead:
+        walk.travel(start)
+        return
+    gain = link.lift_height * (link.lift or _customary(link))[1]
+    if gain < LEAST_LIFT:
+        text = f"{gain:g} mm off the surface are no room for a rapid: the tool goes up for it"
+        _warn(walk, link, "lift_height", text)
+        walk.travel(start)
+        return
+    corner = meeting((walk.at, back), (start, stepover))
+    if corner is None:
+        if not (_is_straight(back) and _is_straight(stepover)):
+            text = "does not lead to the next pass: the tool goes along the axes"
+            _warn(walk, link, "back_path_direction", text)
+        walk.travel(start)
+    elif walk.meets(ProfilePiece(start=walk.at, end=corner)):
+        _warn(walk, link, "back_path_direction", f"the way back {BLOCKED}")
+        walk.travel(start)
+    elif walk.meets(ProfilePiece(start=corner, end=start)):
+        _warn(walk, link, "stepover_direction", f"the step over {BLOCKED}")
+        walk.travel(start)
+    else:
+        walk.rush(corner, min(gain, RAPID_CLEARANCE))
+        _step(walk, link, start)
+
+
+def step_over(walk: TurningPathBuilder, link: PassLink, start: Spot, ahead: float) -> Spot:
+    """Go from one pass to the one back, without a lift; where that one then starts."""
+    if link.stepover is None or not walk.has_cut:
+        walk.travel(start)
+        return start
+    end = meeting((walk.at, link.stepover), (start, (-ahead, 0.0)))
+    if end is None or walk.meets(ProfilePiece(start=walk.at, end=end)):
+        if not _is_straight(link.stepover):
+            _warn(walk, link, "stepover_direction", f"the step over {BLOCKED}")
+        walk.travel(start)
+        return start
+    _step(walk, link, end)
+    return end
+
+
+def meeting(one: tuple[Spot, Spot], other: tuple[Spot, Spot]) -> Spot | None:
+    """Point where a way along a direction turns into one that ends at another spot.
+
+    Examples
+    --------
+    >>> meeting(((0.0, 1.0), (1.0, 0.0)), ((5.0, 0.0), (0.0, -1.0)))
+    (5.0, 1.0)
+    """
+    (at, along), (end, into) = one, other
+    u, v = end[0] - at[0], end[1] - at[1]
+    cross = along[0] * into[1] - along[1] * into[0]
+    if abs(cross) < ALONG:
+        return None
+    first = (u * into[1] - v * into[0]) / cross
+    second = (along[0] * v - along[1] * u) / cross
+    if first < -TOUCH or second < -TOUCH:
+        return None
+    return _moved(at, along, max(0.0, first))
+
+
+def _step(walk: TurningPathBuilder, link: PassLink, end: Spot) -> None:
+    """The step over, at its feed; in rapid where it has none and there is room."""
+    if link.is_stepover_fed:
+        walk.step([ProfilePiece(start=walk.at, end=end)] if dist(walk.at, end) > TOUCH else [])
+    else:
+        walk.rush(end, RAPID_CLEARANCE)
+
+
+def _customary(link: PassLink) -> Spot:
+    return -link.ahead[0] * 0.5**0.5, 0.5**0.5
+
+
+def _is_straight(direction: Spot) -> bool:
+    return min(abs(direction[0]), abs(direction[1])) < ALONG
+
+
+def _moved(spot: Spot, direction: Spot, by: float) -> Spot:
+    return spot[0] + by * direction[0], spot[1] + by * direction[1]
+
+
+def _warn(walk: TurningPathBuilder, link: PassLink, attribute: str, text: str) -> None:
+    walk.course.warn(text, link.ref, attribute)
+
 
 LEAST_CUT = 1e-3
 """mm of contact along a pass that is worth one"""
 
 
-def scan(walk: Walk, centres: Profile, level: float, setting: Setting, *, towards: int) -> None:
+def scan(
+    walk: TurningPathBuilder,
+    centres: RadiusProfile,
+    level: float,
+    setting: TurningSetting,
+    *,
+    towards: int,
+) -> None:
     """Cut everything at one level.
 
     Parameters
     ----------
-    walk : Walk
-    centres : Profile
+    walk : TurningPathBuilder
+    centres : RadiusProfile
         Where the centre may be at the lowest.
     level : float, mm
         v of the centre.
-    setting : Setting
+    setting : TurningSetting
     towards : int
         −1 to the chuck or to the axis, +1 back.
     """
@@ -46,7 +191,13 @@ def scan(walk: Walk, centres: Profile, level: float, setting: Setting, *, toward
 
 
 def _line(
-    walk: Walk, centres: Profile, start: Spot, end: float, *, bound: float, setting: Setting
+    walk: TurningPathBuilder,
+    centres: RadiusProfile,
+    start: Spot,
+    end: float,
+    *,
+    bound: float,
+    setting: TurningSetting,
 ) -> None:
     """One scan line, with the way to it."""
     u, level = start
@@ -55,7 +206,7 @@ def _line(
     is_open = (bound - before) * towards <= 0.0
     if is_open or abs(bound - u) > LEAST_CUT:
         u = before if is_open else bound
-        lead: Sequence[Piece] = ()
+        lead: Sequence[ProfilePiece] = ()
     else:
         u = bound
         lead = _descent(walk, centres, u, towards)
@@ -68,21 +219,23 @@ def _line(
         u, level = step_over(walk, setting.link, start, towards)
     foot = lead[-1].end if lead else (u, level)
     if lead and abs(foot[1] - level) > TOUCH:
-        lead = [*lead, Piece(start=foot, end=(foot[0], level))]
+        lead = [*lead, ProfilePiece(start=foot, end=(foot[0], level))]
         foot = (foot[0], level)
     if setting.is_to_and_fro:
         walk.step(lead)
         lead = ()
-    walk.feed([*lead, Piece(start=foot, end=(end, level))])
+    walk.feed([*lead, ProfilePiece(start=foot, end=(end, level))])
 
 
-def _descent(walk: Walk, centres: Profile, u: float, towards: float) -> list[Piece]:
+def _descent(
+    walk: TurningPathBuilder, centres: RadiusProfile, u: float, towards: float
+) -> list[ProfilePiece]:
     """The way down along what stands before a line, from where the tool is free."""
     side = centres.within(u, centres.high) if towards < 0 else centres.within(centres.low, u)
     pieces = list(side.chain())
     if towards > 0.0:
         pieces = [piece.reversed() for piece in reversed(pieces)]
-    way: list[Piece] = []
+    way: list[ProfilePiece] = []
     for piece in pieces:
         for part, is_contact in split(piece, walk.rim):
             if not is_contact and not part.is_upright:
@@ -91,11 +244,13 @@ def _descent(walk: Walk, centres: Profile, u: float, towards: float) -> list[Pie
     return _backwards(way)
 
 
-def _backwards(pieces: Sequence[Piece]) -> list[Piece]:
+def _backwards(pieces: Sequence[ProfilePiece]) -> list[ProfilePiece]:
     return [piece.reversed() for piece in reversed(pieces)]
 
 
-def touching(walk: Walk, chain: Sequence[Piece], overcut: float) -> list[Piece]:
+def touching(
+    walk: TurningPathBuilder, chain: Sequence[ProfilePiece], overcut: float
+) -> list[ProfilePiece]:
     """A chain from before its first cut to the end of its last one; nothing if it has none."""
     parts = [found for piece in chain for found in split(piece, walk.rim)]
     contacts = [i for i, (part, is_contact) in enumerate(parts) if is_contact and _is_cut(part)]
@@ -105,14 +260,14 @@ def touching(walk: Walk, chain: Sequence[Piece], overcut: float) -> list[Piece]:
     return [*_lead([part for part, _ in parts[: contacts[0]]], overcut), *inner]
 
 
-def oriented(chain: Sequence[Piece], *, towards: int) -> list[Piece]:
+def oriented(chain: Sequence[ProfilePiece], *, towards: int) -> list[ProfilePiece]:
     """A chain that runs towards −u, or the same back."""
     return list(chain) if towards < 0 else _backwards(chain)
 
 
-def shortened(chain: Sequence[Piece], start: float) -> list[Piece]:
+def shortened(chain: Sequence[ProfilePiece], start: float) -> list[ProfilePiece]:
     """A chain towards −u without what lies behind a u."""
-    found: list[Piece] = []
+    found: list[ProfilePiece] = []
     for piece in chain:
         if piece.low >= start - NARROW and not piece.is_upright:
             continue
@@ -123,18 +278,18 @@ def shortened(chain: Sequence[Piece], start: float) -> list[Piece]:
     return found
 
 
-def _is_cut(part: Piece) -> bool:
+def _is_cut(part: ProfilePiece) -> bool:
     return abs(part.end[0] - part.start[0]) + abs(part.end[1] - part.start[1]) > LEAST_CUT
 
 
-def _lead(before: Sequence[Piece], overcut: float) -> list[Piece]:
+def _lead(before: Sequence[ProfilePiece], overcut: float) -> list[ProfilePiece]:
     """The last part of a chain that is at least as long as the overcut, in u."""
     if not before or overcut <= 0.0:
         return []
     end = before[-1].end[0]
     towards = 1.0 if end > before[0].start[0] else -1.0
     start = end - towards * overcut
-    lead: list[Piece] = []
+    lead: list[ProfilePiece] = []
     for piece in reversed(before):
         if not piece.is_upright and piece.low + NARROW < start < piece.high - NARROW:
             return [piece.part(start, piece.end[0]), *lead]
@@ -142,3 +297,52 @@ def _lead(before: Sequence[Piece], overcut: float) -> list[Piece]:
         if (piece.start[0] - start) * towards <= NARROW:
             break
     return lead
+
+
+def entrance(
+    job: ToolPathTask, walk: TurningPathBuilder, pieces: Sequence[ProfilePiece], link: PassLink
+) -> None:
+    """Go to where a chain starts; before the first cut as the approach says."""
+    start = pieces[0].start
+    along = pieces[0].tangent(start)
+    lead = () if walk.has_cut else _lead_in(job, operation_of(job).approach, start, along)
+    onward(walk, link, lead[0].start if lead else start)
+    walk.feed(lead)
+
+
+def departure(job: ToolPathTask, walk: TurningPathBuilder, link: PassLink) -> None:
+    """Leave the last cut as the retract says, else by the lift of every pass."""
+    back = (-walk.heading[0], -walk.heading[1])
+    lead = _lead_in(job, operation_of(job).retract, walk.at, back)
+    if lead:
+        walk.feed([piece.reversed() for piece in reversed(lead)])
+    elif walk.has_cut:
+        lift_off(walk, link)
+
+
+def _lead_in(
+    job: ToolPathTask, ref: Ref[ApproachRetractStrategy] | None, end: Spot, along: Spot
+) -> tuple[ProfilePiece, ...]:
+    """The way to a spot where the path runs along a direction, over the free side."""
+    strategy = job.program.get(ref) if ref is not None else None
+    up = (along[1], -along[0])
+    if up[1] < 0.0 or (up[1] == 0.0 and up[0] < 0.0):
+        up = (-up[0], -up[1])
+    if isinstance(strategy, ApRetractAngle):
+        angle, length = rad_from_deg(strategy.angle), strategy.travel_length
+        if not (0.0 < length < 1e4 and 0.0 <= strategy.angle <= 90.0):
+            message = f"{length:g} mm at {strategy.angle:g} degrees is no way to the path"
+            raise job.fault(message, ref or job.step.ref)
+        a, b = length * cos(angle), length * sin(angle)
+        start = (end[0] - a * along[0] + b * up[0], end[1] - a * along[1] + b * up[1])
+        return (ProfilePiece(start=start, end=end),)
+    if isinstance(strategy, ApRetractTangent):
+        size = strategy.radius
+        if not 0.0 < size < 1e4:
+            raise job.fault(f"a radius of {size:g} mm", ref or job.step.ref, "radius")
+        centre = (end[0] + size * up[0], end[1] + size * up[1])
+        start = (centre[0] - size * along[0], centre[1] - size * along[1])
+        is_left = along[0] * up[1] - along[1] * up[0] > 0.0
+        turn = 0.5 * pi if is_left else -0.5 * pi
+        return tuple(arc_pieces(start, end, centre=centre, turn=turn))
+    return ()

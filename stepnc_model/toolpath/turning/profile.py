@@ -1,16 +1,238 @@
 """Profiles in a half plane: v as a function of u, in lines and exact arcs, with steps.
 
+A half plane has the coordinates u, along the passes, and v, out of the material. A piece runs
+over an interval of u, to and fro; a line may also stand upright. Arcs lie on the upper or the
+lower side of their circle, so that each has one v for each u.
+
 The upper envelope of pieces is what bounds material; the lower one is what is left of it.
 Everything else follows: growing by a radius, cutting by a nose that runs along a path, and
 the part of a profile that an edge can reach.
+
+Turning sees the spindle axis as u and the radius as v; facing sees them the other way round.
+Passes run towards −u and material lies below.
+
+Paths are made for the centre of the nose. What is programmed is the imaginary tool tip, the
+corner of the square around the nose, as ``feedrate_reference`` TCP and the setting lengths
+``functional_length`` and ``f_dimension`` mean it: for a right-hand outside tool the centre less
+one nose radius in x and in z (tip position 3 of Fanuc and LinuxCNC), for a left-hand one the
+centre less one radius in x and plus one in z (position 4), for a neutral one the centre less
+one radius in x (position 8). :class:`HalfPlane` is the one place where this is done.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from math import inf
+from math import atan2, cos, dist, hypot, inf, pi, sin, sqrt
 
-from stepnc_model.toolpath.turning.piece import Piece, Spot, crossings
+from stepnc_model.entities.enums import HandOfToolType
+from stepnc_model.toolpath.path import Arc, ArcPlane, Point
+
+Spot = tuple[float, float]
+"""u, v in mm"""
+
+UPRIGHT = 1e-9
+"""mm of u below which a line stands upright"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ProfilePiece:
+    """A line, or an arc when it has a centre."""
+
+    start: Spot
+    end: Spot
+    centre: Spot | None = None
+    side: int = 0
+    """+1 on the upper side of its circle, −1 on the lower one"""
+    radius: float = 0.0
+    """Radius, mm, of the circle"""
+
+    @property
+    def low(self) -> float:
+        """Least u."""
+        return min(self.start[0], self.end[0])
+
+    @property
+    def high(self) -> float:
+        """Greatest u."""
+        return max(self.start[0], self.end[0])
+
+    @property
+    def is_upright(self) -> bool:
+        """Whether the piece is a line along v."""
+        return self.centre is None and self.high - self.low < UPRIGHT
+
+    @property
+    def turn(self) -> float:
+        """Angle of the arc from start to end, rad, counter-clockwise positive; 0 of a line."""
+        if self.centre is None:
+            return 0.0
+        first, second = (
+            atan2(spot[1] - self.centre[1], spot[0] - self.centre[0])
+            for spot in (self.start, self.end)
+        )
+        # Forwards in u the upper side is clockwise, and no piece turns by more than π.
+        is_clockwise = (self.end[0] > self.start[0]) == (self.side > 0)
+        size = (first - second if is_clockwise else second - first) % (2.0 * pi)
+        size = size if size < pi + 1e-3 else 0.0
+        return -size if is_clockwise else size
+
+    def at(self, u: float) -> float:
+        """Its v over one u within the interval."""
+        if self.centre is not None:
+            inside = self.radius**2 - (u - self.centre[0]) ** 2
+            return self.centre[1] + self.side * sqrt(max(0.0, inside))
+        (a, b), (c, d) = self.start, self.end
+        return max(b, d) if self.is_upright else b + (d - b) * (u - a) / (c - a)
+
+    def reversed(self) -> "ProfilePiece":
+        """The same way back."""
+        return self._between(self.end, self.start)
+
+    def part(self, first: float, second: float) -> "ProfilePiece":
+        """Part between two values of u, in this order."""
+        return self._between(self._spot(first), self._spot(second))
+
+    def point(self, part: float) -> Spot:
+        """Point at a share, 0 to 1, of its length."""
+        (a, b), (c, d) = self.start, self.end
+        if self.centre is None:
+            return a + part * (c - a), b + part * (d - b)
+        angle = atan2(b - self.centre[1], a - self.centre[0]) + part * self.turn
+        return self.centre[0] + self.radius * cos(angle), self.centre[1] + self.radius * sin(
+            angle
+        )
+
+    def tangent(self, spot: Spot) -> Spot:
+        """Unit vector of its direction at one of its spots."""
+        if self.centre is None:
+            length = dist(self.start, self.end) or 1.0
+            a, b = self.end[0] - self.start[0], self.end[1] - self.start[1]
+            return a / length, b / length
+        sign = 1.0 if self.turn > 0.0 else -1.0
+        return (
+            -sign * (spot[1] - self.centre[1]) / self.radius,
+            sign * (spot[0] - self.centre[0]) / self.radius,
+        )
+
+    def distance(self, spot: Spot) -> float:
+        """Least distance to a spot, mm."""
+        ends = min(dist(spot, self.start), dist(spot, self.end))
+        if self.centre is not None:
+            u, v = spot[0] - self.centre[0], spot[1] - self.centre[1]
+            size = hypot(u, v)
+            foot = self.centre[0] + u * self.radius / size if size else self.low - 1.0
+            is_above = self.low <= foot <= self.high and v * self.side >= 0.0
+            return min(ends, abs(size - self.radius)) if is_above else ends
+        a, b = self.end[0] - self.start[0], self.end[1] - self.start[1]
+        square = a * a + b * b
+        u, v = spot[0] - self.start[0], spot[1] - self.start[1]
+        if not square or not 0.0 <= a * u + b * v <= square:
+            return ends
+        return min(ends, abs(a * v - b * u) / sqrt(square))
+
+    def _spot(self, u: float) -> Spot:
+        """Its own end where that is meant, so that joints stay closed."""
+        for spot in (self.start, self.end):
+            if u == spot[0] and not self.is_upright:
+                return spot
+        return u, self.at(u)
+
+    def _between(self, start: Spot, end: Spot) -> "ProfilePiece":
+        return ProfilePiece(
+            start=start, end=end, centre=self.centre, side=self.side, radius=self.radius
+        )
+
+
+def arc_pieces(start: Spot, end: Spot, *, centre: Spot, turn: float) -> Iterator[ProfilePiece]:
+    """An arc of any turn as pieces, cut where its circle stands upright."""
+    radius = 0.5 * (dist(start, centre) + dist(end, centre))
+    first = atan2(start[1] - centre[1], start[0] - centre[0])
+    step = pi if turn > 0.0 else -pi
+    # Angles where the circle stands upright, strictly between the ends.
+    whole = int(first // pi) + (1 if turn > 0.0 else 0)
+    cuts = [pi * (whole + (i if turn > 0.0 else -i)) for i in range(4)]
+    cuts = [at for at in cuts if 1e-9 < (at - first) / step * pi < abs(turn) - 1e-9]
+    angles = [first, *cuts, first + turn]
+    spots = [start, *((centre[0] + radius * cos(at), centre[1]) for at in cuts), end]
+    for i in range(len(spots) - 1):
+        side = 1 if sin(0.5 * (angles[i] + angles[i + 1])) > 0.0 else -1
+        yield ProfilePiece(
+            start=spots[i], end=spots[i + 1], centre=centre, side=side, radius=radius
+        )
+
+
+def half_circle(centre: Spot, radius: float, side: int) -> ProfilePiece:
+    """The upper or the lower half of a circle."""
+    return ProfilePiece(
+        start=(centre[0] - radius, centre[1]),
+        end=(centre[0] + radius, centre[1]),
+        centre=centre,
+        side=side,
+        radius=radius,
+    )
+
+
+def crossings(one: ProfilePiece, other: ProfilePiece) -> Iterator[float]:
+    """Values of u where two pieces may cross: all of them, and perhaps some more."""
+    low, high = max(one.low, other.low), min(one.high, other.high)
+    if low >= high:
+        return
+    for u in _meetings(one, other):
+        if low < u < high:
+            yield u
+
+
+def _meetings(one: ProfilePiece, other: ProfilePiece) -> tuple[float, ...]:
+    """Intersections of the lines or circles that carry the pieces."""
+    if one.centre is None and other.centre is None:
+        return _line_line(one, other)
+    if one.centre is None:
+        return _line_circle(one, other)
+    if other.centre is None:
+        return _line_circle(other, one)
+    return _circle_circle(one, other)
+
+
+def _line_line(one: ProfilePiece, other: ProfilePiece) -> tuple[float, ...]:
+    if one.is_upright or other.is_upright:
+        return ()
+    origin = one.start[0]
+    slopes = [(p.end[1] - p.start[1]) / (p.end[0] - p.start[0]) for p in (one, other)]
+    apart = slopes[0] - slopes[1]
+    if not apart:
+        return ()
+    return (origin + (other.at(origin) - one.start[1]) / apart,)
+
+
+def _line_circle(line: ProfilePiece, arc: ProfilePiece) -> tuple[float, ...]:
+    if line.is_upright or arc.centre is None:
+        return ()
+    (a, b), (c, d) = line.start, line.end
+    length = hypot(c - a, d - b)
+    p, q = (c - a) / length, (d - b) / length
+    u, v = a - arc.centre[0], b - arc.centre[1]
+    along = -(u * p + v * q)
+    inside = arc.radius**2 - (p * v - q * u) ** 2
+    if inside < 0.0:
+        return ()
+    return a + (along - sqrt(inside)) * p, a + (along + sqrt(inside)) * p
+
+
+def _circle_circle(one: ProfilePiece, other: ProfilePiece) -> tuple[float, ...]:
+    if one.centre is None or other.centre is None:
+        return ()
+    u, v = other.centre[0] - one.centre[0], other.centre[1] - one.centre[1]
+    apart = hypot(u, v)
+    if apart < UPRIGHT:
+        return ()
+    along = (apart**2 + one.radius**2 - other.radius**2) / (2.0 * apart)
+    inside = one.radius**2 - along**2
+    if inside < 0.0:
+        return ()
+    beside = sqrt(inside)
+    foot = one.centre[0] + along * u / apart
+    return foot - beside * v / apart, foot + beside * v / apart
+
 
 NARROW = 1e-9
 """mm; an interval of u that is narrower holds nothing"""
@@ -23,10 +245,10 @@ TIE = 1e-12
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Profile:
+class RadiusProfile:
     """Pieces in the order of u, none upright; a step of v between two of them is a wall."""
 
-    pieces: tuple[Piece, ...] = ()
+    pieces: tuple[ProfilePiece, ...] = ()
 
     @property
     def low(self) -> float:
@@ -42,9 +264,9 @@ class Profile:
         """Its v over one u, the higher one at a wall; −inf beside the profile."""
         return max((p.at(u) for p in self.pieces if p.low <= u <= p.high), default=-inf)
 
-    def within(self, low: float, high: float) -> "Profile":
+    def within(self, low: float, high: float) -> "RadiusProfile":
         """The part over an interval of u."""
-        return Profile(
+        return RadiusProfile(
             pieces=tuple(
                 piece.part(max(low, piece.low), min(high, piece.high))
                 for piece in self.pieces
@@ -67,18 +289,18 @@ class Profile:
         """Least v over an interval of u; +inf beside the profile."""
         return -mirrored(self.within(low, high).pieces).top(low, high)
 
-    def chain(self) -> tuple[Piece, ...]:
+    def chain(self) -> tuple[ProfilePiece, ...]:
         """The pieces with the walls between them, joined, in the order of u."""
-        joined: list[Piece] = []
+        joined: list[ProfilePiece] = []
         for each in self.pieces:
             piece = each
             if joined:
                 last, start = joined[-1].end, piece.start
                 if start[0] - last[0] > JOINT:
-                    joined.append(Piece(start=last, end=start))
+                    joined.append(ProfilePiece(start=last, end=start))
                 elif abs(start[1] - last[1]) > JOINT:
                     wall_end = (last[0], start[1])
-                    joined.append(Piece(start=last, end=wall_end))
+                    joined.append(ProfilePiece(start=last, end=wall_end))
                     last = wall_end
                 if start[0] - last[0] <= JOINT:
                     piece = _from(piece, last)
@@ -94,28 +316,28 @@ class Profile:
         return _intervals(self, level, is_above=True)
 
 
-def highest(pieces: Iterable[Piece]) -> Profile:
+def highest(pieces: Iterable[ProfilePiece]) -> RadiusProfile:
     """Upper envelope of pieces."""
     return _envelope(pieces, 1.0)
 
 
-def lowest(pieces: Iterable[Piece]) -> Profile:
+def lowest(pieces: Iterable[ProfilePiece]) -> RadiusProfile:
     """Lower envelope of pieces."""
     return _envelope(pieces, -1.0)
 
 
-def mirrored(pieces: Iterable[Piece]) -> Profile:
+def mirrored(pieces: Iterable[ProfilePiece]) -> RadiusProfile:
     """Pieces of a profile turned upside down."""
-    return Profile(pieces=tuple(map(_upside_down, pieces)))
+    return RadiusProfile(pieces=tuple(map(_upside_down, pieces)))
 
 
-def level_line(level: float, low: float, high: float) -> Piece:
+def level_line(level: float, low: float, high: float) -> ProfilePiece:
     """A horizontal line."""
-    return Piece(start=(low, level), end=(high, level))
+    return ProfilePiece(start=(low, level), end=(high, level))
 
 
-def _upside_down(piece: Piece) -> Piece:
-    return Piece(
+def _upside_down(piece: ProfilePiece) -> ProfilePiece:
+    return ProfilePiece(
         start=(piece.start[0], -piece.start[1]),
         end=(piece.end[0], -piece.end[1]),
         centre=(piece.centre[0], -piece.centre[1]) if piece.centre else None,
@@ -124,15 +346,17 @@ def _upside_down(piece: Piece) -> Piece:
     )
 
 
-def _from(piece: Piece, start: Spot) -> Piece:
+def _from(piece: ProfilePiece, start: Spot) -> ProfilePiece:
     """A piece that starts exactly where the last one ended."""
-    return Piece(
+    return ProfilePiece(
         start=start, end=piece.end, centre=piece.centre, side=piece.side, radius=piece.radius
     )
 
 
-def _intervals(profile: Profile, level: float, *, is_above: bool) -> list[tuple[float, float]]:
-    """Where a profile is above a level, or not; joined where they touch."""
+def _intervals(
+    profile: RadiusProfile, level: float, *, is_above: bool
+) -> list[tuple[float, float]]:
+    """Ranges where a profile is above a level, or not; joined where they touch."""
     line = level_line(level, profile.low, profile.high)
     found: list[tuple[float, float]] = []
     for piece in profile.pieces:
@@ -147,7 +371,7 @@ def _intervals(profile: Profile, level: float, *, is_above: bool) -> list[tuple[
     return [(low, high) for low, high in found if high - low > NARROW]
 
 
-def _envelope(pieces: Iterable[Piece], sign: float) -> Profile:
+def _envelope(pieces: Iterable[ProfilePiece], sign: float) -> RadiusProfile:
     """The best piece over each interval between ends and crossings."""
     forward = sorted(
         (p if p.start[0] <= p.end[0] else p.reversed() for p in pieces if _is_wide(p)),
@@ -164,14 +388,16 @@ def _envelope(pieces: Iterable[Piece], sign: float) -> Profile:
                 runs[-1] = (last, runs[-1][1], high)
                 continue
         runs.append((best[1], low, high))
-    return Profile(pieces=tuple(forward[index].part(low, high) for index, low, high in runs))
+    return RadiusProfile(
+        pieces=tuple(forward[index].part(low, high) for index, low, high in runs)
+    )
 
 
-def _is_wide(piece: Piece) -> bool:
+def _is_wide(piece: ProfilePiece) -> bool:
     return piece.high - piece.low > NARROW
 
 
-def _cells(forward: Sequence[Piece]) -> Iterator[tuple[float, float, list[int]]]:
+def _cells(forward: Sequence[ProfilePiece]) -> Iterator[tuple[float, float, list[int]]]:
     """Intervals between neighbouring cuts, each with the pieces over it."""
     cuts = {end for piece in forward for end in (piece.low, piece.high)}
     for index, piece in enumerate(forward):
@@ -198,3 +424,64 @@ def _spread(cuts: Sequence[float]) -> list[float]:
         if not found or cut - found[-1] > NARROW:
             found.append(cut)
     return found
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HalfPlane:
+    """Axes u and v on the lathe, and the tip relative to the centre of the nose."""
+
+    is_across: bool = False
+    """u is the radius and v the axis: facing"""
+    tip_x: float = 0.0
+    tip_z: float = 0.0
+
+    def point(self, centre: Spot) -> Point:
+        """Programmed point of a nose centre."""
+        z, x = reversed(centre) if self.is_across else centre
+        return x + self.tip_x, 0.0, z + self.tip_z
+
+    def spot(self, point: Point) -> Spot:
+        """Nose centre of a programmed point."""
+        x, z = point[0] - self.tip_x, point[2] - self.tip_z
+        return (x, z) if self.is_across else (z, x)
+
+    def arc(self, piece: ProfilePiece) -> Arc | None:
+        """Arc of a piece."""
+        if piece.centre is None:
+            return None
+        turn = -piece.turn if self.is_across else piece.turn
+        return Arc(centre=self.point(piece.centre), turn=turn, plane=ArcPlane.ZX)
+
+    def seen(self, pieces: Iterable[ProfilePiece]) -> tuple[ProfilePiece, ...]:
+        """Pieces of z and x as this half plane sees them, or the other way round."""
+        pieces = tuple(pieces)
+        return tuple(_swapped(pieces)) if self.is_across else pieces
+
+    def material(self, profile: RadiusProfile) -> RadiusProfile:
+        """Profile of radii over z, as seen from outside."""
+        if not self.is_across or not profile.pieces:
+            return profile
+        chain = profile.chain()
+        (z, x), (end_z, end_x) = chain[0].start, chain[-1].end
+        walls = (
+            ProfilePiece(start=(z, 0.0), end=(z, x)),
+            ProfilePiece(start=(end_z, end_x), end=(end_z, 0.0)),
+        )
+        return highest(_swapped((walls[0], *chain, walls[1])))
+
+
+def tip_of(hand: HandOfToolType | None, radius: float) -> Spot:
+    """Distance in x and in z from the centre of the nose to the programmed tip, mm."""
+    towards_z = {HandOfToolType.LEFT: 1.0, HandOfToolType.NEUTRAL: 0.0}
+    return -radius, towards_z.get(hand, -1.0) * radius if hand else -radius
+
+
+def _swapped(pieces: Iterable[ProfilePiece]) -> Iterator[ProfilePiece]:
+    """Pieces with their coordinates exchanged, cut anew."""
+    for piece in pieces:
+        start, end = (piece.start[1], piece.start[0]), (piece.end[1], piece.end[0])
+        if piece.centre is None:
+            yield ProfilePiece(start=start, end=end)
+            continue
+        centre = (piece.centre[1], piece.centre[0])
+        yield from arc_pieces(start, end, centre=centre, turn=-piece.turn)

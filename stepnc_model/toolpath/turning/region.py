@@ -3,24 +3,74 @@
 Steps 1 and 2 of Shin et al. (2016), section 3.2.2: the volume between feature and bar, and its
 offset by the nose. Beside its features a workingstep keeps to what the part will be there. In
 front of them it may pass: the surface is continued there, tangentially and then straight.
+
+The bar is as earlier workingsteps left it. Everything outside their features is gone, but for
+their allowance and for what their noses left in corners. What no feature of the program removes
+is the part.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import inf, pi
 
 from stepnc_model.entities.enums import HandOfToolType
+from stepnc_model.entities.turning import (
+    Contouring,
+    Facing,
+    Groove,
+    Grooving,
+)
 from stepnc_model.entities.turning_tools import TurningMachineCuttingTool
-from stepnc_model.errors import Finding
-from stepnc_model.toolpath.job import Job
-from stepnc_model.toolpath.turning.offset import Edges, excess, grown, reachable
-from stepnc_model.toolpath.turning.outline import Outline
-from stepnc_model.toolpath.turning.piece import Piece, Spot
-from stepnc_model.toolpath.turning.plane import HalfPlane
-from stepnc_model.toolpath.turning.profile import JOINT, Profile, highest, level_line
-from stepnc_model.toolpath.turning.stock import Bar, surface_of
+from stepnc_model.errors import Finding, SchemaError, Severity
+from stepnc_model.program import ResolvedWorkingstep
+from stepnc_model.toolpath.task import ToolPathTask, job_of
+from stepnc_model.toolpath.turning.offset import (
+    InsertFlanks,
+    cut,
+    excess,
+    grown,
+    lowered,
+    reachable,
+)
+from stepnc_model.toolpath.turning.outline import FeatureOutline, outline_of
+from stepnc_model.toolpath.turning.profile import (
+    JOINT,
+    HalfPlane,
+    ProfilePiece,
+    RadiusProfile,
+    Spot,
+    highest,
+    level_line,
+    lowest,
+)
+from stepnc_model.toolpath.turning.setting import DEFAULT_OVERCUT
 from stepnc_model.units import rad_from_deg
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TurningBlank:
+    """Blank in the chuck, as profiles of radii over z."""
+
+    raw: RadiusProfile
+    """before the program"""
+    left: RadiusProfile
+    """before the workingstep"""
+    part: RadiusProfile
+    """after the program, as far as its features can be read"""
+    findings: tuple[Finding, ...] = ()
+
+    @property
+    def radius(self) -> float:
+        """Outside radius of the raw bar, mm."""
+        return self.raw.top(self.raw.low, self.raw.high)
+
+
+def surface_of(outlines: tuple[FeatureOutline, ...], plane: HalfPlane) -> RadiusProfile:
+    """Surface that features leave, seen from outside; the deeper one where they overlap."""
+    surfaces = [highest(plane.seen(outline.pieces)) for outline in outlines]
+    return lowest([piece for surface in surfaces for piece in surface.pieces])
+
 
 SEEN = 1e-3
 """mm of material left behind that is worth a word"""
@@ -36,42 +86,42 @@ FLAT = 1e-9
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Region:
-    """What is to be turned, in the half plane of the passes."""
+class TurningRegion:
+    """Region to be turned, in the half plane of the passes."""
 
     plane: HalfPlane
     nose: float
-    """mm, radius"""
-    surface: Profile
+    """Nose, mm, radius"""
+    surface: RadiusProfile
     """what stays, without allowance"""
-    stock: Profile
+    stock: RadiusProfile
     low: float
-    """mm, u where the features end"""
+    """Low, mm, u where the features end"""
     front: float
-    """mm, u beyond which nothing stands"""
+    """Front, mm, u beyond which nothing stands"""
     own_high: float
-    """mm, u where the features begin"""
+    """Own high, mm, u where the features begin"""
     floor: float
-    """mm, least v of the features"""
+    """Floor, mm, least v of the features"""
     wall: float | None
-    """mm, v up to which something stands at their end"""
+    """Wall, mm, v up to which something stands at their end"""
 
-    def centres(self, allowance: float) -> Profile:
-        """Where the centre of the nose may be at the lowest."""
+    def centres(self, allowance: float) -> RadiusProfile:
+        """Lowest profile of the centre of the nose."""
         rolled = grown(self.surface, self.nose + allowance)
         return rolled.within(self._low(allowance), self.front)
 
-    def chain(self, allowance: float) -> tuple[Piece, ...]:
+    def chain(self, allowance: float) -> tuple[ProfilePiece, ...]:
         """The way of the centre along the surface, towards −u and up the wall at the end."""
         forward = self.centres(allowance).chain()
         backward = [piece.reversed() for piece in reversed(forward)]
         if backward and self.wall is not None and self.wall > backward[-1].end[1] + JOINT:
             end = backward[-1].end
-            backward.append(Piece(start=end, end=(end[0], self.wall)))
+            backward.append(ProfilePiece(start=end, end=(end[0], self.wall)))
         return tuple(backward)
 
     def _low(self, allowance: float) -> float:
-        """Where the centre stops: over the end, or beside the wall."""
+        """Stop of the centre: over the end, or beside the wall."""
         reach = self.nose + allowance
         end = self.surface.within(self.low, self.low + reach).pieces
         foot = end[0].start[1] if end else -inf
@@ -80,21 +130,21 @@ class Region:
 
 
 def region_of(
-    job: Job,
-    bar: Bar,
-    outlines: tuple[Outline, ...],
+    job: ToolPathTask,
+    bar: TurningBlank,
+    outlines: tuple[FeatureOutline, ...],
     *,
     plane: HalfPlane,
     allowance: float,
     overcut: float,
-) -> Region:
+) -> TurningRegion:
     """Removal volume of features.
 
     Parameters
     ----------
-    job : Job
-    bar : Bar
-    outlines : tuple of Outline
+    job : ToolPathTask
+    bar : TurningBlank
+    outlines : tuple of FeatureOutline
     plane : HalfPlane
     allowance, overcut : float, mm
         Material that stays, and the way in front of the cut.
@@ -119,11 +169,11 @@ def region_of(
     ]
     beside = part.within(low - 10.0 * JOINT, low)
     foot = own.at(low) if own.pieces else min(starts)
-    return Region(
+    return TurningRegion(
         plane=plane,
         nose=nose,
         surface=reachable(
-            Profile(pieces=tuple(sorted(pieces, key=lambda piece: piece.low))),
+            RadiusProfile(pieces=tuple(sorted(pieces, key=lambda piece: piece.low))),
             edges_of(job, plane),
         ),
         stock=stock,
@@ -135,8 +185,8 @@ def region_of(
     )
 
 
-def edges_of(job: Job, plane: HalfPlane) -> Edges:
-    """How steeply the edges of the insert rise, by ISO 3002-1 angles of the file.
+def edges_of(job: ToolPathTask, plane: HalfPlane) -> InsertFlanks:
+    """Angles of the edges of the insert, from the ISO 3002-1 angles of the file.
 
     The major edge stands at the cutting edge angle from the feed to the chuck, the minor one
     at 180° less that and the included angle from the turned surface. An included angle that
@@ -149,17 +199,19 @@ def edges_of(job: Job, plane: HalfPlane) -> Edges:
     major = rad_from_deg(edge.tool_cutting_edge_angle or 90.0)
     minor = max(0.0, pi - major - rad_from_deg(edge.tool_included_angle or 90.0))
     if plane.is_across:
-        return Edges(behind=min(max(0.0, major - 0.5 * pi), 0.5 * pi))
+        return InsertFlanks(behind=min(max(0.0, major - 0.5 * pi), 0.5 * pi))
     ahead = min(major, 0.5 * pi)
     if tool.hand_of_tool is HandOfToolType.LEFT:
-        return Edges(ahead=minor, behind=ahead)
+        return InsertFlanks(ahead=minor, behind=ahead)
     if tool.hand_of_tool is HandOfToolType.NEUTRAL:
-        return Edges(ahead=ahead, behind=ahead)
-    return Edges(ahead=ahead, behind=minor)
+        return InsertFlanks(ahead=ahead, behind=ahead)
+    return InsertFlanks(ahead=ahead, behind=minor)
 
 
-def leftovers(job: Job, region: Region, outlines: tuple[Outline, ...]) -> Iterator[Finding]:
-    """What the shape of the insert leaves of the features."""
+def leftovers(
+    job: ToolPathTask, region: TurningRegion, outlines: tuple[FeatureOutline, ...]
+) -> Iterator[Finding]:
+    """Material of the features that the shape of the insert cannot reach."""
     seen = [piece for outline in outlines for piece in region.plane.seen(outline.pieces)]
     left = excess(region.surface, [piece for piece in seen if not piece.is_upright])
     if left > SEEN:
@@ -178,7 +230,7 @@ def leftovers(job: Job, region: Region, outlines: tuple[Outline, ...]) -> Iterat
         yield job.warning(text, outlines[0].ref)
 
 
-def _gaps(part: Profile, own: Profile) -> Iterator[Piece]:
+def _gaps(part: RadiusProfile, own: RadiusProfile) -> Iterator[ProfilePiece]:
     """The part between features."""
     for one, other in pairwise(own.pieces):
         if other.low - one.high > JOINT:
@@ -186,8 +238,8 @@ def _gaps(part: Profile, own: Profile) -> Iterator[Piece]:
 
 
 def _continued(
-    surface: Profile, foremost: Spot, lowest_start: float, *, length: float, front: float
-) -> Iterator[Piece]:
+    surface: RadiusProfile, foremost: Spot, lowest_start: float, *, length: float, front: float
+) -> Iterator[ProfilePiece]:
     """The surface in front of its start: along its tangent, then flat."""
     u, v = foremost
     level = min(v, lowest_start)
@@ -201,6 +253,130 @@ def _continued(
             # Upright tangents have no sign of their own: it falls towards the front.
             end = (u + length * abs(along[0]), v - length * abs(along[1]))
             if end[0] - u > JOINT:
-                yield Piece(start=foremost, end=end)
+                yield ProfilePiece(start=foremost, end=end)
             u, level = end
     yield level_line(level, u, front)
+
+
+FACING_STOCK = 5.0
+"""mm of bar in front of a contour that is waste even where no feature faces it off"""
+
+Known = dict[int, FeatureOutline | None]
+"""outlines by the number of their feature; None where one cannot be read"""
+
+
+def bar_of(job: ToolPathTask, outlines: tuple[FeatureOutline, ...]) -> TurningBlank:
+    """The bar before a workingstep; where the file has none, as large as the features."""
+    raw, findings = _raw(job, outlines)
+    reach = raw.top(raw.low, raw.high)
+    known: Known = {}
+    part = raw
+    for step in job.program.workingsteps:
+        surfaces = _outlines(job, step, reach, known)
+        if surfaces:
+            part = lowered(part, surface_of(surfaces, HalfPlane()))
+    bar = TurningBlank(raw=raw, left=raw, part=_trimmed(job, part, known), findings=findings)
+    for step in job.program.workingsteps[: job.step.index]:
+        surfaces = _outlines(job, step, reach, known)
+        if surfaces:
+            bar = replace(bar, left=_after(job, step, surfaces, bar))
+    return bar
+
+
+def _after(
+    job: ToolPathTask,
+    step: ResolvedWorkingstep,
+    outlines: tuple[FeatureOutline, ...],
+    bar: TurningBlank,
+) -> RadiusProfile:
+    """Bar after an earlier workingstep; unchanged where that step makes no sense."""
+    allowance = max(0.0, getattr(step.operation, "allowance", None) or 0.0)
+    if isinstance(step.operation, Facing):
+        return _faced(outlines, allowance, bar.left)
+    if isinstance(step.operation, Grooving):
+        surface = surface_of(outlines, HalfPlane())
+        rest = grown(surface, allowance).within(surface.low, surface.high)
+        return lowered(bar.left, rest)
+    try:
+        earlier = job_of(job.program, step)
+        region = region_of(
+            earlier,
+            bar,
+            outlines,
+            plane=HalfPlane(),
+            allowance=allowance,
+            overcut=DEFAULT_OVERCUT,
+        )
+    except SchemaError:
+        return bar.left
+    chain = region.chain(allowance)
+    if region.nose <= 0.0:
+        return lowered(bar.left, highest(chain))
+    return cut(bar.left, chain, region.nose)
+
+
+def _raw(
+    job: ToolPathTask, outlines: tuple[FeatureOutline, ...]
+) -> tuple[RadiusProfile, tuple[Finding, ...]]:
+    """The bar of the file, or one around the features."""
+    stock = job.stock
+    if stock is not None and stock.high[2] > stock.low[2]:
+        radius = stock.radius or max(map(abs, (*stock.low[:2], *stock.high[:2])))
+        return _cylinder(radius, stock.low[2], stock.high[2]), ()
+    radius = max(outline.radii[1] for outline in outlines)
+    low, high = min(o.low for o in outlines), max(o.high for o in outlines)
+    text = f"no bar is known: a diameter of {2.0 * radius:g} mm, that of the features, assumed"
+    finding = job.program.finding(Severity.WARNING, text, job.step.ref)
+    return _cylinder(radius, min(low, high - JOINT), high), (finding,)
+
+
+def _cylinder(radius: float, low: float, high: float) -> RadiusProfile:
+    return RadiusProfile(pieces=(level_line(radius, low, high),))
+
+
+def _outlines(
+    job: ToolPathTask, step: ResolvedWorkingstep, reach: float, known: Known
+) -> tuple[FeatureOutline, ...]:
+    """Outlines of the features that another workingstep turns and that can be read."""
+    if not isinstance(step.operation, (Contouring, Facing, Grooving)):
+        return ()
+    for ref in step.features:
+        if int(ref) not in known:
+            try:
+                known[int(ref)] = outline_of(job, ref, reach)
+            except SchemaError:
+                # Its own workingstep says what is wrong; here the bar just stays as it was.
+                known[int(ref)] = None
+    found = (known[int(ref)] for ref in step.features)
+    return tuple(outline for outline in found if outline is not None)
+
+
+def _faced(
+    outlines: tuple[FeatureOutline, ...], allowance: float, left: RadiusProfile
+) -> RadiusProfile:
+    """A bar without what stood in front of faces."""
+    for outline in outlines:
+        z = max(outline.low, outline.high) + allowance
+        inner, outer = outline.radii
+        front = left.within(z, left.high)
+        if front.pieces and front.top(z, left.high) <= outer + JOINT:
+            surface = [level_line(inner, z, left.high)]
+            surface += grown(highest(outline.pieces), allowance).pieces
+            left = lowered(left, highest(surface))
+    return _without_front(left)
+
+
+def _trimmed(job: ToolPathTask, part: RadiusProfile, known: Known) -> RadiusProfile:
+    """A part without the bar in front of its foremost feature; a groove's walls are none."""
+    outlines = [outline for outline in known.values() if outline is not None]
+    fronts = [o.high for o in outlines if not isinstance(job.program.get(o.ref), Groove)]
+    front = max(fronts, default=part.high)
+    return part.within(part.low, front) if front > part.high - FACING_STOCK else part
+
+
+def _without_front(left: RadiusProfile) -> RadiusProfile:
+    """A bar without the front that has no radius any more."""
+    pieces: list[ProfilePiece] = list(left.pieces)
+    while pieces and max(pieces[-1].start[1], pieces[-1].end[1]) <= JOINT:
+        pieces.pop()
+    return RadiusProfile(pieces=tuple(pieces))

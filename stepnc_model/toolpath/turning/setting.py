@@ -1,23 +1,163 @@
-"""What the strategy of a turning operation says, as numbers: depths, overcut, lift, feeds."""
+"""Strategy of a turning operation as numbers: depths, overcut, feeds, and links between passes.
 
-from collections.abc import Sequence
+Links are lift, back path and step over. Directions that contradict each other are left out, and
+a finding says so; what is left out or not given takes the customary way.
+"""
+
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import accumulate, chain, repeat
-from math import ceil, isfinite
+from math import ceil, hypot, isfinite
 
-from stepnc_model.entities.turning_strategies import (
+from stepnc_model.entities.entity import Entity
+from stepnc_model.entities.geometry import Direction
+from stepnc_model.entities.operations import MachiningOperation
+from stepnc_model.entities.turning import (
     BidirectionalTurning,
     ContourTurning,
+    TurningMachiningOperation,
     TurningMachiningStrategy,
 )
-from stepnc_model.part21.values import Typed
-from stepnc_model.toolpath.job import DEFAULT_CLEARANCE, Job
+from stepnc_model.errors import Finding, PathError
+from stepnc_model.part21.values import Ref, Typed
 from stepnc_model.toolpath.path import Feed
-from stepnc_model.toolpath.turning.link import Link, link_of
-from stepnc_model.toolpath.turning.plane import HalfPlane
-from stepnc_model.toolpath.turning.stock import operation_of
-from stepnc_model.toolpath.turning.walk import RAPID_CLEARANCE, Feeds
+from stepnc_model.toolpath.task import DEFAULT_CLEARANCE, ToolPathTask
+from stepnc_model.toolpath.turning.path_builder import RAPID_CLEARANCE, Feeds
+from stepnc_model.toolpath.turning.profile import HalfPlane, Spot
 from stepnc_model.units import speed_from_m_s
+
+DEFAULT_LIFT = 1.0
+"""mm off the surface after a pass where the strategy gives none; customary"""
+
+ALONG = 1e-6
+"""sine between two directions that are one"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PassLink:
+    """Unit vectors of the ways between passes."""
+
+    ref: Ref[Entity]
+    """where it is written"""
+    ahead: Spot = (-1.0, 0.0)
+    """sense of the first pass"""
+    lift: Spot | None = None
+    """None: out and back, at 45°"""
+    lift_height: float = DEFAULT_LIFT
+    """Lift height, mm"""
+    back: Spot | None = None
+    """None with the step over: as short as the room allows, along the axes"""
+    stepover: Spot | None = None
+    is_stepover_fed: bool = False
+    """the strategy gives a feed for the step over; else it is a rapid where there is room"""
+    findings: tuple[Finding, ...] = ()
+
+
+def allowance_of(job: ToolPathTask, ref: Ref[Entity], operation: MachiningOperation) -> float:
+    """Material that an operation leaves on the feature, mm."""
+    allowance = getattr(operation, "allowance", None) or 0.0
+    if not 0.0 <= allowance < 1e3:
+        message = f"an allowance of {allowance:g} mm: it must not be negative"
+        raise job.fault(message, ref, "allowance")
+    return float(allowance)
+
+
+def operation_of(job: ToolPathTask) -> TurningMachiningOperation:
+    """The operation of a turning workingstep."""
+    operation = job.step.operation
+    if not isinstance(operation, TurningMachiningOperation):
+        raise job.fault("is no operation of a lathe", job.step.operation_ref)
+    return operation
+
+
+def strategy_of(job: ToolPathTask) -> TurningMachiningStrategy | None:
+    """Strategy of a turning operation, if it has one."""
+    reference = operation_of(job).its_machining_strategy
+    return None if reference is None else job.program.get(reference)
+
+
+def strategy_fault(job: ToolPathTask, message: str, attribute: str) -> PathError:
+    """Why no path can be made with the strategy of an operation."""
+    at = operation_of(job).its_machining_strategy or job.step.operation_ref
+    return job.fault(message, at, attribute)
+
+
+def link_of(job: ToolPathTask, plane: HalfPlane) -> PassLink:
+    """The ways between passes, as far as they make sense.
+
+    Raises
+    ------
+    PathError
+        When the height of the lift is negative.
+    """
+    ref = operation_of(job).its_machining_strategy
+    if ref is None:
+        return PassLink(ref=job.step.operation_ref)
+    strategy = job.program.get(ref)
+    written = {
+        name: direction_in(job, plane, getattr(strategy, name, None)) for name in DIRECTIONS
+    }
+    feed = written["feed_direction"]
+    ahead = (1.0, 0.0) if feed is not None and feed[0] > abs(feed[1]) else (-1.0, 0.0)
+    height = getattr(strategy, "lift_height", None)
+    if height is not None and not 0.0 <= height < 1e4:
+        raise job.fault(f"{height:g} mm is no such length", ref, "lift_height")
+    faults = dict(_faults(job, strategy, written, ahead))
+    good = {name: None if name in faults else at for name, at in written.items()}
+    back, stepover = good["back_path_direction"], good["stepover_direction"]
+    if back is None and stepover is not None and hasattr(strategy, "back_path_direction"):
+        back = (-ahead[0], -ahead[1])
+    return PassLink(
+        ref=ref,
+        ahead=ahead,
+        lift=good["lift_direction"],
+        lift_height=DEFAULT_LIFT if height is None else float(height),
+        back=back,
+        stepover=(0.0, -1.0) if back is not None and stepover is None else stepover,
+        is_stepover_fed=getattr(strategy, "stepover_feed", None) is not None,
+        findings=tuple(job.warning(text, ref, name) for name, text in faults.items()),
+    )
+
+
+DIRECTIONS = ("feed_direction", "lift_direction", "back_path_direction", "stepover_direction")
+
+
+def direction_in(
+    job: ToolPathTask, plane: HalfPlane, ref: Ref[Direction] | None
+) -> Spot | None:
+    """A direction of the file in a half plane, as a unit vector."""
+    if ref is None:
+        return None
+    ratios = (*job.program.get(ref).direction_ratios, 0.0, 0.0, 0.0)[:3]
+    x, z = float(ratios[0]), float(ratios[2])
+    length = hypot(x, z)
+    if not 0.0 < length < 1e12:
+        return None
+    return (x / length, z / length) if plane.is_across else (z / length, x / length)
+
+
+def _faults(
+    job: ToolPathTask, strategy: Entity, written: dict[str, Spot | None], ahead: Spot
+) -> Iterator[tuple[str, str]]:
+    """Attributes whose directions make no sense, with what is wrong and what is done."""
+    for name, at in written.items():
+        if at is None and getattr(strategy, name, None) is not None:
+            yield name, "no direction in the plane of the lathe: the customary one is taken"
+    feed, lift, back, stepover = (written[name] for name in DIRECTIONS)
+    if feed is not None and not isinstance(strategy, ContourTurning):
+        if abs(feed[1]) > abs(feed[0]):
+            yield "feed_direction", "a face is cut across the spindle axis, not along it"
+        elif abs(feed[1]) > ALONG:
+            yield "feed_direction", "oblique: the passes run along its greater part"
+    if lift is not None and lift[1] <= ALONG:
+        text = "leads into the part" if lift[1] < -ALONG else "does not leave the surface"
+        yield "lift_direction", f"the lift {text}: the tool lifts out and back"
+    if back is not None and back[0] * ahead[0] > -ALONG:
+        yield "back_path_direction", "does not lead back: the customary way is taken"
+    if stepover is not None and stepover[1] >= -ALONG:
+        text = "leads along the feed" if abs(stepover[1]) <= ALONG else "leads off the part"
+        yield "stepover_direction", f"the step over {text}: straight to the part is taken"
+
 
 DEFAULT_OVERCUT = 2.0
 """mm of feed through air before the cut where the strategy gives none; customary"""
@@ -32,14 +172,14 @@ LEAST_TOTAL = 1e-6
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Setting:
-    """How the passes of an operation run."""
+class TurningSetting:
+    """Settings of the passes of an operation."""
 
     depths: tuple[float, ...]
-    """mm: of each pass, the last one for all that follow; none: all at once"""
+    """Depths, mm: of each pass, the last one for all that follow; none: all at once"""
     overcut: float
-    """mm"""
-    link: Link
+    """Overcut, mm"""
+    link: PassLink
     feeds: Feeds
     is_reversed: bool
     """passes run towards +u"""
@@ -49,7 +189,7 @@ class Setting:
     """the strategy allows no second one"""
 
 
-def setting_of(job: Job, plane: HalfPlane) -> Setting:
+def setting_of(job: ToolPathTask, plane: HalfPlane) -> TurningSetting:
     """Numbers of the strategy of an operation, customary ones where it has none.
 
     Raises
@@ -57,14 +197,12 @@ def setting_of(job: Job, plane: HalfPlane) -> Setting:
     PathError
         When a depth, a length or a feed is not positive.
     """
-    reference = operation_of(job).its_machining_strategy
-    strategy = job.program.get(reference) if reference is not None else None
+    strategy = strategy_of(job)
     overcut = getattr(strategy, "overcut_length", None)
     link = link_of(job, plane)
     if overcut is not None and not 0.0 <= overcut < 1e4:
-        at = reference or job.step.ref
-        raise job.fault(f"{overcut:g} mm is no such length", at, "overcut_length")
-    return Setting(
+        raise strategy_fault(job, f"{overcut:g} mm is no such length", "overcut_length")
+    return TurningSetting(
         depths=depths_of(job),
         overcut=DEFAULT_OVERCUT if overcut is None else float(overcut),
         link=link,
@@ -76,21 +214,20 @@ def setting_of(job: Job, plane: HalfPlane) -> Setting:
     )
 
 
-def depths_of(job: Job) -> tuple[float, ...]:
+def depths_of(job: ToolPathTask) -> tuple[float, ...]:
     """Depths of the passes as the strategy gives them."""
-    reference = operation_of(job).its_machining_strategy
-    strategy = job.program.get(reference) if reference is not None else None
+    strategy = strategy_of(job)
     if strategy is not None and strategy.allow_multiple_passes is False:
         return ()
     depths = tuple(map(float, getattr(strategy, "cutting_depth", None) or ()))
     for depth in depths:
         if not isfinite(depth) or depth <= 0.0:
             message = f"a depth of {depth:g} mm removes nothing: it must be positive"
-            raise job.fault(message, reference or job.step.operation_ref, "cutting_depth")
+            raise strategy_fault(job, message, "cutting_depth")
     return depths
 
 
-def clearance_of(job: Job) -> float:
+def clearance_of(job: ToolPathTask) -> float:
     """Distance of the safe point from the stock, mm."""
     plane = operation_of(job).retract_plane
     if plane is None:
@@ -101,10 +238,9 @@ def clearance_of(job: Job) -> float:
     return max(float(plane), RAPID_CLEARANCE)
 
 
-def cutting_feed(job: Job) -> Feed:
+def cutting_feed(job: ToolPathTask) -> Feed:
     """The programmed feed, by the ratio of the strategy."""
-    reference = operation_of(job).its_machining_strategy
-    ratio = job.program.get(reference).variable_feedrate if reference is not None else None
+    ratio = getattr(strategy_of(job), "variable_feedrate", None)
     if ratio is None:
         return job.feed
     if not 0.0 < ratio < 100.0:
@@ -142,7 +278,7 @@ def cumulative(total: float, depths: Sequence[float]) -> list[float]:
     return [*sums, total]
 
 
-def _feeds(job: Job, strategy: TurningMachiningStrategy | None) -> Feeds:
+def _feeds(job: ToolPathTask, strategy: TurningMachiningStrategy | None) -> Feeds:
     """Feeds of the passes and of the ways between them.
 
     ISO 14649-12 does not say what ``variable_stepover_feed`` is a ratio for: here it scales
@@ -154,8 +290,8 @@ def _feeds(job: Job, strategy: TurningMachiningStrategy | None) -> Feeds:
     ratio = getattr(strategy, "variable_stepover_feed", None)
     if ratio is not None:
         if not 0.0 < ratio < 100.0:
-            at = operation_of(job).its_machining_strategy or job.step.ref
-            raise job.fault(f"{ratio:g} is no ratio of a feed", at, "variable_stepover_feed")
+            message = f"{ratio:g} is no ratio of a feed"
+            raise strategy_fault(job, message, "variable_stepover_feed")
         entering = _scaled(entering, float(ratio))
     return Feeds(
         cutting=cutting,
@@ -174,14 +310,13 @@ def _scaled(feed: Feed, ratio: float) -> Feed:
     return replace(feed, ratio=feed.ratio * ratio)
 
 
-def _feed(job: Job, written: Typed | float | None, name: str) -> Feed | None:
+def _feed(job: ToolPathTask, written: Typed | float | None, name: str) -> Feed | None:
     """A feed of the strategy, if it gives one."""
     if written is None:
         return None
     value = written.value if isinstance(written, Typed) else written
     if not isinstance(value, (int, float)) or not 0.0 < value < 1e6:
-        reference = operation_of(job).its_machining_strategy or job.step.operation_ref
-        raise job.fault("a feed must be positive", reference, name)
+        raise strategy_fault(job, "a feed must be positive", name)
     if isinstance(written, Typed) and "REV" in written.keyword.upper():
         return Feed(technology=job.step.technology_ref, per_revolution=float(value))
     return Feed(technology=job.step.technology_ref, velocity=speed_from_m_s(float(value)))

@@ -4,6 +4,9 @@ The programmed point is the tip of the thread's profile, in the middle of the in
 right-hand thread is cut towards the chuck, a left-hand one away from it. Feeding in along a
 flank shifts each pass so that the last one lies where the thread shall be.
 
+What meets the stock is contact; the run-in, the run-out and whatever else lies in air is none.
+The parts of a run have one feed, so that a control makes one block of them.
+
 References
 ----------
 .. [1] ISO 68-1:1998, ISO 965-1:2013: basic profile of metric threads. An external thread
@@ -21,24 +24,93 @@ from stepnc_model.entities.enums import (
     ThreadingDirectionType,
     ThreadType,
 )
-from stepnc_model.entities.threads import DefinedThread, Thread
-from stepnc_model.entities.turning import ThreadingFinish, TurningTechnology
-from stepnc_model.entities.turning_strategies import ThreadStrategy
+from stepnc_model.entities.features import DefinedThread, Thread
+from stepnc_model.entities.turning import ThreadingFinish, ThreadStrategy, TurningTechnology
 from stepnc_model.entities.turning_tools import TurningThreadingTool
 from stepnc_model.part21.values import Ref
-from stepnc_model.toolpath.course import Course
-from stepnc_model.toolpath.job import Job
-from stepnc_model.toolpath.path import MoveType
-from stepnc_model.toolpath.turning.outline import Outline
+from stepnc_model.toolpath.path import Feed, Move, MoveType
+from stepnc_model.toolpath.task import PathBuilder, ToolPathTask
+from stepnc_model.toolpath.turning.outline import FeatureOutline
+from stepnc_model.toolpath.turning.path_builder import RAPID_CLEARANCE, split
+from stepnc_model.toolpath.turning.profile import ProfilePiece, RadiusProfile, Spot
+from stepnc_model.toolpath.turning.region import TurningBlank
 from stepnc_model.toolpath.turning.setting import (
     MOST_PASSES,
+    allowance_of,
     cumulative,
     depths_of,
+    strategy_of,
 )
-from stepnc_model.toolpath.turning.stock import Bar, allowance_of, operation_of
-from stepnc_model.toolpath.turning.thread_pass import Pass, cut_thread
-from stepnc_model.toolpath.turning.walk import RAPID_CLEARANCE
 from stepnc_model.units import rad_from_deg
+
+MOST_RETURN = 0.5
+"""of a pass that may go on the way out at an angle"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ThreadPass:
+    """One pass of a thread, mm."""
+
+    start: float
+    """z where the tool gathers speed"""
+    end: float
+    bottom: float
+    """radius of the tip"""
+    clear: float
+    """radius of the way back"""
+    angle: float | None
+    """degrees from the axis at which the tool leaves; None: straight out"""
+    has_relief: bool
+    """nothing stands where the tool leaves"""
+
+
+def cut_thread(
+    job: ToolPathTask,
+    course: PathBuilder,
+    one: ThreadPass,
+    *,
+    stock: RadiusProfile,
+    pitch: float,
+    kind: MoveType,
+) -> None:
+    """Make the moves of a pass.
+
+    Parameters
+    ----------
+    job : ToolPathTask
+    course : PathBuilder
+    one : ThreadPass
+    stock : RadiusProfile
+        Radii over z before the thread.
+    pitch : float, mm
+    kind : MoveType
+        Of the way to the pass.
+    """
+    bound = Feed(technology=job.step.technology_ref, per_revolution=pitch, is_synchronised=True)
+    course.rapid((one.clear, 0.0, one.start), kind)
+    _feed(course, stock, (one.start, one.bottom), job.feed)
+    if one.angle is not None and 0.0 < one.angle < 90.0:
+        out = (one.clear - one.bottom) / tan(rad_from_deg(one.angle))
+        part = min(out / abs(one.end - one.start), MOST_RETURN)
+        turning = one.end + part * (one.start - one.end)
+        _feed(course, stock, (turning, one.bottom), bound)
+        _feed(course, stock, (one.end, one.clear), bound)
+        return
+    _feed(course, stock, (one.end, one.bottom), bound)
+    if one.has_relief:
+        course.rapid((one.clear, 0.0, one.end))
+    else:
+        _feed(course, stock, (one.end, one.clear), job.feed)
+
+
+def _feed(course: PathBuilder, stock: RadiusProfile, end: Spot, feed: Feed) -> None:
+    """Straight to z and radius, split where the tip enters or leaves the stock."""
+    line = ProfilePiece(start=(course.at[2], course.at[0]), end=end)
+    for part, is_contact in split(line, stock):
+        kind = MoveType.CONTACT if is_contact else MoveType.NO_CONTACT
+        z, x = part.end
+        course.add(Move(end=(x, 0.0, z), type=kind, feed=feed))
+
 
 EXTERNAL_DEPTH = 17.0 / 24.0 * sqrt(3.0) / 2.0
 """of the pitch, [1]_"""
@@ -61,7 +133,7 @@ SAME_PITCH = 1e-6
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Helix:
+class TurnedThread:
     """A thread to be cut; z of its start and end in the sense of cutting."""
 
     pitch: float
@@ -76,7 +148,7 @@ class Helix:
         return -1.0 if self.end < self.start else 1.0
 
 
-def threaded_feature(job: Job, ref: Ref[Entity]) -> Ref[Entity]:
+def threaded_feature(job: ToolPathTask, ref: Ref[Entity]) -> Ref[Entity]:
     """The shape that a thread lies on; the feature itself where it is no thread."""
     feature = job.program.get(ref)
     if not isinstance(feature, Thread):
@@ -86,7 +158,9 @@ def threaded_feature(job: Job, ref: Ref[Entity]) -> Ref[Entity]:
     return feature.applied_shape[0]
 
 
-def thread(job: Job, course: Course, bar: Bar, outline: Outline) -> None:
+def thread(
+    job: ToolPathTask, course: PathBuilder, bar: TurningBlank, outline: FeatureOutline
+) -> None:
     """Make the path of a threading operation.
 
     Raises
@@ -114,7 +188,7 @@ def thread(job: Job, course: Course, bar: Bar, outline: Outline) -> None:
         kind = MoveType.RAPID if index else MoveType.APPROACH
         if index == 0:
             course.rapid((home[0], 0.0, start + shift), kind)
-        one = Pass(
+        one = ThreadPass(
             start=start + shift,
             end=end,
             bottom=helix.radius - depth,
@@ -127,13 +201,12 @@ def thread(job: Job, course: Course, bar: Bar, outline: Outline) -> None:
     course.rapid(home, MoveType.RETRACT)
 
 
-def _strategy(job: Job) -> ThreadStrategy | None:
-    reference = operation_of(job).its_machining_strategy
-    strategy = job.program.get(reference) if reference is not None else None
+def _strategy(job: ToolPathTask) -> ThreadStrategy | None:
+    strategy = strategy_of(job)
     return strategy if isinstance(strategy, ThreadStrategy) else None
 
 
-def _pitch(job: Job, course: Course) -> float:
+def _pitch(job: ToolPathTask, course: PathBuilder) -> float:
     """Pitch of the tool, else the feed per revolution of the technology."""
     tool = job.program.get(job.step.tool_ref)
     technology = job.program.get(job.step.technology_ref)
@@ -148,8 +221,8 @@ def _pitch(job: Job, course: Course) -> float:
     return float(pitch)
 
 
-def _helix(job: Job, outline: Outline, pitch: float) -> Helix:
-    """Where the thread lies and how deep it is."""
+def _helix(job: ToolPathTask, outline: FeatureOutline, pitch: float) -> TurnedThread:
+    """Position and depth of the thread."""
     tool = job.program.get(job.step.tool_ref)
     feature = job.program.get(job.step.features[0])
     is_left = False
@@ -171,11 +244,15 @@ def _helix(job: Job, outline: Outline, pitch: float) -> Helix:
         message = f"a depth of {depth:.4g} mm at a radius of {radius:g} mm"
         raise job.fault(message, job.step.features[0])
     start, end = (low, high) if is_left else (high, low)
-    return Helix(pitch=pitch, depth=depth, radius=radius, start=start, end=end)
+    return TurnedThread(pitch=pitch, depth=depth, radius=radius, start=start, end=end)
 
 
 def _run_out(
-    job: Job, course: Course, bar: Bar, helix: Helix, strategy: ThreadStrategy | None
+    job: ToolPathTask,
+    course: PathBuilder,
+    bar: TurningBlank,
+    helix: TurnedThread,
+    strategy: ThreadStrategy | None,
 ) -> float:
     """Length behind the thread: the overcut where a relief or the end of the bar has room."""
     wanted = getattr(strategy, "overcut_length", None)
@@ -194,10 +271,10 @@ def _run_out(
 
 
 def _run_in(
-    job: Job,
-    course: Course,
-    bar: Bar,
-    helix: Helix,
+    job: ToolPathTask,
+    course: PathBuilder,
+    bar: TurningBlank,
+    helix: TurnedThread,
     strategy: ThreadStrategy | None,
     outwards: float,
 ) -> float:
@@ -211,8 +288,10 @@ def _run_in(
     return length
 
 
-def _room(bar: Bar, helix: Helix, at: float, reach: float, beside: float) -> float:
-    """How far the tip may go beyond an end of the thread, mm, with room beside it.
+def _room(
+    bar: TurningBlank, helix: TurnedThread, at: float, reach: float, beside: float
+) -> float:
+    """Room of the tip beyond an end of the thread, mm, with clearance beside it.
 
     Negative at a shoulder, where the insert must stop short.
     """
@@ -225,13 +304,15 @@ def _room(bar: Bar, helix: Helix, at: float, reach: float, beside: float) -> flo
     return -abs(half) if is_shoulder else 0.0
 
 
-def _top(bar: Bar, start: float, end: float) -> float:
+def _top(bar: TurningBlank, start: float, end: float) -> float:
     """Greatest radius of the stock between two z, but for what stands right at them."""
     low, high = min(start, end) + SAME_PITCH, max(start, end) - SAME_PITCH
     return bar.left.within(low, high).top(low, high)
 
 
-def _depths(job: Job, helix: Helix, strategy: ThreadStrategy | None) -> Iterator[float]:
+def _depths(
+    job: ToolPathTask, helix: TurnedThread, strategy: ThreadStrategy | None
+) -> Iterator[float]:
     """Depth of each pass from the crest, mm."""
     allowance = allowance_of(job, job.step.operation_ref, job.step.operation)
     depths = depths_of(job)
@@ -268,7 +349,7 @@ def _sums(
     return [total * (i / count if is_even else sqrt(i / count)) for i in range(1, count + 1)]
 
 
-def _half_angle(job: Job) -> float:
+def _half_angle(job: ToolPathTask) -> float:
     """Half the angle of the thread's profile, rad."""
     tool = job.program.get(job.step.tool_ref)
     included = None
@@ -280,7 +361,9 @@ def _half_angle(job: Job) -> float:
     return rad_from_deg(0.5 * included if included else HALF_ANGLE_DEG)
 
 
-def _shift(helix: Helix, strategy: ThreadStrategy | None, depth: float, index: int) -> float:
+def _shift(
+    helix: TurnedThread, strategy: ThreadStrategy | None, depth: float, index: int
+) -> float:
     """Depth that is still to come, signed as the passes shift so that a flank stays."""
     direction = strategy.threading_direction if strategy else ThreadingDirectionType.CENTER
     side = {

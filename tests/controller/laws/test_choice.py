@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from controller.law import Law, Plant, Situation
+from controller.law import ControlLaw, Plant, Situation
 from controller.laws.choice import LawName, law_named
 from controller.laws.fuzzy import Fuzzy
 from controller.laws.log_pi import LogPI
@@ -55,7 +55,7 @@ def situations(draw: st.DrawFn) -> Situation:
     )
 
 
-def wanted(law: Law[Any], course: Sequence[Situation]) -> list[float]:
+def wanted(law: ControlLaw[Any], course: Sequence[Situation]) -> list[float]:
     state, found = law.begin(1.0), []
     for at in course:
         state, override = law.decide(state, at)

@@ -11,7 +11,7 @@ from controller.laws.load import (
     EXPONENT_VARIANCE,
     LOAD_FORGETTING,
     LOAD_VARIANCE,
-    Load,
+    LoadEstimate,
     first_load,
     learned,
     learned_load,
@@ -20,7 +20,7 @@ from controller.laws.load import (
 NOISE = 0.03
 
 
-def first(force: float, way: float = 0.0) -> Load:
+def first(force: float, way: float = 0.0) -> LoadEstimate:
     return first_load(force, way=way, exponent=0.8, noise=NOISE)
 
 

@@ -5,12 +5,12 @@ from typing import Any
 
 import pytest
 
-from controller.law import Law, Plant, Situation
+from controller.law import ControlLaw, Plant, Situation
 from controller.laws.fuzzy import Fuzzy
 from controller.laws.log_pi import LogPI
 from controller.laws.model_reference import ModelReference
 from controller.laws.pi import PI
-from controller.laws.previewed import Alone, Factored, Previewed
+from controller.laws.previewed import PlainState, Previewed, PreviewedState
 from controller.laws.self_tuning import SelfTuning
 from tests.controller.trial import (
     DEPTHS,
@@ -22,12 +22,12 @@ from tests.controller.trial import (
     unstable,
 )
 
-LAWS: list[Law[Any]] = [PI(), LogPI(), ModelReference(), Fuzzy(), SelfTuning()]
+LAWS: list[ControlLaw[Any]] = [PI(), LogPI(), ModelReference(), Fuzzy(), SelfTuning()]
 LOOK_AHEAD = 8
 every_law = pytest.mark.parametrize("law", LAWS, ids=lambda law: type(law).__name__)
 
 
-def previewed(law: Law[Any], **known: Any) -> Run:
+def previewed(law: ControlLaw[Any], **known: Any) -> Run:
     return run(Previewed(law=law), Trial(**({"look_ahead": LOOK_AHEAD} | known)))
 
 
@@ -35,7 +35,7 @@ def previewed(law: Law[Any], **known: Any) -> Run:
 @pytest.mark.parametrize("gain", [0.7, 1.0, 1.4])
 @pytest.mark.parametrize("lag", [1.5, 3.0, 6.0])
 def test_excess_impulse_is_far_less_for_little_feed(
-    law: Law[Any], gain: float, lag: float
+    law: ControlLaw[Any], gain: float, lag: float
 ) -> None:
     """FEEDS, "Closed loop": 50 to 100 times less for about 5 % of the feed, at lag 3."""
     before = score(run(law, Trial(gain=gain, lag=lag)))
@@ -53,7 +53,7 @@ def test_peak_is_no_more_than_in_published_trials(look_ahead: int, peak: float) 
 
 
 @every_law
-def test_force_settles_at_the_set_point(law: Law[Any]) -> None:
+def test_force_settles_at_the_set_point(law: ControlLaw[Any]) -> None:
     done = previewed(law)
     assert done.error[[45, 70, 105, 145, 179]] == pytest.approx(0.0, abs=0.002)
     assert is_restless(done) is False
@@ -61,13 +61,13 @@ def test_force_settles_at_the_set_point(law: Law[Any]) -> None:
 
 @every_law
 @pytest.mark.parametrize("late", [-1, 1])
-def test_program_may_be_wrong_by_a_revolution(law: Law[Any], late: int) -> None:
+def test_program_may_be_wrong_by_a_revolution(law: ControlLaw[Any], late: int) -> None:
     announced = tuple(DEPTHS[min(max(row - late, 0), 179)] for row in range(180))
     assert score(previewed(law, announced=announced)).peak < 0.02
 
 
 @every_law
-def test_step_that_nobody_announced_is_met_as_without_preview(law: Law[Any]) -> None:
+def test_step_that_nobody_announced_is_met_as_without_preview(law: ControlLaw[Any]) -> None:
     flat = (2.0,) * 180
     before = score(run(law, Trial()))
     after = score(previewed(law, announced=flat))
@@ -78,7 +78,7 @@ def test_step_that_nobody_announced_is_met_as_without_preview(law: Law[Any]) -> 
 
 
 @every_law
-def test_step_that_never_comes_only_costs_time(law: Law[Any]) -> None:
+def test_step_that_never_comes_only_costs_time(law: ControlLaw[Any]) -> None:
     flat = (2.0,) * 180
     done = previewed(law, depths=flat, announced=DEPTHS[:120] + (4.0,) * 60)
     assert score(done).peak < 0.05
@@ -89,7 +89,7 @@ def test_step_that_never_comes_only_costs_time(law: Law[Any]) -> None:
 
 
 @every_law
-def test_band_that_was_too_narrow_leaves_nothing_behind(law: Law[Any]) -> None:
+def test_band_that_was_too_narrow_leaves_nothing_behind(law: ControlLaw[Any]) -> None:
     """At depth 0.5 the ceiling rules; the announced step to 2 is met as if it had not."""
     done = previewed(law, depths=(2.0,) * 40 + (0.5,) * 60 + (2.0,) * 40, gain=0.8)
     assert done.command[60] == 2.0
@@ -106,17 +106,19 @@ AT = Situation(force=800.0, set_point=800.0, override=0.7, actual=0.7, floor=0.1
     ids=["nothing expected", "nothing ahead", "neither"],
 )
 @every_law
-def test_without_knowledge_the_law_is_alone(law: Law[Any], unknown: dict[str, Any]) -> None:
+def test_without_knowledge_the_law_is_alone(
+    law: ControlLaw[Any], unknown: dict[str, Any]
+) -> None:
     wrapped = Previewed(law=law)
     at = replace(AT, force=900.0, **unknown)
     state, override = wrapped.decide(wrapped.begin(0.7), at)
-    assert isinstance(state, Alone)
+    assert isinstance(state, PlainState)
     _, alone = law.decide(law.begin(0.7), replace(at, expected=0.0, ahead=()))
     assert override == alone
 
 
 @every_law
-def test_knowledge_comes_and_goes_without_a_jump(law: Law[Any]) -> None:
+def test_knowledge_comes_and_goes_without_a_jump(law: ControlLaw[Any]) -> None:
     wrapped = Previewed(law=law)
     known = replace(AT, expected=1100.0, ahead=(1100.0,) * 8)
     state = wrapped.begin(0.7)
@@ -125,7 +127,14 @@ def test_knowledge_comes_and_goes_without_a_jump(law: Law[Any]) -> None:
         state, override = wrapped.decide(state, at)
         kinds.append(type(state))
         assert override == pytest.approx(0.7, rel=1e-6)
-    assert kinds == [Alone, Factored, Factored, Alone, Alone, Factored]
+    assert kinds == [
+        PlainState,
+        PreviewedState,
+        PreviewedState,
+        PlainState,
+        PlainState,
+        PreviewedState,
+    ]
 
 
 def test_feed_is_lowered_before_the_load_comes() -> None:

@@ -5,11 +5,11 @@ import pytest
 
 from controller.law import Plant
 from controller.laws.log_pi import LogPI
-from controller.laws.self_tuning import EXPONENT_BAND, SelfTuning, Tuned
+from controller.laws.self_tuning import EXPONENT_BAND, SelfTuning, SelfTuningState
 from tests.controller.trial import SET_POINT, TAIL, Run, Trial, run
 
 
-def last_state(law: SelfTuning, done: Run) -> Tuned:
+def last_state(law: SelfTuning, done: Run) -> SelfTuningState:
     state = law.begin(done.trial.start)
     for at in done.situations:
         state, _ = law.decide(state, at)

@@ -6,18 +6,20 @@ import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from service.calibration.run import CalibrationRequest, CalibrationResult, calibrate
 from service.cli.main import main
-from service.simulation.run import SimulationRequest, simulate
+from service.simulation.run import simulate
 from service.simulation.setup import CodeRequest
 from simulator.calibration.features import Parameter
 from simulator.library import load_machine
 from simulator.machine.transients import USUAL_DELAY
 from simulator.machine_toml import machine_toml
 from stepnc_model.errors import StepNcError, WriteError
+from tests.asking import AskedSimulation, asked_simulation
 
 BAD_INPUT, OK = 3, 0
 FACTOR = 1.25
@@ -68,15 +70,24 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def asked(folder: Path, machine: str) -> SimulationRequest:
+def asked(folder: Path, machine: str, **more: Any) -> AskedSimulation:
     """The slots on a machine."""
-    return SimulationRequest(
+    return asked_simulation(
         code=CodeRequest(
             code=folder / "slots.ngc", tools=folder / "tools.toml", stock="0,0,-20,50,50,0"
         ),
         material="c45",
         machine=machine,
+        **more,
     )
+
+
+def calibration(
+    runs: tuple[Path, ...], folder: Path, machine: str, output: Path | None = None
+) -> CalibrationRequest:
+    """Runs of the slots on a machine."""
+    simulation, files = asked(folder, machine)
+    return CalibrationRequest(runs=runs, simulation=simulation, files=files, output=output)
 
 
 @pytest.fixture(scope="module")
@@ -84,8 +95,8 @@ def measured(folder: Path) -> Path:
     """Spindle and total power of the slots, noisy and late."""
     whole = folder / "whole.csv"
     simulate(
-        replace(
-            asked(folder, str(folder / "truth.toml")),
+        *asked(
+            folder, str(folder / "truth.toml"),
             kc_factor=FACTOR, noise="normal", has_lag=True, rate=20.0, seed=3, output=whole,
         )
     )  # fmt: skip
@@ -111,10 +122,7 @@ def write(path: Path, rows: Rows, *, separator: str = ",") -> Path:
 
 @pytest.fixture(scope="module")
 def found(folder: Path, measured: Path) -> CalibrationResult:
-    request = CalibrationRequest(
-        runs=(measured,), simulation=asked(folder, "vmc15"), output=folder / "mine.toml"
-    )
-    return calibrate(request)
+    return calibrate(calibration((measured,), folder, "vmc15", folder / "mine.toml"))
 
 
 @pytest.mark.parametrize(
@@ -149,7 +157,7 @@ def test_the_file_that_is_written_spends_the_measured_energy(
     loaded = load_machine(str(mine))
     assert loaded.base_power == pytest.approx(found.machine.base_power)
     assert "# calibrated on measured runs: run" in mine.read_text(encoding="utf-8")
-    again = simulate(replace(asked(folder, str(mine)), kc_factor=FACTOR)).whole
+    again = simulate(*asked(folder, str(mine), kc_factor=FACTOR)).whole
     table = table_of(measured)[1:]
     times, watts = [float(row[0]) for row in table], [float(row[2]) for row in table]
     energy = sum(
@@ -277,7 +285,8 @@ def test_a_run_that_cannot_be_is_refused_in_one_line(
     [
         (bytes(range(256)), "no text in UTF-8"),
         (b"time_s,electric_wattage\n" + b"\0" * 300, "line 2: 1 values under 2 headings"),
-        (b"time_s;electric_wattage\n0;900\n", "time_s: missing"),
+        (b"time_s|electric_wattage\n0|900\n", "time_s: missing"),
+        (b"time_s;electric_wattage\n0;900\n0,1;900\n0.1;901\n", "line 4: time_s: 0.1 s after"),
         (b'time_s,electric_wattage\n"1,2\n', "line 2: 1 values under 2 headings"),
         (b"time_s,electric_wattage\n" + b"1" * 200_000 + b",3\n", "field larger than field"),
     ],
@@ -285,8 +294,8 @@ def test_a_run_that_cannot_be_is_refused_in_one_line(
 def test_what_is_no_table_of_numbers_is_refused(
     command: Command, tmp_path: Path, data: bytes, words: str
 ) -> None:
-    if data.startswith(b"time_s;"):
-        data += b"0;1\n" * 20
+    if data.startswith((b"time_s|", b"time_s;")):
+        data += data.splitlines(keepends=True)[-1] * 20
     path = tmp_path / "rude.csv"
     path.write_bytes(data)
     code, out, told = command(path)
@@ -316,11 +325,7 @@ def test_an_output_that_cannot_be_is_refused_first(
     folder: Path, measured: Path, output: str, words: str
 ) -> None:
     before = {path: path.read_bytes() for path in folder.iterdir()}
-    request = CalibrationRequest(
-        runs=(measured,),
-        simulation=asked(folder, str(folder / "truth.toml")),
-        output=folder / output,
-    )
+    request = calibration((measured,), folder, str(folder / "truth.toml"), folder / output)
     with pytest.raises(WriteError, match=re.escape(words)):
         calibrate(request)
     assert {path: path.read_bytes() for path in folder.iterdir()} == before
@@ -328,7 +333,7 @@ def test_an_output_that_cannot_be_is_refused_first(
 
 def test_without_a_run_there_is_nothing_to_do(folder: Path) -> None:
     with pytest.raises(StepNcError, match="name at least one measured run"):
-        calibrate(CalibrationRequest(runs=(), simulation=asked(folder, "vmc15")))
+        calibrate(calibration((), folder, "vmc15"))
 
 
 def test_a_run_of_something_else_gaps_and_constants_are_said(

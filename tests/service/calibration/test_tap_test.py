@@ -11,7 +11,7 @@ from service.calibration.tap_test import TapTestRequest, tap_test
 from service.cli.main import main
 from simulator.library import load_machine
 from simulator.machine_toml import machine_toml
-from simulator.spec import Direction, VibratingPart, VibrationMode
+from simulator.spec import ModeDirection, VibratingPart, VibrationMode
 from stepnc_model.errors import StepNcError
 
 OK, USAGE, BAD_INPUT = 0, 2, 3
@@ -39,7 +39,7 @@ def test_the_mode_is_found_and_named(response: Path) -> None:
     assert mode == VibrationMode(
         part=VibratingPart.TOOL,
         tool="MILL",
-        direction=Direction.X,
+        direction=ModeDirection.X,
         natural_frequency=922.0,
         damping_ratio=0.03,
         stiffness=12_000.0,
@@ -52,7 +52,7 @@ def test_a_machine_file_keeps_what_was_measured_elsewhere(
 ) -> None:
     (mode,) = tap_test(request(response)).modes
     other = replace(mode, tool="DRILL")
-    along_y = replace(mode, direction=Direction.Y, natural_frequency=800.0)
+    along_y = replace(mode, direction=ModeDirection.Y, natural_frequency=800.0)
     old = replace(mode, natural_frequency=700.0)
     machine = replace(load_machine("vmc15"), modes=(other, along_y, old))
     mine = tmp_path / "mine.toml"
@@ -65,13 +65,13 @@ def test_a_round_tool_that_is_tapped_again_along_x_keeps_its_y(
     response: Path, tmp_path: Path
 ) -> None:
     (mode,) = tap_test(request(response)).modes
-    old = replace(mode, direction=Direction.XY, natural_frequency=700.0)
+    old = replace(mode, direction=ModeDirection.XY, natural_frequency=700.0)
     mine = tmp_path / "mine.toml"
     mine.write_text(
         machine_toml(replace(load_machine("vmc15"), modes=(old,))), encoding="utf-8"
     )
     tap_test(request(response, machine=str(mine), output=mine))
-    assert load_machine(str(mine)).modes == (replace(old, direction=Direction.Y), mode)
+    assert load_machine(str(mine)).modes == (replace(old, direction=ModeDirection.Y), mode)
 
 
 def test_a_workpiece_belongs_to_no_tool(response: Path) -> None:
@@ -130,7 +130,7 @@ def test_the_command_prints_tables_that_a_machine_file_takes(
     mine = tmp_path / "mine.toml"
     mine.write_text(machine_toml(load_machine("vmc15")) + tables, encoding="utf-8")
     (mode,) = load_machine(str(mine)).modes
-    assert (mode.direction, mode.natural_frequency) == (Direction.XY, 922.0)
+    assert (mode.direction, mode.natural_frequency) == (ModeDirection.XY, 922.0)
 
 
 def test_json_has_the_units_of_the_machine_file(

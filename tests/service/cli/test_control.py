@@ -8,15 +8,15 @@ import pytest
 
 from service.cli.main import main
 from service.cli.options import LIMIT_EXCEEDED, OK
-from service.control.run import ControlRequest
+from tests.asking import AskedControl
 
-Controlled = Callable[..., ControlRequest]
+Controlled = Callable[..., AskedControl]
 
 
 @pytest.fixture
 def words(controlled: Controlled) -> list[str]:
     """A short slot."""
-    asked = controlled().simulation
+    _, asked = controlled()
     assert asked.code is not None
     return [str(asked.file), "--nc", str(asked.code.code), "--machine", "vmc15"]
 

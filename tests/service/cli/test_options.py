@@ -7,7 +7,7 @@ import pytest
 
 from service.cli import options as cli_options
 from service.cli.options import add_file, add_json
-from stepnc_model.post.controls import Control
+from stepnc_model.post.dialect import Dialect
 
 
 def test_exit_codes_can_be_told_apart_and_none_is_that_of_usage() -> None:
@@ -18,7 +18,7 @@ def test_exit_codes_can_be_told_apart_and_none_is_that_of_usage() -> None:
 
 
 def test_every_control_is_named() -> None:
-    assert all(control.value in cli_options.CONTROLS for control in Control)
+    assert all(control.value in cli_options.CONTROLS for control in Dialect)
 
 
 def test_a_file_is_asked_for_and_units_and_json_need_not_be_given() -> None:

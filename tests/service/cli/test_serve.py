@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 
 from service.cli.main import main
-from service.depot import keys
-from service.depot.folder import open_depot
-from service.depot.keys import Role
+from service.storage import keys
+from service.storage.folder import open_data_folder
+from service.storage.keys import Role
 
 
 def run(*words: object) -> object:
@@ -51,8 +51,8 @@ def test_a_key_is_created_listed_and_revoked(
     out, told = capsys.readouterr()
     word = out.strip()
     assert "not shown again" in told
-    depot = open_depot(tmp_path / "data")
-    key = keys.known(depot, word)
+    data_folder = open_data_folder(tmp_path / "data")
+    key = keys.known(data_folder, word)
     assert key is not None
     assert (key.name, key.roles) == ("Anna", frozenset({Role.OPERATOR, Role.VIEWER}))
     assert run("keys", "list") == 0
@@ -61,7 +61,7 @@ def test_a_key_is_created_listed_and_revoked(
     assert "valid" in shown
     assert word.rsplit("_", 1)[1] not in shown
     assert run("keys", "revoke", key.id) == 0
-    assert keys.known(depot, word) is None
+    assert keys.known(data_folder, word) is None
     assert run("keys", "list") == 0
     assert "revoked" in capsys.readouterr().out
     assert run("keys", "revoke", key.id) not in {0, None}

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from controller.orders import Criterion, CriterionTo, MotorPowerTo, SwitchTo
 from service.control.disturbances import Disturbances, disturbances, time_of
-from simulator.plant.hidden import Change, Changed
+from simulator.plant.hidden import HiddenChange, HiddenQuantity
 from stepnc_model.errors import StepNcError
 
 NAMES = (
@@ -25,16 +25,19 @@ def read(*words: str) -> Disturbances:
 @pytest.mark.parametrize(
     ("word", "change"),
     [
-        ("depth:+50%@12s", Change(time=12.0, what=Changed.DEPTH, value=1.5)),
-        ("depth:-50%@12", Change(time=12.0, what=Changed.DEPTH, value=0.5)),
-        ("hardness:1.3@2min", Change(time=120.0, what=Changed.HARDNESS, value=1.3)),
-        ("material:c45@0s", Change(time=0.0, what=Changed.HARDNESS, value=1.25)),
-        ("tooth:1@1e1s", Change(time=10.0, what=Changed.TOOTH, value=0.0)),
-        ("silence:500ms@1s", Change(time=1.0, what=Changed.SILENCE, value=0.5)),
-        (" depth:+50 %@12 s", Change(time=12.0, what=Changed.DEPTH, value=1.5)),
+        ("depth:+50%@12s", HiddenChange(time=12.0, what=HiddenQuantity.DEPTH, value=1.5)),
+        ("depth:-50%@12", HiddenChange(time=12.0, what=HiddenQuantity.DEPTH, value=0.5)),
+        (
+            "hardness:1.3@2min",
+            HiddenChange(time=120.0, what=HiddenQuantity.HARDNESS, value=1.3),
+        ),
+        ("material:c45@0s", HiddenChange(time=0.0, what=HiddenQuantity.HARDNESS, value=1.25)),
+        ("tooth:1@1e1s", HiddenChange(time=10.0, what=HiddenQuantity.TOOTH, value=0.0)),
+        ("silence:500ms@1s", HiddenChange(time=1.0, what=HiddenQuantity.SILENCE, value=0.5)),
+        (" depth:+50 %@12 s", HiddenChange(time=12.0, what=HiddenQuantity.DEPTH, value=1.5)),
     ],
 )
-def test_changes_come_at_their_time(word: str, change: Change) -> None:
+def test_changes_come_at_their_time(word: str, change: HiddenChange) -> None:
     assert read(word).hidden.changes == (change,)
     assert time_of(word) == change.time
 
@@ -128,7 +131,7 @@ def test_any_word_is_understood_with_sane_numbers_or_refused(word: str) -> None:
         assert isfinite(change.time)
         assert change.time >= 0.0
         assert isfinite(change.value)
-        if change.what in {Changed.DEPTH, Changed.HARDNESS}:
+        if change.what in {HiddenQuantity.DEPTH, HiddenQuantity.HARDNESS}:
             assert 0.0 < change.value <= 100.0
     assert 0.0 < hidden.force_factor <= 100.0
     assert 0.0 <= hidden.wear_rate <= 1.0 / 60.0

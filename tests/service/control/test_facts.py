@@ -6,10 +6,10 @@ from math import exp
 
 import pytest
 
-from controller.orders import Event, EventKind
-from controller.record import Record
+from controller.orders import EventKind, LoopEvent
+from controller.record import RunRecord
 from service.control.facts import (
-    Row,
+    ControlRow,
     disturbed,
     disturbed_words,
     event_counts,
@@ -21,19 +21,20 @@ from service.control.facts import (
     whole,
 )
 from service.control.holding import TOP
-from service.control.run import ControlRequest, ControlRun, control
+from service.control.run import ControlRun, control
+from tests.asking import AskedControl
 
-Controlled = Callable[..., ControlRequest]
+Controlled = Callable[..., AskedControl]
 
 
-def row(**changed: object) -> Row:
+def row(**changed: object) -> ControlRow:
     """A minute of cutting."""
-    record = Record(
+    record = RunRecord(
         workingstep=1, time=80.0, cutting_time=60.0, revolutions=3000, set_point=500.0
     )
     for name, value in changed.items():
         setattr(record, name, value)
-    return Row(id="A", begin=0.0, planned=90.0, record=record, shares=((TOP, 0.997),))
+    return ControlRow(id="A", begin=0.0, planned=90.0, record=record, shares=((TOP, 0.997),))
 
 
 def test_workingsteps_add_up(control_run: ControlRun) -> None:
@@ -77,7 +78,7 @@ def test_nothing_is_exceeded_in_a_good_run(control_run: ControlRun) -> None:
 
 
 def test_a_stop_is_told_with_its_reason(control_run: ControlRun) -> None:
-    stop = Event(time=7.5, kind=EventKind.STOP, text="a tooth is broken")
+    stop = LoopEvent(time=7.5, kind=EventKind.STOP, text="a tooth is broken")
     stopped = replace(control_run, events=(*control_run.events, stop), is_stopped=True)
     assert exceeded(stopped, ()) == ("stopped at 7.50 s: a tooth is broken",)
     assert event_counts(stopped).endswith("1 stop") or "1 stop," in event_counts(stopped)
@@ -100,7 +101,7 @@ def test_law_and_mode_are_told_as_they_were(
     control_run: ControlRun, controlled: Controlled
 ) -> None:
     assert (law_words(control_run), mode_words(control_run)) == ("log-pi", "TC")
-    run = control(controlled(has_preview=True, look_ahead=7, disturbances=("mode:QC@0s",)))
+    run = control(*controlled(has_preview=True, look_ahead=7, disturbances=("mode:QC@0s",)))
     assert law_words(run) == "log-pi with preview of 7 revolutions"
     assert mode_words(run) == "QC at the end"
 

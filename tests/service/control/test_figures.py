@@ -6,15 +6,15 @@ import numpy as np
 import plotly.graph_objects as go
 import pytest
 
-from controller.orders import Event, EventKind
-from service.buckets import Trace
+from controller.orders import EventKind, LoopEvent
+from service.buckets import BucketedRun
 from service.control.facts import rows
 from service.control.figures import chosen_events, control_figure
 from service.control.run import ControlRun
-from service.control.trace import Signal
+from service.control.trace import ControlSignal
 
 
-def trace_of(run: ControlRun) -> Trace:
+def trace_of(run: ControlRun) -> BucketedRun:
     assert run.trace is not None
     return run.trace
 
@@ -46,7 +46,7 @@ def test_panels_are_those_of_the_paper_and_more(figure: go.Figure) -> None:
 def test_peaks_of_the_force_are_drawn(figure: go.Figure, control_run: ControlRun) -> None:
     expected, set_point, measured = drawn(figure, "Cutting force")
     trace = trace_of(control_run)
-    high = trace.curve(Signal.FORCE_MEASURED).high
+    high = trace.curve(ControlSignal.FORCE_MEASURED).high
     assert np.nanmax(measured.y) == pytest.approx(np.nanmax(high), rel=1e-6)
     assert np.nanmax(expected.y) < np.nanmax(measured.y)
     assert (set_point.name, expected.name) == ("set point", "expected")
@@ -75,16 +75,16 @@ def test_what_was_done_to_the_run_is_marked(figure: go.Figure, control_run: Cont
 
 
 def test_words_of_a_file_are_no_markup(control_run: ControlRun) -> None:
-    evil = Event(time=1.0, kind=EventKind.WORKINGSTEP, text="<b>A</b>")
+    evil = LoopEvent(time=1.0, kind=EventKind.WORKINGSTEP, text="<b>A</b>")
     run = replace(control_run, events=(evil,))
     told, _ = drawn(control_figure(run, rows(run), trace_of(run)), "Events")
     assert list(told.text) == ["workingstep: &lt;b&gt;A&lt;/b&gt;"]
 
 
 def test_grave_events_are_kept_when_there_are_too_many(control_run: ControlRun) -> None:
-    plain = [Event(time=float(row), kind=EventKind.SAFE, text="") for row in range(50)]
-    grave = Event(time=60.0, kind=EventKind.STOP, text="")
-    warning = Event(time=55.0, kind=EventKind.WARNING, text="")
+    plain = [LoopEvent(time=float(row), kind=EventKind.SAFE, text="") for row in range(50)]
+    grave = LoopEvent(time=60.0, kind=EventKind.STOP, text="")
+    warning = LoopEvent(time=55.0, kind=EventKind.WARNING, text="")
     run = replace(control_run, events=(*plain, warning, grave))
     assert chosen_events(run, 2) == (warning, grave)
     assert chosen_events(run, 100) == run.events

@@ -5,14 +5,14 @@ from math import inf
 import numpy as np
 import pytest
 
-from controller.aims import Aims
-from controller.cycle import Cycle
-from controller.guard import Allowed, Band, Holding
-from controller.orders import Criterion, Event, EventKind
+from controller.cycle import LoopCycle
+from controller.guard import AllowedOverride, OverrideBand, OverrideReason
+from controller.loop_settings import LoopSettings
+from controller.orders import Criterion, EventKind, LoopEvent
 from controller.reference import ForceBound, Reference
 from controller.signal import Revolution
-from controller.threshold import Level
-from optimiser.limit import LimitName
+from controller.threshold import AlarmLevel
+from optimiser.problem import LimitName
 from service.control.holding import (
     AROUND,
     ASKED,
@@ -23,17 +23,17 @@ from service.control.holding import (
     PROGRAMMED,
     STRENGTH,
     TOP,
-    Ends,
-    Holdings,
+    HoldTallies,
+    OverrideLimits,
     ends_of,
     reason,
 )
 from service.control.run import ControlRun
 from simulator.reading import Reading
 
-AIMS = Aims(band=Band(floor=0.2, ceiling=1.2))
+AIMS = LoopSettings(band=OverrideBand(floor=0.2, ceiling=1.2))
 DEFLECTION = ForceBound(name=LimitName.TOOL_DEFLECTION, words="tool deflection", force=500.0)
-ENDS = Ends(
+ENDS = OverrideLimits(
     reference=Reference(workingstep="A", bounds=(DEFLECTION,), breakage=2000.0),
     ceiling=(1.1, "roughness"),
     floor=(0.4, "chip thickness"),
@@ -44,10 +44,10 @@ def cycle(
     override: float = 1.0,
     *,
     force: float | None = 400.0,
-    holding: Holding = Holding.NOTHING,
+    holding: OverrideReason = OverrideReason.NOTHING,
     set_point: float = 500.0,
-    events: tuple[Event, ...] = (),
-) -> Cycle:
+    events: tuple[LoopEvent, ...] = (),
+) -> LoopCycle:
     """A revolution of one tooth that ends after a second; None: there is none."""
     reading = Reading(
         time=1.0, period=0.02, force=np.full(4, force or 0.0), power=0.0, feed=5.0,
@@ -64,9 +64,9 @@ def cycle(
             override=override, spindle_speed=50.0, progress=1.0, progress_before=0.98,
             workingstep=1, tooth_passing=0.0, once_per_revolution=0.0,
         )  # fmt: skip
-    return Cycle(
+    return LoopCycle(
         reading=reading,
-        allowed=Allowed(override=override, holding=holding),
+        allowed=AllowedOverride(override=override, holding=holding),
         set_point=set_point,
         revolution=turn,
         expected=0.0,
@@ -81,29 +81,34 @@ def cycle(
         (1.0, ENDS, "tool deflection"),
         (1.1, ENDS, "roughness"),
         (0.4, ENDS, "chip thickness"),
-        (1.2, Ends(reference=ENDS.reference), TOP),
-        (0.2, Ends(reference=ENDS.reference), BOTTOM),
+        (1.2, OverrideLimits(reference=ENDS.reference), TOP),
+        (0.2, OverrideLimits(reference=ENDS.reference), BOTTOM),
     ],
 )
-def test_an_end_of_the_band_is_somebodys(override: float, ends: Ends, words: str) -> None:
+def test_an_end_of_the_band_is_somebodys(
+    override: float, ends: OverrideLimits, words: str
+) -> None:
     assert reason(cycle(override), ends, AIMS) == words
 
 
 @pytest.mark.parametrize(
-    "holding", sorted(set(Holding) - {Holding.NOTHING, Holding.BAND, Holding.OFF})
+    "holding",
+    sorted(
+        set(OverrideReason) - {OverrideReason.NOTHING, OverrideReason.BAND, OverrideReason.OFF}
+    ),
 )
-def test_the_guard_has_the_last_word(holding: Holding) -> None:
+def test_the_guard_has_the_last_word(holding: OverrideReason) -> None:
     assert reason(cycle(1.2, holding=holding), ENDS, AIMS) == holding.value
 
 
 def test_a_control_that_is_off_holds_nothing() -> None:
-    assert reason(cycle(1.0, holding=Holding.OFF), ENDS, AIMS) == OFF
+    assert reason(cycle(1.0, holding=OverrideReason.OFF), ENDS, AIMS) == OFF
 
 
 def test_the_mode_may_hold_it() -> None:
-    aims = Aims(criterion=Criterion.QC, band=AIMS.band)
-    assert reason(cycle(1.0), ENDS, aims) == PROGRAMMED
-    assert reason(cycle(0.9), ENDS, aims) == "tool deflection"
+    settings = LoopSettings(criterion=Criterion.QC, band=AIMS.band)
+    assert reason(cycle(1.0), ENDS, settings) == PROGRAMMED
+    assert reason(cycle(0.9), ENDS, settings) == "tool deflection"
 
 
 def test_nothing_may_hold_it() -> None:
@@ -112,13 +117,13 @@ def test_nothing_may_hold_it() -> None:
 
 def test_the_force_follows_from_the_user_the_plan_or_the_tool() -> None:
     assert ENDS.force_bound(AIMS) == "tool deflection"
-    assert ENDS.force_bound(Aims(set_point=100.0)) == ASKED
-    assert ENDS.force_bound(Aims(set_point=5000.0)) == STRENGTH
+    assert ENDS.force_bound(LoopSettings(set_point=100.0)) == ASKED
+    assert ENDS.force_bound(LoopSettings(set_point=5000.0)) == STRENGTH
     assert AROUND.force_bound(AIMS) == ""
 
 
 def test_time_with_chips_is_shared_out() -> None:
-    holdings = Holdings([])
+    holdings = HoldTallies([])
     for each in (cycle(1.2), cycle(1.2), cycle(1.2), cycle(1.0, set_point=inf)):
         holdings.add(each, AIMS)
     holdings.add(cycle(1.0, force=2.0), AIMS)
@@ -131,13 +136,13 @@ def test_time_with_chips_is_shared_out() -> None:
 
 
 def test_levels_and_holds_follow_from_events() -> None:
-    holdings = Holdings([])
-    over = Event(time=1.0, kind=EventKind.OVER, text="")
-    hold = Event(time=1.0, kind=EventKind.HOLD, text="")
+    holdings = HoldTallies([])
+    over = LoopEvent(time=1.0, kind=EventKind.OVER, text="")
+    hold = LoopEvent(time=1.0, kind=EventKind.HOLD, text="")
     holdings.add(cycle(events=(over, hold)), AIMS)
-    assert (holdings.level, holdings.steps[1].holds) == (Level.OVER, 1)
+    assert (holdings.level, holdings.steps[1].holds) == (AlarmLevel.OVER, 1)
     holdings.add(cycle(), AIMS)
-    assert holdings.level is Level.OVER
+    assert holdings.level is AlarmLevel.OVER
 
 
 def test_ends_are_those_that_the_loop_keeps(control_run: ControlRun) -> None:

@@ -7,22 +7,24 @@ from pathlib import Path
 
 import pytest
 
-from service.control.outcomes import Recording, outcomes_of
-from service.control.run import ControlRequest, ControlRun, control
-from service.simulation.run import SimulationRequest
+from service.control.outcomes import RecordingContext, outcomes_of
+from service.control.run import ControlRun, control
 from stepnc_model.entities.optimisation import FaceMillingImmersion
 from stepnc_model.outcome import Context, FeatureFacts, ProcessOutcome
+from tests.asking import asked_control
 
 PART = Path(__file__).parents[3] / "examples" / "parts" / "paper002.stpnc"
-RECORDING = Recording(run="r1", at=datetime(2026, 3, 2, tzinfo=UTC), by="test", trace="t.csv")
+RECORDING = RecordingContext(
+    run="r1", at=datetime(2026, 3, 2, tzinfo=UTC), by="test", trace="t.csv"
+)
 
 
 @pytest.fixture(scope="module")
 def run() -> ControlRun:
-    simulation = SimulationRequest(file=PART, machine="vmc15", material="c45")
-    return control(
-        ControlRequest(simulation=simulation, law="none", disturbances=("kc:1.2",), seed=3)
+    asked = asked_control(
+        PART, machine="vmc15", material="c45", law="none", disturbances=("kc:1.2",), seed=3
     )
+    return control(*asked)
 
 
 @pytest.fixture(scope="module")
@@ -88,8 +90,8 @@ def hurried(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_holes_and_finishes_of_the_bracket_are_told_apart(hurried: Path) -> None:
-    simulation = SimulationRequest(file=hurried, machine="vmc15", material="c45")
-    found = outcomes_of(control(ControlRequest(simulation=simulation, law="none")), RECORDING)
+    asked = asked_control(hurried, machine="vmc15", material="c45", law="none")
+    found = outcomes_of(control(*asked), RECORDING)
     by_step = {outcome.workingstep: outcome for outcome in found}
     assert len(found) == 16
     assert {name for name, each in by_step.items() if each.is_finishing} == {

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from service.control.planned import Planned, planned_steps, with_hardest
+from service.control.planned import PlannedWorkingstep, planned_steps, with_hardest
 from tests.simulator.plant.courses import EXPONENT, FEED, course, levels
 
 
@@ -20,7 +20,7 @@ def test_times_and_forces_of_a_workingstep_are_those_of_its_cells() -> None:
 
 def test_what_cuts_nothing_takes_its_time_only() -> None:
     planned = planned_steps(course(levels(0.0)))[1]
-    assert planned == Planned(time=planned.time)
+    assert planned == PlannedWorkingstep(time=planned.time)
     assert planned.time == pytest.approx(1.0)
 
 

@@ -6,24 +6,20 @@ import pytest
 
 from kbe.selection import EVERYTHING
 from service.control.record import control_recorded
-from service.control.run import ControlRequest
 from service.knowledge.verbs import newest
-from service.simulation.run import SimulationRequest
+from tests.asking import AskedControl, asked_control
 
 PART = Path(__file__).parents[3] / "examples" / "parts" / "paper002.stpnc"
 
 
-def request(**more: object) -> ControlRequest:
-    simulation = SimulationRequest(file=PART, machine="vmc15", material="c45")
-    return ControlRequest(simulation=simulation, **more)  # type: ignore[arg-type]
+def request(**more: object) -> AskedControl:
+    return asked_control(PART, machine="vmc15", material="c45", **more)  # type: ignore[arg-type]
 
 
 def test_a_run_is_recorded_where_a_knowledge_base_is_named(tmp_path: Path) -> None:
     place, told = str(tmp_path / "knowledge.db"), list[str]()
     words = ("kc:1.1",)
-    control_recorded(
-        request(knowledge=place, recorded_by="Ada", disturbances=words), tell=told.append
-    )
+    control_recorded(*request(disturbances=words), knowledge=place, by="Ada", tell=told.append)
     found = newest(place, EVERYTHING, limit=10)
     assert found.total == 1
     assert found.outcomes[0].recorded_by == "Ada, virtual machine, kc:1.1"
@@ -36,13 +32,13 @@ def test_without_one_nothing_is_recorded(
     monkeypatch.delenv("STEPNC_KB", raising=False)
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path))
     told: list[str] = []
-    control_recorded(request(), tell=told.append)
+    control_recorded(*request(), tell=told.append)
     assert not list(tmp_path.iterdir())
     assert not any("recorded" in line for line in told)
 
 
 def test_a_run_that_was_stopped_is_not(tmp_path: Path) -> None:
     place = str(tmp_path / "knowledge.db")
-    run = control_recorded(request(knowledge=place, disturbances=("tooth:1@20s",)))
+    run = control_recorded(*request(disturbances=("tooth:1@20s",)), knowledge=place)
     assert run.is_stopped
     assert not Path(place).exists()

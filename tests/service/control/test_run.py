@@ -8,15 +8,15 @@ from pathlib import Path
 import pytest
 from pyarrow import parquet
 
-from controller.cycle import Cycle
+from controller.cycle import LoopCycle
 from controller.orders import Criterion, EventKind
 from service.control.holding import OFF
-from service.control.run import ControlRequest, ControlRun, control, prepare
-from service.simulation.run import SimulationRequest
-from simulator.plant.controlled import Truth
+from service.control.run import ControlRun, control, prepare
+from simulator.plant.controlled import TrueState
 from stepnc_model.errors import StepNcError
+from tests.asking import AskedControl, asked_control
 
-Controlled = Callable[..., ControlRequest]
+Controlled = Callable[..., AskedControl]
 
 
 def test_records_cover_the_whole_run(control_run: ControlRun) -> None:
@@ -39,7 +39,7 @@ def test_a_harder_work_is_met_by_a_lower_override(control_run: ControlRun) -> No
 
 
 def test_without_control_the_program_runs_as_it_is(controlled: Controlled) -> None:
-    run = control(controlled(law="none"))
+    run = control(*controlled(law="none"))
     _, record = run.steps[-1]
     assert run.time == pytest.approx(run.time_planned, rel=1e-9)
     assert (record.least, record.greatest) == pytest.approx((1.0, 1.0))
@@ -47,7 +47,7 @@ def test_without_control_the_program_runs_as_it_is(controlled: Controlled) -> No
 
 
 def test_an_order_switches_the_mode(controlled: Controlled) -> None:
-    run = control(controlled(disturbances=("mode:QC@0s",)))
+    run = control(*controlled(disturbances=("mode:QC@0s",)))
     assert run.criterion is Criterion.QC
     assert run.steps[-1][1].greatest <= 1.0 + 1e-9
     assert EventKind.ORDER in {event.kind for event in run.events}
@@ -56,10 +56,10 @@ def test_an_order_switches_the_mode(controlled: Controlled) -> None:
 def test_watchers_see_every_cycle_and_the_truth(controlled: Controlled) -> None:
     seen: list[tuple[float, float]] = []
 
-    def watch(cycle: Cycle, truth: Truth) -> None:
+    def watch(cycle: LoopCycle, truth: TrueState) -> None:
         seen.append((cycle.reading.period, truth.force))
 
-    run = control(controlled(), watchers=[watch])
+    run = control(*controlled(), watchers=[watch])
     assert sum(period for period, _ in seen) == pytest.approx(run.time)
     assert max(force for _, force in seen) > 100.0
 
@@ -70,12 +70,12 @@ def test_a_run_that_is_broken_off_leaves_what_it_has(
     output = tmp_path / "run.parquet"
     told: list[str] = []
 
-    def interrupt(cycle: Cycle, _truth: Truth) -> None:
+    def interrupt(cycle: LoopCycle, _truth: TrueState) -> None:
         if cycle.reading.time > 7.0:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        control(controlled(output=output), tell=told.append, watchers=[interrupt])
+        control(*controlled(output=output), tell=told.append, watchers=[interrupt])
     partial = tmp_path / "run.partial.parquet"
     assert [each.name for each in tmp_path.iterdir()] == [partial.name]
     table = parquet.read_table(partial)
@@ -84,7 +84,7 @@ def test_a_run_that_is_broken_off_leaves_what_it_has(
 
 
 def test_nothing_is_kept_that_nobody_asked_for(controlled: Controlled) -> None:
-    run = prepare(controlled()).result()
+    run = prepare(*controlled()).result()
     assert (run.samples, run.trace) == (0, None)
 
 
@@ -94,16 +94,17 @@ def test_nothing_is_kept_that_nobody_asked_for(controlled: Controlled) -> None:
         ({"law": "pid"}, "unknown law 'pid'; known: pi, log-pi"),
         ({"mode": "EC"}, "unknown mode 'EC'; known: TC, QC"),
         ({"sensor": "ear"}, "unknown sensor 'ear'; known: dynamometer, power"),
-        ({"seed": -1}, "seed -1: it must be at least 0"),
-        ({"look_ahead": 0}, "look-ahead 0: it must be 1 to 50 revolutions"),
-        ({"look_ahead": 51}, "look-ahead 51: it must be 1 to 50 revolutions"),
-        ({"set_point": 0.0}, "force 0 N: it must be above 10 N"),
-        ({"set_point": float("nan")}, "force nan N: it must be above 10 N"),
-        ({"set_point": float("inf")}, "force inf N: it must be above 10 N"),
-        ({"band": (0.0, 120.0)}, "override band 0 to 120 %"),
-        ({"band": (120.0, 20.0)}, "override band 120 to 20 %"),
-        ({"band": (20.0, 1e9)}, "override band 20 to 1e+09 %"),
-        ({"band": (float("nan"), 120.0)}, "override band nan to 120 %"),
+        ({"seed": -1}, "seed -1: it must be 0 to "),
+        ({"look_ahead": 0}, "look-ahead 0 revolutions: it must be 1 to 50 revolutions"),
+        ({"look_ahead": 51}, "look-ahead 51 revolutions: it must be 1 to 50 revolutions"),
+        ({"set_point": 0.0}, "force 0 N: it must be above 0 to 1e+06 N"),
+        ({"set_point": 9.0}, "force 9 N: it must be above 10 N"),
+        ({"set_point": float("nan")}, "force nan N: it must be above 0 to 1e+06 N"),
+        ({"set_point": float("inf")}, "force inf N: it must be above 0 to 1e+06 N"),
+        ({"band": (0.0, 120.0)}, "override band from 0 %: it must be above 0 to 100 %"),
+        ({"band": (120.0, 20.0)}, "override band from 120 %: it must be above 0 to 100 %"),
+        ({"band": (20.0, 1e9)}, "override band to 1e+09 %: it must be 100 to 200 %"),
+        ({"band": (float("nan"), 120.0)}, "override band from nan %"),
         ({"disturbances": ("depth:+50%",)}, "say when, as in depth:+50%@12s"),
         ({"disturbances": ("material:butter@1s",)}, "unknown material 'butter'"),
         ({"disturbances": ("tooth:50@1s",)}, "tooth 50: the cutters have "),
@@ -113,39 +114,38 @@ def test_what_cannot_be_is_refused(
     controlled: Controlled, changed: dict[str, object], message: str
 ) -> None:
     with pytest.raises(StepNcError) as caught:
-        control(controlled(**changed))
+        control(*controlled(**changed))
     assert message in str(caught.value)
 
 
 def test_nc_code_alone_says_nothing_of_limits(controlled: Controlled) -> None:
-    request = controlled()
-    alone = replace(request.simulation, file=None)
+    request, files = controlled()
     with pytest.raises(StepNcError, match="control needs a STEP-NC program"):
-        control(replace(request, simulation=alone))
+        control(request, replace(files, file=None))
 
 
 def test_a_program_without_end_is_refused(controlled: Controlled, tmp_path: Path) -> None:
-    request = controlled()
+    request, files = controlled()
     code = tmp_path / "slow.ngc"
     code.write_text("G21\nG4 P90000\nM30\n", encoding="ascii")
-    assert request.simulation.code is not None
-    slow = replace(request.simulation, code=replace(request.simulation.code, code=code))
+    assert files.code is not None
+    slow = replace(files, code=replace(files.code, code=code))
     with pytest.raises(StepNcError, match=r"9e\+04 s of machining: 86400 s under control"):
-        control(replace(request, simulation=slow))
+        control(request, slow)
 
 
 def test_a_file_that_is_not_there_is_named() -> None:
-    request = ControlRequest(simulation=SimulationRequest(file=Path("nowhere.stpnc")))
+    request = asked_control(Path("nowhere.stpnc"))
     with pytest.raises(StepNcError, match=r"nowhere\.stpnc: No such file"):
-        control(request)
+        control(*request)
 
 
 def test_a_machine_that_is_lost_is_told_and_left_with_the_safe_override(
     controlled: Controlled,
 ) -> None:
     told: list[str] = []
-    session = prepare(controlled(disturbances=("line:off@8s",)))
-    run = control(controlled(disturbances=("line:off@8s",)), tell=told.append)
+    session = prepare(*controlled(disturbances=("line:off@8s",)))
+    run = control(*controlled(disturbances=("line:off@8s",)), tell=told.append)
     assert run.is_stopped
     assert run.time == pytest.approx(8.0, abs=0.3)
     assert run.events[-1].kind is EventKind.LOST
@@ -155,7 +155,7 @@ def test_a_machine_that_is_lost_is_told_and_left_with_the_safe_override(
 
 
 def test_the_power_of_the_drive_serves_a_program_of_one_cut(controlled: Controlled) -> None:
-    run = control(controlled(sensor="power", set_point=250.0))
+    run = control(*controlled(sensor="power", set_point=250.0))
     _, record = run.steps[-1]
     assert record.revolutions > 50
     assert record.override < 1.0

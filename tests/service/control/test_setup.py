@@ -6,17 +6,18 @@ import numpy as np
 import pytest
 
 from optimiser.modes import Mode
-from service.control.planned import Planned, planned_steps
-from service.control.run import ControlRequest, Session, prepare
+from service.control.planned import PlannedWorkingstep, planned_steps
+from service.control.run import Session, prepare
 from service.control.setup import hardness_against, plan_as_it_is, preview_of, steps_of
 from simulator.library import load_material
 from simulator.spec import Certainty, MaterialMatch
 from stepnc_model.errors import StepNcError
+from tests.asking import AskedControl
 
 
 @pytest.fixture(scope="module")
-def session(controlled: Callable[..., ControlRequest]) -> Session:
-    return prepare(controlled())
+def session(controlled: Callable[..., AskedControl]) -> Session:
+    return prepare(*controlled())
 
 
 def matched(name: str) -> MaterialMatch:
@@ -50,7 +51,7 @@ def test_workingsteps_know_their_limits_and_their_cut(session: Session) -> None:
 
 
 def test_what_nothing_is_known_of_is_not_touched() -> None:
-    (step,) = steps_of({1: Planned()}, [None])
+    (step,) = steps_of({1: PlannedWorkingstep()}, [None])
     assert step.reference.inhibition == "the program says nothing of its limits"
 
 

@@ -9,18 +9,20 @@ import pyarrow as pa
 import pytest
 from pyarrow import csv, parquet
 
-from controller.cycle import Cycle
-from service.control.run import ControlRequest, ControlRun, control, prepare
-from service.control.trace import COLUMNS, Moment, Signal, control_schema
-from simulator.plant.controlled import Truth
+from controller.cycle import LoopCycle
+from service.control.run import ControlRun, control, prepare
+from service.control.trace import COLUMNS, ControlSignal, control_schema
+from service.session.rows import Moment
+from simulator.plant.controlled import TrueState
+from tests.asking import AskedControl
 
-Controlled = Callable[..., ControlRequest]
+Controlled = Callable[..., AskedControl]
 
 
 @pytest.fixture(scope="module")
 def written(controlled: Controlled, tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("trace") / "run.parquet"
-    control(controlled(disturbances=("hardness:+40%@7.5s",), output=path))
+    control(*controlled(disturbances=("hardness:+40%@7.5s",), output=path))
     return path
 
 
@@ -82,7 +84,7 @@ def test_forces_and_set_points_have_no_value_where_there_is_none(table: pa.Table
 
 def test_every_event_stands_in_its_row(controlled: Controlled, tmp_path: Path) -> None:
     output = tmp_path / "run.csv"
-    run = control(controlled(disturbances=("tooth:1@7s", "mode:QC@2s"), output=output))
+    run = control(*controlled(disturbances=("tooth:1@7s", "mode:QC@2s"), output=output))
     table = csv.read_csv(output)
     told = [text for text in table["event"].to_pylist() if text]
     assert "; ".join(told) == "; ".join(
@@ -96,22 +98,22 @@ def test_the_same_seed_makes_the_same_bytes(
     controlled: Controlled, written: Path, tmp_path: Path
 ) -> None:
     again, other = tmp_path / "again.parquet", tmp_path / "other.parquet"
-    request = controlled(disturbances=("hardness:+40%@7.5s",), output=again)
-    control(request)
-    control(replace(request, output=other, seed=1))
+    request, files = controlled(disturbances=("hardness:+40%@7.5s",), output=again)
+    control(request, files)
+    control(replace(request, seed=1), replace(files, output=other))
     assert again.read_bytes() == written.read_bytes()
     assert other.read_bytes() != written.read_bytes()
 
 
 def test_plots_show_what_the_file_holds(controlled: Controlled, tmp_path: Path) -> None:
     output = tmp_path / "run.parquet"
-    run = control(controlled(output=output, report=tmp_path / "run.html"))
+    run = control(*controlled(output=output, report=tmp_path / "run.html"))
     assert run.trace is not None
     table = parquet.read_table(output)
     for signal, name in (
-        (Signal.FORCE_MEASURED, "force_measured"),
-        (Signal.REMOVAL_RATE, "removal_rate"),
-        (Signal.OVERRIDE_COMMANDED, "override_commanded"),
+        (ControlSignal.FORCE_MEASURED, "force_measured"),
+        (ControlSignal.REMOVAL_RATE, "removal_rate"),
+        (ControlSignal.OVERRIDE_COMMANDED, "override_commanded"),
     ):
         curve = run.trace.curve(signal)
         assert np.nanmax(curve.high) == pytest.approx(np.nanmax(numbers(table, name)))
@@ -122,7 +124,7 @@ def test_memory_is_bounded_by_rows(
 ) -> None:
     monkeypatch.setattr("service.control.trace.ROWS", 50)
     output = tmp_path / "run.parquet"
-    control(controlled(output=output))
+    control(*controlled(output=output))
     groups = parquet.ParquetFile(output).metadata
     sizes = [groups.row_group(row).num_rows for row in range(groups.num_row_groups)]
     assert set(sizes[:-1]) == {50}
@@ -133,12 +135,12 @@ def test_what_was_removed_is_the_slot(control_run: ControlRun, controlled: Contr
     """Rate times time, whatever the override was."""
     volumes = []
 
-    def watch(cycle: Cycle, truth: Truth) -> None:
+    def watch(cycle: LoopCycle, truth: TrueState) -> None:
         volumes.append(truth.removal_rate * cycle.reading.period)
 
     for law in ("none", "log-pi"):
         volumes.clear()
-        control(controlled(law=law), watchers=[watch])
+        control(*controlled(law=law), watchers=[watch])
         # 2 mm deep, 10 mm wide, from the edge of the stock to x = 20 mm and half a round end.
         whole = sum(volumes)
         if law == "none":
@@ -152,7 +154,7 @@ def test_a_sink_is_given_each_row_at_once(
 ) -> None:
     rows: list[Moment] = []
     output = tmp_path / "run.parquet"
-    session = prepare(controlled(disturbances=("hardness:+40%@7.5s",), output=output))
+    session = prepare(*controlled(disturbances=("hardness:+40%@7.5s",), output=output))
     trace = session.trace(rows.append)
     with trace:
         for cycle in session.cycles([trace]):

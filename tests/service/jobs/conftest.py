@@ -11,10 +11,12 @@ from subprocess import DEVNULL, Popen
 import pytest
 
 from kbe.store import open_store
-from service.depot import jobs, programs
-from service.depot.folder import Depot, open_depot
-from service.depot.jobs import Job, Kind, Order, State
-from service.rest.bodies import AdviceBody, ControlBody, SimulationBody
+from service.requests.advice import AdviceRequest
+from service.requests.fields import dumped
+from service.requests.runs import ControlRequest, SimulationRequest
+from service.storage import jobs, programs
+from service.storage.folder import DataFolder, open_data_folder
+from service.storage.jobs import Job, JobKind, JobRequest, JobState
 from tests.service.rest.samples import SAMPLE
 from tests.service.shop import outcomes
 from tests.service.waiting import environment, until
@@ -26,7 +28,7 @@ main(sys.argv[1], sys.argv[2], 1, int(sys.argv[3]))
 """
 
 IMPATIENT = f"""
-from service.depot import database
+from service.storage import database
 database.WAIT = 0.05
 {MAIN}"""
 """waits for a locked database hardly at all"""
@@ -36,24 +38,24 @@ database.WAIT = 0.05
 class Shop:
     """A data folder, and who runs its jobs. Running state."""
 
-    depot: Depot
+    data_folder: DataFolder
     program: str = ""
     runners: list[Popen[bytes]] = field(default_factory=list)
 
     @property
     def log(self) -> Path:
         """What runners say."""
-        return self.depot.root.parent / "runner.log"
+        return self.data_folder.root.parent / "runner.log"
 
     def start(self, main: str = MAIN) -> Popen[bytes]:
         """A runner, once it looks at the queue."""
-        with self.depot.database.writing() as connection:
+        with self.data_folder.database.writing() as connection:
             connection.execute("DELETE FROM runner")
-        words = [str(self.depot.root), self.depot.knowledge, str(os.getpid())]
+        words = [str(self.data_folder.root), self.data_folder.knowledge, str(os.getpid())]
         with self.log.open("ab") as log:
             runner = Popen(
                 [sys.executable, "-c", main, *words],
-                env={**environment(self.depot.root.parent), "PYTHONUNBUFFERED": "1"},
+                env={**environment(self.data_folder.root.parent), "PYTHONUNBUFFERED": "1"},
                 stdin=DEVNULL,
                 stdout=log,
             )
@@ -62,7 +64,7 @@ class Shop:
         return runner
 
     def _has_beaten(self) -> bool:
-        with self.depot.database.reading() as connection:
+        with self.data_folder.database.reading() as connection:
             return connection.execute("SELECT 1 FROM runner").fetchone() is not None
 
     def end(self) -> None:
@@ -72,30 +74,31 @@ class Shop:
         for runner in self.runners:
             runner.wait(30.0)
 
-    def order(self, kind: Kind, program: str | None = None, **words: object) -> Job:
+    def order(self, kind: JobKind, program: str | None = None, **words: object) -> Job:
         """A job with the usual request, but for some words."""
         usual: dict[str, object] = {
-            Kind.ADVICE: AdviceBody().words(),
-            Kind.SIMULATION: SimulationBody().words(),
-            Kind.CONTROL: ControlBody().words(),
-            Kind.TRIAL: {"inputs": {}, "seed": 0, "pace": 1.0},
+            JobKind.ADVICE: dumped(AdviceRequest()),
+            JobKind.SIMULATION: dumped(SimulationRequest()),
+            JobKind.CONTROL: dumped(ControlRequest()),
+            JobKind.TRIAL: {"inputs": {}, "seed": 0, "pace": 1.0},
         }[kind]
-        named = "" if kind is Kind.TRIAL else (program or self.program)
+        named = "" if kind is JobKind.TRIAL else (program or self.program)
         request = {**usual, **words}
         return jobs.add(
-            self.depot, Order(kind=kind, request=request, program=named, owner="anna")
+            self.data_folder,
+            JobRequest(kind=kind, request=request, program=named, owner="anna"),
         )
 
     def job(self, id: str) -> Job:
         """As it is now."""
-        return jobs.get(self.depot, id)
+        return jobs.get(self.data_folder, id)
 
     def over(self, id: str, *, within: float = 60.0) -> Job:
         """As it is once it is over."""
 
         def look() -> Job | None:
             found = self.job(id)
-            return found if found.state.is_over else None
+            return found if found.state.is_finished else None
 
         return until(look, within=within)
 
@@ -104,10 +107,10 @@ class Shop:
 
         def look() -> Job | None:
             found = self.job(id)
-            assert not found.state.is_over, found.problem
-            series = self.depot.job_folder(id) / "series.bin"
+            assert not found.state.is_finished, found.problem
+            series = self.data_folder.job_folder(id) / "series.bin"
             is_shown = series.exists() and series.stat().st_size > 2000
-            return found if found.state is State.RUNNING and is_shown else None
+            return found if found.state is JobState.RUNNING and is_shown else None
 
         return until(look, within=60.0)
 
@@ -116,11 +119,13 @@ ShopMaker = Callable[[], Shop]
 
 
 def made_shop(folder: Path) -> Shop:
-    shop = Shop(depot=open_depot(folder / "data", knowledge=str(folder / "knowledge.db")))
-    with open_store(shop.depot.knowledge):
+    shop = Shop(
+        data_folder=open_data_folder(folder / "data", knowledge=str(folder / "knowledge.db"))
+    )
+    with open_store(shop.data_folder.knowledge):
         """made when it is new"""
     sample = SAMPLE.read_bytes()
-    shop.program = programs.add(shop.depot, sample, name=SAMPLE.name, owner="anna").id
+    shop.program = programs.add(shop.data_folder, sample, name=SAMPLE.name, owner="anna").id
     return shop
 
 
@@ -128,7 +133,7 @@ def made_shop(folder: Path) -> Shop:
 def shop(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Shop]:
     """With a runner that nobody may end."""
     made = made_shop(tmp_path_factory.mktemp("shop"))
-    with open_store(made.depot.knowledge) as store:
+    with open_store(made.data_folder.knowledge) as store:
         store.add(list(outcomes(300)))
     made.start()
     yield made

@@ -2,30 +2,30 @@
 
 import json
 
-from service.depot.jobs import Kind, State
 from service.jobs.task import NC_CODE, OPTIMISED, REPORT, RESULT
+from service.storage.jobs import JobKind, JobState
 from stepnc_model.part21.reader import Part21File
 from tests.service.jobs.conftest import Shop
 
 
 def test_advice_leaves_a_result_a_program_nc_code_and_a_report(shop: Shop) -> None:
-    id = shop.order(Kind.ADVICE, machine="paper002", nc_control="linuxcnc").id
+    id = shop.order(JobKind.ADVICE, machine="paper002", nc_control="linuxcnc").id
     job = shop.over(id)
-    assert (job.state, job.share, job.problem) == (State.SUCCEEDED, 1.0, None)
-    folder = shop.depot.job_folder(id)
+    assert (job.state, job.share, job.problem) == (JobState.SUCCEEDED, 1.0, None)
+    folder = shop.data_folder.job_folder(id)
     assert {each.name for each in folder.iterdir()} == {RESULT, OPTIMISED, NC_CODE, REPORT}
     result = json.loads((folder / RESULT).read_bytes())
     assert (result["program"], result["is_written"]) == ("paper002.stpnc", True)
     assert result["nc_control"] == "linuxcnc"
     assert all(step["advised"] for step in result["workingsteps"])
     Part21File.from_bytes((folder / OPTIMISED).read_bytes(), name="x")
-    assert str(shop.depot.root) not in (folder / RESULT).read_text(encoding="utf-8")
-    assert str(shop.depot.root) not in (folder / REPORT).read_text(encoding="utf-8")
+    assert str(shop.data_folder.root) not in (folder / RESULT).read_text(encoding="utf-8")
+    assert str(shop.data_folder.root) not in (folder / REPORT).read_text(encoding="utf-8")
 
 
 def test_a_machine_that_is_none_is_a_problem_with_a_name(shop: Shop) -> None:
-    job = shop.over(shop.order(Kind.ADVICE, machine="../../etc/passwd").id)
-    assert job.state is State.FAILED
+    job = shop.over(shop.order(JobKind.ADVICE, machine="../../etc/passwd").id)
+    assert job.state is JobState.FAILED
     assert job.problem is not None
     assert job.problem["type"] == "urn:stepnc:problem:unknown-machine"
     assert job.problem["name"] == "../../etc/passwd"

@@ -7,12 +7,11 @@ from collections.abc import Iterator
 
 import pytest
 
-from service.depot import database, jobs, programs
-from service.depot.folder import open_depot
-from service.depot.jobs import Job, Kind, State
-from service.errors import NotFound
-from service.jobs import child
-from service.jobs.task import Task
+from service.jobs import advise, child
+from service.jobs.task import RunningJob
+from service.storage import database, jobs, programs
+from service.storage.folder import open_data_folder
+from service.storage.jobs import Job, JobKind, JobState
 from tests.service.jobs.conftest import Shop, made_shop
 from tests.service.live.room import within_room
 from tests.service.rest.samples import SAMPLE
@@ -38,18 +37,20 @@ def idle(tmp_path_factory: pytest.TempPathFactory) -> Shop:
 
 
 def ran(shop: Shop, job: Job) -> Job:
-    assert jobs.claim(shop.depot, kinds=[job.kind]) is not None
-    child.main(str(shop.depot.root), shop.depot.knowledge, job.id)
+    assert jobs.claim(shop.data_folder, kinds=[job.kind]) is not None
+    child.main(str(shop.data_folder.root), shop.data_folder.knowledge, job.id)
     return shop.job(job.id)
 
 
 def upload(shop: Shop, data: bytes) -> str:
-    return programs.add(shop.depot, data, name="bad.stpnc", owner="anna").id
+    return programs.add(shop.data_folder, data, name="bad.stpnc", owner="anna").id
 
 
 def test_a_line_that_cannot_be_read_is_named(idle: Shop) -> None:
-    job = ran(idle, idle.order(Kind.ADVICE, upload(idle, b"ISO-10303-21;\nHEADER;\nno((;\n")))
-    assert job.state is State.FAILED
+    job = ran(
+        idle, idle.order(JobKind.ADVICE, upload(idle, b"ISO-10303-21;\nHEADER;\nno((;\n"))
+    )
+    assert job.state is JobState.FAILED
     assert job.problem is not None
     assert job.problem["type"] == "urn:stepnc:problem:part21-error"
     assert (job.problem["status"], job.problem["line"]) == (422, 4)
@@ -58,51 +59,63 @@ def test_a_line_that_cannot_be_read_is_named(idle: Shop) -> None:
 def test_an_entity_that_is_missing_is_named(idle: Shop) -> None:
     lines = SAMPLE.read_bytes().splitlines(keepends=True)
     toolless = b"".join(line for line in lines if b"=MILLING_CUTTING_TOOL(" not in line)
-    job = ran(idle, idle.order(Kind.ADVICE, upload(idle, toolless)))
-    assert job.state is State.FAILED
+    job = ran(idle, idle.order(JobKind.ADVICE, upload(idle, toolless)))
+    assert job.state is JobState.FAILED
     assert job.problem is not None
     assert job.problem["type"] == "urn:stepnc:problem:schema-error"
     assert job.problem["entity"] == "#50"
 
 
 def test_a_workingstep_that_is_not_there_is_named(idle: Shop) -> None:
-    job = ran(idle, idle.order(Kind.ADVICE, workingsteps=["NO SUCH STEP"]))
-    assert job.state is State.FAILED
+    job = ran(idle, idle.order(JobKind.ADVICE, workingsteps=["NO SUCH STEP"]))
+    assert job.state is JobState.FAILED
     assert job.problem is not None
     assert "NO SUCH STEP" in job.problem["detail"]
 
 
 def test_no_problem_tells_where_the_data_lies(idle: Shop) -> None:
-    programs_folder = idle.depot.root / "programs"
+    programs_folder = idle.data_folder.root / "programs"
     (programs_folder / f"{idle.program}.stpnc").unlink()
-    for kind in (Kind.ADVICE, Kind.SIMULATION, Kind.CONTROL):
+    for kind in (JobKind.ADVICE, JobKind.SIMULATION, JobKind.CONTROL):
         job = ran(idle, idle.order(kind))
-        assert job.state is State.FAILED
-        assert str(idle.depot.root) not in str(job.problem)
+        assert job.state is JobState.FAILED
+        assert str(idle.data_folder.root) not in str(job.problem)
 
 
-def test_a_fault_of_the_program_is_no_fault_of_the_client(idle: Shop) -> None:
-    job = idle.order(Kind.ADVICE, mode=None)
-    with pytest.raises(Exception, match=r".") as fault:
+def test_a_stored_request_that_is_none_is_named(idle: Shop) -> None:
+    job = ran(idle, idle.order(JobKind.ADVICE, mode=None))
+    assert job.state is JobState.FAILED
+    assert job.problem is not None
+    assert "mode" in job.problem["detail"]
+
+
+def test_a_fault_of_the_program_is_no_fault_of_the_client(
+    idle: Shop, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(_task: RunningJob) -> None:
+        raise ZeroDivisionError("of the inside")
+
+    monkeypatch.setattr(advise, "run", fail)
+    job = idle.order(JobKind.ADVICE)
+    with pytest.raises(ZeroDivisionError):
         ran(idle, job)
-    assert not isinstance(fault.value, NotFound)
     found = idle.job(job.id)
-    assert found.state is State.FAILED
+    assert found.state is JobState.FAILED
     assert found.problem is not None
     assert (found.problem["status"], found.problem["title"]) == (500, "Fault")
     assert "Traceback" not in str(found.problem)
-    assert str(fault.value) not in found.problem["detail"]
+    assert "of the inside" not in str(found.problem)
 
 
 def test_an_end_is_said_once_the_database_answers_again(
     idle: Shop, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    job = idle.order(Kind.SIMULATION)
-    claimed = jobs.claim(idle.depot)
+    job = idle.order(JobKind.SIMULATION)
+    claimed = jobs.claim(idle.data_folder)
     assert claimed is not None
     monkeypatch.setattr(database, "WAIT", 0.01)
-    depot = open_depot(idle.depot.root, knowledge=idle.depot.knowledge)
-    other = sqlite3.connect(idle.depot.database.file, isolation_level=None)
+    data_folder = open_data_folder(idle.data_folder.root, knowledge=idle.data_folder.knowledge)
+    other = sqlite3.connect(idle.data_folder.database.file, isolation_level=None)
     other.execute("BEGIN IMMEDIATE")
     waits: list[float] = []
 
@@ -112,42 +125,42 @@ def test_an_end_is_said_once_the_database_answers_again(
             other.execute("ROLLBACK")
 
     monkeypatch.setattr(child, "sleep", wait)
-    task = Task(depot=depot, job=claimed)
+    task = RunningJob(data_folder=data_folder, job=claimed)
     # A word of progress is no reason to fail.
     task.progress(0.5, "half")
-    child._finish(task, State.SUCCEEDED, None)
+    child._finish(task, JobState.SUCCEEDED, None)
     other.close()
     found = idle.job(job.id)
-    assert (found.state, found.message, len(waits)) == (State.SUCCEEDED, "", 3)
+    assert (found.state, found.message, len(waits)) == (JobState.SUCCEEDED, "", 3)
 
 
 ON_FULL_DISK = """
-from service.jobs import child
+from service.jobs import advise, child
 child.main(sys.argv[1], "none.db", sys.argv[2])
 """
 
 
 def test_a_job_without_room_says_so_and_frees_what_it_took(idle: Shop) -> None:
-    root = idle.depot.root
-    job = idle.order(Kind.SIMULATION, rate_hz=1000.0)
-    assert jobs.claim(idle.depot) is not None
+    root = idle.data_folder.root
+    job = idle.order(JobKind.SIMULATION, rate_hz=1000.0)
+    assert jobs.claim(idle.data_folder) is not None
     within_room(ON_FULL_DISK, root, job.id, room=2_000_000)
     found = idle.job(job.id)
-    assert found.state is State.FAILED
+    assert found.state is JobState.FAILED
     assert found.problem is not None
     assert found.problem["status"] == 507
     assert str(root) not in str(found.problem)
-    left = {each.name for each in idle.depot.job_folder(job.id).iterdir()}
+    left = {each.name for each in idle.data_folder.job_folder(job.id).iterdir()}
     assert left <= {"status.json"}
 
 
 def test_what_another_attempt_left_half_done_is_cleared_away(idle: Shop) -> None:
-    job = idle.order(Kind.ADVICE)
-    folder = idle.depot.job_folder(job.id)
+    job = idle.order(JobKind.ADVICE)
+    folder = idle.data_folder.job_folder(job.id)
     folder.mkdir()
     for name in (".samples.parquet.abc", "samples.partial.parquet"):
         (folder / name).write_bytes(b"half")
-    assert ran(idle, job).state is State.SUCCEEDED
+    assert ran(idle, job).state is JobState.SUCCEEDED
     names = {each.name for each in folder.iterdir()}
     assert "result.json" in names
     assert not [name for name in names if name.startswith(".") or "partial" in name]
@@ -157,7 +170,7 @@ def test_a_job_that_was_asked_to_end_is_cancelled(idle: Shop) -> None:
     with pytest.raises(child.Cancelled):
         child._cancel(signal.SIGTERM, None)
     # Told to end before its first line of work.
-    job = idle.order(Kind.SIMULATION, pace=0.5)
+    job = idle.order(JobKind.SIMULATION, pace=0.5)
     signal.setitimer(signal.ITIMER_REAL, 0.0)
     previous = signal.signal(signal.SIGALRM, lambda *_: signal.raise_signal(signal.SIGTERM))
     try:
@@ -166,4 +179,4 @@ def test_a_job_that_was_asked_to_end_is_cancelled(idle: Shop) -> None:
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.signal(signal.SIGALRM, previous)
-    assert (found.state, found.problem) == (State.CANCELLED, None)
+    assert (found.state, found.problem) == (JobState.CANCELLED, None)

@@ -10,18 +10,18 @@ from pathlib import Path
 
 import pytest
 
-from service.depot import jobs
-from service.depot.folder import open_depot
-from service.depot.jobs import Kind, State
 from service.errors import Conflict
 from service.jobs import preloaded, runner
+from service.storage import jobs
+from service.storage.folder import open_data_folder
+from service.storage.jobs import JobKind, JobState
 from tests.service.jobs.conftest import IMPATIENT, MAIN, Shop
 from tests.service.waiting import children, is_alive, until
 
 
 def process_of(shop: Shop, id: str) -> int:
     """Of a running job: the one that has its rows open."""
-    series = str(shop.depot.job_folder(id) / "series.bin")
+    series = str(shop.data_folder.job_folder(id) / "series.bin")
     for pid in children(shop.runners[-1].pid):
         try:
             opened = [os.readlink(each) for each in Path(f"/proc/{pid}/fd").iterdir()]
@@ -33,43 +33,43 @@ def process_of(shop: Shop, id: str) -> int:
 
 
 def test_a_running_simulation_is_cancelled_within_seconds(shop: Shop) -> None:
-    id = shop.order(Kind.SIMULATION, pace=0.1).id
+    id = shop.order(JobKind.SIMULATION, pace=0.1).id
     shop.runs(id)
-    jobs.cancel(shop.depot, id)
+    jobs.cancel(shop.data_folder, id)
     job = shop.over(id, within=10.0)
-    assert (job.state, job.problem) == (State.CANCELLED, None)
-    folder = shop.depot.job_folder(id)
+    assert (job.state, job.problem) == (JobState.CANCELLED, None)
+    folder = shop.data_folder.job_folder(id)
     assert not (folder / "result.json").exists()
     assert not [each.name for each in folder.iterdir() if each.name.startswith(".samples")]
 
 
 def test_a_job_whose_process_was_killed_says_so_and_the_next_one_runs(shop: Shop) -> None:
-    id = shop.order(Kind.SIMULATION, pace=0.1).id
+    id = shop.order(JobKind.SIMULATION, pace=0.1).id
     shop.runs(id)
-    next_one = shop.order(Kind.SIMULATION).id
+    next_one = shop.order(JobKind.SIMULATION).id
     os.kill(process_of(shop, id), signal.SIGKILL)
     job = shop.over(id)
-    assert job.state is State.FAILED
+    assert job.state is JobState.FAILED
     assert job.problem is not None
     assert job.problem["type"] == "urn:stepnc:problem:job-lost"
     assert "SIGKILL" in job.problem["detail"]
-    assert shop.over(next_one).state is State.SUCCEEDED
+    assert shop.over(next_one).state is JobState.SUCCEEDED
 
 
 def test_live_runs_do_not_wait_for_other_jobs(shop: Shop) -> None:
-    paced = [shop.order(Kind.SIMULATION, pace=0.1).id for _ in range(2)]
-    trials = [shop.order(Kind.TRIAL).id for _ in range(2)]
+    paced = [shop.order(JobKind.SIMULATION, pace=0.1).id for _ in range(2)]
+    trials = [shop.order(JobKind.TRIAL).id for _ in range(2)]
     for id in (*paced, *trials):
         shop.runs(id)
-    assert shop.over(shop.order(Kind.SIMULATION).id).state is State.SUCCEEDED
+    assert shop.over(shop.order(JobKind.SIMULATION).id).state is JobState.SUCCEEDED
     for id in (*paced, *trials):
-        jobs.cancel(shop.depot, id)
-    assert {shop.over(id).state for id in (*paced, *trials)} == {State.CANCELLED}
+        jobs.cancel(shop.data_folder, id)
+    assert {shop.over(id).state for id in (*paced, *trials)} == {JobState.CANCELLED}
 
 
 def test_one_runner_works_for_a_folder(shop: Shop) -> None:
     with pytest.raises(Conflict, match="another server works with this folder"):
-        runner.locked(shop.depot.root)
+        runner.locked(shop.data_folder.root)
 
 
 def test_a_lock_is_free_again_when_it_is_closed(tmp_path: Path) -> None:
@@ -80,37 +80,37 @@ def test_a_lock_is_free_again_when_it_is_closed(tmp_path: Path) -> None:
 
 
 def test_a_sign_of_life_grows_old(tmp_path: Path) -> None:
-    depot = open_depot(tmp_path, knowledge="none.db")
-    assert not runner.is_alive(depot)
-    runner.beat(depot)
-    runner.beat(depot)
-    assert runner.is_alive(depot)
-    with depot.database.writing() as connection:
+    data_folder = open_data_folder(tmp_path, knowledge="none.db")
+    assert not runner.is_alive(data_folder)
+    runner.beat(data_folder)
+    runner.beat(data_folder)
+    assert runner.is_alive(data_folder)
+    with data_folder.database.writing() as connection:
         connection.execute("UPDATE runner SET seen = seen - ?", (5.0 * runner.BEAT,))
-    assert not runner.is_alive(depot)
+    assert not runner.is_alive(data_folder)
 
 
 def test_a_locked_database_ends_nobody_and_what_happened_is_told_later(
     own_shop: Shop,
 ) -> None:
     server = own_shop.start(IMPATIENT)
-    trial, killed = own_shop.order(Kind.TRIAL).id, own_shop.order(Kind.TRIAL).id
+    trial, killed = own_shop.order(JobKind.TRIAL).id, own_shop.order(JobKind.TRIAL).id
     own_shop.runs(trial)
     own_shop.runs(killed)
-    with closing(sqlite3.connect(own_shop.depot.database.file)) as other:
+    with closing(sqlite3.connect(own_shop.data_folder.database.file)) as other:
         other.isolation_level = None
         other.execute("BEGIN IMMEDIATE")
         pid = process_of(own_shop, killed)
         os.kill(pid, signal.SIGKILL)
         until(lambda: "does not answer" in own_shop.log.read_text(encoding="utf-8"))
         until(lambda: "job ended" in own_shop.log.read_text(encoding="utf-8"))
-        assert own_shop.job(killed).state is State.RUNNING
+        assert own_shop.job(killed).state is JobState.RUNNING
         other.execute("ROLLBACK")
     lost = own_shop.over(killed, within=30.0)
     assert lost.problem is not None
     assert "SIGKILL" in lost.problem["detail"]
-    assert own_shop.over(own_shop.order(Kind.SIMULATION).id).state is State.SUCCEEDED
-    assert (server.poll(), own_shop.job(trial).state) == (None, State.RUNNING)
+    assert own_shop.over(own_shop.order(JobKind.SIMULATION).id).state is JobState.SUCCEEDED
+    assert (server.poll(), own_shop.job(trial).state) == (None, JobState.RUNNING)
     assert own_shop.log.read_text(encoding="utf-8").count("does not answer") == 1
 
 
@@ -118,12 +118,12 @@ def test_a_folder_that_was_moved_away_is_not_made_anew_and_may_come_back(
     own_shop: Shop, tmp_path: Path
 ) -> None:
     server = own_shop.start()
-    root = own_shop.depot.root
+    root = own_shop.data_folder.root
     root.rename(tmp_path / "moved")
     until(lambda: "does not answer" in own_shop.log.read_text(encoding="utf-8"))
     assert not root.exists()
     (tmp_path / "moved").rename(root)
-    assert own_shop.over(own_shop.order(Kind.SIMULATION).id).state is State.SUCCEEDED
+    assert own_shop.over(own_shop.order(JobKind.SIMULATION).id).state is JobState.SUCCEEDED
     assert server.poll() is None
 
 
@@ -135,8 +135,8 @@ runner.LONGEST_PACED = 0.5
 
 def test_a_run_for_which_nobody_comes_has_an_end_that_says_why(own_shop: Shop) -> None:
     own_shop.start(HASTY)
-    job = own_shop.over(own_shop.order(Kind.TRIAL).id)
-    assert job.state is State.FAILED
+    job = own_shop.over(own_shop.order(JobKind.TRIAL).id)
+    assert job.state is JobState.FAILED
     assert job.problem is not None
     assert job.problem["type"] == "urn:stepnc:problem:too-long"
     assert "h, which is the most" in job.problem["detail"]
@@ -150,10 +150,10 @@ def test_all_are_ended_though_one_of_them_is_gone_already(own_shop: Shop) -> Non
     gone.kill()
     gone.join()
     gone.close()
-    made = runner.Runner(depot=own_shop.depot, workers=1)
+    made = runner.Runner(data_folder=own_shop.data_folder, workers=1)
     for each in (gone, stays):
-        own_shop.order(Kind.TRIAL)
-        job = jobs.claim(own_shop.depot)
+        own_shop.order(JobKind.TRIAL)
+        job = jobs.claim(own_shop.data_folder)
         assert job is not None
         made.running[job.id] = runner.Running(job=job, process=each)
     made._end_all()
@@ -162,14 +162,17 @@ def test_all_are_ended_though_one_of_them_is_gone_already(own_shop: Shop) -> Non
 
 def test_what_is_preloaded_is_loaded() -> None:
     assert preloaded.__doc__ is not None
-    assert "service.simulation.report" in sys.modules
+    assert "service.simulation.output" in sys.modules
 
 
 def test_a_killed_runner_leaves_nobody_and_the_next_one_finishes_its_job(
     own_shop: Shop,
 ) -> None:
     killed = own_shop.start()
-    id, trial = own_shop.order(Kind.SIMULATION, pace=40.0).id, own_shop.order(Kind.TRIAL).id
+    id, trial = (
+        own_shop.order(JobKind.SIMULATION, pace=40.0).id,
+        own_shop.order(JobKind.TRIAL).id,
+    )
     own_shop.runs(id)
     own_shop.runs(trial)
     below = children(killed.pid)
@@ -177,27 +180,27 @@ def test_a_killed_runner_leaves_nobody_and_the_next_one_finishes_its_job(
     killed.kill()
     killed.wait(10.0)
     until(lambda: not any(map(is_alive, below)), within=20.0)
-    assert own_shop.job(id).state is State.RUNNING
+    assert own_shop.job(id).state is JobState.RUNNING
     own_shop.start()
     job = own_shop.over(id)
-    assert (job.state, job.attempt) == (State.SUCCEEDED, 2)
+    assert (job.state, job.attempt) == (JobState.SUCCEEDED, 2)
     lost = own_shop.job(trial)
-    assert (lost.state, lost.attempt) == (State.FAILED, 1)
+    assert (lost.state, lost.attempt) == (JobState.FAILED, 1)
     assert lost.problem is not None
     assert "people" in lost.problem["detail"]
 
 
 def test_a_runner_that_is_told_to_stop_ends_its_jobs_for_the_next_one(own_shop: Shop) -> None:
     first = own_shop.start()
-    id = own_shop.order(Kind.SIMULATION, pace=40.0).id
+    id = own_shop.order(JobKind.SIMULATION, pace=40.0).id
     own_shop.runs(id)
     below = children(first.pid)
     first.send_signal(signal.SIGINT)
     first.send_signal(signal.SIGTERM)
     assert first.wait(20.0) == 0
     until(lambda: not any(map(is_alive, below)), within=20.0)
-    with runner.locked(own_shop.depot.root):
+    with runner.locked(own_shop.data_folder.root):
         """free at once"""
-    assert own_shop.job(id).state is State.RUNNING
+    assert own_shop.job(id).state is JobState.RUNNING
     own_shop.start()
-    assert own_shop.over(id).state is State.SUCCEEDED
+    assert own_shop.over(id).state is JobState.SUCCEEDED

@@ -3,20 +3,20 @@
 import json
 
 from kbe.selection import EVERYTHING
-from service.depot.jobs import Kind, State
 from service.jobs.task import REPORT, RESULT, SAMPLES
 from service.knowledge import verbs
 from service.live.folder import LiveFolder
 from service.live.journal import append, read_on
 from service.live.series import open_series
+from service.storage.jobs import JobKind, JobState
 from tests.service.jobs.conftest import Shop
 from tests.service.waiting import until
 
 
 def test_a_trial_takes_changes_refuses_others_and_ends(shop: Shop) -> None:
-    id = shop.order(Kind.TRIAL, pace=20.0).id
+    id = shop.order(JobKind.TRIAL, pace=20.0).id
     shop.runs(id)
-    folder = LiveFolder(path=shop.depot.job_folder(id))
+    folder = LiveFolder(path=shop.data_folder.job_folder(id))
     append(folder.orders, {"axial_depth_mm": 3.0, "pace": 100.0})
     append(folder.orders, {"axial_depth_mm": -3.0})
 
@@ -30,7 +30,7 @@ def test_a_trial_takes_changes_refuses_others_and_ends(shop: Shop) -> None:
     until(lambda: any(line["kind"] == "refused" for line in read_on(folder.events, 0).lines))
     append(folder.orders, {"end": True})
     job = shop.over(id)
-    assert (job.state, job.problem) == (State.SUCCEEDED, None)
+    assert (job.state, job.problem) == (JobState.SUCCEEDED, None)
     result = json.loads((folder.path / RESULT).read_bytes())
     assert result["status"]["inputs"]["axial_depth_mm"] == 3.0
     series = open_series(folder.series)
@@ -39,20 +39,20 @@ def test_a_trial_takes_changes_refuses_others_and_ends(shop: Shop) -> None:
 
 
 def test_an_input_beyond_its_bounds_is_a_problem(shop: Shop) -> None:
-    job = shop.over(shop.order(Kind.TRIAL, inputs={"teeth": 1000}).id)
-    assert job.state is State.FAILED
+    job = shop.over(shop.order(JobKind.TRIAL, inputs={"teeth": 1000}).id)
+    assert job.state is JobState.FAILED
     assert job.problem is not None
     assert job.problem["status"] == 422
 
 
 def test_a_control_run_keeps_its_outcomes_its_samples_and_a_report(shop: Shop) -> None:
-    before = verbs.newest(shop.depot.knowledge, EVERYTHING, limit=2000)
-    id = shop.order(Kind.CONTROL, machine="vmc15", pace=0.0, disturbances=["kc:1.2"]).id
+    before = verbs.newest(shop.data_folder.knowledge, EVERYTHING, limit=2000)
+    id = shop.order(JobKind.CONTROL, machine="vmc15", pace=0.0, disturbances=["kc:1.2"]).id
     job = shop.over(id)
-    assert (job.state, job.problem) == (State.SUCCEEDED, None)
-    folder = shop.depot.job_folder(id)
+    assert (job.state, job.problem) == (JobState.SUCCEEDED, None)
+    folder = shop.data_folder.job_folder(id)
     assert {RESULT, REPORT, SAMPLES, "series.bin"} <= {each.name for each in folder.iterdir()}
-    found = verbs.newest(shop.depot.knowledge, EVERYTHING, limit=2000)
+    found = verbs.newest(shop.data_folder.knowledge, EVERYTHING, limit=2000)
     fresh = [each for each in found.outcomes if each not in before.outcomes]
     assert fresh
     assert {each.trace for each in fresh} == {f"/v1/control-runs/{id}/samples"}
@@ -63,7 +63,7 @@ def test_a_control_run_keeps_its_outcomes_its_samples_and_a_report(shop: Shop) -
 
 
 def test_a_run_that_is_not_to_be_recorded_is_not(shop: Shop) -> None:
-    before = verbs.newest(shop.depot.knowledge, EVERYTHING, limit=2000)
-    job = shop.over(shop.order(Kind.CONTROL, pace=0.0, is_recorded=False).id)
-    assert job.state is State.SUCCEEDED, job.problem
-    assert verbs.newest(shop.depot.knowledge, EVERYTHING, limit=2000) == before
+    before = verbs.newest(shop.data_folder.knowledge, EVERYTHING, limit=2000)
+    job = shop.over(shop.order(JobKind.CONTROL, pace=0.0, is_recorded=False).id)
+    assert job.state is JobState.SUCCEEDED, job.problem
+    assert verbs.newest(shop.data_folder.knowledge, EVERYTHING, limit=2000) == before

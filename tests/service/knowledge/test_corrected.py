@@ -9,16 +9,17 @@ from pathlib import Path
 import pytest
 
 from kbe.store import open_store
-from optimiser.formulate import Task
+from optimiser.formulate import OptimisationTask
 from service.reading import read_program
-from service.usecases import Request, optimise
+from service.usecases import optimise
 from stepnc_model.errors import StepNcError
-from stepnc_model.outcome import Context, Correction
+from stepnc_model.outcome import Context, LearnedCorrection
 from stepnc_model.outcome_record import read_outcomes
+from tests.asking import AskedAdvice, asked_advice
 
 PART = Path(__file__).parents[3] / "examples" / "parts" / "paper002.stpnc"
 NOW = datetime(2026, 3, 2, 8, 0, tzinfo=UTC)
-LEARNED = Correction(
+LEARNED = LearnedCorrection(
     context=Context(machine="vmc15", material="c45", tool="MILL 18MM"),
     log_centre=log(1.3),
     log_scale=0.05,
@@ -40,17 +41,16 @@ def place(tmp_path: Path) -> str:
     return place
 
 
-def request(folder: Path, **more: str | float) -> Request:
-    return replace(
-        Request(file=PART, machine="vmc15", material="c45", output=folder / "out.stpnc"),
-        **more,  # type: ignore[arg-type]
-    )
+def request(folder: Path, **more: str | float) -> AskedAdvice:
+    output = folder / "out.stpnc"
+    words = {"machine": "vmc15", "material": "c45", "output": output, **more}
+    return asked_advice(PART, **words)  # type: ignore[arg-type]
 
 
 def test_a_plan_takes_the_quantile_of_the_accepted_factor_and_says_so(
     place: str, tmp_path: Path
 ) -> None:
-    plan = optimise(request(tmp_path, knowledge=place)).plan
+    plan = optimise(*request(tmp_path, knowledge=place)).plan
     # Student's t with 6 degrees of freedom: 1.440 at 0.9 (any table).
     assert plan.advices[0].force_factor == pytest.approx(1.3)
     assert plan.advices[0].safety_factor == pytest.approx(exp(0.05 * 1.440), 1e-3)
@@ -62,20 +62,20 @@ def test_a_plan_takes_the_quantile_of_the_accepted_factor_and_says_so(
 
 
 def test_the_median_is_the_centre(place: str, tmp_path: Path) -> None:
-    plan = optimise(request(tmp_path, knowledge=place, safety=0.5)).plan
+    plan = optimise(*request(tmp_path, knowledge=place, safety=0.5)).plan
     assert plan.advices[0].force_factor == pytest.approx(1.3)
 
 
 def test_the_force_is_kept_with_the_learned_factor(place: str, tmp_path: Path) -> None:
-    learned = optimise(request(tmp_path, knowledge=place, safety=0.5)).plan.advices[0]
-    catalogue = optimise(request(tmp_path, safety=0.5)).plan.advices[0]
+    learned = optimise(*request(tmp_path, knowledge=place, safety=0.5)).plan.advices[0]
+    catalogue = optimise(*request(tmp_path, safety=0.5)).plan.advices[0]
     assert learned.after is not None
     assert catalogue.after is not None
     assert learned.after.time > catalogue.after.time
 
 
 def test_what_was_taken_is_written_to_the_file(place: str, tmp_path: Path) -> None:
-    done = optimise(request(tmp_path, knowledge=place))
+    done = optimise(*request(tmp_path, knowledge=place))
     assert done.written is not None
     (recorded,) = read_outcomes(read_program(done.written, units="iso")).corrections
     assert recorded.context == LEARNED.context
@@ -84,26 +84,26 @@ def test_what_was_taken_is_written_to_the_file(place: str, tmp_path: Path) -> No
 
 
 def test_without_a_knowledge_base_nothing_is_corrected(tmp_path: Path) -> None:
-    plan = optimise(request(tmp_path)).plan
-    assert plan.advices[0].force_factor == Task().force_factor("MILL 18MM") == 1.0
+    plan = optimise(*request(tmp_path)).plan
+    assert plan.advices[0].force_factor == OptimisationTask().force_factor("MILL 18MM") == 1.0
 
 
 def test_the_environment_may_name_it(
     place: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(os.environ, "STEPNC_KB", place)
-    assert optimise(request(tmp_path, safety=0.5)).plan.advices[0].force_factor > 1.29
+    assert optimise(*request(tmp_path, safety=0.5)).plan.advices[0].force_factor > 1.29
 
 
 def test_another_machine_learns_nothing_from_this_one(place: str, tmp_path: Path) -> None:
-    plan = optimise(request(tmp_path, knowledge=place, machine="paper002")).plan
+    plan = optimise(*request(tmp_path, knowledge=place, machine="paper002")).plan
     assert plan.advices[0].force_factor == 1.0
 
 
 def test_a_knowledge_base_that_is_not_there_is_refused(tmp_path: Path) -> None:
     missing = str(tmp_path / "none.db")
     with pytest.raises(StepNcError, match="no such file"):
-        optimise(request(tmp_path, knowledge=missing))
+        optimise(*request(tmp_path, knowledge=missing))
     assert not (tmp_path / "out.stpnc").exists()
     assert not Path(missing).exists()
 
@@ -111,5 +111,5 @@ def test_a_knowledge_base_that_is_not_there_is_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize("safety", [0.49, 0.9995, float("nan")])
 def test_an_impossible_quantile_is_refused(tmp_path: Path, safety: float) -> None:
     with pytest.raises(StepNcError, match=r"safety .*: it must be 0\.5 to 0\.999"):
-        optimise(request(tmp_path, safety=safety))
+        optimise(*request(tmp_path, safety=safety))
     assert not (tmp_path / "out.stpnc").exists()

@@ -5,28 +5,33 @@ from pathlib import Path
 
 import pytest
 
-from service.knowledge.evaluated import EvaluationTable, TableRequest, table
-from service.knowledge.evaluation_cells import lines
-from service.knowledge.evaluation_export import FIELDS, table_json, table_rows
+from service.knowledge.evaluated import EvaluationTable, table
+from service.knowledge.evaluation_columns import FILE_COLUMNS, lines
+from service.knowledge.evaluation_output import table_json
+from service.rendering.records import file_columns, file_rows
+from service.requests.knowledge import EvaluationRequest
 from stepnc_model.units import m_min_from_speed
 
 
 @pytest.fixture(scope="module")
 def found(shop_file: Path) -> EvaluationTable:
-    return table(str(shop_file), TableRequest())
+    return table(str(shop_file), EvaluationRequest())
 
 
 def test_every_side_is_a_line_with_every_column(found: EvaluationTable) -> None:
-    rows = list(table_rows(found.rows))
+    rows = list(file_rows(FILE_COLUMNS, lines(found.rows)))
+    fields = file_columns(FILE_COLUMNS)
     assert len(rows) == len(list(lines(found.rows)))
     for row in rows:
-        assert set(row) == {field.name for field in FIELDS}
-        for field in FIELDS:
+        assert set(row) == {field.name for field in fields}
+        for field in fields:
             assert row[field.name] is None or isinstance(row[field.name], field.kind)
 
 
 def test_units_are_those_of_the_names(found: EvaluationTable) -> None:
-    line, row = next(zip(lines(found.rows), table_rows(found.rows), strict=True))
+    line, row = next(
+        (line, next(file_rows(FILE_COLUMNS, [line]))) for line in lines(found.rows)
+    )
     side = line.side
     assert side.cutting_speed is not None
     assert row["cutting_speed_m_min"] == m_min_from_speed(side.cutting_speed)

@@ -8,17 +8,18 @@ from pathlib import Path
 
 import pytest
 
-from kbe.selection import Selection
-from service.knowledge.evaluated import EvaluationTable, TableRequest, table
-from service.knowledge.evaluation_cells import columns, lines
-from service.knowledge.evaluation_page import evaluation_page
+from service.knowledge.evaluated import EvaluationTable, table
+from service.knowledge.evaluation_columns import lines, screen_columns
+from service.knowledge.evaluation_output import evaluation_page
+from service.rendering.columns import visible
+from service.requests.knowledge import EvaluationRequest
 
 EVIL = "<script>alert('a & b')</script>"
 
 
 @pytest.fixture(scope="module")
 def found(shop_file: Path) -> EvaluationTable:
-    return table(str(shop_file), TableRequest())
+    return table(str(shop_file), EvaluationRequest())
 
 
 class Reader(HTMLParser):
@@ -56,7 +57,7 @@ class Reader(HTMLParser):
 def test_every_line_has_every_column(found: EvaluationTable) -> None:
     reader = Reader()
     reader.feed(evaluation_page(found))
-    width = len(columns(found.rows))
+    width = len(visible(screen_columns(found.rows), tuple(lines(found.rows))))
     assert reader.heads == [width, width]
     assert reader.cells == [width] * len(list(lines(found.rows)))
     assert reader.open == []
@@ -79,10 +80,10 @@ def test_hostile_names_are_only_names(found: EvaluationTable) -> None:
     side = replace(first.roughing, context=context, strategies=(EVIL,))
     rows = (replace(first, key=key, roughing=side), found.rows[1])
     at = datetime(2026, 3, 5, tzinfo=UTC)
-    request = TableRequest(selection=Selection(machine=EVIL, since=at, until=at))
+    request = EvaluationRequest(machine=EVIL, since=at, until=at)
     page = evaluation_page(replace(found, rows=rows, place=EVIL, request=request))
     assert "<script" not in page
-    assert page.count("&lt;script&gt;alert(&#x27;a &amp; b&#x27;)") >= 7
+    assert page.count("&lt;script&gt;alert(&#39;a &amp; b&#39;)") >= 7
 
 
 def test_remarks_lead_to_their_rows(found: EvaluationTable) -> None:

@@ -9,12 +9,9 @@ import pytest
 
 from kbe.selection import EVERYTHING
 from service.knowledge.evaluated import Summary, summary
-from service.knowledge.evaluation_summary import (
-    SUMMARY_FIELDS,
-    print_summary,
-    summary_json,
-    summary_rows,
-)
+from service.knowledge.evaluation_columns import SUMMARY
+from service.knowledge.evaluation_output import print_summary, summary_json
+from service.rendering.records import file_columns, file_rows
 from stepnc_model.outcome import ProcessOutcome
 
 
@@ -26,8 +23,8 @@ def found(shop_file: Path) -> Summary:
 def test_means_and_spreads_are_those_of_the_outcomes(
     found: Summary, shop_outcomes: tuple[ProcessOutcome, ...]
 ) -> None:
-    row = next(iter(summary_rows(found.groups)))
-    assert list(row) == [field.name for field in SUMMARY_FIELDS]
+    row = next(file_rows(SUMMARY, found.groups))
+    assert list(row) == [field.name for field in file_columns(SUMMARY)]
     group = found.groups[0]
     deviations = [
         100.0 * (each.force.deviation or 0.0)

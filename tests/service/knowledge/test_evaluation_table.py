@@ -7,16 +7,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from service.knowledge.evaluated import EvaluationTable, TableRequest, table
-from service.knowledge.evaluation_cells import COLUMNS
-from service.knowledge.evaluation_table import Laid, blocks, plain, screen_width, table_text
+from service.knowledge.evaluated import EvaluationTable, table
+from service.knowledge.evaluation_columns import COLUMNS
+from service.knowledge.evaluation_output import table_text
+from service.rendering.text import TextColumn, blocks, one_line, screen_width
+from service.requests.knowledge import EvaluationRequest
 
 ENDLESS = 10**9
 
 
 @pytest.fixture(scope="module")
 def found(shop_file: Path) -> EvaluationTable:
-    return table(str(shop_file), TableRequest())
+    return table(str(shop_file), EvaluationRequest())
 
 
 def test_the_header_has_two_levels_as_in_the_paper(found: EvaluationTable) -> None:
@@ -42,7 +44,7 @@ def test_no_line_of_a_table_is_longer_than_the_screen(
 
 @given(st.integers(1, 300))
 def test_blocks_have_every_column_once_and_the_key_each_time(width: int) -> None:
-    laid = [Laid(column=each, cells=("12345678",), width=8) for each in COLUMNS]
+    laid = [TextColumn(column=each, cells=("12345678",), width=8) for each in COLUMNS]
     keys = [each for each in laid if each.column.is_key]
     found = list(blocks(laid, width=width))
     assert all(list(block[: len(keys)]) == keys for block in found)
@@ -69,7 +71,7 @@ def test_a_name_cannot_steer_the_terminal(found: EvaluationTable) -> None:
     rows = (replace(found.rows[0], key=evil),)
     text = table_text(replace(found, rows=rows), width=ENDLESS)
     assert "a�[2J b" in text
-    assert plain(" \n ") == "–"
+    assert one_line(" \n ") == "–"
 
 
 def test_a_table_without_rows_says_so(found: EvaluationTable) -> None:

@@ -18,8 +18,9 @@ from kbe.selection import EVERYTHING, Selection
 from service.flat_file import Format
 from service.knowledge import verbs as knowledge
 from service.knowledge.export import export_corrections, export_outcomes, outcome_rows
-from service.knowledge.review import ReviewRequest, review
-from stepnc_model.outcome import ProcessOutcome, Quantity
+from service.knowledge.review import review
+from service.requests.knowledge import ReviewRequest
+from stepnc_model.outcome import EvaluatedQuantity, ProcessOutcome
 
 HOSTILE = "=cmd|' /C calc'!A0,\"\n+1"
 
@@ -33,14 +34,14 @@ def hard(kb: str, shop_outcomes: tuple[ProcessOutcome, ...]) -> list[ProcessOutc
     """The shop's outcomes, with one of which little is known, and one of hard names."""
     last = shop_outcomes[-1]
     bare = replace(
-        last, force_ratio=None, immersion=None, specific_force=None, force=Quantity(),
+        last, force_ratio=None, immersion=None, specific_force=None, force=EvaluatedQuantity(),
         strategy="", trace="",
     )  # fmt: skip
     evil = replace(
         last,
         program=HOSTILE,
         workingstep="Fräsen Ø18 🛠",
-        force=Quantity(predicted=0.1 + 0.2, measured=5e-324),
+        force=EvaluatedQuantity(predicted=0.1 + 0.2, measured=5e-324),
         recorded_at=last.recorded_at.replace(microsecond=123457),
     )
     knowledge.record(kb, [bare, evil])
@@ -85,7 +86,7 @@ def test_filters_hold_for_exports(kb: str, tmp_path: Path) -> None:
 
 
 def test_corrections_have_their_factor_and_last_decision(kb: str, tmp_path: Path) -> None:
-    review(kb, ReviewRequest(by="A. Smith", selection=Selection(tool="ENDMILL 18")))
+    review(kb, ReviewRequest(tool="ENDMILL 18"))
     knowledge.accept(kb, [1], by="A. Smith")
     path = tmp_path / "corrections.parquet"
     assert export_corrections(kb, file=path, form=Format.PARQUET) == 6

@@ -1,68 +1,103 @@
-"""The table in every form, to stdout and to files."""
+"""Outcomes and corrections on a terminal, in the user's units."""
 
-import csv
-import io
-import json
-from pathlib import Path
+from dataclasses import replace
+from datetime import UTC, datetime
 
-import pyarrow.parquet as pq
 import pytest
 
-from kbe.selection import EVERYTHING, Selection
-from service.knowledge.evaluated import TableRequest
-from service.knowledge.output import put_summary, put_table
-from service.reading import silent
-from stepnc_model.errors import StepNcError
+from kbe.backup import Content
+from kbe.ledger import Standing, StoredCorrection
+from service.knowledge.output import (
+    EVALUATED,
+    print_content,
+    print_corrections,
+    print_listing,
+    print_run,
+    told,
+)
+from service.knowledge.verbs import Listing
+from stepnc_model.outcome import EvaluatedQuantity, ProcessOutcome
+from tests.kbe.cuts import SLOT, correction
 
-SLOTS = TableRequest(selection=Selection(feature_kind="slot", machine="vmc15"))
+CUT = replace(
+    SLOT,
+    roughness=EvaluatedQuantity(predicted=0.0016, measured=0.0020),
+    feed=EvaluatedQuantity(predicted=10.0, measured=5.0),
+    time=EvaluatedQuantity(predicted=50.0, measured=55.0),
+)
 
 
-def put(place: Path, form: str, output: Path | None) -> int:
-    return put_table(str(place), SLOTS, form=form, output=output, tell=silent)
+def test_the_edge_speaks_micrometres_and_millimetres_a_minute() -> None:
+    told_of = {heading: of(CUT) for heading, of in EVALUATED.items()}
+    assert told_of["Ra µm"].measured == pytest.approx(2.0)
+    assert told_of["feed mm/min"] == EvaluatedQuantity(predicted=600.0, measured=300.0)
 
 
-@pytest.mark.parametrize("form", ["text", "csv", "json", "html"])
-def test_a_file_is_what_stdout_shows(
-    form: str,
-    shop_file: Path,
-    tmp_path: Path,
+def test_a_quantity_is_told_with_its_deviation() -> None:
+    assert told(EvaluatedQuantity(predicted=50.0, measured=55.0)) == "50 -> 55 (+10 %)"
+    assert told(EvaluatedQuantity(predicted=50.0)) == "50 -> –"
+    assert told(EvaluatedQuantity()) == ""
+
+
+def test_a_listing_has_a_line_for_each(
+    capsys: pytest.CaptureFixture[str], shop_outcomes: tuple[ProcessOutcome, ...]
+) -> None:
+    print_listing(Listing(outcomes=(CUT, shop_outcomes[0]), total=7))
+    out = capsys.readouterr().out.splitlines()
+    assert "Slot_2" not in out[2]
+    assert "600 -> 300 (-50 %)" in out[2]
+    assert out[-1].startswith("2 of 7 outcomes")
+
+
+def test_a_run_is_told_in_full(capsys: pytest.CaptureFixture[str]) -> None:
+    evil = replace(CUT, workingstep="a\nb\x1b[2J")
+    print_run([evil])
+    out = capsys.readouterr().out
+    assert "a b�[2J" in out
+    for name in ("Ra µm", "time s", "force N", "feed mm/min", "step depth mm"):
+        assert name in out
+    assert "L 150, X 100, a_t 20 mm" in out
+    assert "cutting speed, m/min: 35" in out
+
+
+def test_corrections_tell_who_decided(capsys: pytest.CaptureFixture[str]) -> None:
+    at = datetime(2026, 3, 5, 12, 0, tzinfo=UTC)
+    entry = StoredCorrection(
+        id=3,
+        correction=correction(0.1),
+        standing=Standing.WITHDRAWN,
+        decided_by="B. Jones",
+        decided_at=at,
+    )
+    print_corrections([entry])
+    out = capsys.readouterr().out
+    assert "withdrawn" in out
+    assert "B. Jones" in out
+    assert f"{at.astimezone():%Y-%m-%d %H:%M}" in out
+    assert "1.11 (" in out
+
+
+def test_the_correction_that_plans_take_is_told_from_those_before(
     capsys: pytest.CaptureFixture[str],
-    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setenv("COLUMNS", "400")
-    output = tmp_path / f"table.{form}"
-    count = put(shop_file, form, output)
-    assert capsys.readouterr().out == ""
-    assert put(shop_file, form, None) == count > 0
-    shown, written = capsys.readouterr().out, output.read_text(encoding="utf-8")
-    assert len(shown.splitlines()) == len(written.splitlines())
-    assert "ENDMILL 18" in shown
-    assert "ENDMILL 18" in written
-
-
-def test_csv_and_parquet_have_the_same_lines(
-    shop_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    put(shop_file, "csv", None)
-    lines = list(csv.DictReader(io.StringIO(capsys.readouterr().out, newline="")))
-    put(shop_file, "parquet", tmp_path / "table.parquet")
-    rows = pq.read_table(tmp_path / "table.parquet").to_pylist()
-    assert [float(line["force_mean_percent"]) for line in lines] == [
-        row["force_mean_percent"] for row in rows
+    entries = [
+        StoredCorrection(
+            id=number,
+            correction=correction(0.1),
+            standing=Standing.ACCEPTED,
+            decided_by="Ada",
+            decided_at=datetime(2026, 3, day, tzinfo=UTC),
+        )
+        for number, day in ((1, 7), (2, 5))
     ]
-    assert [line["tool"] for line in lines] == [row["tool"] for row in rows]
+    print_corrections(entries)
+    first, second = capsys.readouterr().out.splitlines()[-2:]
+    assert "in force" in first
+    assert "accepted" in second
 
 
-def test_bytes_are_not_for_a_terminal(shop_file: Path) -> None:
-    with pytest.raises(StepNcError, match=r"-o FILE\.parquet"):
-        put(shop_file, "parquet", None)
-
-
-def test_a_summary_is_no_page(shop_file: Path, tmp_path: Path) -> None:
-    for form in ("html", "text"):
-        with pytest.raises(StepNcError, match="is CSV, JSON or Parquet"):
-            put_summary(str(shop_file), EVERYTHING, form=form, output=tmp_path / "x")
-    put_summary(str(shop_file), EVERYTHING, form="json", output=tmp_path / "x.json")
-    groups = json.loads((tmp_path / "x.json").read_text(encoding="utf-8"))["groups"]
-    put_summary(str(shop_file), EVERYTHING, form="parquet", output=tmp_path / "x.parquet")
-    assert len(groups) == pq.read_table(tmp_path / "x.parquet").num_rows > 0
+def test_content_is_counted(capsys: pytest.CaptureFixture[str]) -> None:
+    print_content(
+        Content(outcomes=5, corrections=2, decisions=1, fingerprint="f"), place="kb.db"
+    )
+    assert capsys.readouterr().out.startswith("kb.db: 5 outcomes, 2 corrections, 1 decisions\n")

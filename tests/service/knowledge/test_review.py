@@ -9,26 +9,28 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from kbe.acceptance import Bounds
+from kbe.acceptance import AcceptanceBounds
 from kbe.ledger import Standing
 from kbe.selection import Selection
 from service.knowledge import verbs as knowledge
 from service.knowledge.review import (
-    Change,
+    Acceptance,
     Reviewed,
-    ReviewRequest,
+    ReviewResult,
     is_changed,
     narrowed_to,
     review,
 )
-from stepnc_model.outcome import Context, Correction, ForceRatio, ProcessOutcome
+from service.requests.knowledge import ReviewRequest
+from stepnc_model.outcome import Context, ForceRatio, LearnedCorrection, ProcessOutcome
 from tests.service.shop import BEGIN, FACTORS
 
 TOOL = "ENDMILL 18"
-MINE = Selection(machine="vmc15", material="C45", tool=TOOL)
-REQUEST = ReviewRequest(by="A. Smith")
+MINE = ReviewRequest(machine="vmc15", material="C45", tool=TOOL)
+ALL = ReviewRequest()
+AUTOMATIC = Acceptance(by="A. Smith")
 
-PROPOSAL = Correction(
+PROPOSAL = LearnedCorrection(
     context=Context(machine="m", material="m", tool="t"),
     log_centre=0.1,
     log_scale=0.03,
@@ -45,7 +47,7 @@ def one(found: tuple[Reviewed, ...]) -> Reviewed:
 
 
 def test_the_truth_of_the_shop_lies_in_what_is_learned(kb: str) -> None:
-    found = review(kb, REQUEST)
+    found = review(kb, ALL)
     assert len(found) == 3 * 2 * 4
     for each in found:
         context, learned = each.learned.context, each.learned.correction
@@ -57,27 +59,26 @@ def test_the_truth_of_the_shop_lies_in_what_is_learned(kb: str) -> None:
         truth = log(FACTORS[context.machine, context.material])
         assert learned is not None
         assert learned.log_centre == pytest.approx(truth, abs=0.06)
-        assert each.change is Change.PROPOSED
+        assert each.change is ReviewResult.PROPOSED
         assert each.accepted is None
 
 
 def test_the_same_outcomes_propose_nothing_twice(kb: str) -> None:
-    first = one(review(kb, replace(REQUEST, selection=MINE)))
-    again = one(review(kb, replace(REQUEST, selection=MINE)))
+    first = one(review(kb, MINE))
+    again = one(review(kb, MINE))
     assert first.entry is not None
     assert again.entry is not None
-    assert (first.change, again.change) == (Change.PROPOSED, Change.UNCHANGED)
+    assert (first.change, again.change) == (ReviewResult.PROPOSED, ReviewResult.UNCHANGED)
     assert again.entry.id == first.entry.id
     assert len(knowledge.corrections(kb)) == 1
 
 
 def test_more_outcomes_propose_anew(kb: str, shop_outcomes: tuple[ProcessOutcome, ...]) -> None:
-    request = replace(REQUEST, selection=MINE)
-    first = one(review(kb, request))
+    first = one(review(kb, MINE))
     last = [each for each in shop_outcomes if each.context == first.learned.context][-1]
     later = replace(last, run="later", recorded_at=last.recorded_at + timedelta(days=1))
     knowledge.record(kb, [later])
-    assert one(review(kb, request)).change is Change.PROPOSED
+    assert one(review(kb, MINE)).change is ReviewResult.PROPOSED
 
 
 @given(st.floats(-0.3, 0.3), st.integers(-3, 3))
@@ -90,32 +91,29 @@ def test_changed_is_half_a_per_cent_or_more_outcomes(step: float, more: int) -> 
 
 
 def test_what_keeps_the_bounds_is_accepted_by_nobody_and_says_so(kb: str) -> None:
-    request = replace(REQUEST, selection=MINE, is_automatic=True)
-    found = one(review(kb, request))
-    assert found.change is Change.ACCEPTED
+    found = one(review(kb, MINE, AUTOMATIC))
+    assert found.change is ReviewResult.ACCEPTED
     assert found.objections == ()
     [entry] = knowledge.corrections(kb)
     assert entry == found.entry
     assert entry.decided_by == "A. Smith (automatically)"
-    assert one(review(kb, request)).change is Change.UNCHANGED
-    assert one(review(kb, request)).accepted == entry.correction
+    assert one(review(kb, MINE, AUTOMATIC)).change is ReviewResult.UNCHANGED
+    assert one(review(kb, MINE, AUTOMATIC)).accepted == entry.correction
 
 
 def test_an_objection_leaves_it_to_a_person(kb: str) -> None:
-    request = replace(
-        REQUEST, selection=MINE, is_automatic=True, bounds=Bounds(fewest_outcomes=1000)
-    )
-    found = one(review(kb, request))
-    assert found.change is Change.PROPOSED
+    strict = replace(AUTOMATIC, bounds=AcceptanceBounds(fewest_outcomes=1000))
+    found = one(review(kb, MINE, strict))
+    assert found.change is ReviewResult.PROPOSED
     assert "fewer than 1000" in str(found.objections[0])
 
 
 def test_what_a_person_refused_is_not_accepted_automatically(kb: str) -> None:
-    found = one(review(kb, replace(REQUEST, selection=MINE)))
+    found = one(review(kb, MINE))
     assert found.entry is not None
     knowledge.withdraw(kb, [found.entry.id], by="B. Jones")
-    again = one(review(kb, replace(REQUEST, selection=MINE, is_automatic=True)))
-    assert again.change is Change.UNCHANGED
+    again = one(review(kb, MINE, AUTOMATIC))
+    assert again.change is ReviewResult.UNCHANGED
     assert again.entry is not None
     assert again.entry.standing is Standing.WITHDRAWN
 
@@ -129,8 +127,8 @@ def test_outcomes_without_a_ratio_teach_nothing(
     knowledge.record(
         place, [replace(first, force_ratio=None), replace(first, force_ratio=wild)]
     )
-    found = one(review(place, REQUEST))
-    assert found.change is Change.NOTHING_TO_LEARN
+    found = one(review(place, ALL))
+    assert found.change is ReviewResult.NOTHING_TO_LEARN
     assert found.entry is None
     assert sum(found.learned.report.left_out.values()) == 2
     assert knowledge.corrections(place) == ()
@@ -153,9 +151,9 @@ def test_a_selection_within_a_context(
 def test_filters_limit_what_is_learned_from(
     kb: str, shop_outcomes: tuple[ProcessOutcome, ...]
 ) -> None:
-    assert review(kb, replace(REQUEST, selection=Selection(machine="lathe"))) == ()
-    assert review(kb, replace(REQUEST, selection=Selection(run="none"))) == ()
-    found = review(kb, replace(REQUEST, selection=Selection(run="000003")))
+    assert review(kb, replace(ALL, machine="lathe")) == ()
+    assert review(kb, replace(ALL, run="none")) == ()
+    found = review(kb, replace(ALL, run="000003"))
     tools = {each.context.tool for each in shop_outcomes if each.run == "000003"}
     assert {each.learned.context.tool for each in found} == tools
     assert {each.learned.report.runs for each in found} == {1}

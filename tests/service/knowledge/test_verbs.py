@@ -17,12 +17,12 @@ from kbe.store import open_store
 from service.knowledge import verbs as knowledge
 from service.knowledge.place import usual_place
 from stepnc_model.errors import StepNcError
-from stepnc_model.outcome import Context, Correction, ProcessOutcome
+from stepnc_model.outcome import Context, LearnedCorrection, ProcessOutcome
 
 AT = datetime(2026, 3, 5, 12, 0, tzinfo=UTC)
 CONTEXT = Context(machine="vmc15", material="C45", tool="ENDMILL 18")
 
-PROPOSAL = Correction(
+PROPOSAL = LearnedCorrection(
     context=CONTEXT,
     log_centre=0.12,
     log_scale=0.03,
@@ -39,7 +39,7 @@ def _own_folder(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
 
 
-def proposed(kb: str, correction: Correction = PROPOSAL) -> int:
+def proposed(kb: str, correction: LearnedCorrection = PROPOSAL) -> int:
     with open_store(kb) as store:
         return store.propose(correction)
 

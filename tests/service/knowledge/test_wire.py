@@ -7,16 +7,17 @@ import pytest
 
 from kbe.backup import Content
 from kbe.rows import OUTCOME
-from kbe.selection import EVERYTHING, Selection
+from kbe.selection import EVERYTHING
 from service.knowledge import verbs as knowledge
-from service.knowledge.review import ReviewRequest, review
-from service.knowledge.wire import (
+from service.knowledge.output import (
     content_json,
     corrections_json,
     listing_json,
-    review_json,
     run_json,
 )
+from service.knowledge.review import review
+from service.knowledge.review_output import review_json
+from service.requests.knowledge import ReviewRequest
 from stepnc_model.outcome import ProcessOutcome
 
 
@@ -42,7 +43,7 @@ def test_a_run_has_its_deviations(shop_outcomes: tuple[ProcessOutcome, ...]) -> 
 
 
 def test_a_review_and_its_corrections_agree(kb: str) -> None:
-    request = ReviewRequest(by="A. Smith", selection=Selection(tool="DRILL 8.5"))
+    request = ReviewRequest(tool="DRILL 8.5")
     told = json.loads(review_json(review(kb, request)))["contexts"]
     stored = json.loads(corrections_json(knowledge.corrections(kb)))["corrections"]
     assert [each["correction"] for each in told] == stored

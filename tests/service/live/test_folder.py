@@ -45,3 +45,11 @@ def test_a_status_for_which_there_is_no_room_is_refused_and_the_old_one_stays(
     with pytest.raises(StorageFull, match=r"^status\.json: "):
         folder.write_status({"number": 2})
     assert folder.read_status() == {"number": 1}
+
+
+def test_a_status_of_an_earlier_version_is_read(tmp_path: Path) -> None:
+    """As version 0.1 left it when a run had ended."""
+    text = '{"time": 12.5, "level": "over", "is_over": true, "is_stopped": false}'
+    (tmp_path / "status.json").write_text(text, encoding="utf-8")
+    found = LiveFolder(path=tmp_path).read_status()
+    assert found == {"time": 12.5, "level": "over", "is_overloaded": True, "is_stopped": False}

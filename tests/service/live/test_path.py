@@ -15,7 +15,7 @@ from service.live.path import (
     FEWEST,
     FINE_COLOUR,
     FINE_LENGTH,
-    ToolPath,
+    TravelledPath,
     deviation,
     path_of,
     shown_path,
@@ -25,9 +25,9 @@ from service.live.series import Series, SeriesWriter, open_series
 from simulator.motion.segments import Floats
 
 
-def path_through(position: Floats, feed: Floats, force: Floats) -> ToolPath:
+def path_through(position: Floats, feed: Floats, force: Floats) -> TravelledPath:
     count = len(feed)
-    return ToolPath(
+    return TravelledPath(
         time=np.linspace(0.0, 0.05 * count, count),
         position=position,
         feed=feed,
@@ -38,7 +38,7 @@ def path_through(position: Floats, feed: Floats, force: Floats) -> ToolPath:
 
 
 @st.composite
-def paths(draw: st.DrawFn) -> ToolPath:
+def paths(draw: st.DrawFn) -> TravelledPath:
     count = draw(st.integers(1, 120))
 
     def column(low: float, high: float) -> Floats:
@@ -48,7 +48,7 @@ def paths(draw: st.DrawFn) -> ToolPath:
 
     position = np.column_stack([column(-500.0, 500.0) for _ in range(3)])
     steps = draw(arrays(np.float64, count, elements=st.floats(0.0, 2.0, width=32)))
-    return ToolPath(
+    return TravelledPath(
         time=np.cumsum(steps),
         position=position,
         feed=column(0.0, 20_000.0),
@@ -58,7 +58,9 @@ def paths(draw: st.DrawFn) -> ToolPath:
     )
 
 
-def straight_lines(path: ToolPath, kept: list[int], at: int) -> tuple[Floats, float, float]:
+def straight_lines(
+    path: TravelledPath, kept: list[int], at: int
+) -> tuple[Floats, float, float]:
     """Position, feed and force at a moment, between the two kept points around it."""
     after = next(place for place, each in enumerate(kept) if each >= at)
     if kept[after] == at:
@@ -74,7 +76,7 @@ def straight_lines(path: ToolPath, kept: list[int], at: int) -> tuple[Floats, fl
 
 
 @given(paths(), st.integers(FEWEST, 150))
-def test_ends_and_extremes_stay_within_the_number(path: ToolPath, points: int) -> None:
+def test_ends_and_extremes_stay_within_the_number(path: TravelledPath, points: int) -> None:
     kept = thinned(path, points)
     assert len(kept) <= points
     assert np.all(np.diff(kept) > 0)
@@ -90,9 +92,9 @@ def test_ends_and_extremes_stay_within_the_number(path: ToolPath, points: int) -
 
 
 @given(paths(), st.integers(FEWEST, 150))
-def test_no_point_is_farther_off_than_is_told(path: ToolPath, points: int) -> None:
+def test_no_point_is_farther_off_than_is_told(path: TravelledPath, points: int) -> None:
     # Two rows of one moment have no line between them: the later speaks for both.
-    path = ToolPath(
+    path = TravelledPath(
         time=path.time + 0.001 * np.arange(len(path)),
         position=path.position,
         feed=path.feed,
@@ -110,8 +112,8 @@ def test_no_point_is_farther_off_than_is_told(path: ToolPath, points: int) -> No
 
 
 @given(paths())
-def test_with_room_enough_nothing_that_is_seen_is_lost(path: ToolPath) -> None:
-    path = ToolPath(
+def test_with_room_enough_nothing_that_is_seen_is_lost(path: TravelledPath) -> None:
+    path = TravelledPath(
         time=np.linspace(0.0, 0.05 * len(path), len(path)),
         position=path.position,
         feed=path.feed,
@@ -152,7 +154,7 @@ def test_a_change_of_force_on_a_straight_path_stays() -> None:
 def test_both_sides_of_a_rapid_move_and_of_a_workingstep_stay() -> None:
     run, still = np.linspace(0.0, 100.0, 1000), np.zeros(1000)
     plain = path_through(np.column_stack([run, still, still]), still + 300.0, still)
-    path = ToolPath(
+    path = TravelledPath(
         time=plain.time,
         position=plain.position,
         feed=plain.feed,

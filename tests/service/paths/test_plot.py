@@ -10,8 +10,8 @@ import pytest
 
 from service.paths.plot import COLOURS, path_png
 from service.paths.toolpaths import tool_paths
-from stepnc_model.toolpath.job import stock_of
 from stepnc_model.toolpath.path import MoveType
+from stepnc_model.toolpath.task import stock_of
 
 PARTS = Path(__file__).parents[3] / "examples" / "parts"
 

@@ -8,9 +8,9 @@ import pytest
 from service.cli.main import main, optimise_main
 from service.paths.toolpaths import PostRequest, canonical_of, plot, post, tool_paths
 from stepnc_model.errors import SchemaError, StepNcError, WriteError
-from stepnc_model.post.controls import Control, read
-from stepnc_model.toolpath.function import Function
-from stepnc_model.toolpath.path import MoveType, ToolPath
+from stepnc_model.post.dialect import Dialect
+from stepnc_model.post.dialects import read
+from stepnc_model.toolpath.path import Function, MoveType, ToolPath
 
 PARTS = Path(__file__).parents[3] / "examples" / "parts"
 BRACKET = PARTS / "bracket.stpnc"
@@ -104,9 +104,9 @@ def test_the_picture_does_not_replace_the_program(tmp_path: Path) -> None:
     assert file.read_bytes() == SHAFT.read_bytes()
 
 
-@pytest.mark.parametrize("control", list(Control))
+@pytest.mark.parametrize("control", list(Dialect))
 def test_nc_code_goes_beside_the_program_and_reads_back(
-    bracket: Path, control: Control
+    bracket: Path, control: Dialect
 ) -> None:
     told: list[str] = []
     post(PostRequest(file=bracket, control=control.value), tell=told.append)

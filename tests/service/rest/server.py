@@ -13,9 +13,9 @@ from typing import Any
 
 import httpx
 
-from service.depot import keys
-from service.depot.folder import open_depot
-from service.depot.keys import Role
+from service.storage import keys
+from service.storage.folder import open_data_folder
+from service.storage.keys import Role
 from tests.service.waiting import children, environment, is_alive, until
 
 STEPNC = Path(sys.executable).with_name("stepnc")
@@ -164,5 +164,5 @@ def is_problem(answer: httpx.Response, status: int, kind: str = "") -> dict[str,
 
 def create_key(server: Server, name: str, *roles: str) -> str:
     """A key, as the command line gives it."""
-    depot = open_depot(server.data)
-    return keys.create(depot, name=name, roles=frozenset(map(Role, roles)))
+    data_folder = open_data_folder(server.data)
+    return keys.create(data_folder, name=name, roles=frozenset(map(Role, roles)))

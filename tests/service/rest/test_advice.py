@@ -5,13 +5,13 @@ from pathlib import Path
 import httpx
 import pytest
 
-from service.depot import jobs
-from service.depot.folder import open_depot
-from service.depot.ids import new_id
 from service.errors import Conflict, NotFound
+from service.ids import new_id
 from service.jobs.task import RESULT
 from service.rest import advice
-from service.rest.advice import Ready, Shelf
+from service.rest.advice import AdviceCache, CachedAdvice
+from service.storage import jobs
+from service.storage.folder import open_data_folder
 from tests.service.rest.conftest import Done
 from tests.service.rest.server import is_problem, made, over
 
@@ -78,49 +78,49 @@ def test_another_jobs_id_is_no_advice(client: httpx.Client, done: Done) -> None:
     assert {job["kind"] for job in listed} == {"advice"}
 
 
-def test_the_shelf_keeps_few_and_forgets_what_was_deleted(
+def test_the_cache_keeps_few_and_forgets_what_was_deleted(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(advice, "MOST_READY", 3)
-    depot, shelf = open_depot(tmp_path, knowledge="none.db"), Shelf()
+    data_folder, cache = open_data_folder(tmp_path, knowledge="none.db"), AdviceCache()
     ids = []
     for _ in range(6):
-        order = jobs.Order(kind=jobs.Kind.ADVICE, request={}, owner="a")
-        ids.append(jobs.add(depot, order).id)
-        depot.job_folder(ids[-1]).mkdir()
-        (depot.job_folder(ids[-1]) / RESULT).write_text('{"workingsteps": []}')
-        shelf.get(depot, ids[-1])
-    assert len(shelf._ready) == 3
-    assert shelf.get(depot, ids[-1]) is shelf.get(depot, ids[-1])
-    jobs.cancel(depot, ids[-1])
-    jobs.remove(depot, ids[-1])
+        order = jobs.JobRequest(kind=jobs.JobKind.ADVICE, request={}, owner="a")
+        ids.append(jobs.add(data_folder, order).id)
+        data_folder.job_folder(ids[-1]).mkdir()
+        (data_folder.job_folder(ids[-1]) / RESULT).write_text('{"workingsteps": []}')
+        cache.get(data_folder, ids[-1])
+    assert len(cache._ready) == 3
+    assert cache.get(data_folder, ids[-1]) is cache.get(data_folder, ids[-1])
+    jobs.cancel(data_folder, ids[-1])
+    jobs.remove(data_folder, ids[-1])
     with pytest.raises(NotFound):
-        shelf.get(depot, ids[-1])
+        cache.get(data_folder, ids[-1])
     with pytest.raises(NotFound):
-        shelf.get(depot, new_id())
+        cache.get(data_folder, new_id())
 
 
 @pytest.mark.parametrize("is_deleted", [True, False])
 def test_a_result_that_goes_between_look_and_read_is_no_fault(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, is_deleted: bool
 ) -> None:
-    depot, shelf = open_depot(tmp_path, knowledge="none.db"), Shelf()
-    order = jobs.Order(kind=jobs.Kind.ADVICE, request={}, owner="a")
-    id = jobs.add(depot, order).id
-    job = jobs.claim(depot, kinds=[jobs.Kind.ADVICE])
+    data_folder, cache = open_data_folder(tmp_path, knowledge="none.db"), AdviceCache()
+    order = jobs.JobRequest(kind=jobs.JobKind.ADVICE, request={}, owner="a")
+    id = jobs.add(data_folder, order).id
+    job = jobs.claim(data_folder, kinds=[jobs.JobKind.ADVICE])
     assert job is not None
-    jobs.finish(depot, job, jobs.State.SUCCEEDED)
-    file = depot.job_folder(id) / RESULT
+    jobs.finish(data_folder, job, jobs.JobState.SUCCEEDED)
+    file = data_folder.job_folder(id) / RESULT
     file.parent.mkdir()
     file.write_text('{"workingsteps": []}')
     read = advice._ready
 
-    def late(name: str, stamp: int) -> Ready:
+    def late(name: str, stamp: int) -> CachedAdvice:
         file.unlink()
         if is_deleted:
-            jobs.remove(depot, id)
+            jobs.remove(data_folder, id)
         return read(name, stamp)
 
     monkeypatch.setattr(advice, "_ready", late)
     with pytest.raises(NotFound if is_deleted else Conflict):
-        shelf.get(depot, id)
+        cache.get(data_folder, id)

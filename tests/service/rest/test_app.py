@@ -5,11 +5,11 @@ from pathlib import Path
 import httpx
 import pytest
 
-from service.depot.folder import open_depot
 from service.errors import Unavailable
 from service.rest import logs
 from service.rest.app import application, from_environment
 from service.rest.settings import VARIABLE, Settings
+from service.storage.folder import open_data_folder
 from tests.service.rest.conftest import Done
 from tests.service.rest.server import Server, is_problem
 
@@ -27,6 +27,22 @@ def test_a_field_that_is_not_known_is_named(client: httpx.Client, done: Done) ->
         unknown = next(name for name in ("mod", "speed", "depth", "machines", "why")
                        if name in str(body))  # fmt: skip
         assert any(unknown in each["place"] for each in found["errors"])
+
+
+def test_a_body_that_is_no_json_says_where(client: httpx.Client, done: Done) -> None:
+    path, headers = f"/v1/programs/{done.program}/advice", {"content-type": "application/json"}
+    answer = client.post(path, content=b'{"mode": TC}', headers=headers)
+    found = is_problem(answer, 400, "malformed-json")
+    assert found["detail"].endswith("at character 9")
+
+
+def test_a_body_of_another_media_type_is_refused(client: httpx.Client, done: Done) -> None:
+    for media_type in ("text/plain", "application/xml; charset=utf-8"):
+        headers = {"content-type": media_type}
+        path = f"/v1/programs/{done.program}/advice"
+        answer = client.post(path, content=b'{"mode": "TC"}', headers=headers)
+        found = is_problem(answer, 415, "unsupported-media-type")
+        assert media_type.partition(";")[0] in found["detail"]
 
 
 def test_what_is_not_there_is_a_problem_too(client: httpx.Client) -> None:
@@ -109,6 +125,6 @@ def test_a_process_gets_its_settings_from_the_one_that_started_it(
     with pytest.raises(Unavailable, match="none in the data folder"):
         from_environment()
     assert not (tmp_path / "data").exists()
-    open_depot(settings.root)
+    open_data_folder(settings.root)
     assert told == ["warning"]
     assert from_environment().state.settings == settings

@@ -6,7 +6,7 @@ from threading import Lock, Semaphore
 import pytest
 
 from service.rest import checks
-from service.rest.checks import MOST_AT_ONCE, Answers, in_turn
+from service.rest.checks import MOST_AT_ONCE, CheckCache, in_turn
 
 
 def test_few_are_made_at_once() -> None:
@@ -41,7 +41,7 @@ def test_an_answer_is_made_once() -> None:
         return b"answer"
 
     async def asked() -> None:
-        answers = Answers()
+        answers = CheckCache()
         for _ in range(3):
             assert await answers.get("a", make) == b"answer"
 
@@ -54,7 +54,7 @@ def test_an_error_is_not_kept() -> None:
         raise ValueError("no")
 
     async def asked() -> None:
-        answers = Answers()
+        answers = CheckCache()
         with pytest.raises(ValueError, match="no"):
             await answers.get("a", fail)
         assert await answers.get("a", lambda: b"yes") == b"yes"
@@ -64,7 +64,7 @@ def test_an_error_is_not_kept() -> None:
 
 def test_those_asked_for_last_stay_within_the_bound(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(checks, "MOST_BYTES", 10)
-    answers = Answers()
+    answers = CheckCache()
 
     async def asked() -> None:
         for name in "abc":

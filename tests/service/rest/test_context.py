@@ -5,10 +5,10 @@ from dataclasses import replace
 import pytest
 from fastapi import Request
 
-from service.depot.jobs import LOCAL
 from service.errors import Unreadable
-from service.rest.context import PROBLEMS, once_of, place_of
-from service.rest.gate import ANYBODY
+from service.rest.access import ANYBODY
+from service.rest.context import PROBLEMS, cursor_of, idempotency_of
+from service.storage.jobs import LOCAL
 
 
 def request(path: str = "/v1/programs", query: str = "", owner: str = "anna") -> Request:
@@ -20,26 +20,26 @@ def request(path: str = "/v1/programs", query: str = "", owner: str = "anna") ->
 
 
 def test_a_request_without_a_key_may_be_repeated() -> None:
-    assert once_of(request(), None, b"") is None
+    assert idempotency_of(request(), None, b"") is None
 
 
 def test_an_empty_key_is_refused() -> None:
     for key in ("", " ", "\t"):
         with pytest.raises(Unreadable, match="Idempotency-Key"):
-            once_of(request(), key, b"")
+            idempotency_of(request(), key, b"")
 
 
 def test_path_query_and_body_make_another_request() -> None:
     prints = [
-        once_of(one, "k", body)
+        idempotency_of(one, "k", body)
         for one, body in (
             (request(), b""), (request(), b"x"), (request(query="name=a"), b""),
             (request("/v1/simulations"), b""),
         )
     ]  # fmt: skip
     assert len({each.fingerprint for each in prints if each}) == 4
-    assert once_of(request(), "k", b"x") == once_of(request(), "k", b"x")
-    other = once_of(request(owner="bert"), "k", b"")
+    assert idempotency_of(request(), "k", b"x") == idempotency_of(request(), "k", b"x")
+    other = idempotency_of(request(owner="bert"), "k", b"")
     assert other is not None
     assert other.owner == "bert"
 
@@ -51,9 +51,9 @@ def test_problems_are_documented_by_their_content_type() -> None:
 
 
 def test_a_place_is_the_first_page_without_a_cursor() -> None:
-    assert place_of(limit=3, cursor=None).limit == 3
+    assert cursor_of(limit=3, cursor=None).limit == 3
     with pytest.raises(Unreadable):
-        place_of(limit=3, cursor="/etc/passwd")
+        cursor_of(limit=3, cursor="/etc/passwd")
 
 
 def test_who_needs_no_key_has_the_whole_queue() -> None:

@@ -26,7 +26,7 @@ def test_without_a_runner_or_a_database_nothing_is_ready(
 ) -> None:
     monkeypatch.delenv("STEPNC_KB", raising=False)
     app = application(Settings(data=str(tmp_path / "data")))
-    depot = app.state.depot
+    data_folder = app.state.data_folder
 
     def ready() -> tuple[int, dict[str, bool]]:
         async def ask() -> httpx.Response:
@@ -40,18 +40,18 @@ def test_without_a_runner_or_a_database_nothing_is_ready(
         return found.status_code, found.json()
 
     assert ready() == (503, {"database": True, "runner": False})
-    beat(depot)
+    beat(data_folder)
     assert ready() == (200, {"database": True, "runner": True})
-    with depot.database.writing() as connection:
+    with data_folder.database.writing() as connection:
         old = time.time() - 6.0 * BEAT
         connection.execute("UPDATE runner SET seen = ?", (old,))
     assert ready() == (503, {"database": True, "runner": False})
-    beat(depot)
-    depot.root.rename(tmp_path / "moved")
+    beat(data_folder)
+    data_folder.root.rename(tmp_path / "moved")
     assert ready() == (503, {"database": False, "runner": False})
-    assert not depot.root.exists()
-    (tmp_path / "moved").rename(depot.root)
+    assert not data_folder.root.exists()
+    (tmp_path / "moved").rename(data_folder.root)
     assert ready() == (200, {"database": True, "runner": True})
-    with depot.database.writing() as connection:
+    with data_folder.database.writing() as connection:
         connection.execute("DROP TABLE runner")
     assert ready() == (503, {"database": False, "runner": False})

@@ -8,15 +8,15 @@ import httpx
 import pytest
 
 from simulator.library import DATA
-from tests.service.depot.test_library import BAD
 from tests.service.rest.server import Server, is_problem
+from tests.service.storage.test_library import BAD
 
 MACHINE = (DATA / "machines" / "vmc15.toml").read_bytes()
 MATERIAL = (DATA / "materials" / "c45.toml").read_bytes()
 
 
 @pytest.fixture(params=[("machines", MACHINE, "vmc15"), ("materials", MATERIAL, "c45")])
-def shelf(
+def section(
     request: pytest.FixtureRequest, client: httpx.Client
 ) -> Iterator[tuple[str, bytes, str]]:
     path, data, name = request.param
@@ -25,9 +25,9 @@ def shelf(
 
 
 def test_one_is_kept_shown_and_deleted(
-    client: httpx.Client, shelf: tuple[str, bytes, str]
+    client: httpx.Client, section: tuple[str, bytes, str]
 ) -> None:
-    path, data, of_library = shelf
+    path, data, of_library = section
     kept = client.put(f"{path}/ours-1", content=data)
     assert (kept.status_code, kept.json()["is_own"]) == (200, True)
     names = {each["name"]: each["is_own"] for each in client.get(path).json()}
@@ -39,9 +39,9 @@ def test_one_is_kept_shown_and_deleted(
 
 
 def test_who_has_seen_it_may_change_it_and_nobody_else(
-    client: httpx.Client, shelf: tuple[str, bytes, str]
+    client: httpx.Client, section: tuple[str, bytes, str]
 ) -> None:
-    path, data, _ = shelf
+    path, data, _ = section
     for condition in ('"x"', "*"):
         answer = client.put(f"{path}/ours-1", content=data, headers={"if-match": condition})
         is_problem(answer, 412, "precondition-failed")
@@ -62,9 +62,9 @@ def test_who_has_seen_it_may_change_it_and_nobody_else(
 
 
 def test_of_many_who_saw_the_same_one_alone_changes_it(
-    client: httpx.Client, shelf: tuple[str, bytes, str]
+    client: httpx.Client, section: tuple[str, bytes, str]
 ) -> None:
-    path, data, _ = shelf
+    path, data, _ = section
     seen = client.put(f"{path}/ours-1", content=data).headers["etag"]
     begin = Barrier(6)
 
@@ -79,9 +79,9 @@ def test_of_many_who_saw_the_same_one_alone_changes_it(
 
 
 def test_one_that_is_broken_hides_no_other(
-    service: Server, client: httpx.Client, shelf: tuple[str, bytes, str]
+    service: Server, client: httpx.Client, section: tuple[str, bytes, str]
 ) -> None:
-    path, _, of_library = shelf
+    path, _, of_library = section
     folder = service.data / path.removeprefix("/v1/")
     (folder / "ours-1.toml").write_text("[[[[", encoding="utf-8")
     found = {each["name"]: each["problem"] for each in client.get(path).json()}
@@ -90,8 +90,10 @@ def test_one_that_is_broken_hides_no_other(
     is_problem(client.get(f"{path}/ours-1"), 422)
 
 
-def test_those_of_the_library_stay(client: httpx.Client, shelf: tuple[str, bytes, str]) -> None:
-    path, data, name = shelf
+def test_those_of_the_library_stay(
+    client: httpx.Client, section: tuple[str, bytes, str]
+) -> None:
+    path, data, name = section
     is_problem(client.put(f"{path}/{name}", content=data), 409)
     is_problem(client.delete(f"{path}/{name}"), 409)
 
@@ -100,9 +102,9 @@ def test_those_of_the_library_stay(client: httpx.Client, shelf: tuple[str, bytes
     "name", ["..%2fx", "%2fetc%2fpasswd", "x.toml", "x%00", "X", "a%20b", "x%0a", "%2e%2e", "é"]
 )
 def test_a_name_that_could_be_a_path_is_refused(
-    client: httpx.Client, shelf: tuple[str, bytes, str], name: str
+    client: httpx.Client, section: tuple[str, bytes, str], name: str
 ) -> None:
-    path, data, _ = shelf
+    path, data, _ = section
     for answer in (
         client.put(f"{path}/{name}", content=data),
         client.get(f"{path}/{name}"),
@@ -114,9 +116,9 @@ def test_a_name_that_could_be_a_path_is_refused(
 
 @pytest.mark.parametrize("name", [name for name in BAD if name != "deep tables"])
 def test_a_bad_file_is_refused_without_a_word_of_folders(
-    client: httpx.Client, shelf: tuple[str, bytes, str], name: str
+    client: httpx.Client, section: tuple[str, bytes, str], name: str
 ) -> None:
-    path, _, _ = shelf
+    path, _, _ = section
     answer = client.put(f"{path}/ours-1", content=BAD[name])
     is_problem(answer, answer.status_code)
     assert answer.status_code in {413, 422}

@@ -12,9 +12,9 @@ import httpx
 import pytest
 
 from service.contents import Contents, check
-from service.depot import programs
 from service.rest.app import application
 from service.rest.settings import Settings
+from service.storage import programs
 from tests.service.rest.conftest import Done
 from tests.service.rest.samples import SAMPLE
 from tests.service.rest.server import Server, is_problem, made
@@ -168,7 +168,7 @@ def test_who_has_the_findings_needs_no_check(
 
     monkeypatch.setattr("service.rest.programs.check", counted)
     app = application(Settings(data=str(tmp_path)))
-    id = programs.add(app.state.depot, DATA, name="a", owner="a").id
+    id = programs.add(app.state.data_folder, DATA, name="a", owner="a").id
     path = f"/v1/programs/{id}/findings"
 
     async def asked() -> None:
@@ -266,6 +266,28 @@ def test_advice_is_asked_for_once_by_key(client: httpx.Client, done: Done) -> No
     assert ids | {done.advice} <= {job["id"] for job in listed}
     is_problem(client.delete(f"/v1/programs/{done.program}"), 409)
     client.post(f"/v1/jobs/{ids.pop()}/cancel")
+
+
+@pytest.mark.parametrize(
+    ("body", "detail"),
+    [
+        ({"workingsteps": ["NOPE"]}, "no workingstep 'NOPE'; known: 'ROUGH THE FACE'"),
+        ({"machine": "lathe22"}, "needs a mill, and 'lathe22' is a lathe"),
+    ],
+)
+def test_what_no_job_could_do_is_refused_before_there_is_one(
+    client: httpx.Client, done: Done, body: dict[str, object], detail: str
+) -> None:
+    path = f"/v1/programs/{done.program}/advice"
+    before = client.get(path).json()["items"]
+    found = is_problem(client.post(path, json=body), 422)
+    assert detail in found["detail"]
+    assert client.get(path).json()["items"] == before
+    if "machine" in body:
+        asked = {"program_id": done.program, **body}
+        for path in ("/v1/simulations", "/v1/control-runs"):
+            found = is_problem(client.post(path, json=asked), 422)
+            assert detail in found["detail"]
 
 
 def test_numbers_beyond_json_are_refused(client: httpx.Client, done: Done) -> None:

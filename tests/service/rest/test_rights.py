@@ -2,10 +2,10 @@
 
 import pytest
 
-from service.depot.jobs import Kind
-from service.depot.keys import Key, Role
 from service.errors import Forbidden
 from service.rest.rights import is_protected, require, role_for, role_to_end
+from service.storage.jobs import JobKind
+from service.storage.keys import Key, Role
 
 
 @pytest.mark.parametrize(
@@ -32,8 +32,8 @@ def test_looking_is_for_all_and_machines_are_for_operators(
     assert role_for(method, path) is role
 
 
-@pytest.mark.parametrize("kind", list(Kind))
-def test_who_may_begin_a_job_may_end_it(kind: Kind) -> None:
+@pytest.mark.parametrize("kind", list(JobKind))
+def test_who_may_begin_a_job_may_end_it(kind: JobKind) -> None:
     path = {"control-run": "/v1/control-runs", "trial": "/v1/trials"}.get(kind, "/v1/programs")
     assert role_to_end(kind) is role_for("POST", path)
 

@@ -16,11 +16,11 @@ import pytest
 from prometheus_client.parser import text_string_to_metric_families as parsed
 
 from kbe.store import open_store
-from service.depot.folder import open_depot
 from service.errors import Forbidden
 from service.jobs.runner import locked
-from service.rest.serve import Start, serve
+from service.rest.serve import ServerOptions, serve
 from service.rest.settings import Settings
+from service.storage.folder import open_data_folder
 from stepnc_model.errors import StepNcError
 from tests.service.rest.samples import SAMPLE
 from tests.service.rest.server import Server, create_key, is_problem, made, over
@@ -37,7 +37,7 @@ def runs(client: httpx.Client, id: str) -> bool:
 
 def runner_of(server: Server) -> int:
     """The process that runs jobs."""
-    with open_depot(server.data).database.reading() as connection:
+    with open_data_folder(server.data).database.reading() as connection:
         return int(connection.execute("SELECT pid FROM runner").fetchone()["pid"])
 
 
@@ -109,7 +109,7 @@ def test_a_stop_frees_the_folder_at_once_and_a_kill_ends_everything(tmp_path: Pa
     server = Server(tmp_path, "--workers", "2")
     with server:
         with pytest.raises(StepNcError, match="another server works with this folder"):
-            serve(Start(settings=Settings(data=str(server.data)), workers=1, jobs=1))
+            serve(ServerOptions(settings=Settings(data=str(server.data)), workers=1, jobs=1))
         assert signalled(server, signal.SIGTERM) == 0
         with locked(server.data):
             """a service manager may start the next one"""
@@ -173,8 +173,8 @@ def test_too_many_requests_are_told_when_to_come_again(limited: Server) -> None:
 def test_a_host_that_others_reach_needs_a_key_before_it_starts(tmp_path: Path) -> None:
     settings = Settings(data=str(tmp_path), host="0.0.0.0", needs_keys=True)
     with pytest.raises(Forbidden, match="stepnc keys create"):
-        serve(Start(settings=settings, workers=1, jobs=1))
-    missing = Start(
+        serve(ServerOptions(settings=settings, workers=1, jobs=1))
+    missing = ServerOptions(
         settings=Settings(data=str(tmp_path)), workers=1, jobs=1,
         certificate=tmp_path / "none.crt", key=tmp_path / "none.key",
     )  # fmt: skip

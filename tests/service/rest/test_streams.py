@@ -13,15 +13,15 @@ import httpx
 import numpy as np
 import pytest
 
-from service.depot import jobs
-from service.depot.folder import Depot, open_depot
-from service.depot.jobs import Job, Kind, Order, State
 from service.errors import TooMany
 from service.live.folder import LiveFolder
 from service.live.journal import append
 from service.live.series import SeriesWriter
 from service.rest import streams
-from service.rest.streams import OVER, ROWS, WAITING, Client, Hub, event
+from service.rest.streams import END_OF_STREAM, ROWS, WAITING, StreamClient, StreamHub, event
+from service.storage import jobs
+from service.storage.folder import DataFolder, open_data_folder
+from service.storage.jobs import Job, JobKind, JobRequest, JobState
 from tests.service.rest.conftest import Done
 from tests.service.rest.server import Server, made, over
 from tests.service.waiting import rss_mib, until
@@ -38,21 +38,21 @@ def parsed(text: str) -> list[tuple[str, Any]]:
 
 
 @pytest.fixture
-def depot(tmp_path: Path) -> Depot:
-    return open_depot(tmp_path, knowledge="none.db")
+def data_folder(tmp_path: Path) -> DataFolder:
+    return open_data_folder(tmp_path, knowledge="none.db")
 
 
 @pytest.fixture
-def job(depot: Depot) -> Job:
+def job(data_folder: DataFolder) -> Job:
     """A trial that runs, as far as the database knows."""
-    jobs.add(depot, Order(kind=Kind.TRIAL, request={}, owner="anna"))
-    found = jobs.claim(depot, kinds=[Kind.TRIAL])
+    jobs.add(data_folder, JobRequest(kind=JobKind.TRIAL, request={}, owner="anna"))
+    found = jobs.claim(data_folder, kinds=[JobKind.TRIAL])
     assert found is not None
-    depot.job_folder(found.id).mkdir()
+    data_folder.job_folder(found.id).mkdir()
     return found
 
 
-async def heard(hub: Hub, id: str, *, at_least: str) -> list[bytes]:
+async def heard(hub: StreamHub, id: str, *, at_least: str) -> list[bytes]:
     """Messages until one of a kind has come."""
     found: list[bytes] = []
     watching = hub.watch(id)
@@ -65,11 +65,11 @@ async def heard(hub: Hub, id: str, *, at_least: str) -> list[bytes]:
     return found
 
 
-def test_rows_events_and_the_end_are_told(depot: Depot, job: Job) -> None:
-    folder = LiveFolder(path=depot.job_folder(job.id))
+def test_rows_events_and_the_end_are_told(data_folder: DataFolder, job: Job) -> None:
+    folder = LiveFolder(path=data_folder.job_folder(job.id))
 
     async def watch() -> list[bytes]:
-        hub = Hub(depot)
+        hub = StreamHub(data_folder)
         found = [message async for message in hub.watch(job.id)]
         assert hub._clients == 0
         await hub.close()
@@ -83,7 +83,7 @@ def test_rows_events_and_the_end_are_told(depot: Depot, job: Job) -> None:
             await asyncio.to_thread(until, lambda: True)
             series.add(np.array([[0.0, np.nan], [1.0, 2.0]]))
             append(folder.events, {"kind": "order", "text": "x"})
-        jobs.finish(depot, job, State.SUCCEEDED)
+        jobs.finish(data_folder, job, JobState.SUCCEEDED)
         async with asyncio.timeout(10.0):
             return await watching
 
@@ -98,17 +98,17 @@ def test_rows_events_and_the_end_are_told(depot: Depot, job: Job) -> None:
     assert ("status", {"time_s": 1.0}) in told
 
 
-def test_who_comes_late_is_told_how_it_is(depot: Depot, job: Job) -> None:
-    folder = LiveFolder(path=depot.job_folder(job.id))
+def test_who_comes_late_is_told_how_it_is(data_folder: DataFolder, job: Job) -> None:
+    folder = LiveFolder(path=data_folder.job_folder(job.id))
     folder.write_status({"time_s": 7.0})
 
     async def work() -> tuple[list[bytes], list[bytes], int]:
-        hub = Hub(depot)
+        hub = StreamHub(data_folder)
         first = asyncio.create_task(heard(hub, job.id, at_least="gone"))
         await heard(hub, job.id, at_least="job")
         early = len(hub._readers)
         late = await heard(hub, job.id, at_least="status")
-        jobs.finish(depot, job, State.CANCELLED)
+        jobs.finish(data_folder, job, JobState.CANCELLED)
         return await first, late, early
 
     first, late, readers = asyncio.run(work())
@@ -117,25 +117,27 @@ def test_who_comes_late_is_told_how_it_is(depot: Depot, job: Job) -> None:
     assert b'"state":"cancelled"' in first[-1]
 
 
-def test_a_job_that_is_deleted_ends_its_streams(depot: Depot, job: Job) -> None:
+def test_a_job_that_is_deleted_ends_its_streams(data_folder: DataFolder, job: Job) -> None:
     async def work() -> None:
-        hub = Hub(depot)
+        hub = StreamHub(data_folder)
         watching = asyncio.create_task(heard(hub, job.id, at_least="gone"))
         await heard(hub, job.id, at_least="job")
-        jobs.finish(depot, job, State.CANCELLED)
-        jobs.remove(depot, job.id)
+        jobs.finish(data_folder, job, JobState.CANCELLED)
+        jobs.remove(data_folder, job.id)
         await watching
         assert not hub._readers
 
     asyncio.run(work())
 
 
-def test_a_fault_ends_the_streams_rather_than_let_all_wait(depot: Depot, job: Job) -> None:
+def test_a_fault_ends_the_streams_rather_than_let_all_wait(
+    data_folder: DataFolder, job: Job
+) -> None:
     async def work() -> None:
-        hub = Hub(depot)
+        hub = StreamHub(data_folder)
         watching = asyncio.create_task(heard(hub, job.id, at_least="gone"))
         await heard(hub, job.id, at_least="job")
-        with depot.database.writing() as connection:
+        with data_folder.database.writing() as connection:
             connection.execute("DROP TABLE jobs")
         await watching
         assert hub._clients == 0
@@ -143,22 +145,24 @@ def test_a_fault_ends_the_streams_rather_than_let_all_wait(depot: Depot, job: Jo
     asyncio.run(work())
 
 
-def test_nobody_joins_a_reader_that_has_ended(depot: Depot, job: Job) -> None:
+def test_nobody_joins_a_reader_that_has_ended(data_folder: DataFolder, job: Job) -> None:
     async def work() -> None:
-        hub = Hub(depot)
+        hub = StreamHub(data_folder)
         await heard(hub, job.id, at_least="job")
         [reader] = [hub._readers[job.id]]
-        reader.is_over = True
-        other = hub._joined(job.id, Client())
+        reader.is_finished = True
+        other = hub._joined(job.id, StreamClient())
         assert other is not reader
         await hub.close()
 
     asyncio.run(work())
 
 
-def test_rows_of_another_attempt_are_told_from_its_beginning(depot: Depot, job: Job) -> None:
-    file = LiveFolder(path=depot.job_folder(job.id)).series
-    reader = streams.Reader(depot, job.id)
+def test_rows_of_another_attempt_are_told_from_its_beginning(
+    data_folder: DataFolder, job: Job
+) -> None:
+    file = LiveFolder(path=data_folder.job_folder(job.id)).series
+    reader = streams.RunReader(data_folder, job.id)
     with SeriesWriter(file, ["time_s"]) as series:
         series.add(np.arange(50.0).reshape(-1, 1))
     assert reader._rows() is not None
@@ -171,9 +175,11 @@ def test_rows_of_another_attempt_are_told_from_its_beginning(depot: Depot, job: 
     assert content["columns"]["time_s"] == [0.0, 1.0, 2.0]
 
 
-def test_many_rows_are_thinned_and_it_is_said(depot: Depot, job: Job) -> None:
-    reader = streams.Reader(depot, job.id)
-    with SeriesWriter(LiveFolder(path=depot.job_folder(job.id)).series, ["time_s"]) as series:
+def test_many_rows_are_thinned_and_it_is_said(data_folder: DataFolder, job: Job) -> None:
+    reader = streams.RunReader(data_folder, job.id)
+    with SeriesWriter(
+        LiveFolder(path=data_folder.job_folder(job.id)).series, ["time_s"]
+    ) as series:
         series.add(np.arange(1000.0).reshape(-1, 1))
     message = reader._rows()
     assert message is not None
@@ -184,7 +190,7 @@ def test_many_rows_are_thinned_and_it_is_said(depot: Depot, job: Job) -> None:
     assert content["columns"]["time_s"][-1] == 999.0
 
 
-def queued(client: Client) -> list[bytes]:
+def queued(client: StreamClient) -> list[bytes]:
     found = []
     while not client.queue.empty():
         found.append(client.queue.get_nowait())
@@ -192,7 +198,7 @@ def queued(client: Client) -> list[bytes]:
 
 
 def test_who_cannot_follow_loses_messages_and_is_told_so() -> None:
-    client = Client()
+    client = StreamClient()
     for number in range(3 * WAITING):
         client.give(b"%d" % number)
     assert client.queue.qsize() == WAITING
@@ -204,21 +210,21 @@ def test_who_cannot_follow_loses_messages_and_is_told_so() -> None:
 
 @pytest.mark.parametrize("count", [0, 1, WAITING - 2, WAITING - 1, WAITING, 2 * WAITING])
 def test_the_end_comes_to_everybody_and_a_loss_is_told_before_it(count: int) -> None:
-    client = Client()
+    client = StreamClient()
     for number in range(count):
         client.give(b"%d" % number)
     client.end()
     found = queued(client)
-    assert found[-1] == OVER
-    told = [message for message in found if message not in {OVER, event("gap", {})}]
+    assert found[-1] == END_OF_STREAM
+    told = [message for message in found if message not in {END_OF_STREAM, event("gap", {})}]
     assert (len(told) < count) == (event("gap", {}) in found) or count == WAITING
 
 
 def test_one_client_more_than_can_watch_is_refused_before_anything_is_answered(
-    depot: Depot, monkeypatch: pytest.MonkeyPatch
+    data_folder: DataFolder, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(streams, "MOST_CLIENTS", 0)
-    hub = Hub(depot)
+    hub = StreamHub(data_folder)
     with pytest.raises(TooMany):
         hub.require_room()
 

@@ -6,16 +6,16 @@ import numpy as np
 import plotly.graph_objects as go
 import pytest
 
-from service.buckets import Trace
+from service.buckets import BucketedRun
 from service.panels import MOST_BANDS
 from service.simulation.facts import rows
 from service.simulation.figures import run_figure
 from service.simulation.run import Simulation
-from service.simulation.trace import Signal, TraceKeeper
+from service.simulation.trace import SimulationSignal, TraceKeeper
 
 
 @pytest.fixture(scope="module")
-def figure(simulation: Simulation, trace: Trace) -> go.Figure:
+def figure(simulation: Simulation, trace: BucketedRun) -> go.Figure:
     return run_figure(rows(simulation), trace)
 
 
@@ -53,16 +53,16 @@ def test_panels_do_not_overlap(figure: go.Figure) -> None:
         assert below[1] < above[0]
 
 
-def test_the_stack_is_the_mean_total(figure: go.Figure, trace: Trace) -> None:
+def test_the_stack_is_the_mean_total(figure: go.Figure, trace: BucketedRun) -> None:
     stack = [line for line in drawn(figure, "Power") if line.stackgroup]
     assert [line.name for line in stack] == ["base", "coolant", "X", "Y", "Z", "spindle"]
-    total = trace.curve(Signal.TOTAL_POWER).mean * 1e-3
+    total = trace.curve(SimulationSignal.TOTAL_POWER).mean * 1e-3
     np.testing.assert_allclose(sum(np.asarray(line.y) for line in stack), total, rtol=1e-6)
 
 
-def test_peaks_are_drawn(figure: go.Figure, trace: Trace) -> None:
+def test_peaks_are_drawn(figure: go.Figure, trace: BucketedRun) -> None:
     (force,) = drawn(figure, "Cutting force")
-    curve = trace.curve(Signal.FORCE)
+    curve = trace.curve(SimulationSignal.FORCE)
     assert max(force.y) == pytest.approx(curve.high.max())
     assert min(force.y) == pytest.approx(curve.low.min())
 
@@ -76,9 +76,9 @@ def test_units_are_those_of_the_shop(figure: go.Figure) -> None:
     np.testing.assert_allclose(rate.y, force.y * 0.1 * 0.06, rtol=1e-6)
 
 
-def test_overload_is_marked(figure: go.Figure, trace: Trace) -> None:
+def test_overload_is_marked(figure: go.Figure, trace: BucketedRun) -> None:
     marks = next(line for line in drawn(figure, "Power") if line.mode == "markers")
-    assert len(marks.x) == int((trace.curve(Signal.OVERLOAD).high > 0.0).sum())
+    assert len(marks.x) == int((trace.curve(SimulationSignal.OVERLOAD).high > 0.0).sum())
 
 
 def test_a_component_that_draws_nothing_is_left_out(simulation: Simulation) -> None:
@@ -95,16 +95,18 @@ def test_workingsteps_stand_where_they_run(figure: go.Figure) -> None:
     assert "<" not in "".join(bars.text)
 
 
-def test_thousands_of_workingsteps_have_no_bands(simulation: Simulation, trace: Trace) -> None:
+def test_thousands_of_workingsteps_have_no_bands(
+    simulation: Simulation, trace: BucketedRun
+) -> None:
     many = rows(simulation) * (MOST_BANDS // 3 + 1)
     assert not run_figure(many, trace).layout.shapes
 
 
 @pytest.mark.parametrize(("seconds", "unit"), [(60.0, "s"), (3600.0, "min"), (1e5, "h")])
 def test_long_runs_are_in_longer_units(
-    simulation: Simulation, trace: Trace, seconds: float, unit: str
+    simulation: Simulation, trace: BucketedRun, seconds: float, unit: str
 ) -> None:
-    longer = Trace(
+    longer = BucketedRun(
         width=1.0,
         begin=trace.begin * seconds / 100.0,
         end=trace.end * seconds / 100.0,

@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 from service.simulation.gathering import MOST_SECONDS
-from service.simulation.run import SimulationRequest, simulate
+from service.simulation.run import simulate
 from service.simulation.setup import CodeRequest
 from simulator.errors import SimulationError
 from simulator.machine.samples import Samples
+from tests.asking import asked_simulation
 from tests.service.rest.samples import SAMPLE
 
 
@@ -29,12 +30,12 @@ class Looker:
         self.samples.append(samples)
 
 
-REQUEST = SimulationRequest(file=SAMPLE, rate=20.0)
+REQUEST = asked_simulation(file=SAMPLE, rate=20.0)
 
 
 def test_a_looker_sees_each_sample_once_ascending_in_time() -> None:
     looker = Looker()
-    simulation = simulate(REQUEST, watchers=[looker])
+    simulation = simulate(*REQUEST, watchers=[looker])
     times = np.concatenate([each.time for each in looker.samples])
     assert (np.diff(times) > 0.0).all()
     assert times[-1] == pytest.approx(simulation.whole.duration, abs=0.06)
@@ -44,8 +45,8 @@ def test_a_looker_sees_each_sample_once_ascending_in_time() -> None:
 
 def test_lookers_change_nothing_and_see_the_same() -> None:
     one, other = Looker(), Looker()
-    watched = simulate(REQUEST, watchers=[one, other])
-    alone = simulate(REQUEST)
+    watched = simulate(*REQUEST, watchers=[one, other])
+    alone = simulate(*REQUEST)
     assert watched.totals == alone.totals
     assert len(one.samples) == len(other.samples)
     for mine, yours in zip(one.samples, other.samples, strict=True):
@@ -58,7 +59,7 @@ def test_what_a_looker_raises_ends_the_run() -> None:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        simulate(REQUEST, watchers=[Stubborn()])
+        simulate(*REQUEST, watchers=[Stubborn()])
 
 
 def test_a_run_without_an_end_is_refused_at_the_line_that_has_none(tmp_path: Path) -> None:
@@ -67,4 +68,4 @@ def test_a_run_without_an_end_is_refused_at_the_line_that_has_none(tmp_path: Pat
     with pytest.raises(
         SimulationError, match=r"line 2: 2e\+07 s of machining: 1e\+07 s at most"
     ):
-        simulate(SimulationRequest(code=CodeRequest(code=code), machine="vmc15"))
+        simulate(*asked_simulation(code=CodeRequest(code=code), machine="vmc15"))

@@ -9,8 +9,8 @@ from service.numbers import numbers_in
 from service.reading import silent
 from service.simulation.setup import (
     CodeRequest,
-    Counted,
-    Prepared,
+    CountedIterator,
+    PreparedRun,
     from_code,
     from_program,
 )
@@ -36,15 +36,15 @@ def test_what_are_no_numbers_is_refused(text: str) -> None:
 
 
 def test_what_is_handed_on_is_counted() -> None:
-    items = Counted(["ab", "c", "defg"], len)
+    items = CountedIterator(["ab", "c", "defg"], len)
     assert list(islice(items, 2)) == ["ab", "c"]
     assert items.count == 2
     assert items.share(12) == 0.25
     assert items.share(2) == 1.0
-    assert Counted([]).share(0) == 0.0
+    assert CountedIterator([]).share(0) == 0.0
 
 
-def program(machine: str = "vmc15") -> Prepared:
+def program(machine: str = "vmc15") -> PreparedRun:
     return from_program(BRACKET, units="iso", machine=machine, material="", tell=silent)
 
 
@@ -80,7 +80,7 @@ def test_the_table_of_the_example_holds_the_tools_of_its_program(tmp_path: Path)
     assert prepared.raw == known.raw
 
 
-def coded(folder: Path, text: str, name: str = "a.ngc", *, dialect: str = "") -> Prepared:
+def coded(folder: Path, text: str, name: str = "a.ngc", *, dialect: str = "") -> PreparedRun:
     path = folder / name
     path.write_text(text, encoding="ascii")
     request = CodeRequest(code=path, dialect=dialect)

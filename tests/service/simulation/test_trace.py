@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from service.buckets import MOST, Trace
-from service.simulation.trace import Signal, TraceKeeper
+from service.buckets import MOST, BucketedRun
+from service.simulation.trace import SimulationSignal, TraceKeeper
 from simulator.machine.samples import Samples
 from simulator.motion.segments import Floats
 
@@ -17,7 +17,9 @@ SampleMaker = Callable[[Floats, Floats], Samples]
 HOUR = 3600.0
 
 
-def traced(make: SampleMaker, time: Floats, force: Floats, ends: Sequence[int] = ()) -> Trace:
+def traced(
+    make: SampleMaker, time: Floats, force: Floats, ends: Sequence[int] = ()
+) -> BucketedRun:
     """The trace of samples that come in chunks."""
     keeper = TraceKeeper()
     borders = [0, *sorted(ends), len(time)]
@@ -26,7 +28,7 @@ def traced(make: SampleMaker, time: Floats, force: Floats, ends: Sequence[int] =
     return keeper.trace()
 
 
-def columns(trace: Trace) -> Floats:
+def columns(trace: BucketedRun) -> Floats:
     """All of a trace."""
     curves = [(curve.low, curve.mean, curve.high) for curve in trace.curves]
     rows = [row for curve in curves for row in curve]
@@ -70,50 +72,54 @@ def test_a_peak_of_one_sample_survives_a_long_run(samples_at: SampleMaker) -> No
     time = np.arange(200_000.0)
     force = np.full(len(time), 10.0)
     force[123_456], force[150_000] = 5000.0, -7.0
-    curve = traced(samples_at, time, force).curve(Signal.FORCE)
+    curve = traced(samples_at, time, force).curve(SimulationSignal.FORCE)
     assert (curve.high.max(), curve.low.min()) == (5000.0, -7.0)
 
 
 def test_a_bucket_lies_between_its_samples(samples_at: SampleMaker) -> None:
     time = np.arange(50_000) / 10.0
     trace = traced(samples_at, time, 100.0 * np.sin(time))
-    curve = trace.curve(Signal.FORCE)
+    curve = trace.curve(SimulationSignal.FORCE)
     assert (curve.low <= curve.mean).all()
     assert (curve.mean <= curve.high).all()
     assert (trace.end - trace.begin < trace.width).all()
     assert (trace.end[:-1] < trace.begin[1:]).all()
 
 
-def test_components_add_up_to_the_total(trace: Trace) -> None:
-    parts = [trace.curve(Signal(row)).mean for row in range(Signal.TOTAL_POWER)]
-    np.testing.assert_allclose(sum(parts), trace.curve(Signal.TOTAL_POWER).mean, rtol=1e-12)
+def test_components_add_up_to_the_total(trace: BucketedRun) -> None:
+    parts = [
+        trace.curve(SimulationSignal(row)).mean for row in range(SimulationSignal.TOTAL_POWER)
+    ]
+    np.testing.assert_allclose(
+        sum(parts), trace.curve(SimulationSignal.TOTAL_POWER).mean, rtol=1e-12
+    )
 
 
 def test_signals_are_what_they_are_called(samples_at: SampleMaker) -> None:
     trace = traced(samples_at, np.zeros(1), np.full(1, 1000.0))
-    found = {signal: float(trace.curve(signal).mean[0]) for signal in Signal}
+    found = {signal: float(trace.curve(signal).mean[0]) for signal in SimulationSignal}
     assert found == {
-        Signal.X_POWER: 1.0,
-        Signal.Y_POWER: 2.0,
-        Signal.Z_POWER: 3.0,
-        Signal.SPINDLE_POWER: 2100.0,
-        Signal.COOLANT_POWER: 500.0,
-        Signal.BASE_POWER: 1200.0,
-        Signal.TOTAL_POWER: 3806.0,
-        Signal.FEED_PROGRAMMED: 5.0,
-        Signal.FEED_ACTUAL: 5.0,
-        Signal.SPINDLE_SPEED: 20.0,
-        Signal.FORCE: 1000.0,
-        Signal.REMOVAL_RATE: 100.0,
-        Signal.OVERLOAD: 1.0,
+        SimulationSignal.X_POWER: 1.0,
+        SimulationSignal.Y_POWER: 2.0,
+        SimulationSignal.Z_POWER: 3.0,
+        SimulationSignal.SPINDLE_POWER: 2100.0,
+        SimulationSignal.COOLANT_POWER: 500.0,
+        SimulationSignal.BASE_POWER: 1200.0,
+        SimulationSignal.TOTAL_POWER: 3806.0,
+        SimulationSignal.FEED_PROGRAMMED: 5.0,
+        SimulationSignal.FEED_ACTUAL: 5.0,
+        SimulationSignal.SPINDLE_SPEED: 20.0,
+        SimulationSignal.FORCE: 1000.0,
+        SimulationSignal.REMOVAL_RATE: 100.0,
+        SimulationSignal.OVERLOAD: 1.0,
     }
 
 
 def test_missing_samples_leave_a_gap_and_no_trace_elsewhere(samples_at: SampleMaker) -> None:
     time = np.arange(3.0)
     trace = traced(samples_at, time, np.array([1.0, np.nan, 3.0]))
-    np.testing.assert_array_equal(trace.curve(Signal.FORCE).mean, [1.0, np.nan, 3.0])
-    assert trace.curve(Signal.BASE_POWER).low.min() == 1200.0
+    np.testing.assert_array_equal(trace.curve(SimulationSignal.FORCE).mean, [1.0, np.nan, 3.0])
+    assert trace.curve(SimulationSignal.BASE_POWER).low.min() == 1200.0
 
 
 def test_no_samples_make_no_trace() -> None:

@@ -8,7 +8,7 @@ import pytest
 from controller.orders import Criterion
 from service.trial.inputs import (
     FIELDS,
-    Field,
+    InputField,
     Inputs,
     MillingType,
     change_words,
@@ -21,7 +21,7 @@ INPUTS = Inputs()
 
 
 @pytest.mark.parametrize("field", FIELDS, ids=lambda field: field.name)
-def test_both_bounds_can_be_had_and_nothing_beyond(field: Field) -> None:
+def test_both_bounds_can_be_had_and_nothing_beyond(field: InputField) -> None:
     # A slow and large cutter, so that no spindle speed stands in the way.
     slow = replace(INPUTS, tool_diameter_mm=150.0)
     for value in (field.low, field.high):

@@ -10,10 +10,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from controller.laws.choice import LawName
-from controller.orders import Criterion, Event, EventKind
+from controller.orders import Criterion, EventKind, LoopEvent
 from service.control.holding import OFF
-from service.control.trace import Moment
-from service.trial.inputs import FIELDS, Field, Inputs, MillingType, changed
+from service.session.rows import Moment
+from service.trial.inputs import FIELDS, InputField, Inputs, MillingType, changed
 from service.trial.run import SET_UP, TrialRun
 from stepnc_model.errors import StepNcError
 from tests.service.trial.test_cut import PAPER
@@ -60,8 +60,13 @@ def test_the_default_is_safe_and_bounded_by_the_chip_load(run: TrialRun) -> None
     now = steady(run)
     status = run.status()
     assert now.chip_load == pytest.approx(0.2, rel=1e-3)
-    assert (status.holding, status.is_over, status.level.value) == ("chip load", False, "safe")
+    assert (status.holding, status.is_overloaded, status.level) == (
+        "chip load",
+        False,
+        "safe",
+    )
     assert status.override_percent == pytest.approx(100.0)
+    assert status.motor_power_kw is not None
     assert status.power_kw < 0.7 * status.motor_power_kw
 
 
@@ -71,10 +76,10 @@ def test_a_depth_that_doubles_is_over_for_a_moment_and_then_safe(run: TrialRun) 
     run.advance(run.time + 0.3)
     jumped = run.taken()
     assert max(row.force_measured for row in jumped.moments) > 1.8 * before.force
-    assert run.status().is_over
+    assert run.status().is_overloaded
     run.advance(run.time + SETTLED)
     status, settled = run.status(), run.taken()
-    assert not status.is_over
+    assert not status.is_overloaded
     assert status.power_kw == pytest.approx(status.motor_power_kw, rel=0.03)
     assert status.feed_per_tooth_mm < 0.75 * 0.2
     assert status.holding == "motor power"
@@ -160,7 +165,7 @@ def test_off_nothing_holds_the_feed(run: TrialRun) -> None:
     status = run.status()
     assert now.chip_load == pytest.approx(0.2, rel=1e-3)
     assert now.power_kw > 1.2 * 7.5
-    assert status.is_over
+    assert status.is_overloaded
     assert (status.holding, status.is_on) == (OFF, False)
 
 
@@ -268,7 +273,7 @@ def test_a_run_that_is_stopped_stands_until_it_is_begun_anew() -> None:
     at, status = run.time, run.status()
     assert status.is_stopped
     assert status.stopped_by.endswith("times in quick succession")
-    assert (status.feed_actual_mm_min, status.force_measured, status.is_over) == (
+    assert (status.feed_actual_mm_min, status.force_measured, status.is_overloaded) == (
         0.0, None, False,
     )  # fmt: skip
     assert not run.advance(at + 10.0)
@@ -315,7 +320,7 @@ def test_the_seed_makes_the_run() -> None:
     assert repr(rows(7)) != repr(rows(8))
 
 
-def values(field: Field) -> st.SearchStrategy[float]:
+def values(field: InputField) -> st.SearchStrategy[float]:
     if field.is_whole:
         return st.integers(int(field.low), int(field.high))
     return st.floats(field.low, field.high)
@@ -337,7 +342,7 @@ def test_whatever_is_changed_the_run_holds_its_promises(
 ) -> None:
     run = TrialRun(Inputs(), seed=seed)
     rows: list[Moment] = []
-    events: list[Event] = []
+    events: list[LoopEvent] = []
     for name, value in [("is_on", True), *changes]:
         try:
             change(run, **{name: value})

@@ -5,18 +5,18 @@ import pytest
 from controller.laws.choice import LawName
 from controller.orders import EventKind
 from service.control.holding import OFF, PROGRAMMED
-from service.control.trace import Moment
+from service.session.rows import Moment
 from service.trial.inputs import Inputs, changed
-from service.trial.setup import SetUp
+from service.trial.setup import TrialSetup
 
 INPUTS = Inputs()
 
 
-def begun(rows: list[Moment], inputs: Inputs = INPUTS, *, begin: float = 100.0) -> SetUp:
-    return SetUp(inputs, begin=begin, seed=1, law=LawName.LOG_PI, sink=rows.append)
+def begun(rows: list[Moment], inputs: Inputs = INPUTS, *, begin: float = 100.0) -> TrialSetup:
+    return TrialSetup(inputs, begin=begin, seed=1, law=LawName.LOG_PI, sink=rows.append)
 
 
-def run(set_up: SetUp, seconds: float) -> list[EventKind]:
+def run(set_up: TrialSetup, seconds: float) -> list[EventKind]:
     end = set_up.time + seconds
     kinds: list[EventKind] = []
     while set_up.time < end:
@@ -86,6 +86,6 @@ def test_of_two_changes_before_a_cycle_the_last_one_counts() -> None:
     run(set_up, 2.0)
     assert rows[-1].axial_depth == 2.0
     assert rows[-1].force_ratio == pytest.approx(1.0, abs=0.03)
-    assert set_up.loop.aims.is_on
-    assert set_up.loop.aims.criterion is INPUTS.mode
-    assert set_up.loop.aims.power_factor == 1.0
+    assert set_up.loop.state.settings.is_on
+    assert set_up.loop.state.settings.criterion is INPUTS.mode
+    assert set_up.loop.state.settings.power_factor == 1.0

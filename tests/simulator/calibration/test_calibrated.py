@@ -6,10 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from simulator.calibration.calibrated import calibrated, notes, priors
-from simulator.calibration.delay import Delay
-from simulator.calibration.estimates import Calibration, Estimate
-from simulator.calibration.features import PARAMETERS, Parameter
+from simulator.calibration.calibrated import Delay, calibrated, notes, priors
+from simulator.calibration.features import PARAMETERS, Calibration, Estimate, Parameter
 from simulator.library import load_machine
 from simulator.machine_toml import machine_toml
 from simulator.physics.axis import axis_power

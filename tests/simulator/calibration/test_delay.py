@@ -6,9 +6,14 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from simulator.calibration.delay import fitted_delay, lagged
-from simulator.calibration.estimates import Calibration, Estimate
-from simulator.calibration.features import PARAMETERS, Parameter, RunFeatures
+from simulator.calibration.calibrated import fitted_delay, lagged
+from simulator.calibration.features import (
+    PARAMETERS,
+    Calibration,
+    Estimate,
+    Parameter,
+    RunFeatures,
+)
 from simulator.calibration.measured_run import Component
 from simulator.motion.segments import Floats
 

@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from simulator.calibration.estimates import Calibration, Estimate
-from simulator.calibration.features import Parameter
+from simulator.calibration.features import Calibration, Estimate, Parameter
 
 
 def test_reason_means_not_identified() -> None:

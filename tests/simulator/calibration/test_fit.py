@@ -5,8 +5,16 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 
-from simulator.calibration.estimates import Calibration, Estimate, Prior
-from simulator.calibration.features import PARAMETERS, Parameter, RunFeatures, design, powers
+from simulator.calibration.features import (
+    PARAMETERS,
+    Calibration,
+    Estimate,
+    Parameter,
+    ParameterPrior,
+    RunFeatures,
+    design,
+    powers,
+)
 from simulator.calibration.fit import fitted
 from simulator.calibration.measured_run import Component
 from simulator.errors import CalibrationError
@@ -22,12 +30,12 @@ TRUTH = {
     Parameter.VISCOUS_X: 1.5,
     Parameter.MASS_X: 120.0,
 }
-PRIORS = {name: Prior(value=0.0, scale=200.0) for name in Parameter} | {
-    Parameter.CUTTING: Prior(value=1.0, scale=0.5),
-    Parameter.INERTIA: Prior(value=0.0, scale=0.02),
-    Parameter.IDLE_PER_SPEED: Prior(value=0.0, scale=5.0),
-    Parameter.IDLE_PER_SPEED_SQUARED: Prior(value=0.0, scale=0.0005),
-    Parameter.VISCOUS_X: Prior(value=0.0, scale=3.0),
+PRIORS = {name: ParameterPrior(value=0.0, scale=200.0) for name in Parameter} | {
+    Parameter.CUTTING: ParameterPrior(value=1.0, scale=0.5),
+    Parameter.INERTIA: ParameterPrior(value=0.0, scale=0.02),
+    Parameter.IDLE_PER_SPEED: ParameterPrior(value=0.0, scale=5.0),
+    Parameter.IDLE_PER_SPEED_SQUARED: ParameterPrior(value=0.0, scale=0.0005),
+    Parameter.VISCOUS_X: ParameterPrior(value=0.0, scale=3.0),
 }
 ALL = tuple(part for part in Component if part is not Component.TOTAL)
 NOISE = 8.0  # W

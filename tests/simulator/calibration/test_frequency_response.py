@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from simulator.calibration.frequency_response import read_response
+from simulator.calibration.modal_fit import read_response
 from simulator.errors import CalibrationError
 
 ROWS: list[tuple[float, ...]] = [(100.0 * row, 1.0 + row, -0.5 * row) for row in range(12)]
@@ -33,6 +33,16 @@ def test_a_receptance_comes_in_mm_per_n(heading: str, factor: float, tmp_path: P
     assert found.frequency.tolist() == [row[0] for row in ROWS[1:]]
     expected = [factor * complex(row[1], row[2]) for row in ROWS[1:]]
     assert found.receptance.tolist() == pytest.approx(expected)
+
+
+def test_a_semicolon_or_tab_separates_cells_with_decimal_commas(tmp_path: Path) -> None:
+    path = write(tmp_path / "tap.csv", "frequency_hz,real_mm_n,imag_mm_n", ROWS)
+    plain = path.read_text("utf-8")
+    for mark in ";\t":
+        path.write_text(plain.replace(",", mark).replace(".", ","), encoding="utf-8")
+        found = read_response(path)
+        assert found.frequency.tolist() == [row[0] for row in ROWS[1:]]
+        assert found.receptance.tolist() == [complex(row[1], row[2]) for row in ROWS[1:]]
 
 
 def test_an_accelerance_is_divided_by_minus_omega_squared(tmp_path: Path) -> None:

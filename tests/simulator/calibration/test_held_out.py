@@ -5,13 +5,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from simulator.calibration.estimates import Prior
-from simulator.calibration.features import PARAMETERS, Parameter, RunFeatures, design, powers
+from simulator.calibration.features import (
+    PARAMETERS,
+    Parameter,
+    ParameterPrior,
+    RunFeatures,
+    design,
+    powers,
+)
 from simulator.calibration.held_out import held_out
 from simulator.calibration.measured_run import Component
 
-PRIORS = {name: Prior(value=0.0, scale=500.0) for name in Parameter} | {
-    Parameter.CUTTING: Prior(value=1.0, scale=0.5)
+PRIORS = {name: ParameterPrior(value=0.0, scale=500.0) for name in Parameter} | {
+    Parameter.CUTTING: ParameterPrior(value=1.0, scale=0.5)
 }
 
 

@@ -7,8 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from simulator.calibration.frequency_response import FrequencyResponse
-from simulator.calibration.modal_fit import ModalFit, fitted_modes
+from simulator.calibration.modal_fit import FrequencyResponse, ModalFit, fitted_modes
 from simulator.errors import CalibrationError
 
 Mode = tuple[float, float, float]

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from simulator.calibration.features import PARAMETERS, RunFeatures
+from simulator.calibration.fit import jacobian, predicted, stacked
 from simulator.calibration.measured_run import Component
-from simulator.calibration.stack import jacobian, predicted, stacked
 
 
 def run(seconds: float, watts: float) -> RunFeatures:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from simulator.kernels.kernel import Entry, entry, kernel
+from simulator.kernels.kernel import KernelEntry, entry, kernel
 from tests.simulator.kernels.conftest import Line, height, heights
 
 LINE = Line(1.5, -2.0)
@@ -18,7 +18,7 @@ LINE = Line(1.5, -2.0)
 def test_machine_code_agrees_with_python() -> None:
     x = np.linspace(-3.0, 3.0, 7)
     fast, slow = np.zeros(7), np.zeros(7)
-    Entry(heights.function)(LINE, x, 2, fast)
+    KernelEntry(heights.function)(LINE, x, 2, fast)
     heights.function(LINE, x, 2, slow)
     assert (fast == slow).all()
     assert fast[0] == 0.0 != fast[-1]
@@ -27,7 +27,7 @@ def test_machine_code_agrees_with_python() -> None:
 @pytest.mark.usefixtures("folder")
 def test_arrays_of_another_layout_have_machine_code_of_their_own() -> None:
     x, into = np.arange(12.0).reshape(6, 2), np.zeros(6)
-    each = Entry(heights.function)
+    each = KernelEntry(heights.function)
     each(LINE, x[:, 1], 0, into)
     assert into.tolist() == [height(LINE, value) for value in x[:, 1]]
     each(LINE, np.ascontiguousarray(x[:, 0]), 0, into)
@@ -60,7 +60,7 @@ def test_a_kernel_that_allocates_is_refused() -> None:
 
 
 def test_numba_stays_out_of_a_process_that_finds_its_machine_code(folder: Path) -> None:
-    Entry(heights.function)(LINE, np.zeros(2), 0, np.zeros(2))
+    KernelEntry(heights.function)(LINE, np.zeros(2), 0, np.zeros(2))
     assert len(list(folder.glob("heights-*.o"))) == 1
     script = (
         "import sys; from pathlib import Path; from simulator.kernels import store\n"

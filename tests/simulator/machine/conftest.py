@@ -12,7 +12,7 @@ from simulator.machine.samples import Samples
 from simulator.motion.segments import Segments
 from simulator.removal.collision import Collision
 from simulator.removal.cutter import Cutter, Insert
-from simulator.removal.stations import CutKind, Stations
+from simulator.removal.stations import StationKind, Stations
 from simulator.spec import Axis, AxisDrive, Machine, MachineKind, Spindle, SpindlePoint
 
 THREES = ("position", "velocity", "axis_power")
@@ -98,7 +98,7 @@ class EvenStock:
         return Stations(
             segment=np.arange(len(segments)),
             station=segments.length,
-            kind=np.where(cuts, int(CutKind.MILLING), int(CutKind.AIR)),
+            kind=np.where(cuts, int(StationKind.MILLING), int(StationKind.AIR)),
             section=np.where(cuts, 20.0, 0.0),
             growth=np.zeros(len(cuts)),
             axial_depth=np.where(cuts, 2.0, 0.0),

@@ -11,7 +11,7 @@ from stepnc_model.post.blocks import Coolant, CoolantKind
 
 def test_acts_with_the_same_content_are_equal() -> None:
     assert acts.SpindleTo(speed=10.0) == acts.SpindleTo(speed=10.0)
-    assert acts.Step(line=3, act=acts.Wait(seconds=1.0)) != acts.Step(
+    assert acts.ProgramAct(line=3, act=acts.Wait(seconds=1.0)) != acts.ProgramAct(
         line=4, act=acts.Wait(seconds=1.0)
     )
 
@@ -30,6 +30,6 @@ def test_coolant_is_off_unless_said() -> None:
 
 def test_every_act_of_the_module_belongs_to_the_union() -> None:
     classes = {each for each in vars(acts).values() if isinstance(each, type)}
-    made = {each for each in classes if each.__module__ == acts.__name__} - {acts.Step}
+    made = {each for each in classes if each.__module__ == acts.__name__} - {acts.ProgramAct}
     assert made == set(get_args(acts.Act))
-    assert [field.name for field in fields(acts.Step)] == ["line", "act"]
+    assert [field.name for field in fields(acts.ProgramAct)] == ["line", "act"]

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 
 from simulator.machine.cutting import (
+    CuttingEdge,
     CuttingLoads,
-    Edge,
     cutting_loads,
     engaged_width,
     milling_shares,
@@ -27,7 +27,7 @@ from simulator.physics.turning import (
     cutting_force,
     turning_forces,
 )
-from simulator.removal.stations import CutKind, Stations, air
+from simulator.removal.stations import StationKind, Stations, air
 from simulator.spec import DrillPoint, Kienzle
 from tests.oracles.cutting import drilling_thrust
 
@@ -44,7 +44,7 @@ ANGLES = (
 )
 
 
-def station(kind: CutKind, **columns: float) -> Stations:
+def station(kind: StationKind, **columns: float) -> Stations:
     names = [
         "section",
         "growth",
@@ -68,7 +68,7 @@ def milled(
     width = 0.5 * diameter * (cos(entry) - cos(exit_))
     arc = Engagement(entry_angle=entry, exit_angle=exit_)
     return station(
-        CutKind.MILLING,
+        StationKind.MILLING,
         section=depth * width,
         axial_depth=depth,
         radial_width=width,
@@ -83,7 +83,7 @@ def milled(
 def turned(*, depth: float, kappa: float, radius: float = 20.0) -> Stations:
     around = 2.0 * radius - depth
     return station(
-        CutKind.TURNING,
+        StationKind.TURNING,
         section=pi * around * depth,
         axial_depth=depth,
         chip_ratio=sin(kappa),
@@ -92,7 +92,12 @@ def turned(*, depth: float, kappa: float, radius: float = 20.0) -> Stations:
 
 
 def loads(
-    stations: Stations, edge: Edge, *, speed: float, spindle: float, flank_wear: float = 0.0
+    stations: Stations,
+    edge: CuttingEdge,
+    *,
+    speed: float,
+    spindle: float,
+    flank_wear: float = 0.0,
 ) -> CuttingLoads:
     rows, turning = np.array([0]), np.array([spindle])
     sharp = cutting_loads(
@@ -120,7 +125,7 @@ def test_power_of_milling_is_specific_force_times_removal_rate(
     angles: list[float], speed: float, spindle: float, teeth: int, factor: float
 ) -> None:
     entry, exit_ = angles
-    edge = Edge(teeth=teeth, kienzle=STEEL, factor=factor)
+    edge = CuttingEdge(teeth=teeth, kienzle=STEEL, factor=factor)
     found = loads(milled(entry, exit_), edge, speed=speed, spindle=spindle)
     rate = 2.0 * 5.0 * (cos(entry) - cos(exit_)) * speed
     per_tooth = speed / (teeth * spindle)
@@ -149,7 +154,7 @@ def test_milling_shares_are_means_of_a_tooth_over_its_arc(
 
 def test_full_slot_of_aisi_1018_needs_the_power_of_the_reference() -> None:
     """Ø8, z 4, f_z 0.01778 mm, n 1750 rpm: k_c 4020 N/mm² and 100.1 W at 1.5 mm depth."""
-    edge = Edge(teeth=4, kienzle=STEEL)
+    edge = CuttingEdge(teeth=4, kienzle=STEEL)
     slot = milled(0.0, pi, diameter=8.0, depth=1.5)
     found = loads(slot, edge, speed=0.017780 * 4 * 1750 / 60, spindle=1750 / 60)
     assert found.chip_thickness[0] == pytest.approx(0.011319, rel=1e-4)
@@ -185,13 +190,13 @@ def test_drilling_has_the_torque_and_thrust_of_the_scalar_physics(
         point=point,
     )
     stations = station(
-        CutKind.DRILLING,
+        StationKind.DRILLING,
         section=0.25 * pi * (diameter**2 - hole**2),
         axial_depth=0.5 * (diameter - hole),
         chip_ratio=sin(half),
         diameter=0.5 * (diameter + hole),
     )
-    edge = Edge(teeth=2, kienzle=STEEL, factor=factor, point=point)
+    edge = CuttingEdge(teeth=2, kienzle=STEEL, factor=factor, point=point)
     found = loads(stations, edge, speed=feed * spindle, spindle=spindle)
     torque = found.power[0] * 1000.0 / (2.0 * pi * spindle)
     assert torque == pytest.approx(drilling_torque(STEEL, cut, factor=factor))
@@ -210,7 +215,7 @@ def test_turning_has_the_force_of_kienzle(
     feed: float, depth: float, kappa: float, radius: float
 ) -> None:
     stations = turned(depth=depth, kappa=kappa, radius=radius)
-    edge = Edge(teeth=1, kienzle=STEEL, feed_force=C45_FEED, back_force=C45_BACK)
+    edge = CuttingEdge(teeth=1, kienzle=STEEL, feed_force=C45_FEED, back_force=C45_BACK)
     found = loads(stations, edge, speed=feed * 15.0, spindle=15.0)
     cut = TurningCut(feed_per_revolution=feed, depth=depth, cutting_edge_angle=kappa)
     force = cutting_force(STEEL, cut)
@@ -224,7 +229,7 @@ def test_turning_has_the_force_of_kienzle(
 
 def test_turning_without_pairs_has_the_usual_shares() -> None:
     stations = turned(depth=2.0, kappa=1.5)
-    found = loads(stations, Edge(teeth=1, kienzle=STEEL), speed=3.0, spindle=15.0)
+    found = loads(stations, CuttingEdge(teeth=1, kienzle=STEEL), speed=3.0, spindle=15.0)
     assert found.feed_force[0] == pytest.approx(FEED_SHARE * found.force[0])
     assert found.back_force[0] == pytest.approx(BACK_SHARE * found.force[0])
 
@@ -233,7 +238,7 @@ def test_turning_without_pairs_has_the_usual_shares() -> None:
 @given(feed=st.floats(0.05, 0.5), flank_wear=st.floats(0.0, 0.3))
 def test_wear_adds_to_the_force_whatever_the_feed(feed: float, flank_wear: float) -> None:
     """Measured: 42 N at VB 0.3 mm and a depth of 0.25 mm; 490 ± 80 N/mm² make 37 ± 6 N."""
-    stations, edge = turned(depth=0.25, kappa=1.5), Edge(teeth=1, kienzle=STEEL)
+    stations, edge = turned(depth=0.25, kappa=1.5), CuttingEdge(teeth=1, kienzle=STEEL)
     sharp = loads(stations, edge, speed=feed * 15.0, spindle=15.0)
     worn = loads(stations, edge, speed=feed * 15.0, spindle=15.0, flank_wear=flank_wear)
     added = worn.force[0] - sharp.force[0]
@@ -253,7 +258,7 @@ def test_wear_adds_to_the_force_whatever_the_feed(feed: float, flank_wear: float
 def test_wear_of_a_mill_acts_on_the_teeth_in_the_cut(angles: list[float], teeth: int) -> None:
     """Mean of z teeth on an arc of φ: ``z·φ/2π`` of them, each as wide as the depth."""
     entry, exit_ = angles
-    stations, edge = milled(entry, exit_), Edge(teeth=teeth, kienzle=STEEL)
+    stations, edge = milled(entry, exit_), CuttingEdge(teeth=teeth, kienzle=STEEL)
     width = 2.0 * teeth * (exit_ - entry) / (2.0 * pi)
     assert engaged_width(stations, teeth)[0] == pytest.approx(width)
     sharp = loads(stations, edge, speed=5.0, spindle=20.0)
@@ -269,13 +274,13 @@ def test_wear_of_a_mill_acts_on_the_teeth_in_the_cut(angles: list[float], teeth:
 
 def test_wear_of_a_drill_acts_on_both_lips() -> None:
     stations = station(
-        CutKind.DRILLING,
+        StationKind.DRILLING,
         section=0.25 * pi * 100.0,
         axial_depth=5.0,
         chip_ratio=sin(1.03),
         diameter=5.0,
     )
-    edge = Edge(teeth=2, kienzle=STEEL)
+    edge = CuttingEdge(teeth=2, kienzle=STEEL)
     sharp = loads(stations, edge, speed=2.0, spindle=10.0)
     worn = loads(stations, edge, speed=2.0, spindle=10.0, flank_wear=0.2)
     assert worn.force[0] - sharp.force[0] == pytest.approx(490.0 * 0.2 * 10.0)
@@ -285,7 +290,9 @@ def test_wear_of_a_drill_acts_on_both_lips() -> None:
 
 @pytest.mark.parametrize(("speed", "spindle"), [(0.0, 10.0), (5.0, 0.0), (0.0, 0.0)])
 def test_standing_axes_or_spindle_need_no_force(speed: float, spindle: float) -> None:
-    found = loads(milled(0.0, pi), Edge(teeth=4, kienzle=STEEL), speed=speed, spindle=spindle)
+    found = loads(
+        milled(0.0, pi), CuttingEdge(teeth=4, kienzle=STEEL), speed=speed, spindle=spindle
+    )
     for name in (
         "removal_rate",
         "chip_thickness",
@@ -300,12 +307,12 @@ def test_standing_axes_or_spindle_need_no_force(speed: float, spindle: float) ->
 @pytest.mark.parametrize("missing", ["section", "chip_ratio", "diameter"])
 def test_contact_without_a_chip_needs_no_force(missing: str) -> None:
     columns = {"section": 20.0, "chip_ratio": 0.6, "diameter": 10.0, "exit_angle": pi}
-    touched = station(CutKind.MILLING, **(columns | {missing: 0.0}))
-    found = loads(touched, Edge(teeth=4, kienzle=STEEL), speed=5.0, spindle=10.0)
+    touched = station(StationKind.MILLING, **(columns | {missing: 0.0}))
+    found = loads(touched, CuttingEdge(teeth=4, kienzle=STEEL), speed=5.0, spindle=10.0)
     assert found.power.tolist() == found.force.tolist() == [0.0]
 
 
 def test_air_needs_no_force() -> None:
     nothing = air(np.array([0]), np.array([10.0]))
-    found = loads(nothing, Edge(teeth=4, kienzle=STEEL), speed=5.0, spindle=10.0)
+    found = loads(nothing, CuttingEdge(teeth=4, kienzle=STEEL), speed=5.0, spindle=10.0)
     assert found.force.tolist() == no_loads(1).force.tolist() == [0.0]

@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from simulator.machine.disturbance import FORCES, Disturbance, Disturbed, NoiseKind
+from simulator.machine.disturbance import FORCES, Disturbance, Disturbed
+from simulator.machine.noise_kind import NoiseKind
 from simulator.machine.samples import PathMode, Samples, joined
 from simulator.machine.transients import Response
 from simulator.motion.segments import Floats

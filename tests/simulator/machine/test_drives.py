@@ -6,8 +6,8 @@ from math import pi
 import numpy as np
 import pytest
 
-from simulator.machine.drives import axes_power, continuous_power, main_power, overload
 from simulator.machine.samples import Condition
+from simulator.machine.sensing import axes_power, continuous_power, main_power, overload
 from simulator.physics.axis import axis_power
 from simulator.physics.spindle import available_power
 from simulator.spec import AxisDrive, Machine, Spindle, SpindlePoint

@@ -7,14 +7,22 @@ from math import pi
 import numpy as np
 import pytest
 
-from simulator.machine.cutting import Edge
-from simulator.machine.episode import ARC_STEP, Course
+from simulator.machine.cutting import CuttingEdge
+from simulator.machine.samples import ARC_STEP, EpisodeCourse
 from simulator.machine.wear import Wear
-from simulator.motion.exact_stop import ExactStop
+from simulator.motion.control import ExactStop
 from simulator.motion.fir import FixedTimeFilter
-from simulator.motion.motion import ControlModel, Kinematics, axis_limits
-from simulator.motion.segments import Floats, Segments, arc, chained, lines
-from simulator.removal.stations import CutKind, Stations
+from simulator.motion.segments import (
+    ControlModel,
+    Floats,
+    Kinematics,
+    Segments,
+    arc,
+    axis_limits,
+    chained,
+    lines,
+)
+from simulator.removal.stations import StationKind, Stations
 from simulator.spec import Kienzle, Machine
 
 PATH = chained([
@@ -22,7 +30,7 @@ PATH = chained([
     arc((10, 0, 0), (10, 5, 0), pi, speed=20.0),
 ])
 
-Planned = Callable[..., Course]
+Planned = Callable[..., EpisodeCourse]
 
 
 def stations() -> Stations:
@@ -32,7 +40,7 @@ def stations() -> Stations:
     return Stations(
         segment=np.array([0, 0, 0, 1, 2]),
         station=np.array([2.0, 8.0, 10.0, 0.0, 5.0 * pi]),
-        kind=np.full(count, int(CutKind.MILLING)),
+        kind=np.full(count, int(StationKind.MILLING)),
         section=np.array([0.0, 5.0, 0.0, 0.0, 5.0]),
         growth=np.zeros(5),
         axial_depth=nothing,
@@ -47,13 +55,13 @@ def stations() -> Stations:
 
 @pytest.fixture
 def planned(mill: Machine) -> Planned:
-    def course(control: ControlModel | None = None, *, path: Segments = PATH) -> Course:
-        return Course(
+    def course(control: ControlModel | None = None, *, path: Segments = PATH) -> EpisodeCourse:
+        return EpisodeCourse(
             segments=path,
             motion=(control or ExactStop()).plan(path, axis_limits(mill)),
             spindle_programmed=np.full(len(path), np.nan),
             stations=stations(),
-            edge=Edge(teeth=2, kienzle=Kienzle(k_c11=2000.0, m_c=0.0)),
+            edge=CuttingEdge(teeth=2, kienzle=Kienzle(k_c11=2000.0, m_c=0.0)),
             wear=Wear(),
         )
 
@@ -146,13 +154,13 @@ def test_path_of_one_segment(
     met = Stations(
         segment=np.array([0]),
         station=path.length,
-        kind=np.array([int(CutKind.AIR)]),
+        kind=np.array([int(StationKind.AIR)]),
         chip_ratio=nothing,
         diameter=nothing,
         **dict.fromkeys(names, nothing),
     )
     motion = ExactStop().plan(path, axis_limits(mill))
-    course = Course(
+    course = EpisodeCourse(
         segments=path,
         motion=motion,
         spindle_programmed=np.array([np.nan]),

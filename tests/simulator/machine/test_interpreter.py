@@ -12,12 +12,12 @@ from simulator.errors import ProgramFault
 from simulator.machine import interpreter
 from simulator.machine.acts import (
     CoolantTo,
-    End,
+    EndOfProgram,
+    MoveStretch,
+    ProgramAct,
     SpindleReached,
     SpindleTo,
-    Step,
     Stop,
-    Stretch,
     ToolTo,
     Wait,
     WorkingstepTo,
@@ -28,7 +28,7 @@ from stepnc_model.post import blocks as nc
 from stepnc_model.post.neutral import blocks_of
 from stepnc_model.program import Program
 from stepnc_model.toolpath.generate import generate
-from stepnc_model.toolpath.path import CycleKind, Plane, ToolPath, length
+from stepnc_model.toolpath.path import ArcPlane, CycleKind, ToolPath, length
 
 PARTS = Path(__file__).parents[3] / "examples" / "parts"
 
@@ -39,19 +39,19 @@ HOME = nc.Rapid(end=(0.0, 0.0, 50.0))
 Blocks = list[nc.Block]
 
 
-def steps(machine: Machine, *blocks: nc.Block) -> list[Step]:
+def steps(machine: Machine, *blocks: nc.Block) -> list[ProgramAct]:
     return list(interpret(enumerate(blocks, 1), machine))
 
 
-def stretches(found: Iterable[Step]) -> list[Stretch]:
-    return [step.act for step in found if isinstance(step.act, Stretch)]
+def stretches(found: Iterable[ProgramAct]) -> list[MoveStretch]:
+    return [step.act for step in found if isinstance(step.act, MoveStretch)]
 
 
-def kinds(found: Iterable[Step]) -> list[type]:
+def kinds(found: Iterable[ProgramAct]) -> list[type]:
     return [type(step.act) for step in found]
 
 
-def seconds(parts: Iterable[Stretch]) -> float:
+def seconds(parts: Iterable[MoveStretch]) -> float:
     """Time of the feeds at commanded speed."""
     feeds = [part.segments[~part.segments.is_rapid] for part in parts]
     return sum(float((feed.length / feed.speed).sum()) for feed in feeds)
@@ -67,7 +67,7 @@ def seconds(parts: Iterable[Stretch]) -> float:
         (nc.ToolChange(number=3), [ToolTo(number=3)]),
         (nc.SpindleOn(speed=10.0), [SpindleTo(speed=10.0)]),
         (
-            nc.SpindleOn(speed=10.0, sense=nc.Sense.COUNTERCLOCKWISE),
+            nc.SpindleOn(speed=10.0, sense=nc.SpindleDirection.COUNTERCLOCKWISE),
             [SpindleTo(speed=-10.0)],
         ),
         (SURFACE, []),
@@ -78,9 +78,9 @@ def seconds(parts: Iterable[Stretch]) -> float:
         (HOME, []),
         (nc.Linear(end=(0.0, 0.0, 0.0), rate=FEED), []),
         (nc.Pause(seconds=2.5), [Wait(seconds=2.5)]),
-        (nc.ProgramStop(), [Stop()]),
-        (nc.OptionalStop(), []),
-        (nc.ProgramEnd(), [End()]),
+        (nc.ProgramStopBlock(), [Stop()]),
+        (nc.OptionalStopBlock(), []),
+        (nc.ProgramEnd(), [EndOfProgram()]),
     ],
 )
 def test_first_block_of_a_program(mill: Machine, block: nc.Block, acts: list[object]) -> None:
@@ -98,7 +98,14 @@ def test_moves_that_follow_each_other_are_one_stretch(mill: Machine) -> None:
         nc.Pause(seconds=1.0),
         nc.Rapid(end=(30.0, 40.0, 50.0)),
     )
-    assert kinds(found) == [SpindleTo, Stretch, SpindleReached, Stretch, Wait, Stretch]
+    assert kinds(found) == [
+        SpindleTo,
+        MoveStretch,
+        SpindleReached,
+        MoveStretch,
+        Wait,
+        MoveStretch,
+    ]
     rapid, feed, up = (part.segments for part in stretches(found))
     assert rapid.is_rapid.all()
     assert rapid.block.tolist() == [3]
@@ -112,9 +119,9 @@ def test_only_a_feed_waits_for_the_spindle_and_only_once(mill: Machine) -> None:
     turn: Blocks = [nc.SpindleOn(speed=10.0), nc.SpindleOn(speed=10.0), HOME]
     feeds: Blocks = [nc.Linear(end=(x, 0.0, 50.0), rate=FEED) for x in (1.0, 2.0)]
     found = steps(mill, *turn, nc.Rapid(end=(0.0, 0.0, 60.0)), HOME, *feeds)
-    assert kinds(found) == [SpindleTo, Stretch, SpindleReached, Stretch]
+    assert kinds(found) == [SpindleTo, MoveStretch, SpindleReached, MoveStretch]
     stopped = steps(mill, *turn, nc.SpindleOff(), *feeds)
-    assert kinds(stopped) == [SpindleTo, SpindleTo, SpindleReached, Stretch]
+    assert kinds(stopped) == [SpindleTo, SpindleTo, SpindleReached, MoveStretch]
 
 
 def test_feed_per_revolution_is_times_the_speed_that_the_spindle_has(mill: Machine) -> None:
@@ -140,7 +147,7 @@ def test_retract_from_nobody_knows_where_sets_the_height(mill: Machine) -> None:
 
 
 def test_arc_in_every_plane_keeps_centre_turn_and_rise(mill: Machine) -> None:
-    for plane, normal in ((Plane.XY, 2), (Plane.ZX, 1), (Plane.YZ, 0)):
+    for plane, normal in ((ArcPlane.XY, 2), (ArcPlane.ZX, 1), (ArcPlane.YZ, 0)):
         first, second, _ = plane.axes
         start, end = [1.0, 1.0, 1.0], [1.0, 1.0, 1.0]
         start[first] += 5.0
@@ -174,7 +181,7 @@ def test_cycle_is_its_expansion(mill: Machine) -> None:
         expansion=(down, pause, up),
     )
     found = steps(mill, HOME, cycle)
-    assert kinds(found) == [Stretch, Wait, Stretch]
+    assert kinds(found) == [MoveStretch, Wait, MoveStretch]
     assert {int(part.segments.block[0]) for part in stretches(found)} == {2}
 
 
@@ -183,12 +190,12 @@ def test_rigid_tap_goes_down_and_up_with_the_spindle(mill: Machine) -> None:
     found = steps(mill, HOME, nc.SpindleOn(speed=8.0), tap)
     assert kinds(found) == [
         SpindleTo,
-        Stretch,
+        MoveStretch,
         SpindleReached,
-        Stretch,
+        MoveStretch,
         SpindleTo,
         SpindleReached,
-        Stretch,
+        MoveStretch,
         SpindleTo,
     ]
     turns = [step.act.speed for step in found if isinstance(step.act, SpindleTo)]
@@ -204,8 +211,8 @@ def test_thread_moves_a_lead_a_turn_along_the_axis_that_moves_most(lathe: Machin
         lathe,
         nc.Rapid(end=(10.0, 0.0, 0.0)),
         nc.SpindleOn(speed=5.0),
-        nc.Threading(end=(13.0, 0.0, -30.0), lead=1.5),
-        nc.Threading(end=(13.0, 0.0, -30.0), lead=1.5),
+        nc.ThreadingMove(end=(13.0, 0.0, -30.0), lead=1.5),
+        nc.ThreadingMove(end=(13.0, 0.0, -30.0), lead=1.5),
     )
     (thread,) = stretches(found)
     assert thread.segments.speed[0] == pytest.approx(7.5 * dist((0, 0), (3, 30)) / 30)
@@ -220,7 +227,7 @@ def test_stretches_are_bounded(mill: Machine, monkeypatch: pytest.MonkeyPatch) -
 
 def test_nothing_is_read_after_the_end(mill: Machine) -> None:
     found = steps(mill, HOME, nc.ProgramEnd(), nc.Pause(seconds=1.0))
-    assert kinds(found) == [End]
+    assert kinds(found) == [EndOfProgram]
 
 
 def test_blocks_are_read_as_they_are_needed(mill: Machine) -> None:
@@ -246,7 +253,7 @@ def test_blocks_are_read_as_they_are_needed(mill: Machine) -> None:
             r"line 2: feed 0 mm/s: it must be positive",
         ),
         (
-            [HOME, nc.Threading(end=(1.0, 0.0, 50.0), lead=1.0)],
+            [HOME, nc.ThreadingMove(end=(1.0, 0.0, 50.0), lead=1.0)],
             r"line 2: feed 1 mm/rev: the spindle stands",
         ),
     ],

@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from simulator.machine.episode import Episode
+from simulator.machine.samples import Episode
 from simulator.machine.sensing import sensed
 from simulator.spec import Machine
 from stepnc_model.post import blocks as nc

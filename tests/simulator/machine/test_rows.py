@@ -7,15 +7,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from simulator.machine.rows import Pace, Rows
+from simulator.machine.interpreter import PieceSpeed, Rows
 from stepnc_model.post.blocks import Circular, Rate
-from stepnc_model.toolpath.path import Plane, Point
+from stepnc_model.toolpath.path import ArcPlane, Point
 
 
 def test_lines_keep_speed_line_and_spindle() -> None:
     rows = Rows()
-    rows.line((0.0, 0.0, 0.0), (3.0, 4.0, 0.0), pace=Pace(speed=inf), line=7)
-    pace = Pace(speed=5.0, spindle=12.0, per_revolution=0.4)
+    rows.line((0.0, 0.0, 0.0), (3.0, 4.0, 0.0), pace=PieceSpeed(speed=inf), line=7)
+    pace = PieceSpeed(speed=5.0, spindle=12.0, per_revolution=0.4)
     rows.line((3.0, 4.0, 0.0), (3.0, 4.0, -2.0), pace=pace, line=8)
     assert len(rows) == 2
     stretch = rows.taken()
@@ -34,23 +34,23 @@ def test_ways_are_told_at_both_ends_and_not_within() -> None:
     rows = Rows()
     for index, is_way in enumerate([True, True, False, True, False, True, True, True]):
         here, there = (float(index), 0.0, 0.0), (index + 1.0, 0.0, 0.0)
-        rows.line(here, there, pace=Pace(speed=inf), line=1, is_way=is_way)
+        rows.line(here, there, pace=PieceSpeed(speed=inf), line=1, is_way=is_way)
     stretch = rows.taken()
     assert (stretch.way, stretch.back) == (2, 3)
-    rows.line((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), pace=Pace(speed=inf), line=2, is_way=True)
+    rows.line((0.0, 0.0, 0.0), (1.0, 0.0, 0.0), pace=PieceSpeed(speed=inf), line=2, is_way=True)
     stretch = rows.taken()
     assert (stretch.way, stretch.back) == (1, 0)
 
 
 @settings(max_examples=30)
 @given(
-    plane=st.sampled_from(list(Plane)),
+    plane=st.sampled_from(list(ArcPlane)),
     turn=st.floats(0.01, 15.0) | st.floats(-15.0, -0.01),
     rise=st.floats(-10.0, 10.0),
     pieces=st.integers(1, 7),
 )
 def test_pieces_of_an_arc_lie_on_it_and_add_up(
-    plane: Plane, turn: float, rise: float, pieces: int
+    plane: ArcPlane, turn: float, rise: float, pieces: int
 ) -> None:
     first, second, normal = plane.axes
     centre = (3.0, -2.0, 7.0)
@@ -67,7 +67,7 @@ def test_pieces_of_an_arc_lie_on_it_and_add_up(
         begin,
         block,
         pieces=pieces,
-        paces=lambda middle, end: Pace(speed=middle + 20.0, spindle=end),
+        paces=lambda middle, end: PieceSpeed(speed=middle + 20.0, spindle=end),
         line=4,
     )
     stretch = rows.taken()
@@ -87,5 +87,7 @@ def test_pieces_of_an_arc_lie_on_it_and_add_up(
 def test_whole_circle_ends_where_it_began() -> None:
     rows, at = Rows(), (5.0, 0.0, 0.0)
     block = Circular(end=at, centre=(0.0, 0.0, 0.0), turn=2 * pi, rate=Rate(value=1.0))
-    rows.arc(at, block, pieces=4, paces=lambda _a, _b: Pace(speed=1.0, spindle=1.0), line=1)
+    rows.arc(
+        at, block, pieces=4, paces=lambda _a, _b: PieceSpeed(speed=1.0, spindle=1.0), line=1
+    )
     assert rows.taken().segments.length.sum() == pytest.approx(10.0 * pi)

@@ -6,7 +6,7 @@ from dataclasses import fields
 import numpy as np
 import pytest
 
-from simulator.machine.samples import Direction, Rotation, Samples, joined
+from simulator.machine.samples import Rotation, Samples, TravelDirection, joined
 
 Made = Callable[..., Samples]
 
@@ -47,6 +47,6 @@ def test_directions_are_signs_of_speeds(samples_of: Made) -> None:
         1, velocity=np.array([[-2.0, 0.0, 0.5]]), spindle_speed=np.array([-10.0])
     )
     assert samples.direction.tolist() == [
-        [Direction.NEGATIVE, Direction.NONE, Direction.POSITIVE]
+        [TravelDirection.NEGATIVE, TravelDirection.NONE, TravelDirection.POSITIVE]
     ]
     assert samples.rotation.tolist() == [Rotation.COUNTER_CLOCKWISE]

@@ -10,18 +10,24 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from simulator.machine.cutting import Edge
-from simulator.machine.episode import Course, Episode, State
-from simulator.machine.samples import Execution, PathMode, Samples, joined
+from simulator.machine.cutting import CuttingEdge
+from simulator.machine.samples import (
+    Episode,
+    EpisodeCourse,
+    EpisodeState,
+    Execution,
+    PathMode,
+    Samples,
+    joined,
+)
 from simulator.machine.sensing import Sampler, sensed
 from simulator.machine.spindle_course import ramped, standing
-from simulator.machine.tooth_loads import Teeth
+from simulator.machine.tooth_loads import ToothOptions
 from simulator.machine.virtual import StockMap
 from simulator.machine.wear import Wear
-from simulator.motion.exact_stop import ExactStop
+from simulator.motion.control import ExactStop
 from simulator.motion.fir import FixedTimeFilter
-from simulator.motion.motion import ControlModel, axis_limits
-from simulator.motion.segments import Floats, arc, chained, lines
+from simulator.motion.segments import ControlModel, Floats, arc, axis_limits, chained, lines
 from simulator.removal.cutter import Cutter
 from simulator.spec import Kienzle, Machine
 
@@ -39,7 +45,7 @@ def still(begin: float, end: float, execution: Execution = Execution.WAIT) -> Ep
     return Episode(
         begin=begin,
         end=end,
-        state=State(execution=execution, line=3, tool=2, workingstep=1),
+        state=EpisodeState(execution=execution, line=3, tool=2, workingstep=1),
         spindle=standing(0.0, 10.0),
         position=np.array([1.0, 2.0, 3.0]),
     )
@@ -51,23 +57,23 @@ def moving(
     *,
     begin: float = 0.0,
     control: ControlModel | None = None,
-    teeth: Teeth | None = None,
+    teeth: ToothOptions | None = None,
 ) -> Episode:
     motion = (control or ExactStop()).plan(PATH, axis_limits(machine))
     stations = stock.cut(PATH, Cutter(diameter=10.0), is_clockwise=True)
-    course = Course(
+    course = EpisodeCourse(
         segments=PATH,
         motion=motion,
         spindle_programmed=np.full(len(PATH), np.nan),
         stations=stations,
-        edge=Edge(teeth=2, kienzle=Kienzle(k_c11=2000.0, m_c=0.25)),
+        edge=CuttingEdge(teeth=2, kienzle=Kienzle(k_c11=2000.0, m_c=0.25)),
         wear=Wear(),
         teeth=teeth,
     )
     return Episode(
         begin=begin,
         end=begin + motion.duration,
-        state=State(execution=Execution.ACTIVE, line=0, spindle_programmed=50.0),
+        state=EpisodeState(execution=Execution.ACTIVE, line=0, spindle_programmed=50.0),
         spindle=standing(0.0, 50.0),
         position=PATH.start[0],
         course=course,
@@ -146,7 +152,7 @@ def test_positions_are_the_integral_of_velocities(mill: Machine, even_stock: Sto
 def test_common_times_show_the_same_at_any_rate(
     mill: Machine, even_stock: Stocks, control: ControlModel
 ) -> None:
-    episode = moving(mill, even_stock(), control=control, teeth=Teeth(eccentricity=0.01))
+    episode = moving(mill, even_stock(), control=control, teeth=ToothOptions(eccentricity=0.01))
     coarse = taken([episode], mill, 10.0)
     fine = taken([episode], mill, 1000.0)
     for each in fields(Samples):
@@ -173,7 +179,7 @@ def test_mode_feed_and_line_are_those_of_the_segment(mill: Machine, even_stock: 
 def test_forces_of_teeth_have_the_power_of_the_mean(mill: Machine, even_stock: Stocks) -> None:
     times: Floats = np.linspace(0.5, 1.5, 400)
     mean = sensed(moving(mill, even_stock()), mill, times)
-    tooth = sensed(moving(mill, even_stock(), teeth=Teeth()), mill, times)
+    tooth = sensed(moving(mill, even_stock(), teeth=ToothOptions()), mill, times)
     np.testing.assert_array_equal(tooth.cutting_power, mean.cutting_power)
     assert tooth.cutting_force.max() > 1.3 * mean.cutting_force.max()
 

@@ -8,14 +8,14 @@ import pytest
 from scipy.integrate import quad
 
 from simulator.machine.acts import (
+    MoveStretch,
     SpindleReached,
     SpindleTo,
-    Stretch,
 )
 from simulator.machine.interpreter import PIECE
 from simulator.spec import Machine
 from stepnc_model.post import blocks as nc
-from stepnc_model.toolpath.path import Plane
+from stepnc_model.toolpath.path import ArcPlane
 from tests.simulator.machine.test_interpreter import (
     PER_REVOLUTION,
     SURFACE,
@@ -26,7 +26,7 @@ from tests.simulator.machine.test_interpreter import (
 )
 
 
-def facing(lathe: Machine, start: float, end: float) -> Stretch:
+def facing(lathe: Machine, start: float, end: float) -> MoveStretch:
     (_, face) = stretches(
         steps(
             lathe,
@@ -82,7 +82,7 @@ def test_surface_speed_turns_the_other_way(lathe: Machine) -> None:
     found = steps(
         lathe,
         nc.Rapid(end=(30.0, 0.0, 0.0)),
-        replace(SURFACE, sense=nc.Sense.COUNTERCLOCKWISE),
+        replace(SURFACE, sense=nc.SpindleDirection.COUNTERCLOCKWISE),
         nc.Linear(end=(20.0, 0.0, 0.0), rate=PER_REVOLUTION),
     )
     (face,) = stretches(found)
@@ -98,7 +98,7 @@ def test_spindle_goes_to_the_radius_of_a_rapid_and_is_waited_for(lathe: Machine)
         nc.Rapid(end=(25.0, 0.0, 5.0)),
         nc.Linear(end=(25.0, 0.0, -5.0), rate=PER_REVOLUTION),
     )
-    assert kinds(found) == [SpindleTo, SpindleTo, Stretch, SpindleReached, Stretch]
+    assert kinds(found) == [SpindleTo, SpindleTo, MoveStretch, SpindleReached, MoveStretch]
     speeds = [step.act.speed for step in found if isinstance(step.act, SpindleTo)]
     assert speeds == pytest.approx([3000 / (100 * pi), 3000 / (50 * pi)])
 
@@ -110,7 +110,7 @@ def test_surface_speed_of_a_first_feed_is_reached_first(lathe: Machine) -> None:
         nc.Linear(end=(25.0, 0.0, 0.0), rate=PER_REVOLUTION),
         nc.Linear(end=(25.0, 0.0, -5.0), rate=PER_REVOLUTION),
     )
-    assert kinds(found) == [SpindleTo, SpindleReached, Stretch]
+    assert kinds(found) == [SpindleTo, SpindleReached, MoveStretch]
 
 
 @pytest.mark.parametrize("turn", [-pi, pi, 0.5 * pi])
@@ -128,7 +128,11 @@ def test_arc_at_constant_surface_speed_takes_the_integral(lathe: Machine, turn: 
         nc.Rapid(end=(centre, 0.0, radius)),
         SURFACE,
         nc.Circular(
-            end=end, centre=(centre, 0.0, 0.0), turn=turn, rate=PER_REVOLUTION, plane=Plane.ZX
+            end=end,
+            centre=(centre, 0.0, 0.0),
+            turn=turn,
+            rate=PER_REVOLUTION,
+            plane=ArcPlane.ZX,
         ),
     )
     (part,) = stretches(found)

@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from simulator.machine.cutting import CuttingLoads, Edge, cutting_loads, worn_loads
+from simulator.machine.cutting import CuttingEdge, CuttingLoads, cutting_loads, worn_loads
 from simulator.machine.tooth_loads import (
-    Teeth,
+    ToothOptions,
     bent,
     entered_loads,
     tooth_loads,
@@ -22,7 +22,7 @@ from simulator.physics.flutes import CuttingEdges
 from simulator.physics.milling import MillingCut
 from simulator.physics.strength import end_mill
 from simulator.physics.uneven_teeth import eccentric_runout
-from simulator.removal.stations import CutKind, Stations
+from simulator.removal.stations import StationKind, Stations
 from simulator.spec import Kienzle
 from tests.simulator.physics.discs import Mill
 
@@ -42,7 +42,7 @@ def cut_of(
     )
 
 
-def stations_of(cut: MillingCut, *, kind: CutKind = CutKind.MILLING) -> Stations:
+def stations_of(cut: MillingCut, *, kind: StationKind = StationKind.MILLING) -> Stations:
     arc = cut.engagement
     width = 5.0 * arc.cosine_difference
     return Stations(
@@ -63,7 +63,7 @@ def stations_of(cut: MillingCut, *, kind: CutKind = CutKind.MILLING) -> Stations
 
 def both(
     stations: Stations,
-    edge: Edge,
+    edge: CuttingEdge,
     *,
     eccentricity: float = 0.0,
     turned: Floats = TURNED,
@@ -74,7 +74,7 @@ def both(
     speed = np.full(len(turned), SPEED)
     sharp = cutting_loads(stations, rows, speed=speed, spindle_speed=at, edge=edge)
     mean = worn_loads(sharp, stations, rows, spindle_speed=at, edge=edge, flank_wear=flank_wear)
-    teeth = Teeth(eccentricity=eccentricity)
+    teeth = ToothOptions(eccentricity=eccentricity)
     return mean, tooth_loads(
         mean, stations, rows, turned=turned, edge=edge, teeth=teeth, flank_wear=flank_wear
     )
@@ -121,7 +121,7 @@ def test_mean_over_a_revolution_is_the_mean_force_of_a_linear_law(
     """Sharp edge and wear land: what runout takes from one tooth another one has."""
     cut = cut_of(entry=entry, exit_=entry + contact, teeth=teeth, kappa=kappa)
     kienzle = Kienzle(k_c11=2000.0, m_c=0.0)
-    edge = Edge(teeth=teeth, kienzle=kienzle, factor=1.3, flutes=flutes_of(cut))
+    edge = CuttingEdge(teeth=teeth, kienzle=kienzle, factor=1.3, flutes=flutes_of(cut))
     turned, weights = revolution(cut)
     mean, found = both(
         stations_of(cut), edge, eccentricity=eccentricity, turned=turned, worn=worn
@@ -157,7 +157,7 @@ def test_a_helix_leaves_the_mean_of_a_linear_law_as_it_is(
     """
     cut = cut_of(entry=entry, exit_=entry + contact, teeth=teeth)
     kienzle, flutes = Kienzle(k_c11=2000.0, m_c=0.0), flutes_of(cut, helix=helix)
-    edge = Edge(teeth=teeth, kienzle=kienzle, factor=1.3, flutes=flutes)
+    edge = CuttingEdge(teeth=teeth, kienzle=kienzle, factor=1.3, flutes=flutes)
     mean, found = both(stations_of(cut), edge, eccentricity=eccentricity, worn=worn)
     whole = max(mean.force[0], abs(mean.feed_force[0]), abs(mean.back_force[0]))
     for name in ("force", "feed_force", "back_force"):
@@ -170,7 +170,7 @@ def test_every_tooth_has_its_force_by_kienzle(kappa: float) -> None:
     """``K·k·b·h^(1−m)`` with b = a_p/sin κ and h = f_z·sin κ·sin φ."""
     cut = cut_of(entry=0.5, exit_=2.5, kappa=kappa)
     kienzle = Kienzle(k_c11=1500.0, m_c=0.25)
-    edge = Edge(teeth=4, kienzle=kienzle, factor=1.3, flutes=flutes_of(cut))
+    edge = CuttingEdge(teeth=4, kienzle=kienzle, factor=1.3, flutes=flutes_of(cut))
     mean, found = both(stations_of(cut), edge)
     angle = np.mod(2.0 * pi * TURNED[:, None] - 0.5 * pi * np.arange(4), 2.0 * pi)
     chip = cut.feed_per_tooth * sin(kappa) * np.sin(angle)
@@ -185,7 +185,7 @@ def test_every_tooth_has_its_force_by_kienzle(kappa: float) -> None:
 def test_a_helix_is_that_of_thin_discs() -> None:
     cut = cut_of(entry=1.8, exit_=pi, teeth=3)
     kienzle = Kienzle(k_c11=1500.0, m_c=0.25)
-    edge = Edge(teeth=3, kienzle=kienzle, factor=1.3, flutes=flutes_of(cut, helix=1.0))
+    edge = CuttingEdge(teeth=3, kienzle=kienzle, factor=1.3, flutes=flutes_of(cut, helix=1.0))
     turned = TURNED[::40]
     _, found = both(stations_of(cut), edge, turned=turned)
     mill = Mill(teeth=3, diameter=10.0, helix=1.0, entry=1.8, exit=pi, depth=2.0, exponent=0.75)
@@ -205,7 +205,7 @@ def test_the_tool_bends_by_the_force_at_the_wall() -> None:
     """F·L³/3EI at the moment when an edge makes the wall, with F summed over thin discs."""
     cut = cut_of(entry=2.6, exit_=pi)
     flutes = flutes_of(cut, helix=radians(30.0))
-    edge = Edge(
+    edge = CuttingEdge(
         teeth=4, kienzle=Kienzle(k_c11=1500.0, m_c=0.25), flutes=flutes, compliance=BENT
     )
     stations = stations_of(cut)
@@ -230,11 +230,11 @@ def test_the_tool_bends_by_the_force_at_the_wall() -> None:
 
 def test_nothing_bends_without_a_wall_or_a_compliance() -> None:
     within, wall = cut_of(entry=0.5, exit_=2.5), cut_of(entry=2.6, exit_=pi)
-    soft = Edge(teeth=4, kienzle=Kienzle(k_c11=1500.0, m_c=0.25), compliance=BENT)
+    soft = CuttingEdge(teeth=4, kienzle=Kienzle(k_c11=1500.0, m_c=0.25), compliance=BENT)
     stiff = replace(soft, compliance=0.0)
     assert not wall_forces(stations_of(within), soft).any()
     assert not wall_forces(stations_of(wall), stiff).any()
-    assert not wall_forces(stations_of(wall, kind=CutKind.DRILLING), soft).any()
+    assert not wall_forces(stations_of(wall, kind=StationKind.DRILLING), soft).any()
     mean, _ = both(stations_of(wall), stiff)
     rows, walls = np.zeros(len(TURNED), dtype=np.int64), np.zeros((2, 1))
     worn = np.full(len(TURNED), 0.2)
@@ -244,7 +244,7 @@ def test_nothing_bends_without_a_wall_or_a_compliance() -> None:
 
 def test_single_tooth_in_a_slot_peaks_at_the_full_feed() -> None:
     """``F = k·a_p·f_z``, k = 2000 N/mm²."""
-    edge = Edge(teeth=1, kienzle=Kienzle(k_c11=2000.0, m_c=0.0))
+    edge = CuttingEdge(teeth=1, kienzle=Kienzle(k_c11=2000.0, m_c=0.0))
     _, found = both(stations_of(cut_of(teeth=1)), edge)
     assert found.force.max() == pytest.approx(2000.0 * 2.0 * 0.4, rel=1e-6)
     quarter = found.force[1800 - 600]
@@ -252,7 +252,7 @@ def test_single_tooth_in_a_slot_peaks_at_the_full_feed() -> None:
 
 
 def test_runout_raises_the_peak() -> None:
-    edge = Edge(teeth=2, kienzle=Kienzle(k_c11=2000.0, m_c=0.0))
+    edge = CuttingEdge(teeth=2, kienzle=Kienzle(k_c11=2000.0, m_c=0.0))
     cut = cut_of(teeth=2)
     _, even = both(stations_of(cut), edge)
     _, uneven = both(stations_of(cut), edge, eccentricity=0.02)
@@ -262,15 +262,15 @@ def test_runout_raises_the_peak() -> None:
     assert eccentric_runout(0.02, 2).tolist() == pytest.approx([0.02, -0.02])
 
 
-@pytest.mark.parametrize("kind", [CutKind.DRILLING, CutKind.TURNING])
-def test_what_is_not_milling_keeps_its_mean(kind: CutKind) -> None:
-    edge = Edge(teeth=4, kienzle=Kienzle(k_c11=2000.0, m_c=0.2))
+@pytest.mark.parametrize("kind", [StationKind.DRILLING, StationKind.TURNING])
+def test_what_is_not_milling_keeps_its_mean(kind: StationKind) -> None:
+    edge = CuttingEdge(teeth=4, kienzle=Kienzle(k_c11=2000.0, m_c=0.2))
     mean, found = both(stations_of(cut_of(), kind=kind), edge, eccentricity=0.01)
     np.testing.assert_array_equal(found.force, mean.force)
 
 
 def test_a_spindle_that_turns_backwards_has_the_same_peak() -> None:
-    edge = Edge(teeth=3, kienzle=Kienzle(k_c11=2000.0, m_c=0.2))
+    edge = CuttingEdge(teeth=3, kienzle=Kienzle(k_c11=2000.0, m_c=0.2))
     _, onward = both(stations_of(cut_of(teeth=3)), edge)
     _, backward = both(stations_of(cut_of(teeth=3)), edge, turned=-TURNED)
     np.testing.assert_allclose(backward.force, onward.force)
@@ -278,8 +278,8 @@ def test_a_spindle_that_turns_backwards_has_the_same_peak() -> None:
 
 def test_the_chip_of_turning_grows_in_the_first_revolution() -> None:
     """F ∝ h^(1−m): half the chip after half a revolution."""
-    edge = Edge(teeth=1, kienzle=Kienzle(k_c11=1500.0, m_c=0.25))
-    stations = stations_of(cut_of(teeth=1), kind=CutKind.TURNING)
+    edge = CuttingEdge(teeth=1, kienzle=Kienzle(k_c11=1500.0, m_c=0.25))
+    stations = stations_of(cut_of(teeth=1), kind=StationKind.TURNING)
     rows = np.zeros(3, dtype=np.int64)
     mean = cutting_loads(
         stations, rows, speed=np.full(3, SPEED), spindle_speed=np.full(3, SPINDLE), edge=edge
@@ -291,7 +291,7 @@ def test_the_chip_of_turning_grows_in_the_first_revolution() -> None:
 
 
 def test_milling_has_no_first_revolution() -> None:
-    edge = Edge(teeth=4, kienzle=Kienzle(k_c11=1500.0, m_c=0.25))
+    edge = CuttingEdge(teeth=4, kienzle=Kienzle(k_c11=1500.0, m_c=0.25))
     stations, rows = stations_of(cut_of()), np.zeros(1, dtype=np.int64)
     at = np.full(1, SPINDLE)
     mean = cutting_loads(stations, rows, speed=np.full(1, SPEED), spindle_speed=at, edge=edge)

@@ -13,32 +13,30 @@ from hypothesis import strategies as st
 from scipy.integrate import quad
 
 from simulator.library import load_machine, load_material
-from simulator.machine.cutting import Edge
-from simulator.machine.drives import axes_power
-from simulator.machine.episode import Course, Episode, State
+from simulator.machine.cutting import CuttingEdge
 from simulator.machine.interpreter import interpret
-from simulator.machine.samples import Execution
+from simulator.machine.samples import Episode, EpisodeCourse, EpisodeState, Execution
+from simulator.machine.sensing import axes_power
 from simulator.machine.spindle_course import SpindleCourse, ramped, standing
 from simulator.machine.tooling import loaded_tool
 from simulator.machine.totals import Energy, Peak, Total, added
-from simulator.machine.virtual import Setup, StockMap, VirtualMachine
+from simulator.machine.virtual import MachineSetup, StockMap, VirtualMachine
 from simulator.machine.wear import Wear
-from simulator.motion.exact_stop import ExactStop
+from simulator.motion.control import ExactStop
 from simulator.motion.fir import FixedTimeFilter
-from simulator.motion.motion import ControlModel, axis_limits
-from simulator.motion.segments import Segments, arc, lines
+from simulator.motion.segments import ControlModel, Segments, arc, axis_limits, lines
 from simulator.physics.flutes import CuttingEdges
 from simulator.physics.spindle_motion import spindle_power
 from simulator.removal.cutter import Cutter
 from simulator.removal.engage import MillingStock
 from simulator.removal.lathe import TurningStock
-from simulator.removal.stations import CutKind, air
+from simulator.removal.stations import StationKind, air
 from simulator.spec import Kienzle, Machine, MachineKind
 from stepnc_model.post.neutral import blocks_of, tool_numbers
 from stepnc_model.program import Program
 from stepnc_model.toolpath.generate import generate
-from stepnc_model.toolpath.job import stock_of
 from stepnc_model.toolpath.path import ToolPath
+from stepnc_model.toolpath.task import stock_of
 
 PARTS = Path(__file__).parents[3] / "examples" / "parts"
 
@@ -51,7 +49,7 @@ def still(
     return Episode(
         begin=begin,
         end=end,
-        state=State(execution=Execution.WAIT, line=1, coolant_on=coolant),
+        state=EpisodeState(execution=Execution.WAIT, line=1, coolant_on=coolant),
         spindle=spindle or standing(0.0),
         position=np.zeros(3),
     )
@@ -69,18 +67,18 @@ def moving(
     stations = air(np.arange(len(path)), path.length)
     if stock is not None:
         stations = stock.cut(path, Cutter(diameter=10.0), is_clockwise=True)
-    course = Course(
+    course = EpisodeCourse(
         segments=path,
         motion=motion,
         spindle_programmed=np.full(len(path), np.nan),
         stations=stations,
-        edge=Edge(teeth=2, kienzle=Kienzle(k_c11=2000.0, m_c=0.0)),
+        edge=CuttingEdge(teeth=2, kienzle=Kienzle(k_c11=2000.0, m_c=0.0)),
         wear=Wear(),
     )
     return Episode(
         begin=0.0,
         end=motion.duration,
-        state=State(execution=Execution.ACTIVE, line=0),
+        state=EpisodeState(execution=Execution.ACTIVE, line=0),
         spindle=spindle or standing(0.0),
         position=path.start[0],
         course=course,
@@ -271,7 +269,7 @@ def test_plunges_of_a_mill_have_thrust_and_no_part_in_its_force(
     assert course is not None
     assert course.edge is not None
     stations = course.stations
-    sunk = replace(stations, kind=np.full(len(stations), int(CutKind.DRILLING)))
+    sunk = replace(stations, kind=np.full(len(stations), int(StationKind.DRILLING)))
     sinking = replace(course, stations=sunk)
     flutes = CuttingEdges(teeth=2, diameter=10.0)
     as_mill = replace(sinking, edge=replace(course.edge, flutes=flutes))
@@ -361,7 +359,7 @@ def ran(name: str, control: ControlModel, *, cell: float | None = None) -> tuple
         number: loaded_tool(program, ref, number, material)
         for ref, number in tool_numbers(paths).items()
     }
-    setup = Setup(machine=machine, control=control, tools=tools, stock=clamped)
+    setup = MachineSetup(machine=machine, control=control, tools=tools, stock=clamped)
     blocks = enumerate(blocks_of(program, items, name=name), 1)
     total = Total()
     for episode in VirtualMachine(setup).run(interpret(blocks, machine)):

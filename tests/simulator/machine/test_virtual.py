@@ -8,20 +8,19 @@ import numpy as np
 import pytest
 
 from simulator.errors import OutOfTravel, ProgramFault, UnknownTool
-from simulator.machine.cutting import Edge
-from simulator.machine.episode import Episode
+from simulator.machine.cutting import CuttingEdge
 from simulator.machine.interpreter import interpret
-from simulator.machine.samples import Execution, Samples, joined
+from simulator.machine.samples import Episode, Execution, Samples, joined
 from simulator.machine.sensing import Sampler, sensed
 from simulator.machine.travel import Zero
-from simulator.machine.virtual import LoadedTool, Setup, Shape, StockMap, VirtualMachine
-from simulator.motion.exact_stop import ExactStop
+from simulator.machine.virtual import LoadedTool, MachineSetup, Shape, StockMap, VirtualMachine
+from simulator.motion.control import ExactStop
 from simulator.physics.tool_life import LIFE_CRITERION
 from simulator.removal.cutter import Cutter, Holder, Insert
 from simulator.removal.engage import MillingStock
 from simulator.spec import Kienzle, Machine, Taylor
 from stepnc_model.post import blocks as nc
-from stepnc_model.stock import Stock
+from stepnc_model.program import Stock
 from tests.oracles.motion import move_time
 
 FEED = nc.Rate(value=20.0)
@@ -39,7 +38,7 @@ Stocks = Callable[[], StockMap]
 def tool(
     number: int, shape: Shape | None = MILL, *, taylor: Taylor | None = None
 ) -> LoadedTool:
-    edge = Edge(teeth=2, kienzle=Kienzle(k_c11=2000.0, m_c=0.0))
+    edge = CuttingEdge(teeth=2, kienzle=Kienzle(k_c11=2000.0, m_c=0.0))
     return LoadedTool(number=number, id=f"TOOL {number}", shape=shape, edge=edge, taylor=taylor)
 
 
@@ -73,7 +72,7 @@ def run(
     stock: StockMap | None = None,
     zero: Zero | None = None,
 ) -> Ran:
-    setup = Setup(
+    setup = MachineSetup(
         machine=machine, control=ExactStop(), tools=tools, stock=lambda _: stock, zero=zero
     )
     virtual = VirtualMachine(setup)
@@ -127,7 +126,7 @@ def test_states_by_time(mill: Machine) -> None:
         CUT,
         nc.Comment(text="", workingstep="TWO"),
         nc.Coolant(),
-        nc.SpindleOn(speed=25.0, sense=nc.Sense.COUNTERCLOCKWISE),
+        nc.SpindleOn(speed=25.0, sense=nc.SpindleDirection.COUNTERCLOCKWISE),
         nc.Linear(end=(0.0, 0.0, 0.0), rate=FEED),
         nc.ProgramEnd(),
     )
@@ -157,7 +156,7 @@ def test_states_by_time(mill: Machine) -> None:
 
 
 def test_program_stop_shows_as_stopped(mill: Machine) -> None:
-    found = run(mill, HOME, ON, DOWN, CUT, OFF, nc.ProgramStop(), nc.ProgramEnd())
+    found = run(mill, HOME, ON, DOWN, CUT, OFF, nc.ProgramStopBlock(), nc.ProgramEnd())
     stopped = [e for e in found.episodes if e.state.execution is Execution.PROGRAM_STOPPED]
     assert [e.end - e.begin for e in stopped] == [pytest.approx(1.0)]
 
@@ -272,14 +271,14 @@ def test_without_a_tool_or_a_stock_all_is_air(mill: Machine, even_stock: Stocks)
         assert found.at(mill, found.time - 2.0).cutting_power.tolist() == [0.0]
 
 
-@pytest.mark.parametrize("sense", list(nc.Sense))
+@pytest.mark.parametrize("sense", list(nc.SpindleDirection))
 def test_stock_is_told_how_the_spindle_turns(
-    mill: Machine, even_stock: Stocks, sense: nc.Sense
+    mill: Machine, even_stock: Stocks, sense: nc.SpindleDirection
 ) -> None:
     stock = even_stock()
     turn = replace(ON, sense=sense)
     run(mill, nc.ToolChange(number=1), turn, HOME, DOWN, CUT, tools={1: tool(1)}, stock=stock)
-    assert getattr(stock, "senses") == [sense is nc.Sense.CLOCKWISE] * 2  # noqa: B009
+    assert getattr(stock, "senses") == [sense is nc.SpindleDirection.CLOCKWISE] * 2  # noqa: B009
 
 
 def test_wear_grows_with_cutting_time_and_raises_the_force(

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from simulator.machine.wear import Wear, wearing, wearing_along
 from simulator.motion.segments import lines
 from simulator.physics.tool_life import LIFE_CRITERION
-from simulator.removal.stations import CutKind, Stations
+from simulator.removal.stations import StationKind, Stations
 from simulator.spec import Taylor
 
 STEEL = Taylor(exponent=0.5, constant=400_000 / 60)
@@ -49,7 +49,7 @@ def stations(diameter: list[float], section: list[float]) -> Stations:
     return Stations(
         segment=np.arange(count),
         station=np.full(count, 10.0),
-        kind=np.full(count, int(CutKind.TURNING)),
+        kind=np.full(count, int(StationKind.TURNING)),
         section=np.array(section),
         growth=np.zeros(len(section)),
         axial_depth=nothing,

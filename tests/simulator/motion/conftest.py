@@ -5,8 +5,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from simulator.motion.motion import AxisLimits, Motion
-from simulator.motion.segments import Floats, Segments, arc, chained, lines
+from simulator.motion.segments import AxisLimits, Floats, Motion, Segments, arc, chained, lines
 
 Wander = Callable[[int], Segments]
 Drift = Callable[[Motion], float]

@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-from simulator.motion.chain import Chain
-from simulator.motion.exact_stop import ExactStop
-from simulator.motion.motion import AxisLimits
-from simulator.motion.segments import chained, lines
+from simulator.motion.control import ExactStop
+from simulator.motion.fir import Chain
+from simulator.motion.segments import AxisLimits, chained, lines
 
 FIRST = lines([(0, 0, 0), (10, 0, 0), (10, 5, 0)], speed=20.0)
 SECOND = lines([(10, 5, 0), (10, 5, 30)])

@@ -1,41 +1,41 @@
 import pytest
 
-from simulator.motion.control import DEVIATION, Control, control_model
-from simulator.motion.exact_stop import ExactStop
+from simulator.motion.control import DEVIATION, ExactStop, JunctionDeviation, control_model
 from simulator.motion.fir import FilterWithinLimits
-from simulator.motion.junction import JunctionDeviation
-from simulator.motion.motion import AxisLimits
-from simulator.motion.segments import lines
+from simulator.motion.model_name import ControlModelName
+from simulator.motion.segments import AxisLimits, lines
 
 
 def test_names_are_those_of_the_command_line() -> None:
-    assert [str(each) for each in Control] == ["exact-stop", "junction", "fir"]
+    assert [str(each) for each in ControlModelName] == ["exact-stop", "junction", "fir"]
 
 
 def test_each_name_gives_its_model(limits: AxisLimits) -> None:
-    assert control_model(Control.EXACT_STOP, limits) == ExactStop()
-    assert control_model(Control.JUNCTION, limits) == JunctionDeviation(deviation=DEVIATION)
-    assert control_model(Control.FIR, limits) == FilterWithinLimits()
+    assert control_model(ControlModelName.EXACT_STOP, limits) == ExactStop()
+    assert control_model(ControlModelName.JUNCTION, limits) == JunctionDeviation(
+        deviation=DEVIATION
+    )
+    assert control_model(ControlModelName.FIR, limits) == FilterWithinLimits()
 
 
 def test_deviation_is_handed_on(limits: AxisLimits) -> None:
-    model = control_model(Control.JUNCTION, limits, deviation=0.5)
+    model = control_model(ControlModelName.JUNCTION, limits, deviation=0.5)
     assert model == JunctionDeviation(deviation=0.5)
     with pytest.raises(ValueError, match="junction deviation"):
-        control_model(Control.JUNCTION, limits, deviation=0.0)
+        control_model(ControlModelName.JUNCTION, limits, deviation=0.0)
 
 
-@pytest.mark.parametrize("control", Control)
+@pytest.mark.parametrize("control", ControlModelName)
 def test_every_model_refuses_a_path_without_segments(
-    control: Control, limits: AxisLimits
+    control: ControlModelName, limits: AxisLimits
 ) -> None:
     with pytest.raises(ValueError, match="at least one segment"):
         control_model(control, limits).plan(lines([(0, 0, 0)]), limits)
 
 
-@pytest.mark.parametrize("control", Control)
+@pytest.mark.parametrize("control", ControlModelName)
 def test_every_model_ends_at_rest_where_the_path_ends(
-    control: Control, limits: AxisLimits
+    control: ControlModelName, limits: AxisLimits
 ) -> None:
     path = lines([(0, 0, 0), (5, 0, 0), (5, 7, -2)], speed=25.0)
     motion = control_model(control, limits).plan(path, limits)

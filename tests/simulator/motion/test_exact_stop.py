@@ -4,9 +4,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from simulator.motion.exact_stop import ExactStop
-from simulator.motion.motion import AxisLimits, Motion
-from simulator.motion.segments import Segments, arc, lines
+from simulator.motion.control import ExactStop
+from simulator.motion.segments import AxisLimits, Motion, Segments, arc, lines
 from tests.oracles.motion import move_time
 
 

@@ -8,8 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from simulator.motion.fir import FilterWithinLimits, FixedTimeFilter, shortest_filter
-from simulator.motion.motion import AxisLimits, Motion
-from simulator.motion.segments import Segments, chained, lines
+from simulator.motion.segments import AxisLimits, Motion, Segments, chained, lines
 
 EVEN = AxisLimits(
     acceleration=np.full(3, 1000.0), rapid=np.full(3, 500.0), feed=np.full(3, 200.0)

@@ -6,9 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from simulator.motion.junction import JunctionDeviation, corner_squares
-from simulator.motion.motion import AxisLimits, Motion
-from simulator.motion.segments import Segments, arc, chained, lines
+from simulator.motion.control import JunctionDeviation, corner_squares
+from simulator.motion.segments import AxisLimits, Motion, Segments, arc, chained, lines
 
 EVEN = AxisLimits(
     acceleration=np.full(3, 1000.0), rapid=np.full(3, 500.0), feed=np.full(3, 200.0)

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from simulator.library import load_machine
-from simulator.motion.motion import AxisLimits, axis_limits
+from simulator.motion.segments import AxisLimits, axis_limits
 
 
 def test_limits_of_a_mill_are_those_of_its_axes() -> None:

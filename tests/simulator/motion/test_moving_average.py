@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from simulator.motion.fir import FixedTimeFilter
-from simulator.motion.motion import AxisLimits
 from simulator.motion.moving_average import averaged, states_at_ends
-from simulator.motion.segments import Floats, arc, lines
+from simulator.motion.segments import AxisLimits, Floats, arc, lines
 
 FIRST, SECOND = 0.08, 0.03
 DELAY = 0.5 * (FIRST + SECOND)

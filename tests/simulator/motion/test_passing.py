@@ -8,12 +8,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from simulator.motion.control import Control, control_model
-from simulator.motion.exact_stop import ExactStop
+from simulator.motion.control import ExactStop, control_model
 from simulator.motion.fir import FixedTimeFilter
-from simulator.motion.motion import AxisLimits
+from simulator.motion.model_name import ControlModelName
 from simulator.motion.passing import Passing
-from simulator.motion.segments import Floats, Segments, arc, lines
+from simulator.motion.segments import AxisLimits, Floats, Segments, arc, lines
 from tests.oracles.motion import move_time, peak_speed
 
 Wander = Callable[[int], Segments]
@@ -95,10 +94,10 @@ def test_offsets_are_the_way_before_each_segment() -> None:
     assert passing.offsets.tolist() == [0.0, 5.0, 5.0, 12.0]
 
 
-@pytest.mark.parametrize("control", Control)
+@pytest.mark.parametrize("control", ControlModelName)
 @pytest.mark.parametrize("seed", range(3))
 def test_the_axes_are_at_a_place_when_it_is_passed(
-    control: Control, seed: int, wander: Wander, limits: AxisLimits
+    control: ControlModelName, seed: int, wander: Wander, limits: AxisLimits
 ) -> None:
     path = wander(seed)
     passing = Passing(segments=path, motion=control_model(control, limits).plan(path, limits))

@@ -4,9 +4,8 @@ from math import cos, pi, sin, sqrt
 import numpy as np
 import pytest
 
-from simulator.motion.motion import AxisLimits
 from simulator.motion.path_limits import goes_on, is_stop, path_limits
-from simulator.motion.segments import Segments, arc, chained, lines
+from simulator.motion.segments import AxisLimits, Segments, arc, chained, lines
 
 
 @pytest.fixture

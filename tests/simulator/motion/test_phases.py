@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from simulator.motion.phases import Phases
 from simulator.motion.segments import arc, lines
+from simulator.motion.sweep import Phases
 
 
 def _ramp_on_arc() -> Phases:

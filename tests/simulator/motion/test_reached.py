@@ -7,23 +7,22 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from simulator.motion.control import Control, control_model
-from simulator.motion.exact_stop import ExactStop
+from simulator.motion.control import ExactStop, control_model
 from simulator.motion.fir import FixedTimeFilter
-from simulator.motion.motion import AxisLimits
-from simulator.motion.reached import reached_speeds
-from simulator.motion.segments import Segments, arc, chained, lines
-from simulator.motion.tool_path import Leg, Run
+from simulator.motion.model_name import ControlModelName
+from simulator.motion.passing import reached_speeds
+from simulator.motion.segments import AxisLimits, Segments, arc, chained, lines
+from simulator.motion.tool_path import Leg, ToolPathRun
 
 AXES = AxisLimits(
     acceleration=np.full(3, 100.0), rapid=np.full(3, 500.0), feed=np.full(3, 500.0)
 )
 
 
-def run(segments: Segments, *ends: int, wait: float = 0.0) -> Run:
+def run(segments: Segments, *ends: int, wait: float = 0.0) -> ToolPathRun:
     """Legs that end after these rows."""
     firsts = (0, *ends[:-1])
-    return Run(
+    return ToolPathRun(
         moves=(),
         segments=segments,
         spindle=np.full(len(segments), 20.0),
@@ -42,7 +41,7 @@ def straight(*x: float, speed: float = 20.0) -> Segments:
     return path
 
 
-def speeds(of: Run, *places: tuple[int, float]) -> list[float]:
+def speeds(of: ToolPathRun, *places: tuple[int, float]) -> list[float]:
     rows, stations = zip(*places, strict=True)
     found = reached_speeds(
         of, ExactStop(), AXES, segment=np.array(rows), station=np.array(stations, dtype=float)
@@ -113,14 +112,14 @@ def test_a_filter_has_reached_half_the_feed_when_the_path_begins() -> None:
     assert (np.diff(found) > 0.0).all()
 
 
-@pytest.mark.parametrize("control", Control)
+@pytest.mark.parametrize("control", ControlModelName)
 @given(
     turn=st.integers(-170, 170).map(radians),
     feeds=st.tuples(st.floats(1.0, 200.0), st.floats(1.0, 200.0)),
     at=st.lists(st.floats(0.0, 1.0), min_size=1, max_size=5).map(sorted),
 )
 def test_no_axis_is_faster_than_the_feeds(
-    control: Control, turn: float, feeds: tuple[float, float], at: list[float]
+    control: ControlModelName, turn: float, feeds: tuple[float, float], at: list[float]
 ) -> None:
     """In a corner a filter runs at a mean of both feeds, and nowhere faster than either."""
     path = chained([

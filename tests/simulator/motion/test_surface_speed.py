@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from simulator.motion.segments import Segments
-from simulator.motion.surface_speed import PIECE, behind, in_pieces
+from simulator.motion.tool_path import PIECE, behind, in_pieces
 
 
 def facing(outer: float, inner: float) -> Segments:

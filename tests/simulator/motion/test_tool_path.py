@@ -10,13 +10,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from simulator.library import load_machine
-from simulator.motion.exact_stop import ExactStop
+from simulator.motion.control import ExactStop
 from simulator.motion.fir import FilterWithinLimits
-from simulator.motion.motion import AxisLimits, axis_limits
+from simulator.motion.segments import AxisLimits, axis_limits
 from simulator.motion.tool_path import (
     LookUp,
-    Pace,
-    Run,
+    SpeedRatios,
+    ToolPathRun,
     duration,
     follows,
     paced,
@@ -27,15 +27,15 @@ from simulator.spec import Spindle
 from stepnc_model.entities.entity import Entity
 from stepnc_model.errors import PostError
 from stepnc_model.part21.values import Ref
-from stepnc_model.post.blocks import Rate, RateMode, Sense, SpindleOn, SurfaceSpeed
-from stepnc_model.post.conditions import Conditions
+from stepnc_model.post.blocks import Rate, RateMode, SpindleDirection, SpindleOn, SurfaceSpeed
+from stepnc_model.post.modal_state import ModalState
 from stepnc_model.toolpath.path import (
     Arc,
+    ArcPlane,
     Dwell,
     Feed,
     Move,
     MoveType,
-    Plane,
     Point,
     SpindleCommand,
     Step,
@@ -49,18 +49,18 @@ STIFF = AxisLimits(acceleration=np.full(3, inf), rapid=np.full(3, 1e9), feed=np.
 SPINDLE = Spindle(curve=(), efficiency=1.0, min_speed=None, max_speed=100.0, acceleration=40.0)
 
 
-def by_time(feed: Feed) -> Conditions:
+def by_time(feed: Feed) -> ModalState:
     """10 mm/s at 20 rev/s, by the ratios of the move."""
     speed = 20.0 * feed.speed_ratio
     value = feed.velocity or (
         feed.per_revolution * speed if feed.per_revolution else 10.0 * feed.ratio
     )
-    return Conditions(spindle=SpindleOn(speed=speed), rate=Rate(value=value))
+    return ModalState(spindle=SpindleOn(speed=speed), rate=Rate(value=value))
 
 
-def on_lathe(_feed: Feed) -> Conditions:
+def on_lathe(_feed: Feed) -> ModalState:
     """0.2 mm/rev at 2000 mm/s of the surface, 50 rev/s at most."""
-    return Conditions(
+    return ModalState(
         spindle=SurfaceSpeed(speed=2000.0, limit=50.0),
         rate=Rate(value=0.2, mode=RateMode.PER_REVOLUTION),
     )
@@ -84,11 +84,11 @@ def path_of(steps: Sequence[Step], start: Point = (0.0, 0.0, 0.0)) -> ToolPath:
     )
 
 
-def run(*steps: Step, look_up: LookUp = by_time, start: Point = (0.0, 0.0, 0.0)) -> Run:
+def run(*steps: Step, look_up: LookUp = by_time, start: Point = (0.0, 0.0, 0.0)) -> ToolPathRun:
     return run_of(path_of(steps, start), look_up, SPINDLE)
 
 
-def time(ran: Run) -> float:
+def time(ran: ToolPathRun) -> float:
     return duration(ran, ExactStop(), STIFF)
 
 
@@ -124,7 +124,7 @@ def test_reversing_takes_twice_the_ramp() -> None:
 
 
 def test_the_spindle_is_as_fast_as_the_machine_allows() -> None:
-    ran = run(cut(10, 0, 0), look_up=lambda _: Conditions(
+    ran = run(cut(10, 0, 0), look_up=lambda _: ModalState(
         spindle=SpindleOn(speed=400.0), rate=Rate(value=5.0)
     ))  # fmt: skip
     assert ran.spindle.tolist() == [100.0]
@@ -132,8 +132,9 @@ def test_the_spindle_is_as_fast_as_the_machine_allows() -> None:
 
 def test_a_spindle_that_turns_the_other_way_is_told() -> None:
     assert run(cut(10, 0, 0)).is_clockwise
-    left = Conditions(
-        spindle=SpindleOn(speed=5.0, sense=Sense.COUNTERCLOCKWISE), rate=Rate(value=5.0)
+    left = ModalState(
+        spindle=SpindleOn(speed=5.0, sense=SpindleDirection.COUNTERCLOCKWISE),
+        rate=Rate(value=5.0),
     )
     assert not run(cut(10, 0, 0), look_up=lambda _: left).is_clockwise
 
@@ -163,7 +164,7 @@ def test_pieces_of_an_arc_are_the_arc(turn: float, size: float) -> None:
     angle = complex(np.cos(turn), np.sin(turn)) * size
     # In ZX the first axis is z.
     end = (70.0 + angle.imag, 0.0, angle.real)
-    move = cut(*end, arc=Arc(centre=centre, turn=turn, plane=Plane.ZX))
+    move = cut(*end, arc=Arc(centre=centre, turn=turn, plane=ArcPlane.ZX))
     segments = run(move, look_up=on_lathe, start=(70.0, 0.0, size)).segments
     assert segments.length.sum() == pytest.approx(abs(turn) * size)
     assert segments.turn.sum() == pytest.approx(turn)
@@ -173,7 +174,7 @@ def test_pieces_of_an_arc_are_the_arc(turn: float, size: float) -> None:
 
 def test_a_faster_pace_leaves_feeds_of_their_own() -> None:
     own = replace(FEED, velocity=4.0)
-    look_up = paced(by_time, Pace(technology=HERE, feed=2.0, speed=1.5))
+    look_up = paced(by_time, SpeedRatios(technology=HERE, feed=2.0, speed=1.5))
     ran = run(cut(30, 0, 0), cut(38, 0, 0, feed=own), look_up=look_up)
     assert ran.segments.speed.tolist() == pytest.approx([30.0, 4.0])
     assert ran.spindle.tolist() == pytest.approx([30.0, 30.0])
@@ -182,14 +183,14 @@ def test_a_faster_pace_leaves_feeds_of_their_own() -> None:
 
 def test_feeds_per_revolution_follow_the_spindle_alone() -> None:
     own = replace(FEED, per_revolution=0.1)
-    look_up = paced(by_time, Pace(technology=HERE, feed=2.0, speed=1.5))
+    look_up = paced(by_time, SpeedRatios(technology=HERE, feed=2.0, speed=1.5))
     ran = run(cut(30, 0, 0, feed=own), look_up=look_up)
     assert ran.segments.speed.tolist() == pytest.approx([3.0])
     assert not follows(ran, HERE).any()
 
 
 def test_another_technology_keeps_its_pace() -> None:
-    look_up = paced(by_time, Pace(technology=OTHER, feed=2.0, speed=1.5))
+    look_up = paced(by_time, SpeedRatios(technology=OTHER, feed=2.0, speed=1.5))
     ran = run(cut(30, 0, 0), look_up=look_up)
     assert ran.segments.speed.tolist() == pytest.approx([10.0])
     assert not follows(ran, OTHER).any()
@@ -198,11 +199,11 @@ def test_another_technology_keeps_its_pace() -> None:
 @pytest.mark.parametrize(
     "found",
     [
-        Conditions(spindle=None, rate=None, note="feedrate is 0"),
-        Conditions(spindle=None, rate=Rate(value=0.2, mode=RateMode.PER_REVOLUTION)),
+        ModalState(spindle=None, rate=None, note="feedrate is 0"),
+        ModalState(spindle=None, rate=Rate(value=0.2, mode=RateMode.PER_REVOLUTION)),
     ],
 )
-def test_a_cut_without_feed_is_refused(found: Conditions) -> None:
+def test_a_cut_without_feed_is_refused(found: ModalState) -> None:
     with pytest.raises(PostError, match="'STEP': a cut without feed"):
         run(cut(30, 0, 0), look_up=lambda _: found)
 

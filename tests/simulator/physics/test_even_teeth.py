@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 
-from simulator.physics.flutes import CuttingEdges, Law
+from simulator.physics.flutes import CuttingEdges, ForceLaw
 from simulator.physics.tooth_forces import forces, one_place
 from simulator.physics.uneven_teeth import Runout
 
@@ -38,7 +38,7 @@ def test_closed_form_equals_gauss_along_the_edge(
     edges = CuttingEdges(teeth=teeth, diameter=10.0, helix_angle=helix, corner_radius=corner)
     place = one_place(entry, min(entry + contact, pi), axial_depth=depth)
     none = Runout(offsets=np.zeros(teeth), feed_per_tooth=np.ones(1))
-    law = Law(exponent=exponent)
+    law = ForceLaw(exponent=exponent)
     one = forces(edges, place, law, rotation=ROTATION)
     other = forces(edges, place, law, rotation=ROTATION, runout=none)
     for name in ("tangential", "feed", "normal"):
@@ -58,7 +58,7 @@ def test_stretch_of_edge_is_that_of_quadrature(
     found = forces(
         edges,
         one_place(bottom, top, axial_depth=depth),
-        Law(exponent=exponent, radial_share=0.0),
+        ForceLaw(exponent=exponent, radial_share=0.0),
         rotation=np.array([[pi + 0.05]]),
     )
     share = depth / (edges.lag * depth)

@@ -6,13 +6,13 @@ from math import pi
 import numpy as np
 import pytest
 
-from simulator.physics.receptance import Structure, chatter_frequencies, receptance
-from simulator.spec import Direction, VibratingPart, VibrationMode
+from simulator.physics.receptance import ModalStructure, chatter_frequencies, receptance
+from simulator.spec import ModeDirection, VibratingPart, VibrationMode
 
 MODE = VibrationMode(
     part=VibratingPart.TOOL,
     tool="mill",
-    direction=Direction.X,
+    direction=ModeDirection.X,
     natural_frequency=600.0,
     damping_ratio=0.03,
     stiffness=10_000.0,
@@ -49,4 +49,4 @@ def test_chatter_frequencies_ascend_and_reach_beyond_all_modes() -> None:
 
 def test_a_structure_without_modes_is_refused() -> None:
     with pytest.raises(ValueError, match="at least one mode"):
-        Structure(x=(), y=())
+        ModalStructure(x=(), y=())

@@ -16,7 +16,7 @@ from simulator.physics.engagement import (
     full_immersion,
     unidirectional,
 )
-from simulator.physics.receptance import Structure, receptance
+from simulator.physics.receptance import ModalStructure, receptance
 from simulator.physics.stability import (
     DAMPED_WAVELENGTH,
     MOST_DEPTH,
@@ -28,19 +28,19 @@ from simulator.physics.stability import (
     lobes,
     stable_depths,
 )
-from simulator.spec import Direction, VibratingPart, VibrationMode
+from simulator.spec import ModeDirection, VibratingPart, VibrationMode
 
 MODE = VibrationMode(
     part=VibratingPart.TOOL,
     tool="mill",
-    direction=Direction.X,
+    direction=ModeDirection.X,
     natural_frequency=600.0,
     damping_ratio=0.03,
     stiffness=10_000.0,
     source="test",
 )
 SLOT = DynamicCut(engagement=full_immersion(), teeth=4, stiffness=800.0, radial_ratio=0.3)
-ROUND = Structure(x=(MODE,), y=(MODE,))
+ROUND = ModalStructure(x=(MODE,), y=(MODE,))
 SPEEDS = np.geomspace(20.0, 250.0, 3000)
 
 
@@ -74,7 +74,7 @@ def test_one_flexible_direction_has_the_closed_form_of_the_book() -> None:
     assert alpha < 0.0
     found = min(
         float(np.nanmin(border.depth))
-        for border in borders(cut, Structure(x=(MODE,), y=()))
+        for border in borders(cut, ModalStructure(x=(MODE,), y=()))
         if np.isfinite(border.depth).any()
     )
     expected = 2.0 * pi * 4.0 * 10_000.0 * 0.03 * 1.03 / (4 * 800.0 * abs(alpha))
@@ -99,7 +99,7 @@ def test_lobes_peak_near_whole_fractions_of_the_natural_frequency() -> None:
 
 def test_each_depth_is_on_the_border_that_the_characteristic_equation_draws() -> None:
     """``det(I − ½·a·K_t·z/2π·(1 − e^{−iω_c·T})·[α][Φ]) = 0`` at every point of a lobe."""
-    structure = Structure(x=(MODE,), y=(replace(MODE, natural_frequency=700.0),))
+    structure = ModalStructure(x=(MODE,), y=(replace(MODE, natural_frequency=700.0),))
     alpha = directional_coefficients(SLOT.engagement, SLOT.radial_ratio)
     for border in borders(SLOT, structure):
         rows = np.flatnonzero(np.isfinite(border.depth))[::50]
@@ -127,20 +127,20 @@ def test_depth_follows_stiffness_and_speed_follows_frequency(
 ) -> None:
     mode = replace(MODE, damping_ratio=damping)
     cut = replace(SLOT, engagement=unidirectional(width * 20.0, 20.0), radial_ratio=ratio)
-    depths = stable_depths(cut, Structure(x=(mode,), y=(mode,)), SPEEDS)
+    depths = stable_depths(cut, ModalStructure(x=(mode,), y=(mode,)), SPEEDS)
     stiffer = replace(mode, stiffness=factor * mode.stiffness)
-    found = stable_depths(cut, Structure(x=(stiffer,), y=(stiffer,)), SPEEDS)
+    found = stable_depths(cut, ModalStructure(x=(stiffer,), y=(stiffer,)), SPEEDS)
     shown = depths < 0.1 * MOST_DEPTH
     assert found[shown] == pytest.approx(factor * depths[shown], rel=1e-6)
     faster = replace(mode, natural_frequency=factor * mode.natural_frequency)
-    found = stable_depths(cut, Structure(x=(faster,), y=(faster,)), factor * SPEEDS)
+    found = stable_depths(cut, ModalStructure(x=(faster,), y=(faster,)), factor * SPEEDS)
     assert found[shown] == pytest.approx(depths[shown], rel=1e-3)
 
 
 def test_a_stiff_direction_does_not_matter_and_a_soft_one_does_in_every_feed() -> None:
     soft = replace(MODE, stiffness=4_000.0)
-    along_x = least_stable_depth(SLOT, Structure(x=(soft,), y=(MODE,)))
-    along_y = least_stable_depth(SLOT, Structure(x=(MODE,), y=(soft,)))
+    along_x = least_stable_depth(SLOT, ModalStructure(x=(soft,), y=(MODE,)))
+    along_y = least_stable_depth(SLOT, ModalStructure(x=(MODE,), y=(soft,)))
     assert along_x == pytest.approx(along_y, rel=1e-9)
     assert along_x < least_stable_depth(SLOT, ROUND)
 
@@ -150,7 +150,7 @@ def test_a_tolerance_lowers_to_the_least_of_neighbouring_speeds() -> None:
     safe = stable_depths(SLOT, ROUND, SPEEDS, tolerance=0.01)
     assert (safe <= exact).all()
     softer = replace(MODE, natural_frequency=0.992 * MODE.natural_frequency)
-    drifted = stable_depths(SLOT, Structure(x=(softer,), y=(softer,)), SPEEDS)
+    drifted = stable_depths(SLOT, ModalStructure(x=(softer,), y=(softer,)), SPEEDS)
     assert (safe <= drifted * (1.0 + 1e-2)).all()
 
 

@@ -12,7 +12,7 @@ from scipy.integrate import quad
 from optimiser.hardest import LIKELY
 from simulator.physics import engagement
 from simulator.physics.engagement import Engagement
-from simulator.physics.flutes import WALL, CuttingEdges, Law
+from simulator.physics.flutes import WALL, CuttingEdges, ForceLaw
 from simulator.physics.milling import MillingCut, mean_force
 from simulator.physics.tooth_forces import (
     STRAIGHT,
@@ -28,8 +28,8 @@ from simulator.physics.tooth_forces import (
 from simulator.spec import Kienzle
 from tests.simulator.physics.discs import RADIAL, Mill
 
-LINEAR = Law(exponent=1.0)
-STEEL_LAW = Law(exponent=0.78)
+LINEAR = ForceLaw(exponent=1.0)
+STEEL_LAW = ForceLaw(exponent=0.78)
 STEEL = Kienzle(k_c11=1500.0, m_c=0.22)
 ARCS = [
     engagement.full_immersion(),
@@ -58,16 +58,20 @@ def place_of(mill: Mill) -> Places:
 
 
 def turned(mill: Mill, rotation: Floats) -> Forces:
-    law = Law(exponent=mill.exponent)
+    law = ForceLaw(exponent=mill.exponent)
     return forces(edges_of(mill), place_of(mill), law, rotation=rotation[None, :])
 
 
 def peak(mill: Mill) -> float:
-    return float(peak_resultant(edges_of(mill), place_of(mill), Law(exponent=mill.exponent))[0])
+    return float(
+        peak_resultant(edges_of(mill), place_of(mill), ForceLaw(exponent=mill.exponent))[0]
+    )
 
 
 def wall(mill: Mill) -> float:
-    return float(wall_force(edges_of(mill), place_of(mill), Law(exponent=mill.exponent))[0])
+    return float(
+        wall_force(edges_of(mill), place_of(mill), ForceLaw(exponent=mill.exponent))[0]
+    )
 
 
 @st.composite
@@ -359,7 +363,7 @@ def test_integrals_over_arcs_are_those_of_quadrature() -> None:
 
 def test_places_together_are_as_each_by_itself() -> None:
     edges = CuttingEdges(teeth=3, diameter=12.0, helix_angle=HELIX, corner_radius=1.0)
-    law = Law(exponent=0.78)
+    law = ForceLaw(exponent=0.78)
     each = [place(arc.entry_angle, arc.exit_angle, 2.0 + row) for row, arc in enumerate(ARCS)]
     columns = ("entry_angle", "exit_angle", "axial_depth")
     whole = Places(**{

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from simulator.physics.flutes import CuttingEdges, Law
+from simulator.physics.flutes import CuttingEdges, ForceLaw
 from simulator.physics.tooth_forces import forces, one_place
 from simulator.physics.tooth_means import LOST, Arcs, Floats, periods, tooth_means
 from simulator.physics.uneven_teeth import Runout, eccentric_runout
@@ -38,7 +38,7 @@ def integrated(
     found = forces(
         CuttingEdges(teeth=teeth, diameter=2.0, helix_angle=atan(lag)),
         one_place(entry, exit_, axial_depth=1.0),
-        Law(exponent=EXPONENT),
+        ForceLaw(exponent=EXPONENT),
         rotation=(entry + 2.0 * pi / teeth * middle)[None, :],
         runout=Runout(offsets=offsets, feed_per_tooth=np.array([FEED])),
     )

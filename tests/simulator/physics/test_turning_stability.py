@@ -7,12 +7,12 @@ import pytest
 
 from simulator.physics.stability import MOST_DEPTH
 from simulator.physics.turning_stability import orthogonal_limit
-from simulator.spec import Direction, VibratingPart, VibrationMode
+from simulator.spec import ModeDirection, VibratingPart, VibrationMode
 
 MODE = VibrationMode(
     part=VibratingPart.TOOL,
     tool="mill",
-    direction=Direction.X,
+    direction=ModeDirection.X,
     natural_frequency=600.0,
     damping_ratio=0.03,
     stiffness=10_000.0,
@@ -22,7 +22,7 @@ MODE = VibrationMode(
 
 def test_turning_has_the_textbook_limit_of_one_mode() -> None:
     """``b_lim = 2kζ(1 + ζ)/K_f``, Altintas, Manufacturing Automation, ch. 4."""
-    found = orthogonal_limit((), (replace(MODE, direction=Direction.Z),), stiffness=700.0)
+    found = orthogonal_limit((), (replace(MODE, direction=ModeDirection.Z),), stiffness=700.0)
     assert found == pytest.approx(2.0 * 10_000.0 * 0.03 * 1.03 / 700.0, rel=1e-4)
 
 

@@ -7,11 +7,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from simulator.physics.flutes import CuttingEdges, Law
+from simulator.physics.flutes import CuttingEdges, ForceLaw
 from simulator.physics.tooth_forces import Floats, Forces, forces, one_place
 from simulator.physics.uneven_teeth import Runout, eccentric_runout
 
-LINEAR = Law(exponent=1.0)
+LINEAR = ForceLaw(exponent=1.0)
 
 
 def uneven(offsets: list[float], rotation: Floats, *, helix: float = 0.0) -> Forces:

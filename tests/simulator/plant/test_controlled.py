@@ -4,10 +4,10 @@ from math import exp, pi
 import numpy as np
 import pytest
 
-from simulator.plant.controlled import Bench, ControlledMachine
+from simulator.plant.controlled import ControlledMachine, Instrumentation
 from simulator.plant.course import NominalCourse
 from simulator.plant.dynamometer import Instrument
-from simulator.plant.hidden import Change, Changed, Hidden
+from simulator.plant.hidden import HiddenChange, HiddenQuantity, HiddenTruth
 from simulator.reading import Reading
 from tests.simulator.plant.courses import (
     EXPONENT,
@@ -19,13 +19,13 @@ from tests.simulator.plant.courses import (
     levels,
 )
 
-PERFECT = Bench(dynamometer=Instrument(), power_meter=Instrument())
+PERFECT = Instrumentation(dynamometer=Instrument(), power_meter=Instrument())
 PERIOD = 1.0 / (SPEED * TEETH)
-QUICK = Hidden(servo_lag=1e-4)
+QUICK = HiddenTruth(servo_lag=1e-4)
 
 
 def machine(
-    on: NominalCourse, hidden: Hidden = QUICK, bench: Bench = PERFECT
+    on: NominalCourse, hidden: HiddenTruth = QUICK, bench: Instrumentation = PERFECT
 ) -> ControlledMachine:
     return ControlledMachine(on, hidden, bench)
 
@@ -71,7 +71,7 @@ def test_rapids_and_pauses_keep_their_pace() -> None:
 
 
 def test_the_feed_follows_the_override_as_a_first_order_lag() -> None:
-    at = machine(course(levels(100.0)), Hidden(servo_lag=0.05))
+    at = machine(course(levels(100.0)), HiddenTruth(servo_lag=0.05))
     at.set(0.5)
     reading = at.read()
     assert reading is not None
@@ -101,8 +101,8 @@ def test_power_is_idle_power_and_the_force_at_its_speed() -> None:
 
 def test_factors_on_depth_and_hardness_act_from_their_time() -> None:
     changes = (
-        Change(time=0.5, what=Changed.DEPTH, value=2.0),
-        Change(time=0.8, what=Changed.HARDNESS, value=1.3),
+        HiddenChange(time=0.5, what=HiddenQuantity.DEPTH, value=2.0),
+        HiddenChange(time=0.8, what=HiddenQuantity.HARDNESS, value=1.3),
     )
     at = machine(course(levels(100.0)), replace(QUICK, force_factor=1.1, changes=changes))
     forces = {round(each.time, 6): each.force.mean() for each in run(at)}
@@ -133,7 +133,7 @@ def test_the_wear_land_takes_its_force_at_every_feed_and_in_every_work() -> None
 
 
 def test_a_silent_sensor_shows_nothing_for_a_while() -> None:
-    silence = Change(time=0.2, what=Changed.SILENCE, value=0.3)
+    silence = HiddenChange(time=0.2, what=HiddenQuantity.SILENCE, value=0.3)
     readings = run(machine(course(levels(100.0)), replace(QUICK, changes=(silence,))))
     silent = [each.time for each in readings if np.isnan(each.force).all()]
     assert min(silent) == pytest.approx(0.2 + PERIOD, abs=PERIOD + 1e-9)
@@ -142,7 +142,7 @@ def test_a_silent_sensor_shows_nothing_for_a_while() -> None:
 
 
 def test_a_tooth_that_breaks_shows_in_every_revolution() -> None:
-    broken = Change(time=0.5, what=Changed.TOOTH, value=1.0)
+    broken = HiddenChange(time=0.5, what=HiddenQuantity.TOOTH, value=1.0)
     readings = run(machine(course(levels(100.0)), replace(QUICK, changes=(broken,))))
     late = [each for each in readings if each.time > 0.6]
     assert max(each.force.max() for each in late if each.tooth == 1) == 0.0
@@ -152,16 +152,17 @@ def test_a_tooth_that_breaks_shows_in_every_revolution() -> None:
 def test_a_change_may_come_while_it_runs() -> None:
     at = machine(course(levels(100.0)))
     at.read()
-    at.change(Change(time=at.time, what=Changed.DEPTH, value=2.0))
+    at.change(HiddenChange(time=at.time, what=HiddenQuantity.DEPTH, value=2.0))
     at.read()
     assert at.truth.force == pytest.approx(200.0, rel=1e-3)
-    assert at.factors[Changed.DEPTH] == 2.0
+    assert at.factors[HiddenQuantity.DEPTH] == 2.0
 
 
 def test_same_seed_same_readings() -> None:
     def forces(seed: int) -> np.ndarray[tuple[int, ...], np.dtype[np.float64]]:
         return np.concatenate([
-            each.force for each in run(machine(course(levels(100.0)), bench=Bench(seed=seed)))
+            each.force
+            for each in run(machine(course(levels(100.0)), bench=Instrumentation(seed=seed)))
         ])
 
     np.testing.assert_array_equal(forces(1), forces(1))
@@ -177,7 +178,7 @@ def test_an_impossible_override_is_refused(override: float) -> None:
 def test_each_tool_wears_and_breaks_for_itself() -> None:
     path = course(levels(100.0, 100.0, 100.0))
     tools = np.repeat([1, 2, 1], 100)
-    broken = Change(time=0.5, what=Changed.TOOTH, value=1.0)
+    broken = HiddenChange(time=0.5, what=HiddenQuantity.TOOTH, value=1.0)
     hidden = replace(QUICK, wear_rate=0.05, changes=(broken,))
     at = machine(replace(path, tool=tools), hidden)
     readings = run(at)

@@ -3,23 +3,24 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from service.simulation.run import SimulationRequest, simulate, waiting_machine
+from service.simulation.run import simulate, waiting_machine
 from simulator.machine.interpreter import interpret
 from simulator.plant.course import NominalCourse, course_of
+from tests.asking import asked_simulation
 from tests.simulator.plant.courses import course, levels
 
 SAMPLE = Path("examples/parts/paper002.stpnc")
-REQUEST = SimulationRequest(file=SAMPLE, machine="vmc15", material="c45")
+REQUEST = asked_simulation(file=SAMPLE, machine="vmc15", material="c45")
 
 
 @pytest.fixture(scope="module")
 def milled() -> NominalCourse:
-    prepared, virtual = waiting_machine(REQUEST)
+    prepared, virtual = waiting_machine(*REQUEST)
     return course_of(virtual.run(interpret(prepared.blocks, virtual.machine)), virtual.machine)
 
 
 def test_a_course_takes_the_time_of_the_virtual_machine(milled: NominalCourse) -> None:
-    whole = simulate(REQUEST).whole
+    whole = simulate(*REQUEST).whole
     assert milled.duration == pytest.approx(whole.duration, rel=1e-12)
     widths = np.diff(milled.until, prepend=0.0)
     assert float(widths @ milled.removal_rate) == pytest.approx(whole.volume, rel=2e-3)
@@ -60,7 +61,7 @@ def test_the_upper_end_of_the_edges_lags_by_the_helix(milled: NominalCourse) -> 
 
 def test_nothing_is_no_course() -> None:
     with pytest.raises(ValueError, match="nothing that takes time"):
-        course_of([], waiting_machine(REQUEST)[1].machine)
+        course_of([], waiting_machine(*REQUEST)[1].machine)
 
 
 def test_cells_must_ascend() -> None:

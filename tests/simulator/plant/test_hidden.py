@@ -1,10 +1,10 @@
 import pytest
 
-from simulator.plant.hidden import Hidden
+from simulator.plant.hidden import HiddenTruth
 
 
 def test_a_machine_hides_nothing_when_nothing_is_said() -> None:
-    hidden = Hidden()
+    hidden = HiddenTruth()
     assert hidden.force_factor == 1.0
     assert hidden.changes == ()
 
@@ -21,4 +21,4 @@ def test_a_machine_hides_nothing_when_nothing_is_said() -> None:
 )
 def test_impossible_numbers_are_refused(name: str, value: float) -> None:
     with pytest.raises(ValueError, match="must"):
-        Hidden(**{name: value})  # type: ignore[arg-type]
+        HiddenTruth(**{name: value})  # type: ignore[arg-type]

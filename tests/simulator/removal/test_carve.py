@@ -10,7 +10,7 @@ import pytest
 from simulator.motion.segments import Floats, lines
 from simulator.removal.cutter import Cutter
 from simulator.removal.engage import MillingStock
-from stepnc_model.stock import Stock
+from stepnc_model.program import Stock
 
 BOX = Stock(low=(0.0, 0.0, -12.0), high=(40.0, 30.0, 0.0))
 

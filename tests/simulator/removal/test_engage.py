@@ -9,8 +9,8 @@ from simulator.motion.segments import Floats, Segments, lines
 from simulator.physics.edge import effective_edge_angle
 from simulator.removal.cutter import Cutter, Holder
 from simulator.removal.engage import MillingStock
-from simulator.removal.stations import CutKind, Stations
-from stepnc_model.stock import Stock
+from simulator.removal.stations import StationKind, Stations
+from stepnc_model.program import Stock
 from tests.oracles.cutting import effective_diameter
 
 BOX = Stock(low=(0.0, 0.0, -20.0), high=(60.0, 40.0, 0.0))
@@ -67,8 +67,8 @@ def test_full_slot_has_half_a_turn_of_contact() -> None:
     assert found.chip_ratio[inside] == pytest.approx(2.0 / pi)
     assert work.volume == pytest.approx(10.0 * 60.0 * 2.0, rel=1e-4)
     assert volume(found) == pytest.approx(work.volume, rel=5e-4)
-    assert found.kind[0] == CutKind.AIR
-    assert found.kind[-1] == CutKind.AIR
+    assert found.kind[0] == StationKind.AIR
+    assert found.kind[-1] == StationKind.AIR
 
 
 @pytest.mark.parametrize(("y", "entry", "leave"), [(0.0, 0.0, 90.0), (40.0, 90.0, 180.0)])
@@ -142,7 +142,7 @@ def test_second_pass_is_air() -> None:
         work.cut(path, cutter)
         before = work.volume
         found = work.cut(path, cutter)
-        assert set(found.kind) == {CutKind.AIR}
+        assert set(found.kind) == {StationKind.AIR}
         assert found.segment.tolist() == [0, 1]
         assert work.volume == before
 
@@ -217,7 +217,7 @@ def test_a_skin_is_met_over_its_own_thickness() -> None:
     deep = feed((20.0, 20.0, 5.0), (20.0, 20.0, -4.0))
     work.cut(deep, mill)
     skin = work.cut(feed((20.0, 20.0, 5.0), (20.0, 20.0, -4.2)), mill)
-    (row,) = np.flatnonzero(skin.kind == CutKind.DRILLING)
+    (row,) = np.flatnonzero(skin.kind == StationKind.DRILLING)
     assert skin.section[row] == pytest.approx(25.0 * pi, rel=5e-3)
     assert skin.station[row] - skin.station[row - 1] == pytest.approx(0.2)
     assert skin.station[row] == pytest.approx(9.2)
@@ -231,7 +231,7 @@ def test_plunge_and_drill() -> None:
     assert work.volume == pytest.approx(16.0 * pi * (10.0 - tip * 2.0 / 3.0), rel=3e-3)
     assert volume(found) == pytest.approx(work.volume, rel=1e-9)
     deep = found.station > 5.0 + tip + 1.0
-    assert set(found.kind[deep]) == {CutKind.DRILLING}
+    assert set(found.kind[deep]) == {StationKind.DRILLING}
     assert found.section[deep] == pytest.approx(16.0 * pi, rel=5e-3)
     assert found.chip_ratio[deep] == pytest.approx(sin(pi / 3.0))
     assert found.diameter[deep] == pytest.approx(4.0)
@@ -247,7 +247,7 @@ def test_helix_of_a_flat_tool_clears_its_bore() -> None:
     found = work.cut(path, FLAT)
     work.cut(turned((24.0, 20.0, -4.0), (20.0, 20.0), 2.0 * pi, (24.0, 20.0, -4.0)), FLAT)
     assert work.volume == pytest.approx(81.0 * pi * 4.0, rel=5e-3)
-    assert set(found.kind) <= {CutKind.MILLING, CutKind.AIR}
+    assert set(found.kind) <= {StationKind.MILLING, StationKind.AIR}
 
 
 def test_level_circle_meets_its_own_beginning() -> None:

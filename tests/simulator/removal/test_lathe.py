@@ -15,9 +15,9 @@ from simulator.errors import SimulationError
 from simulator.motion.segments import Floats, Segments, lines
 from simulator.removal.cutter import Cutter, Insert
 from simulator.removal.lathe import TurningStock
-from simulator.removal.stations import CutKind, Stations
+from simulator.removal.stations import StationKind, Stations
 from stepnc_model.entities.enums import HandOfToolType
-from stepnc_model.stock import Stock
+from stepnc_model.program import Stock
 
 RADIUS, LENGTH = 25.0, 100.0
 BAR = Stock(low=(-RADIUS, -RADIUS, 0.0), high=(RADIUS, RADIUS, LENGTH), radius=RADIUS)
@@ -146,7 +146,7 @@ def test_a_drill_leaves_its_cylinder_and_its_cone() -> None:
     assert bar.volume == pytest.approx(pi * RADIUS**2 * LENGTH - hole, rel=2e-7)
     assert removed(stations) == pytest.approx(hole, rel=1e-4)
     full = stations.section > 78.0
-    assert (stations.kind[full] == CutKind.DRILLING).all()
+    assert (stations.kind[full] == StationKind.DRILLING).all()
     np.testing.assert_allclose(stations.section[full], 25.0 * pi, rtol=0.01)
     np.testing.assert_allclose(stations.diameter[full], 5.0, rtol=0.01)
     np.testing.assert_allclose(stations.chip_ratio[full], sin(radians(59.0)))
@@ -208,7 +208,7 @@ def test_depth_diameter_and_section_of_a_straight_cut() -> None:
     bar = TurningStock(BAR)
     stations = bar.cut(path((22.5, 103.0), (22.5, -3.0)), SHARP)
     row = int(stations.section.argmax())
-    assert stations.kind[row] == CutKind.TURNING
+    assert stations.kind[row] == StationKind.TURNING
     assert stations.axial_depth[row] == pytest.approx(2.5, rel=1e-4)
     assert stations.diameter[row] == pytest.approx(47.5, rel=1e-4)
     assert stations.section[row] == pytest.approx(ring(25.0, 22.5), rel=1e-4)
@@ -291,7 +291,7 @@ def test_what_was_cut_stays_cut() -> None:
     passes = path((22.0, 103.0), (22.0, 20.0), (30.0, 20.0))
     assert bar.cut(passes, ROUGHING).section.max() > 0.0
     again = bar.cut(passes, ROUGHING)
-    assert (again.kind == CutKind.AIR).all()
+    assert (again.kind == StationKind.AIR).all()
     assert again.segment.tolist() == [0, 1]
     np.testing.assert_allclose(again.station, passes.length)
 
@@ -308,7 +308,7 @@ def test_a_rapid_through_material_is_told() -> None:
 def test_a_tool_that_stands_in_the_bar_is_told_and_is_no_cut() -> None:
     bar = TurningStock(BAR)
     stations = bar.cut(path((20.0, 50.0), (26.0, 50.0)), BLADE)
-    assert (stations.kind == CutKind.AIR).all()
+    assert (stations.kind == StationKind.AIR).all()
     (contact,) = bar.collisions
     assert contact.position == (20.0, 0.0, 50.0)
     assert contact.volume == pytest.approx(3.0 * ring(25.0, 20.0))

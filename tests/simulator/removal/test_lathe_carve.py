@@ -8,22 +8,22 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from simulator.motion.segments import Floats
-from simulator.removal.lathe_carve import BLOCK, Body, Grid, bore, carve
+from simulator.removal.lathe_carve import BLOCK, AxialGrid, InsertOutline, bore, carve
 
 CELLS = 300
-GRID = Grid(0.0, 0.1)
+GRID = AxialGrid(0.0, 0.1)
 Z = (np.arange(CELLS) + 0.5) * 0.1
 TOP = 20.0
 
 
-def body(nose: float, flat: float, back: float, front: float) -> Body:
+def body(nose: float, flat: float, back: float, front: float) -> InsertOutline:
     """Insert with edges at angles from the axis; π/2: upright."""
     slopes = [inf if angle >= 0.5 * pi else tan(angle) for angle in (back, front)]
     feet = [nose * sin(angle) for angle in (back, front)]
-    return Body(nose, flat, slopes[0], feet[0], slopes[1], feet[1])
+    return InsertOutline(nose, flat, slopes[0], feet[0], slopes[1], feet[1])
 
 
-def curve(shape: Body, t: Floats) -> Floats:
+def curve(shape: InsertOutline, t: Floats) -> Floats:
     """The insert as the highest of its tangents' half planes and its arcs, apart from ours."""
     height = np.full(t.shape, inf)
     beside = np.where(t < 0.0, t, np.maximum(t - shape.flat, 0.0))
@@ -38,7 +38,7 @@ def curve(shape: Body, t: Floats) -> Floats:
     return height
 
 
-def least(shape: Body, z: Floats, x: Floats) -> Floats:
+def least(shape: InsertOutline, z: Floats, x: Floats) -> Floats:
     """Least height over the cells of many positions of the nose."""
     reached = np.full(CELLS, inf)
     for one_z, one_x in zip(z.tolist(), x.tolist(), strict=True):
@@ -46,7 +46,7 @@ def least(shape: Body, z: Floats, x: Floats) -> Floats:
     return np.asarray(np.clip(reached, 0.0, TOP))
 
 
-def carved(shape: Body, way: list[float]) -> tuple[Floats, float, float]:
+def carved(shape: InsertOutline, way: list[float]) -> tuple[Floats, float, float]:
     """Surface after one way, area and volume."""
     surface = np.full(CELLS, TOP)
     areas, volumes = carve(surface, np.zeros(CELLS), GRID, shape, np.array([way]))
@@ -67,7 +67,7 @@ SAMPLES = np.linspace(0.0, 1.0, 2001)
 @settings(max_examples=40, deadline=None)
 @given(shape=bodies, start=places, end=places)
 def test_a_line_reaches_as_low_as_the_lowest_of_its_positions(
-    shape: Body, start: tuple[float, float], end: tuple[float, float]
+    shape: InsertOutline, start: tuple[float, float], end: tuple[float, float]
 ) -> None:
     run, rise = end[0] - start[0], end[1] - start[1]
     # Steep ways need finer samples than these beside an upright edge.
@@ -89,7 +89,7 @@ def test_a_line_reaches_as_low_as_the_lowest_of_its_positions(
     turn=st.floats(-6.0, 6.0),
 )
 def test_an_arc_reaches_as_low_as_the_lowest_of_its_positions(
-    shape: Body, centre: tuple[float, float], radius: float, begin: float, turn: float
+    shape: InsertOutline, centre: tuple[float, float], radius: float, begin: float, turn: float
 ) -> None:
     z = centre[0] + radius * np.cos(begin + SAMPLES * turn)
     x = centre[1] + radius * np.sin(begin + SAMPLES * turn)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from simulator.removal.cutter import Insert
-from simulator.removal.lathe_edge import LEAST_ANGLE, chip_ratios, edge_angles
+from simulator.removal.lathe import LEAST_ANGLE, chip_ratios, edge_angles
 from stepnc_model.entities.enums import HandOfToolType
 
 TO_CHUCK, TO_AXIS, TO_FRONT, OUTWARDS = (

@@ -8,7 +8,7 @@ import pytest
 from simulator.errors import SimulationError
 from simulator.motion.segments import Segments, lines
 from simulator.removal.cutter import Insert
-from simulator.removal.lathe_ways import body_of, ways_of
+from simulator.removal.lathe import body_of, ways_of
 from simulator.removal.lathe_windows import Windows
 
 WHOLE = Windows(segment=np.array([0]), start=np.zeros(1), end=np.array([0.5 * pi * 10.0]))

@@ -7,9 +7,9 @@ from simulator.motion.segments import lines
 from simulator.removal.cutter import Cutter
 from simulator.removal.engage import MillingStock
 from simulator.removal.rim import FORGETTING
-from simulator.removal.stations import CutKind
-from simulator.removal.task import rows_of
-from stepnc_model.stock import Stock
+from simulator.removal.stations import StationKind
+from simulator.removal.trial import rows_of
+from stepnc_model.program import Stock
 
 BOX = Stock(low=(0.0, 0.0, -12.0), high=(60.0, 40.0, 0.0))
 
@@ -29,7 +29,7 @@ def test_stations_ascend_and_end_with_their_segment() -> None:
     assert found.station[last] == pytest.approx(path.length)
     same = np.diff(found.segment) == 0
     assert (np.diff(found.station)[same] > 0.0).all()
-    assert found.kind[[0, -1]].tolist() == [CutKind.AIR, CutKind.AIR]
+    assert found.kind[[0, -1]].tolist() == [StationKind.AIR, StationKind.AIR]
     # Between the ends of the slot the stations lie a quarter of the radius apart at most, and
     # closer where the tool enters.
     steps = np.diff(found.station[found.segment == 1])

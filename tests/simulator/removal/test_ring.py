@@ -6,37 +6,37 @@ from typing import Any
 import numpy as np
 import pytest
 
-from simulator.removal.arcs import Circle
+from simulator.removal.arcs import ToolCircle
 from simulator.removal.ring import (
     BLURRED_SLICES,
     CORNER_SLICES,
     MOST_LEVELS,
     SAMPLES,
     Pose,
-    Room,
+    RimBuffers,
     cell_at,
     circle_of,
     levels,
     read_ring,
 )
-from simulator.removal.zmap import OUTSIDE, UNCUT, Grid
+from simulator.removal.zmap import OUTSIDE, UNCUT, HeightGrid
 
 BOTTOM, LOW, HIGH = -9.0, -5.0, -1.0
 RADIUS, GAP = 4.0, 0.01
 
 
-def step() -> Grid:
+def step() -> HeightGrid:
     """40 mm square about the origin, low where x < 0, high elsewhere."""
     heights = np.full((80, 80), HIGH)
     heights[:40] = LOW
     owner = np.full((80, 80), UNCUT, dtype=np.int32)
     owner[:40] = 7
-    return Grid(heights, owner, -20.0, -20.0, 0.5, 0.5, BOTTOM, 0.0, 0.0)
+    return HeightGrid(heights, owner, -20.0, -20.0, 0.5, 0.5, BOTTOM, 0.0, 0.0)
 
 
-def room() -> Room:
+def room() -> RimBuffers:
     empty: Any = None
-    return Room(
+    return RimBuffers(
         arcs=empty,
         total=empty,
         heights=np.empty(SAMPLES),
@@ -54,7 +54,7 @@ def test_the_ring_begins_on_the_side_that_the_spindle_turns_from(
 ) -> None:
     """Ahead is +Y, so the left is −X: the low half."""
     work = room()
-    circle = Circle(0.0, 0.0, RADIUS, 0.0, 1.0, side)
+    circle = ToolCircle(0.0, 0.0, RADIUS, 0.0, 1.0, side)
     read_ring(step(), work, circle, GAP)
     half = SAMPLES // 2
     assert (work.heights[:half] == first).all()
@@ -66,7 +66,7 @@ def test_the_ring_begins_on_the_side_that_the_spindle_turns_from(
 def test_the_step_shares_the_ring_by_its_angle(distance: float) -> None:
     """A chord at a distance from the axis, across the feed: acos(d/r) of either side."""
     work = room()
-    circle = Circle(-distance, 0.0, RADIUS, 1.0, 0.0, 1.0)
+    circle = ToolCircle(-distance, 0.0, RADIUS, 1.0, 0.0, 1.0)
     read_ring(step(), work, circle, GAP)
     angle = pi * float((work.heights == HIGH).mean())
     beyond = max(0.0, distance) / (RADIUS + GAP)
@@ -77,14 +77,14 @@ def test_the_step_shares_the_ring_by_its_angle(distance: float) -> None:
 
 def test_beside_the_stock_the_ring_is_at_the_bottom_and_nobodys() -> None:
     work = room()
-    read_ring(step(), work, Circle(100.0, 0.0, RADIUS, 1.0, 0.0, 1.0), GAP)
+    read_ring(step(), work, ToolCircle(100.0, 0.0, RADIUS, 1.0, 0.0, 1.0), GAP)
     assert (work.heights == BOTTOM).all()
     assert (work.owner == OUTSIDE).all()
 
 
 def test_the_height_at_an_angle_is_that_of_its_cell() -> None:
     """0 is left of the feed, half π ahead."""
-    circle = Circle(0.0, 0.0, RADIUS, 0.0, 1.0, 1.0)
+    circle = ToolCircle(0.0, 0.0, RADIUS, 0.0, 1.0, 1.0)
     assert cell_at(step(), circle, 3.0, 0.2)[0] == LOW
     assert cell_at(step(), circle, 3.0, pi - 0.2)[0] == HIGH
     assert cell_at(step(), circle, 30.0, 0.2)[0] == BOTTOM

@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 from simulator.motion.segments import lines
 from simulator.removal.cutter import Cutter
 from simulator.removal.engage import MillingStock
-from simulator.removal.profile import Profile, profile_of
+from simulator.removal.profile import CutterProfile, profile_of
 from simulator.removal.rim import FORGETTING, past
 from simulator.removal.sink import LIP_ERROR, hole, lip
 from simulator.removal.zmap import zmap_of
-from stepnc_model.stock import Stock
+from stepnc_model.program import Stock
 
 PLATE = Stock(low=(0.0, 0.0, -12.0), high=(30.0, 30.0, 0.0))
 X, Y = 15.0, 15.0
@@ -24,7 +24,7 @@ CONE = Cutter(diameter=10.0, point_angle=0.5 * pi)
 """as deep as it is wide: a radius of 1 mm at 1 mm over its tip"""
 
 
-def profile(cutter: Cutter) -> Profile:
+def profile(cutter: Cutter) -> CutterProfile:
     return profile_of(cutter, reach=12.0)
 
 

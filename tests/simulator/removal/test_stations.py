@@ -6,12 +6,12 @@ from math import acos, cos, pi, sin
 import numpy as np
 import pytest
 
-from simulator.removal.stations import CutKind, Stations, air, single_arcs
+from simulator.removal.stations import StationKind, Stations, air, single_arcs
 
 
 def test_air_removes_nothing() -> None:
     found = air(np.array([0, 1]), np.array([2.0, 3.0]))
-    assert found.kind.tolist() == [CutKind.AIR, CutKind.AIR]
+    assert found.kind.tolist() == [StationKind.AIR, StationKind.AIR]
     assert found.section.tolist() == [0.0, 0.0]
 
 
@@ -28,7 +28,7 @@ def milled(
     return Stations(
         segment=np.array([0]),
         station=np.array([1.0]),
-        kind=np.array([int(CutKind.MILLING)]),
+        kind=np.array([int(StationKind.MILLING)]),
         section=np.array([section]),
         growth=np.zeros(1),
         axial_depth=np.array([depth]),

@@ -8,8 +8,8 @@ import pytest
 from simulator.motion.segments import arc, lines
 from simulator.removal.cutter import Cutter
 from simulator.removal.profile import profile_of
-from simulator.removal.ring import ROUND_SAMPLES, SAMPLES, Tool
-from simulator.removal.task import desk_for, rows_of
+from simulator.removal.ring import ROUND_SAMPLES, SAMPLES, RimTool
+from simulator.removal.trial import desk_for, rows_of
 
 
 def test_a_row_has_ends_centre_radius_angle_and_turn() -> None:
@@ -25,6 +25,6 @@ def test_a_rounded_tool_looks_at_more_rings_of_fewer_samples(
     corner: float, samples: int
 ) -> None:
     cutter = Cutter(diameter=8.0, corner_radius=corner)
-    desk = desk_for(Tool(profile_of(cutter, reach=20.0), 1.0, 1.0))
+    desk = desk_for(RimTool(profile_of(cutter, reach=20.0), 1.0, 1.0))
     assert len(desk.rim.heights) == samples
     assert desk.raised.dtype == np.float64

@@ -12,13 +12,13 @@ from simulator.removal.cutter import Cutter
 from simulator.removal.engage import MillingStock
 from simulator.removal.rim import FORGETTING
 from simulator.removal.trial import (
-    Trial,
+    PathTrial,
     box_of,
     do_overlap,
     is_remembered_alike,
     renumbered,
 )
-from stepnc_model.stock import Stock
+from stepnc_model.program import Stock
 
 BOX = Stock(low=(0.0, 0.0, -20.0), high=(60.0, 40.0, 0.0))
 MILL = Cutter(diameter=8.0)
@@ -123,4 +123,4 @@ def test_outlines_must_be_remembered_in_both_or_in_neither() -> None:
     assert not is_remembered_alike(trial, FORGETTING - 3)
     late = replace(trial.before, next=trial.before.next + 2 * FORGETTING)
     after = replace(trial.after, next=trial.after.next + 2 * FORGETTING)
-    assert is_remembered_alike(Trial(before=late, after=after), FORGETTING - 3)
+    assert is_remembered_alike(PathTrial(before=late, after=after), FORGETTING - 3)

@@ -7,8 +7,8 @@ from stepnc_model.entities.catalogue import class_of, classes
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.features import MachiningFeature
 from stepnc_model.entities.geometry import ElementarySurface, Plane
+from stepnc_model.entities.milling import BidirectionalMilling, UnidirectionalMilling
 from stepnc_model.entities.operations import MachiningOperation
-from stepnc_model.entities.strategies import BidirectionalMilling, UnidirectionalMilling
 from stepnc_model.entities.technology import MillingTechnology
 from stepnc_model.entities.tools import MillingCuttingTool, MillingToolDimension
 

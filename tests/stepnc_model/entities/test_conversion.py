@@ -4,10 +4,9 @@ from math import inf, nan
 
 import pytest
 
-from stepnc_model.entities.conversion import give, take, take_missing
+from stepnc_model.entities.conversion import AttributeSlot, give, take, take_missing
 from stepnc_model.entities.entity import Entity
 from stepnc_model.entities.enums import Logical, SpeedName, ToolReferencePoint
-from stepnc_model.entities.slots import Slot
 from stepnc_model.errors import Severity
 from stepnc_model.part21.values import (
     DERIVED,
@@ -19,16 +18,16 @@ from stepnc_model.part21.values import (
     Value,
 )
 
-NUMBER = Slot(plain=(float,))
-COUNT = Slot(plain=(int,))
-LABEL = Slot(plain=(str,))
-TRUTH = Slot(plain=(bool,))
-NAME = Slot(enumeration=ToolReferencePoint)
-REFERENCE = Slot(references=(Entity,))
-NUMBERS = Slot(items=NUMBER)
-REFERENCES = Slot(items=REFERENCE)
-FEED = Slot(plain=(Typed, float), is_optional=True)
-SPEED = Slot(plain=(Typed, float), enumeration=SpeedName, references=(Entity,))
+NUMBER = AttributeSlot(plain=(float,))
+COUNT = AttributeSlot(plain=(int,))
+LABEL = AttributeSlot(plain=(str,))
+TRUTH = AttributeSlot(plain=(bool,))
+NAME = AttributeSlot(enumeration=ToolReferencePoint)
+REFERENCE = AttributeSlot(references=(Entity,))
+NUMBERS = AttributeSlot(items=NUMBER)
+REFERENCES = AttributeSlot(items=REFERENCE)
+FEED = AttributeSlot(plain=(Typed, float), is_optional=True)
+SPEED = AttributeSlot(plain=(Typed, float), enumeration=SpeedName, references=(Entity,))
 
 
 @pytest.mark.parametrize(
@@ -45,12 +44,12 @@ SPEED = Slot(plain=(Typed, float), enumeration=SpeedName, references=(Entity,))
         (TRUTH, Enumeration("F"), False),
         (NAME, Enumeration("TCP"), ToolReferencePoint.TCP),
         (NAME, Enumeration("ccp"), ToolReferencePoint.CCP),
-        (Slot(enumeration=Logical), Enumeration("U"), Logical.UNKNOWN),
+        (AttributeSlot(enumeration=Logical), Enumeration("U"), Logical.UNKNOWN),
         (REFERENCE, Ref(7), Ref(7)),
         (NUMBERS, (), ()),
         (NUMBERS, (Real(1.0), 2), (1.0, 2.0)),
         (REFERENCES, (Ref(1), Ref(2)), (Ref(1), Ref(2))),
-        (Slot(plain=(str,), is_optional=True), None, None),
+        (AttributeSlot(plain=(str,), is_optional=True), None, None),
         (FEED, None, None),
         (FEED, Real(0.1), 0.1),
         (FEED, Typed("FEED_PER_REV_TYPE", Real(0.1)), Typed("FEED_PER_REV_TYPE", Real(0.1))),
@@ -60,7 +59,7 @@ SPEED = Slot(plain=(Typed, float), enumeration=SpeedName, references=(Entity,))
     ],
 )
 def test_value_that_fits_is_taken_without_a_word(
-    slot: Slot, value: Value, expected: object
+    slot: AttributeSlot, value: Value, expected: object
 ) -> None:
     assert take(slot, value) == (expected, None)
 
@@ -99,7 +98,7 @@ def test_value_that_fits_is_taken_without_a_word(
     ],
 )
 def test_odd_value_is_told_and_never_fatal(
-    slot: Slot, value: Value, expected: object, severity: Severity, words: str
+    slot: AttributeSlot, value: Value, expected: object, severity: Severity, words: str
 ) -> None:
     taken, remark = take(slot, value)
     assert taken == expected
@@ -118,15 +117,15 @@ def test_list_with_a_hole_gives_no_shifted_coordinates() -> None:
 @pytest.mark.parametrize(
     ("slot", "expected", "severity"),
     [
-        (Slot(is_optional=True, plain=(float,)), None, Severity.NOTE),
-        (Slot(is_optional=True, items=NUMBER), None, Severity.NOTE),
+        (AttributeSlot(is_optional=True, plain=(float,)), None, Severity.NOTE),
+        (AttributeSlot(is_optional=True, items=NUMBER), None, Severity.NOTE),
         (NUMBERS, (), Severity.NOTE),
         (NUMBER, None, Severity.ERROR),
         (LABEL, "", Severity.ERROR),
     ],
 )
 def test_parameter_may_be_missing_at_the_end(
-    slot: Slot, expected: object, severity: Severity
+    slot: AttributeSlot, expected: object, severity: Severity
 ) -> None:
     taken, remark = take_missing(slot)
     assert taken == expected
@@ -142,7 +141,7 @@ def test_parameter_may_be_missing_at_the_end(
         (COUNT, 2, 2),
         (TRUTH, True, Enumeration("T")),
         (NAME, ToolReferencePoint.TCP, Enumeration("TCP")),
-        (Slot(enumeration=Logical), Logical.UNKNOWN, Enumeration("U")),
+        (AttributeSlot(enumeration=Logical), Logical.UNKNOWN, Enumeration("U")),
         (REFERENCES, (Ref(1),), (Ref(1),)),
         (NUMBERS, (1, 2.5), (Real(1.0), Real(2.5))),
         (FEED, Typed("FEED_PER_REV_TYPE", Real(0.1)), Typed("FEED_PER_REV_TYPE", Real(0.1))),
@@ -151,7 +150,7 @@ def test_parameter_may_be_missing_at_the_end(
     ],
 )
 def test_value_is_given_back_as_its_type_is_written(
-    slot: Slot, value: object, expected: Value
+    slot: AttributeSlot, value: object, expected: Value
 ) -> None:
     given = give(slot, value)
     assert given == expected

@@ -8,9 +8,9 @@ from dataclasses import FrozenInstanceError, asdict, fields, is_dataclass, repla
 
 import pytest
 
-from stepnc_model.entities.drilling import Drilling
 from stepnc_model.entities.entity import attributes
 from stepnc_model.entities.geometry import Axis2Placement3d, Direction
+from stepnc_model.entities.milling import Drilling
 from stepnc_model.entities.operations import MachiningOperation
 from stepnc_model.entities.technology import MillingTechnology, ThreeAxes
 from stepnc_model.part21.values import Ref

@@ -8,17 +8,17 @@ from typing import get_args, get_origin, get_type_hints
 
 import pytest
 
-from stepnc_model.binding import Model, to_parameters
-from stepnc_model.entities import optimisation
-from stepnc_model.entities.entity import Entity, attributes
-from stepnc_model.express.reader import read_schemas
-from stepnc_model.express.schema import (
+from docs.hooks.express.reader import read_schemas
+from docs.hooks.express.schema import (
     AggregateType,
     AttributeType,
     EnumerationType,
     NamedType,
     attributes_in_order,
 )
+from stepnc_model.binding import Model, to_parameters
+from stepnc_model.entities import optimisation
+from stepnc_model.entities.entity import Entity, attributes
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
 

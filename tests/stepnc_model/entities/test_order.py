@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from stepnc_model.entities.catalogue import classes
+from stepnc_model.entities.conversion import AttributeSlot, slots_of
 from stepnc_model.entities.entity import Entity, attributes
-from stepnc_model.entities.slots import Slot, slots_of
 
 TABLES = Path(__file__).parents[4] / "shared" / "design" / "ENTITIES.md"
 
@@ -174,4 +174,4 @@ def test_knurling_tool_has_the_attributes_of_ap238() -> None:
 def test_every_slot_takes_something() -> None:
     for cls in set(_classes().values()):
         for name, slot in slots_of(cls).items():
-            assert slot != Slot(is_optional=slot.is_optional), f"{cls.__name__}.{name}"
+            assert slot != AttributeSlot(is_optional=slot.is_optional), f"{cls.__name__}.{name}"

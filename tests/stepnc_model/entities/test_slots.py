@@ -2,6 +2,7 @@
 
 import pytest
 
+from stepnc_model.entities.conversion import AttributeSlot, slots_of
 from stepnc_model.entities.enums import Logical, SpeedName
 from stepnc_model.entities.executables import Workplan
 from stepnc_model.entities.geometry import CartesianPoint, CompositeCurve, TrimmedCurve
@@ -10,8 +11,7 @@ from stepnc_model.entities.measures import (
     PlusMinusValue,
     TolerancedLengthMeasure,
 )
-from stepnc_model.entities.slots import Slot, slots_of
-from stepnc_model.entities.toolpaths import CutterLocationTrajectory, ToolpathSpeed
+from stepnc_model.entities.operations import CutterLocationTrajectory, ToolpathSpeed
 from stepnc_model.entities.tools import MillingToolBody
 from stepnc_model.part21.values import Typed
 
@@ -28,12 +28,12 @@ def test_slots_follow_the_order_of_the_parameters() -> None:
 
 def test_optional_number() -> None:
     slot = slots_of(MillingToolBody)["number_of_teeth"]
-    assert slot == Slot(is_optional=True, plain=(int,))
+    assert slot == AttributeSlot(is_optional=True, plain=(int,))
 
 
 def test_select_of_entities() -> None:
     slot = slots_of(TolerancedLengthMeasure)["implicit_tolerance"]
-    assert slot == Slot(references=(PlusMinusValue, LimitsAndFits))
+    assert slot == AttributeSlot(references=(PlusMinusValue, LimitsAndFits))
 
 
 def test_list_of_entities() -> None:
@@ -63,8 +63,8 @@ def test_select_of_curve_name_and_factor() -> None:
         (slots_of(CompositeCurve)["self_intersect"], "one of .T., .F., .U."),
         (slots_of(Workplan)["its_elements"], "a list"),
         (slots_of(MillingToolBody)["coolant_through_tool"], "a truth value"),
-        (Slot(enumeration=Logical, plain=(float, Typed)), "a number or one of"),
+        (AttributeSlot(enumeration=Logical, plain=(float, Typed)), "a number or one of"),
     ],
 )
-def test_slot_names_what_it_takes(slot: Slot, words: str) -> None:
+def test_slot_names_what_it_takes(slot: AttributeSlot, words: str) -> None:
     assert words in slot.expected()

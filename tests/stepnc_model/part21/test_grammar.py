@@ -4,18 +4,18 @@ import pytest
 
 from stepnc_model.errors import Part21Error
 from stepnc_model.part21.grammar import MAX_DEPTH, closing, skip_blank
-from stepnc_model.part21.places import Slip
+from stepnc_model.part21.places import SyntaxSlip
 
 
 def test_blanks_and_comments_are_passed() -> None:
-    slips: list[Slip] = []
+    slips: list[SyntaxSlip] = []
     assert skip_blank(b" \r\n/* a */\t/**/x", 0, slips=slips) == 15
     assert skip_blank(b"x", 0, slips=slips) == 0
     assert slips == []
 
 
 def test_nested_comment_is_noted_with_what_it_hides() -> None:
-    slips: list[Slip] = []
+    slips: list[SyntaxSlip] = []
     assert skip_blank(b"/* a /* #1=A(); #2 = B(); */ */", 0, slips=slips) == 29
     assert "it hides 2 instances" in slips[0].message
 

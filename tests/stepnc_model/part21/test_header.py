@@ -1,6 +1,6 @@
 """The header, whatever its statements hold."""
 
-from stepnc_model.part21.header import Header, HeaderReading, read_header
+from stepnc_model.part21.reader import HeaderReading, read_header
 from stepnc_model.part21.structure import Statement
 
 
@@ -19,7 +19,7 @@ def reading(*texts: str) -> HeaderReading:
 
 def test_missing_statements_are_noted_and_empty() -> None:
     result = reading()
-    assert result.header == Header()
+    assert result.schemas == ()
     assert [slip.message for slip in result.slips] == [
         "FILE_DESCRIPTION is missing",
         "FILE_NAME is missing",
@@ -29,21 +29,15 @@ def test_missing_statements_are_noted_and_empty() -> None:
 
 def test_first_of_two_statements_counts() -> None:
     result = reading("FILE_SCHEMA(('A'))", "FILE_SCHEMA(('B'))")
-    assert result.header.schemas == ("A",)
+    assert result.schemas == ("A",)
     assert "given twice" in result.slips[0].message
 
 
 def test_blank_schema_names_are_dropped() -> None:
-    assert reading("FILE_SCHEMA(('A','',' ','B'))").header.schemas == ("A", "B")
-
-
-def test_text_where_a_list_is_due_is_a_list_of_one() -> None:
-    header = reading("FILE_NAME('n',$,'one author',('x','y'),'','','')").header
-    assert header.author == ("one author",)
-    assert header.organisation == ("x", "y")
+    assert reading("FILE_SCHEMA(('A','',' ','B'))").schemas == ("A", "B")
 
 
 def test_statement_that_cannot_be_read_is_noted_at_its_place() -> None:
     result = reading("FILE_SCHEMA(('A' 'B'))", "SCHEMA_POPULATION(())")
-    assert result.header.schemas == ()
+    assert result.schemas == ()
     assert result.slips[0].offset == 17

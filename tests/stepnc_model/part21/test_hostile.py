@@ -10,12 +10,11 @@ from pathlib import Path
 
 import pytest
 
-from stepnc_model.errors import Part21Error, Severity
-from stepnc_model.finding_list import MOST_FINDINGS
+from stepnc_model.errors import MOST_FINDINGS, Part21Error, Severity
 from stepnc_model.part21 import reader
 from stepnc_model.part21.grammar import MAX_INSTANCE
+from stepnc_model.part21.places import MOST_OF_FILE, MOST_OF_INSTANCE
 from stepnc_model.part21.reader import Part21File
-from stepnc_model.part21.slips import MOST_OF_FILE, MOST_OF_INSTANCE
 
 HEAD = (
     b"ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\n"

@@ -4,12 +4,12 @@ import pytest
 
 from stepnc_model.errors import Part21Error
 from stepnc_model.part21.index import IndexBuilder, skip_junk
-from stepnc_model.part21.places import Slip
+from stepnc_model.part21.places import SyntaxSlip
 
 
 def test_columns_follow_the_order_of_the_file() -> None:
     data = b" #5=A(1);\n#2 = b ( ';' ) ;/* c */#9=(A()B());ENDSEC;"
-    slips: list[Slip] = []
+    slips: list[SyntaxSlip] = []
     builder = IndexBuilder(data, slips)
     assert data[builder.add_section(0) :] == b"ENDSEC;"
     index = builder.finish()
@@ -23,7 +23,7 @@ def test_columns_follow_the_order_of_the_file() -> None:
 
 def test_every_byte_is_an_instance_blank_or_noted() -> None:
     data = b'#1=A()x#2=B()\n??\n#3=C();; #4 E #5=D("12");'
-    slips: list[Slip] = []
+    slips: list[SyntaxSlip] = []
     builder = IndexBuilder(data, slips)
     assert builder.add_section(0) == len(data)
     assert list(builder.finish().ids) == [1, 2, 3, 5]
@@ -57,6 +57,6 @@ def test_id_given_twice_is_refused() -> None:
 
 
 def test_junk_always_moves_on() -> None:
-    slips: list[Slip] = []
+    slips: list[SyntaxSlip] = []
     assert skip_junk(b"#1=A();", 0, slips=slips) == 1
     assert len(slips) == 1

@@ -93,7 +93,6 @@ def test_comments_before_the_opening_and_in_header_parameters() -> None:
         "FILE_NAME('part", "FILE_NAME(/* name */ 'part"
     )
     file = file_of("#1=A();", header=header)
-    assert file.header().name == "part.stp"
     assert file.findings == ()
 
 
@@ -222,22 +221,11 @@ def test_header_with_the_wrong_arity_is_read_as_far_as_it_goes() -> None:
     statements = "FILE_DESCRIPTION(' ');\nFILE_NAME('n',$);\nFILE_SCHEMA('S');\n"
     header = f"ISO-10303-21;\nHEADER;\n{statements}ENDSEC;\n"
     file = file_of("#1=A();", header=header)
-    assert file.header().name == "n"
     assert file.schemas == ("S",)
     assert messages(file) == [
         "FILE_DESCRIPTION has 1 parameters instead of 2",
         "FILE_NAME has 2 parameters instead of 7",
     ]
-
-
-def test_header_is_read() -> None:
-    header = file_of("#1=A();").header()
-    assert header.description == ("a part",)
-    assert header.implementation_level == "2;1"
-    assert header.time_stamp == "2024-01-01"
-    assert header.author == ("A. Author",)
-    assert header.organisation == ("Shop",)
-    assert header.authorisation == "auth"
 
 
 def test_broken_header_is_never_fatal() -> None:

@@ -2,7 +2,7 @@
 
 import pytest
 
-from stepnc_model.part21.splice import Element, line_span, line_start, list_splices, spliced
+from stepnc_model.part21.writer import Element, line_span, line_start, list_splices, spliced
 
 LIST = b"(a , bb /* , */, c )"
 SPANS = [(1, 2), (5, 7), (17, 18)]

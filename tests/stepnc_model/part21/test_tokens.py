@@ -4,12 +4,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from stepnc_model.part21.places import Slip
+from stepnc_model.part21.places import SyntaxSlip
 from stepnc_model.part21.tokens import TOKEN, MalformedError, scalar
 from stepnc_model.part21.values import Real, Value
 
 
-def value_of(text: str, *, slips: list[Slip]) -> Value:
+def value_of(text: str, *, slips: list[SyntaxSlip]) -> Value:
     match = TOKEN.fullmatch(text)
     assert match is not None
     return scalar(match, slips=slips)
@@ -22,7 +22,7 @@ def test_tokens_cover_any_text_without_gaps(text: str) -> None:
 
 @pytest.mark.parametrize("text", ["1E5", ".5", "1.e5", "-1.5e-05", "+.1E1"])
 def test_real_in_another_notation_keeps_its_characters(text: str) -> None:
-    slips: list[Slip] = []
+    slips: list[SyntaxSlip] = []
     value = value_of(text, slips=slips)
     assert isinstance(value, Real)
     assert (float(value), value.lexeme) == (float(text), text)

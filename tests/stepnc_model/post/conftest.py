@@ -24,31 +24,30 @@ from stepnc_model.post.blocks import (
     CoolantKind,
     DrillingCycle,
     Linear,
-    Machine,
+    MachineType,
     Message,
-    OptionalStop,
+    OptionalStopBlock,
     Pause,
     ProgramEnd,
     ProgramStart,
-    ProgramStop,
+    ProgramStopBlock,
     Rapid,
     Rate,
     RateMode,
     Retract,
     RigidTap,
-    Sense,
+    SpindleDirection,
     SpindleOff,
     SpindleOn,
     SpindleOrient,
     SurfaceSpeed,
-    Threading,
+    ThreadingMove,
     ToolChange,
+    expanded,
 )
-from stepnc_model.post.canonical import Canonical
-from stepnc_model.post.cycles import expanded
+from stepnc_model.post.canonical import Canonical, read
 from stepnc_model.post.grid import LEAST_RADIUS
-from stepnc_model.post.read_canonical import read
-from stepnc_model.toolpath.path import CycleKind, Plane, Point
+from stepnc_model.toolpath.path import ArcPlane, CycleKind, Point
 
 PACKAGES = ("linuxcnc-uspace", "libboost-python1.74.0")
 CACHE = Path(__file__).parents[3] / "build" / "cache"
@@ -137,7 +136,7 @@ def interpreter(tmp_path_factory: pytest.TempPathFactory) -> Interpreter:
     return interpret
 
 
-def _head(machine: Machine, *, name: str = "PART") -> list[Block]:
+def _head(machine: MachineType, *, name: str = "PART") -> list[Block]:
     return [
         ProgramStart(name=name, machine=machine),
         Comment(text="T1 MILL 10MM"),
@@ -149,7 +148,7 @@ def _head(machine: Machine, *, name: str = "PART") -> list[Block]:
 def milled() -> list[Block]:
     """Lines, arcs and helices in all planes, dwell, both modes of feed, stops, coolant."""
     return [
-        *_head(Machine.MILL, name="BRACKET (TOP)"),
+        *_head(MachineType.MILL, name="BRACKET (TOP)"),
         Comment(text="POCKET 1 (rough); 50 % ä"),
         SPINDLE,
         Coolant(kinds=frozenset({CoolantKind.FLOOD})),
@@ -171,24 +170,24 @@ def milled() -> list[Block]:
             centre=(20.0, 0.0, 2.0),
             turn=-1.5 * pi,
             rate=PER_MINUTE,
-            plane=Plane.ZX,
+            plane=ArcPlane.ZX,
         ),
         Circular(
             end=(30.0, 10.0, 12.0),
             centre=(0.0, 10.0, 2.0),
             turn=1.5 * pi,
             rate=PER_MINUTE,
-            plane=Plane.YZ,
+            plane=ArcPlane.YZ,
         ),
         Pause(seconds=0.5),
         Linear(end=(30.0, 20.0, 12.0), rate=PER_MINUTE),
-        SpindleOn(speed=30.0, sense=Sense.COUNTERCLOCKWISE),
+        SpindleOn(speed=30.0, sense=SpindleDirection.COUNTERCLOCKWISE),
         Coolant(kinds=frozenset({CoolantKind.MIST})),
-        OptionalStop(),
+        OptionalStopBlock(),
         Linear(end=(31.0, 21.0, 11.0), rate=PER_MINUTE),
         Retract(z=50.0),
         SpindleOrient(),
-        ProgramStop(),
+        ProgramStopBlock(),
         Message(text="turn the part (now)"),
         SpindleOff(),
         Coolant(),
@@ -205,7 +204,7 @@ def milled() -> list[Block]:
 def drilled() -> list[Block]:
     """Every drilling cycle at two places, after an arc in another plane."""
     blocks: list[Block] = [
-        *_head(Machine.MILL),
+        *_head(MachineType.MILL),
         SPINDLE,
         Retract(z=30.0),
         Rapid(end=(0.0, 0.0, 30.0)),
@@ -214,7 +213,7 @@ def drilled() -> list[Block]:
             centre=(10.0, 0.0, 30.0),
             turn=0.5 * pi,
             rate=PER_MINUTE,
-            plane=Plane.ZX,
+            plane=ArcPlane.ZX,
         ),
         Rapid(end=(10.0, 0.0, 10.0)),
     ]
@@ -246,11 +245,11 @@ def tapped() -> list[Block]:
             bottom_z=-15.5,
             lead=1.75,
             speed=4.0,
-            sense=Sense.COUNTERCLOCKWISE,
+            sense=SpindleDirection.COUNTERCLOCKWISE,
         ),
     ]
     blocks: list[Block] = [
-        *_head(Machine.MILL),
+        *_head(MachineType.MILL),
         SPINDLE,
         Retract(z=5.0),
         Rapid(end=(0.0, 0.0, 5.0)),
@@ -259,7 +258,7 @@ def tapped() -> list[Block]:
             centre=(0.0, 0.0, 10.0),
             turn=2 * pi,
             rate=PER_MINUTE,
-            plane=Plane.ZX,
+            plane=ArcPlane.ZX,
         ),
     ]
     for tap in taps:
@@ -272,7 +271,7 @@ def turned() -> list[Block]:
     """A lathe: constant surface speed with limit, both modes of feed, arcs, threads."""
     back = (15.0, 0.0, 2.0)
     return [
-        *_head(Machine.LATHE, name="SHAFT"),
+        *_head(MachineType.LATHE, name="SHAFT"),
         Comment(text="ROUGH CONTOUR"),
         SurfaceSpeed(speed=2500.0, limit=50.0),
         Coolant(kinds=frozenset({CoolantKind.FLOOD})),
@@ -284,7 +283,7 @@ def turned() -> list[Block]:
             centre=(30.0, 0.0, -10.0),
             turn=-0.5 * pi,
             rate=PER_REVOLUTION,
-            plane=Plane.ZX,
+            plane=ArcPlane.ZX,
         ),
         Linear(end=(40.5, 0.0, -20.0), rate=PER_MINUTE),
         SurfaceSpeed(speed=3000.0, limit=60.0),
@@ -295,10 +294,10 @@ def turned() -> list[Block]:
         SpindleOn(speed=12.5),
         Retract(z=2.0),
         Rapid(end=back),
-        Threading(end=(15.0, 0.0, -20.0), lead=2.0),
+        ThreadingMove(end=(15.0, 0.0, -20.0), lead=2.0),
         Rapid(end=(20.0, 0.0, -20.0)),
         Rapid(end=back),
-        Threading(end=(16.0, 0.0, -20.0), lead=2.0),
+        ThreadingMove(end=(16.0, 0.0, -20.0), lead=2.0),
         Linear(end=(20.0, 0.0, -20.0), rate=PER_MINUTE),
         SpindleOff(),
         ProgramEnd(),
@@ -326,6 +325,10 @@ HEAD: list[Block] = [
 ]
 
 
+LEAST_HELIX = 0.5
+"""mm: an end on the grid turns a smaller helix so far that its single turns end elsewhere"""
+
+
 @st.composite
 def motions(draw: st.DrawFn) -> list[Block]:
     """Lines, rapids, arcs and helices, each from where the last one ended."""
@@ -333,7 +336,7 @@ def motions(draw: st.DrawFn) -> list[Block]:
     blocks: list[Block] = []
     for kind in draw(st.lists(st.sampled_from(["line", "rapid", "arc"]), max_size=8)):
         if kind == "arc":
-            plane = draw(st.sampled_from(Plane))
+            plane = draw(st.sampled_from(ArcPlane))
             first, second, normal = plane.axes
             centre = list(draw(points))
             turn = draw(turns) * draw(st.sampled_from([-1.0, 1.0]))
@@ -345,7 +348,7 @@ def motions(draw: st.DrawFn) -> list[Block]:
             end[first] = centre[first] + size * cos(angle)
             end[second] = centre[second] + size * sin(angle)
             # Klartext has no helix outside XY.
-            if plane is Plane.XY:
+            if plane is ArcPlane.XY and size >= LEAST_HELIX:
                 end[normal] += draw(st.sampled_from([0.0, 3.21]))
             at = (end[0], end[1], end[2])
             blocks.append(

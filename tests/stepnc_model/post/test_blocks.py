@@ -4,12 +4,12 @@ from dataclasses import FrozenInstanceError
 
 import pytest
 
-from stepnc_model.post.blocks import Coolant, Linear, Rate, RateMode, Sense
+from stepnc_model.post.blocks import Coolant, Linear, Rate, RateMode, SpindleDirection
 
 
 def test_the_opposite_of_the_opposite_is_the_same() -> None:
-    assert Sense.CLOCKWISE.opposite is Sense.COUNTERCLOCKWISE
-    assert Sense.COUNTERCLOCKWISE.opposite is Sense.CLOCKWISE
+    assert SpindleDirection.CLOCKWISE.opposite is SpindleDirection.COUNTERCLOCKWISE
+    assert SpindleDirection.COUNTERCLOCKWISE.opposite is SpindleDirection.CLOCKWISE
 
 
 def test_a_feed_counts_time_unless_said() -> None:

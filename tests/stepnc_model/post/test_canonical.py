@@ -11,7 +11,7 @@ from stepnc_model.post.blocks import (
     Coolant,
     CoolantKind,
     Linear,
-    OptionalStop,
+    OptionalStopBlock,
     Pause,
     ProgramEnd,
     ProgramStart,
@@ -20,14 +20,14 @@ from stepnc_model.post.blocks import (
     RateMode,
     Retract,
     RigidTap,
-    Sense,
+    SpindleDirection,
     SpindleOff,
     SpindleOn,
     SurfaceSpeed,
     ToolChange,
 )
 from stepnc_model.post.canonical import Canonical, commands, synchronised, write
-from stepnc_model.toolpath.path import Plane
+from stepnc_model.toolpath.path import ArcPlane
 
 RATE = Rate(value=40.0)
 
@@ -64,7 +64,7 @@ def test_an_arc_in_zx_says_z_first() -> None:
             end=(30.0, 0.0, -20.0),
             centre=(20.0, 0.0, -20.0),
             turn=0.5 * pi,
-            plane=Plane.ZX,
+            plane=ArcPlane.ZX,
             rate=RATE,
         ),
     )
@@ -102,7 +102,7 @@ def test_the_spindle_turns_in_rpm() -> None:
 
 
 def test_surface_speed_is_in_metres_per_minute_under_a_limit_in_rpm() -> None:
-    block = SurfaceSpeed(speed=2500.0, limit=50.0, sense=Sense.COUNTERCLOCKWISE)
+    block = SurfaceSpeed(speed=2500.0, limit=50.0, sense=SpindleDirection.COUNTERCLOCKWISE)
     assert texts(block, SpindleOn(speed=10.0))[:4] == [
         "SET_SPINDLE_MODE(3000.0000)",
         "SET_SPINDLE_SPEED(150.0000)",
@@ -137,7 +137,7 @@ def test_a_tap_is_bound_to_the_spindle() -> None:
         (Comment(text="a"), "COMMENT(a)"),
         (ToolChange(number=3), "CHANGE_TOOL(3)"),
         (Pause(seconds=0.5), "DWELL(0.5000)"),
-        (OptionalStop(), "OPTIONAL_PROGRAM_STOP()"),
+        (OptionalStopBlock(), "OPTIONAL_PROGRAM_STOP()"),
         (ProgramStart(name="P"), "COMMENT(P)"),
     ],
 )

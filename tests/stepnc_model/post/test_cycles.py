@@ -8,8 +8,8 @@ from stepnc_model.post.blocks import (
     Rate,
     SpindleOff,
     SpindleOn,
+    expanded,
 )
-from stepnc_model.post.cycles import expanded
 from stepnc_model.toolpath.path import CycleKind
 
 RATE = Rate(value=1.0)

@@ -7,50 +7,54 @@ from stepnc_model.post.blocks import (
     Block,
     Comment,
     Cycles,
-    Machine,
+    MachineType,
     Pause,
     ProgramStart,
     Rapid,
     RigidTap,
-    Sense,
+    SpindleDirection,
     SpindleOn,
-    Threading,
+    ThreadingMove,
     ToolChange,
 )
 from stepnc_model.post.fanuc import Fanuc, FanucReader
 
 
-def lines(machine: Machine, *blocks: Block) -> list[str]:
+def lines(machine: MachineType, *blocks: Block) -> list[str]:
     program = [ProgramStart(name="Part", machine=machine), *blocks]
     return list(Fanuc().lines(program, Cycles.EXPANDED))
 
 
 def test_heads_of_mill_and_lathe() -> None:
-    assert lines(Machine.MILL) == ["%", "O0001 (PART)", "N10 G17 G21 G40 G49 G54 G80 G90 G94"]
-    assert lines(Machine.LATHE)[2] == "N10 G18 G21 G40 G54 G80 G97 G99"
+    assert lines(MachineType.MILL) == [
+        "%",
+        "O0001 (PART)",
+        "N10 G17 G21 G40 G49 G54 G80 G90 G94",
+    ]
+    assert lines(MachineType.LATHE)[2] == "N10 G18 G21 G40 G54 G80 G97 G99"
 
 
 def test_a_comment_has_capitals_and_nothing_that_ends_a_tape() -> None:
-    found = lines(Machine.MILL, Comment(text="Größe 50 %; (fine): x<y"))
+    found = lines(MachineType.MILL, Comment(text="Größe 50 %; (fine): x<y"))
     assert found[-1] == "(GROSSE 50    [FINE]  X Y)"
 
 
 def test_the_length_offset_goes_with_the_first_z() -> None:
     change, move = ToolChange(number=7), Rapid(end=(1.0, 2.0, 50.0))
-    assert lines(Machine.MILL, change, move)[3:] == [
+    assert lines(MachineType.MILL, change, move)[3:] == [
         "N20 T7 M6",
         "N30 G0 G43 H7 X1. Y2. Z50.",
     ]
 
 
 def test_a_turret_has_tool_and_offset_in_one_word() -> None:
-    assert lines(Machine.LATHE, ToolChange(number=3))[-1] == "N20 T0303"
+    assert lines(MachineType.LATHE, ToolChange(number=3))[-1] == "N20 T0303"
     with pytest.raises(PostError, match="tool 100"):
-        lines(Machine.LATHE, ToolChange(number=100))
+        lines(MachineType.LATHE, ToolChange(number=100))
 
 
 def test_a_dwell_is_in_milliseconds() -> None:
-    assert lines(Machine.MILL, Pause(seconds=0.25))[-1] == "N20 G4 P250"
+    assert lines(MachineType.MILL, Pause(seconds=0.25))[-1] == "N20 G4 P250"
 
 
 def test_surface_speed_has_its_limit_before_it(turned: list[Block]) -> None:
@@ -68,12 +72,12 @@ def test_a_thread_has_its_lead_in_f(turned: list[Block]) -> None:
 def test_a_rigid_tap_by_lead() -> None:
     """B-63833EN-1, 9.: M29 S, then G84 with the lead in F, feed per revolution."""
     tap = RigidTap(start=(0.0, 0.0, 5.0), bottom_z=-15.0, lead=1.25, speed=5.0)
-    assert lines(Machine.MILL, Rapid(end=tap.start), tap)[4:] == [
+    assert lines(MachineType.MILL, Rapid(end=tap.start), tap)[4:] == [
         "N30 M29 S300",
         "N40 G95 G99 G84 Z-15. R5. F1.25",
         "N50 G80",
     ]
-    turned = lines(Machine.LATHE, Rapid(end=tap.start), tap)
+    turned = lines(MachineType.LATHE, Rapid(end=tap.start), tap)
     assert turned[5] == "N40 G84 Z-15. F1.25"
 
 
@@ -83,23 +87,23 @@ def test_a_lathe_taps_right_hand_threads_only() -> None:
         bottom_z=-15.0,
         lead=1.25,
         speed=5.0,
-        sense=Sense.COUNTERCLOCKWISE,
+        sense=SpindleDirection.COUNTERCLOCKWISE,
     )
     with pytest.raises(PostError, match="left-hand rigid tap"):
-        lines(Machine.LATHE, tap)
+        lines(MachineType.LATHE, tap)
 
 
 def test_a_thread_from_nowhere_is_refused() -> None:
     with pytest.raises(PostError, match="unknown position"):
-        lines(Machine.MILL, Threading(end=(0.0, 0.0, -5.0), lead=1.0))
+        lines(MachineType.MILL, ThreadingMove(end=(0.0, 0.0, -5.0), lead=1.0))
 
 
 def test_a_tap_is_read_by_lead_only() -> None:
-    reader = FanucReader(Machine.MILL)
+    reader = FanucReader(MachineType.MILL)
     with pytest.raises(PostError, match="per revolution"):
         list(reader.blocks(["M29 S300", "G94 G84 Z-5. R2. F375."]))
 
 
 def test_a_turret_is_read() -> None:
-    found = list(FanucReader(Machine.LATHE).blocks(["T0303", "G97 S600 M3"]))
+    found = list(FanucReader(MachineType.LATHE).blocks(["T0303", "G97 S600 M3"]))
     assert found == [ToolChange(number=3), SpindleOn(speed=10.0)]

@@ -15,7 +15,7 @@ from stepnc_model.post.blocks import (
     Rate,
     Retract,
     RigidTap,
-    Threading,
+    ThreadingMove,
 )
 from stepnc_model.post.grid import (
     along,
@@ -30,7 +30,7 @@ from stepnc_model.post.grid import (
     sweep,
     turns,
 )
-from stepnc_model.toolpath.path import CycleKind, Plane, Point
+from stepnc_model.toolpath.path import ArcPlane, CycleKind, Point
 
 RATE = Rate(value=1.0)
 ORIGIN = (0.0, 0.0, 0.0)
@@ -149,14 +149,14 @@ def test_single_turns_know_where_they_start() -> None:
 @pytest.mark.parametrize(
     ("end", "plane", "sense", "angle"),
     [
-        ((0.0, 1.0, 0.0), Plane.XY, 1.0, 0.5 * pi),
-        ((0.0, 1.0, 0.0), Plane.XY, -1.0, 1.5 * pi),
-        ((1.0, 0.0, 0.0), Plane.XY, 1.0, 2.0 * pi),
-        ((0.0, 0.0, 1.0), Plane.ZX, -1.0, 0.5 * pi),
+        ((0.0, 1.0, 0.0), ArcPlane.XY, 1.0, 0.5 * pi),
+        ((0.0, 1.0, 0.0), ArcPlane.XY, -1.0, 1.5 * pi),
+        ((1.0, 0.0, 0.0), ArcPlane.XY, 1.0, 2.0 * pi),
+        ((0.0, 0.0, 1.0), ArcPlane.ZX, -1.0, 0.5 * pi),
     ],
 )
 def test_a_sweep_is_counted_from_the_first_axis_to_the_second(
-    end: Point, plane: Plane, sense: float, angle: float
+    end: Point, plane: ArcPlane, sense: float, angle: float
 ) -> None:
     found = sweep((1.0, 0.0, 0.0), end, ORIGIN, plane, sense=sense)
     assert found == pytest.approx(angle)
@@ -165,7 +165,7 @@ def test_a_sweep_is_counted_from_the_first_axis_to_the_second(
 def test_lines_that_round_to_nothing_vanish() -> None:
     blocks = [Linear(end=(1.0, 0.0, 0.0), rate=RATE), Linear(end=(1.0004, 0.0, 0.0), rate=RATE)]
     assert len(list(on_grid(blocks, PLACES))) == 1
-    assert not list(on_grid([Threading(end=(0.0004, 0.0, 0.0), lead=1.0)], PLACES))
+    assert not list(on_grid([ThreadingMove(end=(0.0004, 0.0, 0.0), lead=1.0)], PLACES))
 
 
 def test_no_zero_is_negative() -> None:

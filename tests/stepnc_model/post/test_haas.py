@@ -8,19 +8,18 @@ from stepnc_model.post.blocks import (
     Coolant,
     CoolantKind,
     Cycles,
-    Machine,
+    MachineType,
     Pause,
     ProgramStart,
     Rapid,
     RigidTap,
-    Sense,
-    Threading,
+    SpindleDirection,
+    ThreadingMove,
 )
-from stepnc_model.post.fanuc import Fanuc, FanucReader
-from stepnc_model.post.haas import HAAS
+from stepnc_model.post.fanuc import HAAS, Fanuc, FanucReader
 
 
-def lines(*blocks: Block, machine: Machine = Machine.MILL) -> list[str]:
+def lines(*blocks: Block, machine: MachineType = MachineType.MILL) -> list[str]:
     program = [ProgramStart(name="P", machine=machine), *blocks]
     return list(Fanuc(HAAS).lines(program, Cycles.EXPANDED))
 
@@ -35,7 +34,7 @@ def test_a_dwell_with_a_point_is_in_seconds() -> None:
 
 @pytest.mark.parametrize(("word", "seconds"), [("P2.", 2.0), ("P500", 0.5), ("P0.5", 0.5)])
 def test_a_dwell_without_a_point_is_read_in_milliseconds(word: str, seconds: float) -> None:
-    found = list(FanucReader(Machine.MILL, HAAS).blocks(["%", "O00001", f"G4 {word}"]))
+    found = list(FanucReader(MachineType.MILL, HAAS).blocks(["%", "O00001", f"G4 {word}"]))
     assert Pause(seconds=seconds) in found
 
 
@@ -48,13 +47,13 @@ def test_coolant_through_the_spindle_has_codes_of_its_own() -> None:
 @pytest.mark.parametrize(
     ("machine", "sense", "code"),
     [
-        (Machine.MILL, Sense.CLOCKWISE, "G84"),
-        (Machine.MILL, Sense.COUNTERCLOCKWISE, "G74"),
-        (Machine.LATHE, Sense.CLOCKWISE, "G84"),
-        (Machine.LATHE, Sense.COUNTERCLOCKWISE, "G184"),
+        (MachineType.MILL, SpindleDirection.CLOCKWISE, "G84"),
+        (MachineType.MILL, SpindleDirection.COUNTERCLOCKWISE, "G74"),
+        (MachineType.LATHE, SpindleDirection.CLOCKWISE, "G84"),
+        (MachineType.LATHE, SpindleDirection.COUNTERCLOCKWISE, "G184"),
     ],
 )
-def test_taps_need_no_m29(machine: Machine, sense: Sense, code: str) -> None:
+def test_taps_need_no_m29(machine: MachineType, sense: SpindleDirection, code: str) -> None:
     tap = RigidTap(start=(0.0, 0.0, 5.0), bottom_z=-9.0, lead=1.0, speed=5.0, sense=sense)
     found = lines(Rapid(end=tap.start), tap, machine=machine)
     assert found[4] == "N30 S300"
@@ -62,6 +61,6 @@ def test_taps_need_no_m29(machine: Machine, sense: Sense, code: str) -> None:
 
 
 def test_a_mill_cuts_no_threads() -> None:
-    thread = Threading(end=(0.0, 0.0, -5.0), lead=1.0)
+    thread = ThreadingMove(end=(0.0, 0.0, -5.0), lead=1.0)
     with pytest.raises(PostError, match="synchronised line"):
         lines(Rapid(end=(0.0, 0.0, 0.0)), thread)

@@ -14,7 +14,7 @@ from stepnc_model.post.blocks import (
     Cycles,
     DrillingCycle,
     Linear,
-    Machine,
+    MachineType,
     Pause,
     ProgramEnd,
     ProgramStart,
@@ -23,15 +23,15 @@ from stepnc_model.post.blocks import (
     RateMode,
     Retract,
     RigidTap,
-    Sense,
+    SpindleDirection,
     SpindleOn,
     SpindleOrient,
-    Threading,
+    ThreadingMove,
     ToolChange,
+    expanded,
 )
-from stepnc_model.post.cycles import expanded
 from stepnc_model.post.heidenhain import Heidenhain
-from stepnc_model.toolpath.path import CycleKind, Plane
+from stepnc_model.toolpath.path import ArcPlane, CycleKind
 
 RATE = Rate(value=5.0)
 
@@ -57,7 +57,7 @@ def test_the_speed_stands_in_the_call_of_the_tool() -> None:
         ToolChange(number=3),
         Comment(text="POCKET"),
         SpindleOn(speed=50.0),
-        SpindleOn(speed=20.0, sense=Sense.COUNTERCLOCKWISE),
+        SpindleOn(speed=20.0, sense=SpindleDirection.COUNTERCLOCKWISE),
     )
     assert found == [
         "; POCKET",
@@ -123,7 +123,7 @@ def test_an_arc_after_a_helix_starts_from_an_exact_point() -> None:
 
 def test_a_helix_in_another_plane_is_refused() -> None:
     helix = Circular(
-        end=(0.0, 5.0, 0.0), centre=(10.0, 0.0, 0.0), turn=2 * pi, rate=RATE, plane=Plane.ZX
+        end=(0.0, 5.0, 0.0), centre=(10.0, 0.0, 0.0), turn=2 * pi, rate=RATE, plane=ArcPlane.ZX
     )
     with pytest.raises(PostError, match="in XY only"):
         lines(Rapid(end=(0.0, 0.0, 0.0)), helix)
@@ -175,7 +175,7 @@ def test_a_left_hand_tap_has_a_negative_pitch() -> None:
         bottom_z=-9.0,
         lead=1.5,
         speed=5.0,
-        sense=Sense.COUNTERCLOCKWISE,
+        sense=SpindleDirection.COUNTERCLOCKWISE,
     )
     found = lines(tap)
     assert "CYCL DEF 207 RIGID TAPPING NEW ~" in found
@@ -184,8 +184,8 @@ def test_a_left_hand_tap_has_a_negative_pitch() -> None:
 
 def test_what_a_mill_with_klartext_lacks_is_refused() -> None:
     with pytest.raises(PostError, match="Threading"):
-        lines(Threading(end=(0.0, 0.0, -5.0), lead=1.0))
-    lathe = [ProgramStart(name="L", machine=Machine.LATHE)]
+        lines(ThreadingMove(end=(0.0, 0.0, -5.0), lead=1.0))
+    lathe = [ProgramStart(name="L", machine=MachineType.LATHE)]
     with pytest.raises(PostError, match="mills only"):
         list(Heidenhain().lines(lathe, Cycles.EXPANDED))
 

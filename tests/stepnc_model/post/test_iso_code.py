@@ -13,7 +13,7 @@ from stepnc_model.post.blocks import (
     Cycles,
     DrillingCycle,
     Linear,
-    Machine,
+    MachineType,
     ProgramStart,
     Rapid,
     Rate,
@@ -21,8 +21,8 @@ from stepnc_model.post.blocks import (
     Retract,
     SpindleOn,
     SurfaceSpeed,
+    expanded,
 )
-from stepnc_model.post.cycles import expanded
 from stepnc_model.post.fanuc import Fanuc
 from stepnc_model.toolpath.path import CycleKind
 
@@ -122,7 +122,7 @@ def test_a_dwell_that_a_cycle_cannot_wait_is_written_out() -> None:
 
 
 def test_cycles_of_a_lathe_are_written_out() -> None:
-    program: list[Block] = [ProgramStart(name="L", machine=Machine.LATHE), hole(0.0)]
+    program: list[Block] = [ProgramStart(name="L", machine=MachineType.LATHE), hole(0.0)]
     assert not any("G81" in line for line in Fanuc().lines(program, Cycles.OWN))
 
 

@@ -12,7 +12,7 @@ from stepnc_model.post.blocks import (
     CoolantKind,
     DrillingCycle,
     Linear,
-    Machine,
+    MachineType,
     Pause,
     ProgramEnd,
     Rapid,
@@ -25,11 +25,11 @@ from stepnc_model.post.blocks import (
 )
 from stepnc_model.post.fanuc import FanucReader
 from stepnc_model.post.linuxcnc import LinuxCncReader, along_path
-from stepnc_model.toolpath.path import CycleKind, Plane
+from stepnc_model.toolpath.path import ArcPlane, CycleKind
 
 
 def read(*lines: str) -> list[Block]:
-    return list(LinuxCncReader(Machine.MILL).blocks(lines))
+    return list(LinuxCncReader(MachineType.MILL).blocks(lines))
 
 
 @pytest.mark.parametrize(
@@ -95,7 +95,7 @@ def test_a_new_mode_needs_a_new_feed() -> None:
 def test_a_quarter_from_zero() -> None:
     (arc,) = read("G2 X10 Y10 I10 J0 F60")
     assert isinstance(arc, Circular)
-    assert (arc.centre, arc.plane) == ((10.0, 0.0, 0.0), Plane.XY)
+    assert (arc.centre, arc.plane) == ((10.0, 0.0, 0.0), ArcPlane.XY)
     assert arc.turn == pytest.approx(-0.5 * pi)
 
 
@@ -137,16 +137,16 @@ def test_a_repeated_cycle_keeps_its_pecks() -> None:
 
 def test_the_same_code_means_other_things_on_a_lathe() -> None:
     """G99 is the mode per revolution there, and X a diameter."""
-    found = list(FanucReader(Machine.LATHE).blocks(["G99", "G1 X20. Z-5. F0.2"]))
+    found = list(FanucReader(MachineType.LATHE).blocks(["G99", "G1 X20. Z-5. F0.2"]))
     rate = Rate(value=0.2, mode=RateMode.PER_REVOLUTION)
     assert found == [Linear(end=(10.0, 0.0, -5.0), rate=rate)]
     with pytest.raises(PostError, match="G95: not known on this lathe"):
-        list(FanucReader(Machine.LATHE).blocks(["G95"]))
+        list(FanucReader(MachineType.LATHE).blocks(["G95"]))
 
 
 def test_a_lathe_has_no_y() -> None:
     with pytest.raises(PostError, match="Y1: nothing"):
-        list(FanucReader(Machine.LATHE).blocks(["G0 X1. Y1."]))
+        list(FanucReader(MachineType.LATHE).blocks(["G0 X1. Y1."]))
 
 
 def test_a_lead_along_the_path_is_shorter_along_an_axis() -> None:

@@ -3,7 +3,7 @@
 import pytest
 
 from stepnc_model.errors import PostError
-from stepnc_model.post.iso_words import Words, pairs, whole
+from stepnc_model.post.words import LineWords, pairs, whole
 
 
 def test_words_need_no_spaces() -> None:
@@ -22,17 +22,17 @@ def test_what_is_no_word_is_refused(text: str) -> None:
 
 
 def test_codes_are_shortened() -> None:
-    words = Words(pairs("G01 G91.1 M03 X1"))
+    words = LineWords(pairs("G01 G91.1 M03 X1"))
     assert (words.codes, words.functions) == (["G1", "G91.1"], ["M3"])
 
 
 def test_a_letter_said_twice_is_refused() -> None:
     with pytest.raises(PostError, match="X2: a second X"):
-        Words(pairs("X1 X2"))
+        LineWords(pairs("X1 X2"))
 
 
 def test_a_word_is_taken_once() -> None:
-    words = Words(pairs("X1 Y2"))
+    words = LineWords(pairs("X1 Y2"))
     assert "X" in words
     assert (words.take("X"), words.take("X")) == (1.0, None)
     with pytest.raises(PostError, match="Y2: nothing in this block uses it"):
@@ -41,7 +41,7 @@ def test_a_word_is_taken_once() -> None:
 
 def test_a_missing_word_is_named_with_its_purpose() -> None:
     with pytest.raises(PostError, match="G4: the word P is missing"):
-        Words(pairs("G4")).need("P", "G4")
+        LineWords(pairs("G4")).need("P", "G4")
 
 
 @pytest.mark.parametrize("value", [0.0, 1.5, -1.0])

@@ -11,14 +11,15 @@ from stepnc_model.post.blocks import (
     Block,
     Comment,
     Cycles,
-    Machine,
+    MachineType,
     ProgramEnd,
     ProgramStart,
     Rapid,
 )
 from stepnc_model.post.canonical import Canonical, commands
-from stepnc_model.post.controls import Control, read, write
-from stepnc_model.post.trace import difference
+from stepnc_model.post.dialect import Dialect
+from stepnc_model.post.dialects import read, write
+from tests.stepnc_model.post.trace import difference
 
 Interpreter = Callable[[Iterable[str]], tuple[Canonical, ...]]
 PROGRAMS = ["milled", "drilled", "tapped", "turned"]
@@ -30,7 +31,7 @@ def test_linuxcnc_reads_what_we_mean(
     name: str, cycles: Cycles, interpreter: Interpreter, request: pytest.FixtureRequest
 ) -> None:
     blocks: list[Block] = request.getfixturevalue(name)
-    judged = interpreter(write(blocks, Control.LINUXCNC, cycles=cycles))
+    judged = interpreter(write(blocks, Dialect.LINUXCNC, cycles=cycles))
     assert difference(commands(blocks), judged) == ""
 
 
@@ -39,8 +40,8 @@ def test_linuxcnc_reads_what_we_mean(
 def test_our_reader_reads_what_linuxcnc_reads(
     name: str, cycles: Cycles, interpreter: Interpreter, request: pytest.FixtureRequest
 ) -> None:
-    lines = list(write(request.getfixturevalue(name), Control.LINUXCNC, cycles=cycles))
-    assert difference(read(lines, Control.LINUXCNC), interpreter(lines)) == ""
+    lines = list(write(request.getfixturevalue(name), Dialect.LINUXCNC, cycles=cycles))
+    assert difference(read(lines, Dialect.LINUXCNC), interpreter(lines)) == ""
 
 
 @settings(
@@ -54,22 +55,22 @@ def test_whatever_moves_linuxcnc_runs_it(
 ) -> None:
     """No arc is refused, and none becomes another one."""
     blocks = data.draw(moving)
-    lines = list(write(blocks, Control.LINUXCNC))
+    lines = list(write(blocks, Dialect.LINUXCNC))
     judged = interpreter(lines)
     assert difference(commands(blocks), judged) == ""
-    assert difference(read(lines, Control.LINUXCNC), judged) == ""
+    assert difference(read(lines, Dialect.LINUXCNC), judged) == ""
 
 
 @pytest.mark.parametrize("text", ["MSG, hello", "debug,x", "PROBEOPEN x", " print, #1", "(x)"])
 def test_a_comment_does_nothing(text: str, interpreter: Interpreter) -> None:
     blocks: list[Block] = [ProgramStart(name="C"), Comment(text=text), ProgramEnd()]
-    names = [command.name for command in interpreter(write(blocks, Control.LINUXCNC))]
+    names = [command.name for command in interpreter(write(blocks, Dialect.LINUXCNC))]
     assert "MESSAGE" not in names
     assert names.count("COMMENT") >= 2
 
 
 def test_a_lathe_writes_diameters(turned: list[Block]) -> None:
-    lines = list(write(turned, Control.LINUXCNC))
+    lines = list(write(turned, Dialect.LINUXCNC))
     assert lines[2].split()[1:] == [
         "G18",
         "G21",
@@ -89,14 +90,14 @@ def test_a_lathe_writes_diameters(turned: list[Block]) -> None:
 
 def test_the_lead_of_a_taper_is_measured_along_it(turned: list[Block]) -> None:
     """2 mm along z; 1 mm of radius on 22 mm: 2·√(1 + 1/22²) = 2.0021 mm."""
-    lines = list(write(turned, Control.LINUXCNC))
+    lines = list(write(turned, Dialect.LINUXCNC))
     assert any(line.endswith("G33 X32 Z-20 K2.0021") for line in lines)
 
 
 def test_a_lathe_has_no_y() -> None:
     blocks: list[Block] = [
-        ProgramStart(name="L", machine=Machine.LATHE),
+        ProgramStart(name="L", machine=MachineType.LATHE),
         Rapid(end=(1.0, 2.0, 3.0)),
     ]
     with pytest.raises(PostError, match="y = 2 mm: a lathe has no y"):
-        list(write(blocks, Control.LINUXCNC))
+        list(write(blocks, Dialect.LINUXCNC))

@@ -17,9 +17,9 @@ from stepnc_model.post.blocks import (
     CoolantKind,
     DrillingCycle,
     Linear,
-    Machine,
+    MachineType,
     Message,
-    OptionalStop,
+    OptionalStopBlock,
     Pause,
     ProgramEnd,
     ProgramStart,
@@ -27,32 +27,33 @@ from stepnc_model.post.blocks import (
     Rate,
     Retract,
     RigidTap,
-    Sense,
+    SpindleDirection,
     SpindleOff,
     SpindleOn,
     SpindleOrient,
     SurfaceSpeed,
-    Threading,
+    ThreadingMove,
     ToolChange,
 )
 from stepnc_model.post.canonical import commands
-from stepnc_model.post.controls import Control, read, write
+from stepnc_model.post.dialect import Dialect
+from stepnc_model.post.dialects import read, write
 from stepnc_model.post.neutral import blocks_of
-from stepnc_model.post.trace import difference
 from stepnc_model.program import Program
-from stepnc_model.toolpath.function import Function
 from stepnc_model.toolpath.path import (
     Arc,
-    Cycle,
+    CannedCycle,
     CycleKind,
     Dwell,
     Feed,
+    Function,
     Move,
     MoveType,
     SpindleCommand,
     Step,
     ToolPath,
 )
+from tests.stepnc_model.post.trace import difference
 
 PART = """ISO-10303-21;
 HEADER;
@@ -98,7 +99,7 @@ def line(x: float, y: float, z: float, feed: Feed | None = FEED) -> Move:
     return Move(end=(x, y, z), type=MoveType.CONTACT, feed=feed)
 
 
-def path(*steps: Step, cycles: tuple[Cycle, ...] = ()) -> ToolPath:
+def path(*steps: Step, cycles: tuple[CannedCycle, ...] = ()) -> ToolPath:
     """With the mill, from 30 mm above."""
     return ToolPath(
         workingstep=Ref(2),
@@ -200,7 +201,7 @@ def test_arcs_and_dwells(part: Program) -> None:
 
 
 def test_the_spindle_does_what_the_path_says(part: Program) -> None:
-    reverse = SpindleOn(speed=20.0, sense=Sense.COUNTERCLOCKWISE)
+    reverse = SpindleOn(speed=20.0, sense=SpindleDirection.COUNTERCLOCKWISE)
     found = blocks(
         part,
         path(
@@ -241,7 +242,7 @@ def test_a_rapid_needs_no_feed(part: Program) -> None:
 
 def drilled(kind: CycleKind, *, feed: Feed = FEED) -> ToolPath:
     steps = (line(5.0, 5.0, 2.0, None), line(5.0, 5.0, -9.0, feed), line(5.0, 5.0, 2.0, None))
-    cycle = Cycle(kind=kind, first=1, last=2, retract_z=2.0, bottom_z=-9.0, feed=feed)
+    cycle = CannedCycle(kind=kind, first=1, last=2, retract_z=2.0, bottom_z=-9.0, feed=feed)
     return path(*steps, line(7.0, 5.0, 2.0), cycles=(cycle,))
 
 
@@ -278,12 +279,12 @@ def test_functions_stand_between_workingsteps(part: Program) -> None:
         function("DISPLAY_MESSAGE", "turn it"),
         function("EXCHANGE_PALLET"),
     )
-    at = found.index(OptionalStop())
+    at = found.index(OptionalStopBlock())
     assert found[at - 3 : at + 4] == [
         Comment(text="F"),
         SpindleOff(),
         Coolant(),
-        OptionalStop(),
+        OptionalStopBlock(),
         Comment(text="WS", workingstep="WS"),
         SpindleOn(speed=20.0),
         FLOOD,
@@ -307,15 +308,15 @@ def test_threads_of_a_lathe_keep_their_speed(part: Program) -> None:
         start=(35.0, 0.0, 10.0),
     )
     found = blocks(part, turned)
-    assert found[0] == ProgramStart(name="PART", machine=Machine.LATHE)
+    assert found[0] == ProgramStart(name="PART", machine=MachineType.LATHE)
     assert SurfaceSpeed(speed=1500.0, limit=50.0) in found
     speeds = [block.speed for block in found if isinstance(block, SpindleOn)]
     assert speeds == [pytest.approx(1500.0 / (30.0 * pi))]
-    assert [b.lead for b in found if isinstance(b, Threading)] == [2.0, 2.0]
+    assert [b.lead for b in found if isinstance(b, ThreadingMove)] == [2.0, 2.0]
 
 
-@pytest.mark.parametrize("control", Control)
-def test_every_control_means_the_same(part: Program, control: Control) -> None:
+@pytest.mark.parametrize("control", Dialect)
+def test_every_control_means_the_same(part: Program, control: Dialect) -> None:
     tap = Feed(technology=TAPPING, is_synchronised=True)
     paths = [
         path(line(9.0, 5.0, 2.0)),

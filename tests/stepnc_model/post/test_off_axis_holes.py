@@ -9,11 +9,12 @@ import pytest
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.post.blocks import Block
 from stepnc_model.post.canonical import Canonical, commands
-from stepnc_model.post.controls import Control, read, write
+from stepnc_model.post.dialect import Dialect
+from stepnc_model.post.dialects import read, write
 from stepnc_model.post.neutral import blocks_of
-from stepnc_model.post.trace import difference
 from stepnc_model.program import Program
 from stepnc_model.toolpath.generate import generate
+from tests.stepnc_model.post.trace import difference
 
 BRACKET = Path(__file__).parents[3] / "examples" / "parts" / "bracket.stpnc"
 REAMING = "#214=REAMING($,$,'REAM HOLE 1',5.,$,#460,#312,#330,3.,$,9.8,$,1.,#360,.F.,$,$)"
@@ -75,12 +76,12 @@ def posted(name: str) -> tuple[Block, ...]:
 @pytest.mark.parametrize("name", PARTS)
 def test_linuxcnc_runs_it_as_meant(name: str, interpreter: Interpreter) -> None:
     blocks = posted(name)
-    assert difference(commands(blocks), interpreter(write(blocks, Control.LINUXCNC))) == ""
+    assert difference(commands(blocks), interpreter(write(blocks, Dialect.LINUXCNC))) == ""
 
 
-@pytest.mark.parametrize("control", Control)
+@pytest.mark.parametrize("control", Dialect)
 @pytest.mark.parametrize("name", PARTS)
-def test_every_control_is_told_the_same(name: str, control: Control) -> None:
+def test_every_control_is_told_the_same(name: str, control: Dialect) -> None:
     blocks = posted(name)
     lines = [line for text in write(blocks, control) for line in text.split("\n")]
     back = read(lines, control)

@@ -7,9 +7,8 @@ import pytest
 
 from stepnc_model.errors import PostError
 from stepnc_model.post.blocks import Block
-from stepnc_model.post.canonical import Canonical, commands, write
-from stepnc_model.post.read_canonical import read
-from stepnc_model.post.trace import difference, trace
+from stepnc_model.post.canonical import Canonical, commands, read, write
+from tests.stepnc_model.post.trace import difference, trace
 
 NIST = Path(__file__).parents[4] / "shared" / "corpus" / "iso14649" / "ex1.canonical.txt"
 

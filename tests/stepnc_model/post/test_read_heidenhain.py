@@ -11,7 +11,7 @@ from stepnc_model.post.blocks import (
     Comment,
     DrillingCycle,
     Linear,
-    Machine,
+    MachineType,
     Pause,
     ProgramEnd,
     Rapid,
@@ -19,17 +19,17 @@ from stepnc_model.post.blocks import (
     RateMode,
     Retract,
     RigidTap,
-    Sense,
+    SpindleDirection,
     SpindleOn,
     ToolChange,
 )
 from stepnc_model.post.read_heidenhain import HeidenhainReader
-from stepnc_model.toolpath.path import CycleKind, Plane
+from stepnc_model.toolpath.path import ArcPlane, CycleKind
 
 
 def read(*texts: str) -> list[Block]:
     numbered = [f"{number} {text}" for number, text in enumerate(texts)]
-    return list(HeidenhainReader(Machine.MILL).blocks(numbered))
+    return list(HeidenhainReader(MachineType.MILL).blocks(numbered))
 
 
 def test_a_small_program() -> None:
@@ -65,9 +65,9 @@ def test_arcs_in_two_planes() -> None:
     flat, steep = read("CC X+10 Y+0", "C X+20 Y+0 DR- F60", "CC X+20 Z-10", "C X+10 Z-10 DR-")
     assert isinstance(flat, Circular)
     assert isinstance(steep, Circular)
-    assert flat.plane is Plane.XY
+    assert flat.plane is ArcPlane.XY
     assert flat.turn == pytest.approx(-pi)
-    assert (steep.plane, steep.end) == (Plane.ZX, (10.0, 0.0, -10.0))
+    assert (steep.plane, steep.end) == (ArcPlane.ZX, (10.0, 0.0, -10.0))
     assert steep.turn == pytest.approx(-0.5 * pi)
 
 
@@ -98,13 +98,13 @@ def test_a_cycle_goes_on_over_lines() -> None:
         "1 TOOL CALL S300",
         "2 CYCL CALL",
     ]
-    assert list(HeidenhainReader(Machine.MILL).blocks(lines)) == [
+    assert list(HeidenhainReader(MachineType.MILL).blocks(lines)) == [
         RigidTap(
             start=(0.0, 0.0, 0.0),
             bottom_z=-10.0,
             lead=1.5,
             speed=5.0,
-            sense=Sense.COUNTERCLOCKWISE,
+            sense=SpindleDirection.COUNTERCLOCKWISE,
         )
     ]
 
@@ -155,9 +155,9 @@ def test_a_cycle_that_lacks_a_parameter_is_refused() -> None:
 
 def test_a_block_without_number_is_refused() -> None:
     with pytest.raises(PostError, match="begins with its number"):
-        list(HeidenhainReader(Machine.MILL).blocks(["L X+1 FMAX"]))
+        list(HeidenhainReader(MachineType.MILL).blocks(["L X+1 FMAX"]))
 
 
 def test_lathes_are_not_read() -> None:
     with pytest.raises(PostError, match="mills only"):
-        HeidenhainReader(Machine.LATHE)
+        HeidenhainReader(MachineType.LATHE)

@@ -12,7 +12,7 @@ from stepnc_model.post.blocks import (
     Cycles,
     DrillingCycle,
     Linear,
-    Machine,
+    MachineType,
     Message,
     Pause,
     ProgramStart,
@@ -21,14 +21,14 @@ from stepnc_model.post.blocks import (
     RateMode,
     Retract,
     RigidTap,
-    Sense,
+    SpindleDirection,
     SpindleOn,
     SpindleOrient,
     SurfaceSpeed,
-    Threading,
+    ThreadingMove,
     ToolChange,
+    expanded,
 )
-from stepnc_model.post.cycles import expanded
 from stepnc_model.post.sinumerik import Sinumerik, SinumerikReader
 from stepnc_model.toolpath.path import CycleKind
 
@@ -36,7 +36,7 @@ RATE = Rate(value=5.0)
 
 
 def lines(
-    *blocks: Block, machine: Machine = Machine.MILL, cycles: Cycles = Cycles.EXPANDED
+    *blocks: Block, machine: MachineType = MachineType.MILL, cycles: Cycles = Cycles.EXPANDED
 ) -> list[str]:
     """Lines after the name, without their numbers."""
     program = [ProgramStart(name="P", machine=machine), *blocks]
@@ -45,17 +45,17 @@ def lines(
 
 
 def read(*code: str) -> list[Block]:
-    return list(SinumerikReader(Machine.MILL).blocks(code))
+    return list(SinumerikReader(MachineType.MILL).blocks(code))
 
 
 def test_heads_are_metric_for_feeds_as_well() -> None:
     assert lines() == ["G17 G40 G54 G710 G90 G94"]
-    assert lines(machine=Machine.LATHE) == ["G18 G40 G54 G710 G90 G94", "DIAMON"]
+    assert lines(machine=MachineType.LATHE) == ["G18 G40 G54 G710 G90 G94", "DIAMON"]
 
 
 def test_tools_have_an_edge_and_turrets_no_m6() -> None:
     assert lines(ToolChange(number=2))[1:] == ["T2 M6", "D1"]
-    assert lines(ToolChange(number=2), machine=Machine.LATHE)[2:] == ["T2", "D1"]
+    assert lines(ToolChange(number=2), machine=MachineType.LATHE)[2:] == ["T2", "D1"]
 
 
 def test_additional_turns_are_counted() -> None:
@@ -79,7 +79,7 @@ def test_surface_speed_stays_when_the_feed_changes_its_mode() -> None:
         Linear(end=(2.0, 0.0, 0.0), rate=RATE),
         SpindleOn(speed=10.0),
         Linear(end=(3.0, 0.0, 0.0), rate=per_revolution),
-        machine=Machine.LATHE,
+        machine=MachineType.LATHE,
     )
     assert found[2:] == [
         "LIMS=3000",
@@ -104,8 +104,8 @@ def test_a_dwell_is_in_f_and_leaves_the_feed_alone() -> None:
 def test_the_lead_is_named_by_the_axis_that_moves_most(
     end: tuple[float, float, float], word: str
 ) -> None:
-    thread = Threading(end=end, lead=2.0)
-    found = lines(Rapid(end=(0.0, 0.0, 0.0)), thread, machine=Machine.LATHE)
+    thread = ThreadingMove(end=end, lead=2.0)
+    found = lines(Rapid(end=(0.0, 0.0, 0.0)), thread, machine=MachineType.LATHE)
     assert found[-1].split()[-1] == word
 
 
@@ -115,7 +115,7 @@ def test_a_left_hand_tap_has_a_negative_lead() -> None:
         bottom_z=-9.0,
         lead=1.5,
         speed=5.0,
-        sense=Sense.COUNTERCLOCKWISE,
+        sense=SpindleDirection.COUNTERCLOCKWISE,
     )
     assert lines(Rapid(end=tap.start), tap)[2:] == [
         "SPOS=0",

@@ -2,9 +2,8 @@
 
 import pytest
 
-from stepnc_model.post.canonical import Canonical
-from stepnc_model.post.read_canonical import read
-from stepnc_model.post.trace import difference, trace
+from stepnc_model.post.canonical import Canonical, read
+from tests.stepnc_model.post.trace import difference, trace
 
 
 def of(*lines: str) -> list[Canonical]:

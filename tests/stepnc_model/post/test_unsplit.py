@@ -4,7 +4,7 @@ from math import pi
 
 from stepnc_model.entities.entity import Entity
 from stepnc_model.part21.values import Ref
-from stepnc_model.post.unsplit import unsplit
+from stepnc_model.post.neutral import unsplit
 from stepnc_model.toolpath.path import Arc, Dwell, Feed, Move, MoveType, Point, Step
 
 FEED = Feed(technology=Ref[Entity](1))

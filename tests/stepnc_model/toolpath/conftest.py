@@ -7,19 +7,19 @@ import pytest
 
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
-from stepnc_model.toolpath.job import Job, job_of
 from stepnc_model.toolpath.path import ToolPath
+from stepnc_model.toolpath.task import ToolPathTask, job_of
 from stepnc_model.toolpath.turning.operation import turning_path
 
 SHAFT = Path(__file__).parents[3] / "examples" / "parts" / "shaft.stpnc"
 
 
 @pytest.fixture(scope="session")
-def job() -> Callable[..., Job]:
+def job() -> Callable[..., ToolPathTask]:
     """A workingstep of the shaft by its name, with edits of before and after."""
     written = SHAFT.read_text(encoding="utf-8")
 
-    def make(name: str, *edits: tuple[str, str]) -> Job:
+    def make(name: str, *edits: tuple[str, str]) -> ToolPathTask:
         text = written
         for before, after in edits:
             assert before in text, before
@@ -32,7 +32,7 @@ def job() -> Callable[..., Job]:
 
 
 @pytest.fixture(scope="session")
-def path_of(job: Callable[..., Job]) -> Callable[..., ToolPath]:
+def path_of(job: Callable[..., ToolPathTask]) -> Callable[..., ToolPath]:
     """The tool path of such a workingstep."""
 
     def make(name: str, *edits: tuple[str, str]) -> ToolPath:

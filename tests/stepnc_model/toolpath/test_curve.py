@@ -20,7 +20,7 @@ from stepnc_model.toolpath.curve import (
     segments_of,
 )
 from stepnc_model.toolpath.frame import Frame
-from stepnc_model.toolpath.path import MoveType, Plane, Point, length
+from stepnc_model.toolpath.path import ArcPlane, MoveType, Point, length
 
 HEADER = (
     "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('MACHINING_SCHEMA'));\nENDSEC;\nDATA;\n"
@@ -230,8 +230,8 @@ class TestMove:
         (move,) = move_of(segment, MoveType.RAPID, None)
         assert (move.end, move.arc, move.feed) == ((1.0, 2.0, 3.0), None, None)
 
-    @pytest.mark.parametrize(("plane", "sign"), [(p, s) for p in Plane for s in (1.0, -1.0)])
-    def test_an_arc_in_a_principal_plane_stays_one(self, plane: Plane, sign: float) -> None:
+    @pytest.mark.parametrize(("plane", "sign"), [(p, s) for p in ArcPlane for s in (1.0, -1.0)])
+    def test_an_arc_in_a_principal_plane_stays_one(self, plane: ArcPlane, sign: float) -> None:
         """Seen from the other tip of the normal the same arc turns the other way."""
         first, second, third = plane.axes
         normal, start, end = [0.0] * 3, [0.0] * 3, [0.0] * 3

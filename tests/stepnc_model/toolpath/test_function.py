@@ -1,7 +1,7 @@
 """NC functions between workingsteps."""
 
 from stepnc_model.part21.values import Ref
-from stepnc_model.toolpath.function import Function
+from stepnc_model.toolpath.path import Function
 
 
 def test_a_function_without_text_says_nothing() -> None:

@@ -7,9 +7,8 @@ import pytest
 from stepnc_model.errors import PathError, SchemaError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
-from stepnc_model.toolpath.function import Function
 from stepnc_model.toolpath.generate import generate, workingstep_path
-from stepnc_model.toolpath.path import ToolPath
+from stepnc_model.toolpath.path import Function, ToolPath
 
 PARTS = Path(__file__).parents[3] / "examples" / "parts"
 END = "ENDSEC;\nEND-ISO-10303-21;"

@@ -10,10 +10,10 @@ from hypothesis import strategies as st
 from stepnc_model.part21.values import Ref
 from stepnc_model.toolpath.path import (
     Arc,
+    ArcPlane,
     Dwell,
     Move,
     MoveType,
-    Plane,
     Point,
     SpindleCommand,
     Step,
@@ -31,7 +31,9 @@ def line(x: float, y: float, z: float) -> Move:
     return Move(end=(x, y, z), type=MoveType.CONTACT)
 
 
-def arc_about_origin(size: float, turn: float, rise: float, plane: Plane) -> tuple[Point, Move]:
+def arc_about_origin(
+    size: float, turn: float, rise: float, plane: ArcPlane
+) -> tuple[Point, Move]:
     """An arc that starts on the first axis of its plane."""
     first, second, normal = plane.axes
     start, end = [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]
@@ -56,27 +58,27 @@ def path(*steps: Step, start: Point = ORIGIN) -> ToolPath:
     )
 
 
-@pytest.mark.parametrize("plane", Plane)
-def test_axes_of_a_plane_are_right_handed(plane: Plane) -> None:
+@pytest.mark.parametrize("plane", ArcPlane)
+def test_axes_of_a_plane_are_right_handed(plane: ArcPlane) -> None:
     assert plane.axes in {(0, 1, 2), (1, 2, 0), (2, 0, 1)}
 
 
 def test_axes_of_each_plane_differ_in_their_normal() -> None:
-    assert [plane.axes[2] for plane in (Plane.XY, Plane.ZX, Plane.YZ)] == [2, 1, 0]
+    assert [plane.axes[2] for plane in (ArcPlane.XY, ArcPlane.ZX, ArcPlane.YZ)] == [2, 1, 0]
 
 
 def test_length_of_a_line_is_the_distance() -> None:
     assert length((1.0, 2.0, 3.0), line(3.0, 5.0, 9.0)) == 7.0
 
 
-@pytest.mark.parametrize("plane", Plane)
-def test_length_of_three_turns_is_three_circumferences(plane: Plane) -> None:
+@pytest.mark.parametrize("plane", ArcPlane)
+def test_length_of_three_turns_is_three_circumferences(plane: ArcPlane) -> None:
     start, move = arc_about_origin(5.0, 6.0 * pi, 0.0, plane)
     assert length(start, move) == pytest.approx(30.0 * pi)
 
 
 def test_length_of_a_helix_adds_its_rise_at_a_right_angle() -> None:
-    start, move = arc_about_origin(3.0, -2.0, -8.0, Plane.XY)
+    start, move = arc_about_origin(3.0, -2.0, -8.0, ArcPlane.XY)
     assert length(start, move) == pytest.approx(hypot(6.0, 8.0))
 
 
@@ -89,11 +91,11 @@ def test_radius_leaves_out_the_normal() -> None:
     size=st.floats(0.1, 100.0),
     turn=ANGLES,
     rise=st.floats(-50.0, 50.0),
-    plane=st.sampled_from(Plane),
+    plane=st.sampled_from(ArcPlane),
     step=st.floats(0.05, 2.0),
 )
 def test_points_of_an_arc_lie_on_it_and_end_at_its_end(
-    size: float, turn: float, rise: float, plane: Plane, step: float
+    size: float, turn: float, rise: float, plane: ArcPlane, step: float
 ) -> None:
     start, move = arc_about_origin(size, turn, rise, plane)
     points = list(points_along(start, move, step=step))
@@ -112,7 +114,7 @@ def test_points_of_a_line_are_its_end() -> None:
 
 
 def test_chords_of_a_fine_step_are_as_long_as_the_arc() -> None:
-    start, move = arc_about_origin(10.0, 1.5 * pi, 4.0, Plane.YZ)
+    start, move = arc_about_origin(10.0, 1.5 * pi, 4.0, ArcPlane.YZ)
     points = [start, *points_along(start, move, step=0.001)]
     chords = sum(dist(a, b) for a, b in pairwise(points))
     assert chords == pytest.approx(length(start, move), rel=1e-6)

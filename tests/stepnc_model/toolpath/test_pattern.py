@@ -6,8 +6,8 @@ from stepnc_model.errors import PathError, SchemaError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
+from stepnc_model.toolpath.frame import MAX_COPIES, PlacedFeature, placements
 from stepnc_model.toolpath.path import Point
-from stepnc_model.toolpath.pattern import MAX_COPIES, Placed, placements
 
 HEADER = (
     "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('MACHINING_SCHEMA'));\nENDSEC;\nDATA;\n"
@@ -33,7 +33,7 @@ COMMON = (
 )
 
 
-def copies(*instances: str, feature: int = 10) -> list[Placed]:
+def copies(*instances: str, feature: int = 10) -> list[PlacedFeature]:
     body = "\n".join((*COMMON, *instances))
     text = f"{HEADER}{body}\nENDSEC;\nEND-ISO-10303-21;\n"
     program = Program(Part21File.from_bytes(text.encode()))

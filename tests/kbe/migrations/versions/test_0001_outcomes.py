@@ -10,7 +10,7 @@ from sqlalchemy.exc import DBAPIError
 
 from kbe.schema import VERSION_TABLE, metadata
 from kbe.store import Store
-from stepnc_model.outcome import Correction, ProcessOutcome
+from stepnc_model.outcome import LearnedCorrection, ProcessOutcome
 
 OutcomeMaker = Callable[..., list[ProcessOutcome]]
 
@@ -23,7 +23,7 @@ def test_migrations_make_what_the_nouns_declare(store: Store) -> None:
 
 
 @pytest.fixture
-def full(store: Store, outcomes: OutcomeMaker, proposal: Correction) -> Store:
+def full(store: Store, outcomes: OutcomeMaker, proposal: LearnedCorrection) -> Store:
     store.add(outcomes(2))
     correction = store.propose(proposal)
     store.accept(correction, by="Ann", at=proposal.proposed_at)

@@ -11,7 +11,7 @@ from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
 from stepnc_model.toolpath.curve import Bend, Segment
-from stepnc_model.toolpath.explicit.connect import (
+from stepnc_model.toolpath.explicit.path_builder import (
     approach_segments,
     lift_segments,
     point_on_plane,

@@ -6,8 +6,8 @@ from stepnc_model.errors import PathError, SchemaError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
 from stepnc_model.toolpath.explicit.operation import explicit_path, rapid_movement_path
-from stepnc_model.toolpath.job import job_of
 from stepnc_model.toolpath.path import MoveType, ToolPath
+from stepnc_model.toolpath.task import job_of
 
 FILE = """ISO-10303-21;
 HEADER;

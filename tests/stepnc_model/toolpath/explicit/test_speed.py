@@ -10,9 +10,9 @@ from stepnc_model.errors import PathError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
-from stepnc_model.toolpath.explicit.speed import PIECES, Pace, pace_of, paced
+from stepnc_model.toolpath.curve import Spline
+from stepnc_model.toolpath.explicit.trajectory import PIECES, MoveSpeeds, pace_of, paced
 from stepnc_model.toolpath.path import Arc, Feed, Move, MoveType, length
-from stepnc_model.toolpath.spline import Spline
 
 HEADER = (
     "ISO-10303-21;\nHEADER;\nFILE_SCHEMA(('MACHINING_SCHEMA'));\nENDSEC;\nDATA;\n"
@@ -36,7 +36,7 @@ HALVING = Spline(degree=1, knots=(0.0, 0.0, 1.0, 1.0), poles=((1.0, 0.0, 0.0), (
 
 def pace(
     type: str = "CONTACT", speed: str = "$", technology: str = "$", own: int | None = 9
-) -> Pace:
+) -> MoveSpeeds:
     text = (
         f"{HEADER}{COMMON}"
         f"#10=CUTTER_LOCATION_TRAJECTORY(.T.,.{type}.,{speed},{technology},$,$,#20,$,$);\n"
@@ -63,7 +63,7 @@ class TestPace:
         ],
     )
     def test_the_type_says_what_moves_are_for(self, type: str, expected: MoveType) -> None:
-        assert pace(type) == Pace(type=expected, feed=Feed(technology=Ref(9)))
+        assert pace(type) == MoveSpeeds(type=expected, feed=Feed(technology=Ref(9)))
 
     def test_what_is_left_out_is_the_operations(self) -> None:
         assert pace().feed == Feed(technology=Ref(9))

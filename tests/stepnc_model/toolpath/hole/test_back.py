@@ -15,8 +15,8 @@ from stepnc_model.errors import PathError, Severity
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
 from stepnc_model.toolpath.hole.operation import hole_path
-from stepnc_model.toolpath.job import job_of
 from stepnc_model.toolpath.path import Dwell, Move, MoveType, SpindleCommand, ToolPath
+from stepnc_model.toolpath.task import job_of
 
 BRACKET = Path(__file__).parents[4] / "examples" / "parts" / "bracket.stpnc"
 EXAMPLE3 = Path(__file__).parents[5] / "shared" / "corpus" / "iso14649" / "EXAMPLE3.stp"

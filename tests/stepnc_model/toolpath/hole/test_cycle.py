@@ -16,9 +16,8 @@ from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
 from stepnc_model.toolpath.hole.cycle import PECK_CLEARANCE
 from stepnc_model.toolpath.hole.operation import hole_path
-from stepnc_model.toolpath.job import job_of
 from stepnc_model.toolpath.path import (
-    Cycle,
+    CannedCycle,
     CycleKind,
     Dwell,
     Move,
@@ -26,6 +25,7 @@ from stepnc_model.toolpath.path import (
     SpindleCommand,
     ToolPath,
 )
+from stepnc_model.toolpath.task import job_of
 
 TEXT = (
     (Path(__file__).parents[4] / "examples" / "parts" / "bracket.stpnc")
@@ -75,7 +75,7 @@ def shown(found: ToolPath) -> list[str]:
     return lines
 
 
-def cycle(found: ToolPath) -> Cycle:
+def cycle(found: ToolPath) -> CannedCycle:
     (only,) = found.cycles
     return only
 

@@ -10,18 +10,18 @@ from pathlib import Path
 
 import pytest
 
-from stepnc_model.entities.drilling import DrillingTypeOperation
+from stepnc_model.entities.milling import DrillingTypeOperation
 from stepnc_model.errors import Finding, PathError, Severity
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
-from stepnc_model.toolpath.hole.depth import (
+from stepnc_model.toolpath.hole.feature import (
     Depth,
     depth_findings,
     depth_of,
+    holes_of,
     tip_length,
 )
-from stepnc_model.toolpath.hole.feature import holes_of
-from stepnc_model.toolpath.job import Job, job_of
+from stepnc_model.toolpath.task import ToolPathTask, job_of
 
 BRACKET = Path(__file__).parents[4] / "examples" / "parts" / "bracket.stpnc"
 POINT = 4.9 * tan(radians(20.0))
@@ -32,7 +32,7 @@ DRILL = "#452=MILLING_TOOL_DIMENSION(9.8,20.,$,60.,$,$,$);"
 OPERATION = "'DRILL HOLE 1',5.,$,#450,#311,#330,3.,$,"
 
 
-def job_for(name: str, *changes: tuple[str, str]) -> Job:
+def job_for(name: str, *changes: tuple[str, str]) -> ToolPathTask:
     text = BRACKET.read_text(encoding="utf-8")
     for before, after in changes:
         assert before in text, before

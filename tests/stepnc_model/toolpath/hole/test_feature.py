@@ -7,13 +7,13 @@ from pathlib import Path
 
 import pytest
 
-from stepnc_model.entities.drilling import DrillingTypeOperation
+from stepnc_model.entities.milling import DrillingTypeOperation
 from stepnc_model.errors import PathError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
 from stepnc_model.toolpath.hole.feature import DEFAULT_TOLERANCE, Hole, holes_of
 from stepnc_model.toolpath.hole.operation import hole_path
-from stepnc_model.toolpath.job import Job, job_of
+from stepnc_model.toolpath.task import ToolPathTask, job_of
 
 BRACKET = Path(__file__).parents[4] / "examples" / "parts" / "bracket.stpnc"
 COUNTERBORE = (
@@ -35,7 +35,7 @@ TAPER = ("#609,$,#608", "#609,#630,#608")
 
 def job_for(
     feature: int, *changes: tuple[str, str], diameter: str = "8.5", operation: str = "DRILLING"
-) -> Job:
+) -> ToolPathTask:
     text = BRACKET.read_text(encoding="utf-8")
     for before, after in (
         ("#160=ROUND_HOLE('HOLE 1',", COUNTERBORE),
@@ -51,7 +51,7 @@ def job_for(
     return job_of(program, step)
 
 
-def hole(job: Job) -> Hole:
+def hole(job: ToolPathTask) -> Hole:
     operation = job.step.operation
     assert isinstance(operation, DrillingTypeOperation)
     (found,) = holes_of(job, operation)

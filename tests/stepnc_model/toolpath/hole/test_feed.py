@@ -8,16 +8,15 @@ from pathlib import Path
 
 import pytest
 
-from stepnc_model.entities.drilling import DrillingTypeOperation
+from stepnc_model.entities.milling import DrillingTypeOperation
 from stepnc_model.errors import PathError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
-from stepnc_model.toolpath.hole.depth import depth_of
-from stepnc_model.toolpath.hole.feature import holes_of
-from stepnc_model.toolpath.hole.feed import Stage, retract_feed, stages_of
-from stepnc_model.toolpath.job import Job, job_of
+from stepnc_model.toolpath.hole.cycle import FeedStage, retract_feed, stages_of
+from stepnc_model.toolpath.hole.feature import depth_of, holes_of
 from stepnc_model.toolpath.path import Feed
+from stepnc_model.toolpath.task import ToolPathTask, job_of
 
 BRACKET = Path(__file__).parents[4] / "examples" / "parts" / "bracket.stpnc"
 POINT = 4.9 * tan(radians(20.0))
@@ -25,7 +24,7 @@ STRATEGY = "#361=DRILLING_TYPE_STRATEGY($,0.5,2.,$,0.6,36.);"
 OPERATION = "#212=DRILLING($,$,'DRILL HOLE 1',5.,$,#450,#311,#330,3.,$,$,$,$,#361);"
 
 
-def read(*changes: tuple[str, str]) -> tuple[Job, DrillingTypeOperation]:
+def read(*changes: tuple[str, str]) -> tuple[ToolPathTask, DrillingTypeOperation]:
     text = BRACKET.read_text(encoding="utf-8")
     for before, after in changes:
         assert before in text, before
@@ -36,7 +35,7 @@ def read(*changes: tuple[str, str]) -> tuple[Job, DrillingTypeOperation]:
     return job_of(program, step), step.operation
 
 
-def stages(*changes: tuple[str, str]) -> tuple[Stage, ...]:
+def stages(*changes: tuple[str, str]) -> tuple[FeedStage, ...]:
     job, operation = read(*changes)
     (hole,) = holes_of(job, operation)
     return stages_of(job, operation, hole, depth_of(job, operation, hole))
@@ -46,7 +45,7 @@ def strategy(numbers: str) -> tuple[str, str]:
     return STRATEGY, f"#361=DRILLING_TYPE_STRATEGY({numbers});"
 
 
-def table(found: tuple[Stage, ...]) -> list[tuple[object, float, float]]:
+def table(found: tuple[FeedStage, ...]) -> list[tuple[object, float, float]]:
     """Depth of the full diameter, ratio of the feed, ratio of the speed."""
     return [(-stage.end_z - POINT, stage.feed.ratio, stage.feed.speed_ratio) for stage in found]
 

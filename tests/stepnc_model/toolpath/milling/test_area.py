@@ -19,10 +19,10 @@ from stepnc_model.toolpath.milling.area import (
     upright,
 )
 from stepnc_model.toolpath.milling.contour import area, circle, clockwise, polygon
-from stepnc_model.toolpath.milling.cutter import Cutter
+from stepnc_model.toolpath.milling.strategy import EndMillShape
 
-FLAT = Cutter(radius=5.0)
-BALL = Cutter(radius=5.0, corner=5.0)
+FLAT = EndMillShape(radius=5.0)
+BALL = EndMillShape(radius=5.0, corner=5.0)
 SQUARE = polygon([0j, 40 + 0j, 40 + 40j, 40j])
 REF = Ref[Entity](1)
 
@@ -68,12 +68,12 @@ def test_flat_cutter_on_the_floor_keeps_clear_of_the_radius() -> None:
 
 
 def test_tapered_cutter_in_an_upright_hole_touches_at_the_top() -> None:
-    cutter = Cutter(radius=5.0, taper=0.1)
+    cutter = EndMillShape(radius=5.0, taper=0.1)
     assert extra(upright, cutter, bottom=2.0, top=12.0) == pytest.approx(1.0)
 
 
 def test_tapered_cutter_fits_a_wall_of_its_own_angle() -> None:
-    cutter = Cutter(radius=5.0, taper=tan(radians(5.0)))
+    cutter = EndMillShape(radius=5.0, taper=tan(radians(5.0)))
     wall = leaning(depth=10.0, slope_deg=5.0)
     assert extra(wall, cutter, bottom=0.0, top=10.0) == pytest.approx(10.0 * tan(radians(5.0)))
 
@@ -90,7 +90,7 @@ def test_no_height_of_the_cutter_is_in_the_wall(
 ) -> None:
     """And at one height at least it touches, unless an upright wall alone keeps it away."""
     wall = leaning(depth=16.0, slope_deg=slope, fillet=fillet)
-    cutter = Cutter(radius=5.0, corner=corner, taper=taper)
+    cutter = EndMillShape(radius=5.0, corner=corner, taper=taper)
     away = extra(wall, cutter, bottom=bottom, top=16.0)
     # Fillets and corners are steep at the tip: look closer there.
     heights = [(16.0 - bottom) * (i / 997) ** 2 for i in range(998)]

@@ -4,16 +4,16 @@ from math import pi
 
 import pytest
 
-from stepnc_model.toolpath.milling.clip import inside, pieces
 from stepnc_model.toolpath.milling.contour import (
-    Edge,
+    ContourEdge,
     chain_length,
     circle,
     clockwise,
     line,
     polygon,
 )
-from stepnc_model.toolpath.milling.cover import Pass
+from stepnc_model.toolpath.milling.cover import MillingPass
+from stepnc_model.toolpath.milling.strokes import inside, pieces
 
 FIELD = polygon([0j, 40 + 0j, 40 + 20j, 20j])
 
@@ -26,7 +26,7 @@ def test_line_across_an_area_is_air_material_air() -> None:
 
 def test_arc_stays_an_arc_when_it_is_cut() -> None:
     """A half circle of 10 mm about a point on the edge: a quarter is inside."""
-    arc = Edge(10 + 0j, -10 + 0j, 0j, pi)
+    arc = ContourEdge(10 + 0j, -10 + 0j, 0j, pi)
     found = pieces((arc,), [FIELD])
     assert [piece.is_inside for piece in found] == [True, False]
     assert found[0].chain[0].turn == pytest.approx(0.5 * pi)
@@ -38,14 +38,14 @@ def test_island_is_outside() -> None:
 
 
 def test_pass_that_stays_inside_stays_itself() -> None:
-    cut = Pass(circle(20 + 10j, 5.0), is_closed=True)
+    cut = MillingPass(circle(20 + 10j, 5.0), is_closed=True)
     assert inside(cut, [FIELD]) == [cut]
-    assert inside(Pass(circle(90 + 10j, 5.0), is_closed=True), [FIELD]) == []
+    assert inside(MillingPass(circle(90 + 10j, 5.0), is_closed=True), [FIELD]) == []
 
 
 def test_loop_whose_start_is_inside_is_not_cut_there() -> None:
     """It starts at (3, 10), leaves over the left edge and comes back: one piece."""
-    cut = Pass(circle(-2 + 10j, 5.0), is_closed=True)
+    cut = MillingPass(circle(-2 + 10j, 5.0), is_closed=True)
     (found,) = inside(cut, [FIELD])
     assert not found.is_closed
     assert found.start.real == pytest.approx(0.0)
@@ -53,4 +53,4 @@ def test_loop_whose_start_is_inside_is_not_cut_there() -> None:
 
 
 def test_piece_shorter_than_any_cut_is_left_out() -> None:
-    assert inside(Pass((line(-1 + 1j, 0.05 + 1j),), is_closed=False), [FIELD]) == []
+    assert inside(MillingPass((line(-1 + 1j, 0.05 + 1j),), is_closed=False), [FIELD]) == []

@@ -6,7 +6,7 @@ from math import pi, sqrt
 import pytest
 
 from stepnc_model.toolpath.milling.contour import (
-    Edge,
+    ContourEdge,
     area,
     chain_length,
     circle,
@@ -26,7 +26,7 @@ from stepnc_model.toolpath.milling.contour import (
 )
 
 SQUARE = polygon([0j, 10 + 0j, 10 + 10j, 10j])
-QUARTER = Edge(5 + 0j, 5j, 0j, 0.5 * pi)
+QUARTER = ContourEdge(5 + 0j, 5j, 0j, 0.5 * pi)
 CORNER = (line(0j, 10 + 0j), line(10 + 0j, 10 + 5j))
 
 
@@ -50,7 +50,7 @@ def test_piece_of_an_arc_keeps_centre_and_takes_its_part_of_the_turn() -> None:
 def test_area_by_green_holds_arcs_exactly() -> None:
     assert area(SQUARE) == pytest.approx(100.0)
     assert area(circle(3 + 4j, 2.0)) == pytest.approx(4.0 * pi)
-    half = (Edge(2 + 0j, -2 + 0j, 0j, pi), line(-2 + 0j, 2 + 0j))
+    half = (ContourEdge(2 + 0j, -2 + 0j, 0j, pi), line(-2 + 0j, 2 + 0j))
     assert area(half) == pytest.approx(2.0 * pi)
 
 
@@ -60,9 +60,9 @@ def test_sense_of_a_loop_is_the_sign_of_its_area() -> None:
 
 
 def test_whole_circle_is_halved_and_a_half_stays_whole() -> None:
-    whole = halved([Edge(1 + 0j, 1 + 0j, 0j, 2.0 * pi)])
+    whole = halved([ContourEdge(1 + 0j, 1 + 0j, 0j, 2.0 * pi)])
     assert [edge.turn for edge in whole] == pytest.approx([pi, pi])
-    assert len(halved([Edge(1 + 0j, -1 + 0j, 0j, pi)])) == 1
+    assert len(halved([ContourEdge(1 + 0j, -1 + 0j, 0j, pi)])) == 1
 
 
 def test_polygon_leaves_out_points_that_repeat() -> None:

@@ -5,7 +5,7 @@ from math import ceil, pi
 import pytest
 
 from stepnc_model.toolpath.milling.contour import area, circle, clockwise, line, polygon
-from stepnc_model.toolpath.milling.cover import Pass, area_of, rings, swept
+from stepnc_model.toolpath.milling.cover import MillingPass, area_of, rings, swept
 
 SQUARE = polygon([0j, 40 + 0j, 40 + 40j, 40j])
 
@@ -51,7 +51,7 @@ def test_number_of_rings_follows_from_the_step() -> None:
 
 
 def test_swept_area_of_a_stroke_is_a_stadium() -> None:
-    stroke = Pass((line(0j, 10 + 0j),), is_closed=False)
+    stroke = MillingPass((line(0j, 10 + 0j),), is_closed=False)
     assert swept([stroke], 2.0).area == pytest.approx(40.0 + 4.0 * pi, rel=1e-3)
 
 
@@ -61,8 +61,8 @@ def test_area_of_loops_is_less_their_islands() -> None:
 
 
 def test_pass_starts_where_it_is_nearest_to_the_tool() -> None:
-    loop = Pass(SQUARE, is_closed=True)
+    loop = MillingPass(SQUARE, is_closed=True)
     assert loop.from_near(20 - 9j).start == pytest.approx(20 + 0j)
     assert loop.from_near(None) is loop
-    stroke = Pass((line(0j, 1 + 0j),), is_closed=False)
+    stroke = MillingPass((line(0j, 1 + 0j),), is_closed=False)
     assert stroke.from_near(9 + 0j) is stroke

@@ -8,8 +8,8 @@ import pytest
 from stepnc_model.errors import PathError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
-from stepnc_model.toolpath.job import Job, job_of
-from stepnc_model.toolpath.milling.cutter import Cutter, cutter_of, run_out
+from stepnc_model.toolpath.milling.strategy import EndMillShape, cutter_of, run_out
+from stepnc_model.toolpath.task import ToolPathTask, job_of
 
 PARTS = Path(__file__).parents[4] / "examples" / "parts"
 END = "ENDSEC;\nEND-ISO-10303-21;"
@@ -24,7 +24,7 @@ def edited(*changes: tuple[str, str], more: str = "") -> Program:
     return Program(Part21File.from_bytes(text.encode(), name="bracket"))
 
 
-def job_at(id: str, *changes: tuple[str, str], more: str = "") -> Job:
+def job_at(id: str, *changes: tuple[str, str], more: str = "") -> ToolPathTask:
     """Job of the workingstep with a name."""
     program = edited(*changes, more=more)
     step = next(step for step in program.workingsteps if step.id == id)
@@ -32,31 +32,31 @@ def job_at(id: str, *changes: tuple[str, str], more: str = "") -> Job:
 
 
 def test_flat_cutter_is_as_wide_at_the_tip_as_above() -> None:
-    assert [Cutter(radius=5.0).reach(h) for h in (0.0, 1.0, 9.0)] == [5.0, 5.0, 5.0]
+    assert [EndMillShape(radius=5.0).reach(h) for h in (0.0, 1.0, 9.0)] == [5.0, 5.0, 5.0]
 
 
 def test_ball_is_a_circle_up_to_its_middle() -> None:
     """3 mm from its middle a ball of 5 mm is 4 mm wide."""
-    ball = Cutter(radius=5.0, corner=5.0)
+    ball = EndMillShape(radius=5.0, corner=5.0)
     assert ball.reach(0.0) == 0.0
     assert ball.reach(2.0) == pytest.approx(4.0)
     assert ball.reach(7.0) == 5.0
 
 
 def test_bull_nose_begins_with_its_flat_end() -> None:
-    nose = Cutter(radius=5.0, corner=2.0)
+    nose = EndMillShape(radius=5.0, corner=2.0)
     assert nose.reach(0.0) == pytest.approx(3.0)
     assert nose.reach(1.0) == pytest.approx(3.0 + sqrt(3.0))
     assert nose.reach(2.0) == 5.0
 
 
 def test_tapered_cutter_widens_by_the_tangent() -> None:
-    cutter = Cutter(radius=5.0, taper=tan(radians(10.0)))
+    cutter = EndMillShape(radius=5.0, taper=tan(radians(10.0)))
     assert cutter.reach(20.0) == pytest.approx(5.0 + 20.0 * 0.17632698)
 
 
 def test_cutter_of_the_sample_has_the_diameter_and_the_corner_of_its_dimension() -> None:
-    assert cutter_of(job_at("ROUGH POCKET")) == Cutter(radius=6.0, corner=0.2)
+    assert cutter_of(job_at("ROUGH POCKET")) == EndMillShape(radius=6.0, corner=0.2)
 
 
 def test_ball_end_mill_has_half_its_diameter_as_its_corner() -> None:
@@ -64,7 +64,7 @@ def test_ball_end_mill_has_half_its_diameter_as_its_corner() -> None:
         "#421=TAPERED_ENDMILL(#422,4,.RIGHT.,.F.,$,$)",
         "#421=BALL_ENDMILL(#422,4,.RIGHT.,.F.,$)",
     )
-    assert cutter_of(job_at("ROUGH POCKET", change)) == Cutter(radius=6.0, corner=6.0)
+    assert cutter_of(job_at("ROUGH POCKET", change)) == EndMillShape(radius=6.0, corner=6.0)
 
 
 def test_taper_angle_is_read_in_degrees() -> None:

@@ -8,13 +8,12 @@ import pytest
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
-from stepnc_model.toolpath.course import Course
-from stepnc_model.toolpath.job import Job, job_of
 from stepnc_model.toolpath.milling.contour import Chain, circle, line, polygon
-from stepnc_model.toolpath.milling.cover import Pass
+from stepnc_model.toolpath.milling.cover import MillingPass
 from stepnc_model.toolpath.milling.enter import Heights, enter, leave, trace
-from stepnc_model.toolpath.milling.room import Clearance, Room, nowhere, within
+from stepnc_model.toolpath.milling.layer import CentreArea, Clearance, nowhere, within
 from stepnc_model.toolpath.path import MoveType, ToolPath, length, points_along
+from stepnc_model.toolpath.task import PathBuilder, ToolPathTask, job_of
 
 PARTS = Path(__file__).parents[4] / "examples" / "parts"
 END = "ENDSEC;\nEND-ISO-10303-21;"
@@ -29,27 +28,27 @@ def edited(*changes: tuple[str, str], more: str = "") -> Program:
     return Program(Part21File.from_bytes(text.encode(), name="bracket"))
 
 
-def job_at(id: str, *changes: tuple[str, str], more: str = "") -> Job:
+def job_at(id: str, *changes: tuple[str, str], more: str = "") -> ToolPathTask:
     """Job of the workingstep with a name."""
     program = edited(*changes, more=more)
     step = next(step for step in program.workingsteps if step.id == id)
     return job_of(program, step)
 
 
-RING = Pass(circle(0j, 20.0), is_closed=True)
-STROKE = Pass((line(0j, 8 + 0j), line(8 + 0j, 8 + 30j)), is_closed=False)
+RING = MillingPass(circle(0j, 20.0), is_closed=True)
+STROKE = MillingPass((line(0j, 8 + 0j), line(8 + 0j, 8 + 30j)), is_closed=False)
 ROOM = within([RING.chain])
 HEIGHTS = Heights(travel=20.0, retract=10.0, above=0.5, level=-4.0)
 DROP = 4.5
 
 
 def entered(
-    strategy: str, cut: Pass = RING, clearance: Clearance = ROOM, side: complex = 1j
-) -> tuple[ToolPath, Pass]:
+    strategy: str, cut: MillingPass = RING, clearance: Clearance = ROOM, side: complex = 1j
+) -> tuple[ToolPath, MillingPass]:
     """From the start over the pass down to it."""
     job = job_at("ROUGH POCKET", ("#342=PLUNGE_RAMP($,3.)", f"#342={strategy}"))
-    course = Course(job, (0.0, 0.0, 50.0))
-    room = Room(clearance=clearance, side=side)
+    course = PathBuilder(job, (0.0, 0.0, 50.0))
+    room = CentreArea(clearance=clearance, side=side)
     rest = enter(course, job, cut, heights=HEIGHTS, room=room, approach=Ref(342))
     return course.finished(), rest
 
@@ -64,7 +63,7 @@ def slopes(path: ToolPath) -> list[float]:
     return found
 
 
-def at_start(path: ToolPath, cut: Pass) -> bool:
+def at_start(path: ToolPath, cut: MillingPass) -> bool:
     return dist(path.end, (cut.start.real, cut.start.imag, -4.0)) < 1e-9
 
 
@@ -135,7 +134,7 @@ def test_air_strategies_come_from_the_free_side_and_stay_in_the_room(
     cut = (
         RING
         if side == 1j
-        else Pass(tuple(e.reversed() for e in RING.chain[::-1]), is_closed=True)
+        else MillingPass(tuple(e.reversed() for e in RING.chain[::-1]), is_closed=True)
     )
     path, _ = entered(strategy, cut, side=side)
     assert path.findings == ()
@@ -175,15 +174,22 @@ def test_angle_that_is_no_ramp_is_said(angle: str) -> None:
 
 
 def test_ramp_on_a_speck_is_a_plunge_and_said() -> None:
-    path, _ = entered("PLUNGE_RAMP($,1.)", Pass(circle(0j, 0.01), is_closed=True))
+    path, _ = entered("PLUNGE_RAMP($,1.)", MillingPass(circle(0j, 0.01), is_closed=True))
     assert "straight down" in path.findings[0].message
     assert len(path.moves) == 5
 
 
 def left(strategy: str, clearance: Clearance = ROOM) -> ToolPath:
     job = job_at("ROUGH POCKET", ("#341=AP_RETRACT_TANGENT($,5.)", f"#341={strategy}"))
-    course = Course(job, (20.0, 0.0, -4.0))
-    leave(course, job, RING, heights=HEIGHTS, room=Room(clearance=clearance), retract=Ref(341))
+    course = PathBuilder(job, (20.0, 0.0, -4.0))
+    leave(
+        course,
+        job,
+        RING,
+        heights=HEIGHTS,
+        room=CentreArea(clearance=clearance),
+        retract=Ref(341),
+    )
     return course.finished()
 
 
@@ -202,7 +208,7 @@ def test_retract_without_room_goes_straight_up_and_is_said() -> None:
 
 def test_trace_sinks_evenly_along_lines_and_arcs() -> None:
     job = job_at("ROUGH POCKET")
-    course = Course(job, (0.0, 0.0, 0.0))
+    course = PathBuilder(job, (0.0, 0.0, 0.0))
     chain: Chain = polygon([0j, 30 + 0j, 30 + 10j, 10j])
     trace(course, chain, z=0.0, end_z=-8.0, type=MoveType.APPROACH)
     assert [move.end[2] for move in course.finished().moves] == pytest.approx([-3, -4, -7, -8])

@@ -12,13 +12,12 @@ from stepnc_model.entities.entity import Entity
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
-from stepnc_model.toolpath.job import Job, job_of
 from stepnc_model.toolpath.milling.area import Area, Wall, upright
 from stepnc_model.toolpath.milling.contour import area, chain_length, circle, clockwise, polygon
 from stepnc_model.toolpath.milling.cover import swept
-from stepnc_model.toolpath.milling.cutter import Cutter
-from stepnc_model.toolpath.milling.layer import Layer, Level, clear, wall_passes
-from stepnc_model.toolpath.milling.way import Covering, Way
+from stepnc_model.toolpath.milling.layer import CutLevel, Layer, clear, wall_passes
+from stepnc_model.toolpath.milling.strategy import Covering, EndMillShape, ResolvedStrategy
+from stepnc_model.toolpath.task import ToolPathTask, job_of
 
 PARTS = Path(__file__).parents[4] / "examples" / "parts"
 END = "ENDSEC;\nEND-ISO-10303-21;"
@@ -33,7 +32,7 @@ def edited(*changes: tuple[str, str], more: str = "") -> Program:
     return Program(Part21File.from_bytes(text.encode(), name="bracket"))
 
 
-def job_at(id: str, *changes: tuple[str, str], more: str = "") -> Job:
+def job_at(id: str, *changes: tuple[str, str], more: str = "") -> ToolPathTask:
     """Job of the workingstep with a name."""
     program = edited(*changes, more=more)
     step = next(step for step in program.workingsteps if step.id == id)
@@ -45,8 +44,8 @@ POCKET = Area(
     ref=Ref[Entity](140), walls=(Wall(loop=SQUARE, inset=upright),), top=0.0, bottom=-10.0
 )
 FACE = Area(ref=Ref[Entity](100), walls=(), top=0.0, bottom=-2.0, face=SQUARE, solid=SQUARE)
-LEVEL = Level(z=-2.0, above=0.0, cutter=Cutter(radius=5.0), allowance=0.0)
-WAY = Way(
+LEVEL = CutLevel(z=-2.0, above=0.0, cutter=EndMillShape(radius=5.0), allowance=0.0)
+WAY = ResolvedStrategy(
     covering=Covering.RINGS,
     step=5.0,
     along=1 + 0j,
@@ -61,17 +60,17 @@ REACHED = 1600.0 - (4.0 - pi) * 25.0
 
 
 @pytest.fixture(scope="module")
-def job() -> Job:
+def job() -> ToolPathTask:
     return job_at("ROUGH POCKET")
 
 
-def cleared(job: Job, found: Area, way: Way) -> Layer:
+def cleared(job: ToolPathTask, found: Area, way: ResolvedStrategy) -> Layer:
     layer = clear(job, found, LEVEL, way)
     assert layer is not None
     return layer
 
 
-def test_rings_run_inside_out_or_outside_in_and_in_their_sense(job: Job) -> None:
+def test_rings_run_inside_out_or_outside_in_and_in_their_sense(job: ToolPathTask) -> None:
     sizes = [area(cut.chain) for cut in cleared(job, POCKET, WAY).passes]
     assert sizes == pytest.approx([100.0, 400.0, 900.0])
     turned = replace(WAY, is_inside_out=False, is_counter_clockwise=False)
@@ -82,7 +81,7 @@ def test_rings_run_inside_out_or_outside_in_and_in_their_sense(job: Job) -> None
 @pytest.mark.parametrize("covering", list(Covering))
 @pytest.mark.parametrize("step", [3.0, 8.0])
 def test_every_strategy_clears_all_that_the_tool_gets_at(
-    job: Job, covering: Covering, step: float
+    job: ToolPathTask, covering: Covering, step: float
 ) -> None:
     way = replace(WAY, covering=covering, step=step, is_lifted=covering is Covering.ONE_WAY)
     layer = cleared(job, POCKET, way)
@@ -91,7 +90,7 @@ def test_every_strategy_clears_all_that_the_tool_gets_at(
 
 @pytest.mark.parametrize("covering", list(Covering))
 def test_every_strategy_sweeps_a_face_and_runs_over_its_edge(
-    job: Job, covering: Covering
+    job: ToolPathTask, covering: Covering
 ) -> None:
     layer = cleared(job, FACE, replace(WAY, covering=covering))
     from_shapely = swept(layer.passes, 5.0)
@@ -104,19 +103,19 @@ def swept_square() -> BaseGeometry:
     return shapely.box(0, 0, 40, 40)
 
 
-def test_free_side_is_inside_the_rings(job: Job) -> None:
+def test_free_side_is_inside_the_rings(job: ToolPathTask) -> None:
     assert cleared(job, POCKET, WAY).room.side == 1j
     assert cleared(job, POCKET, replace(WAY, is_counter_clockwise=False)).room.side == -1j
 
 
-def test_pocket_as_wide_as_the_tool_leaves_no_room_beside_the_pass(job: Job) -> None:
+def test_pocket_as_wide_as_the_tool_leaves_no_room_beside_the_pass(job: ToolPathTask) -> None:
     hole = replace(POCKET, walls=(Wall(loop=circle(0j, 5.0), inset=upright),))
     layer = cleared(job, hole, WAY)
     assert layer.room.clearance(0j) < 0.0
     assert not layer.room.holds(layer.passes[0].chain)
 
 
-def test_tool_that_is_too_wide_makes_no_layer(job: Job) -> None:
+def test_tool_that_is_too_wide_makes_no_layer(job: ToolPathTask) -> None:
     hole = replace(POCKET, walls=(Wall(loop=circle(0j, 4.9), inset=upright),))
     assert clear(job, hole, LEVEL, WAY) is None
     assert wall_passes(hole, LEVEL, WAY) is None
@@ -142,7 +141,7 @@ def test_wall_passes_leave_out_the_open_side() -> None:
     assert chain_length(cut.chain) == pytest.approx(3 * 30.0)
 
 
-def test_lifted_strokes_to_and_fro_change_their_sense(job: Job) -> None:
+def test_lifted_strokes_to_and_fro_change_their_sense(job: ToolPathTask) -> None:
     way = replace(WAY, covering=Covering.TO_AND_FRO, is_lifted=True, step=10.0)
     strokes = [cut for cut in cleared(job, POCKET, way).passes if not cut.is_closed]
     senses = [cut.chain[0].along(0.0).real for cut in strokes]
@@ -152,7 +151,7 @@ def test_lifted_strokes_to_and_fro_change_their_sense(job: Job) -> None:
     assert [cut.chain[0].along(0.0).real for cut in strokes] == pytest.approx([1.0] * 4)
 
 
-def test_strokes_begin_on_the_side_that_the_step_comes_from(job: Job) -> None:
+def test_strokes_begin_on_the_side_that_the_step_comes_from(job: ToolPathTask) -> None:
     way = replace(WAY, covering=Covering.ONE_WAY, is_lifted=True)
     left = cleared(job, FACE, way).passes
     right = cleared(job, FACE, replace(way, steps_left=False)).passes
@@ -160,7 +159,7 @@ def test_strokes_begin_on_the_side_that_the_step_comes_from(job: Job) -> None:
     assert right[0].start.imag > right[-1].start.imag
 
 
-def test_strokes_of_a_face_go_the_tool_and_two_millimetres_beyond_it(job: Job) -> None:
+def test_strokes_of_a_face_go_the_tool_and_two_millimetres_beyond_it(job: ToolPathTask) -> None:
     way = replace(WAY, covering=Covering.ONE_WAY, is_lifted=True)
     cut = cleared(job, FACE, way).passes[0]
     assert cut.start.real == pytest.approx(-7.0)

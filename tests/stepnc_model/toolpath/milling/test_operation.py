@@ -8,9 +8,9 @@ import pytest
 from stepnc_model.errors import PathError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
-from stepnc_model.toolpath.job import Job, job_of
 from stepnc_model.toolpath.milling.operation import allowance_of, levels, milling_path
 from stepnc_model.toolpath.path import Move, MoveType, Point, ToolPath, length, points_along
+from stepnc_model.toolpath.task import ToolPathTask, job_of
 
 PARTS = Path(__file__).parents[4] / "examples" / "parts"
 END = "ENDSEC;\nEND-ISO-10303-21;"
@@ -25,7 +25,7 @@ def edited(*changes: tuple[str, str], more: str = "") -> Program:
     return Program(Part21File.from_bytes(text.encode(), name="bracket"))
 
 
-def job_at(id: str, *changes: tuple[str, str], more: str = "") -> Job:
+def job_at(id: str, *changes: tuple[str, str], more: str = "") -> ToolPathTask:
     """Job of the workingstep with a name."""
     program = edited(*changes, more=more)
     step = next(step for step in program.workingsteps if step.id == id)

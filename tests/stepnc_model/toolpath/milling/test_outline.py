@@ -11,18 +11,16 @@ from stepnc_model.part21.reader import Part21File
 from stepnc_model.part21.values import Ref
 from stepnc_model.program import Program
 from stepnc_model.toolpath.frame import Frame
-from stepnc_model.toolpath.job import Job, job_of
 from stepnc_model.toolpath.milling.contour import Chain, Loop, area, chain_length
 from stepnc_model.toolpath.milling.outline import (
     closed_outline,
     course,
-    given,
     open_outline,
     require_simple,
     require_upright,
-    size,
     slope_of,
 )
+from stepnc_model.toolpath.task import ToolPathTask, job_of
 
 PARTS = Path(__file__).parents[4] / "examples" / "parts"
 END = "ENDSEC;\nEND-ISO-10303-21;"
@@ -37,7 +35,7 @@ def edited(*changes: tuple[str, str], more: str = "") -> Program:
     return Program(Part21File.from_bytes(text.encode(), name="bracket"))
 
 
-def job_at(id: str, *changes: tuple[str, str], more: str = "") -> Job:
+def job_at(id: str, *changes: tuple[str, str], more: str = "") -> ToolPathTask:
     """Job of the workingstep with a name."""
     program = edited(*changes, more=more)
     step = next(step for step in program.workingsteps if step.id == id)
@@ -137,25 +135,6 @@ def test_open_boundary_of_another_kind_is_refused() -> None:
     job = job_at("ROUGH POCKET", more="#900=ROUNDED_U_PROFILE($,#137);")
     with pytest.raises(PathError, match="cannot be followed"):
         open_outline(job, NEW, Frame())
-
-
-@pytest.mark.parametrize("number", ["0.", "-5.", "1.E9", "1.E999"])
-def test_size_must_be_a_length_of_a_part(number: str) -> None:
-    job = job_at("ROUGH POCKET", more=f"#900=TOLERANCED_LENGTH_MEASURE({number},#510);")
-    with pytest.raises(SchemaError):
-        size(job, Ref(900), NEW)
-
-
-def test_size_that_is_missing_is_said() -> None:
-    with pytest.raises(PathError, match="lacks a size"):
-        size(job_at("ROUGH POCKET"), None, Ref(140))
-
-
-def test_size_that_may_be_absent_is_nothing_then_and_never_negative() -> None:
-    job = job_at("ROUGH POCKET", more="#900=TOLERANCED_LENGTH_MEASURE(-1.,#510);")
-    assert given(job, None) == 0.0
-    with pytest.raises(PathError, match=r"#900 .*-1 mm"):
-        given(job, Ref(900))
 
 
 @pytest.mark.parametrize("number", ["1.E7", "-1.E300"])

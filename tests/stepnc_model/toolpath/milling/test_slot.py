@@ -9,14 +9,13 @@ from stepnc_model.entities.features import Slot
 from stepnc_model.errors import PathError
 from stepnc_model.part21.reader import Part21File
 from stepnc_model.program import Program
-from stepnc_model.toolpath.job import Job, job_of
 from stepnc_model.toolpath.milling.area import Area
 from stepnc_model.toolpath.milling.contour import area, chain_length, vertices
-from stepnc_model.toolpath.milling.cutter import Cutter, cutter_of
-from stepnc_model.toolpath.milling.layer import Level, clear
+from stepnc_model.toolpath.milling.layer import CutLevel, clear
 from stepnc_model.toolpath.milling.offset import erode
-from stepnc_model.toolpath.milling.slot import slot_area
-from stepnc_model.toolpath.milling.way import way_of
+from stepnc_model.toolpath.milling.outline import slot_area
+from stepnc_model.toolpath.milling.strategy import EndMillShape, cutter_of, way_of
+from stepnc_model.toolpath.task import ToolPathTask, job_of
 
 PARTS = Path(__file__).parents[4] / "examples" / "parts"
 END = "ENDSEC;\nEND-ISO-10303-21;"
@@ -31,7 +30,7 @@ def edited(*changes: tuple[str, str], more: str = "") -> Program:
     return Program(Part21File.from_bytes(text.encode(), name="bracket"))
 
 
-def job_at(id: str, *changes: tuple[str, str], more: str = "") -> Job:
+def job_at(id: str, *changes: tuple[str, str], more: str = "") -> ToolPathTask:
     """Job of the workingstep with a name."""
     program = edited(*changes, more=more)
     step = next(step for step in program.workingsteps if step.id == id)
@@ -61,7 +60,7 @@ def profiled(profile: str) -> Area:
 
 def width_at(found: Area, z: float) -> float:
     """Width of the straight slot for a thin tool: its area over its length."""
-    thin = Cutter(radius=1e-3)
+    thin = EndMillShape(radius=1e-3)
     (loop,) = found.boundaries(z, thin)
     xs = [edge.start.real for edge in loop]
     return max(xs) - min(xs)
@@ -102,7 +101,7 @@ def test_woodruff_end_is_not_cut_into_at_any_level(z: float) -> None:
     """A tool of 10 mm in the slot of 12 mm: its rim stays on the arc or inside."""
     change, more = ended("WOODRUFF_SLOT_END_TYPE(#904)", "OPEN_SLOT_END_TYPE()")
     found = slot(change, more=more)
-    loops = erode(found.boundaries(z, Cutter(radius=5.0)), 5.0)
+    loops = erode(found.boundaries(z, EndMillShape(radius=5.0)), 5.0)
     rim = min(point.imag for loop in loops for point in vertices(loop, tolerance=1e-4)) - 5.0
     height = 6.0 + z
     assert rim == pytest.approx(6.0 - sqrt(36.0 - (6.0 - height) ** 2), abs=1e-6)
@@ -233,8 +232,8 @@ def test_one_pass_along_the_middle_touches_the_end_walls(
     change, more = ended(one, other)
     job = job_at("MILL SLOT", change, more=more)
     found = slot(change, more=more)
-    cutter = Cutter(radius=6.0)
-    level = Level(z=-3.0, above=0.0, cutter=cutter, allowance=0.0)
+    cutter = EndMillShape(radius=6.0)
+    level = CutLevel(z=-3.0, above=0.0, cutter=cutter, allowance=0.0)
     layer = clear(job, found, level, way_of(job, cutter_of(job)))
     assert layer is not None
     (cut,) = layer.passes

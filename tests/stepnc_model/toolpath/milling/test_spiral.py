@@ -3,8 +3,8 @@
 import pytest
 
 from stepnc_model.toolpath.milling.contour import chain_length, circle, line, polygon
-from stepnc_model.toolpath.milling.cover import Pass, rings, swept
-from stepnc_model.toolpath.milling.spiral import spirals
+from stepnc_model.toolpath.milling.cover import MillingPass, rings, swept
+from stepnc_model.toolpath.milling.strokes import spirals
 
 SQUARE = polygon([0j, 40 + 0j, 40 + 40j, 40j])
 FOUND = rings([SQUARE], distance=5.0, radius=5.0, step=5.0)
@@ -28,11 +28,11 @@ def test_slant_goes_on_along_the_way_rather_than_across_it() -> None:
 
 
 def test_rings_with_a_wall_between_them_stay_apart() -> None:
-    apart = [Pass(circle(complex(x, 0), 2.0), is_closed=True) for x in (0, 5)]
+    apart = [MillingPass(circle(complex(x, 0), 2.0), is_closed=True) for x in (0, 5)]
     loops = [cut.chain for cut in apart]
     assert spirals(apart, loops, step=2.0) == tuple(apart)
 
 
 def test_strokes_stay_what_they_are() -> None:
-    stroke = Pass((line(0j, 1 + 0j),), is_closed=False)
+    stroke = MillingPass((line(0j, 1 + 0j),), is_closed=False)
     assert spirals([stroke, *FOUND[:1]], [SQUARE], step=5.0) == (stroke, FOUND[0])

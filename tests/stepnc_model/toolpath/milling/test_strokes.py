@@ -14,7 +14,7 @@ from stepnc_model.toolpath.milling.contour import (
     shape,
     vertices,
 )
-from stepnc_model.toolpath.milling.cover import Pass
+from stepnc_model.toolpath.milling.cover import MillingPass
 from stepnc_model.toolpath.milling.strokes import (
     contains_point,
     is_inside,
@@ -31,12 +31,14 @@ COMB = polygon([0j, 30, 30 + 20j, 20 + 20j, 20 + 5j, 10 + 5j, 10 + 20j, 20j])
 """two teeth upwards"""
 
 
-def to_and_fro(loops: Sequence[Loop], *, along: complex, step: float) -> tuple[Pass, ...]:
+def to_and_fro(
+    loops: Sequence[Loop], *, along: complex, step: float
+) -> tuple[MillingPass, ...]:
     """Strokes over an area in alternating directions."""
     return zigzags(scan(loops, along=along, step=step), loops)
 
 
-def stays_inside(passes: tuple[Pass, ...], loops: list[Loop]) -> bool:
+def stays_inside(passes: tuple[MillingPass, ...], loops: list[Loop]) -> bool:
     solid = shape(loops[0], tolerance=1e-4)
     for loop in loops[1:]:
         solid -= shape(loop, tolerance=1e-4)

@@ -5,8 +5,8 @@ from collections.abc import Callable
 import pytest
 
 from stepnc_model.errors import SchemaError
-from stepnc_model.toolpath.job import Job
-from stepnc_model.toolpath.turning.insert import Insert, insert_of
+from stepnc_model.toolpath.task import ToolPathTask
+from stepnc_model.toolpath.turning.groove import GroovingInsert, insert_of
 from stepnc_model.toolpath.turning.profile import highest, level_line
 
 WALL = highest([
@@ -16,19 +16,19 @@ WALL = highest([
 ])
 
 
-def test_the_insert_of_the_shaft_is_that_of_its_tool(job: Callable[..., Job]) -> None:
-    assert insert_of(job("THREAD RELIEF")) == Insert(width=3.0, corner=0.2, reach=12.0)
+def test_the_insert_of_the_shaft_is_that_of_its_tool(job: Callable[..., ToolPathTask]) -> None:
+    assert insert_of(job("THREAD RELIEF")) == GroovingInsert(width=3.0, corner=0.2, reach=12.0)
 
 
 def test_an_insert_fits_where_both_corners_do() -> None:
     """3 mm in a groove of 4 mm: its left corner has 1 mm of room."""
-    centres = Insert(width=3.0, corner=0.2, reach=12.0).rolled(WALL)
+    centres = GroovingInsert(width=3.0, corner=0.2, reach=12.0).rolled(WALL)
     assert centres.below(12.3) == [pytest.approx((-28.8, -27.8))]
     assert centres.at(-28.3) == pytest.approx(12.2)
 
 
 def test_an_insert_does_not_sink_into_a_narrow_groove() -> None:
-    assert Insert(width=5.0, corner=0.2, reach=12.0).rolled(WALL).at(-29.0) > 15.0
+    assert GroovingInsert(width=5.0, corner=0.2, reach=12.0).rolled(WALL).at(-29.0) > 15.0
 
 
 @pytest.mark.parametrize(
@@ -40,7 +40,7 @@ def test_an_insert_does_not_sink_into_a_narrow_groove() -> None:
     ],
 )
 def test_what_is_no_grooving_insert_is_refused(
-    job: Callable[..., Job], edit: tuple[str, str], message: str
+    job: Callable[..., ToolPathTask], edit: tuple[str, str], message: str
 ) -> None:
     with pytest.raises(SchemaError, match=message):
         insert_of(job("THREAD RELIEF", edit))

@@ -5,11 +5,11 @@ from collections.abc import Callable
 import pytest
 
 from stepnc_model.errors import SchemaError
-from stepnc_model.toolpath.job import Job
-from stepnc_model.toolpath.turning.link import link_of
-from stepnc_model.toolpath.turning.plane import HalfPlane
+from stepnc_model.toolpath.task import ToolPathTask
+from stepnc_model.toolpath.turning.profile import HalfPlane
+from stepnc_model.toolpath.turning.setting import link_of
 
-Jobs = Callable[..., Job]
+Jobs = Callable[..., ToolPathTask]
 
 
 def test_the_ways_are_those_of_the_file(job: Jobs) -> None:

@@ -5,7 +5,7 @@ from math import pi, sqrt, tan
 import pytest
 
 from stepnc_model.toolpath.turning.offset import (
-    Edges,
+    InsertFlanks,
     cut,
     excess,
     grown,
@@ -13,8 +13,13 @@ from stepnc_model.toolpath.turning.offset import (
     reachable,
     thickness,
 )
-from stepnc_model.toolpath.turning.piece import Piece, half_circle
-from stepnc_model.toolpath.turning.profile import Profile, highest, level_line
+from stepnc_model.toolpath.turning.profile import (
+    ProfilePiece,
+    RadiusProfile,
+    half_circle,
+    highest,
+    level_line,
+)
 
 SHOULDER = highest([level_line(20.0, -50.0, -40.0), level_line(15.0, -40.0, 0.0)])
 
@@ -30,7 +35,9 @@ def test_a_nose_turns_around_an_outside_corner_and_stops_in_an_inside_one() -> N
 
 
 def test_a_hollow_loses_the_radius() -> None:
-    piece = Piece(start=(-3.0, 6.0), end=(3.0, 6.0), centre=(0.0, 10.0), side=-1, radius=5.0)
+    piece = ProfilePiece(
+        start=(-3.0, 6.0), end=(3.0, 6.0), centre=(0.0, 10.0), side=-1, radius=5.0
+    )
     bowl = highest([piece])
     assert grown(bowl, 1.0).at(0.0) == pytest.approx(6.0)
 
@@ -50,7 +57,7 @@ def test_no_radius_changes_nothing() -> None:
 
 
 def test_a_nose_leaves_its_radius_in_a_corner() -> None:
-    bar = Profile(pieces=(level_line(30.0, -50.0, 0.0),))
+    bar = RadiusProfile(pieces=(level_line(30.0, -50.0, 0.0),))
     chain = grown(SHOULDER, 0.8).within(-50.0, 0.0).chain()
     left = cut(bar, chain, 0.8)
     assert left.at(-20.0) == pytest.approx(15.0)
@@ -59,23 +66,23 @@ def test_a_nose_leaves_its_radius_in_a_corner() -> None:
 
 
 def test_what_lies_above_a_surface_goes() -> None:
-    bar = Profile(pieces=(level_line(18.0, -60.0, 2.0),))
+    bar = RadiusProfile(pieces=(level_line(18.0, -60.0, 2.0),))
     left = lowered(bar, SHOULDER)
     assert [left.at(z) for z in (-55.0, -45.0, -20.0, 1.0)] == [18.0, 18.0, 15.0, 18.0]
 
 
 def test_an_edge_leaves_a_ramp_behind_a_shoulder() -> None:
     collar = highest([level_line(20.0, -10.0, 0.0), level_line(15.0, -50.0, -10.0)])
-    reached = reachable(collar, Edges(behind=pi / 6.0))
+    reached = reachable(collar, InsertFlanks(behind=pi / 6.0))
     assert reached.at(-12.0) == pytest.approx(20.0 - 2.0 * tan(pi / 6.0))
     assert reached.at(-40.0) == 15.0
     assert excess(reached, collar.pieces) == pytest.approx(5.0, abs=1.5)
 
 
 def test_upright_edges_reach_everything() -> None:
-    assert reachable(SHOULDER, Edges()) is SHOULDER
+    assert reachable(SHOULDER, InsertFlanks()) is SHOULDER
 
 
 def test_thickness_is_the_distance_out_to_the_stock() -> None:
-    bar = Profile(pieces=(level_line(21.0, -50.0, 0.0),))
+    bar = RadiusProfile(pieces=(level_line(21.0, -50.0, 0.0),))
     assert thickness(bar, SHOULDER) == pytest.approx(6.0)

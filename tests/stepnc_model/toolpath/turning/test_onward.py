@@ -7,7 +7,7 @@ import pytest
 
 from stepnc_model.errors import Severity
 from stepnc_model.toolpath.path import Move, MoveType, Point, ToolPath
-from stepnc_model.toolpath.turning.onward import meeting
+from stepnc_model.toolpath.turning.passes import meeting
 
 PathOf = Callable[..., ToolPath]
 

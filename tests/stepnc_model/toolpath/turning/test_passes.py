@@ -7,12 +7,12 @@ import pytest
 
 from stepnc_model.toolpath.path import MoveType, ToolPath
 from stepnc_model.toolpath.turning.passes import oriented, shortened
-from stepnc_model.toolpath.turning.piece import Piece
+from stepnc_model.toolpath.turning.profile import ProfilePiece
 
 CHAIN = [
-    Piece(start=(5.0, 1.0), end=(0.0, 1.0)),
-    Piece(start=(0.0, 1.0), end=(0.0, 4.0)),
-    Piece(start=(0.0, 4.0), end=(-5.0, 4.0)),
+    ProfilePiece(start=(5.0, 1.0), end=(0.0, 1.0)),
+    ProfilePiece(start=(0.0, 1.0), end=(0.0, 4.0)),
+    ProfilePiece(start=(0.0, 4.0), end=(-5.0, 4.0)),
 ]
 
 

@@ -4,14 +4,14 @@ from math import pi, sqrt
 
 import pytest
 
-from stepnc_model.toolpath.turning.piece import (
-    Piece,
+from stepnc_model.toolpath.turning.profile import (
+    ProfilePiece,
     arc_pieces,
     crossings,
     half_circle,
 )
 
-LINE = Piece(start=(0.0, 1.0), end=(4.0, 3.0))
+LINE = ProfilePiece(start=(0.0, 1.0), end=(4.0, 3.0))
 ARCH = half_circle((0.0, 0.0), 5.0, 1)
 
 
@@ -44,11 +44,11 @@ def test_an_arc_is_cut_where_its_circle_stands_upright() -> None:
 
 
 def test_lines_cross_where_they_do() -> None:
-    assert list(crossings(LINE, Piece(start=(0.0, 3.0), end=(4.0, 1.0)))) == [2.0]
+    assert list(crossings(LINE, ProfilePiece(start=(0.0, 3.0), end=(4.0, 1.0)))) == [2.0]
 
 
 def test_a_line_crosses_a_circle_twice() -> None:
-    level = Piece(start=(-9.0, 4.0), end=(9.0, 4.0))
+    level = ProfilePiece(start=(-9.0, 4.0), end=(9.0, 4.0))
     assert sorted(crossings(level, ARCH)) == pytest.approx([-3.0, 3.0])
 
 
@@ -58,10 +58,10 @@ def test_circles_of_equal_size_cross_in_the_middle() -> None:
 
 
 def test_what_lies_apart_does_not_cross() -> None:
-    assert list(crossings(LINE, Piece(start=(5.0, 0.0), end=(6.0, 9.0)))) == []
+    assert list(crossings(LINE, ProfilePiece(start=(5.0, 0.0), end=(6.0, 9.0)))) == []
 
 
 def test_distance_is_to_the_nearest_spot() -> None:
-    assert Piece(start=(0.0, 0.0), end=(2.0, 0.0)).distance((1.0, 3.0)) == 3.0
-    assert Piece(start=(0.0, 0.0), end=(2.0, 0.0)).distance((5.0, 4.0)) == 5.0
+    assert ProfilePiece(start=(0.0, 0.0), end=(2.0, 0.0)).distance((1.0, 3.0)) == 3.0
+    assert ProfilePiece(start=(0.0, 0.0), end=(2.0, 0.0)).distance((5.0, 4.0)) == 5.0
     assert ARCH.distance((4.0, 4.0)) == pytest.approx(4.0 * sqrt(2.0) - 5.0)

@@ -3,10 +3,14 @@
 import pytest
 
 from stepnc_model.entities.enums import HandOfToolType
-from stepnc_model.toolpath.path import Plane
-from stepnc_model.toolpath.turning.piece import half_circle
-from stepnc_model.toolpath.turning.plane import HalfPlane, tip_of
-from stepnc_model.toolpath.turning.profile import Profile, level_line
+from stepnc_model.toolpath.path import ArcPlane
+from stepnc_model.toolpath.turning.profile import (
+    HalfPlane,
+    RadiusProfile,
+    half_circle,
+    level_line,
+    tip_of,
+)
 
 
 @pytest.mark.parametrize(
@@ -38,10 +42,10 @@ def test_arcs_turn_the_other_way_across() -> None:
     along, across = HalfPlane().arc(arch), HalfPlane(is_across=True).arc(arch)
     assert along is not None
     assert across is not None
-    assert (along.plane, along.turn) == (Plane.ZX, -across.turn)
+    assert (along.plane, along.turn) == (ArcPlane.ZX, -across.turn)
 
 
 def test_a_bar_seen_across_is_its_front() -> None:
-    bar = Profile(pieces=(level_line(30.0, -150.0, 2.0),))
+    bar = RadiusProfile(pieces=(level_line(30.0, -150.0, 2.0),))
     front = HalfPlane(is_across=True).material(bar)
     assert (front.low, front.high, front.at(10.0)) == (0.0, 30.0, 2.0)

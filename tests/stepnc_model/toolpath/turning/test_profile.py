@@ -4,9 +4,10 @@ from math import inf
 
 import pytest
 
-from stepnc_model.toolpath.turning.piece import Piece, half_circle
 from stepnc_model.toolpath.turning.profile import (
-    Profile,
+    ProfilePiece,
+    RadiusProfile,
+    half_circle,
     highest,
     level_line,
     lowest,
@@ -17,7 +18,10 @@ STAIR = highest([level_line(2.0, 0.0, 5.0), level_line(5.0, 5.0, 8.0)])
 
 
 def test_the_higher_of_two_crossing_lines_wins_on_each_side() -> None:
-    cross = [Piece(start=(0.0, 0.0), end=(4.0, 4.0)), Piece(start=(0.0, 4.0), end=(4.0, 0.0))]
+    cross = [
+        ProfilePiece(start=(0.0, 0.0), end=(4.0, 4.0)),
+        ProfilePiece(start=(0.0, 4.0), end=(4.0, 0.0)),
+    ]
     assert [p.end for p in highest(cross).pieces] == [(2.0, 2.0), (4.0, 4.0)]
     assert lowest(cross).at(1.0) == 1.0
 
@@ -42,14 +46,14 @@ def test_walls_join_the_chain() -> None:
 
 
 def test_top_sees_the_crown_of_an_arc() -> None:
-    arch = Profile(pieces=(half_circle((0.0, 0.0), 5.0, 1),))
+    arch = RadiusProfile(pieces=(half_circle((0.0, 0.0), 5.0, 1),))
     assert arch.top(-3.0, 3.0) == 5.0
     assert arch.top(3.0, 4.0) == pytest.approx(4.0)
     assert arch.bottom(-3.0, 3.0) == pytest.approx(4.0)
 
 
 def test_nothing_has_no_top() -> None:
-    assert Profile().top(0.0, 1.0) == -inf
+    assert RadiusProfile().top(0.0, 1.0) == -inf
 
 
 def test_levels_cut_intervals() -> None:

@@ -4,15 +4,16 @@ from collections.abc import Callable
 
 import pytest
 
-from stepnc_model.toolpath.job import Job
-from stepnc_model.toolpath.turning.history import bar_of
+from stepnc_model.toolpath.task import ToolPathTask
 from stepnc_model.toolpath.turning.outline import outline_of
-from stepnc_model.toolpath.turning.plane import HalfPlane
-from stepnc_model.toolpath.turning.region import Region, edges_of, region_of
+from stepnc_model.toolpath.turning.profile import HalfPlane
+from stepnc_model.toolpath.turning.region import TurningRegion, bar_of, edges_of, region_of
 from stepnc_model.units import deg_from_rad
 
 
-def region(job: Callable[..., Job], name: str, *edits: tuple[str, str]) -> Region:
+def region(
+    job: Callable[..., ToolPathTask], name: str, *edits: tuple[str, str]
+) -> TurningRegion:
     at = job(name, *edits)
     outlines = tuple(outline_of(at, ref, 30.0) for ref in at.step.features)
     bar = bar_of(at, outlines)
@@ -20,24 +21,26 @@ def region(job: Callable[..., Job], name: str, *edits: tuple[str, str]) -> Regio
     return region_of(at, bar, outlines, plane=plane, allowance=0.5, overcut=1.0)
 
 
-def test_the_part_beside_the_features_is_a_wall(job: Callable[..., Job]) -> None:
+def test_the_part_beside_the_features_is_a_wall(job: Callable[..., ToolPathTask]) -> None:
     contour = region(job, "ROUGH CONTOUR")
     assert (contour.low, contour.own_high, contour.floor) == (-110.0, 0.0, 13.5)
     assert contour.wall == 30.0
 
 
-def test_the_centre_stops_beside_the_wall_and_goes_up_it(job: Callable[..., Job]) -> None:
+def test_the_centre_stops_beside_the_wall_and_goes_up_it(
+    job: Callable[..., ToolPathTask],
+) -> None:
     chain = region(job, "ROUGH CONTOUR").chain(0.5)
     assert chain[-1].is_upright
     assert chain[-1].end == pytest.approx((-110.0 + 0.8 + 0.5, 30.0))
 
 
-def test_a_face_has_no_wall_at_the_axis(job: Callable[..., Job]) -> None:
+def test_a_face_has_no_wall_at_the_axis(job: Callable[..., ToolPathTask]) -> None:
     face = region(job, "ROUGH FACE")
     assert (face.low, face.own_high, face.wall) == (0.0, 30.0, None)
 
 
-def test_edges_are_those_of_the_insert(job: Callable[..., Job]) -> None:
+def test_edges_are_those_of_the_insert(job: Callable[..., ToolPathTask]) -> None:
     """95 and 80 degrees: 5 behind the nose along the axis, 5 across it."""
     at = job("ROUGH CONTOUR")
     assert deg_from_rad(edges_of(at, HalfPlane()).behind) == pytest.approx(5.0)

@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from stepnc_model.errors import SchemaError
-from stepnc_model.toolpath.job import Job
-from stepnc_model.toolpath.turning.plane import HalfPlane
+from stepnc_model.toolpath.task import ToolPathTask
+from stepnc_model.toolpath.turning.profile import HalfPlane
 from stepnc_model.toolpath.turning.setting import (
     DEFAULT_OVERCUT,
     clearance_of,
@@ -41,19 +41,19 @@ def test_no_pass_is_deeper_than_asked(total: float, depth: float) -> None:
     assert all(0.0 < b - a <= depth + 1e-5 for a, b in zip([0.0, *sums], sums, strict=False))
 
 
-def test_directions_and_lengths_are_those_of_the_file(job: Callable[..., Job]) -> None:
+def test_directions_and_lengths_are_those_of_the_file(job: Callable[..., ToolPathTask]) -> None:
     setting = setting_of(job("ROUGH CONTOUR"), HalfPlane())
     assert (setting.overcut, setting.link.lift_height) == (1.0, 1.0)
     assert not setting.is_reversed
     assert setting_of(job("FINISH CONTOUR"), HalfPlane()).overcut == DEFAULT_OVERCUT
 
 
-def test_a_ratio_scales_the_feed(job: Callable[..., Job]) -> None:
+def test_a_ratio_scales_the_feed(job: Callable[..., ToolPathTask]) -> None:
     at = job("ROUGH CONTOUR", ("(2.),$,#504", "(2.),0.5,#504"))
     assert setting_of(at, HalfPlane()).feeds.cutting.ratio == 0.5
 
 
-def test_the_clearance_is_the_retract_plane(job: Callable[..., Job]) -> None:
+def test_the_clearance_is_the_retract_plane(job: Callable[..., ToolPathTask]) -> None:
     assert (
         clearance_of(job("ROUGH CONTOUR", ("'ROUGH CONTOUR',5.", "'ROUGH CONTOUR',7."))) == 7.0
     )

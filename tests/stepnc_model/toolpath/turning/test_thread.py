@@ -5,7 +5,7 @@ from collections.abc import Callable
 import pytest
 
 from stepnc_model.errors import SchemaError
-from stepnc_model.post.unsplit import unsplit
+from stepnc_model.post.neutral import unsplit
 from stepnc_model.toolpath.path import Move, MoveType, Point, ToolPath
 
 

@@ -1,0 +1,498 @@
+"""State of the control loop, and its transitions.
+
+The phase tells what sets the override::
+
+                          overload
+              ┌─────────────────────────> HELD ──────────────┐
+              │      the force has fallen  │  ^              │ held too often
+              │  ┌─────────────────────────┘  │ overload     │
+              │  v     no force for too long  │              │
+        ──> FOLLOWING ─────────────────────> BLIND           │
+            ^   ^  │ <───────────────────────┘               v
+     switch │   │  └──────────────────────────────────────> STOPPED
+            v   │ lock     too long below the band           ^
+           OFF  v                                            │
+             INHIBITED       all but OFF: a broken tooth ────┘
+
+- FOLLOWING: the law's wish, as far as the guard allows it; in the air the last one, up to 1.
+- HELD: 0, until each tooth is below the set point or the axes stand.
+- BLIND: at most the safe override, until a revolution tells a force.
+- OFF and INHIBITED: 1. The switch and the lock of a workingstep count from the next complete
+  revolution or the next workingstep on, and before BLIND; a hold goes on to its end.
+- STOPPED: 0, for good.
+
+All functions are pure: a state and what was read make the next state. States are tuples and
+not dataclasses, as one is made several times in a tooth period. Units mm, s, N, rev/s.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from enum import Enum
+from math import inf, isfinite, isnan
+from typing import Any, NamedTuple
+
+from controller import overload
+from controller.equivalent import equivalent
+from controller.guard import (
+    AllowedOverride,
+    OverrideReason,
+    WorkingstepBounds,
+    after_hold,
+    allowed,
+    in_air,
+    taught,
+)
+from controller.law import ControlLaw, Plant, Situation
+from controller.loop_settings import AROUND, LoopSettings, LoopStep
+from controller.monitor import Monitor
+from controller.orders import CriterionTo, EventKind, LoopEvent, MotorPowerTo, Order
+from controller.preview import Preview
+from controller.set_point import approached, bounded, introduction
+from controller.signal import Revolution
+from simulator.reading import Reading
+
+STANDING = 0.02
+"""override below which the axes count as standing"""
+
+FORGIVING = 1.0 / 100.0
+"""of a hold forgotten in a revolution: holds in quick succession are a fault"""
+
+BELOW = 500
+"""revolutions in a row in which the guard goes below the band, until it stops the program"""
+
+REVOLUTIONS = 2.0
+"""that may pass besides the time that is allowed, until one tells a force: the first is mostly
+begun in its middle"""
+
+LEAST_WAY = 0.1
+"""override at least with which the way of the next revolutions is reckoned"""
+
+LawFor = Callable[[Plant], ControlLaw[Any]]
+"""a law tuned for a process"""
+
+
+class Phase(Enum):
+    """What sets the override; the value is the reason that is told with it."""
+
+    FOLLOWING = OverrideReason.NOTHING
+    HELD = OverrideReason.OVERLOAD
+    BLIND = OverrideReason.SILENCE
+    INHIBITED = OverrideReason.INHIBITED
+    OFF = OverrideReason.OFF
+    STOPPED = OverrideReason.STOPPED
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FeedHold:
+    """The overload that the phase HELD waits out."""
+
+    override: float
+    """that the axes ran when the force was greatest"""
+    force: float
+    """N, greatest since"""
+    calm: int = 0
+    """tooth periods in a row with a force below the set point: with runout, one says little"""
+
+
+class LoopState(NamedTuple):
+    """State of the loop after a reading."""
+
+    settings: LoopSettings
+    preview: Preview
+    """in equivalent forces"""
+    keep: WorkingstepBounds
+    phase: Phase = Phase.FOLLOWING
+    allowed: AllowedOverride = AllowedOverride(override=1.0)
+    """that was commanded last"""
+    time: float = -inf
+    """s, of the last reading"""
+    workingstep: int = 0
+    """its number"""
+    step: LoopStep = AROUND
+    hold: FeedHold | None = None
+    """while HELD"""
+    holds: float = 0.0
+    """in this workingstep, old ones less and less"""
+    below: int = 0
+    """revolutions in a row below the floor of the band"""
+    without_sample: float = 0.0
+    """s at feed since the last sample"""
+    without_force: float = 0.0
+    """s at feed since the last revolution with a force: too few samples, teeth left out and
+    readings that come again with their old time make none"""
+    has_chips: bool = False
+    """whether the last revolution had"""
+    law: tuple[ControlLaw[Any], Any] | None = None
+    """tuned for the cut that goes on, and its state; None: no cut is followed"""
+    override_before: float = 1.0
+    """before the last decision"""
+    greatest: float = 0.0
+    """N, load of a tooth since then"""
+    expected: float = 0.0
+    """N, of the last revolution; 0: there was no cut"""
+    shares: overload.UsualShares = overload.fresh(1)
+    monitor: Monitor = Monitor()
+    events: tuple[LoopEvent, ...] = ()
+    """that this reading has caused"""
+
+    @property
+    def override(self) -> float:
+        """Last commanded override."""
+        return self.allowed.override
+
+    @property
+    def is_stopped(self) -> bool:
+        """Whether the loop has stopped the program."""
+        return self.phase is Phase.STOPPED
+
+    @property
+    def safe(self) -> float:
+        """The override when nothing is known: what it is, at most the safe one."""
+        if self.step.reference.inhibition or not self.settings.is_on:
+            return self.override
+        return min(self.override, self.settings.band.safe)
+
+    def is_blind(self, spindle_speed: float) -> bool:
+        """Whether the time without a force is too long; a standing spindle misses none."""
+        most = self.settings.band.sensor_timeout
+        turning = REVOLUTIONS / spindle_speed if spindle_speed > 0.0 else inf
+        return self.without_sample > most or self.without_force > most + turning
+
+
+def initial(settings: LoopSettings, preview: Preview) -> LoopState:
+    """State before the first reading."""
+    return LoopState(settings=settings, preview=preview, keep=bounded(settings, AROUND))
+
+
+def begun(state: LoopState, reading: Reading, steps: Sequence[LoopStep]) -> LoopState:
+    """In another workingstep. A hold goes on: the axes may still be slowing down."""
+    at, settings = reading.workingstep - 1, state.settings
+    step = steps[at] if 0 <= at < len(steps) else AROUND
+    state = state._replace(
+        workingstep=reading.workingstep,
+        step=step,
+        keep=approached(bounded(settings, step), settings, step),
+        holds=0.0,
+        has_chips=False,
+        law=None,
+        expected=0.0,
+        shares=overload.fresh(reading.teeth),
+        monitor=state.monitor.begun(step.tool),
+    )
+    if state.phase not in {Phase.HELD, Phase.STOPPED}:
+        state = _opened(state)
+    if step.reference.workingstep:
+        state = _told(state, EventKind.WORKINGSTEP, introduction(settings, step.reference))
+        if step.reference.inhibition:
+            text = f"feed left as it is: {step.reference.inhibition}"
+            state = _told(state, EventKind.INHIBITED, text)
+    return state
+
+
+def _opened(state: LoopState) -> LoopState:
+    """With the override with which a workingstep begins."""
+    if not state.settings.is_on:
+        return _into(state, Phase.OFF, 1.0)
+    if state.step.reference.inhibition:
+        return _into(state, Phase.INHIBITED, 1.0)
+    air = in_air(state.keep, last=1.0)
+    if state.phase is Phase.BLIND:
+        return _into(state, Phase.BLIND, min(air.override, state.settings.band.safe))
+    return _into(state, Phase.FOLLOWING, air.override)
+
+
+def obeyed(
+    state: LoopState, order: Order, *, plain: Preview, steps: Sequence[LoopStep]
+) -> LoopState:
+    """After an order of the operator; the next decision is by it.
+
+    Parameters
+    ----------
+    state : LoopState
+    order : Order
+    plain : Preview
+        Forces as they are.
+    steps : sequence of LoopStep
+    """
+    settings, preview = state.settings, state.preview
+    match order:
+        case CriterionTo(criterion=criterion):
+            settings = replace(settings, criterion=criterion)
+            text = f"mode {criterion.value}"
+        case MotorPowerTo(factor=factor):
+            settings = replace(settings, power_factor=factor)
+            preview = equivalent(plain, steps, settings)
+            text = f"motor power {100.0 * factor:.4g} %"
+        case _:
+            settings = replace(settings, is_on=order.is_on)
+            text = "ON" if order.is_on else "OFF: the program's own feed"
+    state = state._replace(settings=settings, preview=preview, law=None)
+    return _told(_bounded(state, cap=state.keep.cap), EventKind.ORDER, text)
+
+
+def answered(
+    state: LoopState,
+    reading: Reading,
+    revolution: Revolution | None,
+    *,
+    ratio: float | None,
+    force: float,
+    law_for: LawFor,
+) -> LoopState:
+    """After a reading: the phase that follows, and the override that it sets.
+
+    Parameters
+    ----------
+    state : LoopState
+    reading : Reading
+        In equivalent forces.
+    revolution : Revolution, optional
+        That it completes.
+    ratio : float, optional
+        ln(measured / expected) of the revolution.
+    force : float, N
+        Mean of the reading; NaN: not known.
+    law_for : callable
+    """
+    if not reading.can_override:
+        return _out_of_cut(state)._replace(without_sample=0.0, without_force=0.0, greatest=0.0)
+    state, load = _loaded(_listened(state, reading, revolution, force), reading, force)
+    if revolution is not None:
+        keep = approached(state.keep, state.settings, state.step)
+        state = state._replace(keep=keep, holds=max(0.0, state.holds - FORGIVING))
+    if state.phase is Phase.STOPPED:
+        return state
+    hold = state.hold
+    if hold is not None:
+        # The tooth after a broken one takes two chips: the hold may be its doing.
+        if revolution is not None and revolution.is_covered:
+            state = _watched(state, revolution, ratio)
+        return state if state.is_stopped else _waited(state, hold, reading, load)
+    may_hold = state.settings.is_on and not state.step.reference.inhibition
+    if may_hold and load > state.keep.threshold(state.settings.band):
+        return _held(state, reading, load)
+    is_blind = state.is_blind(reading.spindle_speed)
+    if revolution is None and not is_blind:
+        return state
+    decided = _decided(state, revolution, ratio, is_blind=is_blind, law_for=law_for)
+    return decided._replace(override_before=state.override, greatest=0.0)
+
+
+def _out_of_cut(state: LoopState) -> LoopState:
+    """The cut is over: what the law remembers of it does not hold in the next one."""
+    if not state.has_chips:
+        return state
+    return state._replace(law=None, has_chips=False, monitor=state.monitor.out_of_cut())
+
+
+def _listened(
+    state: LoopState, reading: Reading, revolution: Revolution | None, force: float
+) -> LoopState:
+    """With the time since a force was told."""
+    if revolution is not None and revolution.is_covered:
+        return state._replace(without_sample=0.0, without_force=0.0)
+    return state._replace(
+        without_sample=state.without_sample + reading.period if isnan(force) else 0.0,
+        without_force=state.without_force + reading.period,
+    )
+
+
+def _loaded(state: LoopState, reading: Reading, force: float) -> tuple[LoopState, float]:
+    """With the load of a tooth period, N, as the threshold counts it; NaN: not known."""
+    shares = state.shares
+    if len(shares.usual) != reading.teeth:
+        shares = overload.fresh(reading.teeth)
+    # Noise in the air and the way into the work tell nothing of runout.
+    see = overload.seen if state.has_chips else overload.noted
+    shares = see(shares, reading.tooth, force)
+    level = overload.level(shares, reading.tooth, force)
+    load = state.keep.load(state.settings.band, level=level, force=force)
+    return state._replace(shares=shares, greatest=max(state.greatest, load)), load
+
+
+def _held(state: LoopState, reading: Reading, load: float) -> LoopState:
+    """Hold the feed after an overload; once too often, for good."""
+    bound = state.keep.threshold(state.settings.band)
+    text = f"force {load:.4g} N of a tooth exceeds {bound:.4g} N: feed held"
+    hold, holds = FeedHold(override=reading.override, force=load), state.holds + 1
+    held = _into(state._replace(hold=hold, holds=holds, law=None), Phase.HELD, 0.0)
+    held = _told(held, EventKind.HOLD, text)
+    if holds > state.settings.band.holds:
+        return _stopped(held, f"held {holds:.0f} times in quick succession")
+    return held
+
+
+def _waited(state: LoopState, hold: FeedHold, reading: Reading, load: float) -> LoopState:
+    """Held on, or resumed below the override that has led to the hold."""
+    if load > hold.force:
+        hold = replace(hold, override=reading.override, force=load)
+    calm = hold.calm + 1 if load < state.keep.set_point else 0
+    if reading.override > STANDING and calm < reading.teeth:
+        return state._replace(hold=replace(hold, calm=calm))
+    band, keep = state.settings.band, state.keep
+    override = after_hold(keep, override=hold.override, force=hold.force)
+    cap = min(taught(band, keep, override=hold.override, force=hold.force), keep.cap)
+    resumed = _bounded(state, cap=cap)._replace(
+        phase=Phase.FOLLOWING,
+        allowed=AllowedOverride(override=override, holding=OverrideReason.OVERLOAD),
+        hold=None,
+        greatest=0.0,
+    )
+    return _told(resumed, EventKind.RESUME, f"override {100.0 * override:.4g} %")
+
+
+def _decided(
+    state: LoopState,
+    revolution: Revolution | None,
+    ratio: float | None,
+    *,
+    is_blind: bool,
+    law_for: LawFor,
+) -> LoopState:
+    """After a revolution, or after too long without one that says a force."""
+    if not state.settings.is_on:
+        return _into(state, Phase.OFF, 1.0)
+    had_chips = state.has_chips
+    if revolution is not None and revolution.is_covered:
+        state = _watched(state, revolution, ratio)
+    if state.is_stopped:
+        return state
+    if state.step.reference.inhibition:
+        return _into(state, Phase.INHIBITED, 1.0)
+    if revolution is None or is_blind:
+        return _blinded(state)
+    if not revolution.is_covered:
+        return _lowered(state, revolution)
+    if state.has_chips:
+        return _followed(state, revolution, law_for, is_entry=not had_chips)
+    # The last revolution of a cut, half in the air, must not raise its override.
+    last = min(state.override, state.override_before) if had_chips else state.override
+    return _into(state, Phase.FOLLOWING, in_air(state.keep, last=last).override)
+
+
+def _watched(state: LoopState, revolution: Revolution, ratio: float | None) -> LoopState:
+    """With what the monitor sees in a revolution; while the feed is held, teeth alone."""
+    if not revolution.force > state.settings.chips:
+        return _out_of_cut(state)
+    monitor, preview = state.monitor, state.preview
+    begin, end = revolution.progress_before, revolution.progress
+    teeth = preview.expected(begin, end, teeth=revolution.teeth, first=revolution.first)
+    if state.phase is Phase.HELD:
+        monitor = monitor.teeth_seen(revolution, state.keep, expected=teeth)
+    else:
+        # Where a ratio is known, so is the expected force.
+        land = 0.0 if ratio is None else preview.mean_land(begin, end) / state.expected
+        monitor = monitor.seen(
+            revolution, state.keep, ratio=ratio, land_share=land, expected=teeth
+        )
+    events = (*state.events, *monitor.events)
+    state = state._replace(monitor=monitor, has_chips=True, events=events)
+    return _stopped(state, "a tooth is broken") if monitor.breakage.is_broken else state
+
+
+def _blinded(state: LoopState) -> LoopState:
+    """The safe override, until forces are read again."""
+    if state.phase is not Phase.BLIND:
+        safe = 100.0 * state.settings.band.safe
+        text = f"no force for {state.without_force:.2g} s: override {safe:.4g} % at most"
+        state = _told(state, EventKind.SILENCE, text)
+    return _into(state._replace(law=None), Phase.BLIND, state.safe)
+
+
+def _lowered(state: LoopState, revolution: Revolution) -> LoopState:
+    """The last override, or less where the few samples that arrived ask for it."""
+    got = allowed(
+        state.override,
+        state.settings.band,
+        state.keep,
+        last=state.override,
+        actual=revolution.override,
+        force=state.greatest,
+    )
+    if got.override < state.override:
+        return state._replace(phase=Phase.FOLLOWING, allowed=got)
+    return state
+
+
+def _followed(
+    state: LoopState, revolution: Revolution, law_for: LawFor, *, is_entry: bool
+) -> LoopState:
+    """As the law wishes and the guard allows, in a revolution with chips."""
+    wanted, law, last, keep = 1.0, state.law, state.override, state.keep
+    if isfinite(keep.set_point):
+        tuned, memory = law or _tuned(state, revolution, law_for)
+        memory, wanted = tuned.decide(memory, _situation(state, revolution))
+        law = tuned, memory
+    if is_entry:
+        # The force of a revolution that began in the air is too small to be trusted.
+        wanted = min(wanted, last)
+    got = allowed(
+        wanted,
+        state.settings.band,
+        keep,
+        last=last,
+        actual=revolution.override,
+        force=max(state.greatest, revolution.force),
+    )
+    below = state.below + 1 if got.override < keep.floor else 0
+    if below > BELOW:
+        percent = 100.0 * keep.floor
+        text = f"the tool is in danger even at {percent:.3g} % of the programmed feed"
+        return _stopped(state, text)
+    return state._replace(law=law, below=below, phase=Phase.FOLLOWING, allowed=got)
+
+
+def _tuned(
+    state: LoopState, revolution: Revolution, law_for: LawFor
+) -> tuple[ControlLaw[Any], Any]:
+    """The law for the cut that begins, and its state."""
+    # Rounded, so that equal cuts find their law again.
+    lag = round(max(state.settings.servo_lag * revolution.spindle_speed, 0.1), 1)
+    exponent = state.keep.exponent
+    law = law_for(Plant(exponent=round(exponent, 2) or exponent, lag=lag))
+    return law, law.begin(max(state.override, LEAST_WAY))
+
+
+def _situation(state: LoopState, revolution: Revolution) -> Situation:
+    """What the law may know."""
+    keep, preview, look_ahead = state.keep, state.preview, state.settings.look_ahead
+    way = revolution.period * max(revolution.override, LEAST_WAY)
+    begin, end = revolution.progress_before, revolution.progress
+    return Situation(
+        force=revolution.force,
+        set_point=keep.set_point,
+        override=state.override,
+        actual=max(revolution.override, LEAST_WAY * keep.floor),
+        floor=keep.floor,
+        ceiling=keep.ceiling,
+        expected=preview.mean(begin, end) if look_ahead else 0.0,
+        ahead=preview.ahead(end, revolution=way, count=look_ahead) if look_ahead else (),
+    )
+
+
+def _bounded(state: LoopState, *, cap: float) -> LoopState:
+    """With bounds after the settings."""
+    keep = bounded(
+        state.settings,
+        state.step,
+        set_point=state.keep.set_point,
+        settled=state.keep.settled,
+        cap=cap,
+    )
+    return state._replace(keep=keep)
+
+
+def _stopped(state: LoopState, why: str) -> LoopState:
+    """Stop the program for good."""
+    return _told(_into(state, Phase.STOPPED, 0.0), EventKind.STOP, why)
+
+
+def _into(state: LoopState, phase: Phase, override: float) -> LoopState:
+    """In a phase, with its override."""
+    allowed_ = AllowedOverride(override=override, holding=phase.value)
+    return state._replace(phase=phase, allowed=allowed_)
+
+
+def _told(state: LoopState, kind: EventKind, text: str) -> LoopState:
+    event = LoopEvent(time=state.time, kind=kind, text=text)
+    return state._replace(events=(*state.events, event))

@@ -1,0 +1,103 @@
+"""Location of a knowledge base: a file, or a database on a server, without its password."""
+
+import os
+from dataclasses import dataclass
+from urllib.parse import urlsplit
+
+from sqlalchemy.engine import URL, make_url
+from sqlalchemy.exc import ArgumentError
+
+from kbe.errors import StoreUnavailable
+
+FORMS = "name a file, or sqlite:///FILE, or postgresql://USER@HOST/DATABASE"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StoreLocation:
+    """Location of a store."""
+
+    url: URL
+    shown: str
+    """to people: no password in it"""
+    file: str
+    """empty when it is a server's"""
+
+
+def parsed_place(url_or_path: str) -> StoreLocation:
+    """The place that a person named.
+
+    Raises
+    ------
+    StoreUnavailable
+        When it is none; what could be a password is not repeated.
+    """
+    if "://" not in url_or_path:
+        return _file(url_or_path)
+    scheme, _, rest = url_or_path.partition("://")
+    kind = scheme.lower().partition("+")[0]
+    if kind == "sqlite":
+        return _file(rest.removeprefix("/"))
+    if kind not in {"postgresql", "postgres"}:
+        raise StoreUnavailable(f"{scheme}://…", reason=f"no database for this; {FORMS}")
+    return _server(rest)
+
+
+def _file(name: str) -> StoreLocation:
+    """A file of SQLite."""
+    if not name or name == ":memory:" or "\0" in name:
+        raise StoreUnavailable(repr(name), reason=f"is no file name; {FORMS}")
+    # SQLite would take such a name for an address with options.
+    path = f"./{name}" if name.startswith("file:") else name
+    return StoreLocation(
+        url=URL.create("sqlite+pysqlite", database=path), shown=name, file=path
+    )
+
+
+def _server(rest: str) -> StoreLocation:
+    """A database of PostgreSQL."""
+    url = _server_url(rest)
+    name = f"{url.username}@" if url.username else ""
+    # A socket, or the host, may be named behind the question mark, and so may a password.
+    host = url.host or ",".join(url.normalized_query.get("host", ()))
+    port = f":{url.port}" if url.port else ""
+    shown = f"postgresql://{name}{host}{port}/{url.database or ''}"
+    return StoreLocation(url=url, shown=shown, file="")
+
+
+def _server_url(rest: str) -> URL:
+    """Address of a server, if it is beyond doubt which part is the password."""
+    try:
+        address = urlsplit(f"postgresql://{rest}")
+        beyond = address.path + address.query + address.fragment
+        is_clear = address.netloc.count("@") <= 1 and "@" not in beyond
+        if is_clear and not address.fragment:
+            return make_url(f"postgresql+psycopg://{rest}")
+    except (ArgumentError, ValueError):
+        pass
+    reason = (
+        "is no address: postgresql://USER:PASSWORD@HOST:PORT/DATABASE, "
+        "with %40 for @, %2F for /, %3A for :, %23 for # and %3F for ? in the password"
+    )
+    # The cause would show what may be a password.
+    raise StoreUnavailable("postgresql://…", reason=reason) from None
+
+
+def require_openable(place: StoreLocation, *, is_new_allowed: bool) -> None:
+    """Refuse a file that cannot be a store, before SQLite makes one.
+
+    Raises
+    ------
+    StoreUnavailable
+        With what to do.
+    """
+    path, shown = place.file, place.shown
+    if not path:
+        return
+    if os.path.exists(path):
+        if not os.path.isfile(path):
+            raise StoreUnavailable(shown, reason=f"is no file; {FORMS}")
+        return
+    if not os.path.isdir(os.path.dirname(path) or "."):
+        raise StoreUnavailable(shown, reason="the folder does not exist; make it first")
+    if not is_new_allowed:
+        raise StoreUnavailable(shown, reason="there is no such file; check the name")

@@ -1,0 +1,120 @@
+"""Work-holding of a setup: from the user's table, else from the program.
+
+The program gives the bar and the points where it is clamped (ISO 14649-10,
+``clamping_positions``); a chuck is taken to grip from the one in front to the bar's end, in its
+whole diameter. The machine functions of an operation say whether a tailstock or a rest helps.
+Units mm.
+"""
+
+from dataclasses import dataclass
+
+from simulator.errors import LibraryError
+from simulator.physics.holding import GripSize
+from simulator.spec import (
+    Machine,
+)
+from simulator.work_holding import (
+    Chuck,
+    Holding,
+)
+from stepnc_model.entities.executables import Setup
+from stepnc_model.entities.turning import Facing, TurningMachineFunctions
+from stepnc_model.part21.values import Ref
+from stepnc_model.program import Program, ResolvedWorkingstep, Stock
+from stepnc_model.toolpath.task import clamps_of, stock_of
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BarGrip:
+    """Grip of a bar, along z of the setup."""
+
+    size: GripSize
+    face: float
+    """z where the jaws end"""
+    front: float
+    """z of the bar's free end, as it was bought"""
+    has_tailstock: bool = False
+    has_rest: bool = False
+    """whether a steady or a follow rest supports the bar as well"""
+
+    @property
+    def overhang(self) -> float:
+        """Length of the bar in front of the jaws."""
+        return max(0.0, self.front - self.face)
+
+    @property
+    def slenderness(self) -> float:
+        """L/D of the bar as it is clamped."""
+        return self.overhang / self.size.diameter
+
+
+def holding_of(program: Program, setup: Ref[Setup] | None, machine: Machine) -> Holding | None:
+    """Work-holding of a setup: the table that names it, else the one that names no setup."""
+    name = setup_id(program, setup).casefold()
+    found = {holding.setup.casefold(): holding for holding in machine.holdings}
+    return found.get(name) or found.get("")
+
+
+def setup_id(program: Program, setup: Ref[Setup] | None) -> str:
+    """Id of a setup; empty where there is none."""
+    return str(program.get(setup).its_id).strip() if setup is not None else ""
+
+
+def grip_of(program: Program, step: ResolvedWorkingstep, chuck: Chuck | None) -> BarGrip | None:
+    """Grip of a workingstep's bar; None where nothing states it and no chuck is given.
+
+    Raises
+    ------
+    LibraryError
+        When a chuck is given, and neither its table nor the program says where it grips.
+    """
+    stock = _stock(program, step)
+    told = chuck or Chuck(clamping_force=0.0, friction=0.0, source="")
+    clamps = [point[2] for point in clamps_of(program, step.setup)]
+    face = max(clamps, default=None) if told.jaw_face is None else told.jaw_face
+    length, diameter = told.grip_length, told.grip_diameter
+    if length is None and stock is not None and face is not None:
+        length = face - stock.low[2]
+    if diameter is None and stock is not None and stock.radius is not None:
+        diameter = 2.0 * stock.radius
+    found = {"jaw_face_z_mm": face, "grip_length_mm": length, "grip_diameter_mm": diameter}
+    missing = next((key for key, value in found.items() if value is None), "")
+    if length is not None and length <= 0.0:
+        missing = "grip_length_mm"
+    if missing or face is None or length is None or diameter is None or stock is None:
+        if chuck is not None:
+            raise _missing(program, missing or "jaw_face_z_mm")
+        return None
+    functions = _functions(program, step)
+    has_tailstock = bool(functions and functions.tail_stock)
+    if told.has_tailstock is not None:
+        has_tailstock = told.has_tailstock
+    return BarGrip(
+        size=GripSize(diameter=diameter, length=length),
+        face=face,
+        front=stock.high[2],
+        # Nobody faces the end that a centre stands in.
+        has_tailstock=has_tailstock and not isinstance(step.operation, Facing),
+        has_rest=bool(functions and (functions.steady_rest or functions.follow_rest)),
+    )
+
+
+def _missing(program: Program, key: str) -> LibraryError:
+    """Names of the values that are missing to judge a chuck."""
+    text = f"missing, and the bar and the clamping positions of {program.name} do not tell it"
+    return LibraryError(text, path="", key=f"holding.{key}")
+
+
+def _stock(program: Program, step: ResolvedWorkingstep) -> Stock | None:
+    """The bar as it was bought; None where it cannot be read."""
+    try:
+        return stock_of(program, step.setup)
+    except ValueError:
+        return None
+
+
+def _functions(program: Program, step: ResolvedWorkingstep) -> TurningMachineFunctions | None:
+    """Machine functions of an operation, if it has those of a lathe."""
+    ref = getattr(step.operation, "its_machine_functions", None)
+    found = program.model.entity(int(ref)) if ref is not None else None
+    return found if isinstance(found, TurningMachineFunctions) else None

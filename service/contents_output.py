@@ -1,0 +1,86 @@
+"""Content of a file as text and JSON: the verb ``check``."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from service.contents import Contents
+from service.rendering.columns import Column
+from service.rendering.records import dump, finding_record, records
+from service.rendering.text import print_findings, print_line, print_table
+from stepnc_model.program import Program, ResolvedWorkingstep
+
+MOST_INDENTED = 20
+"""levels of executables that a table shows by indenting"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExecutableRow:
+    """A line of the workplan."""
+
+    instance: str
+    entity: str
+    id: str
+    level: int
+    operation: str
+    tool: str
+
+
+EXECUTABLES: tuple[Column[ExecutableRow], ...] = (
+    Column(key="instance", heading="instance", value=lambda row: row.instance, is_key=True),
+    Column(
+        heading="executable",
+        value=lambda row: "  " * min(row.level, MOST_INDENTED) + row.entity.lower(),
+    ),
+    Column(key="entity", value=lambda row: row.entity),
+    Column(key="id", heading="id", value=lambda row: row.id),
+    Column(key="level", value=lambda row: row.level),
+    Column(heading="operation", value=lambda row: row.operation),
+    Column(heading="tool", value=lambda row: row.tool),
+)
+
+STEPS: tuple[Column[ResolvedWorkingstep], ...] = (
+    Column(key="id", value=lambda step: step.id),
+    Column(key="instance", value=lambda step: str(step.ref)),
+    Column(key="operation", value=lambda step: step.operation_type),
+    Column(key="tool", value=lambda step: str(step.tool_ref)),
+)
+
+
+def print_contents(contents: Contents) -> None:
+    """Content of a file."""
+    print_line(
+        f"{contents.name}: {contents.instances} instances, "
+        f"schemas {', '.join(contents.schemas) or 'none'}"
+    )
+    if contents.program is not None:
+        print_table(EXECUTABLES, list(_executables(contents.program)))
+    print_findings(contents.findings)
+    print_line("usable" if contents.is_usable else "cannot be used: see the errors above")
+
+
+def _executables(program: Program) -> Iterator[ExecutableRow]:
+    steps = {int(step.ref): step for step in program.workingsteps}
+    for each in program.executables:
+        step = steps.get(int(each.ref))
+        yield ExecutableRow(
+            instance=str(each.ref),
+            entity=each.keyword,
+            id=each.id,
+            level=each.level,
+            operation=step.operation_type if step else "",
+            tool=getattr(program.get(step.tool_ref), "its_id", "") if step else "",
+        )
+
+
+def contents_json(contents: Contents) -> str:
+    """Content of a file as JSON."""
+    program = contents.program
+    return dump({
+        "program": contents.name,
+        "schemas": list(contents.schemas),
+        "instances": contents.instances,
+        "is_usable": contents.is_usable,
+        "executables": records(EXECUTABLES, _executables(program)) if program else [],
+        "workingsteps": records(STEPS, program.workingsteps) if program else [],
+        "findings": [finding_record(finding) for finding in contents.findings],
+    })

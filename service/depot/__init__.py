@@ -1,1 +1,0 @@
-"""What the service keeps in its data folder: programs, jobs, keys, machines, materials."""

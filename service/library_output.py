@@ -1,0 +1,135 @@
+"""Machines and materials as text and JSON."""
+
+from collections.abc import Sequence
+from dataclasses import asdict
+
+from service.rendering.columns import Column
+from service.rendering.records import dump, plain
+from service.rendering.text import print_line, print_table
+from simulator.spec import Machine, WorkMaterial
+from simulator.work_holding import Clamp, Holding
+from stepnc_model.units import (
+    kn_from_newtons,
+    kw_from_watts,
+    m_min_from_speed,
+    mm_min_from_speed,
+    n_um_from_n_mm,
+    rpm_from_rev_s,
+)
+
+Fact = tuple[str, str]
+
+MACHINES: tuple[Column[Machine], ...] = (
+    Column(heading="name", value=lambda machine: machine.name, is_key=True),
+    Column(heading="kind", value=lambda machine: machine.kind.value),
+    Column(
+        heading="kW", form="g", help="greatest power of the spindle's motor",
+        value=lambda machine: max(kw_from_watts(each.power) for each in machine.spindle.curve),
+    ),
+    Column(
+        heading="rpm", form="g", help="greatest speed of the spindle",
+        value=lambda machine: None
+        if machine.spindle.max_speed is None
+        else rpm_from_rev_s(machine.spindle.max_speed),
+    ),
+    Column(heading="title", value=lambda machine: machine.title),
+)  # fmt: skip
+
+MATERIALS: tuple[Column[WorkMaterial], ...] = (
+    Column(heading="name", value=lambda material: material.name, is_key=True),
+    Column(heading="ISO", value=lambda material: material.iso_group, help="group of ISO 513"),
+    Column(heading="k_c1.1 N/mm2", form="g", value=lambda material: material.kienzle.k_c11),
+    Column(heading="m_c", form="g", value=lambda material: material.kienzle.m_c),
+    Column(heading="title", value=lambda material: material.title),
+)
+
+FACTS: tuple[Column[Fact], ...] = (
+    Column(heading="what", value=lambda fact: fact[0]),
+    Column(heading="value", value=lambda fact: fact[1]),
+)
+
+
+def print_entries(kind: str, entries: Sequence[Machine | WorkMaterial]) -> None:
+    """A library as a table."""
+    if kind == "machines":
+        print_table(MACHINES, [each for each in entries if isinstance(each, Machine)])
+    else:
+        print_table(MATERIALS, [each for each in entries if isinstance(each, WorkMaterial)])
+
+
+def print_entry(entry: Machine | WorkMaterial) -> None:
+    """One machine or material."""
+    print_line(f"{entry.name}: {entry.title}")
+    facts = _machine_facts(entry) if isinstance(entry, Machine) else _material_facts(entry)
+    print_table(FACTS, facts)
+    print_line(f"source: {entry.source}")
+    for remark in entry.remarks:
+        print_line(f"remark: {remark}")
+
+
+def entry_json(entry: Machine | WorkMaterial) -> str:
+    """One machine or material as JSON, in canonical units (mm, s, N, W, rev/s)."""
+    return dump(plain(asdict(entry)))
+
+
+def entries_json(entries: Sequence[Machine | WorkMaterial]) -> str:
+    """All machines or materials by name and title."""
+    return dump([{"name": entry.name, "title": entry.title} for entry in entries])
+
+
+def _machine_facts(machine: Machine) -> list[Fact]:
+    """Machine data for a planner."""
+    facts: list[Fact] = [
+        (
+            f"spindle at {rpm_from_rev_s(point.speed):g} rpm",
+            f"{kw_from_watts(point.power):g} kW"
+            + (f", {point.torque / 1000.0:g} N·m" if point.torque else ""),
+        )
+        for point in machine.spindle.curve
+    ]
+    facts.append(("efficiency", f"{machine.spindle.efficiency:g}"))
+    for name, value in (
+        ("greatest speed rpm", machine.spindle.max_speed and machine.spindle.max_speed * 60.0),
+        ("rapid mm/min", machine.rapid and mm_min_from_speed(machine.rapid)),
+        ("greatest feed mm/min", machine.max_feed and mm_min_from_speed(machine.max_feed)),
+        ("greatest cutting force N", machine.max_cutting_force),
+        ("greatest depth mm", machine.max_axial_depth),
+        ("base power kW", kw_from_watts(machine.base_power)),
+    ):
+        facts.append((name, "not limited" if value is None else f"{value:g}"))
+    for mode in machine.modes:
+        of = mode.tool or (f"{mode.tool_diameter:g} mm" if mode.tool_diameter else "")
+        facts.append((
+            f"mode of {mode.part.value} {of}".rstrip() + f" along {mode.direction.value}",
+            f"{mode.natural_frequency:g} Hz, damping {mode.damping_ratio:g}, "
+            f"{n_um_from_n_mm(mode.stiffness):g} N/µm",
+        ))
+    facts += [_held(holding) for holding in machine.holdings]
+    return facts
+
+
+def _held(holding: Holding) -> Fact:
+    """One work-holding of a machine."""
+    of = f" of {holding.setup}" if holding.setup else ""
+    if isinstance(holding, Clamp):
+        force = f"{kn_from_newtons(holding.holding_force):g} kN"
+        return f"clamps{of}", f"{force}, friction {holding.friction:g}"
+    force = f"{kn_from_newtons(holding.clamping_force):g} kN at rest"
+    return f"chuck{of}", f"{force}, {holding.jaws} jaws, friction {holding.friction:g}"
+
+
+def _material_facts(material: WorkMaterial) -> list[Fact]:
+    """Material data for a planner."""
+    facts: list[Fact] = [
+        ("ISO group", material.iso_group or "none"),
+        ("also called", ", ".join(material.equivalents)),
+        ("k_c1.1 N/mm2", f"{material.kienzle.k_c11:g}"),
+        ("m_c", f"{material.kienzle.m_c:g}"),
+    ]
+    for window in material.windows:
+        body = f" {window.tool_body.value}" if window.tool_body else ""
+        low = window.min_cutting_speed
+        high = window.max_cutting_speed
+        shown = " to ".join(f"{m_min_from_speed(each):g}" for each in (low, high) if each)
+        facts.append((f"m/min with {window.cutting_material.value}{body}", shown))
+    return facts

@@ -1,0 +1,398 @@
+"""A plan as text, JSON and one self-contained HTML page.
+
+Keys of JSON carry their units and are fixed: others parse them.
+"""
+
+from collections.abc import Callable
+from functools import partial
+from math import isfinite
+from typing import TYPE_CHECKING, Any
+
+from optimiser.advice import Advice, AdviceStatus, EvaluatedSetting, LimitLoad, Plan, tightest
+from optimiser.problem import LimitName
+from optimiser.stability import Basis
+from service.rendering.columns import Cell, Change, Column
+from service.rendering.records import dump, finding_record, record, records
+from service.rendering.text import RED, print_findings, print_line, print_table
+from stepnc_model.units import (
+    kw_from_watts,
+    mm_min_from_speed,
+    nm_from_nmm,
+    rpm_from_rev_s,
+    um_from_mm,
+)
+
+if TYPE_CHECKING:
+    from optimiser.advice import ParetoPoint
+    from service.confirmation import Confirmation, ConfirmedStep
+
+
+def _change(value: Callable[[EvaluatedSetting], Cell]) -> Callable[[Advice], Cell]:
+    """A value as programmed and as advised."""
+
+    def pair(advice: Advice) -> Cell:
+        before, after = advice.before, advice.after
+        if before is None:
+            return None
+        return Change(before=value(before), after=value(after or before))
+
+    return pair
+
+
+def _depth(state: EvaluatedSetting) -> str:
+    return f"{state.setting.depth:.4g} x {state.setting.passes}"
+
+
+def _plunge_feed(state: EvaluatedSetting) -> float | None:
+    """Feed on the way down, mm/min; None where there is none of its own."""
+    return None if state.plunge_feed is None else mm_min_from_speed(state.plunge_feed)
+
+
+def _energy(state: EvaluatedSetting) -> float:
+    return state.energy
+
+
+def _active(advice: Advice) -> str:
+    """Active limit, or why there is none."""
+    is_advised = advice.after is not None and advice.status is AdviceStatus.ADVISED
+    return advice.active_words if is_advised else advice.status.value
+
+
+NAME: Column[Advice] = Column(
+    heading="workingstep", value=lambda advice: advice.workingstep.id, is_key=True
+)
+TIME: Column[Advice] = Column(
+    heading="time s", form=".1f", value=_change(lambda state: state.time)
+)
+SHOWN: tuple[Column[Advice], ...] = (
+    NAME,
+    Column(
+        heading="operation", value=lambda advice: advice.workingstep.operation_type,
+        is_words=True,
+    ),
+    Column(heading="tool", value=lambda advice: advice.tool.id, is_words=True),
+    Column(
+        heading="feed mm/min", form=".1f", help="v_f",
+        value=_change(lambda state: mm_min_from_speed(state.feed)),
+    ),
+    Column(
+        heading="plunge mm/min", form=".1f", help="feed on the way down into the material",
+        value=_change(_plunge_feed), is_optional=True,
+    ),
+    Column(
+        heading="rpm", form=".1f", help="n",
+        value=_change(lambda state: rpm_from_rev_s(state.setting.speed)),
+    ),
+    Column(heading="depth mm x passes", help="a_p", value=_change(_depth)),
+)  # fmt: skip
+ACTIVE: Column[Advice] = Column(heading="active limit", value=_active, is_words=True)
+
+TEXT = (
+    *SHOWN,
+    ACTIVE,
+    TIME,
+)
+"""columns on a terminal"""
+
+PAGE = (
+    *SHOWN,
+    Column(
+        heading="kW", form=".2f", help="power that the cut draws from the motor",
+        value=_change(lambda state: kw_from_watts(state.motor_power)),
+    ),
+    ACTIVE,
+    TIME,
+)  # fmt: skip
+"""columns on the page"""
+
+FRONT: "tuple[Column[ParetoPoint], ...]" = (
+    Column(key="time_s", heading="time s", form=".2f", value=lambda point: point.state.time),
+    Column(
+        key="roughness_ra_um", heading="Ra µm", form=".3g",
+        value=lambda point: um_from_mm(point.state.roughness or 0.0) or None,
+    ),
+    Column(
+        key="energy_j", heading="energy kJ", form=".2f", scale=1e-3,
+        value=lambda point: point.state.energy,
+    ),
+    Column(
+        key="feed_mm_min", heading="feed mm/min", form=".1f",
+        value=lambda point: mm_min_from_speed(point.state.feed),
+    ),
+    Column(
+        key="spindle_rpm", heading="rpm", form=".0f",
+        value=lambda point: rpm_from_rev_s(point.state.setting.speed),
+    ),
+    Column(key="passes", heading="passes", value=lambda point: point.state.setting.passes),
+)  # fmt: skip
+
+SETTING: tuple[Column[EvaluatedSetting], ...] = (
+    Column(key="feed_mm_min", value=lambda state: mm_min_from_speed(state.feed)),
+    Column(key="spindle_rpm", value=lambda state: rpm_from_rev_s(state.setting.speed)),
+    Column(key="feed_per_tooth_mm", value=lambda state: state.setting.feed),
+    Column(key="axial_depth_mm", value=lambda state: state.setting.depth),
+    Column(key="passes", value=lambda state: state.setting.passes),
+    Column(key="plunge_feed_mm_min", value=_plunge_feed),
+    Column(key="plunge_feed_per_tooth_mm", value=lambda state: state.setting.plunge_feed),
+)
+
+LOAD: tuple[Column[LimitLoad], ...] = (
+    Column(key="name", value=lambda load: load.limit.name.value),
+    Column(key="value", value=lambda load: load.value * load.limit.scale),
+    Column(key="bound", value=lambda load: load.bound * load.limit.scale),
+    Column(key="unit", value=lambda load: load.limit.unit),
+    Column(key="sense", value=lambda load: load.limit.sense.value),
+    Column(key="safety_factor", value=lambda load: load.limit.safety_factor),
+    Column(key="margin", value=lambda load: load.margin),
+)
+"""one limit; its margin is a share of the bound, after the safety factor"""
+
+
+def print_plan(plan: Plan, confirmation: "Confirmation | None" = None) -> None:
+    """Advice for a program: a row for each workingstep, then totals and findings."""
+    material = plan.material.material
+    print_line(
+        f"{plan.program}: mode {plan.mode.value}, machine {plan.machine.name} "
+        f"({plan.machine.title}), material {material.title}"
+    )
+    total = f"{plan.time_before:.1f} -> {plan.time_after:.1f}"
+    print_table(TEXT, plan.advices, foot={"workingstep": "total", "time s": total})
+    print_line(_safety(plan))
+    saving = sum(advice.saving_of_free_speed for advice in plan.advices)
+    if saving > 0.0:
+        print_line(f"a free spindle speed would save {saving:.1f} s (--free feed,depth,speed)")
+    print_line(
+        f"energy {plan.energy_before / 1e3:.1f} -> {plan.energy_after / 1e3:.1f} kJ; "
+        f"totals leave out {plan.left_out}"
+    )
+    for advice in plan.advices:
+        print_line(f"  {advice.workingstep.id}: {_reason(advice)}")
+    for advice in plan.advices:
+        if advice.front:
+            print_line(f"front of {advice.workingstep.id}:")
+            print_table(FRONT, advice.front)
+    if confirmation is not None:
+        _print_confirmation(confirmation)
+    print_findings(plan.findings)
+
+
+def _safety(plan: Plan) -> str:
+    """At which quantile of k_c bounds are kept, and what that costs."""
+    factors = [advice.safety_factor for advice in plan.advices if advice.safety_factor != 1.0]
+    if not factors:
+        return "loads are nominal: nothing is added for the spread of k_c"
+    low, high = f"{min(factors):.3g}", f"{max(factors):.3g}"
+    cost = sum(advice.cost_of_safety for advice in plan.advices)
+    return (
+        f"bounds are kept at the {100.0 * plan.safety:g} % quantile of k_c (--safety), nominal "
+        f"loads × {low if low == high else f'{low} to {high}'}, which costs {cost:.1f} s"
+    )
+
+
+def _print_confirmation(confirmation: "Confirmation") -> None:
+    """Promised and found values, and their ratios."""
+    print_line("promised -> found on the virtual machine (found / promised)")
+    columns: list[Column[ConfirmedStep]] = [
+        Column(heading="workingstep", value=lambda step: step.id),
+        *(
+            Column(heading=figure.heading, value=partial(_figure_at, place))
+            for place, figure in enumerate(confirmation.steps[0].figures)
+        ),
+    ]
+    print_table(columns, confirmation.steps)
+    for text in confirmation.passed:
+        print_line(f"bound passed: {text}", RED)
+
+
+def _figure_at(place: int, step: "ConfirmedStep") -> str:
+    figure = step.figures[place]
+    if figure.ratio is None:
+        return "" if figure.found == 0.0 else f"0 -> {figure.found:.4g}"
+    return f"{figure.promised:.4g} -> {figure.found:.4g} ({figure.ratio:.3f})"
+
+
+def _reason(advice: Advice) -> str:
+    """Why this feed, and what would change it."""
+    if advice.status is not AdviceStatus.ADVISED or advice.after is None:
+        return f"{advice.status.value}: {advice.reason}"
+    text = advice.reason
+    limit = next(load.limit for load in advice.after.loads if load.limit.name is advice.active)
+    if advice.saving_of_one_more > 0.0:
+        text += f"; {limit.step:g} {limit.unit} more saves {advice.saving_of_one_more:.2g} s"
+    if (
+        advice.after.roughness is not None
+        and advice.cut is not None
+        and advice.cut.is_finishing
+    ):
+        text += f"; leaves Ra {advice.after.roughness * 1e3:.3g} µm"
+    deepest = advice.deepest_first_time
+    if deepest is not None and deepest > advice.after.time * 1.001:
+        text += f"; the deepest passes would have taken {deepest:.1f} s"
+    if advice.plunge_reason:
+        text += f"; plunge feed: {advice.plunge_reason}"
+    return text + _stability_words(advice, advice.after)
+
+
+def _stability_words(advice: Advice, state: EvaluatedSetting) -> str:
+    """The depth that measured modes allow, or why they are not asked."""
+    found = advice.stability
+    if found is None or found.basis is Basis.ESTIMATED:
+        return ""
+    load = next((load for load in state.loads if load.limit.name is LimitName.STABILITY), None)
+    if load is None:
+        return f"; stability not bounded: {found.reason or 'damped at this speed'}"
+    text = f"; stable to {load.bound:.3g} mm at this speed"
+    if found.least is not None:
+        text += f", {found.least:.3g} mm at any"
+    return text + f" ({found.reason})"
+
+
+def plan_json(plan: Plan, confirmation: "Confirmation | None" = None) -> str:
+    """A plan as JSON, and what its run found where one was asked for."""
+    found = {} if confirmation is None else {"confirmation": _confirmation(confirmation)}
+    return dump({
+        "program": plan.program,
+        "mode": plan.mode.value,
+        "machine": plan.machine.name,
+        "material": plan.material.material.name,
+        "safety": {
+            "quantile": plan.safety,
+            "cost_s": sum(advice.cost_of_safety for advice in plan.advices),
+        },
+        "free_speed_saves_s": sum(advice.saving_of_free_speed for advice in plan.advices),
+        "workingsteps": [_advice(advice) for advice in plan.advices],
+        "total_time_s": {"before": plan.time_before, "after": plan.time_after},
+        "findings": [finding_record(finding) for finding in plan.findings],
+        **found,
+    })
+
+
+def _confirmation(confirmation: "Confirmation") -> dict[str, Any]:
+    """Promised and found values."""
+    return {
+        "workingsteps": [
+            {
+                "id": step.id,
+                **{
+                    figure.key: {
+                        "promised": figure.promised,
+                        "found": figure.found,
+                        "ratio": figure.ratio,
+                        "bound": figure.bound if isfinite(figure.bound) else None,
+                    }
+                    for figure in step.figures
+                },
+            }
+            for step in confirmation.steps
+        ],
+        "passed": list(confirmation.passed),
+    }
+
+
+def _advice(advice: Advice) -> dict[str, Any]:
+    """One workingstep."""
+    before, after = advice.before, advice.after
+    shown = after or before
+    step = advice.workingstep
+    return {
+        "id": step.id,
+        "instance": str(step.ref),
+        "operation": step.operation_type,
+        "tool": advice.tool.id,
+        "status": advice.status.value,
+        "reason": advice.reason,
+        "programmed": before and record(SETTING, before),
+        "advised": after and record(SETTING, after),
+        "active_limit": advice.active.value if advice.active else None,
+        "limits": records(LOAD, tightest(shown.loads)) if shown else [],
+        "motor_power_kw": kw_from_watts(shown.motor_power) if shown else None,
+        "cutting_force_n": shown.cutting_force if shown else None,
+        "roughness_ra_um": um_from_mm(shown.roughness) if shown and shown.roughness else None,
+        "energy_j": shown.energy if shown else None,
+        "time_s": {
+            "before": before.time if before else None,
+            "after": after.time if after else None,
+        },
+        "sensitivity": _sensitivity(advice),
+        "deepest_pass_first_time_s": advice.deepest_first_time,
+        "stability": _stability(advice),
+        "plunge": _plunge(advice),
+        "holding_load": _holding_load(advice),
+        "prices": {name.value: price for name, price in advice.prices},
+        "pareto": records(FRONT, advice.front),
+    }
+
+
+def _stability(advice: Advice) -> dict[str, Any] | None:
+    """Stability of the cut; the bound itself is one of the limits."""
+    found = advice.stability
+    if found is None:
+        return None
+    return {
+        "basis": found.basis.value,
+        "reason": found.reason,
+        "stable_at_any_speed_mm": found.least,
+        "band_mm": found.band,
+    }
+
+
+def _plunge(advice: Advice) -> dict[str, Any] | None:
+    """Plunge feed and the limit that holds it; null where no way down has one of its own."""
+    shown = advice.after or advice.before
+    if shown is None or not (shown.plunge_loads or advice.plunge_fault):
+        return None
+    return {
+        "reason": advice.plunge_reason,
+        "fault": advice.plunge_fault or None,
+        "limits": records(LOAD, tightest(shown.plunge_loads)),
+    }
+
+
+def _holding_load(advice: Advice) -> dict[str, float] | None:
+    """Loads on chuck, vice or clamps; their bounds are among the limits."""
+    load = advice.holding_load
+    if load is None:
+        return None
+    return {
+        "torque_nm": nm_from_nmm(load.torque),
+        "moment_nm": nm_from_nmm(load.moment),
+        "force_n": load.force,
+        "lift_n": load.lift,
+    }
+
+
+def _sensitivity(advice: Advice) -> dict[str, Any] | None:
+    """Saving for one more of the active limit's unit."""
+    if advice.active is None or advice.after is None:
+        return None
+    limit = next(load.limit for load in advice.after.loads if load.limit.name is advice.active)
+    return {
+        "limit": advice.active.value,
+        "one_more": limit.step,
+        "unit": limit.unit,
+        "saves_s": advice.saving_of_one_more,
+    }
+
+
+def report_page(plan: Plan) -> str:
+    """The page as HTML.
+
+    Parameters
+    ----------
+    plan : Plan
+    """
+    from service.figures import plan_figures  # noqa: PLC0415 (plotly)
+    from service.rendering.pages import plot, rendered  # noqa: PLC0415 (Jinja)
+
+    before, after = plan.time_before, plan.time_after
+    return rendered(
+        "plan.html.jinja",
+        plan=plan,
+        columns=PAGE,
+        change=f"{after / before - 1.0:+.0%}" if before else "",
+        reasons=[
+            (advice.status.value, f"{advice.workingstep.id}: {_reason(advice)}")
+            for advice in plan.advices
+        ],
+        plots=[plot(each, f"plot{row}") for row, each in enumerate(plan_figures(plan))],
+    )

@@ -1,0 +1,84 @@
+"""Rows as JSON and as lines of files.
+
+Keys carry their units and are fixed: others parse them.
+"""
+
+import json
+from collections.abc import Iterable, Iterator, Sequence
+from datetime import datetime
+from math import isfinite
+from typing import Any, cast
+
+from service.flat_file import FileColumn, Row, Value
+from service.rendering.columns import Change, Column, R
+from stepnc_model.errors import Finding
+
+
+def record(columns: Sequence[Column[R]], row: R) -> dict[str, Any]:
+    """One row as an object; keys with dots nest.
+
+    Examples
+    --------
+    >>> columns = [Column(key="force_n.mean", value=lambda row: row)]
+    >>> record(columns, 12.0)
+    {'force_n': {'mean': 12.0}}
+    """
+    found: dict[str, Any] = {}
+    for column in columns:
+        if column.key:
+            *path, last = column.key.split(".")
+            place = found
+            for name in path:
+                place = place.setdefault(name, {})
+            place[last] = plain(column.value(row))
+    return found
+
+
+def records(columns: Sequence[Column[R]], rows: Iterable[R]) -> list[dict[str, Any]]:
+    """An object for each row."""
+    return [record(columns, row) for row in rows]
+
+
+def file_columns(columns: Sequence[Column[R]]) -> tuple[FileColumn, ...]:
+    """Columns of a CSV or Parquet file."""
+    return tuple(FileColumn(name=each.key, kind=each.kind) for each in columns if each.key)
+
+
+def file_rows(columns: Sequence[Column[R]], rows: Iterable[R]) -> Iterator[Row]:
+    """Rows of a CSV or Parquet file, as they come."""
+    keyed = [each for each in columns if each.key]
+    for row in rows:
+        yield {each.key: cast(Value, each.value(row)) for each in keyed}
+
+
+def finding_record(finding: Finding) -> dict[str, Any]:
+    """One finding."""
+    return {
+        "severity": finding.severity.value,
+        "message": finding.message,
+        "entity": finding.entity,
+        "attribute": finding.attribute,
+        "line": finding.line,
+        "rule": finding.rule,
+    }
+
+
+def plain(value: Any) -> Any:
+    """The value as JSON knows it: null where a number is not finite."""
+    match value:
+        case float():
+            return value if isfinite(value) else None
+        case datetime():
+            return value.isoformat()
+        case Change(before=before, after=after):
+            return {"before": plain(before), "after": plain(after)}
+        case dict():
+            return {key: plain(each) for key, each in value.items()}
+        case list() | tuple():
+            return [plain(each) for each in value]
+    return value
+
+
+def dump(value: object) -> str:
+    """Readable JSON without NaN."""
+    return json.dumps(value, indent=2, ensure_ascii=False, allow_nan=False, default=str)

@@ -1,0 +1,1 @@
+"""Requests of the verbs: what the command line fills, REST validates and jobs keep."""

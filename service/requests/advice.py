@@ -1,0 +1,139 @@
+"""Request of ``optimise``: feeds for a program."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import Annotated
+
+from annotated_types import Interval, Len, MaxLen
+
+from optimiser.modes import Free, Mode
+from optimiser.safety import GREATEST_QUANTILE, LEAST_QUANTILE, USUAL_QUANTILE
+from service.requests.fields import LONGEST_NAME, About, Request
+from stepnc_model.file_profile import FileProfile
+from stepnc_model.post.dialect import Dialect
+from stepnc_model.units import PROFILES
+
+Name = Annotated[str, MaxLen(LONGEST_NAME)]
+
+Units = StrEnum("Units", {name.replace("-", "_"): name for name in PROFILES})  # type: ignore[misc]
+"""unit profiles of files, by name"""
+
+ISO = Units("iso")
+"""as the standard says"""
+
+MachineName = Annotated[
+    Name,
+    About(
+        "one of `stepnc machines`, or your own TOML or XML file (default: one that suits)",
+        flag="--machine", examples=("vmc15",),
+    ),
+]  # fmt: skip
+MaterialName = Annotated[
+    Name,
+    About(
+        "one of `stepnc materials`, or your own TOML file (default: as the program says)",
+        flag="--material", examples=("c45",),
+    ),
+]  # fmt: skip
+FileUnits = Annotated[Units, About("units of feeds and speeds in the file", flag="--units")]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AdviceRequest(Request):
+    """Request of an advice."""
+
+    mode: Annotated[
+        Mode,
+        About(
+            "TC least time, QC fastest feed that keeps the roughness, EC energy", flag="--mode"
+        ),
+    ] = Mode.TC
+    machine: MachineName = ""
+    material: MaterialName = ""
+    units: FileUnits = ISO
+    roughness_um: Annotated[
+        float | None,
+        Interval(gt=0.0, le=1000.0),
+        About(
+            "Ra in µm that finished surfaces must keep", unit="µm", name="roughness",
+            flag="--roughness", metavar="UM",
+        ),
+    ] = None  # fmt: skip
+    free: Annotated[
+        tuple[Free, ...],
+        Len(1, 3),
+        About("what may change, of feed,depth,speed", flag="--free", metavar="WORDS"),
+    ] = (Free.FEED, Free.DEPTH)
+    workingsteps: Annotated[
+        tuple[Name, ...],
+        MaxLen(10_000),
+        About(
+            "only this one, by its id or #instance; repeatable (default: all)",
+            flag="--workingstep", metavar="ID",
+        ),
+    ] = ()  # fmt: skip
+    profile: Annotated[
+        FileProfile,
+        About("how records are written: optimisation or standard", flag="--profile"),
+    ] = FileProfile.OPTIMISATION
+    nc_control: Annotated[
+        Dialect | None,
+        About(
+            "also NC code with the advised feeds, for linuxcnc, fanuc, haas, sinumerik, "
+            "heidenhain or canonical",
+            name="control", flag="--nc", metavar="CONTROL", examples=("linuxcnc",),
+        ),
+    ] = None  # fmt: skip
+    has_pareto: Annotated[
+        bool, About("also the front of time, roughness and energy", flag="--pareto")
+    ] = False
+    tool_change_s: Annotated[
+        float,
+        Interval(ge=0.0, le=86_400.0),
+        About(
+            "time to change a worn tool, in s; tool life then counts", unit="s",
+            name="tool change", flag="--tool-change-s", metavar="S",
+        ),
+    ] = 0.0  # fmt: skip
+    has_corrections: Annotated[bool, About("plan with what was learned and accepted")] = True
+    is_confirmed: Annotated[
+        bool,
+        About(
+            "run the advised program on the virtual machine and compare what it finds with "
+            "the plan; exit 5 where a bound is exceeded",
+            flag="--confirm",
+        ),
+    ] = False
+    stock: Annotated[
+        Name,
+        About(
+            "raw part of a program that draws none, in mm: x0,y0,z0,x1,y1,z1 or "
+            "diameter,z0,z1",
+            flag="--stock", metavar="NUMBERS", examples=("0,0,-30,100,120,5",),
+        ),
+    ] = ""  # fmt: skip
+    safety: Annotated[
+        float,
+        Interval(ge=LEAST_QUANTILE, le=GREATEST_QUANTILE),
+        About(
+            "quantile of k_c, by its spread in catalogues or as learned, at which loads keep "
+            "their bounds; 0.5: nominal",
+            flag="--safety", metavar="Q",
+        ),
+    ] = USUAL_QUANTILE  # fmt: skip
+    centre_cutting: Annotated[
+        Mapping[Name, bool],
+        MaxLen(1000),
+        About(
+            "whether tools cut over centre, by their ids", examples=({"END MILL 10MM": True},)
+        ),
+    ] = field(default_factory=dict, hash=False)
+    allow_plunge: Annotated[
+        bool,
+        About(
+            "let tools that do not cut over centre go straight down into solid material; "
+            "exit 5 without",
+            flag="--allow-plunge",
+        ),
+    ] = False

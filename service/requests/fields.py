@@ -1,0 +1,267 @@
+"""Fields of requests: their documentation, bounds and units, written once.
+
+A request is a frozen dataclass. Its fields are ``Annotated`` with :class:`About` and with
+bounds of :mod:`annotated_types`. From these come the options of the command line and their
+help, the schemas of OpenAPI, and the checks of values. Names of fields are keys in JSON.
+"""
+
+import argparse
+from collections.abc import Mapping
+from dataclasses import MISSING, Field, dataclass, fields, replace
+from enum import StrEnum
+from types import UnionType
+from typing import (
+    Annotated,
+    Any,
+    ClassVar,
+    TypeVar,
+    Union,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
+
+from annotated_types import Interval, MaxLen
+
+from stepnc_model.errors import StepNcError
+
+E = TypeVar("E", bound=StrEnum)
+R = TypeVar("R", bound="Request")
+
+LONGEST_NAME = 200
+"""characters of a name"""
+
+
+@dataclass(frozen=True, slots=True)
+class About:
+    """Documentation of a field."""
+
+    text: str
+    """of help and OpenAPI"""
+    unit: str = ""
+    name: str = ""
+    """in messages; as the field when empty"""
+    flag: str = ""
+    """option of the command line; empty: there is none"""
+    metavar: str | None = None
+    examples: tuple[object, ...] = ()
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
+        """Description and examples in OpenAPI; pydantic calls it."""
+        found: dict[str, Any] = {**handler(schema), "description": self.text}
+        if self.examples:
+            found["examples"] = list(self.examples)
+        return found
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """A request of a verb."""
+
+    __pydantic_config__: ClassVar[dict[str, Any]] = {"extra": "forbid"}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RequestField:
+    """A field with what its type says."""
+
+    name: str
+    kind: Any
+    """type of a value; of a sequence that of its members"""
+    is_sequence: bool
+    is_optional: bool
+    about: About
+    bounds: tuple[Any, ...]
+    default: Any
+
+    @property
+    def label(self) -> str:
+        """Name in messages."""
+        return self.about.name or self.name.replace("_", " ")
+
+
+def fields_of(kind: type[Request]) -> list[RequestField]:
+    """Fields of a request that are documented."""
+    hints = get_type_hints(kind, include_extras=True)
+    return [found for each in fields(kind) if (found := _field(each, hints[each.name]))]
+
+
+def _field(field: Field[Any], hint: Any) -> RequestField | None:
+    if get_origin(hint) is not Annotated:
+        return None
+    kind, *extras = get_args(hint)
+    about = next((each for each in extras if isinstance(each, About)), None)
+    if about is None:
+        return None
+    is_optional = get_origin(kind) in {Union, UnionType}
+    if is_optional:
+        kind = next(each for each in get_args(kind) if each is not type(None))
+    is_sequence = get_origin(kind) is tuple
+    if is_sequence:
+        kind = get_args(kind)[0]
+    if get_origin(kind) is Annotated:
+        kind = get_args(kind)[0]
+    default = field.default if field.default_factory is MISSING else field.default_factory()
+    return RequestField(
+        name=field.name,
+        kind=kind,
+        is_sequence=is_sequence,
+        is_optional=is_optional,
+        about=about,
+        bounds=tuple(extras),
+        default=default,
+    )
+
+
+def add_options(
+    parser: argparse.ArgumentParser,
+    kind: type[Request],
+    *,
+    usual: Mapping[str, object] | None = None,
+) -> None:
+    """Options of the command line for the fields of a request that have a flag.
+
+    Parameters
+    ----------
+    parser : ArgumentParser
+    kind : type
+    usual : mapping, optional
+        Values by the names of fields, for which this command has its own default.
+    """
+    for each in fields_of(kind):
+        field = replace(each, default=(usual or {}).get(each.name, each.default))
+        flag, about = field.about.flag, field.about
+        if not flag:
+            continue
+        if field.kind is bool:
+            parser.add_argument(flag, dest=field.name, action="store_true", help=_help(field))
+        elif field.is_sequence and not field.default:
+            parser.add_argument(
+                flag, dest=field.name, action="append", default=[], metavar=about.metavar,
+                help=_help(field),
+            )  # fmt: skip
+        else:
+            parser.add_argument(
+                flag, dest=field.name, default=None, metavar=about.metavar, help=_help(field),
+                type=field.kind if field.kind in {int, float} else str,
+            )  # fmt: skip
+
+
+def _help(field: RequestField) -> str:
+    """Help of an option, with its default."""
+    text = field.about.text.replace("%", "%%")
+    shown = field.default
+    if field.kind is bool or shown is None or shown == () or not str(shown):
+        return text
+    if isinstance(shown, tuple):
+        shown = ",".join(shown)
+    return f"{text} (default: {shown})"
+
+
+def from_options(kind: type[R], options: argparse.Namespace, **values: object) -> R:
+    """A request as the user typed it.
+
+    Parameters
+    ----------
+    kind : type
+    options : Namespace
+        With the options of :func:`add_options`.
+    **values
+        Of fields without an option.
+
+    Raises
+    ------
+    StepNcError
+        When a word is none that the field takes.
+    """
+    for field in fields_of(kind):
+        typed = getattr(options, field.name, None) if field.about.flag else None
+        if typed is not None and typed != []:
+            values[field.name] = _read(field, typed)
+    return kind(**values)
+
+
+def _read(field: RequestField, typed: Any) -> Any:
+    """A value as the field has it; sequences are words with commas, or options again."""
+    if field.is_sequence:
+        words = typed if isinstance(typed, list) else typed.split(",")
+        return tuple(_member(field, word.strip()) for word in words)
+    return _member(field, typed)
+
+
+def _member(field: RequestField, typed: Any) -> Any:
+    if isinstance(field.kind, type) and issubclass(field.kind, StrEnum):
+        return member_of(field.kind, typed, field.label)
+    return typed
+
+
+def member_of(kind: type[E], word: str, label: str) -> E:
+    """Member of an enumeration by its value, in upper or lower case.
+
+    Raises
+    ------
+    StepNcError
+        When there is none.
+    """
+    for member in kind:
+        if member.value.lower() == word.lower():
+            return member
+    known = ", ".join(member.value for member in kind)
+    raise StepNcError(f"unknown {label} '{word}'; known: {known}")
+
+
+def require_bounds(request: Request) -> None:
+    """Check that all values are within their bounds.
+
+    Raises
+    ------
+    StepNcError
+        With name, value, bound and unit of the first that is not.
+    """
+    for field in fields_of(type(request)):
+        value = getattr(request, field.name)
+        unit = f" {field.about.unit}" if field.about.unit else ""
+        for bound in field.bounds:
+            if value is not None and (words := _broken(value, bound)):
+                shown = f"{value:g}" if isinstance(value, int | float) else f"of {len(value)}"
+                raise StepNcError(f"{field.label} {shown}{unit}: it must be {words}{unit}")
+
+
+def _broken(value: Any, bound: Any) -> str:
+    """The bound in words if a value breaks it, else nothing."""
+    match bound:
+        case Interval(gt=gt, ge=ge, lt=lt, le=le):
+            is_low = (gt is None or value > gt) and (ge is None or value >= ge)
+            if is_low and (lt is None or value < lt) and (le is None or value <= le):
+                return ""
+            low = f"{ge:g}" if gt is None else f"above {gt:g}"
+            return f"{low} to {le:g}" if lt is None else f"at least {low} and below {lt:g}"
+        case MaxLen(max_length=most) if len(value) > most:
+            return f"at most {most} long"
+    return ""
+
+
+def dumped(request: Request) -> dict[str, Any]:
+    """Values as JSON knows them, under the names of the fields."""
+    from pydantic import TypeAdapter  # noqa: PLC0415 (slow to import)
+
+    found: dict[str, Any] = TypeAdapter(type(request)).dump_python(request, mode="json")
+    return found
+
+
+def loaded(kind: type[R], values: Mapping[str, Any]) -> R:
+    """A request as a job keeps it.
+
+    Raises
+    ------
+    StepNcError
+        When the values are none of this request.
+    """
+    from pydantic import TypeAdapter, ValidationError  # noqa: PLC0415 (slow to import)
+
+    try:
+        return TypeAdapter(kind).validate_python(dict(values))
+    except ValidationError as error:
+        first = error.errors()[0]
+        place = ".".join(map(str, first["loc"]))
+        raise StepNcError(f"{place}: {first['msg']}") from error

@@ -1,0 +1,251 @@
+"""Requests of runs on the virtual machine: ``simulate`` and ``control``."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Annotated, Any
+
+from annotated_types import Interval, MaxLen
+
+from controller.laws.choice import LawName
+from controller.orders import Criterion
+from controller.preview import LOOK_AHEAD
+from service.ids import PATTERN
+from service.live.playback import LEAST, MOST, checked_pace
+from service.requests.advice import ISO, FileUnits, MachineName, MaterialName, Name
+from service.requests.fields import LONGEST_NAME, About, Request
+from simulator.machine.noise_kind import NoiseKind
+from simulator.motion.model_name import ControlModelName
+
+GREATEST_SEED = 2**31
+
+GREATEST_LOOK_AHEAD = 50
+"""revolutions"""
+
+JUNCTION_DEVIATION = 0.01
+"""mm"""
+
+
+class ForceView(StrEnum):
+    """View of the forces: means or teeth."""
+
+    MEAN = "mean"
+    """over a revolution"""
+    TOOTH = "tooth"
+    """of the teeth that cut at each time"""
+
+
+class SensorChoice(StrEnum):
+    """Quantity that the loop measures."""
+
+    DYNAMOMETER = "dynamometer"
+    POWER = "power"
+
+
+@dataclass(frozen=True, slots=True)
+class IdPattern:
+    """An id of the service, or null."""
+
+    def __get_pydantic_core_schema__(self, _source: Any, _handler: Any) -> Any:
+        """Schema of values; pydantic calls it."""
+        from pydantic_core import core_schema  # noqa: PLC0415 (slow to import)
+
+        return core_schema.nullable_schema(core_schema.str_schema(pattern=PATTERN))
+
+
+@dataclass(frozen=True, slots=True)
+class PaceOrNone:
+    """Zero, or a pace at which a run ends."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
+        """Schema of values; pydantic calls it."""
+        from pydantic_core import core_schema  # noqa: PLC0415 (slow to import)
+
+        return core_schema.no_info_after_validator_function(checked_pace, handler(source))
+
+    def __get_pydantic_json_schema__(self, schema: Any, handler: Any) -> dict[str, Any]:
+        """The same in OpenAPI; pydantic calls it."""
+        return {**handler(schema), "anyOf": [{"const": 0.0}, {"minimum": LEAST}]}
+
+
+OptionalId = Annotated[str | None, IdPattern()]
+
+Seed = Annotated[
+    int,
+    Interval(ge=0, le=GREATEST_SEED),
+    About("seed of noise, scatter and missing samples", flag="--seed"),
+]
+
+Percent = Interval(gt=0.0, le=1000.0)
+"""of changes: more is a slip"""
+
+PACE = "simulated seconds per wall-clock second; 0: as fast as possible"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunRequest(Request):
+    """A program on the virtual machine: as it came, or as an advice made it."""
+
+    program_id: Annotated[OptionalId, About("a program as it came")] = None
+    advice_id: Annotated[OptionalId, About("or what an advice made of one")] = None
+    machine: MachineName = ""
+    material: MaterialName = ""
+    units: FileUnits = ISO
+    control: Annotated[
+        ControlModelName,
+        About("how the control runs the path: exact-stop, junction or fir", flag="--control"),
+    ] = ControlModelName.FIR
+    filter_s: Annotated[
+        Name,
+        About(
+            "filter times of the fir control, s, as T1,T2; empty: by the axes' acceleration "
+            "and jerk",
+            flag="--filter-s", metavar="T1,T2",
+        ),
+    ] = ""  # fmt: skip
+    deviation_mm: Annotated[
+        float,
+        Interval(gt=0.0, le=10.0),
+        About(
+            "path deviation of the junction control, mm", unit="mm", name="deviation",
+            flag="--deviation-mm", metavar="MM",
+        ),
+    ] = JUNCTION_DEVIATION  # fmt: skip
+    pace: Annotated[float, Interval(ge=0.0, le=MOST), PaceOrNone(), About(PACE)] = 0.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SimulationRequest(RunRequest):
+    """Request of a simulation."""
+
+    seed: Seed = 0
+    rate_hz: Annotated[
+        float,
+        Interval(ge=1.0, le=10_000.0),
+        About("samples a second, 1 to 10000", unit="Hz", name="rate", flag="--rate",
+              metavar="HZ"),
+    ] = 20.0  # fmt: skip
+    force: Annotated[
+        ForceView,
+        About("force: mean of a revolution (mean), or of each tooth (tooth)", flag="--force"),
+    ] = ForceView.MEAN
+    kc_factor: Annotated[
+        float,
+        Interval(gt=0.0, le=100.0),
+        About("factor on the specific cutting force k_c (from calibrate)",
+              name="factor on k_c", flag="--kc-factor", metavar="K"),
+    ] = 1.0  # fmt: skip
+    runout_um: Annotated[
+        float,
+        Interval(ge=0.0, le=500.0),
+        About("runout in µm, for --force tooth", unit="µm", name="runout", flag="--runout-um",
+              metavar="UM"),
+    ] = 0.0  # fmt: skip
+    has_wear: Annotated[bool, About("tools wear while they cut (Taylor)", flag="--wear")] = (
+        False
+    )
+    has_lag: Annotated[
+        bool, About("with delay and overshoot of the main drive", flag="--lag")
+    ] = False
+    noise: Annotated[
+        NoiseKind, About("sensor noise: none, normal or uniform", flag="--noise")
+    ] = NoiseKind.NONE
+    missing: Annotated[
+        float,
+        Interval(ge=0.0, lt=1.0),
+        About("share of missing samples", flag="--missing", metavar="P"),
+    ] = 0.0
+    zero: Annotated[
+        Name,
+        About(
+            "place of the program's zero on the axes in mm: x,y,z (default: by the stock)",
+            flag="--zero", metavar="X,Y,Z",
+        ),
+    ] = ""  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ControlRequest(RunRequest):
+    """Request of a program under the force loop."""
+
+    seed: Seed = 0
+    mode: Annotated[Criterion, About("TC fast, QC the programmed chip load", flag="--mode")] = (
+        Criterion.TC
+    )
+    law: Annotated[
+        LawName,
+        About(
+            "control law: log-pi, pi, fuzzy, self-tuning, mrac, mpc, or none: the program's "
+            "feed",
+            flag="--law",
+        ),
+    ] = LawName.LOG_PI
+    has_preview: Annotated[
+        bool, About("let the law use the expected cut ahead", flag="--preview")
+    ] = True
+    look_ahead: Annotated[
+        int,
+        Interval(ge=1, le=GREATEST_LOOK_AHEAD),
+        About("length of the preview in revolutions, 1 to 50", unit="revolutions",
+              name="look-ahead", flag="--look-ahead", metavar="N"),
+    ] = LOOK_AHEAD  # fmt: skip
+    disturbances: Annotated[
+        tuple[Annotated[str, MaxLen(60)], ...],
+        MaxLen(50),
+        About("what the loop is not told of, as kc:1.3; repeatable", flag="--disturb",
+              metavar="WHAT:VALUE[@TIME]", examples=(["kc:1.3"],)),
+    ] = ()  # fmt: skip
+    force_set_point_n: Annotated[
+        float | None,
+        Interval(gt=0.0, le=1e6),
+        About("set point of the cutting force, N (default: what the plan's limits allow)",
+              unit="N", name="force", flag="--force", metavar="N"),
+    ] = None  # fmt: skip
+    override_low_percent: Annotated[
+        float,
+        Interval(gt=0.0, le=100.0),
+        About("lower end of the override band, %", unit="%", name="override band from"),
+    ] = 20.0
+    override_high_percent: Annotated[
+        float,
+        Interval(ge=100.0, le=200.0),
+        About("upper end of the override band, %", unit="%", name="override band to"),
+    ] = 120.0
+    sensor: Annotated[
+        SensorChoice,
+        About("what the loop measures: dynamometer, or power of the drive", flag="--sensor"),
+    ] = SensorChoice.DYNAMOMETER
+    has_corrections: Annotated[bool, About("expect what was learned and accepted")] = True
+    is_recorded: Annotated[bool, About("keep the outcomes in the knowledge base")] = True
+    pace: Annotated[float, Interval(ge=0.0, le=MOST), PaceOrNone(), About(PACE)] = 10.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ControlChanges(Request):
+    """Changes to a run under control; omitted fields stay unchanged."""
+
+    mode: Annotated[Criterion | None, About("TC or QC")] = None
+    is_on: Annotated[bool | None, About("whether the loop acts")] = None
+    motor_power_percent: Annotated[
+        float | None,
+        Percent,
+        About("that the operator allows, %", unit="%", name="motor power"),
+    ] = None
+    depth_percent: Annotated[
+        float | None,
+        Percent,
+        About("of the programmed depth; hidden from the loop", unit="%", name="depth"),
+    ] = None
+    hardness_percent: Annotated[
+        float | None,
+        Percent,
+        About("k_c of the workpiece; hidden from the loop", unit="%", name="hardness"),
+    ] = None
+    material: Annotated[
+        Annotated[str, MaxLen(LONGEST_NAME)] | None,
+        About("another workpiece, by its name in the library; hidden from the loop"),
+    ] = None
+    pace: Annotated[
+        float | None,
+        Interval(ge=LEAST, le=MOST),
+        About("simulated seconds per wall-clock second"),
+    ] = None

@@ -1,0 +1,289 @@
+"""Access middleware: authentication, roles, limits, and the duration of every request.
+
+One middleware of plain ASGI, so that a look-up costs little more than the framework's own.
+"""
+
+import asyncio
+import re
+import secrets
+import time
+from itertools import count as count_up
+from typing import Any
+
+import orjson
+import structlog
+from starlette.requests import ClientDisconnect
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from service.errors import Forbidden, TooLarge, TooMany, Unauthorised, Unreadable
+from service.problem import plain_problem, problem_of
+from service.rest.logs import RequestLog
+from service.rest.metrics import count
+from service.rest.rate import RateLimit
+from service.rest.rights import LOOKING, is_protected, require, role_for
+from service.rest.settings import LOOPBACK, Settings
+from service.storage import keys
+from service.storage.folder import DataFolder
+from service.storage.keys import Key, Role
+from stepnc_model.errors import StepNcError
+
+LOG = structlog.get_logger("rest")
+
+BODY_BYTES = 1 << 20
+"""of a body that is no program"""
+
+UPLOADS = frozenset({"/v1/programs"})
+"""paths whose bodies may be as large as a program; they count what they unpack"""
+
+PATIENT = 5.0
+"""s for which a key that was found good need not be looked up again"""
+
+PLACE = re.compile(r"(?:\[([0-9a-f:.]+)\]|([^:@/\[\]]*))(?::\d*)?")
+"""a host and perhaps a port, RFC 9110 §4.2.3"""
+
+GONE = 499
+"""in metrics and log: the client left before it was answered"""
+
+REQUEST_ID = re.compile(rb"^[A-Za-z0-9._-]{1,64}$")
+
+HEADERS = (
+    (b"x-content-type-options", b"nosniff"),
+    (b"cross-origin-resource-policy", b"same-origin"),
+)
+"""of all answers"""
+
+OF_PAGES = (
+    (b"referrer-policy", b"no-referrer"),
+    (b"x-frame-options", b"DENY"),
+    (b"cross-origin-opener-policy", b"same-origin"),
+    (
+        b"permissions-policy",
+        b"camera=(), microphone=(), geolocation=(), payment=(), usb=()",
+    ),
+)
+
+# plotly.js puts styles of its own into the page; scripts come from files only.
+POLICY = (
+    b"content-security-policy",
+    b"default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; "
+    b"img-src 'self' data: blob:; connect-src 'self'; font-src 'self'; base-uri 'none'; "
+    b"form-action 'none'; frame-ancestors 'none'",
+)
+
+# A report is a page of its own that carries its scripts inside, and talks to nobody.
+REPORT_POLICY = (
+    "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; "
+    "img-src data: blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'; "
+    "sandbox allow-scripts allow-downloads"
+)
+
+ANYBODY = Key(id="", name="local", roles=frozenset(Role), created=0.0, revoked=None)
+"""the client where no keys are required"""
+
+NOBODY = Key(id="", name="nobody", roles=frozenset(), created=0.0, revoked=None)
+"""who has shown no key where one is asked for"""
+
+
+NOTHING = (b"content-security-policy", b"default-src 'none'; frame-ancestors 'none'")
+"""for what is no page: if a browser took it for one, it could do nothing"""
+
+
+def _with_common(status: int, own: list[tuple[bytes, bytes]]) -> list[tuple[bytes, bytes]]:
+    """Headers of an answer with those that keep browsers from mischief.
+
+    A 304 has no kind: its headers replace those that the browser has kept, so it brings none.
+    """
+    if status == 304:
+        return own
+    is_page = False
+    for name, value in own:
+        if name == POLICY[0]:
+            return [*own, *HEADERS, *OF_PAGES]
+        is_page = is_page or (name == b"content-type" and value.startswith(b"text/html"))
+    return [*own, *HEADERS, *OF_PAGES, POLICY] if is_page else [*own, *HEADERS, NOTHING]
+
+
+class _Revoked(Exception):
+    """The key of an answer that has begun; none of the errors that an answer is made of."""
+
+
+class AccessMiddleware:
+    """The middleware. Running state."""
+
+    def __init__(self, app: ASGIApp, *, settings: Settings, data_folder: DataFolder) -> None:
+        self._app, self._settings, self._data_folder = app, settings, data_folder
+        self._rate = RateLimit(settings.rate, burst=settings.burst)
+        self._names = frozenset(
+            name.lower() for name in ({settings.host, *settings.names} | LOOPBACK)
+        )
+        self._log = RequestLog() if settings.has_request_log else None
+        # Ids of requests: random for the process, then counted.
+        self._prefix, self._count_of = secrets.token_hex(6), count_up(1)
+        self._good: dict[str, tuple[float, Key]] = {}
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """See ASGI."""
+        if scope["type"] != "http":
+            await self._app(scope, receive, send)
+            return
+        begin = time.perf_counter()
+        headers: dict[bytes, bytes] = dict(scope["headers"])
+        asked = headers.get(b"x-request-id", b"")
+        id = (
+            asked
+            if REQUEST_ID.match(asked)
+            else f"{self._prefix}{next(self._count_of):x}".encode()
+        )
+        status = 0
+
+        async def answer(message: Message) -> None:
+            nonlocal status
+            if message["type"] == "http.response.start":
+                status = message["status"]
+                own = _with_common(status, message["headers"])
+                message["headers"] = [*own, (b"x-request-id", id)]
+            elif message.get("more_body"):
+                self._require_still_known(key, headers)
+            await send(message)
+
+        key = NOBODY
+        # What may be read may be asked about; the server leaves the body out.
+        asked_as = {**scope, "method": "GET"} if scope["method"] == "HEAD" else scope
+        try:
+            self._require_known_host(scope, headers)
+            key = self._key(scope, headers)
+            asked_as["state"] = {**scope.get("state", {}), "key": key, "id": id.decode()}
+            await self._app(asked_as, self._bounded(scope, receive, headers), answer)
+        except ClientDisconnect:
+            status = status or GONE
+        except _Revoked:
+            await send({"type": "http.response.body", "body": b""})
+        except StepNcError as error:
+            if status:
+                raise
+            await _refuse(answer, problem_of(error), error)
+        except Exception:
+            LOG.exception("fault", request=id.decode(), path=scope["path"])
+            if status:
+                raise
+            problem = plain_problem(500, "Fault", "the program is at fault; its log says more")
+            await _refuse(answer, {**problem, "instance": id.decode()}, None)
+        finally:
+            self._count(asked_as, status, time.perf_counter() - begin, id=id, who=key.name)
+
+    def _require_known_host(self, scope: Scope, headers: dict[bytes, bytes]) -> None:
+        """Pages of other hosts may not reach a service on this one through a browser."""
+        place = headers.get(b"host", b"").decode("latin-1").lower()
+        if _host(place) not in self._names:
+            raise Forbidden(f"host '{place}': not a name of this service; see --name")
+        if scope["method"] in LOOKING:
+            return
+        site = headers.get(b"sec-fetch-site", b"same-origin")
+        origin = headers.get(b"origin", b"").decode("latin-1")
+        is_own = not origin or origin.partition("://")[2].lower() == place
+        if site not in {b"same-origin", b"none"} or not is_own:
+            raise Forbidden(f"a page of '{origin or 'another site'}' may change nothing here")
+
+    def _key(self, scope: Scope, headers: dict[bytes, bytes]) -> Key:
+        client = (scope.get("client") or ("?",))[0]
+        if not self._settings.needs_keys:
+            self._rate.take(client)
+            return ANYBODY
+        path = scope["path"]
+        if not is_protected(path):
+            self._rate.take(client)
+            return NOBODY
+        try:
+            key = self._known(headers)
+        except StepNcError:
+            self._rate.take(client)
+            raise
+        # Who has no key shares a bucket with all who come from there: no trying out.
+        self._rate.take(client if key is None else key.id)
+        if key is None:
+            raise Unauthorised("a key is needed: Authorization: Bearer stepnc_…; `stepnc keys`")
+        require(key, role_for(scope["method"], path))
+        return key
+
+    def _require_still_known(self, key: Key, headers: dict[bytes, bytes]) -> None:
+        """End a long answer when its key has been revoked meanwhile."""
+        if key.id and self._known(headers) is None:
+            raise _Revoked
+
+    def _known(self, headers: dict[bytes, bytes]) -> Key | None:
+        scheme, _, word = headers.get(b"authorization", b"").decode("latin-1").partition(" ")
+        if scheme.lower() != "bearer":
+            return None
+        word = word.strip()
+        now = time.monotonic()
+        at, key = self._good.get(word, (0.0, None))
+        if key is not None and now - at < PATIENT:
+            return key
+        found = keys.known(self._data_folder, word)
+        if found is None:
+            self._good.pop(word, None)
+            return None
+        self._good[word] = now, found
+        return found
+
+    def _bound(self, path: str, length: bytes) -> int:
+        """Bytes that the body may have."""
+        bound = self._settings.upload_bytes if path in UPLOADS else BODY_BYTES
+        if not length.isdigit():
+            raise Unreadable("Content-Length is no number")
+        if int(length) > bound:
+            raise TooLarge("the body", bound=bound)
+        return bound
+
+    def _bounded(self, scope: Scope, receive: Receive, headers: dict[bytes, bytes]) -> Receive:
+        """A body that arrives in time and is no larger than allowed."""
+        length = headers.get(b"content-length")
+        if length is None and b"transfer-encoding" not in headers:
+            return receive
+        bound = self._bound(scope["path"], length or b"0")
+        taken = 0
+        is_whole = False
+        until = time.monotonic() + self._settings.body_s
+
+        async def bounded() -> Message:
+            nonlocal taken, is_whole
+            if is_whole:
+                return await receive()
+            try:
+                async with asyncio.timeout(max(until - time.monotonic(), 0.0)):
+                    message = await receive()
+            except TimeoutError as error:
+                limit = self._settings.body_s
+                raise Unreadable(f"the body did not arrive in {limit:g} s") from error
+            taken += len(message.get("body", b""))
+            is_whole = not message.get("more_body", False)
+            if taken > bound:
+                raise TooLarge("the body", bound=bound)
+            return message
+
+        return bounded
+
+    def _count(self, scope: Scope, status: int, seconds: float, *, id: bytes, who: str) -> None:
+        """Into the metrics, and into the log."""
+        count(scope["method"], getattr(scope.get("route"), "path", "unknown"), status, seconds)
+        if self._log is not None:
+            self._log.add({
+                "request": id.decode(), "method": scope["method"], "path": scope["path"],
+                "status": status, "seconds": round(seconds, 6), "who": who,
+            })  # fmt: skip
+
+
+def _host(place: str) -> str:
+    """A name without its port; empty: there is none."""
+    found = PLACE.fullmatch(place)
+    return "" if found is None else found[1] or found[2]
+
+
+async def _refuse(send: Send, problem: dict[str, Any], error: StepNcError | None) -> None:
+    headers = [(b"content-type", b"application/problem+json")]
+    if isinstance(error, Unauthorised):
+        headers.append((b"www-authenticate", b"Bearer"))
+    if isinstance(error, TooMany):
+        headers.append((b"retry-after", str(int(error.wait) + 1).encode()))
+    await send({"type": "http.response.start", "status": problem["status"], "headers": headers})
+    await send({"type": "http.response.body", "body": orjson.dumps(problem)})

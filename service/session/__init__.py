@@ -1,0 +1,1 @@
+"""Runs that people watch and steer while they go on: a program under control, a trial cut."""

@@ -1,0 +1,302 @@
+"""A simulated run as text, JSON and one self-contained HTML page: same run, same bytes.
+
+Keys of JSON carry their units and are fixed: others parse them.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from math import nan
+from typing import Any
+
+from service.buckets import BucketedRun
+from service.rendering.columns import Column
+from service.rendering.records import dump, finding_record, record, records
+from service.rendering.text import RED, print_findings, print_line, print_table
+from service.simulation.carbon import WORLD, CarbonFactor, kilowatt_hours
+from service.simulation.facts import COMPONENTS as NAMES
+from service.simulation.facts import SimulationRow, exceeded, ratio, rows
+from service.simulation.run import Simulation
+from simulator.machine.totals import Peak, Total
+from simulator.spec import MaterialMatch
+from stepnc_model.units import kw_from_watts, rpm_from_rev_s
+
+Columns = tuple[Column[SimulationRow], ...]
+
+CM3_MIN = 0.06
+"""cm³/min in a mm³/s"""
+
+
+def _of(value: Callable[[Total], Any], **about: Any) -> Column[SimulationRow]:
+    """A column of totals."""
+    return Column(value=lambda row: value(row.total), **about)
+
+
+def _energy(name: str, total: Total) -> float:
+    """Energy of a component, J."""
+    joules: float = getattr(total.energy, name)
+    return joules
+
+
+NAME: Column[SimulationRow] = Column(
+    heading="workingstep", value=lambda row: row.name, is_key=True
+)
+ID: Column[SimulationRow] = Column(key="id", value=lambda row: row.id)
+BEGIN: Column[SimulationRow] = Column(
+    key="begin_s", heading="begins s", form=".1f", value=lambda row: row.begin
+)
+TIMES = (
+    _of(lambda total: total.duration, key="time_s", heading="time s", form=".1f"),
+    _of(lambda total: total.cutting_time, key="cutting_time_s", heading="cutting", form=".1f"),
+    _of(lambda total: total.air_time, key="air_time_s", heading="air", form=".1f",
+        help="at cutting feed without chips"),
+    _of(lambda total: total.rapid_time, key="rapid_time_s", heading="rapid", form=".1f"),
+    _of(lambda total: total.waiting_time, key="waiting_time_s", heading="waiting", form=".1f"),
+)  # fmt: skip
+COMPONENTS = tuple(
+    _of(partial(_energy, name), key=f"energy_j.{name}",
+        heading=heading, scale=1e-3, form=".1f")
+    for name, heading in NAMES.items()
+)  # fmt: skip
+ENERGY = _of(lambda total: total.energy.total, key="energy_j.total", heading="energy kJ",
+             scale=1e-3, form=".1f")  # fmt: skip
+VOLUME = _of(lambda total: total.volume, key="volume_mm3", heading="removed cm³", scale=1e-3,
+             form=".2f")  # fmt: skip
+
+
+def _peak(value: Callable[[Total], Peak], name: str, unit: str, **about: Any) -> Columns:
+    """Greatest value of a quantity, when and in which line."""
+    return (
+        _of(lambda total: value(total).value, key=f"{name}.value_{unit}", **about),
+        _of(lambda total: value(total).time, key=f"{name}.time_s"),
+        _of(lambda total: value(total).line, key=f"{name}.line"),
+    )
+
+
+POWER = _peak(lambda total: total.power, "peak_spindle_power", "w", heading="spindle kW",
+              scale=1e-3, form=".2f")  # fmt: skip
+FORCE = _peak(lambda total: total.force, "peak_cutting_force", "n", heading="force N",
+              form=".0f")  # fmt: skip
+BENT = _peak(lambda total: total.deflection, "peak_tool_deflection", "mm", heading="bent µm",
+             scale=1e3, form=".1f", help="greatest deflection of the tool, δ")  # fmt: skip
+
+TEXT: Columns = (NAME, *TIMES, ENERGY, POWER[0], FORCE[0], BENT[0], VOLUME)
+"""columns on a terminal"""
+
+TOTALS: Columns = (
+    *TIMES,
+    _of(lambda total: total.way_time, key="way_time_s"),
+    _of(lambda total: total.overload_time, key="overload_time_s"),
+    *COMPONENTS,
+    ENERGY,
+    _of(lambda total: total.cutting_energy, key="cutting_energy_j"),
+    VOLUME,
+    *POWER,
+    *_peak(lambda total: total.cutting_power, "peak_cutting_power", "w"),
+    *_peak(lambda total: total.drive_power, "peak_drive_power", "w"),
+    *FORCE,
+    *_peak(lambda total: total.thrust, "peak_thrust", "n"),
+    *_peak(lambda total: total.chip, "peak_chip_thickness", "mm"),
+    *BENT,
+)
+"""columns in JSON"""
+
+REMOVAL: Columns = (
+    NAME,
+    VOLUME,
+    _of(lambda total: _over(total.volume, total.cutting_time), heading="while cutting cm³/min",
+        scale=CM3_MIN, form=".2f"),
+    _of(lambda total: _over(total.volume, total.duration), heading="over all cm³/min",
+        scale=CM3_MIN, form=".2f"),
+    _of(lambda total: _over(total.energy.total, total.volume), heading="from the mains J/mm³",
+        form=".2f"),
+    _of(lambda total: _over(total.cutting_energy, total.volume), heading="at the edge J/mm³",
+        form=".2f"),
+)  # fmt: skip
+
+
+def _over(part: float, whole: float) -> float | None:
+    """Part over whole; None: one of them is nothing."""
+    return part / whole if part and whole else None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PeakRow:
+    """Greatest value of a quantity in a whole run."""
+
+    name: str
+    peak: Peak
+    form: str
+    scale: float
+    workingstep: str
+    permitted: str | None
+
+    @property
+    def value(self) -> str:
+        """As shown."""
+        return f"{self.peak.value * self.scale:{self.form}}"
+
+    @property
+    def time(self) -> float | None:
+        """When it was, s; None: never."""
+        return self.peak.time if self.peak.value else None
+
+    @property
+    def line(self) -> int | None:
+        """In which line of the program; None: in none."""
+        return self.peak.line if self.peak.value else None
+
+
+PEAKS: tuple[Column[PeakRow], ...] = (
+    Column(heading="quantity", value=lambda row: row.name),
+    Column(heading="greatest", value=lambda row: row.value),
+    Column(heading="at s", form=".1f", value=lambda row: row.time),
+    Column(heading="line", value=lambda row: row.line),
+    Column(heading="workingstep", value=lambda row: row.workingstep),
+    Column(heading="the machine permits at most", value=lambda row: row.permitted),
+)
+
+
+def whole_row(simulation: Simulation) -> SimulationRow:
+    """The whole run."""
+    return SimulationRow(id="total", begin=nan, total=simulation.whole)
+
+
+def print_simulation(simulation: Simulation, *, carbon: CarbonFactor = WORLD) -> None:
+    """A row for each workingstep, totals, energy by component, limits exceeded, findings."""
+    machine, found, whole = simulation.machine, rows(simulation), simulation.whole
+    print_line(
+        f"{simulation.program}: machine {machine.name} ({machine.title}), "
+        f"control {simulation.control.value}"
+    )
+    print_table(TEXT, (*found, whole_row(simulation)))
+    energy = whole.energy.total
+    shares = ", ".join(
+        f"{heading} {ratio(getattr(whole.energy, name), energy):.1%}"
+        for name, heading in NAMES.items()
+        if getattr(whole.energy, name)
+    )
+    print_line(f"energy {kilowatt_hours(energy):.4g} kWh: {shares}")
+    print_line(
+        f"carbon {carbon.grams(energy):.4g} g CO₂ at {carbon.grams_per_kwh:g} g/kWh "
+        f"({carbon.source})"
+    )
+    if whole.volume:
+        print_line(
+            f"removal {ratio(whole.volume, whole.duration) * CM3_MIN:.3g} cm³/min on average; "
+            f"{ratio(energy, whole.volume):.3g} J/mm³ from the mains, "
+            f"{ratio(whole.cutting_energy, whole.volume):.3g} J/mm³ at the edge"
+        )
+    for text in exceeded(simulation, found):
+        print_line(f"limit exceeded: {text}", RED)
+    print_findings(simulation.findings)
+
+
+def simulation_json(simulation: Simulation, *, carbon: CarbonFactor = WORLD) -> str:
+    """Time, energy, peaks and removal of the run and of each workingstep."""
+    return dump({
+        "program": simulation.program,
+        "machine": simulation.machine.name,
+        "control": simulation.control.value,
+        "samples": simulation.samples,
+        "workingsteps": records((ID, BEGIN, *TOTALS), rows(simulation)),
+        "total": record(TOTALS, whole_row(simulation)),
+        "carbon": {
+            "factor_g_kwh": carbon.grams_per_kwh,
+            "source": carbon.source,
+            "total_g": carbon.grams(simulation.whole.energy.total),
+        },
+        "findings": [finding_record(finding) for finding in simulation.findings],
+    })
+
+
+def simulation_page(
+    simulation: Simulation,
+    trace: BucketedRun,
+    *,
+    material: MaterialMatch | None = None,
+    carbon: CarbonFactor = WORLD,
+) -> str:
+    """The page as HTML.
+
+    Parameters
+    ----------
+    simulation : Simulation
+    trace : BucketedRun
+        Of the same run.
+    material : MaterialMatch, optional
+        None: not known.
+    carbon : CarbonFactor
+    """
+    from service.rendering.pages import plot, rendered  # noqa: PLC0415 (Jinja)
+    from service.simulation.figures import run_figure  # noqa: PLC0415 (plotly)
+
+    found, whole = rows(simulation), simulation.whole
+    energy = whole.energy.total
+    return rendered(
+        "simulation.html.jinja",
+        simulation=simulation,
+        material=material,
+        carbon=carbon,
+        rows=found,
+        whole=whole_row(simulation),
+        exceeded=exceeded(simulation, found),
+        figure=plot(run_figure(found, trace), "run"),
+        width=trace.width,
+        energy_kwh=kilowatt_hours(energy),
+        mean_power=kw_from_watts(ratio(energy, whole.duration)),
+        cutting_share=ratio(whole.cutting_time, whole.duration),
+        times=(NAME, BEGIN, *TIMES),
+        time_shares=_shares(TIMES, simulation, whole.duration),
+        energies=(NAME, *COMPONENTS, ENERGY, *_carbon(carbon, energy)),
+        energy_shares=_shares((*COMPONENTS, ENERGY), simulation, energy),
+        removal=REMOVAL,
+        peaks=PEAKS,
+        peak_rows=_peak_rows(simulation, found),
+    )
+
+
+def _shares(columns: Columns, simulation: Simulation, whole: float) -> list[str]:
+    """Shares of the whole run."""
+    values = (column.value(whole_row(simulation)) for column in columns)
+    return [
+        f"{ratio(float(each), whole):.1%}" for each in values if isinstance(each, float | int)
+    ]
+
+
+def _carbon(carbon: CarbonFactor, whole: float) -> Columns:
+    """What follows from energy."""
+    return (
+        _of(lambda total: 100.0 * ratio(total.energy.total, whole), heading="share %",
+            form=".1f"),
+        _of(lambda total: kilowatt_hours(total.energy.total), heading="kWh", form=".4f"),
+        _of(lambda total: carbon.grams(total.energy.total), heading="g CO₂", form=".2f"),
+    )  # fmt: skip
+
+
+def _peak_rows(simulation: Simulation, found: Sequence[SimulationRow]) -> list[PeakRow]:
+    """Greatest values, where they stand, and what the machine permits."""
+    whole, machine = simulation.whole, simulation.machine
+    best = max(machine.spindle.curve, key=lambda point: point.power)
+    power = f"{kw_from_watts(best.power):g} kW at {rpm_from_rev_s(best.speed):.0f} rpm"
+    bound = machine.max_cutting_force
+    force = None if bound is None else f"{bound:.0f} N"
+    return [
+        PeakRow(
+            name=name,
+            peak=peak,
+            form=form,
+            scale=scale,
+            workingstep=next(
+                (row.name for row in reversed(found) if row.begin <= peak.time), ""
+            )
+            if peak.value
+            else "",
+            permitted=permitted,
+        )
+        for name, peak, form, scale, permitted in (
+            ("spindle power, kW", whole.power, ".2f", 1e-3, power),
+            ("cutting force, N", whole.force, ".0f", 1.0, force),
+            ("mean chip thickness, mm", whole.chip, ".3f", 1.0, None),
+        )
+    ]

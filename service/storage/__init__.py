@@ -1,0 +1,1 @@
+"""Data folder of the service: programs, jobs, keys, machines, materials."""

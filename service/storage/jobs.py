@@ -1,0 +1,354 @@
+"""Jobs: what was asked, how far it is, how it ended. Their results lie in folders of theirs.
+
+A job is claimed by one runner at a time; each claim is a new attempt, and what belongs to an
+older attempt is not written any more. Running jobs whose runner is gone are queued again when
+their kind may be run twice, else they have failed, and say so.
+"""
+
+import json
+import shutil
+import sqlite3
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Any
+
+from service.errors import Conflict, NotFound, TooMany
+from service.ids import new_id
+from service.storage.folder import DataFolder
+from service.storage.idempotency import IdempotencyKey, made_before, remember
+from service.storage.pages import Page, PageCursor, page_of
+
+MOST_WAITING = 1000
+"""jobs in the queue"""
+
+LOCAL = "local"
+"""owner of what is asked where no keys are in use: the whole queue is theirs"""
+
+OWNERS = 4
+"""of keys that fill the queue, at least: none keeps the others out"""
+
+MOST_ATTEMPTS = 3
+"""of a job whose runner was lost each time"""
+
+
+class JobState(StrEnum):
+    """State of a job."""
+
+    QUEUED = "queued"
+    RUNNING = "running"
+    SUCCEEDED = "succeeded"
+    FAILED = "failed"
+    CANCELLED = "cancelled"
+
+    @property
+    def is_finished(self) -> bool:
+        """Whether the job has ended."""
+        return self not in {JobState.QUEUED, JobState.RUNNING}
+
+
+class JobKind(StrEnum):
+    """Kind of job."""
+
+    ADVICE = "advice"
+    SIMULATION = "simulation"
+    CONTROL = "control-run"
+    TRIAL = "trial"
+    EVALUATION = "evaluation"
+    REVIEW = "review"
+
+    @property
+    def is_live(self) -> bool:
+        """Whether the job can be steered while it runs; it is not run twice."""
+        return self in {JobKind.CONTROL, JobKind.TRIAL}
+
+
+PACED = (
+    f"(kind IN ('{JobKind.CONTROL.value}', '{JobKind.TRIAL.value}') OR (kind = "
+    f"'{JobKind.SIMULATION.value}' AND coalesce(json_extract(request, '$.pace'), 0) > 0))"
+)
+"""as :attr:`Job.is_paced`; requests of other kinds have no pace, and may be long"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Job:
+    """One job."""
+
+    id: str
+    kind: JobKind
+    state: JobState
+    request: Mapping[str, Any]
+    program: str
+    """id of the program that it works on; empty: on none"""
+    source: str
+    """id of the job whose result it works on; empty: of none"""
+    owner: str
+    created: float
+    """Created, s since 1970, as those below"""
+    started: float | None
+    ended: float | None
+    share: float
+    """that is done, 0 to 1"""
+    message: str
+    problem: Mapping[str, Any] | None
+    """why it failed, as in RFC 9457"""
+    attempt: int
+    is_cancelling: bool
+
+    @property
+    def is_paced(self) -> bool:
+        """Whether the job mostly waits for people, or for the clock."""
+        return self.kind.is_live or bool(self.request.get("pace"))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JobRequest:
+    """A job that is asked for."""
+
+    kind: JobKind
+    request: Mapping[str, Any]
+    program: str = ""
+    source: str = ""
+    owner: str
+
+
+def add(
+    data_folder: DataFolder, asked: JobRequest, *, idempotency: IdempotencyKey | None = None
+) -> Job:
+    """Queue a job.
+
+    Raises
+    ------
+    TooMany
+        When too many wait.
+    NotFound
+        When its program was deleted meanwhile.
+    """
+    id = new_id()
+    with data_folder.database.writing() as connection:
+        kept = made_before(connection, idempotency)
+        if kept is None:
+            _require_room(connection, asked.owner)
+            _require_program(connection, asked.program)
+            connection.execute(
+                "INSERT INTO jobs (id, kind, state, request, program, source, owner, created) "
+                "VALUES (?, ?, ?, ?, ?, ?, ?, ?)",
+                (
+                    id, asked.kind.value, JobState.QUEUED.value, json.dumps(asked.request),
+                    asked.program, asked.source, asked.owner, time.time(),
+                ),
+            )  # fmt: skip
+            remember(connection, idempotency, id)
+    return get(data_folder, kept or id)
+
+
+def get(data_folder: DataFolder, id: str, kind: JobKind | None = None) -> Job:
+    """One job, of a kind when one is named.
+
+    Raises
+    ------
+    NotFound
+        When there is none.
+    """
+    with data_folder.database.reading() as connection:
+        row = connection.execute("SELECT * FROM jobs WHERE id = ?", (id,)).fetchone()
+    if row is None or (kind is not None and row["kind"] != kind.value):
+        raise NotFound("job" if kind is None else kind.value, id)
+    return _job(row)
+
+
+def listed(
+    data_folder: DataFolder,
+    place: PageCursor,
+    *,
+    kind: JobKind | None = None,
+    state: JobState | None = None,
+    program: str = "",
+) -> Page[Job]:
+    """A page of jobs, newest first."""
+    where, values = ["id < ?"], [place.before]
+    for column, wanted in (("kind", kind), ("state", state), ("program", program)):
+        if wanted:
+            where.append(f"{column} = ?")
+            values.append(str(wanted))
+    query = f"SELECT * FROM jobs WHERE {' AND '.join(where)} ORDER BY id DESC LIMIT ?"
+    with data_folder.database.reading() as connection:
+        rows = connection.execute(query, (*values, place.limit + 1)).fetchall()
+    return page_of([_job(row) for row in rows], [row["id"] for row in rows], limit=place.limit)
+
+
+def cancel(data_folder: DataFolder, id: str) -> Job:
+    """Ask for the end of a job: one that waits is cancelled at once.
+
+    Raises
+    ------
+    NotFound, Conflict
+        When there is none, or it is over.
+    """
+    with data_folder.database.writing() as connection:
+        row = connection.execute("SELECT state FROM jobs WHERE id = ?", (id,)).fetchone()
+        if row is None:
+            raise NotFound("job", id)
+        state = JobState(row["state"])
+        if state.is_finished and state is not JobState.CANCELLED:
+            raise Conflict(f"job '{id}' has {state.value}: there is nothing to cancel")
+        if state is JobState.QUEUED:
+            connection.execute(
+                "UPDATE jobs SET state = ?, ended = ? WHERE id = ?",
+                (JobState.CANCELLED.value, time.time(), id),
+            )
+        connection.execute("UPDATE jobs SET is_cancelling = 1 WHERE id = ?", (id,))
+    return get(data_folder, id)
+
+
+def remove(data_folder: DataFolder, id: str) -> None:
+    """Delete a job that is over, and its results.
+
+    Raises
+    ------
+    NotFound, Conflict
+        When there is none, or it is not over.
+    """
+    with data_folder.database.writing() as connection:
+        row = connection.execute("SELECT state FROM jobs WHERE id = ?", (id,)).fetchone()
+        if row is None:
+            raise NotFound("job", id)
+        if not JobState(row["state"]).is_finished:
+            raise Conflict(f"job '{id}' is {row['state']}: cancel it first")
+        connection.execute("DELETE FROM jobs WHERE id = ?", (id,))
+    shutil.rmtree(data_folder.job_folder(id), ignore_errors=True)
+
+
+def claim(
+    data_folder: DataFolder,
+    *,
+    kinds: Sequence[JobKind] = tuple(JobKind),
+    is_paced: bool | None = None,
+) -> Job | None:
+    """Take the oldest job of some kinds that waits; None: there is none.
+
+    Parameters
+    ----------
+    data_folder : DataFolder
+    kinds : sequence of JobKind
+    is_paced : bool, optional
+        Only those that wait for people or the clock, or only others; None: either.
+    """
+    if not kinds:
+        return None
+    marks = ", ".join("?" for _ in kinds)
+    where = f"state = 'queued' AND kind IN ({marks})"
+    if is_paced is not None:
+        where += f" AND {PACED if is_paced else f'NOT {PACED}'}"
+    names = tuple(kind.value for kind in kinds)
+    # Most looks find nothing, and need no turn to write.
+    with data_folder.database.reading() as connection:
+        row = connection.execute(f"SELECT 1 FROM jobs WHERE {where} LIMIT 1", names).fetchone()
+    if row is None:
+        return None
+    # Ids follow the wall clock, which may be set back; rows are counted.
+    with data_folder.database.writing() as connection:
+        row = connection.execute(
+            "UPDATE jobs SET state = 'running', attempt = attempt + 1, started = ?, "
+            f"share = 0, message = '' WHERE id = (SELECT id FROM jobs WHERE {where} "
+            "ORDER BY rowid LIMIT 1) RETURNING *",
+            (time.time(), *names),
+        ).fetchone()
+    return None if row is None else _job(row)
+
+
+def tell(data_folder: DataFolder, job: Job, *, share: float, message: str) -> None:
+    """Say how far a job is."""
+    _update(data_folder, job, "share = ?, message = ?", (share, message))
+
+
+def finish(
+    data_folder: DataFolder,
+    job: Job,
+    state: JobState,
+    *,
+    problem: Mapping[str, Any] | None = None,
+) -> None:
+    """Say how a job has ended; its results are on the disk before."""
+    said = None if problem is None else json.dumps(problem)
+    share = ", share = 1" if state is JobState.SUCCEEDED else ""
+    values = (state.value, time.time(), said)
+    _update(data_folder, job, f"state = ?, ended = ?, problem = ?{share}", values)
+
+
+def running(data_folder: DataFolder) -> tuple[Job, ...]:
+    """All jobs that run."""
+    with data_folder.database.reading() as connection:
+        rows = connection.execute("SELECT * FROM jobs WHERE state = 'running'").fetchall()
+    return tuple(_job(row) for row in rows)
+
+
+def recover(data_folder: DataFolder) -> None:
+    """Recover the jobs of a runner that is gone."""
+    for job in running(data_folder):
+        if job.is_cancelling:
+            finish(data_folder, job, JobState.CANCELLED)
+        elif job.kind.is_live:
+            finish(
+                data_folder,
+                job,
+                JobState.FAILED,
+                problem=lost("a run with people cannot go on"),
+            )
+        elif job.attempt >= MOST_ATTEMPTS:
+            finish(data_folder, job, JobState.FAILED, problem=lost(f"{job.attempt} attempts"))
+        else:
+            _update(
+                data_folder, job, "state = 'queued', share = 0, message = ?", ("once more",)
+            )
+
+
+def lost(why: str) -> dict[str, Any]:
+    """The problem of a job whose process ended without a word."""
+    return {
+        "type": "urn:stepnc:problem:job-lost",
+        "title": "Job lost",
+        "status": 500,
+        "detail": f"the process that ran it has ended: {why}",
+    }
+
+
+def _update(data_folder: DataFolder, job: Job, columns: str, values: Sequence[object]) -> None:
+    """Change a running job, unless a later attempt has taken over."""
+    with data_folder.database.writing() as connection:
+        connection.execute(
+            f"UPDATE jobs SET {columns} WHERE id = ? AND attempt = ? AND state = 'running'",
+            (*values, job.id, job.attempt),
+        )
+
+
+def _require_room(connection: sqlite3.Connection, owner: str) -> None:
+    """Room in the queue, and in the share of it that one owner may fill."""
+    waiting, own = connection.execute(
+        "SELECT count(*), total(owner = ?) FROM jobs WHERE state = 'queued'", (owner,)
+    ).fetchone()
+    share = MOST_WAITING if owner == LOCAL else max(MOST_WAITING // OWNERS, 1)
+    if waiting >= MOST_WAITING or own >= share:
+        raise TooMany(60.0)
+
+
+def _require_program(connection: sqlite3.Connection, id: str) -> None:
+    if not id:
+        return
+    row = connection.execute("SELECT 1 FROM programs WHERE id = ?", (id,)).fetchone()
+    if row is None:
+        raise NotFound("program", id)
+
+
+def _job(row: sqlite3.Row) -> Job:
+    columns = {name: row[name] for name in row.keys()}  # noqa: SIM118 (a Row)
+    problem = columns.pop("problem")
+    return Job(**{
+        **columns,
+        "kind": JobKind(columns["kind"]),
+        "state": JobState(columns["state"]),
+        "request": json.loads(columns["request"]),
+        "problem": None if problem is None else json.loads(problem),
+        "is_cancelling": bool(columns["is_cancelling"]),
+    })

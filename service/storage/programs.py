@@ -1,0 +1,143 @@
+"""Programs that were uploaded: their bytes as they came, and what they are called."""
+
+import hashlib
+import sqlite3
+import time
+from dataclasses import dataclass
+
+from service.errors import Conflict, NotFound
+from service.files import write_atomically
+from service.ids import new_id
+from service.storage.folder import DataFolder
+from service.storage.idempotency import IdempotencyKey, made_before, remember
+from service.storage.pages import Page, PageCursor, page_of
+
+LONGEST_NAME = 120
+
+FILE = "file of program"
+"""what is not found when the bytes of a program are gone"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StoredProgram:
+    """One program."""
+
+    id: str
+    name: str
+    """as its owner calls it; never part of a path"""
+    size: int
+    """Size, bytes"""
+    sha256: str
+    owner: str
+    created: float
+    """Created, s since 1970"""
+
+
+def add(
+    data_folder: DataFolder,
+    data: bytes,
+    *,
+    name: str,
+    owner: str,
+    idempotency: IdempotencyKey | None = None,
+) -> StoredProgram:
+    """Keep a program; its bytes are on the disk before it is listed."""
+    program = StoredProgram(
+        id=new_id(),
+        name=shown_name(name),
+        size=len(data),
+        sha256=hashlib.sha256(data).hexdigest(),
+        owner=owner,
+        created=time.time(),
+    )
+    place = data_folder.program_file(program.id)
+    write_atomically(place, data)
+    kept = ""
+    try:
+        with data_folder.database.writing() as connection:
+            known = made_before(connection, idempotency)
+            if known is None:
+                connection.execute(
+                    "INSERT INTO programs VALUES (?, ?, ?, ?, ?, ?)",
+                    (
+                        program.id, program.name, program.size, program.sha256,
+                        program.owner, program.created,
+                    ),
+                )  # fmt: skip
+                remember(connection, idempotency, program.id)
+        kept = known or program.id
+    finally:
+        if kept != program.id:
+            place.unlink(missing_ok=True)
+    return program if kept == program.id else get(data_folder, kept)
+
+
+def get(data_folder: DataFolder, id: str) -> StoredProgram:
+    """One program.
+
+    Raises
+    ------
+    NotFound
+        When there is none.
+    """
+    with data_folder.database.reading() as connection:
+        row = connection.execute("SELECT * FROM programs WHERE id = ?", (id,)).fetchone()
+    if row is None:
+        raise NotFound("program", id)
+    return _program(row)
+
+
+def require_file(data_folder: DataFolder, id: str) -> None:
+    """Refuse a program whose bytes are gone.
+
+    Raises
+    ------
+    NotFound
+        Also when there is no such program.
+    """
+    get(data_folder, id)
+    if not data_folder.program_file(id).is_file():
+        raise NotFound(FILE, id)
+
+
+def listed(data_folder: DataFolder, place: PageCursor) -> Page[StoredProgram]:
+    """A page of programs, newest first."""
+    with data_folder.database.reading() as connection:
+        rows = connection.execute(
+            "SELECT * FROM programs WHERE id < ? ORDER BY id DESC LIMIT ?",
+            (place.before, place.limit + 1),
+        ).fetchall()
+    return page_of(
+        [_program(row) for row in rows], [row["id"] for row in rows], limit=place.limit
+    )
+
+
+def remove(data_folder: DataFolder, id: str) -> None:
+    """Delete a program; what was made of it stays.
+
+    Raises
+    ------
+    NotFound, Conflict
+        When there is none, or a job still works on it.
+    """
+    with data_folder.database.writing() as connection:
+        busy = connection.execute(
+            "SELECT id FROM jobs WHERE program = ? AND state IN ('queued', 'running')", (id,)
+        ).fetchone()
+        if busy is not None:
+            raise Conflict(f"job '{busy['id']}' works on program '{id}': cancel it first")
+        gone = connection.execute("DELETE FROM programs WHERE id = ?", (id,)).rowcount
+        if not gone:
+            raise NotFound("program", id)
+    data_folder.program_file(id).unlink(missing_ok=True)
+
+
+def shown_name(name: str) -> str:
+    """A name of one line without folders; ``program.stpnc`` when nothing is left."""
+    last = name.replace("\\", "/").rsplit("/", 1)[-1]
+    clean = "".join(letter for letter in last if letter.isprintable()).strip()[:LONGEST_NAME]
+    return clean.strip(". ") or "program.stpnc"
+
+
+def _program(row: sqlite3.Row) -> StoredProgram:
+    return StoredProgram(**{name: row[name] for name in row.keys()})  # noqa: SIM118 (a Row)

@@ -1,0 +1,125 @@
+"""A line, or an arc or helix in XY, as kernels walk along it. Units mm and rad."""
+
+from math import acos, atan2, cos, hypot, inf, pi, sin
+from typing import NamedTuple
+
+from simulator.kernels.kernel import kernel
+from simulator.motion.segments import Floats
+
+LEAST = 1e-9
+"""mm; what is thinner is rounding, and stays"""
+
+LEVEL = 1e-9
+"""mm of rise over a move that still is level"""
+
+
+class TipMove(NamedTuple):
+    """A line, or an arc or helix in the XY plane, of the tip of the tool."""
+
+    x: float
+    y: float
+    z: float
+    end_x: float
+    end_y: float
+    end_z: float
+    centre_x: float
+    centre_y: float
+    radius: float
+    angle: float
+    """Angle of the arm from the centre to the start"""
+    turn: float
+    """0: a line"""
+
+
+@kernel
+def place(row: Floats, part: float) -> tuple[float, float, float]:
+    """Point of a row of :func:`rows_of` at a share of its length."""
+    x = row[0] + part * (row[3] - row[0])
+    y = row[1] + part * (row[4] - row[1])
+    z = row[2] + part * (row[5] - row[2])
+    if row[11] == 0.0:
+        return x, y, z
+    angle = row[10] + part * row[11]
+    first, second = row[9] * cos(angle), row[9] * sin(angle)
+    if row[12] == 2.0:
+        return row[6] + first, row[7] + second, z
+    if row[12] == 0.0:
+        return x, row[7] + first, row[8] + second
+    return row[6] + second, y, row[8] + first
+
+
+@kernel
+def way_between(row: Floats, begin: float, end: float) -> TipMove:
+    """Part of a row between two shares of its length, a chord when it bends out of XY."""
+    x, y, z = place(row, begin)
+    end_x, end_y, end_z = place(row, end)
+    if row[11] == 0.0 or row[12] != 2.0:
+        return TipMove(x, y, z, end_x, end_y, end_z, 0.0, 0.0, 0.0, 0.0, 0.0)
+    angle, turn = row[10] + begin * row[11], (end - begin) * row[11]
+    return TipMove(x, y, z, end_x, end_y, end_z, row[6], row[7], row[9], angle, turn)
+
+
+@kernel
+def bounds(way: TipMove, reach: float) -> tuple[float, float, float, float]:
+    """Box around the sweep of an arc."""
+    low_x, high_x = min(way.x, way.end_x), max(way.x, way.end_x)
+    low_y, high_y = min(way.y, way.end_y), max(way.y, way.end_y)
+    for quarter in range(4):
+        turned = (0.5 * pi * quarter - way.angle) * (1.0 if way.turn > 0.0 else -1.0)
+        if turned % (2.0 * pi) < abs(way.turn):
+            x = way.centre_x + way.radius * cos(0.5 * pi * quarter)
+            y = way.centre_y + way.radius * sin(0.5 * pi * quarter)
+            low_x, high_x = min(low_x, x), max(high_x, x)
+            low_y, high_y = min(low_y, y), max(high_y, y)
+    return low_x - reach, high_x + reach, low_y - reach, high_y + reach
+
+
+@kernel
+def arc_distance(way: TipMove, x: float, y: float) -> float:
+    """Distance of a point, seen from the centre, from an arc of at most half a turn."""
+    start_x, start_y = way.x - way.centre_x, way.y - way.centre_y
+    end_x, end_y = way.end_x - way.centre_x, way.end_y - way.centre_y
+    sign = 1.0 if way.turn > 0.0 else -1.0
+    after = sign * (start_x * y - start_y * x)
+    before = sign * (x * end_y - y * end_x)
+    if after >= 0.0 and before >= 0.0:
+        return abs(hypot(x, y) - way.radius)
+    return min(hypot(x - start_x, y - start_y), hypot(x - end_x, y - end_y))
+
+
+@kernel
+def helix_height(way: TipMove, x: float, y: float, reach: float) -> float:
+    """Least height over a point of a flat tool on a helix of at most half a turn."""
+    sign = 1.0 if way.turn > 0.0 else -1.0
+    whole = abs(way.turn)
+    away = hypot(x, y)
+    span = (away * away + way.radius**2 - reach * reach) / (2.0 * max(away, LEAST) * way.radius)
+    if span >= 1.0:
+        return inf
+    half = acos(max(span, -1.0))
+    turned = sign * (atan2(y, x) - way.angle) % (2.0 * pi)
+    best = inf
+    for shift in (-2.0 * pi, 0.0, 2.0 * pi):
+        low = max(turned + shift - half, 0.0)
+        high = min(turned + shift + half, whole)
+        if low <= high:
+            part = (low if way.end_z > way.z else high) / whole
+            best = min(best, way.z + part * (way.end_z - way.z))
+    return best
+
+
+@kernel
+def copy(source: Floats, into: Floats, first: int) -> None:
+    """Copy numbers to a place in other numbers."""
+    for index in range(len(source)):
+        into[first + index] = source[index]
+
+
+@kernel
+def raised(row: Floats, lift: float, into: Floats) -> Floats:
+    """A row farther up."""
+    copy(row, into, 0)
+    into[2] += lift
+    into[5] += lift
+    into[8] += lift
+    return into

@@ -1,0 +1,219 @@
+"""Feed, spindle and coolant of a move as a control needs them: resolved from its technology.
+
+ISO 14649-10 §4.2.1: a spindle speed is negative when the tool of a mill turns clockwise, as
+right-hand tools need; that is M3. On a lathe the workpiece turns, positive counter-clockwise
+about z, as right-hand tools in front of the axis need; that is M3 as well.
+"""
+
+from dataclasses import dataclass
+from math import pi
+
+from stepnc_model.entities.entity import Entity
+from stepnc_model.entities.enums import CoolantSelect, Hand
+from stepnc_model.entities.technology import MillingMachineFunctions, MillingTechnology
+from stepnc_model.entities.turning import TurningMachineFunctions
+from stepnc_model.errors import PostError, SchemaError
+from stepnc_model.part21.values import Ref
+from stepnc_model.post.blocks import (
+    Coolant,
+    CoolantKind,
+    MachineType,
+    Rate,
+    RateMode,
+    SpindleDirection,
+    SpindleOff,
+    SpindleOn,
+    SurfaceSpeed,
+)
+from stepnc_model.program import Program
+from stepnc_model.technology import Number, Programmed, ProgrammedQuantity, programmed
+from stepnc_model.tool import Tool, hand_of, tool_of
+from stepnc_model.toolpath.path import Feed
+
+COOLANTS = {
+    CoolantSelect.MIST: CoolantKind.MIST,
+    CoolantSelect.THROUGH_TOOL: CoolantKind.THROUGH,
+}
+
+Spindle = SpindleOn | SurfaceSpeed | SpindleOff
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ModalState:
+    """Modal state during a move."""
+
+    spindle: Spindle | None
+    """None: the file does not say, what holds stays"""
+    rate: Rate | None
+    lead: float | None = None
+    """Lead, mm per revolution of a synchronised move"""
+    note: str = ""
+    """what a reader of the code must be told"""
+
+
+def conditions(
+    program: Program, feed: Feed, tool: Ref[Entity] | None, machine: MachineType
+) -> ModalState:
+    """Feed and spindle of one move.
+
+    Parameters
+    ----------
+    program : Program
+    feed : Feed
+    tool : Ref, optional
+        The tool in the spindle; without one nothing can turn feed per tooth or cutting speed
+        into numbers of a control.
+    machine : MachineType
+
+    Raises
+    ------
+    SchemaError
+        When the tool cannot be used.
+    PostError
+        When a synchronised move has no lead.
+    """
+    try:
+        found = programmed(program, feed.technology)
+    except SchemaError as error:
+        return _incomplete(program, feed, str(error))
+    cutter = tool_of(program, tool) if tool is not None else None
+    if machine is MachineType.LATHE:
+        spindle, speed = _lathe_spindle(found, feed)
+        is_unlimited = isinstance(spindle, SurfaceSpeed) and spindle.limit is None
+        clash = "no limit of the spindle speed is given" if is_unlimited else ""
+    else:
+        spindle, clash = _mill_spindle(program, found, feed, tool=tool, cutter=cutter)
+        speed = spindle.speed
+    rate = _rate(found, feed, teeth=cutter.teeth if cutter else 1, speed=speed)
+    is_lathe = machine is MachineType.LATHE
+    if rate.mode is RateMode.PER_REVOLUTION and not is_lathe and speed:
+        rate = Rate(value=rate.value * speed)
+    return ModalState(
+        spindle=spindle,
+        rate=rate,
+        lead=_lead(program, found, feed, speed) if feed.is_synchronised else None,
+        note=clash,
+    )
+
+
+def _lathe_spindle(found: Programmed, feed: Feed) -> tuple[SpindleOn | SurfaceSpeed, float]:
+    """Spindle of a lathe, and its speed where that is constant, else 0."""
+    sense = (
+        SpindleDirection.CLOCKWISE
+        if found.speed.scale > 0.0
+        else SpindleDirection.COUNTERCLOCKWISE
+    )
+    value = found.speed.value * feed.speed_ratio
+    if found.speed.quantity is ProgrammedQuantity.SPINDLE_SPEED:
+        return SpindleOn(speed=value, sense=sense), value
+    return SurfaceSpeed(speed=value, limit=found.max_spindle_speed, sense=sense), 0.0
+
+
+def _mill_spindle(
+    program: Program,
+    found: Programmed,
+    feed: Feed,
+    *,
+    tool: Ref[Entity] | None,
+    cutter: Tool | None,
+) -> tuple[SpindleOn, str]:
+    """Spindle of a mill, and what is odd about it."""
+    hand = None if tool is None else hand_of(program, tool)
+    is_left = hand is Hand.LEFT
+    if found.speed.quantity is ProgrammedQuantity.CUTTING_SPEED:
+        if cutter is None or cutter.diameter <= 0.0:
+            message = "a cutting speed without a diameter of a tool"
+            raise PostError(f"{program.label(feed.technology)}: {message}")
+        sense = SpindleDirection.COUNTERCLOCKWISE if is_left else SpindleDirection.CLOCKWISE
+        speed = found.spindle_speed(cutter.diameter) * feed.speed_ratio
+        return SpindleOn(speed=speed, sense=sense), ""
+    sense = (
+        SpindleDirection.CLOCKWISE
+        if found.speed.scale < 0.0
+        else SpindleDirection.COUNTERCLOCKWISE
+    )
+    is_odd = hand is not None and is_left is not (sense is SpindleDirection.COUNTERCLOCKWISE)
+    note = f"the file turns the spindle {sense} with a {hand} hand tool".lower()
+    speed = found.speed.value * feed.speed_ratio
+    return SpindleOn(speed=speed, sense=sense), note if is_odd else ""
+
+
+def _rate(found: Programmed, feed: Feed, *, teeth: int, speed: float) -> Rate:
+    """The feed, per revolution or per minute as the file has it."""
+    if feed.velocity is not None:
+        return Rate(value=feed.velocity)
+    if feed.per_revolution is not None:
+        return Rate(value=feed.per_revolution, mode=RateMode.PER_REVOLUTION)
+    value = found.feed.value * feed.ratio
+    if found.feed.quantity is ProgrammedQuantity.FEED_PER_TOOTH:
+        value *= teeth
+    if found.feed.quantity is ProgrammedQuantity.FEED:
+        return Rate(value=value)
+    return Rate(value=value, mode=RateMode.PER_REVOLUTION)
+
+
+def _lead(program: Program, found: Programmed, feed: Feed, speed: float) -> float:
+    """Lead of a synchronised move."""
+    number: Number = found.feed
+    if feed.per_revolution is not None:
+        return feed.per_revolution
+    if number.quantity is not ProgrammedQuantity.FEED:
+        return number.value * feed.ratio
+    if speed <= 0.0:
+        message = "a synchronised move needs a feed per revolution or a spindle speed"
+        raise PostError(f"{program.label(feed.technology)}: {message}")
+    return number.value * feed.ratio / speed
+
+
+def _incomplete(program: Program, feed: Feed, why: str) -> ModalState:
+    """Findings on a technology whose numbers are missing or 0."""
+    technology = program.get(feed.technology)
+    label = program.label(feed.technology)
+    spindle: Spindle | None = None
+    note = why
+    speed = getattr(technology, "spindle", None)
+    if isinstance(technology, MillingTechnology) and speed is not None:
+        if speed == 0.0:
+            spindle, note = SpindleOff(), f"{label}: spindle speed 0: the spindle stands"
+        else:
+            sense = (
+                SpindleDirection.CLOCKWISE if speed < 0.0 else SpindleDirection.COUNTERCLOCKWISE
+            )
+            value = abs(speed) * program.units.spindle * feed.speed_ratio
+            spindle = SpindleOn(speed=value, sense=sense)
+    rate = None
+    written = getattr(technology, "feedrate", None)
+    if feed.velocity is not None:
+        rate = Rate(value=feed.velocity)
+    elif written and written > 0.0:
+        rate = Rate(value=written * program.units.feed_scale * feed.ratio)
+    return ModalState(spindle=spindle, rate=rate, note=note)
+
+
+def constant_speed(spindle: SurfaceSpeed, radius: float) -> SpindleOn:
+    """The constant speed that a surface speed comes to at a radius in mm.
+
+    Threads need it: their feed is bound to the angle of the spindle.
+    """
+    speed = spindle.speed / (2.0 * pi * radius) if radius > 0.0 else spindle.limit
+    if speed is None:
+        raise PostError("constant surface speed on the axis, without a limit")
+    limited = min(speed, spindle.limit) if spindle.limit is not None else speed
+    return SpindleOn(speed=limited, sense=spindle.sense)
+
+
+def coolant_of(program: Program, ref: Ref[Entity]) -> Coolant:
+    """Coolant that machine functions ask for."""
+    functions = program.get(ref)
+    kinds: set[CoolantKind] = set()
+    if isinstance(functions, MillingMachineFunctions):
+        asked = {
+            CoolantKind.FLOOD: functions.coolant,
+            CoolantKind.MIST: functions.mist,
+            CoolantKind.THROUGH: functions.through_spindle_coolant,
+        }
+        kinds = {kind for kind, is_on in asked.items() if is_on}
+    elif isinstance(functions, TurningMachineFunctions) and functions.coolant:
+        kind = functions.coolant_type
+        kinds = {COOLANTS.get(kind, CoolantKind.FLOOD) if kind else CoolantKind.FLOOD}
+    return Coolant(kinds=frozenset(kinds))

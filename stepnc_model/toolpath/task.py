@@ -1,0 +1,360 @@
+"""Input of every tool path, and the path in the making.
+
+The input is the workingstep with its tool, its frame and its heights. The path builder is
+running state, one object for one workingstep.
+"""
+
+from dataclasses import dataclass, replace
+
+from stepnc_model.entities.entity import Entity
+from stepnc_model.entities.executables import Setup
+from stepnc_model.entities.geometry import Block, RightCircularCylinder
+from stepnc_model.entities.turning import TurningMachiningOperation
+from stepnc_model.errors import Finding, PathError, Severity
+from stepnc_model.part21.values import Ref
+from stepnc_model.program import Program, ResolvedWorkingstep, Stock
+from stepnc_model.record_edit import find_record
+from stepnc_model.tool import Tool, tool_of
+from stepnc_model.toolpath.frame import (
+    Frame,
+    feature_frame,
+    frame_of,
+    point_of,
+    workpiece_frame,
+)
+from stepnc_model.toolpath.path import (
+    FARTHEST,
+    Arc,
+    ArcPlane,
+    CannedCycle,
+    Dwell,
+    Feed,
+    Move,
+    MoveType,
+    Point,
+    SpindleCommand,
+    Step,
+    ToolPath,
+)
+
+DEFAULT_CLEARANCE = 5.0
+"""mm from the feature up to the retract plane where the file gives none"""
+
+ABOVE_STOCK = 1.0
+"""mm over the stock at which the tool may move in rapid"""
+
+DEFAULT_SECURITY = 50.0
+"""mm above zero where a file gives no security plane"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ToolPathTask:
+    """One workingstep with what its tool path needs to know."""
+
+    program: Program
+    step: ResolvedWorkingstep
+    tool: Tool
+    security_z: float
+    """Security z, mm, height of the security plane in the setup"""
+    stock: Stock | None
+    findings: tuple[Finding, ...] = ()
+
+    @property
+    def feed(self) -> Feed:
+        """The programmed feed."""
+        return Feed(technology=self.step.technology_ref)
+
+    @property
+    def plunge_feed(self) -> Feed:
+        """The feed on the way down into the material: as advised, else the programmed one.
+
+        Raises
+        ------
+        PathError
+            When the advised one is not positive.
+        """
+        plunge = replace(self.feed, is_plunge=True)
+        record = find_record(self.program, self.step)
+        per_tooth = None if record is None else record.plunge_feed_per_tooth
+        if per_tooth is None:
+            return plunge
+        if per_tooth <= 0.0:
+            message = f"plunge feed {per_tooth:g} mm/tooth: it must be positive"
+            raise self.fault(message, self.step.operation_ref, "plunge_feed_per_tooth")
+        return replace(plunge, per_revolution=per_tooth * self.tool.teeth)
+
+    def rapid_z(self, at: Point) -> float:
+        """Height to which the tool may come in rapid over a point: its own, or above the stock.
+
+        Nobody keeps account of what is cut away: the stock counts as it was bought.
+        """
+        stock, half = self.stock, 0.5 * self.tool.diameter
+        if stock is None:
+            return at[2]
+        is_beside = any(
+            at[axis] + half < stock.low[axis] or at[axis] - half > stock.high[axis]
+            for axis in (0, 1)
+        )
+        return at[2] if is_beside else max(at[2], stock.high[2] + ABOVE_STOCK)
+
+    def frame(self, feature: Ref[Entity]) -> Frame:
+        """Frame of a feature in the setup."""
+        return feature_frame(self.program, self.step.setup, feature)
+
+    def fault(self, message: str, ref: Ref[Entity], attribute: str = "") -> PathError:
+        """Why no path can be made, at one instance."""
+        return self.program.path_error(message, ref, attribute)
+
+    def note(
+        self, message: str, ref: Ref[Entity] | None = None, attribute: str = ""
+    ) -> Finding:
+        """Note an assumption."""
+        at = self.step.operation_ref if ref is None else ref
+        return self.program.finding(Severity.NOTE, message, at, attribute)
+
+    def warning(
+        self, message: str, ref: Ref[Entity] | None = None, attribute: str = ""
+    ) -> Finding:
+        """Warn of what a machinist would want to see."""
+        at = self.step.operation_ref if ref is None else ref
+        return self.program.finding(Severity.WARNING, message, at, attribute)
+
+
+def job_of(program: Program, step: ResolvedWorkingstep) -> ToolPathTask:
+    """Input of the tool path of a workingstep.
+
+    Raises
+    ------
+    SchemaError, PathError
+        When its tool or security plane cannot be used.
+    """
+    with program.using(step.ref, step.operation_ref, step.setup):
+        stock = stock_of(program, step.setup)
+        security_z, findings = _security(program, step, stock)
+        return ToolPathTask(
+            program=program,
+            step=step,
+            tool=tool_of(program, step.tool_ref),
+            security_z=security_z,
+            stock=stock,
+            findings=findings,
+        )
+
+
+def stock_of(program: Program, setup: Ref[Setup] | None) -> Stock | None:
+    """The raw part, by the bounding geometry of the raw piece or of the workpiece.
+
+    Else what the user says, in the coordinates of every setup.
+    """
+    return drawn_stock(program, setup) or program.stock
+
+
+def drawn_stock(program: Program, setup: Ref[Setup] | None) -> Stock | None:
+    """The raw part as the file has it; None where it says nothing of it."""
+    workpiece = program.workpiece()
+    if workpiece is None:
+        return None
+    raw = program.get(workpiece.its_rawpiece) if workpiece.its_rawpiece else workpiece
+    reference = raw.its_bounding_geometry or workpiece.its_bounding_geometry
+    if reference is None:
+        return None
+    shape = program.get(reference)
+    if not isinstance(shape, (Block, RightCircularCylinder)):
+        return None
+    frame = workpiece_frame(program, setup).inner(frame_of(program, shape.position))
+    with program.using(reference):
+        return _placed(shape, frame)
+
+
+def _placed(shape: Block | RightCircularCylinder, frame: Frame) -> Stock:
+    """The box around a body in a frame."""
+    radius = None
+    if isinstance(shape, Block):
+        low, high = (0.0, 0.0, 0.0), (shape.x, shape.y, shape.z)
+    else:
+        low = (-shape.radius, -shape.radius, 0.0)
+        high = (shape.radius, shape.radius, shape.height)
+        radius = shape.radius
+    if max(map(abs, (*low, *high))) > FARTHEST:
+        raise ValueError(f"a size beyond {FARTHEST:g} mm")
+    corners = [
+        frame.point((x, y, z))
+        for x in (low[0], high[0])
+        for y in (low[1], high[1])
+        for z in (low[2], high[2])
+    ]
+    columns = list(zip(*corners, strict=True))
+    return Stock(
+        low=(min(columns[0]), min(columns[1]), min(columns[2])),
+        high=(max(columns[0]), max(columns[1]), max(columns[2])),
+        radius=radius,
+    )
+
+
+def clamps_of(program: Program, setup: Ref[Setup] | None) -> tuple[Point, ...]:
+    """Clamping positions of the workpiece, in the coordinates of the setup."""
+    workpiece = program.workpiece()
+    if workpiece is None:
+        return ()
+    frame = workpiece_frame(program, setup)
+    return tuple(
+        frame.point(point_of(program, point)) for point in workpiece.clamping_positions or ()
+    )
+
+
+def _security(
+    program: Program, step: ResolvedWorkingstep, stock: Stock | None
+) -> tuple[float, tuple[Finding, ...]]:
+    """Height of the security plane: the workingstep's, else the setup's, else a default.
+
+    Files give it in the coordinates of the setup, or in those of the feature. The first
+    reading holds where it brings the plane above the feature.
+    """
+    entity = program.get(step.ref)
+    planes = [getattr(entity, "its_secplane", None)]
+    if step.setup is not None:
+        setup = program.get(step.setup)
+        planes.append(setup.its_secplane if isinstance(setup, Setup) else None)
+    found = [plane for plane in planes if plane is not None]
+    if not found:
+        height = max(DEFAULT_SECURITY, (stock.high[2] if stock else 0.0) + DEFAULT_CLEARANCE)
+        text = f"no security plane: z = {height:g} mm assumed"
+        return height, (program.finding(Severity.NOTE, text, step.ref, "its_secplane"),)
+    height = frame_of(program, program.get(found[0]).position).origin[2]
+    if isinstance(step.operation, TurningMachiningOperation) or not step.features:
+        return height, ()
+    return _raised(program, step, stock, height)
+
+
+def _raised(
+    program: Program, step: ResolvedWorkingstep, stock: Stock | None, height: float
+) -> tuple[float, tuple[Finding, ...]]:
+    """A security plane that lies above the feature and above the stock."""
+    findings: list[Finding] = []
+    top = feature_frame(program, step.setup, step.features[0]).origin[2]
+    if 0.0 < height <= top:
+        text = (
+            f"z = {height:g} mm in the setup is not above the feature, which begins at "
+            f"z = {top:g} mm: taken from there, z = {top + height:g} mm"
+        )
+        height += top
+        findings.append(program.finding(Severity.WARNING, text, step.ref, "its_secplane"))
+    if stock is not None and height < stock.high[2] + ABOVE_STOCK:
+        safe = stock.high[2] + DEFAULT_CLEARANCE
+        text = (
+            f"z = {height:g} mm is not above the stock, which ends at "
+            f"z = {stock.high[2]:g} mm: z = {safe:g} mm taken"
+        )
+        height = safe
+        findings.append(program.finding(Severity.WARNING, text, step.ref, "its_secplane"))
+    return height, tuple(findings)
+
+
+SAME = 1e-9
+"""mm; a move shorter than this is none"""
+
+
+class PathBuilder:
+    """Collects the steps of a path; knows where the tool is."""
+
+    def __init__(self, job: ToolPathTask, start: Point, *, is_turning: bool = False) -> None:
+        self._job = job
+        self._start = start
+        self._is_turning = is_turning
+        self._steps: list[Step] = []
+        self._cycles: list[CannedCycle] = []
+        self._findings: list[Finding] = list(job.findings)
+        self._plunge_feed = job.plunge_feed
+        self.at = start
+        """where the tool is"""
+
+    @property
+    def count(self) -> int:
+        """Steps so far: the index of the next one."""
+        return len(self._steps)
+
+    def rapid(self, end: Point, type: MoveType = MoveType.RAPID) -> None:
+        """Straight, in rapid."""
+        self.add(Move(end=end, type=type))
+
+    def descend(self, end: Point, type: MoveType = MoveType.RAPID) -> None:
+        """Straight down: in rapid as far as no stock can stand, at the feed from there on."""
+        x, y, z = end
+        safe_z = min(self._job.rapid_z(end), self.at[2])
+        self.rapid((x, y, max(safe_z, z)), type)
+        self.line(end, MoveType.NO_CONTACT)
+
+    def line(self, end: Point, type: MoveType, feed: Feed | None = None) -> None:
+        """Straight, at the programmed feed or at another one."""
+        self.add(Move(end=end, type=type, feed=feed or self._feed(end, type)))
+
+    def arc(
+        self,
+        end: Point,
+        type: MoveType,
+        *,
+        centre: Point,
+        turn: float,
+        plane: ArcPlane = ArcPlane.XY,
+    ) -> None:
+        """About a centre, at the programmed feed."""
+        arc = Arc(centre=centre, turn=turn, plane=plane)
+        self.add(Move(end=end, type=type, feed=self._feed(end, type), arc=arc))
+
+    def _feed(self, end: Point, type: MoveType) -> Feed:
+        """The programmed feed, or that of an approach that goes down: a plunge or a ramp."""
+        is_plunge = type is MoveType.APPROACH and end[2] < self.at[2] - SAME
+        return self._plunge_feed if is_plunge else self._job.feed
+
+    def add(self, move: Move) -> None:
+        """Append a move, unless it leads nowhere."""
+        if move.arc is None and _is_same(self.at, move.end):
+            return
+        self._steps.append(move)
+        self.at = move.end
+
+    def dwell(self, *, seconds: float | None = None, revolutions: float | None = None) -> None:
+        """Pause."""
+        self._steps.append(Dwell(seconds=seconds, revolutions=revolutions))
+
+    def spindle(self, command: SpindleCommand) -> None:
+        """Stop, start or reverse the spindle."""
+        self._steps.append(command)
+
+    def cycle(self, cycle: CannedCycle) -> None:
+        """Say that a run of steps is a cycle that controls have."""
+        self._cycles.append(cycle)
+
+    def find(self, finding: Finding) -> None:
+        """Say what was assumed, once."""
+        if finding not in self._findings:
+            self._findings.append(finding)
+
+    def warn(self, message: str, ref: Ref[Entity], attribute: str = "") -> None:
+        """Say what a machinist would want to see, once."""
+        self.find(self._job.warning(message, ref, attribute))
+
+    def finished(self) -> ToolPath:
+        """The path."""
+        step = self._job.step
+        return ToolPath(
+            workingstep=step.ref,
+            id=step.id,
+            operation_ref=step.operation_ref,
+            tool_ref=step.tool_ref,
+            technology_ref=step.technology_ref,
+            functions_ref=step.functions_ref,
+            is_turning=self._is_turning,
+            start=self._start,
+            steps=tuple(self._steps),
+            cycles=tuple(self._cycles),
+            findings=tuple(self._findings),
+        )
+
+
+def _is_same(one: Point, other: Point) -> bool:
+    return (
+        abs(one[0] - other[0]) < SAME
+        and abs(one[1] - other[1]) < SAME
+        and abs(one[2] - other[2]) < SAME
+    )
