@@ -4,123 +4,164 @@ A file has one ``[edge.<cutting material>]`` table for what the whole tool has i
 one ``[[grade]]`` row per cutting material and ISO group for its windows.
 """
 
-from simulator.material_file import ISO_GROUPS, RAKE, speed_window
+from pathlib import Path
+from typing import Annotated, Literal
+
+from simulator.material_file import Rake, SpeedWindow
 from simulator.spec import CuttingMaterial, DrillPoint, FeedWindow, ToolGrade, ToolKind
-from simulator.toml_file import Range, Table
+from simulator.toml_file import FileTable, KeyFault, quantity, read_toml, require_window
 from stepnc_model.units import rad_from_deg
 
 ANY_GROUP = "*"
 """the grade serves every ISO group"""
 
-FEED_RATIO = Range(low=1e-4, high=0.2)
-FEED = Range(low=1e-4, high=10, unit="mm")
-DEPTH_RATIO = Range(low=0.001, high=20)
-DEPTH = Range(low=0.01, high=200, unit="mm")
-CHIP_THICKNESS = Range(low=1e-4, high=0.1, unit="mm")
-YOUNGS_MODULUS = Range(low=50_000, high=1_000_000, unit="N/mm²")
-BENDING_STRENGTH = Range(low=50, high=5_000, unit="N/mm²")
-HELIX = Range(low=0, high=75, unit="°")
-THRUST_SHARE = Range(low=0.2, high=1.5)
-CHISEL_RATIO = Range(low=0, high=0.4)
-WIDTH_RATIO = Range(low=0.05, high=1)
-SLOT_FACTOR = Range(low=0.1, high=1)
-LAND = Range(low=0.1, high=20, unit="mm")
+GradeGroup = Literal["P", "M", "K", "N", "S", "H", "*"]
+"""ISO 513 group that a grade serves"""
+
+GradeFeedRatio = Annotated[float, quantity(1e-4, 0.2)]
+GradeFeed = Annotated[float, quantity(1e-4, 10, "mm")]
+DepthRatio = Annotated[float, quantity(0.001, 20)]
+Depth = Annotated[float, quantity(0.01, 200, "mm")]
+ChipThickness = Annotated[float, quantity(1e-4, 0.1, "mm")]
+YoungsModulus = Annotated[float, quantity(50_000, 1_000_000, "N/mm²")]
+BendingStrength = Annotated[float, quantity(50, 5_000, "N/mm²")]
+Helix = Annotated[float, quantity(0, 75, "°")]
+ThrustShare = Annotated[float, quantity(0.2, 1.5)]
+ChiselRatio = Annotated[float, quantity(0, 0.4)]
+WidthRatio = Annotated[float, quantity(0.05, 1)]
+SlotFactor = Annotated[float, quantity(0.1, 1)]
+LandWidth = Annotated[float, quantity(0.1, 20, "mm")]
 
 
-def read_grades(table: Table, kind: ToolKind) -> tuple[ToolGrade, ...]:
-    """Grades of a file's root table, in canonical units.
+class PointTable(FileTable, frozen=True, kw_only=True):
+    """Point of a drill, with a source of its own."""
+
+    thrust_share: ThrustShare
+    chisel_ratio: ChiselRatio
+    source: str
+
+
+class FeedWindowTable(FileTable, frozen=True, kw_only=True):
+    """Engagement at which the feeds hold, with a source of its own."""
+
+    width_ratio: WidthRatio
+    slot_factor: SlotFactor
+    source: str
+
+
+class LandTable(FileTable, frozen=True, kw_only=True):
+    """Parallel land of the inserts, with a source of its own."""
+
+    width_mm: LandWidth
+    source: str
+
+
+class EdgeTable(FileTable, frozen=True, kw_only=True):
+    """What all grades of a cutting material have in common."""
+
+    min_chip_thickness_mm: ChipThickness
+    rake_angle_deg: Rake | None = None
+    youngs_modulus_n_mm2: YoungsModulus
+    bending_strength_n_mm2: BendingStrength
+    helix_deg: Helix = 0.0
+    source: str
+    point: PointTable | None = None
+    feed_window: FeedWindowTable | None = None
+    parallel_land: LandTable | None = None
+
+
+class EdgeTables(FileTable, frozen=True, kw_only=True):
+    """Edges by cutting material."""
+
+    hss: EdgeTable | None = None
+    carbide: EdgeTable | None = None
+    ceramic: EdgeTable | None = None
+
+    def of(self, material: CuttingMaterial) -> EdgeTable | None:
+        """Edge of a cutting material."""
+        edges = {
+            CuttingMaterial.HSS: self.hss,
+            CuttingMaterial.CARBIDE: self.carbide,
+            CuttingMaterial.CERAMIC: self.ceramic,
+        }
+        return edges[material]
+
+
+class GradeRow(SpeedWindow, frozen=True, kw_only=True):
+    """One ``[[grade]]`` row; its cutting speeds replace those of the work material."""
+
+    cutting_material: CuttingMaterial
+    iso_group: GradeGroup
+    min_feed_ratio: GradeFeedRatio | None = None
+    max_feed_ratio: GradeFeedRatio | None = None
+    min_feed_mm: GradeFeed | None = None
+    max_feed_mm: GradeFeed | None = None
+    max_depth_ratio: DepthRatio | None = None
+    max_depth_mm: Depth | None = None
+    source: str
+
+    def __post_init__(self) -> None:
+        require_window(self, "min_feed_ratio", "max_feed_ratio")
+        require_window(self, "min_feed_mm", "max_feed_mm")
+        require_window(self, "min_cutting_speed_m_min", "max_cutting_speed_m_min")
+        if (self.speeds[0] is None) != (self.speeds[1] is None):
+            raise ValueError("a cutting-speed window that replaces the material's has two ends")
+
+
+class GradeFile(FileTable, frozen=True, kw_only=True):
+    """A whole file of tool grades."""
+
+    title: str
+    edge: EdgeTables
+    grade: tuple[GradeRow, ...] = ()
+
+    def __post_init__(self) -> None:
+        for at, row in enumerate(self.grade, start=1):
+            if self.edge.of(row.cutting_material) is None:
+                message = f"there is no [edge.{row.cutting_material}] table"
+                raise KeyFault(f"grade[{at}].cutting_material", message)
+
+
+def read_grades(path: Path, kind: ToolKind) -> tuple[ToolGrade, ...]:
+    """Grades of a kind of tool from a TOML file, in canonical units.
 
     Raises
     ------
     LibraryError
         A key is missing, unknown or out of its range.
     """
-    edges = table.table("edge")
-    shared = {
-        material: edges.table(material) for material in CuttingMaterial if material in edges
-    }
-    grades = []
-    for row in table.tables("grade"):
-        material = row.choice("cutting_material", CuttingMaterial)
-        if material not in shared:
-            raise row.error("cutting_material", f"there is no [edge.{material}] table")
-        grades.append(_grade(row, edge=shared[material], kind=kind, material=material))
-    table.text("title")
-    table.finish()
-    return tuple(grades)
+    file = read_toml(path, GradeFile)
+    edges = ((row, file.edge.of(row.cutting_material)) for row in file.grade)
+    return tuple(_grade(row, edge, kind) for row, edge in edges if edge is not None)
 
 
-def _grade(row: Table, *, edge: Table, kind: ToolKind, material: CuttingMaterial) -> ToolGrade:
-    """One ``[[grade]]`` row with what its tool has in common."""
-    group = _group(row)
-    low_ratio, high_ratio = row.window("min_feed_ratio", "max_feed_ratio", allowed=FEED_RATIO)
-    low_feed, high_feed = row.window("min_feed_mm", "max_feed_mm", allowed=FEED)
-    low_speed, high_speed = speed_window(row)
-    if (low_speed is None) != (high_speed is None):
-        raise row.error("", "a cutting-speed window that replaces the material's has two ends")
-    rake = edge.optional_number("rake_angle_deg", RAKE)
+def _grade(row: GradeRow, edge: EdgeTable, kind: ToolKind) -> ToolGrade:
+    """Grade of a row with what its tool has in common."""
+    point, feeds, rake = edge.point, edge.feed_window, edge.rake_angle_deg
     return ToolGrade(
-        name=f"{material} {kind.replace('_', ' ')} {group}",
+        name=f"{row.cutting_material} {kind.replace('_', ' ')} {row.iso_group}",
         tool_kind=kind,
-        cutting_material=material,
-        iso_group=group,
-        min_feed_ratio=low_ratio,
-        max_feed_ratio=high_ratio,
-        min_feed=low_feed,
-        max_feed=high_feed,
-        min_cutting_speed=low_speed,
-        max_cutting_speed=high_speed,
-        max_depth_ratio=row.optional_number("max_depth_ratio", DEPTH_RATIO),
-        max_depth=row.optional_number("max_depth_mm", DEPTH),
-        min_chip_thickness=edge.number("min_chip_thickness_mm", CHIP_THICKNESS),
-        youngs_modulus=edge.number("youngs_modulus_n_mm2", YOUNGS_MODULUS),
-        bending_strength=edge.number("bending_strength_n_mm2", BENDING_STRENGTH),
+        cutting_material=row.cutting_material,
+        iso_group=row.iso_group,
+        min_feed_ratio=row.min_feed_ratio,
+        max_feed_ratio=row.max_feed_ratio,
+        min_feed=row.min_feed_mm,
+        max_feed=row.max_feed_mm,
+        min_cutting_speed=row.speeds[0],
+        max_cutting_speed=row.speeds[1],
+        max_depth_ratio=row.max_depth_ratio,
+        max_depth=row.max_depth_mm,
+        min_chip_thickness=edge.min_chip_thickness_mm,
+        youngs_modulus=edge.youngs_modulus_n_mm2,
+        bending_strength=edge.bending_strength_n_mm2,
         rake_angle=None if rake is None else rad_from_deg(rake),
-        source=f"{row.text('source')}; {edge.text('source')}",
-        helix_angle=rad_from_deg(edge.optional_number("helix_deg", HELIX) or 0.0),
-        point=_point(edge),
-        feed_window=_feed_window(edge),
-        parallel_land=_parallel_land(edge),
+        source=f"{row.source}; {edge.source}",
+        helix_angle=rad_from_deg(edge.helix_deg),
+        point=None
+        if point is None
+        else DrillPoint(thrust_share=point.thrust_share, chisel_ratio=point.chisel_ratio),
+        feed_window=None
+        if feeds is None
+        else FeedWindow(width_ratio=feeds.width_ratio, slot_factor=feeds.slot_factor),
+        parallel_land=0.0 if edge.parallel_land is None else edge.parallel_land.width_mm,
     )
-
-
-def _point(edge: Table) -> DrillPoint | None:
-    """Point of a drill, with a source of its own."""
-    if "point" not in edge:
-        return None
-    point = edge.table("point")
-    point.text("source")
-    return DrillPoint(
-        thrust_share=point.number("thrust_share", THRUST_SHARE),
-        chisel_ratio=point.number("chisel_ratio", CHISEL_RATIO),
-    )
-
-
-def _feed_window(edge: Table) -> FeedWindow | None:
-    """Engagement of the feeds, with a source of its own."""
-    if "feed_window" not in edge:
-        return None
-    window = edge.table("feed_window")
-    window.text("source")
-    return FeedWindow(
-        width_ratio=window.number("width_ratio", WIDTH_RATIO),
-        slot_factor=window.number("slot_factor", SLOT_FACTOR),
-    )
-
-
-def _parallel_land(edge: Table) -> float:
-    """Width of the inserts' parallel land in mm, with a source of its own; 0 without one."""
-    if "parallel_land" not in edge:
-        return 0.0
-    land = edge.table("parallel_land")
-    land.text("source")
-    return land.number("width_mm", LAND)
-
-
-def _group(row: Table) -> str:
-    """ISO 513 group of a row, or the mark for any."""
-    group = row.text("iso_group")
-    if group not in {*ISO_GROUPS, ANY_GROUP}:
-        known = ", ".join((*ISO_GROUPS, ANY_GROUP))
-        raise row.error("iso_group", f"'{group}' is none of {known}")
-    return group

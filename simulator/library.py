@@ -23,7 +23,6 @@ from simulator.spec import (
     ToolKind,
     WorkMaterial,
 )
-from simulator.toml_file import read_toml
 
 DATA = Path(__file__).with_name("data")
 """where the library's files lie"""
@@ -79,11 +78,11 @@ def load_machine(name_or_path: str) -> Machine:
     if path.suffix.lower() == ".xml":
         return read_machine_xml(path)
     if _is_path(name_or_path):
-        return read_machine(read_toml(path), name=path.stem)
+        return read_machine(path)
     name = name_or_path.strip().lower()
     if name not in machine_names():
         raise UnknownMachine(name_or_path, _nearest_first(name, machine_names()))
-    return read_machine(read_toml(DATA / "machines" / f"{name}.toml"), name=name)
+    return read_machine(DATA / "machines" / f"{name}.toml")
 
 
 def load_material(name_or_path: str) -> WorkMaterial:
@@ -108,12 +107,11 @@ def load_material(name_or_path: str) -> WorkMaterial:
     Kienzle(k_c11=1000.0, m_c=0.0, rake_angle=None)
     """
     if _is_path(name_or_path):
-        path = Path(name_or_path)
-        return read_material(read_toml(path), name=path.stem)
+        return read_material(Path(name_or_path))
     name = name_or_path.strip().lower()
     if name not in material_names():
         raise UnknownMaterial(name_or_path, _nearest_first(name, material_names()))
-    return read_material(read_toml(material_path(name)), name=name)
+    return read_material(material_path(name))
 
 
 def find_window(
@@ -177,7 +175,7 @@ def grade_for(
 @cache
 def _grades(kind: ToolKind) -> tuple[ToolGrade, ...]:
     """Grades of one kind; kept, since every workingstep asks and the files do not change."""
-    return read_grades(read_toml(_grade_path(kind)), kind)
+    return read_grades(_grade_path(kind), kind)
 
 
 def _grade_path(kind: ToolKind) -> Path:

@@ -1,13 +1,18 @@
-"""A machine from its TOML file.
+"""Machine files in TOML: read and written.
 
 Ranges are those of any machine tool that cuts metal, from watchmaking to heavy lathes; a
-number outside is a slip of the unit. A limit whose key is absent does not limit.
+number outside is a slip of the unit. A limit whose key is absent does not limit. The machine's
+source stands in each table that needs one, as only the sources of the machine, its modes and
+its work-holding are kept.
 """
 
+from collections.abc import Sequence
 from itertools import pairwise
-from math import inf
+from math import inf, isinf
+from pathlib import Path
+from typing import Annotated
 
-from simulator.holding_file import read_holdings
+from simulator.holding_file import HoldingRow, holding_row, require_kind, require_one_each
 from simulator.physics.spindle import curve_segments
 from simulator.spec import (
     Axis,
@@ -20,198 +25,429 @@ from simulator.spec import (
     VibratingPart,
     VibrationMode,
 )
-from simulator.toml_file import Range, Table
+from simulator.toml_file import (
+    FileTable,
+    KeyFault,
+    quantity,
+    read_toml,
+    require_window,
+    shortest,
+    written,
+)
 from stepnc_model.units import (
+    kw_from_watts,
+    mm_min_from_speed,
     n_mm_from_n_um,
+    n_um_from_n_mm,
+    nm_from_nmm,
     nmm_from_nm,
     rev_s_from_rpm,
+    rpm_from_rev_s,
     speed_from_mm_min,
     watts_from_kw,
 )
 
-SPEED = Range(low=0.1, high=500_000, unit="rpm")
-POWER = Range(low=0.001, high=1_000, unit="kW")
-AUXILIARY_POWER = Range(low=0, high=100_000, unit="W")
-IDLE_POWER_PER_SPEED = Range(low=0, high=10_000, unit="W/(rev/s)")
-IDLE_POWER_PER_SPEED_SQUARED = Range(low=0, high=1_000, unit="W/(rev/s)²")
-REGENERATION = Range(low=0, high=1)
-UNLIMITED_POWER = watts_from_kw(POWER.high)
+MOST_KW = 1_000.0
+
+Rpm = Annotated[float, quantity(0.1, 500_000, "rpm")]
+Kilowatts = Annotated[float, quantity(0.001, MOST_KW, "kW")]
+AuxiliaryPower = Annotated[float, quantity(0, 100_000, "W")]
+IdlePowerPerSpeed = Annotated[float, quantity(0, 10_000, "W/(rev/s)")]
+IdlePowerPerSpeedSquared = Annotated[float, quantity(0, 1_000, "W/(rev/s)²")]
+Regeneration = Annotated[float, quantity(0, 1)]
+Torque = Annotated[float, quantity(0.001, 1_000_000, "N·m")]
+Efficiency = Annotated[float, quantity(0.05, 1)]
+SpindleAcceleration = Annotated[float, quantity(0.1, 10_000, "rev/s²")]
+Inertia = Annotated[float, quantity(1e-7, 10_000, "kg·m²")]
+Feed = Annotated[float, quantity(1, 300_000, "mm/min")]
+Travel = Annotated[float, quantity(-100_000, 100_000, "mm")]
+Acceleration = Annotated[float, quantity(10, 100_000, "mm/s²")]
+Jerk = Annotated[float, quantity(100, 10_000_000, "mm/s³")]
+CuttingForce = Annotated[float, quantity(1, 10_000_000, "N")]
+AxialDepth = Annotated[float, quantity(0.01, 1_000, "mm")]
+BlockTime = Annotated[float, quantity(1e-5, 1, "s")]
+Delay = Annotated[float, quantity(0, 10, "s")]
+ToolChange = Annotated[float, quantity(0, 600, "s")]
+Lead = Annotated[float, quantity(0.1, 500, "mm")]
+MovedMass = Annotated[float, quantity(0.1, 200_000, "kg")]
+Mass = Annotated[float, quantity(0, 200_000, "kg")]
+ScrewDiameter = Annotated[float, quantity(1, 500, "mm")]
+DriveInertia = Annotated[float, quantity(0, 100, "kg·m²")]
+Friction = Annotated[float, quantity(0, 1)]
+Preload = Annotated[float, quantity(0, 1_000_000, "N")]
+Viscous = Annotated[float, quantity(0, 100, "N·m·s/rad")]
+GearRatio = Annotated[float, quantity(0.01, 1_000)]
+Frequency = Annotated[float, quantity(1, 50_000, "Hz")]
+Damping = Annotated[float, quantity(1e-4, 0.5)]
+Stiffness = Annotated[float, quantity(0.001, 10_000, "N/µm")]
+ModeDiameter = Annotated[float, quantity(0.01, 2_000, "mm")]
+
+UNLIMITED_POWER = watts_from_kw(MOST_KW)
 """W, stands for the motor power that a source does not give: no cut reaches it"""
-TORQUE = Range(low=0.001, high=1_000_000, unit="N·m")
-EFFICIENCY = Range(low=0.05, high=1)
-SPINDLE_ACCELERATION = Range(low=0.1, high=10_000, unit="rev/s²")
-INERTIA = Range(low=1e-7, high=10_000, unit="kg·m²")
-FEED = Range(low=1, high=300_000, unit="mm/min")
-TRAVEL = Range(low=-100_000, high=100_000, unit="mm")
-ACCELERATION = Range(low=10, high=100_000, unit="mm/s²")
-JERK = Range(low=100, high=10_000_000, unit="mm/s³")
-FORCE = Range(low=1, high=10_000_000, unit="N")
-DEPTH = Range(low=0.01, high=1_000, unit="mm")
-BLOCK_TIME = Range(low=1e-5, high=1, unit="s")
-DELAY = Range(low=0, high=10, unit="s")
-TOOL_CHANGE = Range(low=0, high=600, unit="s")
-LEAD = Range(low=0.1, high=500, unit="mm")
-MOVED_MASS = Range(low=0.1, high=200_000, unit="kg")
-MASS = Range(low=0, high=200_000, unit="kg")
-SCREW_DIAMETER = Range(low=1, high=500, unit="mm")
-DRIVE_INERTIA = Range(low=0, high=100, unit="kg·m²")
-FRICTION = Range(low=0, high=1)
-PRELOAD = Range(low=0, high=1_000_000, unit="N")
-VISCOUS = Range(low=0, high=100, unit="N·m·s/rad")
-GEAR_RATIO = Range(low=0.01, high=1_000)
-FREQUENCY = Range(low=1, high=50_000, unit="Hz")
-DAMPING = Range(low=1e-4, high=0.5)
-STIFFNESS = Range(low=0.001, high=10_000, unit="N/µm")
-MODE_DIAMETER = Range(low=0.01, high=2_000, unit="mm")
 
 
-def read_machine(table: Table, *, name: str) -> Machine:
-    """Machine of a file's root table, in canonical units.
+class PointRow(FileTable, frozen=True, kw_only=True):
+    """One ``[[spindle.curve]]`` row."""
+
+    speed_rpm: Rpm
+    power_kw: Kilowatts
+    torque_nm: Torque | None = None
+
+    @property
+    def point(self) -> SpindlePoint:
+        """Point of the curve in canonical units."""
+        torque = self.torque_nm
+        return SpindlePoint(
+            speed=rev_s_from_rpm(self.speed_rpm),
+            power=watts_from_kw(self.power_kw),
+            torque=None if torque is None else nmm_from_nm(torque),
+        )
+
+
+class SpindleTable(FileTable, frozen=True, kw_only=True):
+    """The ``[spindle]`` table and its curve, ascending in speed."""
+
+    efficiency: Efficiency
+    min_speed_rpm: Rpm | None = None
+    max_speed_rpm: Rpm | None = None
+    acceleration_rev_s2: SpindleAcceleration | None = None
+    inertia_kg_m2: Inertia | None = None
+    idle_power_w: AuxiliaryPower = 0.0
+    idle_power_w_per_rev_s: IdlePowerPerSpeed = 0.0
+    idle_power_w_per_rev2_s2: IdlePowerPerSpeedSquared = 0.0
+    regeneration: Regeneration = 0.0
+    delay_s: Delay | None = None
+    source: str
+    curve: tuple[PointRow, ...] = ()
+
+    def __post_init__(self) -> None:
+        require_window(self, "min_speed_rpm", "max_speed_rpm")
+        if not self.curve:
+            raise KeyFault("curve", "missing; expected at least one [[spindle.curve]] point")
+        for row, (slower, faster) in enumerate(pairwise(self.curve), start=2):
+            if rev_s_from_rpm(faster.speed_rpm) <= rev_s_from_rpm(slower.speed_rpm):
+                raise KeyFault(
+                    f"curve[{row}].speed_rpm",
+                    f"{faster.speed_rpm:g} rpm is not above the point before it",
+                )
+        try:
+            curve_segments(self.spindle)
+        except ValueError as error:
+            raise KeyFault("curve", str(error)) from error
+
+    @property
+    def spindle(self) -> Spindle:
+        """Main drive in canonical units."""
+        low, high = self.min_speed_rpm, self.max_speed_rpm
+        return Spindle(
+            curve=tuple(row.point for row in self.curve),
+            efficiency=self.efficiency,
+            min_speed=None if low is None else rev_s_from_rpm(low),
+            max_speed=None if high is None else rev_s_from_rpm(high),
+            acceleration=self.acceleration_rev_s2,
+            inertia=self.inertia_kg_m2,
+            idle_power=self.idle_power_w,
+            idle_power_per_speed=self.idle_power_w_per_rev_s,
+            idle_power_per_speed_squared=self.idle_power_w_per_rev2_s2,
+            regeneration=self.regeneration,
+            delay=self.delay_s,
+        )
+
+
+class DriveTable(FileTable, frozen=True, kw_only=True):
+    """The ``[axis.drive]`` table of the axis before it; what is absent is 0, the gear 1."""
+
+    lead_mm: Lead
+    table_mass_kg: MovedMass
+    workpiece_mass_kg: Mass = 0.0
+    screw_mass_kg: Mass = 0.0
+    screw_diameter_mm: ScrewDiameter
+    coupling_inertia_kg_m2: DriveInertia = 0.0
+    motor_inertia_kg_m2: DriveInertia = 0.0
+    guide_friction: Friction
+    bearing_friction: Friction = 0.0
+    preload_n: Preload = 0.0
+    viscous_nm_s_per_rad: Viscous = 0.0
+    gear_ratio: GearRatio = 1.0
+    efficiency: Efficiency
+    regeneration: Regeneration = 0.0
+    source: str
+
+    @property
+    def drive(self) -> AxisDrive:
+        """Feed drive in canonical units."""
+        return AxisDrive(
+            lead=self.lead_mm,
+            table_mass=self.table_mass_kg,
+            workpiece_mass=self.workpiece_mass_kg,
+            screw_mass=self.screw_mass_kg,
+            screw_diameter=self.screw_diameter_mm,
+            coupling_inertia=self.coupling_inertia_kg_m2,
+            motor_inertia=self.motor_inertia_kg_m2,
+            guide_friction=self.guide_friction,
+            bearing_friction=self.bearing_friction,
+            preload=self.preload_n,
+            viscous=nmm_from_nm(self.viscous_nm_s_per_rad),
+            gear_ratio=self.gear_ratio,
+            efficiency=self.efficiency,
+            regeneration=self.regeneration,
+        )
+
+
+class AxisRow(FileTable, frozen=True, kw_only=True):
+    """One ``[[axis]]`` row; without ``max_feed_mm_min`` the rapid is the greatest feed."""
+
+    name: str
+    travel_min_mm: Travel | None = None
+    travel_max_mm: Travel | None = None
+    rapid_mm_min: Feed
+    max_feed_mm_min: Feed | None = None
+    acceleration_mm_s2: Acceleration
+    jerk_mm_s3: Jerk | None = None
+    drive: DriveTable | None = None
+
+    def __post_init__(self) -> None:
+        require_window(self, "travel_min_mm", "travel_max_mm")
+
+    @property
+    def axis(self) -> Axis:
+        """Axis in canonical units; an end of travel without a key is infinite."""
+        low, high, max_feed = self.travel_min_mm, self.travel_max_mm, self.max_feed_mm_min
+        return Axis(
+            name=self.name,
+            travel=(-inf if low is None else low, inf if high is None else high),
+            rapid=speed_from_mm_min(self.rapid_mm_min),
+            max_feed=speed_from_mm_min(self.rapid_mm_min if max_feed is None else max_feed),
+            acceleration=self.acceleration_mm_s2,
+            jerk=self.jerk_mm_s3,
+            drive=None if self.drive is None else self.drive.drive,
+        )
+
+
+class ModeRow(FileTable, frozen=True, kw_only=True):
+    """One ``[[mode]]`` row; a mode of a tool names the tool or its diameter."""
+
+    part: VibratingPart
+    tool: str = ""
+    tool_diameter_mm: ModeDiameter | None = None
+    direction: ModeDirection
+    frequency_hz: Frequency
+    damping_ratio: Damping
+    stiffness_n_um: Stiffness
+    source: str
+
+    def __post_init__(self) -> None:
+        is_named = bool(self.tool.strip()) or self.tool_diameter_mm is not None
+        if self.part is VibratingPart.TOOL and not is_named:
+            raise KeyFault("tool", "missing; expected the tool's id, or tool_diameter_mm")
+        if self.part is VibratingPart.WORKPIECE and is_named:
+            raise KeyFault("tool", "a mode of the workpiece belongs to no tool")
+
+    @property
+    def mode(self) -> VibrationMode:
+        """Mode in canonical units."""
+        return VibrationMode(
+            part=self.part,
+            tool=self.tool.strip(),
+            tool_diameter=self.tool_diameter_mm,
+            direction=self.direction,
+            natural_frequency=self.frequency_hz,
+            damping_ratio=self.damping_ratio,
+            stiffness=n_mm_from_n_um(self.stiffness_n_um),
+            source=self.source,
+        )
+
+
+class MachineFile(FileTable, frozen=True, kw_only=True):
+    """A whole machine file."""
+
+    title: str
+    kind: MachineKind
+    only_stated_limits: bool = False
+    rapid_mm_min: Feed | None = None
+    max_feed_mm_min: Feed | None = None
+    max_cutting_force_n: CuttingForce | None = None
+    max_axial_depth_mm: AxialDepth | None = None
+    block_time_s: BlockTime | None = None
+    base_power_w: AuxiliaryPower = 0.0
+    coolant_power_w: AuxiliaryPower = 0.0
+    tool_change_s: ToolChange = 0.0
+    source: str
+    remarks: tuple[str, ...] = ()
+    spindle: SpindleTable
+    axis: tuple[AxisRow, ...] = ()
+    holding: tuple[HoldingRow, ...] = ()
+    mode: tuple[ModeRow, ...] = ()
+
+    def __post_init__(self) -> None:
+        require_one_each(self.holding)
+        require_kind(self.holding, self.kind)
+
+    def machine(self, name: str) -> Machine:
+        """Machine in canonical units."""
+        rapid, max_feed = self.rapid_mm_min, self.max_feed_mm_min
+        return Machine(
+            name=name,
+            title=self.title,
+            kind=self.kind,
+            spindle=self.spindle.spindle,
+            axes=tuple(row.axis for row in self.axis),
+            rapid=None if rapid is None else speed_from_mm_min(rapid),
+            max_feed=None if max_feed is None else speed_from_mm_min(max_feed),
+            max_cutting_force=self.max_cutting_force_n,
+            max_axial_depth=self.max_axial_depth_mm,
+            block_time=self.block_time_s,
+            base_power=self.base_power_w,
+            coolant_power=self.coolant_power_w,
+            tool_change=self.tool_change_s,
+            source=self.source,
+            remarks=self.remarks,
+            modes=tuple(row.mode for row in self.mode),
+            holdings=tuple(row.holding for row in self.holding),
+            only_stated_limits=self.only_stated_limits,
+        )
+
+
+def read_machine(path: Path) -> Machine:
+    """Machine of a TOML file, in canonical units, named as the file.
 
     Raises
     ------
     LibraryError
         A key is missing, unknown or out of its range.
     """
-    kind = table.choice("kind", MachineKind)
-    machine = Machine(
-        name=name,
-        title=table.text("title"),
-        kind=kind,
-        spindle=_spindle(table.table("spindle")),
-        axes=tuple(_axis(row) for row in table.tables("axis")),
-        rapid=_feed(table, "rapid_mm_min"),
-        max_feed=_feed(table, "max_feed_mm_min"),
-        max_cutting_force=table.optional_number("max_cutting_force_n", FORCE),
-        max_axial_depth=table.optional_number("max_axial_depth_mm", DEPTH),
-        block_time=table.optional_number("block_time_s", BLOCK_TIME),
-        base_power=_amount(table, "base_power_w", AUXILIARY_POWER),
-        coolant_power=_amount(table, "coolant_power_w", AUXILIARY_POWER),
-        tool_change=_amount(table, "tool_change_s", TOOL_CHANGE),
-        source=table.text("source"),
-        remarks=table.texts("remarks"),
-        modes=tuple(_mode(row) for row in table.tables("mode")),
-        holdings=read_holdings(table, kind),
-        only_stated_limits=table.flag("only_stated_limits"),
+    return read_toml(path, MachineFile).machine(path.stem)
+
+
+def machine_toml(machine: Machine, *, notes: Sequence[str] = ()) -> str:
+    """TOML text of a machine, in which it reads back equal.
+
+    Each number stands in the unit of its key and as short as it can be without changing the
+    canonical value.
+
+    Parameters
+    ----------
+    machine : Machine
+        Its name is that of the file and not written.
+    notes : sequence of str
+        Comment lines at the top: where values come from, how sure they are.
+
+    Returns
+    -------
+    str
+    """
+    content = MachineFile(
+        title=machine.title,
+        kind=machine.kind,
+        only_stated_limits=machine.only_stated_limits,
+        rapid_mm_min=_mm_min(machine.rapid),
+        max_feed_mm_min=_mm_min(machine.max_feed),
+        max_cutting_force_n=machine.max_cutting_force,
+        max_axial_depth_mm=machine.max_axial_depth,
+        block_time_s=machine.block_time,
+        base_power_w=machine.base_power,
+        coolant_power_w=machine.coolant_power,
+        tool_change_s=machine.tool_change,
+        source=machine.source,
+        remarks=machine.remarks,
+        spindle=_spindle_table(machine.spindle, machine.source),
+        axis=tuple(_axis_row(axis, machine.source) for axis in machine.axes),
+        holding=tuple(map(holding_row, machine.holdings)),
     )
-    table.finish()
-    return machine
+    lines = [f"# {_comment(line)}".rstrip() for note in notes for line in note.splitlines()]
+    return "\n".join((*lines, *written(content))) + "\n" + modes_toml(machine.modes)
 
 
-def _spindle(table: Table) -> Spindle:
-    """Main drive of a ``[spindle]`` table."""
-    low, high = table.window("min_speed_rpm", "max_speed_rpm", allowed=SPEED)
-    table.text("source")
-    spindle = Spindle(
-        curve=_curve(table),
-        efficiency=table.number("efficiency", EFFICIENCY),
-        min_speed=None if low is None else rev_s_from_rpm(low),
-        max_speed=None if high is None else rev_s_from_rpm(high),
-        acceleration=table.optional_number("acceleration_rev_s2", SPINDLE_ACCELERATION),
-        inertia=table.optional_number("inertia_kg_m2", INERTIA),
-        idle_power=_amount(table, "idle_power_w", AUXILIARY_POWER),
-        idle_power_per_speed=_amount(table, "idle_power_w_per_rev_s", IDLE_POWER_PER_SPEED),
-        idle_power_per_speed_squared=_amount(
-            table, "idle_power_w_per_rev2_s2", IDLE_POWER_PER_SPEED_SQUARED
+def modes_toml(modes: Sequence[VibrationMode]) -> str:
+    """TOML text of measured modes, a ``[[mode]]`` table each; ends a machine file."""
+    rows = [("", "[[mode]]", *written(_mode_row(mode))) for mode in modes]
+    return "".join(f"{line}\n" for row in rows for line in row)
+
+
+def _comment(line: str) -> str:
+    """A line that TOML takes as a comment."""
+    return "".join(sign if sign.isprintable() else " " for sign in line)
+
+
+def _spindle_table(spindle: Spindle, source: str) -> SpindleTable:
+    return SpindleTable(
+        efficiency=spindle.efficiency,
+        min_speed_rpm=_rpm(spindle.min_speed),
+        max_speed_rpm=_rpm(spindle.max_speed),
+        acceleration_rev_s2=spindle.acceleration,
+        inertia_kg_m2=spindle.inertia,
+        idle_power_w=spindle.idle_power,
+        idle_power_w_per_rev_s=spindle.idle_power_per_speed,
+        idle_power_w_per_rev2_s2=spindle.idle_power_per_speed_squared,
+        regeneration=spindle.regeneration,
+        delay_s=spindle.delay,
+        source=source,
+        curve=tuple(
+            PointRow(
+                speed_rpm=shortest(point.speed, rpm_from_rev_s, rev_s_from_rpm),
+                power_kw=shortest(point.power, kw_from_watts, watts_from_kw),
+                torque_nm=None if point.torque is None else _nm(point.torque),
+            )
+            for point in spindle.curve
         ),
-        regeneration=_amount(table, "regeneration", REGENERATION),
-        delay=table.optional_number("delay_s", DELAY),
-    )
-    try:
-        curve_segments(spindle)
-    except ValueError as error:
-        raise table.error("curve", str(error)) from error
-    return spindle
-
-
-def _curve(table: Table) -> tuple[SpindlePoint, ...]:
-    """Power curve, ascending in speed."""
-    rows = table.tables("curve")
-    if not rows:
-        raise table.error("curve", "missing; expected at least one [[spindle.curve]] point")
-    points = tuple(_point(row) for row in rows)
-    for row, (slower, faster) in zip(rows[1:], pairwise(points), strict=True):
-        if faster.speed <= slower.speed:
-            speed = row.number("speed_rpm", SPEED)
-            raise row.error("speed_rpm", f"{speed:g} rpm is not above the point before it")
-    return points
-
-
-def _point(table: Table) -> SpindlePoint:
-    """One ``[[spindle.curve]]`` row."""
-    torque = table.optional_number("torque_nm", TORQUE)
-    return SpindlePoint(
-        speed=rev_s_from_rpm(table.number("speed_rpm", SPEED)),
-        power=watts_from_kw(table.number("power_kw", POWER)),
-        torque=None if torque is None else nmm_from_nm(torque),
     )
 
 
-def _axis(table: Table) -> Axis:
-    """One ``[[axis]]`` row; without ``max_feed_mm_min`` the rapid is the greatest feed."""
-    low, high = table.window("travel_min_mm", "travel_max_mm", allowed=TRAVEL)
-    rapid = speed_from_mm_min(table.number("rapid_mm_min", FEED))
-    max_feed = _feed(table, "max_feed_mm_min")
-    return Axis(
-        name=table.text("name"),
-        travel=(-inf if low is None else low, inf if high is None else high),
-        rapid=rapid,
-        max_feed=rapid if max_feed is None else max_feed,
-        acceleration=table.number("acceleration_mm_s2", ACCELERATION),
-        jerk=table.optional_number("jerk_mm_s3", JERK),
-        drive=_drive(table.table("drive")) if "drive" in table else None,
+def _axis_row(axis: Axis, source: str) -> AxisRow:
+    low, high = axis.travel
+    return AxisRow(
+        name=axis.name,
+        travel_min_mm=None if isinf(low) else low,
+        travel_max_mm=None if isinf(high) else high,
+        rapid_mm_min=shortest(axis.rapid, mm_min_from_speed, speed_from_mm_min),
+        max_feed_mm_min=_mm_min(axis.max_feed),
+        acceleration_mm_s2=axis.acceleration,
+        jerk_mm_s3=axis.jerk,
+        drive=None if axis.drive is None else _drive_table(axis.drive, source),
     )
 
 
-def _drive(table: Table) -> AxisDrive:
-    """Drive of an ``[axis.drive]`` table; what is absent is 0, the gear 1."""
-    table.text("source")
-    return AxisDrive(
-        lead=table.number("lead_mm", LEAD),
-        table_mass=table.number("table_mass_kg", MOVED_MASS),
-        workpiece_mass=_amount(table, "workpiece_mass_kg", MASS),
-        screw_mass=_amount(table, "screw_mass_kg", MASS),
-        screw_diameter=table.number("screw_diameter_mm", SCREW_DIAMETER),
-        coupling_inertia=_amount(table, "coupling_inertia_kg_m2", DRIVE_INERTIA),
-        motor_inertia=_amount(table, "motor_inertia_kg_m2", DRIVE_INERTIA),
-        guide_friction=table.number("guide_friction", FRICTION),
-        bearing_friction=_amount(table, "bearing_friction", FRICTION),
-        preload=_amount(table, "preload_n", PRELOAD),
-        viscous=nmm_from_nm(_amount(table, "viscous_nm_s_per_rad", VISCOUS)),
-        gear_ratio=table.optional_number("gear_ratio", GEAR_RATIO) or 1.0,
-        efficiency=table.number("efficiency", EFFICIENCY),
-        regeneration=_amount(table, "regeneration", REGENERATION),
+def _drive_table(drive: AxisDrive, source: str) -> DriveTable:
+    return DriveTable(
+        lead_mm=drive.lead,
+        table_mass_kg=drive.table_mass,
+        workpiece_mass_kg=drive.workpiece_mass,
+        screw_mass_kg=drive.screw_mass,
+        screw_diameter_mm=drive.screw_diameter,
+        coupling_inertia_kg_m2=drive.coupling_inertia,
+        motor_inertia_kg_m2=drive.motor_inertia,
+        guide_friction=drive.guide_friction,
+        bearing_friction=drive.bearing_friction,
+        preload_n=drive.preload,
+        viscous_nm_s_per_rad=_nm(drive.viscous),
+        gear_ratio=drive.gear_ratio,
+        efficiency=drive.efficiency,
+        regeneration=drive.regeneration,
+        source=source,
     )
 
 
-def _mode(table: Table) -> VibrationMode:
-    """One ``[[mode]]`` row; a mode of a tool says of which."""
-    part = table.choice("part", VibratingPart)
-    tool = table.text("tool").strip() if "tool" in table else ""
-    diameter = table.optional_number("tool_diameter_mm", MODE_DIAMETER)
-    is_named = bool(tool) or diameter is not None
-    if part is VibratingPart.TOOL and not is_named:
-        raise table.error("tool", "missing; expected the tool's id, or tool_diameter_mm")
-    if part is VibratingPart.WORKPIECE and is_named:
-        raise table.error("tool", "a mode of the workpiece belongs to no tool")
-    return VibrationMode(
-        part=part,
-        tool=tool,
-        tool_diameter=diameter,
-        direction=table.choice("direction", ModeDirection),
-        natural_frequency=table.number("frequency_hz", FREQUENCY),
-        damping_ratio=table.number("damping_ratio", DAMPING),
-        stiffness=n_mm_from_n_um(table.number("stiffness_n_um", STIFFNESS)),
-        source=table.text("source"),
+def _mode_row(mode: VibrationMode) -> ModeRow:
+    return ModeRow(
+        part=mode.part,
+        tool=mode.tool,
+        tool_diameter_mm=mode.tool_diameter,
+        direction=mode.direction,
+        frequency_hz=mode.natural_frequency,
+        damping_ratio=mode.damping_ratio,
+        stiffness_n_um=shortest(mode.stiffness, n_um_from_n_mm, n_mm_from_n_um),
+        source=mode.source,
     )
 
 
-def _amount(table: Table, key: str, allowed: Range) -> float:
-    """Number of an optional key; 0 when it is absent."""
-    return table.optional_number(key, allowed) or 0.0
+def _mm_min(speed: float | None) -> float | None:
+    return None if speed is None else shortest(speed, mm_min_from_speed, speed_from_mm_min)
 
 
-def _feed(table: Table, key: str) -> float | None:
-    """Feed in mm/s of an optional key in mm/min."""
-    value = table.optional_number(key, FEED)
-    return None if value is None else speed_from_mm_min(value)
+def _rpm(speed: float | None) -> float | None:
+    return None if speed is None else shortest(speed, rpm_from_rev_s, rev_s_from_rpm)
+
+
+def _nm(torque: float) -> float:
+    """N·m, or a unit with N·m in it, of the same with N·mm."""
+    return shortest(torque, nm_from_nmm, nmm_from_nm)

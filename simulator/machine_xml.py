@@ -14,28 +14,30 @@ in an agent-based model for advanced analytics", Fig. 5 and Table 1.
 
 from math import inf
 from pathlib import Path
+from typing import Annotated
 
 from simulator.errors import LibraryError
 from simulator.machine_file import (
-    AUXILIARY_POWER,
-    DRIVE_INERTIA,
-    EFFICIENCY,
-    FRICTION,
-    GEAR_RATIO,
-    INERTIA,
-    MASS,
-    MOVED_MASS,
-    PRELOAD,
-    SPINDLE_ACCELERATION,
     UNLIMITED_POWER,
-    VISCOUS,
+    AuxiliaryPower,
+    DriveInertia,
+    Efficiency,
+    Friction,
+    GearRatio,
+    Inertia,
+    Mass,
+    MovedMass,
+    Preload,
+    SpindleAcceleration,
+    Viscous,
 )
 from simulator.spec import Axis, AxisDrive, Machine, MachineKind, Spindle, SpindlePoint
-from simulator.toml_file import Range, Table, read_bounded
+from simulator.toml_file import FileTable, converted, quantity, read_bounded
 from stepnc_model.units import MM_PER_M, nmm_from_nm, speed_from_m_min, speed_from_m_s
 
-RAPID = Range(low=10, high=30_000, unit="1/100 m/min")
-STATE_TIME = Range(low=0, high=1e8, unit="ms")
+StateTime = Annotated[float, quantity(0, 1e8, "ms")]
+RotorSize = Annotated[float, quantity(0, 1e4, "mm")]
+
 RAPID_UNITS_PER_M_MIN = 100.0
 """basicRapidSpeed 1600 is 16 m/min"""
 
@@ -49,36 +51,20 @@ CORRECTED_SPELLING = {
 TEXTS = ("id", "randomProperty", "randomType")
 """attributes that are no numbers, even when they look like one"""
 
-UNUSED = {
-    "partSetupTime": STATE_TIME,
-    "partEjectionTime": STATE_TIME,
-    "batchSetupTime": STATE_TIME,
-    "batchEjectionTime": STATE_TIME,
-    "partEstupEnergy": AUXILIARY_POWER,
-    "partEjectionEnergy": AUXILIARY_POWER,
-    "batchSetupEnergy": AUXILIARY_POWER,
-    "batchEjectionEnergy": AUXILIARY_POWER,
-    "gravity": Range(low=9.7, high=9.9, unit="m/s²"),
-    "rotorDiameter": Range(low=0, high=1e4, unit="mm"),
-    "rotorLength": Range(low=0, high=1e4, unit="mm"),
-    "frictionCoefficient": Range(low=0, high=1e4, unit="N·s/mm²"),
-}
-"""numbers that are checked but used by no model yet"""
-
-DRIVE = {
-    "pitchFeedScrew": Range(low=1e-4, high=0.5, unit="m/rev"),
-    "tableMass": MOVED_MASS,
-    "workpieceMass": MASS,
-    "leadScrewMass": MASS,
-    "feedScrewDiameter": Range(low=1e-3, high=0.5, unit="m"),
-    "couplingInertia": DRIVE_INERTIA,
-    "frictionCoefficientGuide": FRICTION,
-    "frictionCoefficientBearing": FRICTION,
-    "preloadForce": PRELOAD,
-    "viscousDampingCoefficient": VISCOUS,
-    "gearReductionRatio": GEAR_RATIO,
-    "axisServoMotorEfficent": EFFICIENCY,
-}
+DRIVE = (
+    "pitch_feed_screw",
+    "table_mass",
+    "workpiece_mass",
+    "lead_screw_mass",
+    "feed_screw_diameter",
+    "coupling_inertia",
+    "friction_coefficient_guide",
+    "friction_coefficient_bearing",
+    "preload_force",
+    "viscous_damping_coefficient",
+    "gear_reduction_ratio",
+    "axis_servo_motor_efficent",
+)
 """what the feed drive needs: all of it, or there is none"""
 
 REMARKS = (
@@ -99,6 +85,46 @@ REMARKS = (
 )
 
 
+class MachineElement(FileTable, rename="camel", frozen=True, kw_only=True):
+    """The ``Machine`` element; what a part or batch takes, and gravity, no model uses yet."""
+
+    id: str
+    random_property: str | None = None
+    random_type: str | None = None
+    axis_accelation: Annotated[float, quantity(0.01, 100, "m/s²")]
+    basic_rapid_speed: Annotated[float, quantity(10, 30_000, "1/100 m/min")]
+    angular_acceleration: SpindleAcceleration
+    application_inertia: Inertia
+    rotor_inertia: Inertia
+    spindle_motor_efficiency: Efficiency
+    p_default_load: AuxiliaryPower
+    p_default_cool: AuxiliaryPower
+    part_setup_time: StateTime | None = None
+    part_ejection_time: StateTime | None = None
+    batch_setup_time: StateTime | None = None
+    batch_ejection_time: StateTime | None = None
+    part_estup_energy: AuxiliaryPower | None = None
+    part_ejection_energy: AuxiliaryPower | None = None
+    batch_setup_energy: AuxiliaryPower | None = None
+    batch_ejection_energy: AuxiliaryPower | None = None
+    gravity: Annotated[float, quantity(9.7, 9.9, "m/s²")] | None = None
+    rotor_diameter: RotorSize | None = None
+    rotor_length: RotorSize | None = None
+    friction_coefficient: Annotated[float, quantity(0, 1e4, "N·s/mm²")] | None = None
+    pitch_feed_screw: Annotated[float, quantity(1e-4, 0.5, "m/rev")] | None = None
+    table_mass: MovedMass | None = None
+    workpiece_mass: Mass | None = None
+    lead_screw_mass: Mass | None = None
+    feed_screw_diameter: Annotated[float, quantity(1e-3, 0.5, "m")] | None = None
+    coupling_inertia: DriveInertia | None = None
+    friction_coefficient_guide: Friction | None = None
+    friction_coefficient_bearing: Friction | None = None
+    preload_force: Preload | None = None
+    viscous_damping_coefficient: Viscous | None = None
+    gear_reduction_ratio: GearRatio | None = None
+    axis_servo_motor_efficent: Efficiency | None = None
+
+
 def read_machine_xml(path: Path) -> Machine:
     """Machine of an XML file, in canonical units.
 
@@ -107,23 +133,15 @@ def read_machine_xml(path: Path) -> Machine:
     LibraryError
         The file cannot be read, or an attribute is missing, unknown or out of its range.
     """
-    table = _attributes(path)
-    acceleration = speed_from_m_s(
-        table.number("axisAccelation", Range(low=0.01, high=100, unit="m/s²"))
-    )
-    rapid = speed_from_m_min(table.number("basicRapidSpeed", RAPID) / RAPID_UNITS_PER_M_MIN)
-    title = table.text("id")
-    drive, lacking = _drive(table)
-    for key, allowed in UNUSED.items():
-        table.optional_number(key, allowed)
-    for key in TEXTS[1:]:
-        if key in table:
-            table.text(key)
-    machine = Machine(
+    element = converted(_attributes(path), MachineElement, path, name="Machine")
+    acceleration = speed_from_m_s(element.axis_accelation)
+    rapid = speed_from_m_min(element.basic_rapid_speed / RAPID_UNITS_PER_M_MIN)
+    drive, lacking = _drive(element)
+    return Machine(
         name=path.stem,
-        title=title,
+        title=element.id,
         kind=MachineKind.MILL,
-        spindle=_spindle(table),
+        spindle=_spindle(element),
         axes=tuple(
             _axis(name, rapid=rapid, acceleration=acceleration, drive=drive) for name in "XYZ"
         ),
@@ -132,49 +150,48 @@ def read_machine_xml(path: Path) -> Machine:
         max_cutting_force=None,
         max_axial_depth=None,
         block_time=None,
-        base_power=table.number("pDefaultLoad", AUXILIARY_POWER),
-        coolant_power=table.number("pDefaultCool", AUXILIARY_POWER),
+        base_power=element.p_default_load,
+        coolant_power=element.p_default_cool,
         tool_change=0.0,
         source=f"{path.name}, in the XML form of paper 003, Fig. 5",
-        remarks=(*_kind_remark(title), *lacking, *REMARKS),
+        remarks=(*_kind_remark(element.id), *lacking, *REMARKS),
     )
-    table.finish()
-    return machine
 
 
-def _spindle(table: Table) -> Spindle:
+def _spindle(element: MachineElement) -> Spindle:
     """Main drive; the form names no motor power, so the power does not limit."""
-    parts = (table.number("applicationInertia", INERTIA), table.number("rotorInertia", INERTIA))
     return Spindle(
         curve=(SpindlePoint(speed=1.0, power=UNLIMITED_POWER),),
-        efficiency=table.number("spindleMotorEfficiency", EFFICIENCY),
+        efficiency=element.spindle_motor_efficiency,
         min_speed=None,
         max_speed=None,
-        acceleration=table.number("angularAcceleration", SPINDLE_ACCELERATION),
-        inertia=sum(parts),
+        acceleration=element.angular_acceleration,
+        inertia=element.application_inertia + element.rotor_inertia,
     )
 
 
-def _drive(table: Table) -> tuple[AxisDrive | None, tuple[str, ...]]:
+def _drive(element: MachineElement) -> tuple[AxisDrive | None, tuple[str, ...]]:
     """Feed drive of every axis, or none and the remark that says why."""
-    values = {key: table.optional_number(key, allowed) for key, allowed in DRIVE.items()}
-    given = {key: value for key, value in values.items() if value is not None}
+    printed = dict(
+        zip(element.__struct_fields__, element.__struct_encode_fields__, strict=True)
+    )
+    given = {key: value for key in DRIVE if (value := getattr(element, key)) is not None}
     if len(given) < len(DRIVE):
-        absent = ", ".join(key for key in DRIVE if key not in given)
+        absent = ", ".join(printed[key] for key in DRIVE if key not in given)
         return None, (f"Without {absent} the feed drives are unknown: axes draw no power.",)
     drive = AxisDrive(
-        lead=MM_PER_M * given["pitchFeedScrew"],
-        table_mass=given["tableMass"],
-        workpiece_mass=given["workpieceMass"],
-        screw_mass=given["leadScrewMass"],
-        screw_diameter=MM_PER_M * given["feedScrewDiameter"],
-        coupling_inertia=given["couplingInertia"],
-        guide_friction=given["frictionCoefficientGuide"],
-        bearing_friction=given["frictionCoefficientBearing"],
-        preload=given["preloadForce"],
-        viscous=nmm_from_nm(given["viscousDampingCoefficient"]),
-        gear_ratio=given["gearReductionRatio"],
-        efficiency=given["axisServoMotorEfficent"],
+        lead=MM_PER_M * given["pitch_feed_screw"],
+        table_mass=given["table_mass"],
+        workpiece_mass=given["workpiece_mass"],
+        screw_mass=given["lead_screw_mass"],
+        screw_diameter=MM_PER_M * given["feed_screw_diameter"],
+        coupling_inertia=given["coupling_inertia"],
+        guide_friction=given["friction_coefficient_guide"],
+        bearing_friction=given["friction_coefficient_bearing"],
+        preload=given["preload_force"],
+        viscous=nmm_from_nm(given["viscous_damping_coefficient"]),
+        gear_ratio=given["gear_reduction_ratio"],
+        efficiency=given["axis_servo_motor_efficent"],
     )
     return drive, ()
 
@@ -198,7 +215,7 @@ def _kind_remark(title: str) -> tuple[str, ...]:
     return (f"The machine is called '{title}', but the form describes a mill; read as a mill.",)
 
 
-def _attributes(path: Path) -> Table:
+def _attributes(path: Path) -> dict[str, float | str]:
     """Attributes of the ``Machine`` element, numbers as numbers, names as printed."""
     from lxml import etree  # noqa: PLC0415 - slow to import, and few machines are XML
 
@@ -212,13 +229,12 @@ def _attributes(path: Path) -> Table:
     machine = root if root.tag == "Machine" else root.find(".//Machine")
     if machine is None:
         raise LibraryError("has no Machine element", path=str(path), key="Machine")
-    content = {
+    return {
         CORRECTED_SPELLING.get(str(key), str(key)): (
             str(value) if key in TEXTS else _number_or_text(str(value))
         )
         for key, value in machine.attrib.items()
     }
-    return Table(content, path=path, name="Machine")
 
 
 def _number_or_text(value: str) -> float | str:

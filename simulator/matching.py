@@ -14,11 +14,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
 from itertools import pairwise
+from typing import Annotated
 
 from simulator.errors import UnknownMaterial
 from simulator.library import DATA, load_material, material_names, material_path
+from simulator.material_file import MaterialHead
 from simulator.spec import Certainty, MaterialMatch
-from simulator.toml_file import Range, Table, read_toml, read_toml_head
+from simulator.toml_file import FileTable, quantity, read_toml, read_toml_head
 
 STANDARD_PREFIX = re.compile(r"(?:aisi|sae|ansi|din|jis|astm|uns|wnr|wnum|en)(?=.*\d)")
 """standards that stand before a name and say nothing about the metal"""
@@ -26,7 +28,7 @@ STANDARD_PREFIX = re.compile(r"(?:aisi|sae|ansi|din|jis|astm|uns|wnr|wnum|en)(?=
 SEPARATORS = re.compile(r"[\s,;:/()\[\]_]+")
 """what stands between the words of a text"""
 
-GRADE_NUMBER = Range(low=1, high=9_999)
+GradeNumber = Annotated[float, quantity(1, 9_999)]
 """numbers by which families of materials are ordered"""
 
 NEAR_NAMES = 5
@@ -34,6 +36,37 @@ NEAR_NAMES = 5
 
 LONGEST_NAME = 40
 """characters of a text that are compared when near names are sought"""
+
+
+class FamilyMember(FileTable, frozen=True, kw_only=True):
+    """Material of a family, by its number."""
+
+    number: GradeNumber
+    material: str
+
+
+class MaterialFamily(FileTable, frozen=True, kw_only=True):
+    """One ``[[family]]`` row: names with a number that a pattern finds."""
+
+    pattern: str
+    meaning: str
+    members: tuple[FamilyMember, ...]
+
+
+class MetalKind(FileTable, frozen=True, kw_only=True):
+    """One ``[[kind]]`` row: words for a kind of metal, and the material that stands for it."""
+
+    equals: tuple[str, ...] = ()
+    contains: tuple[str, ...] = ()
+    meaning: str
+    material: str
+
+
+class GuessFile(FileTable, frozen=True, kw_only=True):
+    """Guesses that names of materials allow."""
+
+    family: tuple[MaterialFamily, ...]
+    kind: tuple[MetalKind, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -70,7 +103,7 @@ def match_material(texts: Sequence[str]) -> MaterialMatch:
         if (name := _exact(candidate, names)) is not None:
             return _match(name, Certainty.EXACT, reason=f"'{candidate}' is a name of it")
     if said:
-        guesses = read_toml(DATA / "material_guesses.toml")
+        guesses = read_toml(DATA / "material_guesses.toml", GuessFile)
         guess = _by_family(said, guesses) or _by_kind(said, guesses)
         if guess is not None:
             return _match(guess.material, Certainty.GUESS, reason=guess.reason)
@@ -98,9 +131,8 @@ def _known_names() -> dict[str, str]:
     """Normalised name of every material → its file."""
     names: dict[str, str] = {}
     for file in material_names():
-        head = read_toml_head(material_path(file))
-        title = head.text("title")
-        for text in (file, title, *title.split(" / "), *head.texts("equivalents")):
+        head = read_toml_head(material_path(file), MaterialHead)
+        for text in (file, head.title, *head.title.split(" / "), *head.equivalents):
             names.setdefault(normalised(text), file)
             names.setdefault(_without_standard(text), file)
     return names
@@ -128,40 +160,36 @@ def _candidates(texts: tuple[str, ...]) -> Iterator[str]:
             yield f"{first} {second}"
 
 
-def _by_family(texts: tuple[str, ...], guesses: Table) -> MaterialGuess | None:
+def _by_family(texts: tuple[str, ...], guesses: GuessFile) -> MaterialGuess | None:
     """The nearest number of the first family that a piece of the texts belongs to."""
-    families = guesses.tables("family")
     for candidate in _candidates(texts):
-        for family in families:
-            found = re.fullmatch(family.text("pattern"), normalised(candidate))
+        for family in guesses.family:
+            found = re.fullmatch(family.pattern, normalised(candidate))
             if found is not None:
                 return _nearest(candidate, family, number=int(found[1]))
     return None
 
 
-def _nearest(candidate: str, family: Table, *, number: int) -> MaterialGuess:
+def _nearest(candidate: str, family: MaterialFamily, *, number: int) -> MaterialGuess:
     """The member of a family whose number is nearest."""
-    members = family.tables("members")
-    nearest = min(members, key=lambda row: abs(row.number("number", GRADE_NUMBER) - number))
+    nearest = min(family.members, key=lambda row: abs(row.number - number))
     return MaterialGuess(
-        material=nearest.text("material"),
-        reason=f"'{candidate}' is not in the library; of the family {family.text('meaning')} "
+        material=nearest.material,
+        reason=f"'{candidate}' is not in the library; of the family {family.meaning} "
         "this one is the nearest",
     )
 
 
-def _by_kind(texts: tuple[str, ...], guesses: Table) -> MaterialGuess | None:
+def _by_kind(texts: tuple[str, ...], guesses: GuessFile) -> MaterialGuess | None:
     """The material that stands for a kind of metal which the texts name."""
     for text in texts:
         whole = normalised(text)
         words = {normalised(word) for word in SEPARATORS.split(text)}
-        for kind in guesses.tables("kind"):
-            if words.intersection(kind.texts("equals")) or any(
-                part in whole for part in kind.texts("contains")
-            ):
+        for kind in guesses.kind:
+            if words.intersection(kind.equals) or any(part in whole for part in kind.contains):
                 return MaterialGuess(
-                    material=kind.text("material"),
-                    reason=f"'{text}' says no more than {kind.text('meaning')}, for which this "
+                    material=kind.material,
+                    reason=f"'{text}' says no more than {kind.meaning}, for which this "
                     "one stands",
                 )
     return None

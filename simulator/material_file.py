@@ -9,6 +9,8 @@ shares of :mod:`simulator.physics.turning`.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Literal
 
 from simulator.physics.turning import BACK_SHARE, FEED_SHARE
 from simulator.spec import (
@@ -20,190 +22,280 @@ from simulator.spec import (
     ToolConstruction,
     WorkMaterial,
 )
-from simulator.toml_file import Range, Table
+from simulator.toml_file import (
+    FileTable,
+    KeyFault,
+    TableHead,
+    quantity,
+    read_toml,
+    require_together,
+    require_window,
+)
 from stepnc_model.units import rad_from_deg, speed_from_m_min
 
-ISO_GROUPS = ("P", "M", "K", "N", "S", "H")
-"""ISO 513 groups of work materials"""
+IsoGroup = Literal["P", "M", "K", "N", "S", "H", ""]
+"""ISO 513 group of a work material; empty: it has none"""
 
-HARDNESS = Range(low=10, high=800, unit="HB")
-DENSITY = Range(low=0.5, high=25, unit="g/cm³")
-STRENGTH = Range(low=10, high=4_000, unit="N/mm²")
-SPECIFIC_FORCE = Range(low=50, high=10_000, unit="N/mm²")
-KIENZLE_EXPONENT = Range(low=0, high=0.9)
-RAKE = Range(low=-30, high=45, unit="°")
-FORCE_EXPONENT = Range(low=-0.5, high=1)
-SHARE = Range(low=0.01, high=3)
-SPREAD = Range(low=0, high=2)
-SHEAR_COEFFICIENT = Range(low=0, high=10_000, unit="N/mm²")
-EDGE_COEFFICIENT = Range(low=0, high=500, unit="N/mm")
-CUTTING_SPEED = Range(low=0.1, high=10_000, unit="m/min")
-TAYLOR_EXPONENT = Range(low=0.01, high=0.99)
-FEED_RATIO = Range(low=1e-5, high=0.1)
-FEED_PER_TOOTH = Range(low=1e-4, high=5, unit="mm")
+Hardness = Annotated[float, quantity(10, 800, "HB")]
+Density = Annotated[float, quantity(0.5, 25, "g/cm³")]
+Strength = Annotated[float, quantity(10, 4_000, "N/mm²")]
+SpecificForce = Annotated[float, quantity(50, 10_000, "N/mm²")]
+KienzleExponent = Annotated[float, quantity(0, 0.9)]
+Rake = Annotated[float, quantity(-30, 45, "°")]
+ForceExponent = Annotated[float, quantity(-0.5, 1)]
+Share = Annotated[float, quantity(0.01, 3)]
+Spread = Annotated[float, quantity(0, 2)]
+ShearCoefficient = Annotated[float, quantity(0, 10_000, "N/mm²")]
+EdgeCoefficient = Annotated[float, quantity(0, 500, "N/mm")]
+CuttingSpeed = Annotated[float, quantity(0.1, 10_000, "m/min")]
+TaylorExponent = Annotated[float, quantity(0.01, 0.99)]
+FeedRatio = Annotated[float, quantity(1e-5, 0.1)]
+FeedPerTooth = Annotated[float, quantity(1e-4, 5, "mm")]
+Modulus = Annotated[float, quantity(1_000, 1_000_000, "N/mm²")]
 
 USUAL_SPREAD = {"P": 0.20, "M": 0.20, "K": 0.20, "N": 0.20, "S": 0.25, "H": 0.25}
 """of k_c by ISO group where a file names none: as in the library, where its source stands"""
 
-MODULUS = Range(low=1_000, high=1_000_000, unit="N/mm²")
 LEAST_MODULUS = {"P": 2.0e5, "M": 1.9e5, "K": 0.88e5, "N": 0.69e5, "S": 1.03e5, "H": 2.0e5}
 """Young's modulus by ISO group where a file gives none, N/mm², of what bends most in it: carbon
 and stainless steel, aluminium and titanium (Machinery's Handbook, 29th ed., mechanical
 properties), grey iron GJL-200 (EN 1561, annex)"""
 
 
-def read_material(table: Table, *, name: str) -> WorkMaterial:
-    """Material of a file's root table, in canonical units.
+class KienzleTable(FileTable, frozen=True, kw_only=True):
+    """Kienzle's law of a table."""
+
+    k_c11_n_mm2: SpecificForce
+    m_c: KienzleExponent
+    rake_angle_deg: Rake | None = None
+    source: str
+
+    @property
+    def kienzle(self) -> Kienzle:
+        """Law of the cutting force."""
+        rake = self.rake_angle_deg
+        return Kienzle(
+            k_c11=self.k_c11_n_mm2,
+            m_c=self.m_c,
+            rake_angle=None if rake is None else rad_from_deg(rake),
+        )
+
+
+class OwnKienzleTable(KienzleTable, frozen=True, kw_only=True):
+    """The ``[kienzle]`` table, whose law is loaded, with the spread of k_c."""
+
+    spread: Spread | None = None
+    spread_source: str | None = None
+
+    def __post_init__(self) -> None:
+        require_together(self, "spread", "spread_source")
+
+
+class KienzleAlternative(KienzleTable, frozen=True, kw_only=True):
+    """One ``[[kienzle_alternative]]`` row: Kienzle's law of another source.
+
+    Where it has pairs of feed and back force, those are loaded.
+    """
+
+    k_f11_n_mm2: SpecificForce | None = None
+    one_minus_m_f: ForceExponent | None = None
+    k_p11_n_mm2: SpecificForce | None = None
+    one_minus_m_p: ForceExponent | None = None
+
+    def __post_init__(self) -> None:
+        require_together(self, "k_f11_n_mm2", "one_minus_m_f", "k_p11_n_mm2", "one_minus_m_p")
+
+
+class LinearEdgeTable(FileTable, frozen=True, kw_only=True):
+    """Linear-edge model; radial and axial parts may be absent."""
+
+    k_tc_n_mm2: ShearCoefficient
+    k_te_n_mm: EdgeCoefficient
+    k_rc_n_mm2: ShearCoefficient = 0.0
+    k_re_n_mm: EdgeCoefficient = 0.0
+    k_ac_n_mm2: ShearCoefficient = 0.0
+    k_ae_n_mm: EdgeCoefficient = 0.0
+    source: str
+
+    @property
+    def linear_edge(self) -> LinearEdge:
+        """Coefficients by component."""
+        return LinearEdge(
+            k_tc=self.k_tc_n_mm2,
+            k_te=self.k_te_n_mm,
+            k_rc=self.k_rc_n_mm2,
+            k_re=self.k_re_n_mm,
+            k_ac=self.k_ac_n_mm2,
+            k_ae=self.k_ae_n_mm,
+        )
+
+
+class SpeedWindow(FileTable, frozen=True, kw_only=True):
+    """Least and greatest cutting speed of a row."""
+
+    min_cutting_speed_m_min: CuttingSpeed | None = None
+    max_cutting_speed_m_min: CuttingSpeed | None = None
+
+    def __post_init__(self) -> None:
+        require_window(self, "min_cutting_speed_m_min", "max_cutting_speed_m_min")
+
+    @property
+    def speeds(self) -> tuple[float | None, float | None]:
+        """Least and greatest cutting speed in mm/s."""
+        low, high = self.min_cutting_speed_m_min, self.max_cutting_speed_m_min
+        return (
+            None if low is None else speed_from_m_min(low),
+            None if high is None else speed_from_m_min(high),
+        )
+
+
+class WindowRow(SpeedWindow, frozen=True, kw_only=True):
+    """One ``[[window]]`` row: cutting speeds of a cutting material."""
+
+    cutting_material: CuttingMaterial
+    tool_body: ToolConstruction | None = None
+    source: str
+
+
+class ToolLifeRow(FileTable, frozen=True, kw_only=True):
+    """One ``[[tool_life]]`` row: Taylor's constants of a cutting material."""
+
+    cutting_material: CuttingMaterial
+    exponent: TaylorExponent
+    constant_m_min: CuttingSpeed
+    source: str
+
+
+class FeedTable(FileTable, frozen=True, kw_only=True):
+    """The ``[feed_per_tooth]`` table: over the diameter, and the greatest in mm."""
+
+    min_ratio: FeedRatio | None = None
+    max_ratio: FeedRatio | None = None
+    max_mm: FeedPerTooth | None = None
+    source: str
+
+    def __post_init__(self) -> None:
+        require_window(self, "min_ratio", "max_ratio")
+
+
+class ShareTable(FileTable, frozen=True, kw_only=True):
+    """The ``[turning_share]`` table: feed and back force over the cutting force."""
+
+    feed_share: Share
+    min_feed_share: Share
+    max_feed_share: Share
+    back_share: Share
+    min_back_share: Share
+    max_back_share: Share
+    source: str
+
+    def __post_init__(self) -> None:
+        for name in ("feed", "back"):
+            low, share, high = self.window(name)
+            if not low <= share <= high:
+                message = f"{share:g} is not within {low:g} to {high:g}"
+                raise KeyFault(f"{name}_share", message)
+
+    def window(self, name: str) -> tuple[float, float, float]:
+        """Least, usual and greatest share of the feed or the back force."""
+        low, share, high = (getattr(self, f"{end}{name}_share") for end in ("min_", "", "max_"))
+        return low, share, high
+
+
+class MaterialHead(TableHead, frozen=True, kw_only=True):
+    """Names of a material: what stands in the root of its file."""
+
+    title: str
+    equivalents: tuple[str, ...] = ()
+
+
+class MaterialFile(FileTable, frozen=True, kw_only=True):
+    """A whole file of a work material."""
+
+    title: str
+    iso_group: IsoGroup
+    equivalents: tuple[str, ...] = ()
+    condition: str | None = None
+    hardness_hb: Hardness | None = None
+    density_g_cm3: Density | None = None
+    tensile_strength_n_mm2: Strength | None = None
+    youngs_modulus_n_mm2: Modulus | None = None
+    youngs_modulus_source: str | None = None
+    source: str
+    confidence: str
+    remarks: tuple[str, ...] = ()
+    kienzle: OwnKienzleTable
+    kienzle_alternative: tuple[KienzleAlternative, ...] = ()
+    linear_edge: LinearEdgeTable | None = None
+    linear_edge_alternative: tuple[LinearEdgeTable, ...] = ()
+    window: tuple[WindowRow, ...] = ()
+    tool_life: tuple[ToolLifeRow, ...] = ()
+    feed_per_tooth: FeedTable | None = None
+    turning_share: ShareTable | None = None
+
+    def __post_init__(self) -> None:
+        require_together(self, "youngs_modulus_n_mm2", "youngs_modulus_source")
+        served = {row.cutting_material for row in self.window}
+        lives = dict.fromkeys(row.cutting_material for row in self.tool_life)
+        without = ", ".join(each for each in lives if each not in served)
+        if without:
+            raise KeyFault("tool_life", f"{without} has no [[window]]")
+
+
+def read_material(path: Path) -> WorkMaterial:
+    """Material of a TOML file, in canonical units, named as the file.
 
     Raises
     ------
     LibraryError
         A key is missing, unknown or out of its range.
     """
-    kienzle = table.table("kienzle")
-    cutting = _kienzle(kienzle)
-    low, high, greatest = _feed_window(table)
-    sides = _sides(table, cutting)
-    material = WorkMaterial(
-        name=name,
-        title=table.text("title"),
-        iso_group=iso_group(table),
-        equivalents=table.texts("equivalents"),
-        hardness_hb=table.optional_number("hardness_hb", HARDNESS),
-        density=table.optional_number("density_g_cm3", DENSITY),
-        tensile_strength=table.optional_number("tensile_strength_n_mm2", STRENGTH),
-        kienzle=cutting,
-        linear_edge=_linear_edge(table.table("linear_edge"))
-        if "linear_edge" in table
-        else None,
-        windows=_windows(table),
-        min_feed_per_tooth_ratio=low,
-        max_feed_per_tooth_ratio=high,
-        max_feed_per_tooth=greatest,
-        source=kienzle.text("source"),
-        remarks=(
-            *_condition(table),
-            table.text("confidence"),
-            *table.texts("remarks"),
-            sides.remark,
-        ),
+    file = read_toml(path, MaterialFile)
+    kienzle, feed, group = file.kienzle, file.feed_per_tooth, file.iso_group
+    sides = _sides(file)
+    spread, modulus = kienzle.spread, file.youngs_modulus_n_mm2
+    condition = () if file.condition is None else (f"condition: {file.condition}",)
+    return WorkMaterial(
+        name=path.stem,
+        title=file.title,
+        iso_group=group,
+        equivalents=file.equivalents,
+        hardness_hb=file.hardness_hb,
+        density=file.density_g_cm3,
+        tensile_strength=file.tensile_strength_n_mm2,
+        kienzle=kienzle.kienzle,
+        linear_edge=None if file.linear_edge is None else file.linear_edge.linear_edge,
+        windows=_windows(file),
+        min_feed_per_tooth_ratio=None if feed is None else feed.min_ratio,
+        max_feed_per_tooth_ratio=None if feed is None else feed.max_ratio,
+        max_feed_per_tooth=None if feed is None else feed.max_mm,
+        source=kienzle.source,
+        remarks=(*condition, file.confidence, *file.remarks, sides.remark),
         feed_force=sides.feed,
         back_force=sides.back,
-        spread=_spread(kienzle, iso_group(table)),
-        youngs_modulus=_modulus(table, iso_group(table)),
-    )
-    table.text("source")
-    table.finish()
-    return material
-
-
-def iso_group(table: Table) -> str:
-    """ISO 513 group of a material or grade; empty when the material has none."""
-    group = table.text("iso_group")
-    if group and group not in ISO_GROUPS:
-        raise table.error("iso_group", f"'{group}' is none of {', '.join(ISO_GROUPS)}")
-    return group
-
-
-def speed_window(table: Table) -> tuple[float | None, float | None]:
-    """Least and greatest cutting speed in mm/s of a table with keys in m/min."""
-    low, high = table.window(
-        "min_cutting_speed_m_min", "max_cutting_speed_m_min", allowed=CUTTING_SPEED
-    )
-    return (
-        None if low is None else speed_from_m_min(low),
-        None if high is None else speed_from_m_min(high),
+        spread=USUAL_SPREAD.get(group) if spread is None else spread,
+        youngs_modulus=LEAST_MODULUS.get(group) if modulus is None else modulus,
     )
 
 
-def _condition(table: Table) -> tuple[str, ...]:
-    """Delivery condition as a remark."""
-    return (f"condition: {table.text('condition')}",) if "condition" in table else ()
-
-
-def _kienzle(table: Table) -> Kienzle:
-    """Kienzle's law of a table."""
-    rake = table.optional_number("rake_angle_deg", RAKE)
-    return Kienzle(
-        k_c11=table.number("k_c11_n_mm2", SPECIFIC_FORCE),
-        m_c=table.number("m_c", KIENZLE_EXPONENT),
-        rake_angle=None if rake is None else rad_from_deg(rake),
-    )
-
-
-def _spread(table: Table, group: str) -> float | None:
-    """Spread of k_c as its file tells, else as is usual in its ISO group."""
-    if "spread" not in table:
-        return USUAL_SPREAD.get(group)
-    table.text("spread_source")
-    return table.number("spread", SPREAD)
-
-
-def _modulus(table: Table, group: str) -> float | None:
-    """Young's modulus as the file tells, else the least of the ISO group."""
-    if "youngs_modulus_n_mm2" not in table:
-        return LEAST_MODULUS.get(group)
-    table.text("youngs_modulus_source")
-    return table.number("youngs_modulus_n_mm2", MODULUS)
-
-
-def _linear_edge(table: Table) -> LinearEdge:
-    """Linear-edge model of a table; radial and axial parts may be absent."""
-    table.text("source")
-    return LinearEdge(
-        k_tc=table.number("k_tc_n_mm2", SHEAR_COEFFICIENT),
-        k_te=table.number("k_te_n_mm", EDGE_COEFFICIENT),
-        k_rc=table.optional_number("k_rc_n_mm2", SHEAR_COEFFICIENT) or 0.0,
-        k_re=table.optional_number("k_re_n_mm", EDGE_COEFFICIENT) or 0.0,
-        k_ac=table.optional_number("k_ac_n_mm2", SHEAR_COEFFICIENT) or 0.0,
-        k_ae=table.optional_number("k_ae_n_mm", EDGE_COEFFICIENT) or 0.0,
-    )
-
-
-def _windows(table: Table) -> tuple[CuttingWindow, ...]:
+def _windows(file: MaterialFile) -> tuple[CuttingWindow, ...]:
     """Cutting-speed windows, each with the tool life of its cutting material."""
-    lives = _tool_lives(table)
-    windows = tuple(_window(row, lives) for row in table.tables("window"))
-    without = set(lives) - {window.cutting_material for window in windows}
-    if without:
-        raise table.error("tool_life", f"{', '.join(without)} has no [[window]]")
-    return windows
-
-
-def _window(table: Table, lives: Mapping[CuttingMaterial, Taylor]) -> CuttingWindow:
-    """One ``[[window]]`` row."""
-    low, high = speed_window(table)
-    cutting_material = table.choice("cutting_material", CuttingMaterial)
-    table.text("source")
-    return CuttingWindow(
-        cutting_material=cutting_material,
-        tool_body=table.choice("tool_body", ToolConstruction) if "tool_body" in table else None,
-        min_cutting_speed=low,
-        max_cutting_speed=high,
-        taylor=lives.get(cutting_material),
-    )
-
-
-def _tool_lives(table: Table) -> dict[CuttingMaterial, Taylor]:
-    """Taylor's constants by cutting material."""
-    lives = {}
-    for row in table.tables("tool_life"):
-        row.text("source")
-        lives[row.choice("cutting_material", CuttingMaterial)] = Taylor(
-            exponent=row.number("exponent", TAYLOR_EXPONENT),
-            constant=speed_from_m_min(row.number("constant_m_min", CUTTING_SPEED)),
+    lives: Mapping[CuttingMaterial, Taylor] = {
+        row.cutting_material: Taylor(
+            exponent=row.exponent, constant=speed_from_m_min(row.constant_m_min)
         )
-    return lives
-
-
-def _feed_window(table: Table) -> tuple[float | None, float | None, float | None]:
-    """Least and greatest feed per tooth over the diameter, and the greatest in mm."""
-    if "feed_per_tooth" not in table:
-        return None, None, None
-    feed = table.table("feed_per_tooth")
-    feed.text("source")
-    low, high = feed.window("min_ratio", "max_ratio", allowed=FEED_RATIO)
-    return low, high, feed.optional_number("max_mm", FEED_PER_TOOTH)
+        for row in file.tool_life
+    }
+    return tuple(
+        CuttingWindow(
+            cutting_material=row.cutting_material,
+            tool_body=row.tool_body,
+            min_cutting_speed=row.speeds[0],
+            max_cutting_speed=row.speeds[1],
+            taylor=lives.get(row.cutting_material),
+        )
+        for row in file.window
+    )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -219,53 +311,39 @@ class _Sides:
     )
 
 
-def _sides(table: Table, cutting: Kienzle) -> _Sides:
-    """Feed and back force: pairs of the first source that has them, or measured shares.
-
-    Reads, and so checks, the coefficients of all other sources.
-    """
-    found = [_pairs(row) for row in table.tables("kienzle_alternative")]
-    for row in table.tables("linear_edge_alternative"):
-        _linear_edge(row)
-    if "turning_share" in table:
-        return _shares(table.table("turning_share"), cutting)
-    return next((each for each in found if each is not None), _Sides())
-
-
-def _pairs(row: Table) -> _Sides | None:
-    """Pairs of feed and back force of one ``[[kienzle_alternative]]``, where it has them."""
-    _kienzle(row)
-    source = row.text("source")
-    if "k_f11_n_mm2" not in row:
-        return None
-    return _Sides(
-        feed=_side(row, "f"),
-        back=_side(row, "p"),
-        remark=f"turning: feed and back force by Kienzle pairs of their own: {source}",
-    )
+def _sides(file: MaterialFile) -> _Sides:
+    """Measured shares, else pairs of the first source that has them, else the usual shares."""
+    cutting = file.kienzle.kienzle
+    if file.turning_share is not None:
+        return _shares(file.turning_share, cutting)
+    for row in file.kienzle_alternative:
+        feed = _pair(row.k_f11_n_mm2, row.one_minus_m_f)
+        if feed is not None:
+            return _Sides(
+                feed=feed,
+                back=_pair(row.k_p11_n_mm2, row.one_minus_m_p),
+                remark="turning: feed and back force by Kienzle pairs of their own: "
+                + row.source,
+            )
+    return _Sides()
 
 
-def _side(row: Table, name: str) -> Kienzle:
+def _pair(k_11: float | None, one_minus_m: float | None) -> Kienzle | None:
     """The pair ``(k_i1.1, m_i)`` of a component."""
-    return Kienzle(
-        k_c11=row.number(f"k_{name}11_n_mm2", SPECIFIC_FORCE),
-        m_c=1.0 - row.number(f"one_minus_m_{name}", FORCE_EXPONENT),
-    )
+    if k_11 is None or one_minus_m is None:
+        return None
+    return Kienzle(k_c11=k_11, m_c=1.0 - one_minus_m)
 
 
-def _shares(table: Table, cutting: Kienzle) -> _Sides:
+def _shares(table: ShareTable, cutting: Kienzle) -> _Sides:
     """Measured shares of the cutting force, each with its range."""
     words, sides = [], []
     for name in ("feed", "back"):
-        share = table.number(f"{name}_share", SHARE)
-        low = table.number(f"min_{name}_share", SHARE)
-        high = table.number(f"max_{name}_share", SHARE)
-        if not low <= share <= high:
-            raise table.error(f"{name}_share", f"{share:g} is not within {low:g} to {high:g}")
+        low, share, high = table.window(name)
         sides.append(Kienzle(k_c11=share * cutting.k_c11, m_c=cutting.m_c))
         words.append(f"{name} force {share:g} ({low:g} to {high:g})")
     return _Sides(
         feed=sides[0],
         back=sides[1],
-        remark=f"turning: {', '.join(words)} of the cutting force: {table.text('source')}",
+        remark=f"turning: {', '.join(words)} of the cutting force: {table.source}",
     )

@@ -1,207 +1,146 @@
-"""Typed reading of the library's TOML files: keys by name, numbers against a range.
+"""Typed reading and writing of the library's TOML files.
 
-A :class:`Table` remembers what was asked for. What nobody asked for is an error, so a
-misspelt limit is never silently without effect. Numbers come back in the unit that the key
-names; the caller converts.
+A file is declared as a :class:`FileTable`: the fields are its keys, with the unit in the name
+and the allowed range in the type. msgspec checks types, ranges, and missing and unknown keys;
+this module turns its findings into errors that name file, key, value and bound with unit.
+Values stay in the units of the keys; the tables convert them.
 """
 
+import json
+import re
 import tomllib
-from collections.abc import Mapping
-from dataclasses import dataclass
-from enum import StrEnum
-from math import isfinite
+from collections.abc import Callable, Iterator, Sequence
+from math import inf, isfinite, nextafter
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
+
+import msgspec
+from msgspec import inspect
 
 from simulator.errors import LibraryError
 from simulator.toml_bounds import MOST_BYTES, require_bounded
 
 LONGEST_SHOWN = 80
-"""letters of a value or a key in a message"""
+"""characters of a value or a key in a message"""
 
-Choice = TypeVar("Choice", bound=StrEnum)
+MOST_DIGITS = 17
+"""significant digits that tell any two floats apart"""
 
+T = TypeVar("T")
+Conversion = Callable[[float], float]
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Range:
-    """Values that a key may have, both ends included."""
-
-    low: float
-    high: float
-    unit: str = ""
-    """as the user reads it; empty for a ratio"""
-
-    def __str__(self) -> str:
-        return f"{self.low:g} to {self.quantity(self.high)}"
-
-    def quantity(self, value: float) -> str:
-        """``value`` with the unit."""
-        return f"{value:g} {self.unit}".rstrip()
-
-    def complaint(self, value: float) -> str:
-        """Fault of ``value`` in words; empty when there is none."""
-        if not isfinite(value):
-            return f"{value} is no finite number; expected {self}"
-        if value < self.low:
-            return f"{self.quantity(value)} is below {self.quantity(self.low)}"
-        if value > self.high:
-            return f"{self.quantity(value)} exceeds {self.quantity(self.high)}"
-        return ""
+_AT = re.compile(r" - at `\$([\w.\[\]]*)`$")
+_FIELD = re.compile(r"Object (contains unknown|missing required) field `(.*)`$", re.DOTALL)
 
 
-class Table:
-    """One table of a file; remembers which of its keys were read.
+class FileTable(msgspec.Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A table of a file; its fields are the keys."""
+
+
+class TableHead(msgspec.Struct, frozen=True, kw_only=True):
+    """The first keys of a file; the others are not looked at."""
+
+
+class KeyFault(ValueError):
+    """A value of a key that contradicts other values of its table.
+
+    Raised in ``__post_init__`` of a table. Any other ``ValueError`` there concerns the table as
+    a whole.
 
     Parameters
     ----------
-    content : mapping
-        Keys and values as the parser gave them.
+    key : str
+    message : str
+    """
+
+    def __init__(self, key: str, message: str) -> None:
+        super().__init__(message)
+        self.key = key
+
+
+def quantity(low: float, high: float, unit: str = "") -> msgspec.Meta:
+    """Range of a number, both ends included, with its unit for messages."""
+    return msgspec.Meta(ge=low, le=high, extra={"unit": unit})
+
+
+def complaint(value: object, kind: Any) -> str:
+    """What is wrong with a value of a type; empty when nothing is."""
+    try:
+        msgspec.convert(value, kind)
+    except msgspec.ValidationError:
+        return _complaint(value, _alternative(inspect.type_info(kind), value), "")
+    return ""
+
+
+def require_window(table: FileTable, low_key: str, high_key: str) -> None:
+    """Refuse a window whose lower end lies above its upper end."""
+    low, high = getattr(table, low_key), getattr(table, high_key)
+    if low is not None and high is not None and low > high:
+        types = {each.encode_name: each.type for each in _fields(type(table))}
+        unit, _, _ = _range(_alternative(types[low_key], low))
+        bound = f"{high_key} {_quantity(high, unit)}"
+        raise KeyFault(low_key, f"{_quantity(low, unit)} exceeds {bound}")
+
+
+def require_whole(table: FileTable, key: str) -> None:
+    """Refuse a number with a fraction."""
+    if (value := getattr(table, key)) != int(value):
+        raise KeyFault(key, f"{value:g} is no whole number")
+
+
+def require_together(table: FileTable, *keys: str) -> None:
+    """Refuse a table that has some of the keys and lacks others."""
+    absent = [key for key in keys if getattr(table, key) is None]
+    if absent and len(absent) < len(keys):
+        given = next(key for key in keys if key not in absent)
+        raise KeyFault(absent[0], f"missing; expected together with {given}")
+
+
+def given_keys(table: FileTable) -> list[str]:
+    """Keys of a table whose value is not the default."""
+    fields = msgspec.structs.fields(table)
+    return [each.name for each in fields if getattr(table, each.name) != each.default]
+
+
+def converted(content: object, kind: type[T], path: Path, *, name: str = "") -> T:
+    """Content of a file as the table that it is declared to be.
+
+    Parameters
+    ----------
+    content : object
+        As the parser gave it.
+    kind : type
+        A :class:`FileTable`.
     path : Path
         The file, for messages.
     name : str
-        Place of the table in the file, ``spindle.curve[2]``; empty for the root.
+        Name of the whole content in messages; empty for the root of a TOML file.
+
+    Raises
+    ------
+    LibraryError
+        A key is missing, unknown or has a value that is not allowed.
     """
-
-    def __init__(self, content: Mapping[str, object], *, path: Path, name: str = "") -> None:
-        self.path = path
-        self._content = content
-        self._name = name
-        self._read: set[str] = set()
-        self._children: list[Table] = []
-
-    def __contains__(self, key: str) -> bool:
-        if key not in self._content:
-            self._read.add(key)  # named among the known ones
-        return key in self._content
-
-    def error(self, key: str, message: str) -> LibraryError:
-        """The error that names this file and ``key``."""
-        place = f"{self._name}.{key}" if self._name and key else self._name or key
-        return LibraryError(message, path=str(self.path), key=_cut(place))
-
-    def text(self, key: str) -> str:
-        """A text that must be there; it may be empty."""
-        value = self._take(key, "a text")
-        if not isinstance(value, str):
-            raise self.error(key, f"{_shown(value)} is no text")
-        return value
-
-    def texts(self, key: str) -> tuple[str, ...]:
-        """A list of texts; empty when the key is absent."""
-        if key not in self:
-            return ()
-        values = self._take(key, "a list of texts")
-        if not isinstance(values, list) or not all(isinstance(value, str) for value in values):
-            raise self.error(key, f"{_shown(values)} is no list of texts")
-        return tuple(values)
-
-    def choice(self, key: str, kind: type[Choice]) -> Choice:
-        """One of the values of an enumeration."""
-        value = self.text(key)
-        try:
-            return kind(value)
-        except ValueError:
-            known = ", ".join(kind)
-            raise self.error(key, f"'{_cut(value)}' is none of {known}") from None
-
-    def flag(self, key: str) -> bool:
-        """``true`` or ``false``; false where the key is absent."""
-        if key not in self:
-            return False
-        value = self._take(key, "true or false")
-        if not isinstance(value, bool):
-            raise self.error(key, f"{_shown(value)} is neither true nor false")
-        return value
-
-    def number(self, key: str, allowed: Range) -> float:
-        """A number that must be there and in its range."""
-        value = self._take(key, f"a number, {allowed}")
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            raise self.error(key, f"{_shown(value)} is no number; expected {allowed}")
-        try:
-            number = float(value)
-        except OverflowError:
-            what = f"{_shown(value)} is beyond the range of a number; expected {allowed}"
-            raise self.error(key, what) from None
-        if complaint := allowed.complaint(number):
-            raise self.error(key, complaint)
-        return number
-
-    def optional_number(self, key: str, allowed: Range) -> float | None:
-        """A number in its range, or ``None`` when the key is absent."""
-        return self.number(key, allowed) if key in self else None
-
-    def window(
-        self, low_key: str, high_key: str, *, allowed: Range
-    ) -> tuple[float | None, float | None]:
-        """Two optional numbers, the first not above the second."""
-        low = self.optional_number(low_key, allowed)
-        high = self.optional_number(high_key, allowed)
-        if low is not None and high is not None and low > high:
-            raise self.error(
-                low_key,
-                f"{allowed.quantity(low)} exceeds {high_key} {allowed.quantity(high)}",
-            )
-        return low, high
-
-    def table(self, key: str) -> "Table":
-        """A table that must be there."""
-        return self._child(key, self._take(key, "a table"), name=self._place(key))
-
-    def tables(self, key: str) -> tuple["Table", ...]:
-        """An array of tables; empty when the key is absent."""
-        if key not in self:
-            return ()
-        rows = self._take(key, "an array of tables")
-        if not isinstance(rows, list):
-            raise self.error(key, f"is no array of tables; write [[{self._place(key)}]]")
-        return tuple(
-            self._child(key, row, name=f"{self._place(key)}[{index}]")
-            for index, row in enumerate(rows, start=1)
-        )
-
-    def finish(self) -> None:
-        """Refuse unknown keys, here and in the tables below."""
-        for key in self._content:
-            if key not in self._read:
-                known = ", ".join(sorted(self._read))
-                raise self.error(key, f"unknown key; known here: {known}")
-        for child in self._children:
-            child.finish()
-
-    def _place(self, key: str) -> str:
-        """Name of a table below this one."""
-        return f"{self._name}.{key}" if self._name else key
-
-    def _take(self, key: str, expected: str) -> object:
-        """Raw value of a key that must be there; the key counts as read."""
-        self._read.add(key)
-        if key not in self._content:
-            raise self.error(key, f"missing; expected {expected}")
-        return self._content[key]
-
-    def _child(self, key: str, content: object, *, name: str) -> "Table":
-        """A table below this one."""
-        if not isinstance(content, dict):
-            raise self.error(key, f"{_shown(content)} is no table")
-        child = Table(content, path=self.path, name=name)
-        self._children.append(child)
-        return child
+    try:
+        return msgspec.convert(content, kind)
+    except msgspec.ValidationError as error:
+        key, message = _fault(error, content, kind)
+        place = ".".join(part for part in (name, key) if part)
+        raise LibraryError(message, path=str(path), key=_cut(place)) from error
 
 
-def read_toml(path: Path) -> Table:
-    """Root table of a TOML file."""
-    return Table(_parsed(read_text(path), path), path=path)
+def read_toml(path: Path, kind: type[T]) -> T:
+    """A TOML file as a table."""
+    return converted(parsed(read_text(path), path), kind, path)
 
 
-def read_toml_head(path: Path) -> Table:
+def read_toml_head(path: Path, kind: type[T]) -> T:
     """Keys of the root alone, without the tables below.
 
     In TOML the keys of the root stand before the first table header, so the rest need not be
     parsed: names of all materials are read five times faster than the materials themselves.
     """
-    head = read_text(path).split("\n[", maxsplit=1)[0]
-    return Table(_parsed(head, path), path=path)
+    return converted(parsed(read_text(path).split("\n[", maxsplit=1)[0], path), kind, path)
 
 
 def read_text(path: Path) -> str:
@@ -216,7 +155,7 @@ def read_bounded(path: Path) -> bytes:
     """Bytes of a library file, which is small."""
     try:
         if path.is_char_device():
-            raise LibraryError("is a device, no file", path=str(path))
+            raise LibraryError("is a device, not a file", path=str(path))
         with path.open("rb") as file:
             data = file.read(MOST_BYTES + 1)
     except OSError as error:
@@ -226,14 +165,216 @@ def read_bounded(path: Path) -> bytes:
     return data
 
 
-def _parsed(text: str, path: Path) -> dict[str, object]:
-    """Content of a TOML text."""
+def parsed(text: str, path: Path) -> dict[str, Any]:
+    """Content of a TOML text within the bounds of :mod:`simulator.toml_bounds`."""
     require_bounded(text, path)
     try:
         return tomllib.loads(text)
     except ValueError as error:
         # Also a date that is in no calendar, which is no TOMLDecodeError.
-        raise LibraryError(f"is no TOML: {error}", path=str(path)) from error
+        raise LibraryError(f"is not valid TOML: {error}", path=str(path)) from error
+
+
+def written(table: FileTable, *, name: str = "") -> list[str]:
+    """Lines of a table: its own keys first, then the tables below.
+
+    Keys without a value are left out, and so are texts, flags and lists at their default.
+    """
+    own: list[str] = []
+    below: list[str] = []
+    tag = table.__struct_config__.tag
+    if isinstance(tag, str):
+        own.append(f"{table.__struct_config__.tag_field} = {_text(tag)}")
+    for field in msgspec.structs.fields(table):
+        value, place = getattr(table, field.name), f"{name}.{field.name}".removeprefix(".")
+        is_usual = not isinstance(value, float) and value == field.default
+        if value is None or is_usual:
+            continue
+        if isinstance(value, FileTable):
+            below += ["", f"[{place}]", *written(value, name=place)]
+        elif isinstance(value, tuple) and isinstance(next(iter(value), None), FileTable):
+            for row in value:
+                below += ["", f"[[{place}]]", *written(row, name=place)]
+        elif value != ():
+            own += _key(field.name, value)
+    return own + below
+
+
+def shortest(value: float, shown: Conversion, read: Conversion) -> float:
+    """Number of fewest digits in the unit of a key that reads as a canonical value.
+
+    A value that no number in that unit converts to (the last bit of a quotient by 60) becomes
+    the nearest one.
+    """
+    guess = shown(value)
+    for digits in range(1, MOST_DIGITS + 1):
+        rounded = float(f"{guess:.{digits}g}")
+        if read(rounded) == value:
+            return rounded
+    # Two roundings may land beside the number that was read.
+    beside = (nextafter(guess, inf), nextafter(guess, -inf))
+    return next((number for number in beside if read(number) == value), guess)
+
+
+def _key(key: str, value: object) -> Iterator[str]:
+    """Lines of a key whose value is no table."""
+    match value:
+        case str():
+            yield f"{key} = {_text(value)}"
+        case bool():
+            yield f"{key} = {str(value).lower()}"
+        case float() if value.is_integer():
+            yield f"{key} = {int(value)}"
+        case tuple():
+            yield from (f"{key} = [", *(f"    {_text(each)}," for each in value), "]")
+        case _:
+            yield f"{key} = {value!r}"
+
+
+def _text(value: str) -> str:
+    """A basic string; JSON's escapes are TOML's, save that TOML escapes DEL as well."""
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007F")
+
+
+def _fault(error: msgspec.ValidationError, content: object, kind: Any) -> tuple[str, str]:
+    """Key and message of what msgspec refused."""
+    place = at[1] if (at := _AT.search(str(error))) else ""
+    steps = re.findall(r"\w+|\[\d+\]", place)
+    value, expected, shown = content, _alternative(inspect.type_info(kind), content), ""
+    for step in steps:
+        value, expected, shown = _below(value, expected, shown, step)
+    cause = error.__cause__
+    if isinstance(cause, KeyFault):
+        return _joined(shown, cause.key), str(cause)
+    if isinstance(cause, ValueError):
+        return shown, str(cause)
+    field = _FIELD.match(_AT.sub("", str(error)))
+    if field is None:
+        return shown, _complaint(value, expected, shown)
+    fields = expected.fields if isinstance(expected, inspect.StructType) else ()
+    known = {each.encode_name: each.type for each in fields}
+    key = _joined(shown, field[2])
+    if field[1] == "contains unknown":
+        return key, f"unknown key; known here: {', '.join(sorted(known))}"
+    wanted = known.get(field[2])
+    if wanted is None:  # the key that tells the kinds of a table apart
+        return key, "missing; expected a text"
+    return key, f"missing; expected {_expected(_alternative(wanted, None))}"
+
+
+def _below(
+    value: Any, expected: inspect.Type, shown: str, step: str
+) -> tuple[Any, inspect.Type, str]:
+    """Value, type and name of what lies one step below; rows are counted from 1."""
+    found: inspect.Type = inspect.AnyType()
+    if step.startswith("["):
+        row = int(step[1:-1])
+        if isinstance(expected, inspect.VarTupleType):
+            found = expected.item_type
+        return value[row], _alternative(found, value[row]), f"{shown}[{row + 1}]"
+    if isinstance(expected, inspect.StructType):
+        types = {each.encode_name: each.type for each in expected.fields}
+        found = types.get(step, found)
+        if step == expected.tag_field:
+            found = inspect.LiteralType(values=(expected.tag,))
+    inner = value.get(step)
+    return inner, _alternative(found, inner), _joined(shown, step)
+
+
+def _fields(kind: type[FileTable]) -> tuple[inspect.Field, ...]:
+    found = inspect.type_info(kind)
+    return found.fields if isinstance(found, inspect.StructType) else ()
+
+
+def _joined(place: str, key: str) -> str:
+    return f"{place}.{key}" if place and key else place or key
+
+
+def _alternative(kind: inspect.Type, value: object) -> inspect.Type:
+    """The type of a union that a value is measured against; others as they are."""
+    if not isinstance(kind, inspect.UnionType):
+        return kind
+    types = [each for each in kind.types if not isinstance(each, inspect.NoneType)]
+    tagged = [each for each in types if isinstance(each, inspect.StructType)]
+    for each in tagged:
+        if isinstance(value, dict) and value.get(str(each.tag_field)) == each.tag:
+            return each
+    if len(tagged) > 1:
+        tags = tuple(each.tag for each in tagged)
+        first = tagged[0]
+        own = inspect.Field("", str(first.tag_field), inspect.LiteralType(values=tags))
+        return inspect.StructType(cls=first.cls, fields=(own,))
+    return types[0]
+
+
+def _range(kind: inspect.Type) -> tuple[str, float, float]:
+    """Unit and bounds of a number."""
+    unit = ""
+    if isinstance(kind, inspect.Metadata):
+        unit, kind = str((kind.extra or {}).get("unit", "")), kind.type
+    low, high = getattr(kind, "ge", None), getattr(kind, "le", None)
+    return unit, -inf if low is None else low, inf if high is None else high
+
+
+def _quantity(value: float, unit: str) -> str:
+    return f"{value:g} {unit}".rstrip()
+
+
+def _expected(kind: inspect.Type) -> str:
+    """A type in words."""
+    inner = kind.type if isinstance(kind, inspect.Metadata) else kind
+    match inner:
+        case inspect.FloatType() | inspect.IntType():
+            unit, low, high = _range(kind)
+            return f"a number, {low:g} to {_quantity(high, unit)}"
+        case inspect.BoolType():
+            return "true or false"
+        case inspect.StructType():
+            return "a table"
+        case inspect.VarTupleType(item_type=inspect.StrType()):
+            return "a list of texts"
+        case inspect.VarTupleType():
+            return "an array of tables"
+        case _:
+            return "a text"
+
+
+def _complaint(value: object, kind: inspect.Type, place: str) -> str:
+    """What is wrong with a value that is of another type or out of its range."""
+    inner = kind.type if isinstance(kind, inspect.Metadata) else kind
+    match inner:
+        case inspect.FloatType():
+            return _number_complaint(value, kind)
+        case inspect.BoolType():
+            return f"{_shown(value)} is neither true nor false"
+        case inspect.EnumType() | inspect.LiteralType() if isinstance(value, str):
+            enumeration = getattr(inner, "cls", None)
+            known: Sequence[Any] = getattr(inner, "values", None) or list(enumeration or ())
+            return f"'{_cut(value)}' is none of {', '.join(map(str, filter(None, known)))}"
+        case inspect.StructType():
+            return f"{_shown(value)} is no table"
+        case inspect.VarTupleType(item_type=inspect.StrType()):
+            return f"{_shown(value)} is no list of texts"
+        case inspect.VarTupleType():
+            return f"is no array of tables; write [[{place}]]"
+        case _:
+            return f"{_shown(value)} is no text"
+
+
+def _number_complaint(value: object, kind: inspect.Type) -> str:
+    unit, low, high = _range(kind)
+    allowed = f"{low:g} to {_quantity(high, unit)}"
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return f"{_shown(value)} is no number; expected {allowed}"
+    try:
+        number = float(value)
+    except OverflowError:
+        return f"{_shown(value)} is beyond the range of a number; expected {allowed}"
+    if not isfinite(number):
+        return f"{number} is no finite number; expected {allowed}"
+    if number < low:
+        return f"{_quantity(number, unit)} is below {_quantity(low, unit)}"
+    return f"{_quantity(number, unit)} exceeds {_quantity(high, unit)}"
 
 
 def _shown(value: object) -> str:

@@ -7,27 +7,46 @@ One ``[[tool]]`` table a tool, units in the keys; what is absent is customary.
 
 from dataclasses import dataclass
 from enum import StrEnum
-from math import inf, pi
+from math import inf
 from pathlib import Path
+from typing import Annotated
 
 from simulator.errors import LibraryError
 from simulator.removal.cutter import Cutter, Holder, Insert
 from simulator.removal.tool_shape import ENDS
 from simulator.spec import CuttingMaterial, ToolKind
-from simulator.toml_file import Range, Table, read_toml
+from simulator.toml_file import (
+    FileTable,
+    KeyFault,
+    given_keys,
+    quantity,
+    read_toml,
+    require_together,
+    require_whole,
+)
 from stepnc_model.entities.enums import HandOfToolType
 from stepnc_model.units import rad_from_deg
 
-NUMBER = Range(low=1, high=1e6)
-DIAMETER = Range(low=0.01, high=2_000, unit="mm")
-LENGTH = Range(low=0, high=2_000, unit="mm")
-TEETH = Range(low=1, high=500)
-ANGLE = Range(low=0, high=179, unit="°")
-HELIX = Range(low=0, high=75, unit="°")
-TAPER = Range(low=0, high=80, unit="°")
-POINT = Range(low=30, high=180, unit="°")
+Number = Annotated[float, quantity(1, 1e6)]
+Diameter = Annotated[float, quantity(0.01, 2_000, "mm")]
+Length = Annotated[float, quantity(0, 2_000, "mm")]
+Teeth = Annotated[float, quantity(1, 500)]
+EdgeAngle = Annotated[float, quantity(0, 179, "°")]
+HelixAngle = Annotated[float, quantity(0, 75, "°")]
+TaperAngle = Annotated[float, quantity(0, 80, "°")]
+PointAngle = Annotated[float, quantity(30, 180, "°")]
 
 TURNED = {ToolKind.TURNING, ToolKind.GROOVING, ToolKind.THREADING}
+INSERT_KEYS = {"nose_radius_mm", "cutting_edge_angle_deg", "width_mm", "hand"}
+CUTTER_KEYS = {
+    "diameter_mm",
+    "corner_radius_mm",
+    "taper_angle_deg",
+    "point_angle_deg",
+    "edge_length_mm",
+    "holder_diameter_mm",
+    "overhang_mm",
+}
 CUSTOMARY_POINT_DEG = {ToolKind.DRILL: 118.0, ToolKind.COUNTERSINK: 90.0}
 
 
@@ -57,6 +76,95 @@ class TableTool:
     """whether a flat beside the nose of a turning insert smooths the surface"""
 
 
+class ToolRow(FileTable, frozen=True, kw_only=True):
+    """One ``[[tool]]`` row."""
+
+    number: Number
+    kind: ToolKind
+    id: str | None = None
+    cutting_material: CuttingMaterial = CuttingMaterial.CARBIDE
+    teeth: Teeth = 1.0
+    helix_deg: HelixAngle | None = None
+    centre_cutting: bool | None = None
+    wiper: bool = False
+    diameter_mm: Diameter | None = None
+    corner_radius_mm: Length = 0.0
+    taper_angle_deg: TaperAngle = 0.0
+    point_angle_deg: PointAngle | None = None
+    edge_length_mm: Length = 0.0
+    holder_diameter_mm: Diameter | None = None
+    overhang_mm: Length | None = None
+    nose_radius_mm: Length = 0.0
+    cutting_edge_angle_deg: EdgeAngle = 90.0
+    width_mm: Diameter | None = None
+    hand: TurningHand = TurningHand.RIGHT
+
+    def __post_init__(self) -> None:
+        require_whole(self, "number")
+        require_whole(self, "teeth")
+        require_together(self, "holder_diameter_mm", "overhang_mm")
+        self._require_keys_of_its_kind()
+        if self.wiper and self.kind is not ToolKind.TURNING:
+            raise KeyFault("wiper", f"is of turning inserts, not of kind {self.kind}")
+        if self.kind is ToolKind.GROOVING and self.width_mm is None:
+            raise KeyFault("width_mm", "missing; a grooving blade has a width")
+        if self.kind in TURNED:
+            self.insert()  # refuses what fits no blade
+        elif self.diameter_mm is None:
+            raise KeyFault("diameter_mm", "missing; expected a number, 0.01 to 2000 mm")
+        elif 2.0 * self.corner_radius_mm > self.diameter_mm:
+            radius, most = self.corner_radius_mm, 0.5 * self.diameter_mm
+            message = f"{radius:g} mm exceeds half the diameter, {most:g} mm"
+            raise KeyFault("corner_radius_mm", message)
+
+    def _require_keys_of_its_kind(self) -> None:
+        """Refuse dimensions of an insert on a cutter, and of a cutter on an insert."""
+        others = CUTTER_KEYS if self.kind in TURNED else INSERT_KEYS
+        for key in others.intersection(given_keys(self)):
+            known = sorted(set(self.__struct_fields__) - others)
+            message = f"unknown key of kind {self.kind}; known here: {', '.join(known)}"
+            raise KeyFault(key, message)
+
+    def insert(self) -> Insert:
+        """Shape of a turning tool."""
+        return Insert(
+            nose_radius=self.nose_radius_mm,
+            cutting_edge_angle=rad_from_deg(self.cutting_edge_angle_deg),
+            width=self.width_mm,
+            hand=HandOfToolType[self.hand.name],
+        )
+
+    def cutter(self) -> Cutter:
+        """Shape of a rotating tool."""
+        point, holder = self.point_angle_deg, None
+        if point is None:
+            point = CUSTOMARY_POINT_DEG.get(self.kind, 180.0)
+        if self.holder_diameter_mm is not None and self.overhang_mm is not None:
+            holder = Holder(diameter=self.holder_diameter_mm, overhang=self.overhang_mm)
+        return Cutter(
+            diameter=self.diameter_mm or 0.0,
+            corner_radius=self.corner_radius_mm,
+            taper_angle=rad_from_deg(self.taper_angle_deg),
+            point_angle=rad_from_deg(point),
+            teeth=int(self.teeth),
+            edge_length=self.edge_length_mm or inf,
+            is_drill=self.kind in ENDS,
+            holder=holder,
+        )
+
+
+class ToolFile(FileTable, frozen=True, kw_only=True):
+    """A whole tool table."""
+
+    tool: tuple[ToolRow, ...] = ()
+
+    def __post_init__(self) -> None:
+        numbers = [row.number for row in self.tool]
+        for at, number in enumerate(numbers, start=1):
+            if numbers.count(number) > 1:
+                raise KeyFault(f"tool[{at}].number", f"T{number:g} is there twice")
+
+
 def read_tool_table(path: Path) -> tuple[TableTool, ...]:
     """Tools of a TOML file.
 
@@ -65,96 +173,22 @@ def read_tool_table(path: Path) -> tuple[TableTool, ...]:
     LibraryError
         A key is missing, unknown or out of its range, or a number is there twice.
     """
-    root = read_toml(path)
-    rows = root.tables("tool")
-    tools = tuple(_tool(row) for row in rows)
-    root.finish()
-    if not tools:
+    rows = read_toml(path, ToolFile).tool
+    if not rows:
         raise LibraryError("has no [[tool]]", path=str(path))
-    numbers = [tool.number for tool in tools]
-    for row, number in zip(rows, numbers, strict=True):
-        if numbers.count(number) > 1:
-            raise row.error("number", f"T{number} is there twice")
-    return tools
+    return tuple(_tool(row) for row in rows)
 
 
-def _tool(row: Table) -> TableTool:
-    kind = row.choice("kind", ToolKind)
-    number = _whole(row, "number", NUMBER)
-    name = row.text("id") if "id" in row else f"{kind} T{number}"
-    material = CuttingMaterial.CARBIDE
-    if "cutting_material" in row:
-        material = row.choice("cutting_material", CuttingMaterial)
-    teeth = _whole(row, "teeth", TEETH) if "teeth" in row else 1
-    helix = row.optional_number("helix_deg", HELIX)
+def _tool(row: ToolRow) -> TableTool:
+    number, helix = int(row.number), row.helix_deg
     return TableTool(
         number=number,
-        id=name,
-        kind=kind,
-        cutting_material=material,
-        teeth=teeth,
-        shape=_insert(row, kind) if kind in TURNED else _cutter(row, kind, teeth),
+        id=f"{row.kind} T{number}" if row.id is None else row.id,
+        kind=row.kind,
+        cutting_material=row.cutting_material,
+        teeth=int(row.teeth),
+        shape=row.insert() if row.kind in TURNED else row.cutter(),
         helix_angle=None if helix is None else rad_from_deg(helix),
-        centre_cutting=row.flag("centre_cutting") if "centre_cutting" in row else None,
-        has_wiper=_has_wiper(row, kind),
-    )
-
-
-def _has_wiper(row: Table, kind: ToolKind) -> bool:
-    if "wiper" in row and kind is not ToolKind.TURNING:
-        raise row.error("wiper", f"is of turning inserts, not of kind {kind}")
-    return row.flag("wiper")
-
-
-def _whole(row: Table, key: str, allowed: Range) -> int:
-    number = row.number(key, allowed)
-    if number != int(number):
-        raise row.error(key, f"{number:g} is no whole number")
-    return int(number)
-
-
-def _insert(row: Table, kind: ToolKind) -> Insert:
-    angle = row.optional_number("cutting_edge_angle_deg", ANGLE)
-    width = row.optional_number("width_mm", DIAMETER)
-    if kind is ToolKind.GROOVING and width is None:
-        raise row.error("width_mm", "missing; a grooving blade has a width")
-    hand = row.choice("hand", TurningHand) if "hand" in row else TurningHand.RIGHT
-    try:
-        return Insert(
-            nose_radius=row.optional_number("nose_radius_mm", LENGTH) or 0.0,
-            cutting_edge_angle=pi / 2.0 if angle is None else rad_from_deg(angle),
-            width=width,
-            hand=HandOfToolType[hand.name],
-        )
-    except ValueError as error:
-        raise row.error("", str(error)) from error
-
-
-def _cutter(row: Table, kind: ToolKind, teeth: int) -> Cutter:
-    diameter = row.number("diameter_mm", DIAMETER)
-    corner = row.optional_number("corner_radius_mm", LENGTH) or 0.0
-    if 2.0 * corner > diameter:
-        message = f"{corner:g} mm exceeds half the diameter, {0.5 * diameter:g} mm"
-        raise row.error("corner_radius_mm", message)
-    point = row.optional_number("point_angle_deg", POINT)
-    if point is None:
-        point = CUSTOMARY_POINT_DEG.get(kind, 180.0)
-    return Cutter(
-        diameter=diameter,
-        corner_radius=corner,
-        taper_angle=rad_from_deg(row.optional_number("taper_angle_deg", TAPER) or 0.0),
-        point_angle=rad_from_deg(point),
-        teeth=teeth,
-        edge_length=row.optional_number("edge_length_mm", LENGTH) or inf,
-        is_drill=kind in ENDS,
-        holder=_holder(row),
-    )
-
-
-def _holder(row: Table) -> Holder | None:
-    if "holder_diameter_mm" not in row and "overhang_mm" not in row:
-        return None
-    return Holder(
-        diameter=row.number("holder_diameter_mm", DIAMETER),
-        overhang=row.number("overhang_mm", LENGTH),
+        centre_cutting=row.centre_cutting,
+        has_wiper=row.wiper,
     )

@@ -16,7 +16,7 @@ from simulator.calibration.simulated import features
 from simulator.machine.interpreter import interpret
 from simulator.machine.samples import Samples, joined
 from simulator.machine.sensing import Sampler
-from simulator.machine_toml import machine_toml
+from simulator.machine_file import machine_toml
 from simulator.spec import Machine
 from stepnc_model.errors import Finding, Severity, StepNcError, WriteError
 

@@ -4,7 +4,7 @@ from service.calibration.tap_test import TapTestResult
 from service.rendering.columns import Column
 from service.rendering.records import dump, finding_record, records
 from service.rendering.text import print_findings, print_line, print_table
-from simulator.machine_toml import modes_toml
+from simulator.machine_file import modes_toml
 from simulator.spec import VibrationMode
 from stepnc_model.units import n_um_from_n_mm
 

@@ -8,9 +8,15 @@ from service.reading import Tell, one_of, silent
 from simulator.calibration.modal_fit import ModalFit, fitted_modes, read_response
 from simulator.errors import CalibrationError
 from simulator.library import load_machine
-from simulator.machine_file import DAMPING, FREQUENCY, MODE_DIAMETER, STIFFNESS
-from simulator.machine_toml import machine_toml
+from simulator.machine_file import (
+    Damping,
+    Frequency,
+    ModeDiameter,
+    Stiffness,
+    machine_toml,
+)
 from simulator.spec import Machine, ModeDirection, VibratingPart, VibrationMode
+from simulator.toml_file import complaint
 from stepnc_model.errors import Finding, Severity, StepNcError
 from stepnc_model.units import n_um_from_n_mm
 
@@ -91,10 +97,8 @@ def _require_part(request: TapTestRequest) -> None:
         raise StepNcError(
             "say what was tapped: --tool ID or --tool-diameter-mm MM, or --workpiece"
         )
-    if request.tool_diameter_mm is not None:
-        complaint = MODE_DIAMETER.complaint(request.tool_diameter_mm)
-        if complaint:
-            raise StepNcError(f"tool diameter: {complaint}")
+    if refused := complaint(request.tool_diameter_mm, ModeDiameter | None):
+        raise StepNcError(f"tool diameter: {refused}")
     if request.modes is not None and request.modes < 1:
         raise StepNcError(f"{request.modes} modes: at least 1")
 
@@ -119,13 +123,12 @@ def _rounded(value: float) -> float:
 def _require_usual(mode: VibrationMode, path: str) -> None:
     """A mode that the machine file would take."""
     for what, value, allowed in (
-        ("natural frequency", mode.natural_frequency, FREQUENCY),
-        ("damping ratio", mode.damping_ratio, DAMPING),
-        ("stiffness", n_um_from_n_mm(mode.stiffness), STIFFNESS),
+        ("natural frequency", mode.natural_frequency, Frequency),
+        ("damping ratio", mode.damping_ratio, Damping),
+        ("stiffness", n_um_from_n_mm(mode.stiffness), Stiffness),
     ):
-        complaint = allowed.complaint(value)
-        if complaint:
-            raise CalibrationError(f"{what}: {complaint}; another unit?", path=path)
+        if refused := complaint(value, allowed):
+            raise CalibrationError(f"{what}: {refused}; another unit?", path=path)
 
 
 def _left_of(old: VibrationMode, new: VibrationMode) -> VibrationMode | None:

@@ -17,7 +17,7 @@ from pyarrow import parquet
 
 from service.simulation.run import Simulation, simulate
 from simulator.library import load_machine
-from simulator.machine_toml import machine_toml
+from simulator.machine_file import machine_toml
 from tests.asking import asked_simulation
 
 ROOT = Path(__file__).parents[2]

@@ -198,4 +198,4 @@ def test_a_knowledge_base_without_a_folder_is_refused_before_the_run(
 
 def test_an_endless_machine_file_is_refused(refused: Refused) -> None:
     told = refused(PARTS / "paper002.stpnc", "--machine", "/dev/zero")
-    assert "is a device, no file" in told or "unknown machine" in told
+    assert "is a device, not a file" in told or "unknown machine" in told

@@ -340,7 +340,7 @@ def test_a_material_that_nobody_knows_is_refused_with_near_names(
         ("\nmax_speed_rpm =", "\nmax_speed =", "spindle.max_speed: unknown key"),
         ("[spindle]", "[spindel]", "spind"),
         ('kind = "mill"', 'kind = "loom"', "loom"),
-        ("[spindle]", "[spindle", "is no TOML"),
+        ("[spindle]", "[spindle", "is not valid TOML"),
     ],
 )
 def test_a_machine_file_with_a_fault_is_refused_with_key_value_bound_and_unit(

@@ -13,7 +13,7 @@ from service.library_output import print_entries, print_entry
 from service.plan_output import print_plan
 from service.rendering.text import MOST_FINDINGS
 from simulator.library import load_machine
-from simulator.machine_toml import machine_toml
+from simulator.machine_file import machine_toml
 from simulator.spec import ModeDirection, VibratingPart, VibrationMode
 from stepnc_model.errors import Finding, Severity
 from tests.asking import asked_advice

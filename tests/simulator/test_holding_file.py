@@ -94,7 +94,6 @@ def test_a_vice_and_clamps_hold_alike(kind: str, tmp_path: Path) -> None:
         ("safety_factor = 2.5", "safety_factor = 0.9", "safety_factor: 0.9 is below 1"),
         ("tailstock = true", 'tailstock = "yes"', "'yes' is neither true nor false"),
         ('kind = "chuck"', 'kind = "glue"', "kind: 'glue' is none of chuck, vice, clamps"),
-        ('kind = "chuck"', 'kind = "vice"', "kind: a vice on a lathe"),
         ('source = "data sheet"\n', "", "source: missing"),
         ("grip_length_mm", "grip_lenght_mm", "grip_lenght_mm: unknown key"),
     ],
@@ -105,6 +104,13 @@ def test_bad_tables_are_told(good: str, bad: str, message: str, tmp_path: Path) 
         held(CHUCK.replace(good, bad), tmp_path)
     assert message in str(error.value)
     assert "holding[1]" in str(error.value)
+
+
+def test_a_vice_holds_on_no_lathe_and_a_chuck_on_no_mill(tmp_path: Path) -> None:
+    with pytest.raises(LibraryError, match=r"holding\[1\].kind: a vice on a lathe"):
+        held(VICE, tmp_path)
+    with pytest.raises(LibraryError, match=r"holding\[1\].kind: a chuck on a mill"):
+        held(CHUCK, tmp_path, MachineKind.MILL)
 
 
 def test_a_setup_is_held_once(tmp_path: Path) -> None:

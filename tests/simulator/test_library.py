@@ -20,7 +20,6 @@ from simulator.library import (
 )
 from simulator.matching import match_material
 from simulator.spec import CuttingMaterial, ToolConstruction, ToolKind
-from simulator.toml_file import read_toml
 from stepnc_model.plausibility import MAX_CUTTING_SPEED
 from stepnc_model.units import m_min_from_speed
 
@@ -121,7 +120,7 @@ def test_no_two_grades_answer_the_same_question() -> None:
     grades = [
         grade
         for kind in ToolKind
-        for grade in read_grades(read_toml(DATA / "tools" / f"{kind}.toml"), kind)
+        for grade in read_grades(DATA / "tools" / f"{kind}.toml", kind)
     ]
     keys = [(g.tool_kind, g.cutting_material, g.iso_group) for g in grades]
     assert len(keys) == len(set(keys))

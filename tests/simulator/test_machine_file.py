@@ -143,7 +143,11 @@ def test_a_step_in_the_curve_is_told_before_anything_is_cut(tmp_path: Path) -> N
         ),
         ("power_kw = 7.5\ntor", "power_kw = nan\ntor", "curve[1].power_kw: nan is no finite"),
         ("power_kw = 7.5\ntor", "power_kw = '7'\ntor", "curve[1].power_kw: '7' is no number"),
-        ("power_kw = 7.5\ntor", "power_w = 7500\ntor", "curve[1].power_kw: missing"),
+        (
+            "power_kw = 7.5\ntor",
+            "power_w = 7500\ntor",
+            "curve[1].power_w: unknown key; known here: power_kw, ",
+        ),
         ("speed_rpm = 600\n", "speed_rpm = 6_000\n", "6000 rpm is not above the point before"),
         ("speed_rpm = 600\n", "speed_rpm = 9_000\n", "6000 rpm is not above the point before"),
         (
@@ -156,7 +160,7 @@ def test_a_step_in_the_curve_is_told_before_anything_is_cut(tmp_path: Path) -> N
         ("block_time_s = 0.004", "block_time_s = 4", "block_time_s: 4 s exceeds 1 s"),
         ("acceleration_mm_s2 = 3_000", "acceleration_mm_s2 = 3", "3 mm/s² is below 10 mm/s²"),
         ("[[axis]]", "[[axes]]", "axes: unknown key"),
-        ("[spindle]", "[spindel]", "spindle.source: missing"),
+        ("[spindle]", "[spindel]", "spindel: unknown key; known here: axis, "),
     ],
 )
 def test_a_bad_value_is_told_with_key_value_and_bound(
@@ -257,7 +261,7 @@ def test_measured_modes_are_read_in_canonical_units(tmp_path: Path) -> None:
         ),
         ("damping_ratio = 0.011", "damping_ratio = 1.1", "damping_ratio: 1.1 exceeds 0.5"),
         ("stiffness_n_um = 1.34", "stiffness_n_um = 1.34e6", "exceeds 10000 N/µm"),
-        ("stiffness_n_um", "stiffness", "stiffness_n_um: missing"),
+        ("stiffness_n_um", "stiffness", "mode[1].stiffness: unknown key"),
         ('direction = "xy"', 'direction = "up"', "direction: 'up' is none of x, y, z, xy"),
         ('part = "tool"', 'part = "bed"', "part: 'bed' is none of tool, workpiece"),
         ('part = "tool"', 'part = "workpiece"', "a mode of the workpiece belongs to no tool"),

@@ -3,6 +3,7 @@
 import tomllib
 from dataclasses import replace
 from pathlib import Path
+from typing import Any, get_args
 
 import pytest
 from hypothesis import given, settings
@@ -11,8 +12,8 @@ from hypothesis import strategies as st
 from simulator import holding_file as read_as
 from simulator import machine_file as allowed
 from simulator.library import load_machine, machine_names
-from simulator.machine_file import read_machine
-from simulator.machine_toml import machine_toml
+from simulator.machine_file import MachineFile, machine_toml
+from simulator.material_file import MaterialHead
 from simulator.spec import (
     Axis,
     AxisDrive,
@@ -24,7 +25,7 @@ from simulator.spec import (
     VibratingPart,
     VibrationMode,
 )
-from simulator.toml_file import Range, Table, read_toml_head
+from simulator.toml_file import converted, read_toml_head
 from simulator.work_holding import Chuck, Clamp, Holding
 from stepnc_model.units import (
     n_mm_from_n_um,
@@ -39,36 +40,38 @@ XML = Path(__file__).parent / "data" / "paper003.xml"
 
 
 def read(text: str, name: str = "my") -> Machine:
-    return read_machine(Table(tomllib.loads(text), path=Path("my.toml")), name=name)
+    return converted(tomllib.loads(text), MachineFile, Path("my.toml")).machine(name)
 
 
-def within(span: Range) -> st.SearchStrategy[float]:
-    return st.floats(span.low, span.high)
+def within(kind: Any) -> st.SearchStrategy[float]:
+    """Numbers that a key of a file may have."""
+    (span,) = get_args(kind)[1:]
+    return st.floats(span.ge, span.le)
 
 
 def maybe(values: st.SearchStrategy[float]) -> st.SearchStrategy[float | None]:
     return st.none() | values
 
 
-FEEDS = within(allowed.FEED).map(speed_from_mm_min)
-WATTS = within(allowed.AUXILIARY_POWER)
+FEEDS = within(allowed.Feed).map(speed_from_mm_min)
+WATTS = within(allowed.AuxiliaryPower)
 TEXTS = st.text(st.characters(exclude_categories=["Cs"]), max_size=20)
 DRIVES = st.builds(
     AxisDrive,
-    lead=within(allowed.LEAD),
-    table_mass=within(allowed.MOVED_MASS),
-    workpiece_mass=within(allowed.MASS),
-    screw_mass=within(allowed.MASS),
-    screw_diameter=within(allowed.SCREW_DIAMETER),
-    coupling_inertia=within(allowed.DRIVE_INERTIA),
-    motor_inertia=within(allowed.DRIVE_INERTIA),
-    guide_friction=within(allowed.FRICTION),
-    bearing_friction=within(allowed.FRICTION),
-    preload=within(allowed.PRELOAD),
-    viscous=within(allowed.VISCOUS).map(nmm_from_nm),
-    gear_ratio=within(allowed.GEAR_RATIO),
-    efficiency=within(allowed.EFFICIENCY),
-    regeneration=within(allowed.REGENERATION),
+    lead=within(allowed.Lead),
+    table_mass=within(allowed.MovedMass),
+    workpiece_mass=within(allowed.Mass),
+    screw_mass=within(allowed.Mass),
+    screw_diameter=within(allowed.ScrewDiameter),
+    coupling_inertia=within(allowed.DriveInertia),
+    motor_inertia=within(allowed.DriveInertia),
+    guide_friction=within(allowed.Friction),
+    bearing_friction=within(allowed.Friction),
+    preload=within(allowed.Preload),
+    viscous=within(allowed.Viscous).map(nmm_from_nm),
+    gear_ratio=within(allowed.GearRatio),
+    efficiency=within(allowed.Efficiency),
+    regeneration=within(allowed.Regeneration),
 )
 AXES = st.builds(
     Axis,
@@ -76,8 +79,8 @@ AXES = st.builds(
     travel=st.sampled_from([(-float("inf"), 10.5), (-0.1, float("inf")), (0.0, 1 / 3)]),
     rapid=FEEDS,
     max_feed=FEEDS,
-    acceleration=within(allowed.ACCELERATION),
-    jerk=maybe(within(allowed.JERK)),
+    acceleration=within(allowed.Acceleration),
+    jerk=maybe(within(allowed.Jerk)),
     drive=st.none() | DRIVES,
 )
 
@@ -86,16 +89,16 @@ NAMES = TEXTS.map(str.strip).filter(bool)
 TOOL_MODES = st.fixed_dictionaries({
     "part": st.just(VibratingPart.TOOL),
     "tool": NAMES,
-    "tool_diameter": maybe(within(allowed.MODE_DIAMETER)),
+    "tool_diameter": maybe(within(allowed.ModeDiameter)),
 })
 WORK_MODES = st.just({"part": VibratingPart.WORKPIECE})
 MODES = st.builds(
     lambda of, **numbers: VibrationMode(**of, **numbers),
     TOOL_MODES | WORK_MODES,
     direction=st.sampled_from(ModeDirection),
-    natural_frequency=within(allowed.FREQUENCY),
-    damping_ratio=within(allowed.DAMPING),
-    stiffness=within(allowed.STIFFNESS).map(n_mm_from_n_um),
+    natural_frequency=within(allowed.Frequency),
+    damping_ratio=within(allowed.Damping),
+    stiffness=within(allowed.Stiffness).map(n_mm_from_n_um),
     source=TEXTS,
 )
 
@@ -114,15 +117,15 @@ def spindles(draw: st.DrawFn) -> Spindle:
     ]
     return Spindle(
         curve=tuple(points),
-        efficiency=draw(within(allowed.EFFICIENCY)),
+        efficiency=draw(within(allowed.Efficiency)),
         min_speed=draw(maybe(st.floats(0.1, 10.0).map(rev_s_from_rpm))),
         max_speed=draw(maybe(st.floats(11.0, 500_000.0).map(rev_s_from_rpm))),
-        acceleration=draw(maybe(within(allowed.SPINDLE_ACCELERATION))),
-        inertia=draw(maybe(within(allowed.INERTIA))),
+        acceleration=draw(maybe(within(allowed.SpindleAcceleration))),
+        inertia=draw(maybe(within(allowed.Inertia))),
         idle_power=draw(WATTS),
-        idle_power_per_speed=draw(within(allowed.IDLE_POWER_PER_SPEED)),
-        idle_power_per_speed_squared=draw(within(allowed.IDLE_POWER_PER_SPEED_SQUARED)),
-        regeneration=draw(within(allowed.REGENERATION)),
+        idle_power_per_speed=draw(within(allowed.IdlePowerPerSpeed)),
+        idle_power_per_speed_squared=draw(within(allowed.IdlePowerPerSpeedSquared)),
+        regeneration=draw(within(allowed.Regeneration)),
     )
 
 
@@ -135,12 +138,12 @@ MACHINES = st.builds(
     axes=st.lists(AXES, max_size=3).map(tuple),
     rapid=maybe(FEEDS),
     max_feed=maybe(FEEDS),
-    max_cutting_force=maybe(within(allowed.FORCE)),
-    max_axial_depth=maybe(within(allowed.DEPTH)),
-    block_time=maybe(within(allowed.BLOCK_TIME)),
+    max_cutting_force=maybe(within(allowed.CuttingForce)),
+    max_axial_depth=maybe(within(allowed.AxialDepth)),
+    block_time=maybe(within(allowed.BlockTime)),
     base_power=WATTS,
     coolant_power=WATTS,
-    tool_change=within(allowed.TOOL_CHANGE),
+    tool_change=within(allowed.ToolChange),
     source=TEXTS,
     remarks=st.lists(TEXTS, max_size=3).map(tuple),
     modes=st.lists(MODES, max_size=3).map(tuple),
@@ -153,38 +156,38 @@ def held(machine: Machine, holding: Holding | None) -> Machine:
     return replace(machine, holdings=(holding,) if holding and is_fitting else ())
 
 
-KILONEWTONS = within(read_as.FORCE).map(newtons_from_kn)
+KILONEWTONS = within(read_as.Force).map(newtons_from_kn)
 CHUCKS = st.builds(
     lambda jaw, loss, **rest: Chuck(**jaw, **loss, **rest),
     st.just({})
     | st.fixed_dictionaries({
-        "jaw_mass": within(read_as.MASS),
-        "jaw_radius": within(read_as.GRIP),
+        "jaw_mass": within(read_as.JawMass),
+        "jaw_radius": within(read_as.Grip),
     }),
     st.just({})
     | st.fixed_dictionaries({
         "lost_force": KILONEWTONS,
-        "lost_at": within(read_as.SPEED).map(rev_s_from_rpm),
+        "lost_at": within(read_as.LossSpeed).map(rev_s_from_rpm),
     }),
     clamping_force=KILONEWTONS,
-    friction=within(read_as.FRICTION),
+    friction=within(read_as.FrictionCoefficient),
     source=TEXTS,
     setup=TEXTS.map(str.strip),
     jaws=st.integers(2, 12),
-    grip_diameter=maybe(within(read_as.GRIP)),
-    grip_length=maybe(within(read_as.GRIP)),
-    jaw_face=maybe(within(read_as.PLACE)),
-    safety_factor=within(read_as.SAFETY),
-    clamping_safety_factor=within(read_as.SAFETY),
+    grip_diameter=maybe(within(read_as.Grip)),
+    grip_length=maybe(within(read_as.Grip)),
+    jaw_face=maybe(within(read_as.Position)),
+    safety_factor=within(read_as.SafetyFactor),
+    clamping_safety_factor=within(read_as.SafetyFactor),
     has_tailstock=st.sampled_from([None, False, True]),
 )
 CLAMPS = st.builds(
     Clamp,
     holding_force=KILONEWTONS,
-    friction=within(read_as.FRICTION),
+    friction=within(read_as.FrictionCoefficient),
     source=TEXTS,
     setup=TEXTS.map(str.strip),
-    safety_factor=within(read_as.SAFETY),
+    safety_factor=within(read_as.SafetyFactor),
 )
 
 
@@ -245,5 +248,5 @@ def test_notes_are_comments_whatever_they_hold() -> None:
 def test_the_head_of_the_file_is_read_without_the_rest(tmp_path: Path) -> None:
     path = tmp_path / "my.toml"
     path.write_text(machine_toml(load_machine("vmc15")), encoding="utf-8")
-    assert read_toml_head(path).text("title") == "Vertical machining centre, 15 kW"
+    assert read_toml_head(path, MaterialHead).title == "Vertical machining centre, 15 kW"
     assert load_machine(str(path)).spindle == load_machine("vmc15").spindle

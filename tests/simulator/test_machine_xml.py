@@ -87,7 +87,7 @@ def test_an_id_that_looks_like_a_number_is_a_name(tmp_path: Path) -> None:
             "Machine.pDefaultLoad: 'much' is no number",
         ),
         ('pDefaultLoad="370"', "", "Machine.pDefaultLoad: missing"),
-        ('pDefaultLoad="370"', 'pDefaultLod="370"', "Machine.pDefaultLoad: missing"),
+        ('pDefaultLoad="370"', 'pDefaultLod="370"', "Machine.pDefaultLod: unknown key"),
         ('gravity="9.81"', 'gravitation="9.81"', "Machine.gravitation: unknown key"),
         ('gravity="9.81"', 'gravity="981"', "Machine.gravity: 981 m/s² exceeds 9.9 m/s²"),
         ('basicRapidSpeed="1600"', 'basicRapidSpeed="1.6"', "1.6 1/100 m/min is below 10"),

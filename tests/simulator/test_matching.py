@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from simulator.errors import UnknownMaterial
 from simulator.library import DATA, load_material, material_names
-from simulator.matching import match_material, normalised
+from simulator.matching import GuessFile, match_material, normalised
 from simulator.spec import Certainty
 from simulator.toml_file import read_toml
 
@@ -121,10 +121,10 @@ def test_every_name_of_a_material_leads_to_it_and_to_no_other(name: str) -> None
 
 
 def test_every_guess_names_a_material_of_the_library() -> None:
-    guesses = read_toml(DATA / "material_guesses.toml")
-    materials = {kind.text("material") for kind in guesses.tables("kind")}
-    for family in guesses.tables("family"):
-        materials |= {member.text("material") for member in family.tables("members")}
+    guesses = read_toml(DATA / "material_guesses.toml", GuessFile)
+    materials = {kind.material for kind in guesses.kind}
+    for family in guesses.family:
+        materials |= {member.material for member in family.members}
     assert materials <= set(material_names())
 
 

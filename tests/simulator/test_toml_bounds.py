@@ -4,6 +4,7 @@ import subprocess
 import sys
 import tomllib
 from pathlib import Path
+from typing import Annotated, Any
 
 import pytest
 from hypothesis import given
@@ -18,7 +19,7 @@ from simulator.toml_bounds import (
     MOST_PARTS,
     require_bounded,
 )
-from simulator.toml_file import Range, read_text, read_toml
+from simulator.toml_file import FileTable, converted, parsed, quantity, read_text
 
 SIZE = 1 << 16
 
@@ -43,13 +44,17 @@ def write(folder: Path, text: str) -> Path:
     return path
 
 
+def content_of(path: Path) -> dict[str, Any]:
+    return parsed(read_text(path), path)
+
+
 @pytest.mark.parametrize("text", HOSTILE.values(), ids=HOSTILE)
 def test_a_text_that_would_cost_the_parser_dear_is_refused_with_its_line(
     tmp_path: Path, text: str
 ) -> None:
     path = write(tmp_path, f"title = 'ours'\n{text}")
     with pytest.raises(LibraryError, match=r"more than 20|at most 400") as caught:
-        read_toml(path)
+        content_of(path)
     assert caught.value.line >= 2
     assert caught.value.path == str(path)
     assert len(str(caught.value)) < 300
@@ -59,10 +64,10 @@ def test_a_hostile_file_costs_no_memory(tmp_path: Path) -> None:
     path = write(tmp_path, HOSTILE["dotted key"])
     words = (
         "import resource, sys; from pathlib import Path\n"
-        "from simulator.toml_file import read_toml\n"
+        "from simulator.toml_file import parsed, read_text\n"
         "resource.setrlimit(resource.RLIMIT_AS, (1 << 29, 1 << 29))\n"
         "resource.setrlimit(resource.RLIMIT_CPU, (10, 10))\n"
-        "read_toml(Path(sys.argv[1]))\n"
+        "path = Path(sys.argv[1]); parsed(read_text(path), path)\n"
     )
     done = subprocess.run(
         [sys.executable, "-c", words, str(path)], capture_output=True, text=True, check=False
@@ -73,7 +78,7 @@ def test_a_hostile_file_costs_no_memory(tmp_path: Path) -> None:
 def test_a_file_of_more_bytes_than_the_most_is_not_read(tmp_path: Path) -> None:
     path = write(tmp_path, "#" * (MOST_BYTES + 1))
     with pytest.raises(LibraryError, match=f"larger than {MOST_BYTES} bytes"):
-        read_toml(path)
+        content_of(path)
     assert len(read_text(write(tmp_path, "#" * MOST_BYTES))) == MOST_BYTES
 
 
@@ -83,7 +88,7 @@ def test_a_text_at_the_bounds_is_read(tmp_path: Path) -> None:
         f"{deep} = 1\n[b.{'.'.join('c' * (MOST_PARTS - 1))}]\n"
         f"{'d' * LONGEST_WORD} = {'[' * MOST_NESTED}{']' * MOST_NESTED}\n"
     )
-    assert "a" in read_toml(write(tmp_path, text))
+    assert "a" in content_of(write(tmp_path, text))
 
 
 @pytest.mark.parametrize(
@@ -102,12 +107,12 @@ def test_a_text_at_the_bounds_is_read(tmp_path: Path) -> None:
 def test_what_stands_in_strings_and_comments_does_not_count(tmp_path: Path, text: str) -> None:
     stuff = "a.b[{" * 100 + "9" * 1000
     path = write(tmp_path, text.replace("{0}", stuff))
-    assert "x" in read_toml(path)
+    assert "x" in content_of(path)
 
 
 def test_many_small_tables_and_numbers_are_no_nesting(tmp_path: Path) -> None:
     rows = "".join(f"[[tool]]\nspan = [[1.5, 2.5], [3.5, 4.5]] # {n}\n" for n in range(5000))
-    assert len(read_toml(write(tmp_path, rows)).tables("tool")) == 5000
+    assert len(content_of(write(tmp_path, rows))["tool"]) == 5000
 
 
 def test_every_file_of_the_library_is_ten_times_below_the_bounds() -> None:
@@ -115,7 +120,7 @@ def test_every_file_of_the_library_is_ten_times_below_the_bounds() -> None:
     assert files
     for path in files:
         assert path.stat().st_size * 10 < MOST_BYTES
-        read_toml(path)
+        content_of(path)
 
 
 @given(st.text(alphabet="a.=[]{}\"'\\\n#,1 ", max_size=200))
@@ -130,19 +135,26 @@ def test_what_the_parser_takes_is_refused_for_a_bound_only_when_it_passes_one(
         require_bounded(text, Path("my.toml"))
 
 
+class Power(FileTable, frozen=True, kw_only=True):
+    power_kw: Annotated[float, quantity(0, 100, "kW")]
+
+
+class Titled(FileTable, frozen=True, kw_only=True):
+    spindle: Power | None = None
+    title: str = ""
+    x: Annotated[float, quantity(0, 1)] = 0.0
+
+
 @pytest.mark.parametrize("number", [10**308 * 9, -(10**309), 10**399])
-def test_an_integer_beyond_a_float_is_an_error_with_its_key(
-    tmp_path: Path, number: int
-) -> None:
-    table = read_toml(write(tmp_path, f"[spindle]\npower_kw = {number}")).table("spindle")
+def test_an_integer_beyond_a_float_is_an_error_with_its_key(number: int) -> None:
+    content = parsed(f"[spindle]\npower_kw = {number}", Path("my.toml"))
     with pytest.raises(LibraryError, match=r"spindle\.power_kw: .*expected|exceeds") as caught:
-        table.number("power_kw", Range(low=0, high=100, unit="kW"))
+        converted(content, Titled, Path("my.toml"))
     assert len(str(caught.value)) < 300
 
 
-def test_a_long_value_of_another_kind_is_shown_cut(tmp_path: Path) -> None:
-    table = read_toml(write(tmp_path, f"title = [{'1,' * 10_000}]\nx = '{'a' * 10_000}'"))
-    for ask in (lambda: table.text("title"), lambda: table.number("x", Range(low=0, high=1))):
-        with pytest.raises(LibraryError) as caught:
-            ask()
-        assert len(str(caught.value)) < 300
+@pytest.mark.parametrize("text", [f"title = [{'1,' * 10_000}]", f"x = '{'a' * 10_000}'"])
+def test_a_long_value_of_another_kind_is_shown_cut(text: str) -> None:
+    with pytest.raises(LibraryError) as caught:
+        converted(parsed(text, Path("my.toml")), Titled, Path("my.toml"))
+    assert len(str(caught.value)) < 300

@@ -17,7 +17,7 @@ from service.simulation.setup import CodeRequest
 from simulator.calibration.features import Parameter
 from simulator.library import load_machine
 from simulator.machine.transients import USUAL_DELAY
-from simulator.machine_toml import machine_toml
+from simulator.machine_file import machine_toml
 from stepnc_model.errors import StepNcError, WriteError
 from tests.asking import AskedSimulation, asked_simulation
 

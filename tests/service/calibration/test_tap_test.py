@@ -10,7 +10,7 @@ import pytest
 from service.calibration.tap_test import TapTestRequest, tap_test
 from service.cli.main import main
 from simulator.library import load_machine
-from simulator.machine_toml import machine_toml
+from simulator.machine_file import machine_toml
 from simulator.spec import ModeDirection, VibratingPart, VibrationMode
 from stepnc_model.errors import StepNcError
 

@@ -66,9 +66,13 @@ def test_a_machine_is_shown_with_what_it_holds_with(
     ("good", "bad", "message"),
     [
         ("friction = 0.2", "friction = 7", "holding[1].friction: 7 exceeds 1"),
-        ('"chuck"', '"vice"', "holding[1].kind: a vice on a lathe"),
+        ('"chuck"', '"glue"', "holding[1].kind: 'glue' is none of chuck, vice, clamps"),
         ("[[holding]]", "[[hold]]", "hold: unknown key"),
-        ("jaw_radius_mm = 63\n", "", "jaw_radius_mm: missing; expected a number"),
+        (
+            "jaw_radius_mm = 63\n",
+            "",
+            "jaw_radius_mm: missing; expected together with jaw_mass_kg",
+        ),
     ],
 )
 def test_a_bad_table_writes_nothing(

@@ -9,7 +9,7 @@ import pytest
 from simulator.calibration.calibrated import Delay, calibrated, notes, priors
 from simulator.calibration.features import PARAMETERS, Calibration, Estimate, Parameter
 from simulator.library import load_machine
-from simulator.machine_toml import machine_toml
+from simulator.machine_file import machine_toml
 from simulator.physics.axis import axis_power
 from simulator.physics.spindle_motion import spindle_power
 from simulator.spec import AxisDrive, Machine
