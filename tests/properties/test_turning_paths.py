@@ -109,12 +109,15 @@ class Contour:
             found.append(end)
         return found
 
-    def radius(self, z: Floats) -> Floats:
-        """Largest radius at each z; −inf beside the contour."""
+    def radius(self, z: Floats, *, beyond: float = -1e-9) -> Floats:
+        """Largest radius at each z; −inf beside the contour.
+
+        Corners belong to no line, or to both where lines count a little beyond their ends.
+        """
         found = np.full(len(z), -np.inf)
         for (a, b), (c, d) in pairwise(self.spots()):
             if abs(a - c) > 1e-9:
-                is_on = (z < max(a, c) - 1e-9) & (z > min(a, c) + 1e-9)
+                is_on = (z < max(a, c) + beyond) & (z > min(a, c) - beyond)
                 found[is_on] = np.maximum(found[is_on], b + (d - b) * (z[is_on] - a) / (c - a))
         return found
 
@@ -241,7 +244,7 @@ def rough_and_finish(contour: Contour) -> tuple[ToolPath, ToolPath]:
 
 def rolled(contour: Contour, z: Floats) -> Floats:
     """Surface that a nose leaves when it rolls over the contour and the bar behind it."""
-    target = contour.radius(z)
+    target = contour.radius(z, beyond=1e-9)
     target[z < contour.corners[-1][0] - 1e-9] = BAR
     reach = int(contour.nose / CELL)
     offsets = np.arange(-reach, reach + 1)
