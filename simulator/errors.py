@@ -138,6 +138,10 @@ class LibraryError(SimulationError):
         self.line = line
 
 
+class AgentError(SimulationError):
+    """A device model, a document or an adapter of MTConnect cannot be used."""
+
+
 class CalibrationError(SimulationError):
     """A measured run cannot be used, or a model cannot be fitted to it.
 

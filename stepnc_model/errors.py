@@ -9,7 +9,7 @@
     ├── PathError(entity, attribute)       no tool path can be made for a workingstep
     ├── PostError(line)                    NC code that a control or a reader cannot take
     ├── SimulationError                    simulator.errors
-    │   ├── UnknownMachine, UnknownMaterial
+    │   ├── UnknownMachine, UnknownMaterial, AgentError
     │   ├── LibraryError(path, key, line)
     │   └── CalibrationError(path, line, column)
     ├── OptimisationError                  optimiser.errors

@@ -11,6 +11,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from service.cli.agent import add_agent_command
 from service.cli.control import add_control_command
 from service.cli.kbe import add_knowledge_commands
 from service.cli.machine import add_machine_commands
@@ -72,6 +73,7 @@ def _commands() -> tuple[argparse.ArgumentParser, Commands]:
     _add_convert(commands)
     add_path_commands(commands)
     add_machine_commands(commands)
+    add_agent_command(commands)
     add_knowledge_commands(commands)
     add_control_command(commands)
     add_service_commands(commands)

@@ -1,0 +1,41 @@
+"""``stepnc agent``: a program on the virtual machine as an MTConnect agent."""
+
+import argparse
+import re
+from pathlib import Path
+
+from service.cli.machine import USUAL_RATE, add_code, interruptible, run_files
+from service.cli.options import OK, Commands
+
+
+def add_agent_command(commands: Commands) -> None:
+    """Add it to ``stepnc``."""
+    parser = commands.add_parser(
+        "agent", help="publish a run on a virtual machine as an MTConnect agent"
+    )
+    parser.fill = _agent_options
+
+
+def _agent_options(parser: argparse.ArgumentParser) -> None:
+    from service.requests.agent import AgentRequest
+    from service.requests.fields import add_options
+
+    parser._negative_number_matcher = re.compile(r"-[.\d]")
+    add = parser.add_argument
+    add("file", type=Path, nargs="?", metavar="FILE", help="a STEP-NC program (Part 21)")
+    add_options(parser, AgentRequest, usual={"rate_hz": USUAL_RATE})
+    add_code(parser)
+    parser.set_defaults(run=_agent, output=None)
+
+
+def _agent(options: argparse.Namespace) -> int:
+    """``stepnc agent``."""
+    from service.agent.run import serve_agent
+    from service.requests.agent import AgentRequest
+    from service.requests.fields import from_options
+    from service.terminal import tell
+
+    request = from_options(AgentRequest, options, rate_hz=USUAL_RATE)
+    with interruptible():
+        serve_agent(request, run_files(options, options.file), tell=tell)
+    return OK

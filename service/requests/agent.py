@@ -1,0 +1,44 @@
+"""Request of an agent."""
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from annotated_types import Interval
+
+from service.requests.fields import About
+from service.requests.runs import SimulationRequest
+from simulator.agent.names import NameSet, SchemaVersion
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AgentRequest(SimulationRequest):
+    """Request of an agent that publishes a run of the virtual machine."""
+
+    schema: Annotated[
+        SchemaVersion,
+        About("schema version of the documents: 1.3, 2.0 or 2.7", flag="--schema"),
+    ] = SchemaVersion.V2_7
+    names: Annotated[
+        NameSet,
+        About("ids of the data items: modern, or those of the papers", flag="--names"),
+    ] = NameSet.MODERN
+    speed: Annotated[
+        float,
+        Interval(ge=0.0, le=100_000.0),
+        About("simulated seconds per wall-clock second; 0: the whole run at once",
+              name="speed", flag="--speed", metavar="X"),
+    ] = 1.0  # fmt: skip
+    is_looped: Annotated[
+        bool, About("start the program again when it is over", flag="--loop")
+    ] = False
+    buffer: Annotated[
+        int,
+        Interval(ge=1000, le=1 << 22),
+        About("observations that are kept", flag="--buffer", metavar="N"),
+    ] = 1 << 17  # fmt: skip
+    port: Annotated[
+        int,
+        Interval(ge=0, le=65535),
+        About("port to listen on; 0: any that is free", flag="--port", metavar="N"),
+    ] = 5000  # fmt: skip
+    host: Annotated[str, About("address to listen on", flag="--host")] = "127.0.0.1"

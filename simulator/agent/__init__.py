@@ -1,0 +1,1 @@
+"""MTConnect agent of the virtual machine: device models, observations, documents, HTTP."""

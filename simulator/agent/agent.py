@@ -1,0 +1,217 @@
+"""The agent: observations of a device model, and the documents that clients ask for.
+
+Running state; everything happens in one thread, that of the event loop which serves it.
+"""
+
+import asyncio
+from collections import OrderedDict
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from simulator.agent.buffer import SIZE, ConditionValue, ObservationBuffer, Value
+from simulator.agent.documents import DocumentWriter, RequestFault, timestamp
+from simulator.agent.model import DeviceModel
+from simulator.agent.requests import RequestRefused, StreamQuery
+from simulator.motion.segments import Ints
+
+CACHED = 64
+"""parts of streams that are kept for other clients which ask for the same"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Asset:
+    """An asset as XML."""
+
+    id: str
+    type: str
+    text: str
+    device: int = 0
+    is_removed: bool = False
+
+
+@dataclass(kw_only=True)
+class Agent:
+    """An agent with its buffer and assets."""
+
+    model: DeviceModel
+    clock: Callable[[], int]
+    """µs since 1970"""
+    sender: str = "stepnc-optimiser"
+    size: int = SIZE
+    has_quirk: bool = False
+    assets: OrderedDict[str, Asset] = field(default_factory=OrderedDict)
+    """by id, the oldest first"""
+    buffer: ObservationBuffer = field(init=False)
+    writer: DocumentWriter = field(init=False)
+
+    def __post_init__(self) -> None:
+        now = self.clock()
+        self.buffer = ObservationBuffer(model=self.model, size=self.size, now=now)
+        self.writer = DocumentWriter(
+            model=self.model,
+            sender=self.sender,
+            instance=now // 1_000_000,
+            changed=timestamp(now),
+            has_quirk=self.has_quirk,
+        )
+        self._parts: OrderedDict[object, tuple[bytes, int]] = OrderedDict()
+        self._arrival = asyncio.Event()
+        for at, device in enumerate(self.model.devices):
+            if device.is_agent:
+                self._begin_agent(at)
+
+    def add(self, items: Ints, times: Ints, values: Sequence[Value]) -> None:
+        """Take observations in the order of time, and wake the streams."""
+        if not len(items):
+            return
+        self.buffer.append(items, times, values)
+        self._arrival.set()
+        self._arrival = asyncio.Event()
+
+    def tell(self, values: Mapping[str, Value], *, time: int | None = None) -> None:
+        """Take a value each of some data items, by id or name; unknown ones are left out."""
+        known = [(at, value) for key, value in values.items() if (at := self._at(key)) >= 0]
+        when = self.clock() if time is None else time
+        numbers = np.array([at for at, _ in known], dtype=np.int64)
+        self.add(numbers, np.full(len(known), when), [value for _, value in known])
+
+    def lose(self, items: Sequence[int]) -> None:
+        """Make data items unavailable whose source is lost."""
+        values: list[Value] = [
+            ConditionValue(level="UNAVAILABLE")
+            if self.model.items[at].category == "CONDITION"
+            else None
+            for at in items
+            if self.model.items[at].constant is None
+        ]
+        numbers = [at for at in items if self.model.items[at].constant is None]
+        self.add(np.array(numbers, dtype=np.int64), np.full(len(numbers), self.clock()), values)
+
+    def put(self, asset: Asset) -> None:
+        """Keep an asset; the oldest goes when there are too many."""
+        self.assets.pop(asset.id, None)
+        self.assets[asset.id] = asset
+        while len(self.assets) > self.writer.asset_size:
+            self.assets.popitem(last=False)
+        kind = "ASSET_REMOVED" if asset.is_removed else "ASSET_CHANGED"
+        for item in self.model.items:
+            of = self.model.components[item.component].device
+            if item.type == kind and of == asset.device:
+                self.tell({item.id: asset.id})
+
+    def probe(self, device: int | None) -> bytes:
+        """Document of devices."""
+        return self.writer.devices(device, assets=len(self.assets), size=self.size)
+
+    def current(self, query: StreamQuery) -> bytes:
+        """Document of what holds, or held at a sequence number."""
+        state = self.buffer.state if query.at is None else self.buffer.state_at(query.at)
+        return self.writer.current(self.buffer, state, query.chosen)
+
+    def sample(self, query: StreamQuery) -> tuple[bytes, int]:
+        """Document of observations, and the sequence number that follows."""
+        buffer = self.buffer
+        key = (query.chosen, query.start, query.end, query.count, buffer.next)
+        kept = self._parts.get(key)
+        if kept is not None:
+            self._parts.move_to_end(key)
+            return kept
+        sequences, following = self._found(query)
+        items, _ = buffer.take(sequences)
+        entries = (
+            (item, buffer.rendered(sequence, self._rendered))
+            for item, sequence in zip(items.tolist(), sequences.tolist(), strict=True)
+        )
+        found = self.writer.streams(buffer, entries, following), following
+        self._parts[key] = found
+        if len(self._parts) > CACHED:
+            self._parts.popitem(last=False)
+        return found
+
+    async def wait(self, after: int, seconds: float) -> bool:
+        """Wait for an observation that a client has not seen; False: there was none in time."""
+        if self.buffer.next > after:
+            return True
+        try:
+            await asyncio.wait_for(self._arrival.wait(), seconds)
+        except TimeoutError:
+            return False
+        return True
+
+    def assets_of(
+        self, *, kind: str = "", count: int = 100, is_removed: bool = False, device: int | None
+    ) -> bytes:
+        """Document of assets, the newest first."""
+        found = [
+            each
+            for each in reversed(self.assets.values())
+            if (not kind or each.type == kind)
+            and (is_removed or not each.is_removed)
+            and (device is None or each.device == device)
+        ]
+        return self._asset_document(found[:count])
+
+    def assets_by_id(self, ids: Sequence[str]) -> bytes:
+        """Document of the assets among some ids that are there.
+
+        Raises
+        ------
+        RequestRefused
+            When none of them is.
+        """
+        found = [self.assets[id] for id in ids if id in self.assets]
+        if not found:
+            faults = [
+                RequestFault(code="ASSET_NOT_FOUND", message=f"no asset '{id}'", value=id)
+                for id in ids[:20]
+            ]
+            raise RequestRefused(404, *faults)
+        return self._asset_document(found)
+
+    def _asset_document(self, found: Sequence[Asset]) -> bytes:
+        texts = [
+            each.text.replace(" assetId=", ' removed="true" assetId=', 1)
+            if each.is_removed
+            else each.text
+            for each in found
+        ]
+        return self.writer.assets(texts, count=len(self.assets), size=self.size)
+
+    def _found(self, query: StreamQuery) -> tuple[Ints, int]:
+        """Sequence numbers of a query in ascending order, and the one that follows."""
+        buffer = self.buffer
+        if query.count < 0:
+            last = buffer.last if query.start is None else min(query.start, buffer.last)
+            span = np.arange(buffer.first, last + 1)
+            return self._matching(span, query)[query.count :], last + 1
+        start = buffer.first if query.start is None else query.start
+        last = buffer.last if query.end is None else query.end
+        if query.chosen is None:
+            last = min(last, start + query.count - 1)
+            return np.arange(start, last + 1), max(start, last + 1)
+        matching = self._matching(np.arange(start, last + 1), query)
+        if len(matching) < query.count:
+            return matching, max(start, last + 1)
+        matching = matching[: query.count]
+        return matching, int(matching[-1]) + 1
+
+    def _matching(self, span: Ints, query: StreamQuery) -> Ints:
+        if query.chosen is None:
+            return span
+        is_chosen = np.zeros(len(self.model.items), dtype=bool)
+        is_chosen[list(query.chosen)] = True
+        items, _ = self.buffer.take(span)
+        return span[is_chosen[items]]
+
+    def _rendered(self, item: int, time: int, sequence: int, value: Value) -> bytes:
+        return self.writer.observation(item, time, sequence, value)
+
+    def _at(self, key: str) -> int:
+        return self.model.index.get(key, -1)
+
+    def _begin_agent(self, device: int) -> None:
+        for at in self.model.items_of(device):
+            if self.model.items[at].type == "AVAILABILITY":
+                self.tell({self.model.items[at].id: "AVAILABLE"})

@@ -1,0 +1,141 @@
+"""What a run of the virtual machine tells an agent: observations from its samples."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from simulator.agent.buffer import ConditionValue, Value
+from simulator.agent.machine_model import MachineItem, MachineModel
+from simulator.machine.samples import Condition, Samples
+from simulator.motion.segments import Floats, Ints
+from simulator.spec import Machine
+
+WORKINGSTEP_NONE = "UNAVAILABLE"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class RunFeed:
+    """N observations of a run in the order of time."""
+
+    items: Ints
+    """Numbers of the data items, (N,)"""
+    times: Floats
+    """Times from the start of the program, (N,), s"""
+    values: list[Value]
+    duration: float
+    """Duration of the run, s"""
+
+
+def run_feed(
+    samples: Samples, machine: Machine, shown: MachineModel, *, workingsteps: Sequence[str]
+) -> RunFeed:
+    """Observations of a run: each value of a data item that differs from the one before.
+
+    Parameters
+    ----------
+    samples : Samples
+    machine : Machine
+        Whose greatest motor power is 100 % of the spindle's load.
+    shown : MachineModel
+    workingsteps : sequence of str
+        Ids by their number, from 1.
+    """
+    parts: list[tuple[int, Ints, list[Value]]] = []
+    for number, item in shown.shown:
+        if item.category == "CONDITION":
+            if item.id == "cload_cond":
+                parts.append((number, *_overloads(samples)))
+        elif item.source:
+            column = _column(samples, machine, item)
+            parts.append((number, *_changes(column, item, workingsteps)))
+    rows = np.concatenate([rows for _, rows, _ in parts])
+    items = np.concatenate([np.full(len(rows), number) for number, rows, _ in parts])
+    values = [value for _, _, each in parts for value in each]
+    # Stable: data items of one moment stay in the order of the model.
+    order = np.argsort(rows, kind="stable")
+    return RunFeed(
+        items=items[order],
+        times=samples.time[rows[order]],
+        values=[values[at] for at in order.tolist()],
+        duration=float(samples.time[-1]),
+    )
+
+
+def beginning(shown: MachineModel, *, program: str, part_count: int) -> dict[str, Value]:
+    """Values that hold when a program starts."""
+    words: dict[str, Value] = {
+        "avail": "AVAILABLE",
+        "estop": "ARMED",
+        "mode": "AUTOMATIC",
+        "program": program,
+        "feed_over": 100,
+        "parts": part_count,
+    }
+    found: dict[str, Value] = {}
+    for number, item in shown.shown:
+        id = shown.model.items[number].id
+        if item.category == "CONDITION":
+            found[id] = ConditionValue(level="NORMAL")
+        elif item.id in words:
+            found[id] = words[item.id]
+    return found
+
+
+def _column(samples: Samples, machine: Machine, item: MachineItem) -> Floats:
+    match item.source:
+        case "spindle_load":
+            greatest = max(point.power for point in machine.spindle.curve)
+            return 100.0 * np.abs(samples.spindle_power) / greatest
+        case "energy":
+            # Each sample holds until the next, as clients take it.
+            steps = np.diff(samples.time, prepend=samples.time[:1])
+            before = np.concatenate(([0.0], samples.total_power[:-1]))
+            energy: Floats = np.cumsum(before * steps)
+            return energy
+        case _:
+            column: Floats = np.asarray(getattr(samples, item.source), dtype=np.float64)
+            return column if item.axis is None else column[:, item.axis]
+
+
+def _changes(
+    column: Floats, item: MachineItem, workingsteps: Sequence[str]
+) -> tuple[Ints, list[Value]]:
+    """Rows at which a value differs from the one before, and the values."""
+    values = np.round(item.scale * column, item.digits) + 0.0
+    is_known = ~np.isnan(values)
+    known = np.flatnonzero(is_known)
+    kept = values[known]
+    differs = np.concatenate(([True], kept[1:] != kept[:-1])) if len(kept) else is_known[:0]
+    rows = known[differs]
+    numbers = values[rows].tolist()
+    if item.source == "workingstep":
+        ids = ("", *workingsteps)
+        return rows, [ids[int(each)] or None for each in numbers]
+    if item.words:
+        return rows, [item.words[int(each)] for each in numbers]
+    if item.category == "EVENT":
+        return rows, [int(each) for each in numbers]
+    return rows, numbers
+
+
+def _overloads(samples: Samples) -> tuple[Ints, list[Value]]:
+    """Changes of the condition of the main drive."""
+    levels = np.asarray(samples.overload)
+    rows = np.flatnonzero(np.concatenate(([True], levels[1:] != levels[:-1])))
+    texts = {
+        Condition.NORMAL: "",
+        Condition.WARNING: "above the continuous power or the permitted force",
+        Condition.FAULT: "half as much again above the continuous power",
+    }
+    values: list[Value] = []
+    for level in levels[rows].tolist():
+        kind = Condition(level)
+        values.append(
+            ConditionValue(
+                level=kind.name,
+                native_code="" if kind is Condition.NORMAL else "overload",
+                text=texts[kind],
+            )
+        )
+    return rows, values

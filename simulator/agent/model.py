@@ -1,0 +1,315 @@
+"""Device models of MTConnect: what may be observed, and where it belongs.
+
+A model is a ``Devices`` element without namespaces, as XPath expressions of clients are written
+without prefixes. Data items are numbered in document order; observations refer to the number.
+
+References
+----------
+.. [1] ANSI/MTC1.4-2018, MTConnect Standard, Part 2, Device Information Model.
+"""
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from lxml import etree
+
+from simulator.errors import AgentError
+
+MOST_BYTES = 1 << 22
+"""of a device model"""
+
+DEEPEST = 40
+"""elements within one another"""
+
+SPECIAL_NAMES = {"MTCONNECT_VERSION": "MTConnectVersion", "PH": "PH"}
+"""types whose element is not their words with capitals"""
+
+FACTORS = {
+    ("INCH", "MILLIMETER"): 25.4,
+    ("INCH/SECOND", "MILLIMETER/SECOND"): 25.4,
+    ("INCH/MINUTE", "MILLIMETER/SECOND"): 25.4 / 60.0,
+    ("FOOT/MINUTE", "MILLIMETER/SECOND"): 304.8 / 60.0,
+    ("MILLIMETER/MINUTE", "MILLIMETER/SECOND"): 1.0 / 60.0,
+    ("METER/SECOND", "MILLIMETER/SECOND"): 1000.0,
+    ("CENTIMETER/MINUTE", "MILLIMETER/SECOND"): 10.0 / 60.0,
+    ("INCH_3D", "MILLIMETER_3D"): 25.4,
+    ("KILOWATT", "WATT"): 1000.0,
+    ("HORSEPOWER", "WATT"): 745.699872,
+    ("KILOWATT_HOUR", "WATT_SECOND"): 3.6e6,
+    ("WATT_HOUR", "WATT_SECOND"): 3600.0,
+    ("POUND", "KILOGRAM"): 0.45359237,
+    ("POUND_FORCE", "NEWTON"): 4.4482216152605,
+    ("MINUTE", "SECOND"): 60.0,
+    ("HOUR", "SECOND"): 3600.0,
+    ("MILLISECOND", "SECOND"): 0.001,
+    ("REVOLUTION/SECOND", "REVOLUTION/MINUTE"): 60.0,
+    ("RADIAN", "DEGREE"): 57.29577951308232,
+    ("RADIAN/SECOND", "DEGREE/SECOND"): 57.29577951308232,
+    ("RADIAN/MINUTE", "DEGREE/SECOND"): 57.29577951308232 / 60.0,
+    ("DEGREE/MINUTE", "DEGREE/SECOND"): 1.0 / 60.0,
+    ("PSI", "PASCAL"): 6894.757293168,
+    ("BAR", "PASCAL"): 1e5,
+    ("GALLON/MINUTE", "LITER/SECOND"): 3.785411784 / 60.0,
+}
+"""units per native unit"""
+
+FAHRENHEIT = ("FAHRENHEIT", "CELSIUS")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StreamDevice:
+    """A device as documents of streams name it."""
+
+    name: str
+    uuid: str
+    is_agent: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StreamComponent:
+    """A component that has data items."""
+
+    device: int
+    tag: str
+    id: str
+    name: str
+    native_name: str = ""
+    uuid: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ObservedItem:
+    """A data item."""
+
+    id: str
+    name: str
+    category: str
+    type: str
+    sub_type: str = ""
+    representation: str = "VALUE"
+    component: int
+    """index of its component in the model"""
+    scale: float = 1.0
+    """units per native unit"""
+    offset: float = 0.0
+    """units at zero of the native unit"""
+    constant: str | None = None
+    """value of an item that is constrained to one"""
+    period: float = 0.0
+    """least time between observations, s; 0: no filter"""
+    minimum_delta: float = 0.0
+    """least change of the value; 0: no filter"""
+    sample_rate: str = ""
+    composition: str = ""
+    is_discrete: bool = False
+    """equal values in a row are observations of their own"""
+
+    @property
+    def element(self) -> str:
+        """Name of the element of an observation."""
+        name = SPECIAL_NAMES.get(self.type) or "".join(
+            word.capitalize() for word in self.type.split(":")[-1].split("_")
+        )
+        suffix = {"TIME_SERIES": "TimeSeries", "DATA_SET": "DataSet", "TABLE": "Table"}
+        return name + suffix.get(self.representation, "")
+
+
+@dataclass(frozen=True, kw_only=True)
+class DeviceModel:
+    """Devices with their components and data items."""
+
+    version: str
+    root: Any
+    """``Devices`` element without namespaces"""
+    devices: tuple[StreamDevice, ...]
+    components: tuple[StreamComponent, ...]
+    items: tuple[ObservedItem, ...]
+
+    @cached_property
+    def index(self) -> dict[str, int]:
+        """Numbers of data items by id, and by name where that is unique."""
+        found: dict[str, int] = {}
+        names = [item.name for item in self.items]
+        for number, item in enumerate(self.items):
+            if item.name and names.count(item.name) == 1:
+                found[item.name] = number
+        found.update({item.id: number for number, item in enumerate(self.items)})
+        return found
+
+    def device_of(self, name: str) -> int | None:
+        """Index of a device by its name or uuid."""
+        for number, device in enumerate(self.devices):
+            if name in {device.name, device.uuid}:
+                return number
+        return None
+
+    def items_of(self, device: int) -> frozenset[int]:
+        """Numbers of the data items of a device."""
+        return frozenset(
+            number
+            for number, item in enumerate(self.items)
+            if self.components[item.component].device == device
+        )
+
+
+def model_of(root: Any, version: str) -> DeviceModel:
+    """Model of a ``Devices`` element without namespaces.
+
+    Raises
+    ------
+    AgentError
+        For ids that are missing or not unique.
+    """
+    devices: list[StreamDevice] = []
+    components: list[StreamComponent] = []
+    items: list[ObservedItem] = []
+    ids: set[str] = set()
+    for device in root:
+        if not isinstance(device.tag, str):
+            continue
+        name, uuid = device.get("name", ""), device.get("uuid", "")
+        is_agent = device.tag == "Agent"
+        devices.append(StreamDevice(name=name, uuid=uuid, is_agent=is_agent))
+        for owner in _owners(device):
+            own = owner.find("DataItems")
+            if own is None:
+                continue
+            components.append(
+                StreamComponent(
+                    device=len(devices) - 1,
+                    tag=owner.tag,
+                    id=owner.get("id", ""),
+                    name=owner.get("name", ""),
+                    native_name=owner.get("nativeName", ""),
+                    uuid=owner.get("uuid", "") if owner is not device else "",
+                )
+            )
+            for each in own.iterfind("DataItem"):
+                item = _item(each, component=len(components) - 1)
+                if not item.id or item.id in ids:
+                    fault = f"data item id '{item.id}': missing or not unique"
+                    raise AgentError(fault)
+                ids.add(item.id)
+                items.append(item)
+    return DeviceModel(
+        version=version,
+        root=root,
+        devices=tuple(devices),
+        components=tuple(components),
+        items=tuple(items),
+    )
+
+
+def read_model(path: Path) -> DeviceModel:
+    """Device model of an XML file, in the schema version of its namespace.
+
+    Raises
+    ------
+    AgentError
+        When the file cannot be read or is no document of devices.
+    """
+    try:
+        with path.open("rb") as file:
+            data = file.read(MOST_BYTES + 1)
+    except OSError as error:
+        raise AgentError(f"{path}: cannot be read: {error.strerror}") from error
+    root = parsed(data, what=str(path))
+    found = re.fullmatch(r"\{urn:mtconnect\.org:MTConnectDevices:(\d+\.\d+)\}.*", root.tag)
+    if found is None:
+        raise AgentError(f"{path}: root element {root.tag}; expected MTConnectDevices")
+    plain = without_namespaces(root)
+    devices = plain.find("Devices")
+    if devices is None or not len(devices):
+        raise AgentError(f"{path}: no Devices element")
+    return model_of(devices, found[1])
+
+
+def parsed(data: bytes, *, what: str) -> Any:
+    """Root element of an XML text that nobody here wrote.
+
+    Raises
+    ------
+    AgentError
+        When it is too large or deep, declares entities, or is not well formed.
+    """
+    if len(data) > MOST_BYTES:
+        raise AgentError(f"{what}: more than {MOST_BYTES} bytes")
+    parser = etree.XMLParser(
+        resolve_entities=False, no_network=True, huge_tree=False, load_dtd=False
+    )
+    try:
+        root = etree.fromstring(data, parser)
+    except (etree.XMLSyntaxError, ValueError) as error:
+        raise AgentError(f"{what}: not well-formed XML: {error}") from error
+    if root.getroottree().docinfo.internalDTD is not None:
+        raise AgentError(f"{what}: a document type declaration is not accepted")
+    depth = 0
+    for event, _ in etree.iterwalk(root, events=("start", "end")):
+        depth += 1 if event == "start" else -1
+        if depth > DEEPEST:
+            raise AgentError(f"{what}: elements nested more than {DEEPEST} deep")
+    return root
+
+
+def without_namespaces(root: Any) -> Any:
+    """A copy of an element in which MTConnect's own elements have no namespace."""
+    copy = etree.fromstring(etree.tostring(root))
+    for element in copy.iter():
+        if isinstance(element.tag, str) and element.tag.startswith("{urn:mtconnect.org:"):
+            element.tag = etree.QName(element).localname
+    etree.cleanup_namespaces(copy)
+    return copy
+
+
+def _owners(device: Any) -> Iterator[Any]:
+    """The device and its components, in document order."""
+    yield device
+    for components in device.iterfind("Components"):
+        for each in components:
+            if isinstance(each.tag, str):
+                yield from _owners(each)
+
+
+def _item(element: Any, *, component: int) -> ObservedItem:
+    units, native = element.get("units", ""), element.get("nativeUnits", "")
+    scale, offset = FACTORS.get((native, units), 1.0), 0.0
+    if (native, units) == FAHRENHEIT:
+        scale, offset = 5.0 / 9.0, -160.0 / 9.0
+    native_scale = _number(element.get("nativeScale"))
+    if native_scale:
+        scale /= native_scale
+    values = element.findall("Constraints/Value")
+    period = minimum = 0.0
+    for each in (*element.findall("Filters/Filter"), *element.findall("Constraints/Filter")):
+        if each.get("type", "MINIMUM_DELTA") == "PERIOD":
+            period = _number(each.text)
+        else:
+            minimum = _number(each.text)
+    return ObservedItem(
+        id=element.get("id", ""),
+        name=element.get("name", ""),
+        category=element.get("category", ""),
+        type=element.get("type", ""),
+        sub_type=element.get("subType", ""),
+        representation=element.get("representation", "VALUE"),
+        component=component,
+        scale=scale,
+        offset=offset,
+        constant=(values[0].text or "").strip() if len(values) == 1 else None,
+        period=period,
+        minimum_delta=minimum,
+        sample_rate=element.get("sampleRate", ""),
+        composition=element.get("compositionId", ""),
+        is_discrete=element.get("discrete") == "true",
+    )
+
+
+def _number(text: str | None) -> float:
+    try:
+        return float(text or 0.0)
+    except ValueError:
+        return 0.0
