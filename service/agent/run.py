@@ -3,19 +3,26 @@
 import asyncio
 import socket
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Coroutine, Sequence
+from contextlib import ExitStack
 from dataclasses import dataclass, field
+from functools import partial
+from pathlib import Path
+from typing import Any
 
 import uvicorn
 
 from service.reading import Tell, silent
 from service.requests.agent import AgentRequest
 from service.requests.fields import require_bounds
+from service.rest.http_protocol import BoundedHttpProtocol
 from service.simulation.run import RunFiles, simulate
+from simulator.agent.adapters import AdapterAddress, AdapterIntake, ShdrServer, listen_to
 from simulator.agent.agent import Agent
 from simulator.agent.http import application
 from simulator.agent.machine_feed import RunFeed, beginning, run_feed
 from simulator.agent.machine_model import MachineModel, machine_model
+from simulator.agent.model import read_model
 from simulator.machine.samples import Samples, joined
 from simulator.spec import Machine
 from stepnc_model.errors import StepNcError
@@ -24,6 +31,9 @@ STEP = 0.02
 """s of wall-clock time between looks at what is due"""
 
 MICRO = 1_000_000
+
+Work = Callable[[], Coroutine[Any, Any, None]]
+"""what goes on beside the server"""
 
 
 @dataclass(kw_only=True)
@@ -81,28 +91,73 @@ def published_run(
     )
 
 
-def serve_agent(request: AgentRequest, files: RunFiles, *, tell: Tell = silent) -> None:
-    """Simulate a program, and serve the run until told to stop.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AgentFiles:
+    """Files of an agent: a program that is run, or a device model that adapters fill."""
+
+    run: RunFiles
+    device: Path | None = None
+
+
+def serve_agent(request: AgentRequest, files: AgentFiles, *, tell: Tell = silent) -> None:
+    """Serve a run of a program, or what adapters tell, until told to stop.
 
     Raises
     ------
     StepNcError
-        As :func:`published_run`, and when the port is not free.
+        As :func:`published_run`; for a device model or an address that cannot be used, and
+        when a port is not free.
     """
-    with _listening(request) as listener:
-        run = published_run(request, files, tell=tell)
-        if run.model.left_out:
-            names = ", ".join(run.model.left_out)
-            tell(f"left out, as schema {request.schema} does not know them: {names}")
-        host, port = listener.getsockname()[:2]
-        shown = f"[{host}]" if ":" in host else host
-        tell(f"MTConnect agent of '{run.machine.name}': http://{shown}:{port}/current")
-        asyncio.run(_serve(request, run, listener))
+    with ExitStack() as stack:
+        listener = stack.enter_context(listening(request.host, request.port))
+        shdr = None
+        if request.shdr_port is not None:
+            shdr = stack.enter_context(listening(request.host, request.shdr_port))
+            tell(f"SHDR adapter: {_place(shdr)}")
+        if files.device is not None:
+            agent, work = adapted(request, files, tell=tell)
+        else:
+            agent, work = published(request, files.run, tell=tell)
+        tell(f"MTConnect agent: http://{_place(listener)}/current")
+        asyncio.run(_serve(agent, work, listener, shdr))
+
+
+def published(
+    request: AgentRequest, files: RunFiles, *, tell: Tell
+) -> tuple[Agent, Sequence[Work]]:
+    """An agent, and the run that it publishes."""
+    if request.adapters:
+        raise StepNcError("--adapter: name the device model that it fills with --device")
+    run = published_run(request, files, tell=tell)
+    if run.model.left_out:
+        names = ", ".join(run.model.left_out)
+        tell(f"left out, as schema {request.schema} does not know them: {names}")
+    agent = new_agent(request, run)
+    speed, is_looped = request.speed, request.is_looped
+    return agent, [lambda: play(agent, run, speed=speed, is_looped=is_looped)]
+
+
+def adapted(
+    request: AgentRequest, files: AgentFiles, *, tell: Tell
+) -> tuple[Agent, Sequence[Work]]:
+    """An agent of a device model, and its connections to adapters."""
+    if files.run.file is not None or files.run.code is not None:
+        raise StepNcError("--device serves what adapters tell: name no program beside it")
+    if not request.adapters or files.device is None:
+        raise StepNcError("--device: name its adapters with --adapter HOST:PORT")
+    require_bounds(request)
+    addresses = [_address(each) for each in request.adapters]
+    model = read_model(files.device)
+    tell(f"device model: {files.device}, schema {model.version}, {len(model.items)} data items")
+    agent = Agent(model=model, clock=now, size=request.buffer)
+    intake = AdapterIntake(agent=agent)
+    return agent, [partial(listen_to, address, intake) for address in addresses]
 
 
 def new_agent(request: AgentRequest, run: PublishedRun) -> Agent:
-    """An agent that has no observation of the run yet."""
-    return Agent(model=run.model.model, clock=now, size=request.buffer)
+    """An agent that has no observation of the run yet, and begins with it."""
+    begin = _anchor(run, request.speed)
+    return Agent(model=run.model.model, clock=now, size=request.buffer, begin=begin)
 
 
 async def play(agent: Agent, run: PublishedRun, *, speed: float, is_looped: bool) -> None:
@@ -112,10 +167,9 @@ async def play(agent: Agent, run: PublishedRun, *, speed: float, is_looped: bool
     """
     feed, count = run.feed, 0
     while True:
-        begin = now()
-        duration = int(feed.duration * MICRO)
-        ahead = duration - int(duration / speed) if speed > 1.0 else 0
-        anchor = begin - (duration if speed == 0.0 else ahead)
+        begin, anchor = now(), _anchor(run, speed)
+        if count == 0:
+            anchor = agent.buffer.last_time
         first = beginning(run.model, program=run.program, part_count=count)
         agent.tell(first, time=anchor)
         at, total = 0, len(feed.values)
@@ -133,15 +187,28 @@ async def play(agent: Agent, run: PublishedRun, *, speed: float, is_looped: bool
             return
 
 
+def _anchor(run: PublishedRun, speed: float) -> int:
+    """Stamp of the beginning of a run that is played from now on, µs since 1970."""
+    duration = int(run.feed.duration * MICRO)
+    if speed == 0.0:
+        return now() - duration
+    return now() - (duration - int(duration / speed) if speed > 1.0 else 0)
+
+
 def now() -> int:
     """Wall-clock time, µs since 1970."""
     return time.time_ns() // 1000
 
 
-async def _serve(request: AgentRequest, run: PublishedRun, listener: socket.socket) -> None:
-    agent = new_agent(request, run)
+async def _serve(
+    agent: Agent,
+    work: Sequence[Work],
+    listener: socket.socket,
+    shdr: socket.socket | None,
+) -> None:
     config = uvicorn.Config(
         application(agent),
+        http=BoundedHttpProtocol,
         log_config=None,
         access_log=False,
         server_header=False,
@@ -150,20 +217,39 @@ async def _serve(request: AgentRequest, run: PublishedRun, listener: socket.sock
         timeout_keep_alive=30,
         timeout_graceful_shutdown=2,
     )
-    player = asyncio.create_task(
-        play(agent, run, speed=request.speed, is_looped=request.is_looped)
-    )
+    if shdr is not None:
+        await ShdrServer(agent).serve(shdr)
+    tasks = [asyncio.create_task(each()) for each in work]
     try:
         await uvicorn.Server(config).serve(sockets=[listener])
     finally:
-        player.cancel()
+        for task in tasks:
+            task.cancel()
 
 
-def _listening(request: AgentRequest) -> socket.socket:
-    """A socket that listens, before anything is simulated."""
-    family = socket.AF_INET6 if ":" in request.host else socket.AF_INET
+def listening(host: str, port: int) -> socket.socket:
+    """A socket that listens.
+
+    Raises
+    ------
+    StepNcError
+        When the port is not free, or there is no such address.
+    """
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
     try:
-        return socket.create_server((request.host, request.port), family=family)
+        return socket.create_server((host, port), family=family)
     except OSError as error:
-        where = f"{request.host}, port {request.port}"
-        raise StepNcError(f"{where}: {error.strerror or error}; --port names another") from None
+        where = f"{host}, port {port}"
+        raise StepNcError(f"{where}: {error.strerror or error}; name another") from None
+
+
+def _place(listener: socket.socket) -> str:
+    host, port = listener.getsockname()[:2]
+    return f"[{host}]:{port}" if ":" in host else f"{host}:{port}"
+
+
+def _address(text: str) -> AdapterAddress:
+    host, colon, port = text.rpartition(":")
+    if not (colon and host and port.isdecimal() and 0 < int(port) < 1 << 16):
+        raise StepNcError(f"adapter '{text}': expected HOST:PORT, as 192.168.0.7:7878")
+    return AdapterAddress(host=host.strip("[]"), port=int(port))

@@ -23,6 +23,7 @@ def _agent_options(parser: argparse.ArgumentParser) -> None:
     parser._negative_number_matcher = re.compile(r"-[.\d]")
     add = parser.add_argument
     add("file", type=Path, nargs="?", metavar="FILE", help="a STEP-NC program (Part 21)")
+    add("--device", type=Path, metavar="XML", help="a device model that adapters fill")
     add_options(parser, AgentRequest, usual={"rate_hz": USUAL_RATE})
     add_code(parser)
     parser.set_defaults(run=_agent, output=None)
@@ -30,12 +31,13 @@ def _agent_options(parser: argparse.ArgumentParser) -> None:
 
 def _agent(options: argparse.Namespace) -> int:
     """``stepnc agent``."""
-    from service.agent.run import serve_agent
+    from service.agent.run import AgentFiles, serve_agent
     from service.requests.agent import AgentRequest
     from service.requests.fields import from_options
     from service.terminal import tell
 
     request = from_options(AgentRequest, options, rate_hz=USUAL_RATE)
     with interruptible():
-        serve_agent(request, run_files(options, options.file), tell=tell)
+        files = AgentFiles(run=run_files(options, options.file), device=options.device)
+        serve_agent(request, files, tell=tell)
     return OK

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Annotated
 
-from annotated_types import Interval
+from annotated_types import Interval, MaxLen
 
 from service.requests.fields import About
 from service.requests.runs import SimulationRequest
@@ -42,3 +42,15 @@ class AgentRequest(SimulationRequest):
         About("port to listen on; 0: any that is free", flag="--port", metavar="N"),
     ] = 5000  # fmt: skip
     host: Annotated[str, About("address to listen on", flag="--host")] = "127.0.0.1"
+    shdr_port: Annotated[
+        int | None,
+        Interval(ge=0, le=65535),
+        About("port of an SHDR adapter that feeds other agents", name="SHDR port",
+              flag="--shdr", metavar="N"),
+    ] = None  # fmt: skip
+    adapters: Annotated[
+        tuple[Annotated[str, MaxLen(300)], ...],
+        MaxLen(20),
+        About("SHDR adapter to listen to, with --device; repeatable", flag="--adapter",
+              metavar="HOST:PORT"),
+    ] = ()  # fmt: skip

@@ -41,6 +41,8 @@ class Agent:
     sender: str = "stepnc-optimiser"
     size: int = SIZE
     has_quirk: bool = False
+    begin: int | None = None
+    """µs since 1970 of the first observations; None: now"""
     assets: OrderedDict[str, Asset] = field(default_factory=OrderedDict)
     """by id, the oldest first"""
     buffer: ObservationBuffer = field(init=False)
@@ -48,7 +50,8 @@ class Agent:
 
     def __post_init__(self) -> None:
         now = self.clock()
-        self.buffer = ObservationBuffer(model=self.model, size=self.size, now=now)
+        begin = now if self.begin is None else self.begin
+        self.buffer = ObservationBuffer(model=self.model, size=self.size, now=begin)
         self.writer = DocumentWriter(
             model=self.model,
             sender=self.sender,
@@ -177,7 +180,7 @@ class Agent:
             else each.text
             for each in found
         ]
-        return self.writer.assets(texts, count=len(self.assets), size=self.size)
+        return self.writer.assets(texts, count=len(self.assets))
 
     def _found(self, query: StreamQuery) -> tuple[Ints, int]:
         """Sequence numbers of a query in ascending order, and the one that follows."""
@@ -214,4 +217,4 @@ class Agent:
     def _begin_agent(self, device: int) -> None:
         for at in self.model.items_of(device):
             if self.model.items[at].type == "AVAILABILITY":
-                self.tell({self.model.items[at].id: "AVAILABLE"})
+                self.tell({self.model.items[at].id: "AVAILABLE"}, time=self.begin)

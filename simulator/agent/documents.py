@@ -199,9 +199,9 @@ class DocumentWriter:
         parts.append(b"</Streams>")
         return self._document("Streams", header, b"".join(parts))
 
-    def assets(self, texts: Sequence[str], *, count: int, size: int) -> bytes:
+    def assets(self, texts: Sequence[str], *, count: int) -> bytes:
         """Assets that are already XML."""
-        header = self._header(bufferSize=size, **self._asset_words(count))
+        header = self._header(**self._asset_words(count))
         return self._document("Assets", header, f"<Assets>{''.join(texts)}</Assets>")
 
     def errors(
@@ -225,6 +225,8 @@ class DocumentWriter:
         start, rest = self._starts[item]
         head = f'{start}"{self._time(time)}" sequence="{sequence}"{rest}'
         if isinstance(value, ConditionValue):
+            if value.level in {"WARNING", "FAULT"} and self._version >= (2, 3):
+                head += f" conditionId={quoteattr(_legal(value.native_code or of.id))}"
             return _condition(head, value).encode()
         if of.category == "CONDITION":
             return f"<Unavailable{head}/>".encode()
@@ -285,7 +287,9 @@ class DocumentWriter:
                 for key, text in rows.items()
                 if text not in {"", None}
             )
-            words = _attributes({"name": fault.parameter})
+            # The schema's list of names lacks two that take sequence numbers as "from" does.
+            name_of = {"at": "from", "to": "from"}.get(fault.parameter, fault.parameter)
+            words = _attributes({"name": name_of})
             body += f"<QueryParameter{words}>{inner}</QueryParameter>"
         return f"<{name}{quirk}>{body}</{name}>"
 

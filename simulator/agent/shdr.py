@@ -1,0 +1,194 @@
+"""Lines of SHDR, in which adapters tell an agent what they observe.
+
+``timestamp|key|value|key|value``; conditions, time series, data sets and messages in forms of
+their own. Keys are names or ids of data items, with a device before a colon if need be.
+
+References
+----------
+.. [1] MTConnect C++ agent, README, section Adapter Agent Protocol Version 2.0.
+"""
+
+import re
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from math import isfinite
+
+from simulator.agent.buffer import CONDITIONS, ConditionValue, TimeSeriesValue, Value
+from simulator.agent.documents import timestamp
+from simulator.agent.model import DeviceModel, ObservedItem
+
+UNAVAILABLE = "UNAVAILABLE"
+MICRO = 1_000_000
+
+_ENTRY = re.compile(r"""([^\s={}'"]+)(?:=(?:'([^']*)'|"([^"]*)"|\{([^}]*)\}|(\S*)))?""")
+
+
+@dataclass(frozen=True, slots=True)
+class ShdrObservation:
+    """A value of a data item, as a line tells it."""
+
+    item: int
+    time: int
+    """µs since 1970"""
+    value: Value
+
+
+def read_line(line: str, model: DeviceModel, clock: Callable[[], int]) -> list[ShdrObservation]:
+    """Observations of a line; what no data item is known for is left out.
+
+    Parameters
+    ----------
+    line : str
+        Without its end.
+    model : DeviceModel
+    clock : callable
+        Time in µs since 1970, for lines without a timestamp.
+    """
+    fields = line.split("|")
+    if len(fields) < 3:
+        return []
+    time = read_time(fields[0], clock)
+    at = 1
+    found: list[ShdrObservation] = []
+    while at + 1 < len(fields):
+        number = item_of(fields[at].strip(), model)
+        item = None if number is None else model.items[number]
+        taken, value = _value(item, fields[at + 1 :])
+        if number is not None and value is not _NOTHING:
+            found.append(ShdrObservation(number, time, value))  # type: ignore[arg-type]
+        at += 1 + taken
+    return found
+
+
+def item_of(key: str, model: DeviceModel) -> int | None:
+    """Number of a data item by its key; None: there is none."""
+    number = model.index.get(key)
+    if number is None and ":" in key:
+        device, _, name = key.partition(":")
+        at = model.device_of(device)
+        if at is None:
+            return None
+        own = model.items_of(at)
+        named = (
+            each
+            for each in sorted(own)
+            if name in {model.items[each].name, model.items[each].id}
+        )
+        return next(named, None)
+    return number
+
+
+def read_time(text: str, clock: Callable[[], int]) -> int:
+    """µs since 1970 of a timestamp in ISO 8601, without a zone in UTC; else the clock."""
+    text = text.partition("@")[0].strip()
+    try:
+        moment = datetime.fromisoformat(text.replace("Z", "+00:00"))
+    except ValueError:
+        return clock()
+    if moment.tzinfo is None:
+        moment = moment.replace(tzinfo=UTC)
+    elapsed = moment - datetime(1970, 1, 1, tzinfo=UTC)
+    return (elapsed.days * 86400 + elapsed.seconds) * MICRO + elapsed.microseconds
+
+
+def written(model: DeviceModel, item: int, time: int, value: Value) -> Iterator[str]:
+    """Lines of an observation."""
+    of = model.items[item]
+    key, stamp = of.id, timestamp(time)
+    match value:
+        case ConditionValue():
+            parts = (value.level, value.native_code, value.native_severity, value.qualifier)
+            fields = "|".join(_plain(each) for each in (*parts, value.text))
+            yield f"{stamp}|{key}|{fields}"
+        case TimeSeriesValue():
+            numbers = " ".join(f"{each:.9g}" for each in value.values)
+            rate = f"{value.rate:g}" if value.rate else ""
+            yield f"{stamp}|{key}|{len(value.values)}|{rate}|{numbers}"
+        case dict():
+            entries = (
+                name if text is None else f"{name}={{{_plain(str(text))}}}"
+                for name, text in value.items()
+            )
+            yield f"{stamp}|{key}|{' '.join(entries)}"
+        case None if of.category == "CONDITION":
+            yield f"{stamp}|{key}|unavailable||||"
+        case None:
+            yield f"{stamp}|{key}|{UNAVAILABLE}"
+        case str():
+            yield f"{stamp}|{key}|{_plain(value)}"
+        case _:
+            yield f"{stamp}|{key}|{value:.10g}"
+
+
+_NOTHING = object()
+"""a value that cannot be read"""
+
+
+def _value(item: ObservedItem | None, fields: list[str]) -> tuple[int, object]:
+    """How many fields a value takes, and the value."""
+    if item is None:
+        return 1, _NOTHING
+    if item.category == "CONDITION":
+        level, code, severity, qualifier, text = (*fields[:5], "", "", "", "", "")[:5]
+        level = level.strip().upper()
+        if level not in CONDITIONS:
+            return 5, _NOTHING
+        value = ConditionValue(
+            level=level,
+            native_code=code.strip(),
+            native_severity=severity.strip(),
+            qualifier=qualifier.strip().upper(),
+            text=text.strip(),
+        )
+        return 5, value
+    if item.representation == "TIME_SERIES":
+        return 3, _series(fields)
+    text = fields[0].strip()
+    if item.type in {"MESSAGE", "ALARM"} and len(fields) > 1:
+        return (2 if item.type == "MESSAGE" else 5), fields[-1].strip()
+    if text == UNAVAILABLE:
+        return 1, None
+    if item.representation in {"DATA_SET", "TABLE"}:
+        return 1, _entries(text)
+    if item.category == "SAMPLE":
+        return 1, _number(text, item)
+    return 1, text
+
+
+def _number(text: str, item: ObservedItem) -> object:
+    """A number in the units of a data item; three of them as text."""
+    try:
+        numbers = [item.scale * float(each) + item.offset for each in text.split()]
+    except ValueError:
+        return _NOTHING
+    if not numbers or not all(map(isfinite, numbers)):
+        return _NOTHING
+    return numbers[0] if len(numbers) == 1 else " ".join(f"{each:.10g}" for each in numbers)
+
+
+def _series(fields: list[str]) -> object:
+    count, rate, text = (*fields[:3], "", "", "")[:3]
+    if count.strip() == UNAVAILABLE:
+        return None
+    try:
+        values = tuple(map(float, text.split()))
+        expected, frequency = int(count), float(rate or 0.0)
+    except ValueError:
+        return _NOTHING
+    if len(values) != expected or not all(map(isfinite, (*values, frequency))):
+        return _NOTHING
+    return TimeSeriesValue(values=values, rate=frequency)
+
+
+def _entries(text: str) -> dict[str, str | None]:
+    found: dict[str, str | None] = {}
+    for key, single, double, braced, bare in _ENTRY.findall(text.partition(":")[2] or text):
+        value = single or double or braced or bare
+        found[key] = value or None
+    return found
+
+
+def _plain(text: str) -> str:
+    """A text without the signs that end fields and lines."""
+    return text.replace("|", "/").replace("\n", " ").replace("\r", " ")

@@ -1,0 +1,49 @@
+"""``stepnc agent`` as a process."""
+
+import re
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import httpx
+
+from service.cli.main import main
+from service.cli.options import BAD_INPUT, INTERRUPTED
+
+PART = Path(__file__).parents[3] / "examples" / "parts" / "paper000.stpnc"
+STEPNC = [sys.executable, "-c", "from service.cli.main import main; main()", "agent"]
+
+
+def test_a_run_is_served_until_it_is_interrupted() -> None:
+    words = [str(PART), "--machine", "paper000", "--port", "0", "--speed", "0"]
+    with subprocess.Popen([*STEPNC, *words], stderr=subprocess.PIPE, text=True) as process:
+        assert process.stderr is not None
+        told = ""
+        while "MTConnect agent" not in told:
+            told = process.stderr.readline()
+            assert told, process.wait()
+        found = re.search(r"http://127\.0\.0\.1:\d+", told)
+        assert found is not None
+        answer = httpx.get(f"{found[0]}/current", timeout=30.0)
+        assert answer.status_code == 200
+        assert "MTConnectStreams" in answer.text
+        process.send_signal(signal.SIGINT)
+        process.wait(30)
+        assert process.returncode in {0, INTERRUPTED}
+        assert "Traceback" not in process.stderr.read()
+
+
+def test_bad_words_are_refused_before_anything_listens(capsys: object) -> None:
+    for words in (
+        [str(PART), "--machine", "nope", "--port", "0"],
+        [str(PART), "--schema", "1.9", "--port", "0"],
+        [str(PART), "--speed", "-1", "--port", "0"],
+        ["--device", "absent.xml", "--adapter", "127.0.0.1:7878", "--port", "0"],
+    ):
+        try:
+            main(["agent", *words])
+        except SystemExit as end:
+            assert end.code == BAD_INPUT, words
+        else:
+            raise AssertionError(words)
