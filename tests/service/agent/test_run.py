@@ -133,7 +133,7 @@ def test_the_running_workingstep_is_told() -> None:
         assert last <= now()
     steps = [each.text for each in seen if each.get("dataItemId") == "vmc15_workingstep"]
     program = Program.load(PARTS / "bracket.stpnc")
-    ids = [program.get(step.ref).its_id for step in program.workingsteps]
+    ids = [step.id for step in program.workingsteps]
     assert [each for each in steps if each != "UNAVAILABLE"] == ids
 
 

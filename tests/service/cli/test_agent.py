@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import httpx
+import pytest
 
 from service.cli.main import main
 from service.cli.options import BAD_INPUT, INTERRUPTED
@@ -34,16 +35,16 @@ def test_a_run_is_served_until_it_is_interrupted() -> None:
         assert "Traceback" not in process.stderr.read()
 
 
-def test_bad_words_are_refused_before_anything_listens(capsys: object) -> None:
+def test_bad_words_are_refused_before_anything_listens(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     for words in (
         [str(PART), "--machine", "nope", "--port", "0"],
         [str(PART), "--schema", "1.9", "--port", "0"],
         [str(PART), "--speed", "-1", "--port", "0"],
         ["--device", "absent.xml", "--adapter", "127.0.0.1:7878", "--port", "0"],
     ):
-        try:
+        with pytest.raises(SystemExit) as end:
             main(["agent", *words])
-        except SystemExit as end:
-            assert end.code == BAD_INPUT, words
-        else:
-            raise AssertionError(words)
+        assert end.value.code == BAD_INPUT
+        assert "error: " in capsys.readouterr().err

@@ -24,6 +24,12 @@ def text_of(agent: Agent, id: str) -> object:
     return agent.buffer.state[agent.model.index[id]][0].value
 
 
+def values_of(agent: Agent, id: str) -> list[object]:
+    span = np.arange(agent.buffer.first, agent.buffer.next)
+    items, _ = agent.buffer.take(span)
+    return [agent.buffer.value(at) for at in span[items == agent.model.index[id]].tolist()]
+
+
 async def until(check: Callable[[], bool], seconds: float = 20.0) -> None:
     """Wait for what others bring about."""
     async with asyncio.timeout(seconds):
@@ -64,8 +70,10 @@ def test_values_of_two_adapters_meet_in_one_device() -> None:
         await until(lambda: text_of(agent, "temp") is not None)
         await until(lambda: text_of(agent, "feed") is not None)
         await until(lambda: getattr(text_of(agent, "cond"), "level", "") == "FAULT")
-        for each in (*tasks, *(server for server, _ in made)):
-            each.cancel() if isinstance(each, asyncio.Task) else each.close()
+        for task in tasks:
+            task.cancel()
+        for server, _ in made:
+            server.close()
 
     asyncio.run(run())
     assert text_of(agent, "temp") == pytest.approx(100.0)
@@ -78,7 +86,6 @@ def test_a_lost_adapter_makes_its_values_unavailable_until_it_is_back(
 ) -> None:
     monkeypatch.setattr(adapters, "AGAIN", 0.05)
     agent, calls = new_agent(), [0]
-    seen: list[object] = []
 
     async def work(_: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         calls[0] += 1
@@ -95,10 +102,7 @@ def test_a_lost_adapter_makes_its_values_unavailable_until_it_is_back(
         server.close()
 
     asyncio.run(run())
-    buffer = agent.buffer
-    for sequence in range(buffer.first, buffer.next):
-        if int(buffer.take(np.array([sequence]))[0][0]) == agent.model.index["temp"]:
-            seen.append(buffer.value(sequence))
+    seen = values_of(agent, "temp")
     assert seen[0] is seen[2] is None
     assert [seen[1], seen[3]] == pytest.approx([-17.2222, -16.6667], abs=1e-3)
 
@@ -120,9 +124,7 @@ def test_small_and_early_changes_are_left_out() -> None:
         server.close()
 
     asyncio.run(run())
-    span = np.arange(agent.buffer.first, agent.buffer.next)
-    items, _ = agent.buffer.take(span)
-    kept = [agent.buffer.value(at) for at in span[items == agent.model.index["feed"]].tolist()]
+    kept = values_of(agent, "feed")
     # 60.5 differs by 0.2 mm/s, less than the filter's 0.5; 240 comes after 1 s, not 2.
     assert (
         kept[1:]
@@ -189,9 +191,5 @@ def test_one_agent_feeds_another() -> None:
         server.close()
 
     asyncio.run(run())
-    span = np.arange(second.buffer.first, second.buffer.next)
-    items, _ = second.buffer.take(span)
-    told = [
-        second.buffer.value(at) for at in span[items == second.model.index["avail"]].tolist()
-    ]
+    told = values_of(second, "avail")
     assert told[-5000:] == [f"word{n}" for n in range(5000)]

@@ -31,8 +31,11 @@ def shown(values: list[tuple[int, int]], at: int) -> list[object]:
         if isinstance(value, ConditionValue):
             active = state[CONDITION]
             assert isinstance(active, dict)
-            active = {key: level for key, level in active.items()
-                      if level in {"WARNING", "FAULT"} and key != value.native_code}  # fmt: skip
+            active = {
+                key: level
+                for key, level in active.items()
+                if level in {"WARNING", "FAULT"} and key != value.native_code
+            }
             if value.level == "NORMAL":
                 active = {} if not value.native_code else active
             else:

@@ -23,7 +23,7 @@ def read(line: str) -> list[tuple[str, Value]]:
     ("line", "expected"),
     [
         (f"{T0}|avail|AVAILABLE", [("avail", "AVAILABLE")]),
-        (f"{T0}|avail|AVAILABLE|D:avail|UNAVAILABLE", [("avail", "AVAILABLE"), ("avail", None)]),
+        (f"{T0}|avail|ON|D:avail|UNAVAILABLE", [("avail", "ON"), ("avail", None)]),
         (f"{T0}|nothing|5|avail|AVAILABLE", [("avail", "AVAILABLE")]),
         (f"{T0}|feed|60", [("feed", pytest.approx(25.4))]),
         (f"{T0}|feed|fast|temp|212", [("temp", pytest.approx(100.0))]),
