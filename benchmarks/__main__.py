@@ -2,6 +2,7 @@
 
 from benchmarks import (
     advice,
+    agent,
     breakage,
     closed_loop,
     control_step,
@@ -36,6 +37,7 @@ for title, bench in (
     ("A control step", control_step),
     ("The knowledge base", knowledge),
     ("REST", rest),
+    ("MTConnect", agent),
 ):
     print(f"\n== {title}: {(bench.__doc__ or '').splitlines()[0]}")
     bench.main([])

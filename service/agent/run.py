@@ -27,6 +27,9 @@ from simulator.machine.samples import Samples, joined
 from simulator.spec import Machine
 from stepnc_model.errors import StepNcError
 
+BACKLOG = 2048
+"""connections that may wait to be accepted"""
+
 STEP = 0.02
 """s of wall-clock time between looks at what is due"""
 
@@ -119,7 +122,8 @@ def serve_agent(request: AgentRequest, files: AgentFiles, *, tell: Tell = silent
         else:
             agent, work = published(request, files.run, tell=tell)
         tell(f"MTConnect agent: http://{_place(listener)}/current")
-        asyncio.run(_serve(agent, work, listener, shdr))
+        with asyncio.Runner(loop_factory=_new_loop) as runner:
+            runner.run(_serve(agent, work, listener, shdr))
 
 
 def published(
@@ -200,6 +204,15 @@ def now() -> int:
     return time.time_ns() // 1000
 
 
+def _new_loop() -> asyncio.AbstractEventLoop:
+    """The faster event loop where there is one."""
+    try:
+        import uvloop  # noqa: PLC0415 (not on Windows)
+    except ImportError:
+        return asyncio.new_event_loop()
+    return uvloop.new_event_loop()
+
+
 async def _serve(
     agent: Agent,
     work: Sequence[Work],
@@ -236,11 +249,17 @@ def listening(host: str, port: int) -> socket.socket:
         When the port is not free, or there is no such address.
     """
     family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    # Only with its protocol named does asyncio send small answers at once.
+    listener = socket.socket(family, socket.SOCK_STREAM, socket.IPPROTO_TCP)
     try:
-        return socket.create_server((host, port), family=family)
+        listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listener.bind((host, port))
+        listener.listen(BACKLOG)
     except OSError as error:
+        listener.close()
         where = f"{host}, port {port}"
         raise StepNcError(f"{where}: {error.strerror or error}; name another") from None
+    return listener
 
 
 def _place(listener: socket.socket) -> str:

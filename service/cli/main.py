@@ -28,6 +28,7 @@ from service.cli.options import (
     add_knowledge,
 )
 from service.cli.paths import add_path_commands
+from service.cli.record import add_record_command
 from service.cli.serve import add_service_commands
 
 EXAMPLES = """examples:
@@ -74,6 +75,7 @@ def _commands() -> tuple[argparse.ArgumentParser, Commands]:
     add_path_commands(commands)
     add_machine_commands(commands)
     add_agent_command(commands)
+    add_record_command(commands)
     add_knowledge_commands(commands)
     add_control_command(commands)
     add_service_commands(commands)

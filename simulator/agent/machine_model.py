@@ -45,6 +45,8 @@ class MachineItem:
     lathe: str = ""
     """id in paper 000 (turning)"""
     constant: str = ""
+    is_sum: bool = False
+    """the sum of others, as a meter shows it: not among the data items of the papers"""
 
     def is_in(self, version: str) -> bool:
         """Whether a schema version knows it."""
@@ -160,6 +162,10 @@ ITEMS = (
         place=CONTROLLER, id="run_time", type="ACCUMULATED_TIME", units="SECOND",
         source="time", digits=3,
     ),
+    MachineItem(
+        place=CONTROLLER, id="basewatt", type="WATTAGE", sub_type="ACTUAL", units="WATT",
+        source="base_power", digits=3, mill="electric_wattage_sample", lathe="load_wattage",
+    ),
     MachineItem(place=CONTROLLER, id="system", type="SYSTEM", category="CONDITION"),
     MachineItem(place=CONTROLLER, id="logic", type="LOGIC_PROGRAM", category="CONDITION"),
     MachineItem(
@@ -201,7 +207,7 @@ ITEMS = (
     ),
     MachineItem(
         place=ELECTRIC, id="watt", type="WATTAGE", sub_type="ACTUAL", units="WATT",
-        source="base_power", digits=3, mill="electric_wattage_sample", lathe="load_wattage",
+        source="total_power", digits=3, is_sum=True,
     ),
     MachineItem(
         place=ELECTRIC, id="energy", type="ELECTRICAL_ENERGY", sub_type="ACTUAL",
@@ -245,7 +251,11 @@ def machine_model(
     version : SchemaVersion
     names : NameSet
     """
-    chosen = [item for item in _items_of(machine) if item.is_in(version)]
+    chosen = [
+        item
+        for item in _items_of(machine)
+        if item.is_in(version) and not (item.is_sum and names is NameSet.PAPERS)
+    ]
     root = etree.Element("Devices")
     if _key(version) >= (1, 7):
         _add_agent(root, version)
@@ -278,7 +288,11 @@ def machine_model(
     return MachineModel(
         model=model,
         shown=tuple(sorted(shown, key=lambda each: each[0])),
-        left_out=tuple(item.type for item in _items_of(machine) if item.id not in present),
+        left_out=tuple(
+            item.type
+            for item in _items_of(machine)
+            if item.id not in present and not item.is_sum
+        ),
     )
 
 

@@ -128,7 +128,8 @@ def solved(
     stack: StackedPowers, free: Ints, *, prior: Floats, scale: Floats
 ) -> tuple[Floats, Floats]:
     """Values of all parameters, those not free at their priors; noise of each row, (M,) W."""
-    noise = _by_part(stack, stack.watts, np.std)
+    # An axis that stands draws the same power all the time.
+    noise = np.maximum(_by_part(stack, stack.watts, np.std), LEAST_NOISE)
     floor = np.maximum(SHARE_OF_SPREAD * noise, LEAST_NOISE)
     values = prior.copy()
     # From nothing no power could rise: it is cut off at 0, and so is its slope.

@@ -10,29 +10,39 @@ import httpx
 import pytest
 
 from service.cli.main import main
-from service.cli.options import BAD_INPUT, INTERRUPTED
+from service.cli.options import BAD_INPUT, INTERRUPTED, OK
 
 PART = Path(__file__).parents[3] / "examples" / "parts" / "paper000.stpnc"
 STEPNC = [sys.executable, "-c", "from service.cli.main import main; main()", "agent"]
 
 
-def test_a_run_is_served_until_it_is_interrupted() -> None:
+def test_a_run_is_served_and_recorded_until_it_is_interrupted(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     words = [str(PART), "--machine", "paper000", "--port", "0", "--speed", "0"]
     with subprocess.Popen([*STEPNC, *words], stderr=subprocess.PIPE, text=True) as process:
-        assert process.stderr is not None
-        told = ""
-        while "MTConnect agent" not in told:
-            told = process.stderr.readline()
-            assert told, process.wait()
-        found = re.search(r"http://127\.0\.0\.1:\d+", told)
-        assert found is not None
-        answer = httpx.get(f"{found[0]}/current", timeout=30.0)
-        assert answer.status_code == 200
-        assert "MTConnectStreams" in answer.text
-        process.send_signal(signal.SIGINT)
-        process.wait(30)
-        assert process.returncode in {0, INTERRUPTED}
-        assert "Traceback" not in process.stderr.read()
+        try:
+            assert process.stderr is not None
+            told = ""
+            while "MTConnect agent" not in told:
+                told = process.stderr.readline()
+                assert told, process.wait()
+            found = re.search(r"http://127\.0\.0\.1:\d+", told)
+            assert found is not None
+            answer = httpx.get(f"{found[0]}/current", timeout=30.0)
+            assert answer.status_code == 200
+            assert "MTConnectStreams" in answer.text
+            output = tmp_path / "run.parquet"
+            with pytest.raises(SystemExit) as end:
+                main(["record", found[0], "-o", str(output), "--buffered", "--until-completed"])
+            assert end.value.code == OK
+            assert "365 rows" in capsys.readouterr().out
+            process.send_signal(signal.SIGINT)
+            process.wait(30)
+            assert process.returncode in {0, INTERRUPTED}
+            assert "Traceback" not in process.stderr.read()
+        finally:
+            process.kill()
 
 
 def test_bad_words_are_refused_before_anything_listens(

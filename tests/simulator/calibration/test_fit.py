@@ -1,6 +1,7 @@
 """Parameters recovered from synthetic runs, and named where the runs cannot tell them."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -186,6 +187,14 @@ def test_outliers_hardly_move_the_fit() -> None:
 def test_noise_is_found_by_component() -> None:
     found = fitted([run(9, ALL, speeds=VARIED)], PRIORS, efficiency=EFFICIENCY)
     assert found.noise[Component.SPINDLE] == pytest.approx(NOISE, rel=0.1)
+
+
+def test_an_axis_that_stands_all_the_time_hinders_no_fit() -> None:
+    moving = run(5, ALL, speeds=VARIED)
+    standing = {**moving.measured, Component.Y: np.zeros(len(moving))}
+    found = by_name(fitted([replace(moving, measured=standing)], PRIORS, efficiency=EFFICIENCY))
+    assert found[Parameter.BASE].value == pytest.approx(TRUTH[Parameter.BASE], rel=0.05)
+    assert not found[Parameter.FRICTION_Y].is_identified
 
 
 def test_run_without_a_power_is_refused() -> None:

@@ -1,0 +1,191 @@
+"""The MTConnect agent: requests a second beside a bare uvicorn route, and observations taken.
+
+Agent and bare route are one process each and are asked in turn by the same four connections;
+the route answers with the bytes of the agent's own answer. With ``--streams`` as many clients
+listen to the agent meanwhile, which takes observations at 10 Hz.
+"""
+
+import argparse
+import asyncio
+import multiprocessing
+import resource
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from multiprocessing.connection import Connection
+from typing import Any
+
+import numpy as np
+import uvicorn
+import uvloop
+
+from service.agent.run import listening
+from simulator.agent.agent import Agent
+from simulator.agent.http import application
+from simulator.agent.machine_model import machine_model
+from simulator.agent.model import DeviceModel
+from simulator.library import load_machine
+
+CONNECTIONS = 4
+PATHS = ("/probe", "/current", "/sample?count=100", "/sample?count=1000")
+FILL = 1 << 17
+BATCH = 5000
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Print a row for each address."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--seconds", type=float, default=2.0)
+    parser.add_argument("--streams", type=int, default=200)
+    options = parser.parse_args(arguments)
+    rate, memory = _ingest()
+    print(f"observations taken: {rate:.3g} a second; {memory:.0f} MiB at {FILL} observations")
+    print(f"{'':24}{'bytes':>8}{'requests/s':>12}{'p99 ms':>8}{'bare/s':>9}{'ratio':>7}")
+    with _process(_agent) as ours:
+        for streams in (0, options.streams):
+            asyncio.run(_rows(ours, streams, options.seconds))
+
+
+async def _rows(port: int, streams: int, seconds: float) -> None:
+    head = await _once(port, "/current")
+    following = int(head.partition(b'nextSequence="')[2].partition(b'"')[0])
+    listeners = [asyncio.create_task(_listen(port, following)) for _ in range(streams)]
+    if streams:
+        print(f"with {streams} streams:")
+        await asyncio.sleep(2.0)
+    for path in PATHS:
+        body = await _once(port, path)
+        with _process(_bare, body) as peer:
+            rate, p99 = await _load(port, path, seconds)
+            bare, _ = await _load(peer, "/", seconds)
+        print(f"{path:24}{len(body):8}{rate:12.0f}{p99:8.1f}{bare:9.0f}{rate / bare:7.2f}")
+    told = [each.result() if each.done() else None for each in listeners]
+    for each in listeners:
+        each.cancel()
+    if streams:
+        print(f"streams that ended early: {sum(each is not None for each in told)}")
+
+
+def _ingest() -> tuple[float, float]:
+    """Observations a second, and what the buffer takes in MiB when it is full and written."""
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    agent = Agent(model=_model(), clock=lambda: time.time_ns() // 1000)
+    begin = time.perf_counter()
+    count = _fill(agent, 1_000_000)
+    rate = count / (time.perf_counter() - begin)
+    for start in range(agent.buffer.first, agent.buffer.next):
+        agent.buffer.rendered(start, agent.writer.observation)
+    after = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return rate, (after - before) / 1024.0
+
+
+def _fill(agent: Agent, count: int) -> int:
+    numbers = np.flatnonzero([item.category == "SAMPLE" for item in agent.model.items])
+    values = np.random.default_rng(1).normal(0.0, 100.0, BATCH).round(4).tolist()
+    for begin in range(0, count, BATCH):
+        items = numbers[np.arange(begin, begin + BATCH) % len(numbers)]
+        agent.add(items, agent.clock() + np.arange(BATCH), values)
+    return count
+
+
+def _model() -> DeviceModel:
+    return machine_model(load_machine("vmc15")).model
+
+
+def _agent(pipe: Connection) -> None:
+    agent = Agent(model=_model(), clock=lambda: time.time_ns() // 1000)
+    _fill(agent, FILL)
+
+    async def feed() -> None:
+        numbers = np.flatnonzero([item.category == "SAMPLE" for item in agent.model.items])
+        value = 0.0
+        while True:
+            value += 1.0
+            stamps = np.full(len(numbers), agent.clock())
+            agent.add(numbers, stamps, [value] * len(numbers))
+            await asyncio.sleep(0.1)
+
+    _run(_serve(application(agent), pipe, feed()))
+
+
+def _bare(pipe: Connection, body: bytes) -> None:
+    head = [(b"content-type", b"text/xml"), (b"content-length", str(len(body)).encode())]
+
+    async def route(_scope: Any, _receive: Any, send: Any) -> None:
+        await send({"type": "http.response.start", "status": 200, "headers": head})
+        await send({"type": "http.response.body", "body": body})
+
+    _run(_serve(route, pipe, None))
+
+
+def _run(work: Any) -> None:
+    with asyncio.Runner(loop_factory=uvloop.new_event_loop) as runner:
+        runner.run(work)
+
+
+async def _serve(app: Any, pipe: Connection, work: Any) -> None:
+    listener = listening("127.0.0.1", 0)
+    pipe.send(listener.getsockname()[1])
+    task = None if work is None else asyncio.create_task(work)
+    config = uvicorn.Config(app, log_config=None, access_log=False, lifespan="off", ws="none")
+    await uvicorn.Server(config).serve(sockets=[listener])
+    if task is not None:
+        task.cancel()
+
+
+@contextmanager
+def _process(target: Any, *arguments: Any) -> Iterator[int]:
+    """Port of a server in a process of its own."""
+    context = multiprocessing.get_context("spawn")
+    ours, theirs = context.Pipe()
+    process = context.Process(target=target, args=(theirs, *arguments), daemon=True)
+    process.start()
+    try:
+        port: int = ours.recv()
+        yield port
+    finally:
+        process.terminate()
+        process.join()
+
+
+async def _once(port: int, path: str) -> bytes:
+    reader, writer = await asyncio.open_connection("127.0.0.1", port)
+    body = await _ask(reader, writer, path)
+    writer.close()
+    return body
+
+
+async def _load(port: int, path: str, seconds: float) -> tuple[float, float]:
+    """Requests a second of all connections, and the 99th percentile of their times in ms."""
+    times: list[float] = []
+
+    async def work() -> None:
+        reader, writer = await asyncio.open_connection("127.0.0.1", port)
+        end = time.perf_counter() + seconds
+        while (begin := time.perf_counter()) < end:
+            await _ask(reader, writer, path)
+            times.append(time.perf_counter() - begin)
+        writer.close()
+
+    await asyncio.gather(*(work() for _ in range(CONNECTIONS)))
+    return len(times) / seconds, 1000.0 * float(np.quantile(times, 0.99))
+
+
+async def _ask(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, path: str) -> bytes:
+    writer.write(f"GET {path} HTTP/1.1\r\nHost: x\r\n\r\n".encode())
+    head = await reader.readuntil(b"\r\n\r\n")
+    length = int(head.lower().partition(b"content-length:")[2].partition(b"\r\n")[0])
+    return await reader.readexactly(length)
+
+
+async def _listen(port: int, following: int) -> None:
+    reader, writer = await asyncio.open_connection("127.0.0.1", port)
+    path = f"/sample?interval=100&count=1000&from={following}"
+    writer.write(f"GET {path} HTTP/1.1\r\nHost: x\r\n\r\n".encode())
+    while await reader.read(1 << 16):
+        pass
+    writer.close()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,1 @@
+"""The verb ``record``: a machine's MTConnect data as a file."""

@@ -1,0 +1,182 @@
+"""Records what a machine's MTConnect agent tells into a Parquet or CSV file."""
+
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import pyarrow as pa
+
+from service.reading import Tell, silent
+from service.requests.fields import require_bounds
+from service.requests.recording import RecordingRequest
+from service.run_file import WORDS, RunFile, require_suffix
+from simulator.client.columns import TIME, Cell, RecordedColumn, RowMaker, columns_of
+from simulator.client.connection import AgentClient, ClientObservation, StreamPart
+from stepnc_model.errors import StepNcError
+
+EVERY = 5.0
+"""s between lines of progress"""
+
+ROWS = 4096
+"""in one group of the file"""
+
+COMPLETED = "PROGRAM_COMPLETED"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Recording:
+    """Result of ``record``."""
+
+    file: Path
+    rows: int
+    columns: tuple[RecordedColumn, ...]
+    observations: int
+    lost: int
+    """observations that the agent had dropped before they were read"""
+    restarts: int
+    faults: int
+    """attempts that found no connection"""
+
+
+def record(
+    url: str,
+    output: Path,
+    request: RecordingRequest,
+    *,
+    tell: Tell = silent,
+    clock: Callable[[], float] = time.monotonic,
+) -> Recording:
+    """Record until the time is over, the program is completed or the user interrupts.
+
+    Raises
+    ------
+    StepNcError
+        When the agent cannot be read at the beginning, or the file cannot be written.
+    """
+    require_bounds(request)
+    require_suffix(output)
+    client = AgentClient(url)
+    columns = columns_of(client.items())
+    if not columns:
+        raise StepNcError(f"{url}: the device model has no samples")
+    rows = RowMaker(columns=columns)
+    if request.is_buffered:
+        client.rewind()
+    else:
+        rows.rows(client.state())
+        rows.last()
+    file = RunFile(output, _schema(columns))
+    keeper = _Keeper(file=file, columns=columns, rows=rows, tell=tell, clock=clock)
+    with file.closing(is_whole=True):
+        try:
+            keeper.run(client.stream(), request)
+        except KeyboardInterrupt:
+            tell("interrupted: the file is complete up to here")
+        keeper.end()
+    return Recording(
+        file=output,
+        rows=file.rows,
+        columns=columns,
+        observations=keeper.count,
+        lost=keeper.lost,
+        restarts=keeper.restarts,
+        faults=keeper.faults,
+    )
+
+
+@dataclass(kw_only=True)
+class _Keeper:
+    """Keeps rows until there are enough for a group of the file. Running state."""
+
+    file: RunFile
+    columns: Sequence[RecordedColumn]
+    rows: RowMaker
+    tell: Tell
+    clock: Callable[[], float]
+    count: int = 0
+    lost: int = 0
+    restarts: int = 0
+    faults: int = 0
+
+    def __post_init__(self) -> None:
+        self._waiting: list[Mapping[str, Cell]] = []
+        self._told = self.clock()
+        self._execution = next(
+            (each.id for each in self.columns if each.name == "execution"), ""
+        )
+        self._is_running = False
+
+    def run(self, parts: Iterator[StreamPart], request: RecordingRequest) -> None:
+        """Take parts until the recording is over."""
+        begin = self.clock()
+        for part in parts:
+            self._take(part)
+            self._progress()
+            if request.duration_s is not None and self.clock() - begin >= request.duration_s:
+                return
+            if request.is_until_completed and self._is_completed(part.observations):
+                return
+
+    def end(self) -> None:
+        """Write what waits."""
+        self._waiting += self.rows.last()
+        self._flush()
+
+    def _take(self, part: StreamPart) -> None:
+        if part.fault:
+            self.faults += 1
+            self.tell(f"no connection: {part.fault}")
+        if part.lost:
+            self.lost += part.lost
+            self.tell(f"{part.lost} observations are lost: the agent's buffer ran over")
+        if part.is_restarted:
+            self.restarts += 1
+            self.tell("the agent has begun anew")
+        if part.fault or part.lost or part.is_restarted:
+            self.rows.interrupt()
+        self.count += len(part.observations)
+        self._waiting += self.rows.rows(part.observations)
+        if len(self._waiting) >= ROWS:
+            self._flush()
+
+    def _is_completed(self, observations: Sequence[ClientObservation]) -> bool:
+        for each in observations:
+            if each.id == self._execution:
+                if each.value == COMPLETED and self._is_running:
+                    return True
+                self._is_running = self._is_running or each.value == "ACTIVE"
+        return False
+
+    def _progress(self) -> None:
+        if self.clock() - self._told >= EVERY:
+            self._told = self.clock()
+            self.tell(f"{self.file.rows + len(self._waiting)} rows")
+
+    def _flush(self) -> None:
+        if not self._waiting:
+            return
+        arrays = [pa.array([row[TIME] for row in self._waiting], pa.float64())]
+        for each in self.columns:
+            values = [row[each.name] for row in self._waiting]
+            arrays.append(
+                pa.array(values, pa.string()).dictionary_encode()
+                if each.is_text
+                else pa.array(values, pa.float64(), from_pandas=True)
+            )
+        self.file.write(arrays)
+        self._waiting.clear()
+
+
+def _schema(columns: Sequence[RecordedColumn]) -> pa.Schema:
+    """Names and types of the columns, each with its unit and data item as metadata."""
+    fields = [pa.field(TIME, pa.float64(), metadata={"unit": "s"})]
+    fields += [
+        pa.field(
+            each.name,
+            WORDS if each.is_text else pa.float64(),
+            metadata={"unit": each.units, "data_item": each.id},
+        )
+        for each in columns
+    ]
+    return pa.schema(fields)

@@ -1,0 +1,1 @@
+"""MTConnect client: observations of a machine, real or virtual, as columns."""

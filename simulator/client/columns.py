@@ -1,0 +1,159 @@
+"""Columns of a machine's observations, named as the virtual machine names its own.
+
+A row stands for a moment at which a numeric observation came; other columns hold their last
+value. The names are those of :mod:`simulator.timeline`, so that whatever reads a simulated run
+reads a recorded one; data items without such a column have one by their id.
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from math import nan
+
+from simulator.client.connection import ClientItem, ClientObservation
+
+Cell = float | str | None
+
+NAMED = {
+    "x_axis_position_sample": "x_axis_position_actual",
+    "y_axis_position_sample": "y_axis_position_actual",
+    "z_axis_position_sample": "z_axis_position_actual",
+    "x_axis_wattage_sample": "x_axis_wattage",
+    "y_axis_wattage_sample": "y_axis_wattage",
+    "z_axis_wattage_sample": "z_axis_wattage",
+    "c_axis_wattage_sample": "c_axis_wattage",
+    "coolant_wattage_sample": "coolant_wattage",
+    "electric_wattage_sample": "load_wattage",
+    "load_wattage": "load_wattage",
+}
+"""columns of data items with the ids of the papers"""
+
+OF_AXIS = {
+    ("POSITION", "ACTUAL"): "position_actual",
+    ("AXIS_FEEDRATE", "ACTUAL"): "velocity_actual",
+    ("WATTAGE", "ACTUAL"): "wattage",
+    ("WATTAGE", ""): "wattage",
+}
+"""ends of the names of columns of linear axes, by type and sub type"""
+
+BY_TYPE = {
+    ("Rotary", "ROTARY_VELOCITY", "ACTUAL"): "rotary_velocity_actual",
+    ("Rotary", "SPINDLE_SPEED", "ACTUAL"): "rotary_velocity_actual",
+    ("Rotary", "ROTARY_VELOCITY", "PROGRAMMED"): "rotary_velocity_programmed",
+    ("Rotary", "WATTAGE", "ACTUAL"): "c_axis_wattage",
+    ("Rotary", "WATTAGE", ""): "c_axis_wattage",
+    ("Rotary", "LINEAR_FORCE", ""): "cutting_force",
+    ("Coolant", "WATTAGE", "ACTUAL"): "coolant_wattage",
+    ("Controller", "WATTAGE", "ACTUAL"): "load_wattage",
+    ("Electric", "WATTAGE", "ACTUAL"): "electric_wattage",
+    ("Electric", "WATTAGE", ""): "electric_wattage",
+    ("Path", "PATH_FEEDRATE", "ACTUAL"): "path_feedrate_actual",
+    ("Path", "PATH_FEEDRATE", "PROGRAMMED"): "path_feedrate_programmed",
+    ("Path", "EXECUTION", ""): "execution",
+    ("Path", "PROGRAM", ""): "program",
+    ("Path", "PROGRAM", "MAIN"): "program",
+    ("Path", "LINE", ""): "line",
+    ("Path", "LINE_NUMBER", "ABSOLUTE"): "line",
+    ("Path", "LINE_NUMBER", ""): "line",
+    ("Path", "TOOL_NUMBER", ""): "tool_number",
+    ("ProcessOccurrence", "PROCESS_KIND_ID", "ISO_STEP_EXECUTABLE"): "workingstep",
+}
+"""columns by component, type and sub type"""
+
+TIME = "time_s"
+WORDS = frozenset({"execution", "program", "workingstep"})
+"""columns of texts"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RecordedColumn:
+    """A column with the data item that fills it."""
+
+    name: str
+    id: str
+    units: str
+    is_text: bool
+
+
+def columns_of(items: Iterable[ClientItem]) -> tuple[RecordedColumn, ...]:
+    """Columns of the samples of a device model, and of the events that a run has.
+
+    Where two data items would fill one column, the first does; the other has one by its id.
+    """
+    found: dict[str, RecordedColumn] = {}
+    for item in items:
+        name = column_name(item)
+        if not name and item.category != "SAMPLE":
+            continue
+        name = name if name and name not in found else item.id
+        found[name] = RecordedColumn(
+            name=name, id=item.id, units=item.units, is_text=name in WORDS
+        )
+    return tuple(found.values())
+
+
+def column_name(item: ClientItem) -> str:
+    """Name of the column of a data item as the virtual machine names it; empty: none."""
+    if item.id in NAMED:
+        return NAMED[item.id]
+    kind = item.type, item.sub_type
+    axis = item.component_name[:1].lower()
+    if item.component == "Linear" and axis in set("xyz"):
+        end = OF_AXIS.get(kind, "")
+        return f"{axis}_axis_{end}" if end else ""
+    return BY_TYPE.get((item.component, *kind), "")
+
+
+@dataclass(kw_only=True)
+class RowMaker:
+    """Makes rows of observations. Running state: the last value of each column."""
+
+    columns: tuple[RecordedColumn, ...]
+    begin: float | None = None
+    """time of the first row, s since 1970; None: there is none yet"""
+    _held: dict[str, Cell] = field(default_factory=dict)
+    _numeric: dict[str, bool] = field(default_factory=dict)
+    _open: float | None = None
+
+    def __post_init__(self) -> None:
+        self._numeric = {each.id: not each.is_text for each in self.columns}
+
+    def rows(self, observations: Iterable[ClientObservation]) -> list[Mapping[str, Cell]]:
+        """Rows that are complete once these observations have come."""
+        found: list[Mapping[str, Cell]] = []
+        for each in observations:
+            if self._open is not None and each.time > self._open:
+                found.append(self._row(self._open))
+                self._open = None
+            is_numeric = self._numeric.get(each.id)
+            if is_numeric is None:
+                continue
+            self._held[each.id] = _number(each.value) if is_numeric else each.value
+            if is_numeric and each.value is not None:
+                self._open = each.time
+        return found
+
+    def last(self) -> list[Mapping[str, Cell]]:
+        """The row that waits for more observations of its moment."""
+        found = [] if self._open is None else [self._row(self._open)]
+        self._open = None
+        return found
+
+    def interrupt(self) -> None:
+        """Nothing is known any more of what holds."""
+        self._held.clear()
+
+    def _row(self, time: float) -> Mapping[str, Cell]:
+        if self.begin is None:
+            self.begin = time
+        row: dict[str, Cell] = {TIME: round(time - self.begin, 6)}
+        for each in self.columns:
+            row[each.name] = self._held.get(each.id, None if each.is_text else nan)
+        return row
+
+
+def _number(text: str | None) -> float:
+    """A number; NaN where it is none or unavailable."""
+    try:
+        return float(text) if text is not None else nan
+    except ValueError:
+        return nan

@@ -1,0 +1,86 @@
+"""Columns of what machines tell."""
+
+from collections.abc import Sequence
+from math import isnan
+from pathlib import Path
+
+import pytest
+from lxml import etree
+
+from simulator.agent.machine_model import machine_model
+from simulator.agent.model import without_namespaces
+from simulator.agent.names import NameSet
+from simulator.client.columns import Cell, RecordedColumn, RowMaker, columns_of
+from simulator.client.connection import ClientItem, ClientObservation, _items
+from simulator.library import load_machine
+from simulator.timeline import COLUMNS
+
+SHARED = Path(__file__).parents[4] / "shared" / "mtconnect"
+OURS = {column.name for column in COLUMNS}
+
+
+def items_of(root: etree._Element) -> list[ClientItem]:
+    holder = etree.Element("MTConnectDevices")
+    holder.append(root)
+    return list(_items(holder))
+
+
+@pytest.mark.parametrize("names", list(NameSet))
+def test_columns_of_our_machine_are_those_of_its_simulation(names: NameSet) -> None:
+    model = machine_model(load_machine("vmc15"), names=names).model
+    found = {each.name for each in columns_of(items_of(model.root))} & OURS
+    expected = {
+        *(f"{axis}_axis_position_actual" for axis in "xyz"),
+        *(f"{axis}_axis_wattage" for axis in "xyz"),
+        "c_axis_wattage", "coolant_wattage", "load_wattage", "path_feedrate_actual",
+        "rotary_velocity_actual", "cutting_force", "execution", "line", "workingstep",
+    }  # fmt: skip
+    assert expected <= found
+    assert ("electric_wattage" in found) is (names is NameSet.MODERN)
+
+
+def test_columns_of_a_mill_of_others() -> None:
+    file = SHARED / "devices-mill.xml"
+    if not file.is_file():
+        pytest.skip("devices-mill.xml is not in ../shared/mtconnect")
+    root = without_namespaces(etree.parse(str(file)).getroot())
+    columns = columns_of(_items(root))
+    names = [each.name for each in columns]
+    assert len(names) == len(set(names))
+    expected = {"x_axis_position_actual", "z_axis_wattage", "c_axis_wattage", "workingstep"}
+    expected |= {"electric_wattage", "path_feedrate_actual", "execution", "line"}
+    assert expected <= set(names)
+    assert "mill1_xload" in names
+
+
+def column(name: str, *, is_text: bool = False) -> RecordedColumn:
+    return RecordedColumn(name=name, id=name, units="", is_text=is_text)
+
+
+def rows_of(*batches: Sequence[ClientObservation]) -> list[dict[str, Cell]]:
+    maker = RowMaker(columns=(column("x"), column("y"), column("state", is_text=True)))
+    found = [dict(row) for batch in batches for row in maker.rows(batch)]
+    return found + [dict(row) for row in maker.last()]
+
+
+def test_a_row_is_a_moment_and_holds_what_is_known() -> None:
+    rows = rows_of(
+        [
+            ClientObservation("state", 1, 100.0, "ACTIVE"),
+            ClientObservation("x", 2, 100.0, "1.5"),
+        ],
+        [
+            ClientObservation("y", 3, 100.0, "2"),
+            ClientObservation("other", 4, 100.1, "9"),
+            ClientObservation("x", 5, 100.2, "3"),
+            ClientObservation("state", 6, 100.3, None),
+            ClientObservation("y", 7, 100.4, None),
+            ClientObservation("x", 8, 100.5, "odd"),
+        ],
+    )
+    assert [row["time_s"] for row in rows] == [0.0, 0.2, 0.5]
+    assert [row["x"] for row in rows][:2] == [1.5, 3.0]
+    assert [row["y"] for row in rows][:2] == [2.0, 2.0]
+    assert [row["state"] for row in rows] == ["ACTIVE", "ACTIVE", None]
+    assert isnan(rows[2]["x"])  # type: ignore[arg-type]
+    assert isnan(rows[2]["y"])  # type: ignore[arg-type]
