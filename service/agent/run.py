@@ -21,9 +21,11 @@ from simulator.agent.adapters import AdapterAddress, AdapterIntake, ShdrServer, 
 from simulator.agent.agent import Agent
 from simulator.agent.http import application
 from simulator.agent.machine_feed import RunFeed, beginning, run_feed
-from simulator.agent.machine_model import MachineModel, machine_model
+from simulator.agent.machine_model import MachineModel, device_uuid, machine_model
 from simulator.agent.model import read_model
+from simulator.agent.tool_assets import tool_asset
 from simulator.machine.samples import Samples, joined
+from simulator.machine.virtual import LoadedTool
 from simulator.spec import Machine
 from stepnc_model.errors import StepNcError
 
@@ -63,6 +65,7 @@ class PublishedRun:
     machine: Machine
     model: MachineModel
     feed: RunFeed
+    tools: tuple[LoadedTool, ...]
 
 
 def published_run(
@@ -90,7 +93,11 @@ def published_run(
         workingsteps=collector.workingsteps,
     )
     return PublishedRun(
-        program=simulation.program, machine=simulation.machine, model=model, feed=feed
+        program=simulation.program,
+        machine=simulation.machine,
+        model=model,
+        feed=feed,
+        tools=tuple(simulation.tools[number] for number in sorted(simulation.tools)),
     )
 
 
@@ -161,7 +168,12 @@ def adapted(
 def new_agent(request: AgentRequest, run: PublishedRun) -> Agent:
     """An agent that has no observation of the run yet, and begins with it."""
     begin = _anchor(run, request.speed)
-    return Agent(model=run.model.model, clock=now, size=request.buffer, begin=begin)
+    agent = Agent(model=run.model.model, clock=now, size=request.buffer, begin=begin)
+    name, uuid = run.machine.name, device_uuid(run.machine)
+    index = agent.model.device_of(name) or 0
+    for tool in run.tools:
+        agent.put(tool_asset(tool, device=name, uuid=uuid, index=index, time=begin))
+    return agent
 
 
 async def play(agent: Agent, run: PublishedRun, *, speed: float, is_looped: bool) -> None:

@@ -1,8 +1,8 @@
 """The verb ``simulate``: a program on the virtual machine."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from service.buckets import BucketedRun
@@ -72,6 +72,8 @@ class Simulation:
     findings: tuple[Finding, ...]
     samples: int = 0
     """that were written"""
+    tools: Mapping[int, LoadedTool] = field(default_factory=dict)
+    """by number"""
     trace: BucketedRun | None = None
     """for a report, when one was asked for"""
 
@@ -117,6 +119,7 @@ def simulate(
         material=prepared.material,
         totals=tuple(zip(("", *virtual.workingsteps), run.totals, strict=True)),
         findings=(*prepared.findings, *virtual.findings),
+        tools=virtual.setup.tools or {},
         samples=0 if run.file is None else run.file.rows,
         trace=None if run.trace is None else run.trace.trace(),
     )

@@ -102,7 +102,7 @@ class Agent:
         for item in self.model.items:
             of = self.model.components[item.component].device
             if item.type == kind and of == asset.device:
-                self.tell({item.id: asset.id})
+                self.tell({item.id: asset.id}, time=self.buffer.last_time)
 
     def probe(self, device: int | None) -> bytes:
         """Document of devices."""

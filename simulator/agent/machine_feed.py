@@ -7,11 +7,10 @@ import numpy as np
 
 from simulator.agent.buffer import ConditionValue, Value
 from simulator.agent.machine_model import MachineItem, MachineModel
+from simulator.agent.tool_assets import asset_id
 from simulator.machine.samples import Condition, Samples
 from simulator.motion.segments import Floats, Ints
 from simulator.spec import Machine
-
-WORKINGSTEP_NONE = "UNAVAILABLE"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -48,7 +47,8 @@ def run_feed(
                 parts.append((number, *_overloads(samples)))
         elif item.source:
             column = _column(samples, machine, item)
-            parts.append((number, *_changes(column, item, workingsteps)))
+            changes = _changes(column, item, workingsteps, machine.name)
+            parts.append((number, *changes))
     rows = np.concatenate([rows for _, rows, _ in parts])
     items = np.concatenate([np.full(len(rows), number) for number, rows, _ in parts])
     values = [value for _, _, each in parts for value in each]
@@ -99,7 +99,7 @@ def _column(samples: Samples, machine: Machine, item: MachineItem) -> Floats:
 
 
 def _changes(
-    column: Floats, item: MachineItem, workingsteps: Sequence[str]
+    column: Floats, item: MachineItem, workingsteps: Sequence[str], device: str
 ) -> tuple[Ints, list[Value]]:
     """Rows at which a value differs from the one before, and the values."""
     values = np.round(item.scale * column, item.digits) + 0.0
@@ -112,6 +112,8 @@ def _changes(
     if item.source == "workingstep":
         ids = ("", *workingsteps)
         return rows, [ids[int(each)] or None for each in numbers]
+    if item.type == "TOOL_ASSET_ID":
+        return rows, [asset_id(device, int(each)) if each else None for each in numbers]
     if item.words:
         return rows, [item.words[int(each)] for each in numbers]
     if item.category == "EVENT":

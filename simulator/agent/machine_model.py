@@ -183,7 +183,9 @@ ITEMS = (
         source="line", since="1.4",
     ),
     MachineItem(place=PATH, id="tool", type="TOOL_NUMBER", category="EVENT", source="tool"),
-    MachineItem(place=PATH, id="tool_asset", type="TOOL_ASSET_ID", category="EVENT"),
+    MachineItem(
+        place=PATH, id="tool_asset", type="TOOL_ASSET_ID", category="EVENT", source="tool",
+    ),
     MachineItem(place=PATH, id="parts", type="PART_COUNT", category="EVENT"),
     MachineItem(
         place=PATH, id="pathmode", type="PATH_MODE", category="EVENT", constant="INDEPENDENT",

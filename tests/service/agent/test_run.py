@@ -31,7 +31,7 @@ from service.simulation.run import RunFiles, simulate
 from simulator.agent.http import application
 from stepnc_model.errors import StepNcError
 from stepnc_model.program import Program
-from tests.simulator.agent.conftest import header, local, observations
+from tests.simulator.agent.conftest import header, local, observations, require_valid
 from tests.simulator.agent.test_model import TYPES
 
 PARTS = Path(__file__).parents[3] / "examples" / "parts"
@@ -123,14 +123,21 @@ def test_a_client_finds_energy_and_time_of_the_simulation(part: str, machine: st
     assert "ACTIVE" in states
 
 
-def test_the_running_workingstep_is_told() -> None:
+def test_the_running_workingstep_and_its_tool_are_told() -> None:
     request, run = run_of("bracket", "vmc15", material="c45", speed=0.0, rate_hz=1.0)
     with served(request, run) as url:
+        assets = require_valid(httpx.get(f"{url}/assets?count=50").content, "2.7")
         seen = all_samples(url)
         stamps = [each.get("timestamp") for each in seen]
         assert stamps == sorted(stamps)
         last = np.datetime64(stamps[-1][:-1], "us").astype("int64")
         assert last <= now()
+    ids = [each.get("assetId") for each in assets.iter() if each.get("assetId")]
+    used = {each.text for each in seen if each.get("dataItemId") == "vmc15_tool_asset"}
+    assert used - {"UNAVAILABLE"} <= set(ids)
+    assert len(ids) == len(run.tools) > 3
+    (first,) = (each for each in assets.iter() if each.get("assetId") == "vmc15.T1")
+    assert first.get("toolId") == run.tools[0].id.replace(" ", "_")
     steps = [each.text for each in seen if each.get("dataItemId") == "vmc15_workingstep"]
     program = Program.load(PARTS / "bracket.stpnc")
     ids = [step.id for step in program.workingsteps]
