@@ -12,17 +12,21 @@ from typing import Any
 
 import uvicorn
 
+from service.files import require_place, write_atomically
 from service.reading import Tell, silent
 from service.requests.agent import AgentRequest
 from service.requests.fields import require_bounds
+from service.requests.runs import SimulationRequest
 from service.rest.http_protocol import BoundedHttpProtocol
-from service.simulation.run import RunFiles, simulate
+from service.simulation.run import RunFiles, Simulation, simulate
 from simulator.agent.adapters import AdapterAddress, AdapterIntake, ShdrServer, listen_to
 from simulator.agent.agent import Agent
 from simulator.agent.http import application
 from simulator.agent.machine_feed import RunFeed, beginning, run_feed
 from simulator.agent.machine_model import MachineModel, device_uuid, machine_model
 from simulator.agent.model import read_model
+from simulator.agent.names import NameSet, SchemaVersion
+from simulator.agent.requests import StreamQuery
 from simulator.agent.tool_assets import tool_asset
 from simulator.machine.samples import Samples, joined
 from simulator.machine.virtual import LoadedTool
@@ -31,6 +35,8 @@ from stepnc_model.errors import StepNcError
 
 BACKLOG = 2048
 """connections that may wait to be accepted"""
+
+LEAST_BUFFER = 1000
 
 STEP = 0.02
 """s of wall-clock time between looks at what is due"""
@@ -78,14 +84,25 @@ def published_run(
     StepNcError
         For everything that is wrong with file, names or numbers.
     """
-    require_bounds(request)
     if request.is_looped and (request.speed > 1.0 or request.speed == 0.0):
         raise StepNcError(
             "--loop: only at a speed of at most 1, as stamps never pass the clock"
         )
+    require_bounds(request)
     collector = SampleCollector()
     simulation = simulate(request, files, tell=tell, watchers=[collector])
-    model = machine_model(simulation.machine, version=request.schema, names=request.names)
+    return shown_run(simulation, collector, version=request.schema, names=request.names)
+
+
+def shown_run(
+    simulation: Simulation,
+    collector: SampleCollector,
+    *,
+    version: SchemaVersion,
+    names: NameSet,
+) -> PublishedRun:
+    """A simulated run as observations."""
+    model = machine_model(simulation.machine, version=version, names=names)
     feed = run_feed(
         joined(collector.parts),
         simulation.machine,
@@ -165,10 +182,53 @@ def adapted(
     return agent, [partial(listen_to, address, intake) for address in addresses]
 
 
+def simulated_with_document(
+    request: SimulationRequest,
+    files: RunFiles,
+    output: Path,
+    *,
+    version: SchemaVersion,
+    names: NameSet,
+    tell: Tell = silent,
+) -> Simulation:
+    """Simulate a program, and write its samples as a document of MTConnect.
+
+    Raises
+    ------
+    StepNcError
+        As :func:`service.simulation.run.simulate`, and when the file cannot be written.
+    """
+    for other in (files.file, files.output, files.report):
+        if other is not None:
+            require_place(output, apart_from=other)
+    collector = SampleCollector()
+    simulation = simulate(request, files, tell=tell, watchers=[collector])
+    run = shown_run(simulation, collector, version=version, names=names)
+    write_atomically(output, streams_document(run))
+    tell(f"MTConnect document: {output} ({len(run.feed.values)} observations)")
+    return simulation
+
+
+def streams_document(run: PublishedRun) -> bytes:
+    """The whole run as one document of streams, that ends now."""
+    count = len(run.feed.values) + 2 * len(run.model.model.items)
+    agent = _begun(run, speed=0.0, size=max(LEAST_BUFFER, count))
+    first = beginning(run.model, program=run.program, part_count=0)
+    begin = agent.buffer.last_time
+    agent.tell(first, time=begin)
+    stamps = begin + (run.feed.times * MICRO).astype(int)
+    agent.add(run.feed.items, stamps, run.feed.values)
+    return agent.sample(StreamQuery(chosen=None, count=agent.buffer.size))[0]
+
+
 def new_agent(request: AgentRequest, run: PublishedRun) -> Agent:
     """An agent that has no observation of the run yet, and begins with it."""
-    begin = _anchor(run, request.speed)
-    agent = Agent(model=run.model.model, clock=now, size=request.buffer, begin=begin)
+    return _begun(run, speed=request.speed, size=request.buffer)
+
+
+def _begun(run: PublishedRun, *, speed: float, size: int) -> Agent:
+    begin = _anchor(run, speed)
+    agent = Agent(model=run.model.model, clock=now, size=size, begin=begin)
     name, uuid = run.machine.name, device_uuid(run.machine)
     index = agent.model.device_of(name) or 0
     for tool in run.tools:

@@ -137,6 +137,9 @@ def _simulate_options(parser: argparse.ArgumentParser) -> None:
     add("--carbon-g-kwh", type=float, metavar="G", help="grams of CO2 per kWh (default 480)")
     add("-o", "--output", type=Path, metavar="FILE", help="write the run, .parquet or .csv")
     add("--report", type=Path, metavar="HTML", help="write a self-contained page with plots")
+    add("--mtconnect", type=Path, metavar="XML", help="write the run as an MTConnect document")
+    add("--schema", default="2.7", help="schema version of it: 1.3, 2.0 or 2.7 (default)")
+    add("--names", default="modern", help="ids in it: modern (default), or papers")
     add_json(parser)
     parser.set_defaults(run=_simulate)
 
@@ -173,16 +176,31 @@ def run_files(options: argparse.Namespace, file: Path | None) -> "RunFiles":
 
 def _simulate(options: argparse.Namespace) -> int:
     """``stepnc simulate``."""
-    from service.requests.fields import from_options
+    from service.requests.fields import from_options, member_of
     from service.requests.runs import SimulationRequest
     from service.simulation.carbon import WORLD, stated
     from service.simulation.run import simulate
     from service.terminal import tell
+    from simulator.agent.names import NameSet, SchemaVersion
 
     carbon = WORLD if options.carbon_g_kwh is None else stated(options.carbon_g_kwh)
     request = from_options(SimulationRequest, options, rate_hz=USUAL_RATE)
-    with interruptible():
-        simulation = simulate(request, run_files(options, options.file), tell=tell)
+    files = run_files(options, options.file)
+    if options.mtconnect is None:
+        with interruptible():
+            simulation = simulate(request, files, tell=tell)
+    else:
+        from service.agent.run import simulated_with_document
+
+        with interruptible():
+            simulation = simulated_with_document(
+                request,
+                files,
+                options.mtconnect,
+                version=member_of(SchemaVersion, options.schema, "schema version"),
+                names=member_of(NameSet, options.names, "set of names"),
+                tell=tell,
+            )
     if options.report is not None and simulation.trace is not None:
         from service.files import write_atomically
         from service.simulation.output import simulation_page

@@ -7,10 +7,15 @@ import numpy as np
 
 from simulator.agent.buffer import ConditionValue, Value
 from simulator.agent.machine_model import MachineItem, MachineModel
+from simulator.agent.names import SchemaVersion
 from simulator.agent.tool_assets import asset_id
 from simulator.machine.samples import Condition, Samples
 from simulator.motion.segments import Floats, Ints
 from simulator.spec import Machine
+
+ALWAYS = (0, 0)
+YOUNGER = {("EXECUTION", "WAIT"): ((1, 5), "ACTIVE")}
+"""words of events: schema version from which they are known, and what stands for them before"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -47,7 +52,7 @@ def run_feed(
                 parts.append((number, *_overloads(samples)))
         elif item.source:
             column = _column(samples, machine, item)
-            changes = _changes(column, item, workingsteps, machine.name)
+            changes = _changes(column, item, workingsteps, machine.name, shown.model.version)
             parts.append((number, *changes))
     rows = np.concatenate([rows for _, rows, _ in parts])
     items = np.concatenate([np.full(len(rows), number) for number, rows, _ in parts])
@@ -99,7 +104,7 @@ def _column(samples: Samples, machine: Machine, item: MachineItem) -> Floats:
 
 
 def _changes(
-    column: Floats, item: MachineItem, workingsteps: Sequence[str], device: str
+    column: Floats, item: MachineItem, workingsteps: Sequence[str], device: str, version: str
 ) -> tuple[Ints, list[Value]]:
     """Rows at which a value differs from the one before, and the values."""
     values = np.round(item.scale * column, item.digits) + 0.0
@@ -115,10 +120,25 @@ def _changes(
     if item.type == "TOOL_ASSET_ID":
         return rows, [asset_id(device, int(each)) if each else None for each in numbers]
     if item.words:
-        return rows, [item.words[int(each)] for each in numbers]
+        return _worded(rows, [item.words[int(each)] for each in numbers], item, version)
     if item.category == "EVENT":
         return rows, [int(each) for each in numbers]
     return rows, numbers
+
+
+def _worded(
+    rows: Ints, words: list[str], item: MachineItem, version: str
+) -> tuple[Ints, list[Value]]:
+    """Words of an event that a schema version knows; without one, the last one holds."""
+    kept: list[int] = []
+    values: list[Value] = []
+    for row, word in zip(rows.tolist(), words, strict=True):
+        since, older = YOUNGER.get((item.type, word), (ALWAYS, ""))
+        shown = word if SchemaVersion(version).key >= since else older
+        if shown and (not values or shown != values[-1]):
+            kept.append(row)
+            values.append(shown)
+    return np.array(kept, dtype=np.int64), values
 
 
 def _overloads(samples: Samples) -> tuple[Ints, list[Value]]:

@@ -59,9 +59,11 @@ def _key(version: str) -> tuple[int, ...]:
     return tuple(map(int, version.split(".")))
 
 
-SIGNS = ("NEGATIVE", "NONE", "POSITIVE")
+SIGNS = ("NEGATIVE", "", "POSITIVE")
+"""of an axis that stands the standard has no word: the last one holds"""
+
 EXECUTIONS = ("READY", "ACTIVE", "WAIT", "PROGRAM_STOPPED", "PROGRAM_COMPLETED")
-TURNS = ("COUNTER_CLOCKWISE", "NONE", "CLOCKWISE")
+TURNS = ("COUNTER_CLOCKWISE", "", "CLOCKWISE")
 RPM = 60.0
 
 

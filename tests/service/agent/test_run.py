@@ -24,11 +24,13 @@ from service.agent.run import (
     play,
     published,
     published_run,
+    simulated_with_document,
 )
 from service.requests.agent import AgentRequest
 from service.requests.runs import SimulationRequest
 from service.simulation.run import RunFiles, simulate
 from simulator.agent.http import application
+from simulator.agent.names import NameSet, SchemaVersion
 from stepnc_model.errors import StepNcError
 from stepnc_model.program import Program
 from tests.simulator.agent.conftest import header, local, observations, require_valid
@@ -198,3 +200,39 @@ def test_a_model_needs_adapters_and_no_program(tmp_path: Path) -> None:
     )
     assert len(work) == 2
     assert [local(each) for each in agent.model.root] == ["Device"]
+
+
+@pytest.mark.parametrize("version", list(SchemaVersion))
+def test_a_simulated_run_is_written_as_a_document(
+    version: SchemaVersion, tmp_path: Path
+) -> None:
+    output = tmp_path / "run.xml"
+    request = SimulationRequest(machine="paper003", rate_hz=10.0)
+    files = RunFiles(file=PARTS / "paper003_case1.stpnc")
+    simulation = simulated_with_document(
+        request, files, output, version=version, names=NameSet.PAPERS
+    )
+    seen = observations(require_valid(output.read_bytes(), version.value))
+    assert [int(each.get("sequence")) for each in seen] == list(range(1, len(seen) + 1))
+    energy = 0.0
+    end = max(series(seen, "paper003_run_time")[0])
+    ids = {each.get("dataItemId") for each in seen if local(each) == "Wattage"}
+    for id in ids:
+        times, watts = series(seen, id)
+        energy += float(np.sum(watts * np.diff(times, append=end)))
+    # At 10 samples a second; at 100 it is within 0.01 %.
+    assert energy == pytest.approx(simulation.whole.energy.total, rel=5e-3)
+
+
+def test_a_document_never_replaces_what_it_is_made_of(tmp_path: Path) -> None:
+    program = tmp_path / "part.stpnc"
+    program.write_bytes((PARTS / "paper000.stpnc").read_bytes())
+    with pytest.raises(StepNcError):
+        simulated_with_document(
+            SimulationRequest(machine="paper000"),
+            RunFiles(file=program),
+            program,
+            version=SchemaVersion.V2_7,
+            names=NameSet.MODERN,
+        )
+    assert program.read_bytes() == (PARTS / "paper000.stpnc").read_bytes()

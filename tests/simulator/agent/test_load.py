@@ -28,9 +28,10 @@ async def listen(port: int, start: int, last: int) -> list[int]:
         while not seen or seen[-1] < last:
             data = await reader.read(1 << 16)
             assert data
-            whole, end, rest = (rest + data).rpartition(b"</")
-            rest = end + rest
-            seen += map(int, SEQUENCE.findall(whole))
+            # Within a document observations stand by component.
+            *documents, rest = (rest + data).split(b"</MTConnectStreams>")
+            for each in documents:
+                seen += sorted(map(int, SEQUENCE.findall(each)))
     writer.close()
     return seen
 
