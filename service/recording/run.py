@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -70,7 +71,8 @@ def record(
     keeper = _Keeper(file=file, columns=columns, rows=rows, tell=tell, clock=clock)
     with file.closing(is_whole=True):
         try:
-            keeper.run(client.stream(), request)
+            with closing(client.stream()) as parts:
+                keeper.run(parts, request)
         except KeyboardInterrupt:
             tell("interrupted: the file is complete up to here")
         keeper.end()

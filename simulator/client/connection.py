@@ -6,7 +6,7 @@ ran over. What is lost is reported, never hidden.
 
 import http.client
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Generator, Iterator, Mapping
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from typing import Any
@@ -149,7 +149,7 @@ class AgentClient:
         page = _page(self._document("/sample", {"count": "1"}))
         self._instance, self._next = page.instance, page.first
 
-    def stream(self) -> Iterator[StreamPart]:
+    def stream(self) -> Generator[StreamPart, None, None]:
         """Observations since :meth:`state` or :meth:`rewind`, as they come, without end.
 
         Every interruption is a part of its own; after it the stream goes on where it was, or

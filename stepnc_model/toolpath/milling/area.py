@@ -164,9 +164,13 @@ def extra(inset: Inset, cutter: EndMillShape, *, bottom: float, top: float) -> f
     def sum_at(above: float) -> float:
         return inset(bottom + above) + cutter.reach(above)
 
-    index = max(range(len(heights)), key=lambda at: sum_at(heights[at]))
-    low, high = heights[max(index - 1, 0)], heights[min(index + 1, len(heights) - 1)]
-    most = max(sum_at(heights[index]), _greatest(sum_at, low, high))
+    sums = [sum_at(above) for above in heights]
+    last, most = len(heights) - 1, max(sums)
+    for at, own in enumerate(sums):
+        # Fillet and corner may each make a peak; the greater one may lie between samples.
+        low, high = max(at - 1, 0), min(at + 1, last)
+        if own >= sums[low] and own >= sums[high]:
+            most = max(most, _greatest(sum_at, heights[low], heights[high]))
     return max(0.0, most - cutter.radius)
 
 

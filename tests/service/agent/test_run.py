@@ -56,7 +56,10 @@ def served(request: AgentRequest, run: PublishedRun) -> Iterator[str]:
 
     async def work() -> None:
         agent = new_agent(request, run)
-        config = uvicorn.Config(application(agent), log_config=None, lifespan="off", ws="none")
+        config = uvicorn.Config(
+            application(agent), log_config=None, lifespan="off", ws="none",
+            timeout_graceful_shutdown=1,
+        )  # fmt: skip
         server.append(uvicorn.Server(config))
         player = asyncio.create_task(
             play(agent, run, speed=request.speed, is_looped=request.is_looped)
