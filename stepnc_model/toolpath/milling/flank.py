@@ -97,7 +97,7 @@ def _count(job: ToolPathTask, flank: Flank, way: ResolvedStrategy, left: float) 
     count = max(1, ceil((width - left) / way.step - 1e-6))
     if count > MOST_PASSES:
         raise job.fault(
-            f"{count} passes of {way.step:g} mm along the wall: at most {MOST_PASSES} are allowed",
+            f"{count} passes of {way.step:g} mm along the wall: at most {MOST_PASSES} allowed",
             flank.ref,
         )
     return count
