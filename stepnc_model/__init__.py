@@ -1,1 +1,1 @@
-"""The nouns: what a STEP-NC program says, in memory and on disk."""
+"""Data model of STEP-NC programs: Part 21 files, entities, tool paths and NC code."""

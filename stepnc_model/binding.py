@@ -1,8 +1,8 @@
-"""Part 21 instances ↔ entities, driven by the fields of the entities; no code per entity.
+"""Conversion between Part 21 instances and entities, driven by the entities' fields.
 
-Reading is tolerant: what deviates from the schema is a finding, and only asking for an instance
-that is not there, or that no entity describes, is an error. Entities are bound one by one when
-they are asked for, and hold references, so a file of any size or shape costs what is used.
+Reading is tolerant: deviations from the schema are findings; only requesting an instance that
+does not exist or that no entity describes is an error. Entities are bound one by one on request
+and hold references, so the cost depends on what is used and not on the size of the file.
 """
 
 from collections.abc import Iterator, Mapping
@@ -35,7 +35,7 @@ from stepnc_model.part21.values import Ref, Value
 
 
 def circles(edges: Mapping[int, tuple[int, ...]]) -> Iterator[tuple[int, int]]:
-    """First and last instance of each circle; no recursion, for files may nest deeply."""
+    """First and last instance of each reference cycle; iterative, as files may nest deeply."""
     done: set[int] = set()
     for root in edges:
         path: dict[int, Iterator[int]] = {}
@@ -57,7 +57,7 @@ T = TypeVar("T")
 
 OPTIMISATION = "its_optimisation"
 OPTIMISATION_POSITION = 8
-"""where Fig. 11 of paper 002 prints the surplus attribute: behind its_machine_functions"""
+"""Position of the surplus attribute in Fig. 11 of paper 002: after its_machine_functions."""
 
 _PARTS = {
     "geometry": "ISO 10303-42",
@@ -68,31 +68,31 @@ _PARTS = {
     "turning": "ISO 14649-12",
     "turning_tools": "ISO 14649-121",
 }
-"""standard that a module of entities speaks for; all others speak for ISO 14649-10"""
+"""Standards by entity module; all other modules follow ISO 14649-10."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoundEntity:
-    """An entity, and what was odd about its instance."""
+    """Entity with remarks about its instance."""
 
     entity: Entity
     remarks: tuple[tuple[str, ConversionRemark], ...]
-    """by attribute; an empty name means the whole instance"""
+    """Attributes and remarks; an empty name means the whole instance."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Inspection:
-    """Result of the inspection of one instance."""
+    """Findings about one instance, and its references."""
 
     findings: tuple[Finding, ...]
     references: tuple[int, ...]
-    """ids; the optimisation is left out, for its records lead back to operations"""
+    """Ids of referenced instances, except the optimisation, which refers back to operations."""
 
 
 class Model:
-    """The entities of one file.
+    """Entities of one file, bound on request.
 
-    Not a value: entities are kept once bound.
+    The object has state: entities are cached once bound.
 
     Parameters
     ----------
@@ -104,12 +104,12 @@ class Model:
         self._bound: dict[int, Entity | None] = {}
 
     def get(self, ref: Ref[T], /) -> T:
-        """The entity behind a reference.
+        """Entity behind a reference.
 
         Raises
         ------
         SchemaError
-            If there is no such instance, it is malformed, or no entity describes it.
+            If the instance does not exist, is malformed, or has no entity class.
         """
         found = self.entity(int(ref))
         if found is None:
@@ -117,13 +117,13 @@ class Model:
         return cast("T", found)
 
     def entity(self, id: int, /) -> Entity | None:
-        """The entity of an instance; None where :meth:`get` raises."""
+        """Entity of an instance; None where :meth:`get` raises."""
         if id not in self._bound:
             self._bound[id] = _entity_of(self.file, id)
         return self._bound[id]
 
     def of_type(self, cls: type[T]) -> Iterator[tuple[Ref[T], T]]:
-        """All instances of a class and its subclasses that can be bound, in file order."""
+        """Instances of a class and its subclasses that can be bound, in file order."""
         named = [(keyword, bound) for keyword, bound in classes().items()]
         named += [(keyword, bound) for (keyword, _), bound in BY_ARITY.items()]
         keywords = {keyword for keyword, bound in named if issubclass(bound, cls)}
@@ -134,10 +134,10 @@ class Model:
                 yield Ref[T](id), entity
 
     def position(self, ref: Ref[Any], attribute: str) -> int:
-        """Place of an attribute among the parameters of its instance, counted from 0.
+        """Position of an attribute among the parameters of its instance, counted from 0.
 
-        An attribute that the instance lacks has the place where it belongs, which is then
-        beyond the parameters; ``its_optimisation`` belongs at the very end.
+        For an attribute that the instance lacks, the position where it belongs, beyond the
+        parameters; ``its_optimisation`` belongs at the very end.
 
         Raises
         ------
@@ -156,9 +156,9 @@ class Model:
         return index + 1 if surplus is not None and surplus <= index else index
 
     def findings(self) -> tuple[Finding, ...]:
-        """Deviations from the schema, in file order; binds every instance.
+        """Deviations from the schema, in file order; this binds every instance.
 
-        Of many findings the first are told, and how many more there are.
+        If there are very many findings, the first are listed and the rest counted.
         """
         edges: dict[int, tuple[int, ...]] = {}
         found = FindingList()
@@ -172,9 +172,9 @@ class Model:
         return found.all()
 
     def fault_near(self, *refs: Ref[Any]) -> Finding | None:
-        """The nearest error among instances and what they refer to, else a warning, or None.
+        """Nearest error among instances and their references, else a warning, or None.
 
-        Operations are looked at where they are asked for: features list those of others.
+        Referenced operations are skipped, because features list the operations of others.
         """
         queue, warning = list(dict.fromkeys(map(int, refs))), None
         known = set(queue)
@@ -191,10 +191,10 @@ class Model:
         return warning
 
     def _refusal(self, id: int) -> SchemaError:
-        """Why an instance has no entity."""
+        """Error that explains why an instance has no entity."""
         if id not in self.file:
-            return SchemaError("is referred to, but there is no such instance", entity=f"#{id}")
-        message = "is not an entity that this program reads"
+            return SchemaError("is referenced, but does not exist in the file", entity=f"#{id}")
+        message = "this entity type is not supported"
         try:
             self.file.parameters(id)
         except Part21Error as error:
@@ -205,14 +205,14 @@ class Model:
 def bind(
     cls: type[Entity], values: tuple[Value, ...], *, file: Part21File | None = None
 ) -> BoundEntity:
-    """Entity of a class from its parameters.
+    """Build an entity of a class from its parameters.
 
     Parameters
     ----------
     cls : type
     values : tuple of Value
     file : Part21File, optional
-        Where references lead, to tell a reference to an optimisation from others.
+        File in which references are looked up, to recognise a reference to an optimisation.
     """
     slots = slots_of(cls)
     given, optimisation = _without_optimisation(file, cls, values)
@@ -224,7 +224,9 @@ def bind(
         if remark is not None:
             remarks.append((name, remark))
     if len(given) > len(slots):
-        text = f"{len(given)} attributes, {len(slots)} expected: the surplus is kept, not read"
+        text = (
+            f"{len(given)} attributes, {len(slots)} expected: the surplus is kept but ignored"
+        )
         remarks.append(("", ConversionRemark(Severity.WARNING, text)))
     if optimisation is not None:
         bound[OPTIMISATION] = optimisation
@@ -232,9 +234,9 @@ def bind(
 
 
 def to_parameters(entity: Entity) -> tuple[Value, ...]:
-    """Part 21 parameters of an entity, the reference to its optimisation last.
+    """Part 21 parameters of an entity, with the reference to its optimisation last.
 
-    The inverse of binding.
+    This is the inverse of :func:`bind`.
     """
     slots = slots_of(type(entity))
     values = [give(slot, getattr(entity, name)) for name, slot in slots.items()]
@@ -252,7 +254,7 @@ def _entity_of(file: Part21File, id: int) -> Entity | None:
 
 
 def _printed(file: Part21File, id: int) -> ConsistentRecord | None:
-    """A record in the form of paper 002's Fig. 11, or None for every other instance."""
+    """Record in the form of paper 002, Fig. 11; None for every other instance."""
     if id not in file or file.keyword(id) not in PRINTED:
         return None
     try:
@@ -263,7 +265,7 @@ def _printed(file: Part21File, id: int) -> ConsistentRecord | None:
 
 
 def _read(file: Part21File, id: int) -> tuple[type[Entity], tuple[Value, ...]] | None:
-    """Class and parameters of an instance that can be bound."""
+    """Class and parameters of an instance that can be bound, or None."""
     if id not in file or file.keyword(id) not in classes():
         return None
     try:
@@ -277,7 +279,7 @@ def _read(file: Part21File, id: int) -> tuple[type[Entity], tuple[Value, ...]] |
 def _without_optimisation(
     file: Part21File | None, cls: type[Entity], values: tuple[Value, ...]
 ) -> tuple[tuple[Value, ...], Ref[object] | None]:
-    """Parameters in EXPRESS order, and the reference that stood among them."""
+    """Parameters in EXPRESS order, and the optimisation reference found among them."""
     place = _optimisation_at(file, cls, values)
     if place is None:
         return values, None
@@ -289,7 +291,7 @@ def _without_optimisation(
 def _optimisation_at(
     file: Part21File | None, cls: type[Entity], values: tuple[Value, ...]
 ) -> int | None:
-    """Place of the reference to the optimisation of an operation, or None."""
+    """Position of an operation's reference to its optimisation, or None."""
     if not issubclass(cls, MachiningOperation):
         return None
     names = attributes(cls)
@@ -305,7 +307,7 @@ def _optimisation_at(
 
 
 def _is_optimisation(file: Part21File | None, ref: Ref[object]) -> bool:
-    """Whether a reference leads to a record of an optimum."""
+    """Whether a reference leads to an optimisation entity."""
     return (
         file is not None
         and int(ref) in file
@@ -314,7 +316,7 @@ def _is_optimisation(file: Part21File | None, ref: Ref[object]) -> bool:
 
 
 def _inspect(file: Part21File, id: int) -> Inspection | None:
-    """Look at one instance; None when it cannot be bound."""
+    """Inspect one instance; None if it cannot be bound."""
     printed = _printed(file, id)
     if printed is not None:
         return Inspection(findings=printed.findings, references=())
@@ -332,7 +334,7 @@ def _inspect(file: Part21File, id: int) -> Inspection | None:
         _reference_findings(file, id, name, ref=ref, slot=slot)
         for name, ref, slot in references
     )
-    # A list may hold a quarter of a million references that lead nowhere.
+    # A list may hold a quarter of a million dangling references.
     findings += islice(chain.from_iterable(faults), MOST_FINDINGS)
     if optimisation is not None:
         findings += _reference_findings(
@@ -347,7 +349,7 @@ def _inspect(file: Part21File, id: int) -> Inspection | None:
 def _references(
     cls: type[Entity], values: tuple[Value, ...]
 ) -> Iterator[tuple[str, Ref[object], AttributeSlot]]:
-    """References of an instance with their attributes, those in lists as well."""
+    """References of an instance with their attributes, including those in lists."""
     for (name, slot), value in zip(slots_of(cls).items(), values, strict=False):
         if isinstance(value, Ref):
             yield name, value, slot.items or slot
@@ -358,9 +360,9 @@ def _references(
 def _reference_findings(
     file: Part21File, id: int, name: str, *, ref: Ref[object], slot: AttributeSlot
 ) -> Iterator[Finding]:
-    """A reference that leads nowhere, or to the wrong kind of instance."""
+    """Findings about a dangling reference or one to the wrong kind of instance."""
     if int(ref) not in file:
-        remark = ConversionRemark(Severity.ERROR, f"{ref} is no instance of this file")
+        remark = ConversionRemark(Severity.ERROR, f"{ref} does not exist in this file")
         yield _finding(file, id, name, remark=remark, rule="ISO 10303-21")
         return
     target = classes().get(file.keyword(int(ref)))
@@ -368,7 +370,7 @@ def _reference_findings(
         return
     wanted = " or ".join(cls.__name__ for cls in slot.references)
     remark = ConversionRemark(
-        Severity.ERROR, f"{file.label(int(ref))} stands where {wanted} belongs"
+        Severity.ERROR, f"{file.label(int(ref))} is referenced where {wanted} is expected"
     )
     yield _finding(file, id, name, remark=remark, rule=_rule(target))
 
@@ -376,14 +378,14 @@ def _reference_findings(
 def _cycle_findings(
     file: Part21File, edges: Mapping[int, tuple[int, ...]]
 ) -> Iterator[Finding]:
-    """Instances that contain themselves: ISO 14649 nests, it never goes in circles."""
+    """Findings about instances that contain themselves, which ISO 14649 does not allow."""
     for id, last in circles(edges):
         remark = ConversionRemark(Severity.ERROR, f"contains itself: #{last} refers back to it")
         yield _finding(file, id, "", remark=remark, rule="ISO 14649-10")
 
 
 def _unknown_findings(file: Part21File) -> Iterator[Finding]:
-    """One note for each keyword that no entity has."""
+    """One note for each keyword without an entity class."""
     unknown: dict[str, list[int]] = {}
     for id in file.ids():
         keyword = file.keyword(id)
@@ -391,7 +393,7 @@ def _unknown_findings(file: Part21File) -> Iterator[Finding]:
             unknown.setdefault(keyword, []).append(id)
     for keyword, ids in unknown.items():
         count = f" ({len(ids)} instances)" if len(ids) > 1 else ""
-        text = f"{keyword or 'a complex instance'}{count} is not read, and kept as it is"
+        text = f"{keyword or 'a complex instance'}{count} is not supported and kept unchanged"
         yield _finding(
             file, ids[0], "", remark=ConversionRemark(Severity.NOTE, text), rule="ISO 14649"
         )
@@ -400,7 +402,7 @@ def _unknown_findings(file: Part21File) -> Iterator[Finding]:
 def _finding(
     file: Part21File, id: int, attribute: str, *, remark: ConversionRemark, rule: str
 ) -> Finding:
-    """A remark with its place."""
+    """Finding for a remark at an instance."""
     return Finding(
         severity=remark.severity,
         message=remark.message,
@@ -412,5 +414,5 @@ def _finding(
 
 
 def _rule(cls: type[Entity]) -> str:
-    """Standard that defines an entity."""
+    """Standard that defines an entity class."""
     return _PARTS.get(cls.__module__.rpartition(".")[2], "ISO 14649-10")

@@ -1,8 +1,8 @@
-"""A program while it is edited: the splice writer, spoken to by attribute names.
+"""Editing a program by attribute names, on top of byte-exact edits of the file.
 
-Instances may be shorter than their entity (older editions) or carry the surplus reference to an
-optimisation in their middle; a draft knows where an attribute stands after what was taken away,
-and fills up with ``$`` where something has to stand behind the end.
+Instances may be shorter than their entity (older editions) or have the surplus reference to an
+optimisation in their middle; a draft tracks the position of each attribute after removals, and
+fills missing trailing parameters with ``$``.
 """
 
 from collections import Counter
@@ -17,25 +17,25 @@ from stepnc_model.program import Program
 
 
 class Draft:
-    """Edits of one program; running state until :meth:`finish`."""
+    """Edits of one program, collected until ``edits.apply()`` is called."""
 
     def __init__(self, program: Program) -> None:
         self.program = program
         self.edits = Edits(program.file)
         self.removed: set[int] = set()
         self.has_surplus = False
-        """whether an operation was given a reference to an optimisation"""
+        """Whether an operation was given a reference to an optimisation."""
         self._gaps: dict[int, int] = {}
         self._lengths: dict[int, int] = {}
         self._uses: Counter[int] | None = None
         self._own: dict[tuple[int, str], Ref[Any]] = {}
 
     def add(self, entity: Entity) -> Ref[Any]:
-        """Add an instance."""
+        """Add an instance for an entity; return its reference."""
         return cast("Ref[Any]", self.edits.add(entity.keyword, to_parameters(entity)))
 
     def add_like(self, ref: Ref[Any], values: tuple[Value, ...]) -> Ref[Any]:
-        """Add an instance of the same keyword as another."""
+        """Add an instance with the same keyword as another; return its reference."""
         keyword = self.program.file.keyword(int(ref))
         added = cast("Ref[Any]", self.edits.add(keyword, values))
         self._lengths[int(added)] = len(values)
@@ -49,11 +49,11 @@ class Draft:
         Parameters
         ----------
         owner : Ref
-            Instance of the file that tells where the attribute stands.
+            Instance of the file that defines the attribute's position.
         attribute : str
         value : Value
         at : Ref, optional
-            Copy of the owner that is written instead of it.
+            Copy of the owner that is edited instead of it.
         """
         holder = int(at if at is not None else owner)
         place = self.program.model.position(owner, attribute)
@@ -63,28 +63,28 @@ class Draft:
         self.edits.replace_parameter(holder, place, value)
 
     def append_surplus(self, owner: Ref[Any], value: Value) -> None:
-        """Add a parameter behind the last attribute that the entity has."""
+        """Add a parameter after the last attribute of the entity."""
         self._fill(int(owner), len(attributes(self.program.get(owner))))
         self.edits.append_parameter(int(owner), value)
         self.has_surplus = True
         self._lengths[int(owner)] += 1
 
     def drop_surplus(self, owner: Ref[Any]) -> None:
-        """Take the reference to an optimisation away."""
+        """Remove the surplus reference to an optimisation."""
         place = self.program.model.position(owner, "its_optimisation")
         self.edits.remove_parameter(int(owner), place)
         self._lengths[int(owner)] = self._length(int(owner)) - 1
         self._gaps[int(owner)] = place
 
     def remove(self, numbers: Sequence[int]) -> None:
-        """Remove instances of the file, each once."""
+        """Remove instances from the file, each once."""
         for number in numbers:
             if number not in self.removed:
                 self.edits.remove(number)
                 self.removed.add(number)
 
     def own(self, owner: Ref[Any], attribute: str, *, at: Ref[Any] | None = None) -> Ref[Any]:
-        """The instance that an attribute refers to, copied first when others use it too."""
+        """Instance that an attribute refers to; it is copied first if others use it too."""
         holder = at if at is not None else owner
         key = (int(holder), attribute)
         if key not in self._own:
@@ -95,7 +95,7 @@ class Draft:
     def _unshared(
         self, owner: Ref[Any], attribute: str, reference: Ref[Any], *, at: Ref[Any]
     ) -> Ref[Any]:
-        """The same instance when nothing else refers to it, else a copy for the holder."""
+        """Return the referenced instance if unshared, else a copy for the holder."""
         uses = self._use_counts()
         if uses[int(reference)] < 2:
             return reference
@@ -103,7 +103,7 @@ class Draft:
         copy = self.add_like(reference, values)
         uses[int(reference)] -= 1
         uses[int(copy)] = 1
-        # What the original refers to is now used by the copy as well.
+        # The instances that the original refers to are now used by the copy as well.
         uses.update(int(inner) for inner in references(values))
         self.put(owner, attribute, copy, at=at)
         return copy
@@ -121,20 +121,20 @@ class Draft:
         return self._uses
 
     def _length(self, number: int) -> int:
-        """Parameters that an instance has now."""
+        """Current number of parameters of an instance."""
         if number not in self._lengths:
             self._lengths[number] = len(self.program.file.parameters(number))
         return self._lengths[number]
 
     def _fill(self, number: int, count: int) -> None:
-        """Make an instance at least so long, by ``$`` at its end."""
+        """Extend an instance to a number of parameters with ``$``."""
         for _ in range(count - self._length(number)):
             self.edits.append_parameter(number, None)
             self._lengths[number] += 1
 
 
 def references(values: tuple[Value, ...]) -> Iterator[Ref[object]]:
-    """All references among values, lists included."""
+    """All references among values, including those in lists."""
     for value in values:
         if isinstance(value, Ref):
             yield value

@@ -1,10 +1,10 @@
-"""The errors of the project: one root, one branch per package.
+"""Error classes of the project: one root, one branch per package.
 
 ::
 
     StepNcError
-    ├── Part21Error(line, column)          the text is no ISO 10303-21
-    ├── SchemaError(entity, attribute)     the instances are no usable ISO 14649 program
+    ├── Part21Error(line, column)          the text is not valid ISO 10303-21
+    ├── SchemaError(entity, attribute)     the instances are not a usable ISO 14649 program
     ├── WriteError(path)                   the result could not be written
     ├── PathError(entity, attribute)       no tool path can be made for a workingstep
     ├── PostError(line)                    NC code that a control or a reader cannot take
@@ -24,9 +24,10 @@
         ├── NotFound(thing, id), Conflict, PreconditionFailed, TooLarge(bound), Unreadable
         └── Unauthorised, Forbidden, TooMany(wait), StorageFull, Unavailable
 
-A caller's mistake is a ``ValueError`` or ``TypeError``; a bad file or an impossible cut is in
-this tree. What is no failure (a deviation from the schema, a guess) is a :class:`Finding`; a
-:class:`FindingList` keeps the first of each severity, and how many more there are.
+A programming mistake of the caller is a ``ValueError`` or ``TypeError``; a bad file or an
+impossible cut is in this tree. Anything that is not a failure (a deviation from the schema, an
+assumption) is a :class:`Finding`; a :class:`FindingList` keeps the first findings of each
+severity and counts the rest.
 """
 
 from collections import Counter
@@ -40,7 +41,7 @@ class StepNcError(Exception):
 
 
 class Part21Error(StepNcError):
-    """The bytes are no ISO 10303-21 exchange structure.
+    """The bytes are not a valid ISO 10303-21 exchange structure.
 
     Parameters
     ----------
@@ -57,19 +58,19 @@ class Part21Error(StepNcError):
 
 
 class SchemaError(StepNcError):
-    """An instance lacks what a machining program cannot do without.
+    """An instance lacks something that a machining program requires.
 
     Parameters
     ----------
     message : str
-        The rule that is broken.
+        Rule that is violated.
     entity : str
-        The instance as the file names it, ``#19 PLANE_FINISH_MILLING``; empty when the whole
-        file is meant.
+        Instance as the file names it, ``#19 PLANE_FINISH_MILLING``; empty for the whole
+        file.
     attribute : str
         EXPRESS name of the attribute, or empty.
     line : int
-        Line of the instance, counted from 1; 0 when the whole file is meant.
+        Line of the instance, counted from 1; 0 for the whole file.
     """
 
     def __init__(
@@ -95,7 +96,7 @@ class PostError(StepNcError):
     message : str
         What was found and what was expected.
     line : int
-        Line of the NC code, counted from 1; 0 when there is none.
+        Line of the NC code, counted from 1; 0 if unknown.
     """
 
     def __init__(self, message: str, *, line: int = 0) -> None:
@@ -104,14 +105,14 @@ class PostError(StepNcError):
 
 
 class WriteError(StepNcError):
-    """A result could not be written; nothing was left half done.
+    """A result could not be written; no partial file was left behind.
 
     Parameters
     ----------
     message : str
-        What the operating system or the rule says.
+        Reason given by the operating system or by a rule.
     path : str
-        The file that was to be written.
+        File that was to be written.
     """
 
     def __init__(self, message: str, *, path: str) -> None:
@@ -123,26 +124,26 @@ class Severity(StrEnum):
     """Severity of a finding."""
 
     NOTE = "note"
-    """For information: a guess, a default, an older name."""
+    """Information about an assumption, a default or an outdated name."""
     WARNING = "warning"
-    """A deviation from the standard that a machinist would want to see."""
+    """Deviation from the standard that a machinist should see."""
     ERROR = "error"
-    """The instance named cannot be used."""
+    """The named instance cannot be used."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Finding:
-    """A deviation that is reported rather than raised."""
+    """Deviation or remark that is reported rather than raised."""
 
     severity: Severity
     message: str
     entity: str = ""
-    """The instance as the file names it, ``#19 PLANE_FINISH_MILLING``."""
+    """Instance as the file names it, ``#19 PLANE_FINISH_MILLING``."""
     attribute: str = ""
     line: int = 0
-    """Line of the instance, counted from 1; 0 when the whole file is meant."""
+    """Line of the instance, counted from 1; 0 for the whole file."""
     rule: str = ""
-    """The clause or rule broken, ``ISO 14649-11 WR1`` for example."""
+    """Violated clause or rule, for example ``ISO 14649-11 WR1``."""
 
     def __str__(self) -> str:
         place = f"line {self.line}: " if self.line else ""
@@ -152,37 +153,37 @@ class Finding:
 
 
 MOST_FINDINGS = 1000
-"""findings of one severity that are listed at most; a file could hold millions"""
+"""Greatest number of findings listed per severity; a file could hold millions."""
 
 
 class FindingList:
-    """Findings of one file. Running state."""
+    """Collector of the findings of one file; it lists the first and counts the rest."""
 
     def __init__(self) -> None:
         self._kept: list[Finding] = []
         self._counts: Counter[Severity] = Counter()
 
     def add(self, finding: Finding) -> None:
-        """Take one."""
+        """Add a finding."""
         if self.has_room(finding.severity):
             self._kept.append(finding)
         self._counts[finding.severity] += 1
 
     def extend(self, findings: Iterable[Finding]) -> None:
-        """Take several in their order."""
+        """Add several findings in order."""
         for finding in findings:
             self.add(finding)
 
     def has_room(self, severity: Severity) -> bool:
-        """Whether one more of a severity would be listed."""
+        """Whether another finding of a severity would be listed."""
         return self._counts[severity] < MOST_FINDINGS
 
     def count(self, severity: Severity, number: int = 1) -> None:
-        """Count findings that are not described."""
+        """Count findings without listing them."""
         self._counts[severity] += number
 
     def all(self) -> tuple[Finding, ...]:
-        """Those kept, by line, and a last one for each severity that was cut."""
+        """Listed findings by line, and a summary for each severity that was truncated."""
         listed = Counter(finding.severity for finding in self._kept)
         rest = (
             Finding(

@@ -1,10 +1,10 @@
-"""How optimisation records are written into a program."""
+"""Forms in which optimisation records are written into a program."""
 
 from enum import StrEnum
 
 
 class FileProfile(StrEnum):
-    """File profile: the entities that hold the record."""
+    """File profile, the form in which an optimisation record is written."""
 
     OPTIMISATION = "optimisation"
     STANDARD = "standard"

@@ -1,9 +1,9 @@
-"""Outcomes: one workingstep of one run, as predicted and as measured.
+"""Outcomes: predicted and measured results of one workingstep of one run.
 
-The nouns of process control and knowledge base. The attributes are the columns of [1]_,
-Table 1, and the four quantities that it evaluates: surface quality, machining time, actual
-cutting force and actual feed. Units mm, s, N; speeds mm/s; roughness Ra in mm; k_c in N/mm².
-``None`` means: not known, or not measured.
+These are the data classes of process control and knowledge base. The attributes are the columns
+of [1]_, Table 1, and the four quantities that it evaluates: surface quality, machining time,
+actual cutting force and actual feed. Units mm, s, N; speeds mm/s; roughness Ra in mm; k_c in
+N/mm². ``None`` means not known or not measured.
 
 References
 ----------
@@ -19,7 +19,7 @@ from stepnc_model.entities.optimisation import FaceMillingImmersion
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Context:
-    """Context that a correction applies to."""
+    """Machine, material and tool that a correction applies to."""
 
     machine: str
     material: str
@@ -28,14 +28,14 @@ class Context:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EvaluatedQuantity:
-    """One evaluated quantity, as planned and as it was."""
+    """Evaluated quantity with its predicted and measured values."""
 
     predicted: float | None = None
     measured: float | None = None
 
     @property
     def deviation(self) -> float | None:
-        """Measured over predicted, less one; None when either is missing or predicted is 0."""
+        """Measured / predicted − 1; None if either is missing or predicted is 0."""
         if self.predicted is None or self.measured is None or self.predicted == 0.0:
             return None
         return self.measured / self.predicted - 1.0
@@ -43,38 +43,38 @@ class EvaluatedQuantity:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ForceRatio:
-    """Measured over expected cutting force at the feed that was really run.
+    """Ratio of measured to expected cutting force at the actual feed.
 
-    Expected with the catalogue's k_c, whatever correction the plan used, so that outcomes of
-    all plans tell of the same factor.
+    The expected force uses the catalogue's k_c, whatever correction the plan used, so that
+    outcomes of all plans estimate the same factor.
     """
 
     log_mean: float
-    """mean of ln(measured / expected)"""
+    """Mean of ln(measured / expected)."""
     log_deviation: float
-    """standard deviation of one reading"""
+    """Standard deviation of a single reading of ln(measured / expected)."""
     readings: int
-    """revolutions that were counted"""
+    """Number of revolutions that were counted."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FeatureFacts:
-    """The geometrical columns of [1]_, Table 1."""
+    """Geometrical data of a feature, [1]_, Table 1."""
 
     id: str
     kind: str
-    """EXPRESS name, ``closed_pocket``"""
+    """EXPRESS name of the feature, such as ``closed_pocket``."""
     length: float | None = None
-    """L, mm"""
+    """Length L of the feature, mm."""
     width: float | None = None
-    """X, mm"""
+    """Width X of the feature, mm."""
     total_depth: float | None = None
-    """a_t, mm"""
+    """Total depth a_t of the feature, mm."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProcessOutcome:
-    """One workingstep of one run."""
+    """Predicted and measured results of one workingstep of one run."""
 
     context: Context
     program: str
@@ -82,34 +82,34 @@ class ProcessOutcome:
     feature: FeatureFacts
     is_finishing: bool
     mode: str
-    """TC, QC or EC: what the feed was chosen for"""
+    """Goal of the feed optimisation: TC, QC or EC."""
     specific_force: float | None
-    """k_c1.1 of the catalogue, N/mm²"""
+    """Specific cutting force k_c1.1 of the catalogue, N/mm²."""
     cutting_speed: float | None
-    """V_c, mm/s"""
+    """Cutting speed V_c, mm/s."""
     step_depth: EvaluatedQuantity
-    """a_s, mm"""
+    """Depth of one pass a_s, mm."""
     feed_per_tooth: EvaluatedQuantity
-    """f_z, mm"""
+    """Feed per tooth f_z, mm."""
     immersion: FaceMillingImmersion | None
-    """type of face milling, d_s1 to d_s3; None: no milling"""
+    """Type of face milling, d_s1 to d_s3; None if not milled."""
     strategy: str
-    """EXPRESS name of the machining strategy; empty when there is none"""
+    """EXPRESS name of the machining strategy; empty if there is none."""
     roughness: EvaluatedQuantity
     time: EvaluatedQuantity
     force: EvaluatedQuantity
-    """greatest mean of a revolution, N"""
+    """Greatest mean cutting force over a revolution, N."""
     feed: EvaluatedQuantity
-    """mean while it cut, mm/s"""
+    """Mean feed while cutting, mm/s."""
     force_bound: float | None
-    """Force bound, N that this workingstep was to keep"""
+    """Upper bound on the cutting force of this workingstep, N."""
     force_ratio: ForceRatio | None
     trace: str
-    """where the samples are kept; empty: nowhere"""
+    """Location of the recorded samples; empty if not kept."""
     run: str
-    """which run; one id for all its workingsteps"""
+    """Identifier of the run, shared by all its workingsteps."""
     recorded_at: datetime
-    """with zone"""
+    """Time of recording, with time zone."""
     recorded_by: str
 
 
@@ -117,20 +117,20 @@ class ProcessOutcome:
 class LearnedCorrection:
     """Correction learned from outcomes: a factor on k_c.
 
-    ``ln factor`` follows Student's t with the given centre, scale and degrees of freedom: what
-    the next run is expected to show, not only where the mean lies.
+    ``ln factor`` follows Student's t with the given centre, scale and degrees of freedom: the
+    distribution expected for the next run, not only for the mean.
     """
 
     context: Context
     log_centre: float
     log_scale: float
     degrees: float
-    """of freedom, positive"""
+    """Degrees of freedom, positive."""
     outcomes: int
-    """that it was learned from"""
+    """Number of outcomes that the correction was learned from."""
     confidence: float
-    """probability that the factor lies within ±10 % of its centre"""
+    """Probability that the factor lies within ±10 % of its centre."""
     proposed_at: datetime
     accepted_by: str = ""
-    """empty: a proposal only"""
+    """Person who accepted the correction; empty for a proposal."""
     accepted_at: datetime | None = None

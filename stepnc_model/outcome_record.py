@@ -1,20 +1,20 @@
-"""Outcomes and corrections as entities of the program itself.
+"""Outcomes and corrections written into a program as entities, and read from it.
 
 Outcomes and corrections become the entities ``outcome`` and ``correction`` of
-``schemas/optimisation.exp``, appended to the file; every other byte stays. They have no other
-form: profile ``standard`` promises a file that every ISO 14649 reader takes, so there they are
-refused.
+``schemas/optimisation.exp``, appended to the file; all other bytes stay unchanged. There is no
+other form: profile ``standard`` promises a file that every ISO 14649 reader accepts, so with it
+they are rejected.
 
-An outcome is a measurement: later ones are appended, none is ever changed, and one that is in
-the file already is not written again. The entities say less than the nouns: prediction, context
-and statistics of an outcome stay in the knowledge base.
+An outcome is a measurement: later outcomes are appended, existing ones never change, and an
+outcome that is already in the file is not written again. The entities hold less than the
+Python objects: prediction, context and statistics of an outcome stay in the knowledge base.
 
-Two corrections for one machine, material and tool would leave a reader to guess which of them
-holds, so a newer one takes the place of the older, in its instance; a proposal leaves what was
-accepted. What was believed before is history, and the knowledge base keeps it, as it keeps the
-distribution of a correction: the file has the factor at its centre.
+Two corrections for the same machine, material and tool would be ambiguous, so a newer one
+replaces the older in its instance; a proposal does not replace an accepted correction. Earlier
+corrections and distributions are kept only in the knowledge base; the file has the factor at
+the centre of the distribution.
 
-Numbers and times are checked on their way in, and taken as found out.
+Numbers and times are checked when written, and read tolerantly.
 """
 
 from collections import Counter
@@ -37,37 +37,37 @@ from stepnc_model.writeback import SCHEMA, rounded
 
 
 def written(time: datetime) -> str:
-    """A time as ISO 8601 with its zone."""
+    """Format a time as ISO 8601 with its time zone."""
     if time.utcoffset() is None:
         raise ValueError(f"{time.isoformat()} has no time zone")
     return time.isoformat()
 
 
 def measured_or_none(value: float | None, name: str, unit: str) -> float | None:
-    """A number that may be 0; None when it was not measured."""
+    """Check a measured number that may be 0; None if not measured."""
     return 0.0 if value == 0.0 else positive_or_none(value, name, unit)
 
 
 def positive_or_none(value: float | None, name: str, unit: str) -> float | None:
-    """A number above 0; None when it was not measured."""
+    """Check a number above 0; None if not measured."""
     return None if value is None else positive(value, name, unit)
 
 
 def positive(value: float, name: str, unit: str) -> float:
-    """A number above 0 as it is written."""
+    """Check that a number is positive and finite; return it rounded as written."""
     number = rounded(value)
     if not 0.0 < number < inf:
-        raise ValueError(f"a {name} of {value:g} {unit}".rstrip())
+        raise ValueError(f"invalid {name}: {value:g} {unit}".rstrip())
     return number
 
 
 def known(value: object) -> float | None:
-    """A number of the file that is one; the binding is tolerant."""
+    """Finite number from the file, or None for any other value."""
     return float(value) if isinstance(value, int | float) and isfinite(value) else None
 
 
 def instant(text: object) -> datetime | None:
-    """A time of the file, where it is one and has a zone."""
+    """Time from the file, or None if it is invalid or has no time zone."""
     if not isinstance(text, str):
         return None
     try:
@@ -79,43 +79,43 @@ def instant(text: object) -> datetime | None:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RecordedCorrection:
-    """One factor on k_c as the file has it."""
+    """Correction factor on k_c as read from the file."""
 
     context: Context
     factor: float
     confidence: float
-    """0…1"""
+    """Confidence, 0 to 1."""
     accepted_by: str
-    """empty: a proposal only"""
+    """Person who accepted the correction; empty for a proposal."""
     valid_from: datetime | None
-    """with zone"""
+    """Start of validity, with time zone."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Standing:
-    """A correction of the file, or one to come."""
+    """Correction that is in the file or is to be written."""
 
     ref: Ref[entities.Correction] | None
     entity: entities.Correction
 
     @property
     def since(self) -> datetime:
-        """From when it holds; what says no time is older than all that do."""
+        """Start of validity; a correction without a time is older than all others."""
         return instant(self.entity.valid_from) or datetime.min.replace(tzinfo=UTC)
 
 
 def correction_entity(correction: LearnedCorrection) -> entities.Correction:
-    """Date of a correction in the file: when it was accepted, or else proposed."""
+    """Entity that holds a learned correction, dated by its acceptance or its proposal."""
     try:
         factor = exp(correction.log_centre)
     except OverflowError:
         factor = inf
     confidence = correction.confidence
     if not 0.0 <= confidence <= 1.0:
-        raise ValueError(f"a confidence of {confidence:g}: it lies within 0 and 1")
+        raise ValueError(f"a confidence of {confidence:g}: it must lie between 0 and 1")
     context = correction.context
     if not (context.machine and context.material and context.tool):
-        raise ValueError("a correction holds for a machine, a material and a tool, all named")
+        raise ValueError("a correction must name its machine, material and tool")
     return entities.Correction(
         machine=context.machine,
         material=context.material,
@@ -139,7 +139,7 @@ def supersede(program: Program, edits: Edits, learned: Sequence[entities.Correct
 
 
 def recorded_correction(entity: entities.Correction) -> RecordedCorrection | None:
-    """A correction of the file; None for one that is not complete."""
+    """Read a correction of the file; None if it is incomplete."""
     factor, confidence = known(entity.specific_force_factor), known(entity.confidence)
     is_named = entity.machine and entity.material and entity.tool
     if factor is None or factor <= 0.0 or confidence is None or not is_named:
@@ -154,10 +154,10 @@ def recorded_correction(entity: entities.Correction) -> RecordedCorrection | Non
 
 
 def _settle(edits: Edits, standing: Sequence[_Standing]) -> None:
-    """Write what holds of one context over what does not.
+    """Write the valid corrections of one context in place of outdated ones.
 
-    What comes last wins among equally new ones. A proposal stays only while it is newer than
-    what was accepted.
+    Among equally new corrections the last one wins. A proposal is kept only while it is newer
+    than the accepted correction.
     """
     accepted = [each for each in standing if each.entity.accepted_by]
     proposed = [each for each in standing if not each.entity.accepted_by]
@@ -176,7 +176,7 @@ def _settle(edits: Edits, standing: Sequence[_Standing]) -> None:
 
 
 def _newest(standing: Sequence[_Standing]) -> "_Standing | None":
-    """The newest correction, the last of those that are equally new; what is there stays."""
+    """Newest correction; the last of equally new ones, but an identical one stays."""
     newest: _Standing | None = None
     for each in standing:
         is_same = newest is not None and each.entity == newest.entity
@@ -186,7 +186,7 @@ def _newest(standing: Sequence[_Standing]) -> "_Standing | None":
 
 
 def _put(edits: Edits, entity: entities.Correction, old: _Standing | None) -> None:
-    """Write a correction, in the instance of an older one where there is one."""
+    """Write a correction, reusing the instance of an older one if there is one."""
     values = to_parameters(entity)
     if old is None or old.ref is None:
         edits.add(entity.keyword, values)
@@ -202,34 +202,34 @@ def _put(edits: Edits, entity: entities.Correction, old: _Standing | None) -> No
 
 
 def _context(entity: entities.Correction) -> Context:
-    """Context of a correction of the file."""
+    """Context of a correction entity."""
     return Context(machine=entity.machine, material=entity.material, tool=entity.tool)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RecordedOutcome:
-    """One measurement as the file has it; ``None``: not measured."""
+    """Measurement as read from the file; ``None`` for quantities not measured."""
 
     operation: Ref[MachiningOperation]
     workingsteps: tuple[str, ...]
-    """ids of those that run the operation; several may share it"""
+    """Names of the workingsteps that run the operation; several may share it."""
     measured_at: datetime | None
-    """with zone"""
+    """Time of measurement, with time zone."""
     time: float | None
-    """Time, s"""
+    """Machining time, s."""
     force: float | None
-    """Force, N"""
+    """Cutting force, N."""
     feed: float | None
-    """Feed, mm/s"""
+    """Feed, mm/s."""
     roughness: float | None
-    """Ra, mm"""
+    """Roughness Ra, mm."""
     trace: str
-    """empty: nowhere"""
+    """Location of the recorded samples; empty if not kept."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RecordedOutcomes:
-    """All outcomes and corrections that a program holds, in the file's order."""
+    """All outcomes and corrections of a program, in file order."""
 
     outcomes: tuple[RecordedOutcome, ...]
     corrections: tuple[RecordedCorrection, ...]
@@ -240,28 +240,28 @@ def write_outcomes(
     outcomes: Sequence[ProcessOutcome],
     corrections: Sequence[LearnedCorrection] = (),
 ) -> bytes:
-    """The file with outcomes and corrections in it.
+    """Write outcomes and corrections into a program; return the bytes of the new file.
 
     Parameters
     ----------
     program : Program
-        As it was read.
+        Program as it was read.
     outcomes : sequence of ProcessOutcome
-        Of workingsteps of this program, named by id or by instance, ``#16``.
+        Outcomes of workingsteps of this program, given by name or by instance, ``#16``.
     corrections : sequence of LearnedCorrection
 
     Returns
     -------
     bytes
-        The file's own bytes when it holds all of them already.
+        Unchanged bytes of the file if it already holds all of them.
 
     Raises
     ------
     SchemaError
-        When there is no such workingstep, when its id names several operations, or when the
+        If there is no such workingstep, its name belongs to several operations, or the
         program's records are in profile ``standard``.
     ValueError
-        When a number is none that the schema allows, or a time has no zone.
+        If the schema does not allow a number, or a time has no time zone.
     """
     measured = [_outcome_entity(program, each) for each in outcomes]
     learned = [correction_entity(each) for each in corrections]
@@ -270,7 +270,7 @@ def write_outcomes(
         return edits.apply()
     if has_parameters(program):
         raise program.error(
-            "its record is in profile 'standard', which has no form for outcomes and "
+            "the optimisation record is in profile 'standard', which cannot hold outcomes and "
             "corrections: convert the program to profile 'optimisation' first",
             program.workingsteps[0].operation_ref,
         )
@@ -281,7 +281,7 @@ def write_outcomes(
 
 
 def read_outcomes(program: Program) -> RecordedOutcomes:
-    """Outcomes and corrections that a program holds, without those that are not complete."""
+    """Read the complete outcomes and corrections of a program."""
     measured = program.model.of_type(entities.Outcome)
     learned = program.model.of_type(entities.Correction)
     outcomes = (_recorded_outcome(program, each) for _, each in measured)
@@ -293,7 +293,7 @@ def read_outcomes(program: Program) -> RecordedOutcomes:
 
 
 def _outcome_entity(program: Program, outcome: ProcessOutcome) -> entities.Outcome:
-    """Entity of an outcome."""
+    """Entity that holds a measured outcome."""
     time, force = outcome.time.measured, outcome.force.measured
     feed, roughness = outcome.feed.measured, outcome.roughness.measured
     return entities.Outcome(
@@ -312,7 +312,7 @@ def _outcome_entity(program: Program, outcome: ProcessOutcome) -> entities.Outco
 
 
 def _operation(program: Program, name: str) -> Ref[MachiningOperation]:
-    """Operation of the workingstep with an id or instance."""
+    """Operation of the workingstep with the given name or instance."""
     found = {
         int(step.operation_ref)
         for step in program.workingsteps
@@ -320,14 +320,18 @@ def _operation(program: Program, name: str) -> Ref[MachiningOperation]:
     }
     if len(found) == 1:
         return Ref(found.pop())
-    why = f"names {len(found)} operations" if found else "is no workingstep of this program"
+    why = (
+        f"belongs to {len(found)} operations"
+        if found
+        else "is not a workingstep of this program"
+    )
     raise SchemaError(f"'{name}' {why}", entity="OUTCOME", attribute="its_operation")
 
 
 def _append(program: Program, edits: Edits, measured: Sequence[entities.Outcome]) -> None:
-    """Add the outcomes that the file lacks.
+    """Add the outcomes that are not yet in the file.
 
-    Holes that share an operation may measure the same to the last digit, so equal ones count.
+    Operations of several holes may give equal measurements, so equal outcomes are counted.
     """
     there = Counter(each for _, each in program.model.of_type(entities.Outcome))
     for outcome in measured:
@@ -338,7 +342,7 @@ def _append(program: Program, edits: Edits, measured: Sequence[entities.Outcome]
 
 
 def _recorded_outcome(program: Program, entity: entities.Outcome) -> RecordedOutcome | None:
-    """An outcome of the file in the units inside; None for one that is not complete."""
+    """Read an outcome of the file in canonical units; None if it is incomplete."""
     feed, roughness = known(entity.feedrate), known(entity.surface_roughness)
     operation: Ref[MachiningOperation] | None = entity.its_operation
     if operation is None or not _is_operation(program, operation):

@@ -1,10 +1,10 @@
-"""Optimisation records as Fig. 11 of [1]_ prints them, read into the consistent form.
+"""Reader of optimisation records in the form printed in Fig. 11 of [1]_.
 
-The figure and the schema of the same paper disagree: powers hold their numeric parameter
-instead of referring to one, the cutting force stands in another order with one value too many,
-the immersion is in double quotes, and numbers carry the units of Table 2. What a record means
-is still plain, so it is read, and every slip is a finding. Records in the order of
-``schemas/optimisation.exp`` are none of this module's business.
+The figure and the schema of the same paper disagree: powers contain their numeric parameter
+instead of referring to one, the cutting force has another order with one value too many, the
+immersion is in double quotes, and numbers have the units of Table 2. The meaning is still
+clear, so such records are read, and every deviation is a finding. Records that follow
+``schemas/optimisation.exp`` are read elsewhere.
 
 References
 ----------
@@ -36,35 +36,35 @@ PRINTED = frozenset({
     "CUTTING_FORCE",
     "FACE_MILLING_TYPE",
 })
-"""keywords whose instances may stand in the printed form"""
+"""Keywords of instances that may have the printed form."""
 
 INLINED: Ref[NumericParameter] = Ref(0)
-"""stands for a numeric parameter that has no instance of its own; ids of a file start at 1"""
+"""Placeholder for a numeric parameter without an instance; ids of a file start at 1."""
 
 MAX_SPINDLE_SPEED = 300.0
-"""rev/s; a greater number is taken for rpm"""
+"""Greatest spindle speed, rev/s; greater numbers are read as rpm."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ConsistentRecord:
-    """One record in the consistent form."""
+    """Record converted to the form of the schema."""
 
     entity: Entity
     inlined: NumericParameter | None
-    """what :data:`INLINED` stands for; ``None`` when there is none or its value is left out"""
+    """Parameter that :data:`INLINED` stands for; ``None`` if it is absent or has no value."""
     findings: tuple[Finding, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Record:
-    """One instance as it stands in the file."""
+    """Parameters of one instance as in the file, with its place."""
 
     values: tuple[Value, ...]
     label: str
     line: int
 
     def slip(self, message: str, attribute: str) -> Finding:
-        """A finding about this record."""
+        """Create a finding about this record."""
         return Finding(
             severity=Severity.WARNING,
             message=message,
@@ -85,16 +85,16 @@ def read_printed(
     keyword : str
         EXPRESS name in capitals.
     values : tuple of Value
-        Parameters as they stand in the file.
+        Parameters as in the file.
     label : str
-        The instance for messages, ``#203 CUTTING_FORCE``.
+        Instance name for messages, ``#203 CUTTING_FORCE``.
     line : int
-        Its line, counted from 1; 0 when unknown.
+        Line of the instance, counted from 1; 0 if unknown.
 
     Returns
     -------
     ConsistentRecord or None
-        None for any other form, which is for the generic binding.
+        None for any other form, which is left to the generic binding.
     """
     record = _Record(values=values, label=label, line=line)
     match keyword:
@@ -111,7 +111,7 @@ def read_printed(
 
 
 def _machine_power(record: _Record) -> ConsistentRecord | None:
-    """('MACHINE POWER', 0.29, 'kW')."""
+    """Read ('MACHINE POWER', 0.29, 'kW')."""
     if len(record.values) != 3:
         return None
     parameter = _numeric_parameter(*record.values)
@@ -125,7 +125,7 @@ def _machine_power(record: _Record) -> ConsistentRecord | None:
 
 
 def _main_cutting_power(record: _Record) -> ConsistentRecord | None:
-    """('CUTTING POWER', $, 'kW', #203, 35): the last is Table 2's cutting speed in m/min."""
+    """Read ('CUTTING POWER', $, 'kW', #203, 35), where 35 is Table 2's speed in m/min."""
     if len(record.values) != 5:
         return None
     name, value, unit, force, speed = record.values
@@ -134,7 +134,7 @@ def _main_cutting_power(record: _Record) -> ConsistentRecord | None:
         return None
     findings = [_inlining(record)]
     if value is None:
-        findings.append(record.slip("the power is left out", "its_power_property"))
+        findings.append(record.slip("the power value is missing", "its_power_property"))
     text = (
         f"{number:g} is kept as a spindle speed in rev/s; "
         "the paper's 35 is the cutting speed of its Table 2 in m/min"
@@ -150,7 +150,7 @@ def _main_cutting_power(record: _Record) -> ConsistentRecord | None:
 
 
 def _cutting_force(record: _Record) -> ConsistentRecord | None:
-    """(1000, #204, 500, $, 0.5, 5): resistance, type, speed, nothing, feed, depth."""
+    """Read (1000, #204, 500, $, 0.5, 5): resistance, type, speed, nothing, feed, depth."""
     if len(record.values) != 6:
         return None
     _, face, _, surplus, _, _ = record.values
@@ -161,7 +161,7 @@ def _cutting_force(record: _Record) -> ConsistentRecord | None:
     if surplus is not None or not (face is None or isinstance(face, Ref)):
         return None
     order = (
-        "specific cutting resistance stands first; the schema has the face milling type first, "
+        "specific cutting resistance comes first; the schema has the face milling type first, "
         "then spindle speed, feed per tooth, resistance and depth"
     )
     findings = [
@@ -169,7 +169,7 @@ def _cutting_force(record: _Record) -> ConsistentRecord | None:
         record.slip("$ after the spindle speed belongs to no attribute", ""),
     ]
     if abs(speed) > MAX_SPINDLE_SPEED:
-        text = f"no spindle turns at {speed:g} rev/s: read as {speed:g} rpm"
+        text = f"spindle speed {speed:g} rev/s is impossible: read as {speed:g} rpm"
         findings.append(record.slip(text, "spindle_speed"))
         speed = rev_s_from_rpm(speed)
     return ConsistentRecord(
@@ -186,7 +186,7 @@ def _cutting_force(record: _Record) -> ConsistentRecord | None:
 
 
 def _face_milling_type(record: _Record) -> ConsistentRecord | None:
-    """(180.0, "FULL_IMMERSION")."""
+    """Read (180.0, "FULL_IMMERSION")."""
     if len(record.values) != 2:
         return None
     angle, immersion = _number(record.values[0]), record.values[1]
@@ -198,20 +198,25 @@ def _face_milling_type(record: _Record) -> ConsistentRecord | None:
     return ConsistentRecord(
         entity=FaceMillingType(zeta=angle, immersion_type=FaceMillingImmersion[name]),
         inlined=None,
-        findings=(record.slip(f"{name} is a text; the schema has .{name}.", "immersion_type"),),
+        findings=(
+            record.slip(
+                f"{name} is a string; the schema has the enumeration value .{name}.",
+                "immersion_type",
+            ),
+        ),
     )
 
 
 def _inlining(record: _Record) -> Finding:
-    """The slip that both powers share."""
+    """Finding that a power contains its parameter instead of referring to it."""
     return record.slip(
-        "name, value and unit stand inside; the schema refers to a NUMERIC_PARAMETER",
+        "name, value and unit are inline; the schema refers to a NUMERIC_PARAMETER",
         "its_power_property",
     )
 
 
 def _numeric_parameter(name: Value, value: Value, unit: Value) -> NumericParameter | None:
-    """A numeric parameter, if these three make one."""
+    """Numeric parameter from name, value and unit; None if they are not valid."""
     number = _number(value)
     if number is None or not isinstance(name, str) or not isinstance(unit, str):
         return None
@@ -221,7 +226,7 @@ def _numeric_parameter(name: Value, value: Value, unit: Value) -> NumericParamet
 
 
 def _number(value: Value) -> float | None:
-    """A finite number, else None; a reference is none."""
+    """Finite number, or None for any other value."""
     if isinstance(value, Ref) or not isinstance(value, (int, float)) or not isfinite(value):
         return None
     return float(value)

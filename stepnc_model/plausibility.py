@@ -1,7 +1,7 @@
-"""Numbers that no machine can mean: the sign that a program is written in other units.
+"""Check for implausible numbers, a sign that a program is written in other units.
 
-What a file's numbers mean cannot be inferred, so nothing is guessed: implausible numbers are
-findings, and the unit profiles that would make them plausible are named.
+The unit of a file's numbers cannot be inferred, so nothing is guessed: implausible numbers
+become findings, which name the unit profiles that would make them plausible.
 """
 
 from collections.abc import Iterator, Sequence
@@ -15,23 +15,23 @@ from stepnc_model.tool import hand_of, tool_of
 from stepnc_model.units import PROFILES, UnitProfile
 
 MAX_SPINDLE_SPEED = 300.0
-"""rev/s; faster spindles are those of dental and circuit-board machines"""
+"""Greatest plausible spindle speed, rev/s; only dental and circuit-board machines exceed it."""
 
 MAX_CUTTING_SPEED = 25_000.0
-"""mm/s; aluminium is milled at up to 1500 m/min"""
+"""Greatest plausible cutting speed, mm/s; aluminium is milled at up to 1500 m/min."""
 
 LEAST_CUTTING_SPEED = 8.0
-"""mm/s, half a metre a minute; below it nobody mills or drills"""
+"""Least plausible cutting speed for milling and drilling, mm/s, about 0.5 m/min."""
 
 LEAST_FEED_PER_TOOTH = 5e-4
-"""mm; below it no edge is sharp enough to cut"""
+"""Least plausible feed per tooth, mm; no edge is sharp enough to cut less."""
 
 MAX_TURNING_FEED = 5.0
-"""mm per revolution"""
+"""Greatest plausible turning feed, mm per revolution."""
 
 
 def implausible(program: Program) -> tuple[Finding, ...]:
-    """Findings about all workingsteps of a program."""
+    """Findings about implausible numbers in all workingsteps of a program."""
     found: dict[str, Finding] = {}
     for step in program.workingsteps:
         for finding in _findings(program, step):
@@ -40,7 +40,7 @@ def implausible(program: Program) -> tuple[Finding, ...]:
 
 
 def refusal(program: Program, steps: Sequence[ResolvedWorkingstep]) -> SchemaError | None:
-    """Error that names the first implausible number, and the profiles that would do."""
+    """Error that names the first implausible number and the unit profiles that would fit."""
     for step in steps:
         for finding in _findings(program, step):
             if finding.severity is Severity.WARNING and finding.rule == RULE:
@@ -65,7 +65,7 @@ RULE = "ISO 14649-10 4.2.1"
 
 
 def _findings(program: Program, step: ResolvedWorkingstep) -> Iterator[Finding]:
-    """Findings on implausible numbers of one workingstep."""
+    """Findings about implausible numbers in one workingstep."""
     try:
         with program.using(step.operation_ref):
             conditions = programmed(program, step.technology_ref)
@@ -94,7 +94,7 @@ def _findings(program: Program, step: ResolvedWorkingstep) -> Iterator[Finding]:
     if is_milling and speed.scale > 0.0 and not is_left:
         yield program.finding(
             Severity.NOTE,
-            "the spindle is positive, counter-clockwise, and the tool is not left-handed",
+            "positive spindle speed means counter-clockwise, but the tool is not left-handed",
             speed.ref,
             "spindle",
         )
@@ -103,7 +103,7 @@ def _findings(program: Program, step: ResolvedWorkingstep) -> Iterator[Finding]:
 def _oddities(
     program: Program, step: ResolvedWorkingstep, conditions: Programmed
 ) -> Iterator[tuple[Number, str]]:
-    """Numbers that cannot be meant, with the reason."""
+    """Implausible numbers of a workingstep, each with the reason."""
     speed = conditions.speed
     is_spindle = speed.quantity is ProgrammedQuantity.SPINDLE_SPEED
     if is_spindle and speed.value > MAX_SPINDLE_SPEED:
@@ -124,7 +124,7 @@ def _oddities(
     turning = conditions.spindle_speed(tool.diameter)
     around = pi * tool.diameter * turning
     if around < LEAST_CUTTING_SPEED:
-        yield speed, f"the edge moves at {around * 60.0 / 1e3:.3g} m/min only"
+        yield speed, f"the cutting speed is only {around * 60.0 / 1e3:.3g} m/min"
     feed = conditions.feed_per_tooth(turning, tool.teeth)
     radius = 0.5 * tool.diameter
     if feed > radius:
@@ -137,7 +137,7 @@ def _oddities(
 def _all_fit(
     program: Program, steps: Sequence[ResolvedWorkingstep], units: UnitProfile
 ) -> bool:
-    """Whether another profile makes the numbers of all workingsteps plausible."""
+    """Whether a unit profile makes the numbers of all workingsteps plausible."""
     other = Program(program.file, units=units, name=program.name)
     for step in steps:
         try:

@@ -1,7 +1,7 @@
-"""A STEP-NC program: its workingsteps in order, and what each refers to.
+"""STEP-NC program: its workingsteps in order, and the entities that each refers to.
 
-Loading never fails on a deviation that leaves the program usable; it is a finding. What makes
-one workingstep unusable is an error finding, and asking for that workingstep raises it.
+Loading does not fail on deviations that leave the program usable; they are findings. A problem
+that makes a workingstep unusable is an error finding, raised when the workingstep is requested.
 """
 
 from collections.abc import Iterator
@@ -36,40 +36,40 @@ from stepnc_model.units import ISO, UnitProfile
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stock:
-    """Raw part in the coordinates of the setup: a box, or a bar about an axis along z."""
+    """Raw part in setup coordinates: a box, or a bar about an axis along z, mm."""
 
     low: tuple[float, float, float]
     high: tuple[float, float, float]
     radius: float | None = None
-    """Radius, mm, of a bar; its axis is in the middle of the box"""
+    """Radius of a bar, mm; its axis is in the middle of the box."""
 
 
 T = TypeVar("T")
 
 MAX_EXECUTABLES = 100_000
-"""beyond so many a program is a trap: workplans that name each other twice grow as 2^n"""
+"""Greatest number of executables; mutually nested workplans could grow without bound."""
 
 AIM_KEYWORDS = ("PRODUCT_DEFINITION", "MACHINING_WORKPLAN", "MACHINING_PROJECT")
-"""instances that AP238 files have and ISO 14649 files have not"""
+"""Keywords that occur in AP238 files but not in ISO 14649 files."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProgramLine:
-    """One line of the program as it is shown: a structure, a function or a workingstep."""
+    """Line of a program listing: a program structure, an NC function or a workingstep."""
 
     ref: Ref[Entity]
     keyword: str
-    """EXPRESS name in capitals, as in the file"""
+    """EXPRESS name in capitals, as in the file."""
     id: str
     level: int
-    """nesting, 0 for the main workplan"""
+    """Nesting level, 0 for the main workplan."""
     setup: Ref[Setup] | None
-    """setup of the innermost workplan that has one"""
+    """Setup of the innermost workplan that has one."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ResolvedWorkingstep:
-    """One workingstep with what it refers to."""
+    """Workingstep with the entities that it refers to."""
 
     ref: Ref[Entity]
     id: str
@@ -81,28 +81,28 @@ class ResolvedWorkingstep:
     functions_ref: Ref[Entity] | None
     setup: Ref[Setup] | None
     index: int
-    """place among the workingsteps of the program, from 0"""
+    """Position among the workingsteps of the program, from 0."""
     is_last_on_feature: bool
-    """no later workingstep works on the same feature: this one leaves the surface"""
+    """Whether no later workingstep works on the same feature."""
 
     @property
     def operation_type(self) -> str:
-        """EXPRESS name of the operation, ``plane_rough_milling``."""
+        """EXPRESS name of the operation, such as ``plane_rough_milling``."""
         return self.operation.keyword.lower()
 
 
 class Program:
-    """One STEP-NC file, bound and walked.
+    """STEP-NC program of one file, with its executables in order.
 
     Parameters
     ----------
     file : Part21File
     units : UnitProfile
-        In which units the file writes feeds and speeds.
+        Units in which the file writes feeds and speeds.
     name : str
         File name, for messages.
     stock : Stock, optional
-        Raw part of a file that draws none.
+        Raw part to use if the file does not describe one.
     """
 
     def __init__(
@@ -115,7 +115,7 @@ class Program:
     ) -> None:
         self.name = name
         self.stock = stock
-        """raw part of a file that draws none, as the user says"""
+        """Raw part given by the user, for a file that does not describe one."""
         self.units = units
         self.file = file
         self.model = Model(file)
@@ -132,7 +132,7 @@ class Program:
 
     @classmethod
     def load(cls, path: Path, *, units: UnitProfile = ISO) -> "Program":
-        """Read a file; Part21Error or SchemaError when it is no STEP-NC program."""
+        """Read a file; Part21Error or SchemaError if it is not a STEP-NC program."""
         return cls(
             Part21File.from_bytes(path.read_bytes(), name=path.name),
             units=units,
@@ -140,7 +140,7 @@ class Program:
         )
 
     def get(self, ref: Ref[T]) -> T:
-        """The entity behind a reference."""
+        """Entity behind a reference."""
         return self.model.get(ref)
 
     def line(self, ref: Ref[Entity]) -> int:
@@ -148,17 +148,17 @@ class Program:
         return self.file.line(int(ref))
 
     def label(self, ref: Ref[Entity]) -> str:
-        """The instance as messages name it, ``#19 DRILLING``."""
+        """Instance as messages name it, ``#19 DRILLING``."""
         return self.file.label(int(ref))
 
     def error(self, message: str, ref: Ref[Entity], attribute: str = "") -> SchemaError:
-        """An error at one instance."""
+        """Create an error about one instance."""
         return SchemaError(
             message, entity=self.label(ref), attribute=attribute, line=self.line(ref)
         )
 
     def path_error(self, message: str, ref: Ref[Entity], attribute: str = "") -> PathError:
-        """Reason why no tool path can be made, at one instance."""
+        """Create an error that no tool path can be made because of one instance."""
         return PathError(
             message, entity=self.label(ref), attribute=attribute, line=self.line(ref)
         )
@@ -166,7 +166,7 @@ class Program:
     def finding(
         self, severity: Severity, message: str, ref: Ref[Entity], attribute: str = ""
     ) -> Finding:
-        """A finding at one instance."""
+        """Create a finding about one instance."""
         return Finding(
             severity=severity,
             message=message,
@@ -177,11 +177,11 @@ class Program:
 
     @contextmanager
     def using(self, ref: Ref[Entity], *near: Ref[Any] | None) -> Iterator[None]:
-        """Turn what an instance lacks into an error that names it.
+        """Convert errors from missing or invalid attributes to errors that name an instance.
 
-        The binding is tolerant: where the schema requires a value, an entity may hold None, or
-        a number that no physics takes. Who works with it finds out, and here it gets a place:
-        that of the nearest fault among the instances given and what they refer to, if any.
+        The binding is tolerant: an entity may hold None or an invalid number where the schema
+        requires a value. The code that uses it then fails, and here the error gets a place: the
+        nearest fault among the given instances and their references, if any.
         """
         try:
             yield
@@ -190,7 +190,7 @@ class Program:
         except (ArithmeticError, AttributeError, IndexError, TypeError) as error:
             fault = self.model.fault_near(ref, *(other for other in near if other is not None))
             if fault is None:
-                message = "an attribute it needs is missing, of another kind, or out of range"
+                message = "a required attribute is missing, of the wrong type, or out of range"
                 raise self.error(message, ref) from error
             raise SchemaError(
                 fault.message, entity=fault.entity, attribute=fault.attribute, line=fault.line
@@ -198,15 +198,15 @@ class Program:
 
     @property
     def faults(self) -> tuple[SchemaError, ...]:
-        """Why some workingsteps cannot be used."""
+        """Errors of the workingsteps that cannot be used."""
         return tuple(self._faults.values())
 
     def fault_of(self, ref: Ref[Entity]) -> SchemaError | None:
-        """Why an executable cannot be used, or None when it can."""
+        """Error that makes an executable unusable, or None."""
         return self._faults.get(int(ref))
 
     def findings(self) -> tuple[Finding, ...]:
-        """All findings: syntax, schema, and the walk of the program."""
+        """All findings about syntax, schema and program structure."""
         faults = FindingList()
         faults.extend(
             Finding(
@@ -229,7 +229,7 @@ class Program:
         return [other for other in self._on_features_of(step) if other.index > step.index]
 
     def _on_features_of(self, step: ResolvedWorkingstep) -> list[ResolvedWorkingstep]:
-        """Workingsteps on the features of one, in order."""
+        """Workingsteps on the same features as the given one, in order."""
         features = (self._by_feature[int(feature)] for feature in step.features)
         found = {int(other.ref): other for each in features for other in each}
         return sorted(found.values(), key=lambda other: other.index)
@@ -237,7 +237,7 @@ class Program:
     def textures_of(
         self, feature: Ref[Entity]
     ) -> list[tuple[SurfaceTextureParameter, MachinedSurface]]:
-        """Textures that are asked of a feature, each with the surface that is meant."""
+        """Required textures of a feature, each with the surface that it applies to."""
         if self._textures is None:
             self._textures = {}
             for texture in self._all(SurfaceTextureParameter):
@@ -247,55 +247,55 @@ class Program:
         return self._textures.get(int(feature), [])
 
     def workpiece(self) -> Workpiece | None:
-        """The workpiece of the project, or the first one of the file."""
+        """Workpiece of the project, or the first one in the file."""
         for project in self._all(Project):
             if project.its_workpieces:
                 ref = project.its_workpieces[0]
                 workpiece = self.get(ref)
                 if not isinstance(workpiece, Workpiece):
-                    raise self.error("stands where a workpiece belongs", ref)
+                    raise self.error("is not a workpiece, where one is expected", ref)
                 return workpiece
         return next(self._all(Workpiece), None)
 
     def material(self) -> Material | None:
-        """Material of the workpiece, or None when the file names none."""
+        """Material of the workpiece, or None if the file names none."""
         workpiece = self.workpiece()
         if workpiece is None or workpiece.its_material is None:
             return None
         material = self.get(workpiece.its_material)
         if not isinstance(material, Material):
-            raise self.error("stands where a material belongs", workpiece.its_material)
+            raise self.error("is not a material, where one is expected", workpiece.its_material)
         return material
 
     def _all(self, cls: type[T]) -> Iterator[T]:
-        """All instances of one entity, without their references."""
+        """All instances of an entity class, without their references."""
         return (entity for _, entity in self.model.of_type(cls))
 
     def _main_workplan(self) -> Ref[Workplan]:
-        """Main workplan of the project, or the only workplan that nothing contains."""
+        """Main workplan of the project, or the only workplan that is not nested in another."""
         for ref, project in self.model.of_type(Project):
             if project.main_workplan is None:
                 raise self.error("the project has no main workplan", ref, "main_workplan")
             plan = self.get(project.main_workplan)
             if not isinstance(plan, Workplan):
-                raise self.error("is no workplan", ref, "main_workplan")
+                raise self.error("is not a workplan", ref, "main_workplan")
             return project.main_workplan
         plans = dict(self.model.of_type(Workplan))
         inner = {int(element) for plan in plans.values() for element in plan.its_elements}
         outer = [ref for ref in plans if int(ref) not in inner]
         if len(outer) != 1 and any(self.file.ids_of(keyword) for keyword in AIM_KEYWORDS):
             raise SchemaError(
-                "an AP238 program (the AIM): programs of ISO 14649 are read, AP238 is not yet"
+                "AP238 (AIM) programs are not supported: convert the file to ISO 14649"
             )
         if len(outer) != 1:
             raise SchemaError(
-                f"no PROJECT, and {len(outer)} workplans that nothing contains: "
+                f"no PROJECT, and {len(outer)} workplans that are not nested in another: "
                 "a program needs one main workplan"
             )
         return outer[0]
 
     def _walk(self) -> Iterator[ProgramLine]:
-        """Executables in order, structures before what they contain; no recursion."""
+        """Executables in order, structures before their contents; iterative."""
         stack: list[_WalkVisit] = [_WalkVisit(self._main_workplan(), 0, None)]
         open_ones: set[int] = set()
         count = 0
@@ -306,15 +306,19 @@ class Program:
                 open_ones.discard(number)
                 continue
             if number in open_ones:
-                raise self.error("contains itself", visit.ref, "its_elements")
+                raise self.error(
+                    "the program structure contains itself", visit.ref, "its_elements"
+                )
             if number not in self.file:
-                message = "is referred to, but there is no such instance"
+                message = "is referenced, but does not exist in the file"
                 self._faults[number] = SchemaError(message, entity=str(visit.ref))
                 continue
             count += 1
             if count > MAX_EXECUTABLES:
-                raise self.error(f"more than {MAX_EXECUTABLES} executables", visit.ref)
-            # An executable that no entity describes is kept and shown.
+                raise self.error(
+                    f"the program has more than {MAX_EXECUTABLES} executables", visit.ref
+                )
+            # An executable without an entity class is kept and shown.
             entity = self.model.entity(number)
             setup = visit.setup
             if isinstance(entity, Workplan):
@@ -335,7 +339,7 @@ class Program:
             )
 
     def _workingsteps(self) -> Iterator[ResolvedWorkingstep]:
-        """Workingsteps in order; what is wrong with one becomes a fault."""
+        """Workingsteps in order; problems of a workingstep are recorded as faults."""
         last: dict[int, int] = {}
         found: list[ResolvedWorkingstep] = []
         for executable in self.executables:
@@ -354,7 +358,7 @@ class Program:
             yield replace(step, index=index, is_last_on_feature=is_last)
 
     def _workingstep(self, executable: ProgramLine) -> ResolvedWorkingstep | None:
-        """One workingstep, or None when the executable machines nothing."""
+        """Resolve one workingstep; None if the executable is not a workingstep."""
         entity = self.model.entity(int(executable.ref))
         if isinstance(entity, MachiningWorkingstep):
             feature = entity.its_feature
@@ -364,14 +368,18 @@ class Program:
         else:
             return None
         if entity.its_operation is None:
-            raise self.error("has no operation", executable.ref, "its_operation")
+            raise self.error(
+                "the workingstep has no operation", executable.ref, "its_operation"
+            )
         operation = self.get(entity.its_operation)
         if not isinstance(operation, MachiningOperation):
-            raise self.error("is no machining operation", entity.its_operation)
+            raise self.error("is not a machining operation", entity.its_operation)
         if operation.its_tool is None:
-            raise self.error("has no tool", entity.its_operation, "its_tool")
+            raise self.error("the operation has no tool", entity.its_operation, "its_tool")
         if operation.its_technology is None:
-            raise self.error("has no technology", entity.its_operation, "its_technology")
+            raise self.error(
+                "the operation has no technology", entity.its_operation, "its_technology"
+            )
         for ref in (operation.its_tool, operation.its_technology, *features):
             self.get(ref)
         return ResolvedWorkingstep(
@@ -391,7 +399,7 @@ class Program:
 
 @dataclass(frozen=True, slots=True)
 class _WalkVisit:
-    """A place of the walk: going into an executable, or leaving it."""
+    """Step of the walk: entering an executable, or leaving it."""
 
     ref: Ref[Entity]
     level: int
@@ -400,7 +408,7 @@ class _WalkVisit:
 
 
 def _children(entity: Entity | None) -> tuple[Ref[Entity], ...]:
-    """Executables that a program structure contains, in order."""
+    """Executables contained in a program structure, in order."""
     if isinstance(entity, (Workplan, Selective, NonSequential)):
         return tuple(entity.its_elements)
     if isinstance(entity, Parallel):

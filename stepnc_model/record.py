@@ -1,8 +1,8 @@
-"""The record of an optimum, as one flat noun, and its two forms in a file.
+"""Optimisation record as one flat data class, and its two forms in a file.
 
 Profile ``optimisation`` writes entities of ``schemas/optimisation.exp``; profile ``standard``
-writes prefixed parameters that every ISO 14649 reader takes. Both carry the same numbers to the
-last digit, so a record moves between them without loss. Numbers are those of the file: mm, m/s,
+writes prefixed parameters that every ISO 14649 reader accepts. Both hold exactly the same
+numbers, so a record can be converted without loss. Numbers have the units of the file: mm, m/s,
 rev/s, s, kW, N, J, µm.
 """
 
@@ -37,22 +37,22 @@ from stepnc_model.part21.values import Ref
 from stepnc_model.part21.writer import Edits
 
 PREFIX = "optimisation:"
-"""of every parameter that belongs to a record"""
+"""Prefix of the name of every parameter that belongs to a record."""
 
 GENERATOR = "stepnc-optimiser"
 
 
 def _unit(unit: str) -> Any:
-    """Field with the unit that its parameter is written with."""
+    """Field with the unit written in its parameter."""
     return field(metadata={"unit": unit})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AdviceRecord:
-    """Advice for one operation, with its reasons."""
+    """Optimisation advice for one operation, with its reasons."""
 
     mode: str
-    """TC, QC or EC"""
+    """Goal of the optimisation: TC, QC or EC."""
     id: str
     description: str
     machine: str
@@ -79,7 +79,7 @@ class AdviceRecord:
     programmed_spindle: float | None = field(default=None, metadata={"unit": "rev/s"})
     programmed_axial_depth: float | None = field(default=None, metadata={"unit": "mm"})
     plunge_feed_per_tooth: float | None = field(default=None, metadata={"unit": "mm"})
-    """on the way down into the material; None: the feed of the cut"""
+    """Feed per tooth on the way down into the material, mm; None for the feed of the cut."""
 
 
 MODES: dict[str, type[Entity]] = {
@@ -90,7 +90,7 @@ MODES: dict[str, type[Entity]] = {
 
 
 def write_entities(record: AdviceRecord, edits: Edits) -> Ref[Entity]:
-    """Add the entities of a record; the reference to the optimisation."""
+    """Add the entities of a record; return the reference to the optimisation."""
 
     def add(entity: Entity) -> Ref[Any]:
         return cast("Ref[Any]", edits.add(entity.keyword, to_parameters(entity)))
@@ -146,16 +146,16 @@ def write_entities(record: AdviceRecord, edits: Edits) -> Ref[Entity]:
 
 
 def read_entities(model: Model, ref: Ref[Entity]) -> AdviceRecord | None:
-    """Record behind an operation's optimisation; None for one that is not complete."""
+    """Read the record of an operation's optimisation; None if it is incomplete."""
     try:
         return _checked(_from_entities(model, ref))
     except (AttributeError, TypeError, SchemaError):
-        # A record of another program: some reference leads to nothing or to something else.
+        # A record of another program: some reference is dangling or leads to something else.
         return None
 
 
 def _from_entities(model: Model, ref: Ref[Entity]) -> AdviceRecord | None:
-    """Collect what the entities of a record say."""
+    """Build a record from its entities, without checking the values."""
     optimum: Any = model.entity(int(ref))
     if not isinstance(optimum, Optimisation) or getattr(optimum, "its_record", None) is None:
         return None
@@ -201,7 +201,7 @@ def _from_entities(model: Model, ref: Ref[Entity]) -> AdviceRecord | None:
 
 
 def parameters_of(record: AdviceRecord) -> Iterator[PropertyParameter]:
-    """The same record as prefixed parameters, one for each number or word."""
+    """Parameters with a prefix that hold a record, one for each number or text."""
     for each in fields(record):
         value = getattr(record, each.name)
         if value is None:
@@ -218,7 +218,7 @@ def parameters_of(record: AdviceRecord) -> Iterator[PropertyParameter]:
 
 
 def read_parameters(values: Mapping[str, float | str]) -> AdviceRecord | None:
-    """Record from its parameters by name, or None when they are not all there."""
+    """Build a record from its parameters by name; None if some are missing."""
     known = {each.name for each in fields(AdviceRecord)}
     found: dict[str, Any] = {name: value for name, value in values.items() if name in known}
     count = found.get("number_of_passes")
@@ -231,7 +231,7 @@ def read_parameters(values: Mapping[str, float | str]) -> AdviceRecord | None:
 
 
 def _checked(record: AdviceRecord | None) -> AdviceRecord | None:
-    """The record if every value is of its kind, else None."""
+    """Return the record if every value has the right type, else None."""
     if record is None or record.mode not in MODES:
         return None
     for each in fields(record):
@@ -248,7 +248,7 @@ def _checked(record: AdviceRecord | None) -> AdviceRecord | None:
 
 
 def _predicted(record: AdviceRecord) -> PredictedValues:
-    """Expected results of the advice."""
+    """Entity with the predicted results of the advice."""
     return PredictedValues(
         machining_time=record.machining_time,
         motor_power=record.motor_power,
@@ -259,7 +259,7 @@ def _predicted(record: AdviceRecord) -> PredictedValues:
 
 
 def _programmed(record: AdviceRecord) -> ProgrammedValues:
-    """Original values of the file."""
+    """Entity with the values that the file originally programmed."""
     return ProgrammedValues(
         feedrate=record.programmed_feedrate,
         feedrate_per_tooth=record.programmed_feedrate_per_tooth,
@@ -272,7 +272,7 @@ def _programmed(record: AdviceRecord) -> ProgrammedValues:
 def _optimisation(
     record: AdviceRecord, power: Ref[MachinePower], details: Ref[OptimisationRecord]
 ) -> Entity:
-    """The entity of the record's mode."""
+    """Optimisation entity for the record's mode."""
     suffix = "_max" if record.mode == "TC" else ""
     values: dict[str, object] = {
         "its_id": record.id,

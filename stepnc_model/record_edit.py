@@ -1,8 +1,8 @@
-"""Taking the record of an optimum out of a draft, and putting it in.
+"""Insertion and removal of optimisation records in a draft, and search for records.
 
-Profile ``optimisation``: entities behind one surplus parameter of the operation. Profile
-``standard``: prefixed parameters of a copy of the operation's machine functions, which names
-the original it was copied from.
+In profile ``optimisation``, the record is entities behind one surplus parameter of the
+operation. In profile ``standard``, it is prefixed parameters of a copy of the operation's
+machine functions, which names the original that it was copied from.
 """
 
 from typing import Any
@@ -24,7 +24,7 @@ from stepnc_model.record import (
 )
 
 ORIGINAL = "machine_functions"
-"""parameter that names the machine functions a record's copy was made of"""
+"""Name of the parameter that refers to the original of copied machine functions."""
 
 RECORD_KEYWORDS = frozenset({
     "TIME_CRITICAL_OPTIMISATION",
@@ -39,11 +39,11 @@ RECORD_KEYWORDS = frozenset({
     "PROGRAMMED_VALUES",
     "NUMERIC_PARAMETER",
 })
-"""instances that a record is made of"""
+"""Keywords of the instances that make up a record."""
 
 
 def find_record(program: Program, step: ResolvedWorkingstep) -> AdviceRecord | None:
-    """Record of a workingstep in either profile; None when there is none."""
+    """Record of a workingstep in either profile; None if there is none."""
     reference = step.operation.its_optimisation
     if reference is not None:
         return read_entities(program.model, reference)
@@ -51,12 +51,12 @@ def find_record(program: Program, step: ResolvedWorkingstep) -> AdviceRecord | N
 
 
 def has_parameters(program: Program) -> bool:
-    """Whether a workingstep has its record in profile ``standard``."""
+    """Whether any workingstep has its record in profile ``standard``."""
     return any(_parameter_record(program, step) is not None for step in program.workingsteps)
 
 
 def take_out(draft: Draft, step: ResolvedWorkingstep) -> None:
-    """Remove what an operation carries of an optimum, whatever its form."""
+    """Remove the optimisation record of an operation in either form."""
     program = draft.program
     reference = step.operation.its_optimisation
     if reference is not None:
@@ -76,17 +76,17 @@ def take_out(draft: Draft, step: ResolvedWorkingstep) -> None:
 
 
 def put_entities(draft: Draft, step: ResolvedWorkingstep, record: AdviceRecord) -> None:
-    """Profile ``optimisation``."""
+    """Add a record in profile ``optimisation``."""
     draft.append_surplus(step.operation_ref, write_entities(record, draft.edits))
 
 
 def put_parameters(draft: Draft, step: ResolvedWorkingstep, record: AdviceRecord) -> None:
-    """Profile ``standard``; SchemaError when the operation has no machine functions."""
+    """Add a record in profile ``standard``; SchemaError without machine functions."""
     program = draft.program
     original = _original_functions(program, step) or step.functions_ref
     if original is None:
         raise program.error(
-            "has no machine functions: profile 'standard' has nowhere to put the record",
+            "the operation has no machine functions, which profile 'standard' requires",
             step.operation_ref,
             "its_machine_functions",
         )
@@ -105,7 +105,7 @@ def put_parameters(draft: Draft, step: ResolvedWorkingstep, record: AdviceRecord
 
 
 def _parameter_record(program: Program, step: ResolvedWorkingstep) -> AdviceRecord | None:
-    """Record written as parameters of the machine functions."""
+    """Read a record written as parameters of the machine functions."""
     if _original_functions(program, step) is None or step.functions_ref is None:
         return None
     functions: Any = program.get(step.functions_ref)
@@ -118,7 +118,7 @@ def _parameter_record(program: Program, step: ResolvedWorkingstep) -> AdviceReco
 
 
 def _original_functions(program: Program, step: ResolvedWorkingstep) -> Ref[Any] | None:
-    """Machine functions that an operation's copy was made of; None when it has no copy."""
+    """Original of an operation's copied machine functions; None if it has no copy."""
     if step.functions_ref is None:
         return None
     functions: Any = program.model.entity(int(step.functions_ref))
@@ -134,13 +134,13 @@ def _original_functions(program: Program, step: ResolvedWorkingstep) -> Ref[Any]
 
 
 def _process_model(draft: Draft, record: AdviceRecord) -> Ref[Any]:
-    """A process model that says which model the record comes from."""
+    """Process model that names the generator and the machine of the record."""
     model = draft.add(ProcessModel(ini_data_file=record.machine, its_type=GENERATOR))
     return draft.add(ProcessModelList(its_list=(model,)))
 
 
 def _record_instances(program: Program, ref: Ref[Any]) -> list[int]:
-    """Instances that a record is made of, the optimisation first."""
+    """Instances that make up a record, the optimisation first."""
     found, waiting = [], [int(ref)]
     while waiting:
         number = waiting.pop()
@@ -153,7 +153,7 @@ def _record_instances(program: Program, ref: Ref[Any]) -> list[int]:
 
 
 def _own_models(program: Program, functions: Entity) -> list[int]:
-    """Process models of a copy that this project added."""
+    """Process models of copied machine functions that this project added."""
     reference: Any = getattr(functions, "its_process_model", None)
     models: Any = program.model.entity(int(reference)) if reference is not None else None
     if not isinstance(models, ProcessModelList):
@@ -163,7 +163,7 @@ def _own_models(program: Program, functions: Entity) -> list[int]:
 
 
 def _name_of(program: Program, ref: Ref[Any]) -> str:
-    """Name of a parameter, empty for another instance."""
+    """Name of a parameter; empty for other instances."""
     return str(getattr(program.model.entity(int(ref)), "parameter_name", ""))
 
 

@@ -1,4 +1,4 @@
-"""Technology of a workingstep in canonical units, and its place in the file.
+"""Technology of a workingstep in canonical units, and the position of its numbers in the file.
 
 Milling: ISO 14649-11 ``milling_technology`` (rules WR1 and WR2: exactly one of cutspeed and
 spindle, exactly one of feedrate and feedrate_per_tooth), also in the form that NIST proposed in
@@ -28,7 +28,7 @@ from stepnc_model.units import FeedUnit
 
 
 class ProgrammedQuantity(StrEnum):
-    """Quantity that a number programs."""
+    """Kind of quantity that a programmed number gives."""
 
     FEED = "feed"
     FEED_PER_TOOTH = "feed per tooth"
@@ -39,46 +39,46 @@ class ProgrammedQuantity(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Number:
-    """One programmed number."""
+    """Programmed number, with its instance and attribute in the file."""
 
     ref: Ref[Entity]
-    """instance that holds it"""
+    """Instance that holds the number."""
     attribute: str
     quantity: ProgrammedQuantity
     value: float
-    """Value, mm, mm/s or rev/s; never negative"""
+    """Value in mm, mm/s or rev/s; never negative."""
     scale: float
-    """canonical number per number in the file; negative for a clockwise spindle"""
+    """Canonical value per number in the file; negative for a negative number."""
 
     def in_file(self, value: float) -> float:
-        """A canonical number as the file would write it here."""
+        """Convert a canonical value to the number written in the file."""
         return value / self.scale
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Programmed:
-    """Feed and speed as the file programs them."""
+    """Programmed feed and spindle or cutting speed of a technology."""
 
     feed: Number
     speed: Number
     max_spindle_speed: float | None = None
-    """Max spindle speed, rev/s, a lathe's limit at constant cutting speed"""
+    """Lathe's spindle speed limit at constant cutting speed, rev/s."""
     inhibition: str = ""
-    """why the feed is locked; empty when it is not"""
+    """Reason why the feed must not be changed; empty if it may be."""
     is_synchronised: bool = False
-    """feed bound to the spindle by a pitch"""
+    """Whether the feed is bound to the spindle by a pitch."""
     has_both_speeds: bool = False
-    """cutting speed and spindle are both given; the spindle counts"""
+    """Whether cutting speed and spindle speed are both given; the spindle speed is used."""
 
     def spindle_speed(self, diameter: float) -> float:
-        """Spindle speed in rev/s at a diameter in mm: as programmed, else v_c/(π·D)."""
+        """Spindle speed, rev/s, at a diameter in mm: as programmed, else v_c/(π·D)."""
         if self.speed.quantity is ProgrammedQuantity.SPINDLE_SPEED:
             return self.speed.value
         speed = self.speed.value / (pi * diameter)
         return min(speed, self.max_spindle_speed) if self.max_spindle_speed else speed
 
     def feed_per_tooth(self, speed: float, teeth: int) -> float:
-        """Feed per tooth in mm at a spindle speed in rev/s."""
+        """Feed per tooth, mm, at a spindle speed in rev/s."""
         value = self.feed.value
         if self.feed.quantity is ProgrammedQuantity.FEED_PER_TOOTH:
             return value
@@ -101,12 +101,12 @@ class Programmed:
 
 
 def programmed(program: Program, ref: Ref[Entity]) -> Programmed:
-    """Feed and speed of a technology.
+    """Read the programmed feed and speed of a technology.
 
     Raises
     ------
     SchemaError
-        When feed or speed is missing, zero, negative or not finite.
+        If feed or speed is missing, zero, negative or not finite.
     """
     technology = program.get(ref)
     if isinstance(technology, AdaptiveMillingTechnology):
@@ -115,11 +115,11 @@ def programmed(program: Program, ref: Ref[Entity]) -> Programmed:
         return _milling(program, ref, technology)
     if isinstance(technology, TurningTechnology):
         return _turning(program, ref, technology)
-    raise program.error("is no milling or turning technology", ref)
+    raise program.error("is not a milling or turning technology", ref)
 
 
 def _milling(program: Program, ref: Ref[Entity], technology: MillingTechnology) -> Programmed:
-    """ISO 14649-11."""
+    """Read an ISO 14649-11 milling technology."""
     units = program.units
     quantity = _feed_quantity(units.feed)
     feed = _number(program, ref, "feedrate", quantity, scale=units.feed_scale) or _number(
@@ -134,11 +134,13 @@ def _milling(program: Program, ref: Ref[Entity], technology: MillingTechnology) 
     speed = spindle or cutspeed
     if feed is None:
         raise program.error(
-            "has neither feedrate nor feedrate_per_tooth (ISO 14649-11 WR2)", ref, "feedrate"
+            "neither feedrate nor feedrate_per_tooth is given (ISO 14649-11 WR2)",
+            ref,
+            "feedrate",
         )
     if speed is None:
         raise program.error(
-            "has neither cutspeed nor spindle (ISO 14649-11 WR1)", ref, "spindle"
+            "neither cutspeed nor spindle is given (ISO 14649-11 WR1)", ref, "spindle"
         )
     inhibited = "inhibit_feedrate_override" if technology.inhibit_feedrate_override else ""
     return Programmed(
@@ -153,7 +155,7 @@ def _milling(program: Program, ref: Ref[Entity], technology: MillingTechnology) 
 def _adaptive(
     program: Program, ref: Ref[Entity], technology: AdaptiveMillingTechnology
 ) -> Programmed:
-    """The form NIST proposed: feed and speed are entities that allow or forbid adaptation."""
+    """Read NIST's proposed form, in which feed and speed are entities that allow adaptation."""
     units = program.units
     speed_entity = program.get(technology.its_speed)
     feed_entity = program.get(technology.its_feed)
@@ -174,7 +176,7 @@ def _adaptive(
         scale=1.0 if is_per_tooth else units.feed_scale,
     )
     if feed is None or speed is None:
-        raise program.error("has no feed or no speed", ref, "its_feed")
+        raise program.error("the technology has no feed or no speed", ref, "its_feed")
     inhibition = "adaptive_allowed is false" if not feed_entity.adaptive_allowed else ""
     if technology.inhibit_feedrate_override:
         inhibition = "inhibit_feedrate_override"
@@ -187,20 +189,22 @@ def _adaptive(
 
 
 def _turning(program: Program, ref: Ref[Entity], technology: TurningTechnology) -> Programmed:
-    """ISO 14649-12."""
+    """Read an ISO 14649-12 turning technology."""
     units = program.units
     quantity = _feed_quantity(units.feed)
     feed = _number(program, ref, "feedrate", quantity, scale=units.feed_scale) or _number(
         program, ref, "feed_per_revolution", ProgrammedQuantity.FEED_PER_REVOLUTION, scale=1.0
     )
     if feed is None:
-        raise program.error("has neither feedrate nor feed_per_revolution", ref, "feedrate")
+        raise program.error(
+            "neither feedrate nor feed_per_revolution is given", ref, "feedrate"
+        )
     if technology.spindle_speed is None:
-        raise program.error("has no spindle speed", ref, "spindle_speed")
+        raise program.error("the technology has no spindle speed", ref, "spindle_speed")
     spindle = technology.spindle_speed
     entity: Entity = program.get(spindle)
     if not isinstance(entity, (ConstSpindleSpeed, ConstCuttingSpeed)):
-        raise program.error("stands where the speed of a spindle belongs", spindle)
+        raise program.error("is not a spindle speed, where one is expected", spindle)
     is_constant = isinstance(entity, ConstSpindleSpeed)
     speed = _number(
         program,
@@ -210,7 +214,7 @@ def _turning(program: Program, ref: Ref[Entity], technology: TurningTechnology) 
         scale=units.spindle if is_constant else units.cutting_speed,
     )
     if speed is None:
-        raise program.error("has no speed", spindle)
+        raise program.error("no speed value is given", spindle)
     top = entity.max_speed if isinstance(entity, ConstCuttingSpeed) else None
     return Programmed(
         feed=feed,
@@ -222,7 +226,7 @@ def _turning(program: Program, ref: Ref[Entity], technology: TurningTechnology) 
 
 
 def _feed_quantity(unit: FeedUnit) -> ProgrammedQuantity:
-    """Quantity of ``feedrate`` in a unit profile."""
+    """Quantity of the attribute ``feedrate`` in a unit profile."""
     return {
         FeedUnit.MM_PER_TOOTH: ProgrammedQuantity.FEED_PER_TOOTH,
         FeedUnit.MM_PER_REVOLUTION: ProgrammedQuantity.FEED_PER_REVOLUTION,
@@ -237,14 +241,14 @@ def _number(
     *,
     scale: float,
 ) -> Number | None:
-    """One number of an instance, which must cut something when it is given."""
+    """Read one number of an instance; None if absent, an error if not positive."""
     written = getattr(program.get(ref), attribute)
     if written is None:
         return None
     size = abs(written) if quantity is ProgrammedQuantity.SPINDLE_SPEED else written
     if not isfinite(size) or size <= 0.0:
         raise program.error(
-            f"{quantity.value} {written:g} cuts nothing: it must be positive", ref, attribute
+            f"{quantity.value} {written:g} is not valid: it must be positive", ref, attribute
         )
     return Number(
         ref=ref,

@@ -1,7 +1,7 @@
-"""Tolerances of lengths: what the file says of one, and what standards say by its size.
+"""Tolerances of lengths, as written in the file or defined by standards for a size.
 
-What counts is the half-width: half the difference between the greatest and the least size that
-are permitted. Where the zone lies does not matter to it. Lengths in mm.
+Only the half-width is used: half the difference between the greatest and the least permitted
+size. The position of the tolerance zone is not used. Lengths are in mm.
 
 References
 ----------
@@ -31,18 +31,18 @@ from stepnc_model.units import mm_from_um
 TABLES = Path(__file__).with_name("tolerances.toml")
 
 GREATEST_GRADE = 18
-"""IT18; IT01 and IT0 are left out, as no milling comes near them"""
+"""Greatest grade, IT18; IT01 and IT0 are omitted, as milling does not reach them."""
 
 GREATEST_FINE_GRADE = 13
-"""greatest grade for sizes up to 1 mm, [1]_ Table 1, note"""
+"""Greatest grade for sizes up to 1 mm, [1]_ Table 1, note."""
 
 LEAST_COARSE_SIZE = 1.0
-"""mm, up to which grades above that are not given"""
+"""Size, mm, up to which grades above ``GREATEST_FINE_GRADE`` do not exist."""
 
 LETTERS = frozenset(
     "A B C CD D E EF F FG G H J JS K M N P R S T U V X Y Z ZA ZB ZC".split()  # noqa: SIM905
 )
-"""fundamental deviations of holes, [1]_; those of shafts are the same in small letters"""
+"""Fundamental deviations of holes, [1]_; shafts use the same in small letters."""
 
 _GRADE = re.compile(r"(?:IT|([A-Z]{1,2}))? ?([0-9]{1,2})", re.IGNORECASE)
 
@@ -52,25 +52,25 @@ class Tolerance:
     """Tolerance of a length."""
 
     half_width: float
-    """Half width, mm, half the difference between the limits of size"""
+    """Half the difference between the limits of size, mm."""
     code: str
-    """as a drawing writes it: ±0.1 mm, +0.2/-0.1 mm, IT7, ISO 2768-m"""
+    """Tolerance as on a drawing: ±0.1 mm, +0.2/-0.1 mm, IT7, ISO 2768-m."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FileTolerance:
-    """Tolerance of a length as the file gives it."""
+    """Tolerance of a length as given in the file."""
 
     tolerance: Tolerance | None
-    """None where it gives none, or none that can be read"""
+    """Tolerance, or None if the file gives none or it cannot be read."""
     finding: Finding | None = None
-    """why it cannot be read"""
+    """Reason why the tolerance cannot be read."""
 
 
 def written_tolerance(program: Program, ref: Ref[TolerancedLengthMeasure]) -> FileTolerance:
-    """Tolerance of a length as the file has it.
+    """Read the tolerance of a length from the file.
 
-    Never fails: a tolerance that cannot be read is a warning that names its instance.
+    A tolerance that cannot be read is not an error but a warning that names its instance.
     """
     length = program.model.entity(int(ref))
     if not isinstance(length, TolerancedLengthMeasure) or length.implicit_tolerance is None:
@@ -82,13 +82,13 @@ def written_tolerance(program: Program, ref: Ref[TolerancedLengthMeasure]) -> Fi
         place: Ref[Entity] = Ref(int(length.implicit_tolerance))
         if int(place) not in program.file:
             place = Ref(int(ref))
-        text = f"{error}: the tolerance is not read, ISO 2768-m holds instead"
+        text = f"{error}: the tolerance is ignored, ISO 2768-m is used instead"
         finding = program.finding(Severity.WARNING, text, place)
         return FileTolerance(tolerance=None, finding=finding)
 
 
 def tolerance_findings(program: Program) -> tuple[Finding, ...]:
-    """A warning for each tolerance of the file that cannot be read."""
+    """Warnings for all tolerances of the file that cannot be read."""
     lengths = program.model.of_type(TolerancedLengthMeasure)
     found = (written_tolerance(program, ref).finding for ref, _ in lengths)
     return tuple(dict.fromkeys(finding for finding in found if finding is not None))
@@ -111,19 +111,19 @@ def standard_tolerance(size: float, grade: int) -> float:
     Raises
     ------
     ValueError
-        Where the table has no value.
+        If the table has no value for the grade and size.
 
     Examples
     --------
-    25H7 has 21 µm:
+    The tolerance of 25H7 is 21 µm:
 
     >>> standard_tolerance(25.0, 7)
     0.021
     """
     if not 1 <= grade <= GREATEST_GRADE:
-        raise ValueError(f"IT{grade}: ISO 286-1 gives IT1 to IT{GREATEST_GRADE}")
+        raise ValueError(f"IT{grade}: ISO 286-1 has grades IT1 to IT{GREATEST_GRADE}")
     if size <= LEAST_COARSE_SIZE and grade > GREATEST_FINE_GRADE:
-        raise ValueError(f"IT{grade}: ISO 286-1 does not give it for sizes up to 1 mm")
+        raise ValueError(f"IT{grade}: ISO 286-1 has no such grade for sizes up to 1 mm")
     for row in _tables()["standard"]["rows"]:
         if 0.0 < size <= row["up_to_mm"]:
             return mm_from_um(row["width_um"][grade - 1])
@@ -131,10 +131,10 @@ def standard_tolerance(size: float, grade: int) -> float:
 
 
 def general_tolerance(size: float) -> Tolerance:
-    """Tolerance of a length that names none, by its nominal size: ISO 2768-m, [2]_.
+    """General tolerance of a length by its nominal size: ISO 2768-m, [2]_.
 
-    Below 0.5 mm and above 4000 mm the standard asks for an indication at the size; the nearest
-    row of the table holds here.
+    Below 0.5 mm and above 4000 mm the standard requires an individual tolerance; here the
+    nearest row of the table is used.
 
     Parameters
     ----------
@@ -161,52 +161,54 @@ def _tables() -> dict[str, Any]:
 
 
 def _read(given: Entity | None, size: float) -> Tolerance:
-    """Tolerance of a length of a nominal size; ValueError when it cannot be read."""
+    """Tolerance of a length by its nominal size; ValueError if it cannot be read."""
     if isinstance(given, PlusMinusValue):
         return _plus_minus(given)
     if isinstance(given, LimitsAndFits):
         return _fit(given, size)
-    raise ValueError("is no tolerance that this program reads")
+    raise ValueError("this kind of tolerance is not supported")
 
 
 def _plus_minus(given: PlusMinusValue) -> Tolerance:
-    """Tolerance by its limits: what is added to the size, and what is taken off."""
+    """Tolerance given by upper and lower limits."""
     upper, lower = given.upper_limit, given.lower_limit
     if not _are_numbers(upper, lower):
-        raise ValueError("a limit is missing")
+        raise ValueError("the upper or lower limit is missing")
     if upper < 0.0 or lower < 0.0:
         raise ValueError(
-            f"limits +{upper:g}/-{lower:g} mm: both are to be written as positive numbers"
+            f"limits +{upper:g}/-{lower:g} mm: both must be written as positive numbers"
         )
     if upper + lower == 0.0:
-        raise ValueError("limits of 0 mm: no tool can keep them")
+        raise ValueError("limits of 0 mm cannot be machined")
     code = f"±{upper:g} mm" if upper == lower else f"+{upper:g}/-{lower:g} mm"
     return Tolerance(half_width=0.5 * (upper + lower), code=code)
 
 
 def _fit(given: LimitsAndFits, size: float) -> Tolerance:
-    """Tolerance by its grade; the deviation only says where the zone lies."""
+    """Tolerance given by its grade; the deviation only shifts the zone."""
     grade, letters = _grade(given.grade)
     for written in (given.deviation, letters):
         if isinstance(written, str) and written and written.upper() not in LETTERS:
-            raise ValueError(f"'{written}' is no fundamental deviation of ISO 286-1")
+            raise ValueError(f"'{written}' is not a fundamental deviation of ISO 286-1")
     if not _are_numbers(size):
-        raise ValueError("a grade without a nominal size")
+        raise ValueError("a tolerance grade needs a nominal size")
     width = standard_tolerance(size, grade)
     return Tolerance(half_width=0.5 * width, code=f"IT{grade}")
 
 
 def _are_numbers(*values: object) -> bool:
-    """Whether the file gives both: the binding is tolerant, and a missing value is None."""
+    """Whether all values are numbers; a missing value is None."""
     return all(isinstance(value, float) for value in values)
 
 
 def _grade(written: float | str) -> tuple[int, str]:
-    """Number of a grade, and the deviation where it is written with it: 7, 'IT7', 'H7'."""
+    """Number of a grade, and the deviation if written with it, as in 7, 'IT7' or 'H7'."""
     if isinstance(written, float) and written.is_integer():
         return int(written), ""
     found = _GRADE.fullmatch(written.strip()) if isinstance(written, str) else None
     if found is None:
         shown = f"{written:g}" if isinstance(written, float) else f"'{written or ''}'"
-        raise ValueError(f"grade {shown}: a grade of ISO 286-1 is a whole number, 7 for IT7")
+        raise ValueError(
+            f"grade {shown}: an ISO 286-1 grade must be a whole number, such as 7 for IT7"
+        )
     return int(found[2]), found[1] or ""

@@ -1,4 +1,4 @@
-"""The tool of a workingstep as numbers: ISO 14649-111 and -121 tools in mm and rad."""
+"""Tool of a workingstep as numbers: ISO 14649-111 and -121 tools in mm and rad."""
 
 from dataclasses import dataclass
 from math import pi
@@ -18,17 +18,17 @@ from stepnc_model.units import rad_from_deg
 RIGHT_ANGLE = 0.5 * pi
 
 LEAST_TOP_ANGLE_DEG = 2.0
-"""no drill is so blunt: a smaller number is in radians, as some files write it"""
+"""Least top angle in degrees; smaller numbers are radians, as in some files."""
 
 
 LEAST_DIAMETER = 0.01
-"""mm; the finest drills and end mills that are made"""
+"""Least tool diameter accepted, mm."""
 
 MAX_DIAMETER = 2000.0
-"""mm; the largest face mills are below one metre"""
+"""Greatest tool diameter accepted, mm; the largest face mills are below one metre."""
 
 MAX_TEETH = 500
-"""circular saws have more, and are no milling cutters"""
+"""Greatest number of teeth accepted; only circular saws have more."""
 
 
 CENTRE_CUTTING = {
@@ -40,12 +40,12 @@ CENTRE_CUTTING = {
     "WOODRUFF_KEYSEAT_MILL": False,
     "THREAD_MILL": False,
 }
-"""bodies whose form tells whether their edges reach the axis"""
+"""Tool bodies whose form determines whether their edges reach the axis."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Tool:
-    """Cutting tool, as far as the physics needs it.
+    """Cutting tool with the data that the cutting physics needs.
 
     A rotating tool has a diameter and teeth; a turning tool has ``diameter = 0`` and one
     tooth.
@@ -53,66 +53,66 @@ class Tool:
 
     id: str
     keyword: str
-    """EXPRESS name of the tool body (or turning tool) in capitals"""
+    """EXPRESS name of the tool body or turning tool, in capitals."""
     edge_material: tuple[str, ...] = ()
-    """names given for the cutting edge"""
+    """Names given for the material of the cutting edge."""
     diameter: float = 0.0
-    """Diameter, mm"""
+    """Tool diameter, mm."""
     teeth: int = 1
     has_teeth: bool = True
-    """the file says how many"""
+    """Whether the file gives the number of teeth."""
     corner_radius: float | None = None
-    """Corner radius, mm: end-mill corner, insert nose; half the diameter of a ball"""
+    """Corner radius of end mill or insert nose, mm; half the diameter for a ball end mill."""
     cutting_edge_length: float | None = None
-    """Cutting edge length, mm, or the greatest depth that an insert may take"""
+    """Length of the cutting edge, or the greatest depth that an insert may cut, mm."""
     cutting_edge_angle: float = RIGHT_ANGLE
-    """Cutting edge angle, rad, κ_r"""
+    """Cutting edge angle κ_r, rad."""
     point_angle: float | None = None
-    """Point angle, rad, included angle of a drill's point"""
+    """Included angle of a drill's point, rad."""
     width: float | None = None
-    """Width, mm, of a grooving insert"""
+    """Width of a grooving insert, mm."""
     centre_cutting: bool | None = None
-    """whether the edges of a mill reach its axis; None: its form does not tell"""
+    """Whether a mill's edges reach its axis; None if its form does not determine it."""
     has_wiper: bool = False
-    """a flat beside the nose smooths what it leaves; ISO 14649 has no attribute for it"""
+    """Whether a wiper flat smooths the surface; ISO 14649 has no attribute for it."""
 
 
 def tool_of(program: Program, ref: Ref[Entity]) -> Tool:
-    """Tool behind a reference.
+    """Read the tool behind a reference.
 
     Raises
     ------
     SchemaError
-        When its diameter is missing or not positive, or it is no cutting tool.
+        If the diameter is missing or invalid, or the entity is not a cutting tool.
     """
     tool = program.get(ref)
     if isinstance(tool, MillingCuttingTool):
         return _rotating(program, ref, tool)
     if isinstance(tool, TurningMachineCuttingTool):
         return _turning(program, ref, tool)
-    raise program.error("is no milling, drilling or turning tool", ref)
+    raise program.error("is not a milling, drilling or turning tool", ref)
 
 
 def body_of(program: Program, ref: Ref[Entity]) -> MillingToolBody | None:
-    """Body of a rotating tool; None of other tools, and where the file has none."""
+    """Body of a rotating tool; None for other tools, or if the file gives none."""
     ref_of_body = getattr(program.get(ref), "its_tool_body", None)
     body = None if ref_of_body is None else program.get(ref_of_body)
     return body if isinstance(body, MillingToolBody) else None
 
 
 def hand_of(program: Program, ref: Ref[Entity]) -> Hand | None:
-    """Hand of cut of a rotating tool, where the file gives one that matters."""
+    """Hand of cut of a rotating tool; None if not given or neutral."""
     hand = getattr(body_of(program, ref), "hand_of_cut", None)
     return None if hand is Hand.NEUTRAL else hand
 
 
 def _rotating(program: Program, ref: Ref[Entity], tool: MillingCuttingTool) -> Tool:
-    """Milling and drilling tools."""
+    """Convert a milling or drilling tool."""
     if tool.its_tool_body is None:
-        raise program.error("has no tool body", ref, "its_tool_body")
+        raise program.error("the tool has no tool body", ref, "its_tool_body")
     body = program.get(tool.its_tool_body)
     if not isinstance(body, MillingToolBody) or body.dimension is None:
-        raise program.error("has no dimension", tool.its_tool_body, "dimension")
+        raise program.error("the tool body has no dimension", tool.its_tool_body, "dimension")
     dimension = program.get(body.dimension)
     diameter = dimension.diameter
     if diameter is None or not LEAST_DIAMETER <= diameter <= MAX_DIAMETER:
@@ -123,7 +123,7 @@ def _rotating(program: Program, ref: Ref[Entity], tool: MillingCuttingTool) -> T
         raise program.error(message, body.dimension, "diameter")
     teeth = body.number_of_teeth
     if teeth is not None and not 1 <= teeth <= MAX_TEETH:
-        message = f"{teeth} teeth: a cutter has 1 to {MAX_TEETH}"
+        message = f"{teeth} teeth: a cutter must have 1 to {MAX_TEETH}"
         raise program.error(message, tool.its_tool_body, "number_of_teeth")
     radius = 0.5 * diameter if isinstance(body, BallEndmill) else dimension.edge_radius
     return Tool(
@@ -141,14 +141,14 @@ def _rotating(program: Program, ref: Ref[Entity], tool: MillingCuttingTool) -> T
 
 
 def _turning(program: Program, ref: Ref[Entity], tool: TurningMachineCuttingTool) -> Tool:
-    """Turning tools."""
+    """Convert a turning tool."""
     if tool.cutting_edge is None:
-        raise program.error("has no cutting edge", ref, "cutting_edge")
+        raise program.error("the tool has no cutting edge", ref, "cutting_edge")
     edge = program.get(tool.cutting_edge)
     corners = [program.get(corner) for corner in edge.corner_transitions or ()]
     radii = [corner.corner_radius for corner in corners if isinstance(corner, RoundedCorner)]
     if radii and not 0.0 <= min(radii) <= MAX_DIAMETER:
-        message = f"a corner of {min(radii):g} mm: 0 to {MAX_DIAMETER:g} mm"
+        message = f"corner radius {min(radii):g} mm must be 0 to {MAX_DIAMETER:g} mm"
         raise program.error(message, tool.cutting_edge, "corner_transitions")
     angle = edge.tool_cutting_edge_angle
     return Tool(
@@ -163,7 +163,7 @@ def _turning(program: Program, ref: Ref[Entity], tool: TurningMachineCuttingTool
 
 
 def _edge_materials(program: Program, tool: MillingCuttingTool) -> list[str]:
-    """Texts that name what the edges are made of."""
+    """Texts that name the material of the cutting edges."""
     texts: list[str] = []
     for component in tool.its_cutting_edge:
         material = program.get(component).its_material
@@ -174,7 +174,7 @@ def _edge_materials(program: Program, tool: MillingCuttingTool) -> list[str]:
 
 
 def _point_angle(top_angle: float | None) -> float | None:
-    """Included angle in rad; the top angle lies between the lip and the tool's face plane."""
+    """Included point angle, rad, from the angle between lip and face plane."""
     if not top_angle:
         return None
     top = top_angle if top_angle < LEAST_TOP_ANGLE_DEG else rad_from_deg(top_angle)

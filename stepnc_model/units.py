@@ -4,10 +4,10 @@
 speeds in m/s, spindles in rev/s and angles in degrees; controls and people speak mm/min and
 rpm.
 
-A :class:`UnitProfile` says in which units a program writes its feeds and speeds. ISO 14649-10
-§4.2.1 says m/s for speeds and rev/s for spindles when the file names no unit.
-Many public files write something else, and what they mean cannot be told from the numbers
-alone, so another profile is chosen by the user and never guessed.
+A :class:`UnitProfile` gives the units in which a program writes its feeds and speeds. ISO
+14649-10 §4.2.1 prescribes m/s for speeds and rev/s for spindles when the file names no unit.
+Many public files use other units, which cannot be inferred from the numbers, so another profile
+is chosen by the user and never guessed.
 """
 
 from dataclasses import dataclass
@@ -124,7 +124,7 @@ def deg_from_rad(angle: float) -> float:
 
 
 class FeedUnit(StrEnum):
-    """Unit of a number in ``feedrate``."""
+    """Unit of the attribute ``feedrate`` in a file."""
 
     METRES_PER_SECOND = "m/s"
     MM_PER_MINUTE = "mm/min"
@@ -134,20 +134,20 @@ class FeedUnit(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class UnitProfile:
-    """Units of one program."""
+    """Units of the feeds and speeds of one program."""
 
     name: str
     feed: FeedUnit
     cutting_speed: float
-    """Cutting speed, mm/s per unit of ``cutspeed``"""
+    """Factor from the file's ``cutspeed`` to mm/s."""
     cutting_speed_unit: str
     spindle: float
-    """Spindle, rev/s per unit of ``spindle``"""
+    """Factor from the file's ``spindle`` to rev/s."""
     spindle_unit: str
 
     @property
     def feed_scale(self) -> float:
-        """Canonical number (mm/s, or mm per tooth or revolution) per unit of ``feedrate``."""
+        """Factor from the file's ``feedrate`` to mm/s, or to mm per tooth or revolution."""
         return {
             FeedUnit.METRES_PER_SECOND: MM_PER_M,
             FeedUnit.MM_PER_MINUTE: 1.0 / SECONDS_PER_MINUTE,
@@ -157,7 +157,7 @@ class UnitProfile:
 
 
 def _profile(name: str, feed: FeedUnit, *, rpm: bool) -> UnitProfile:
-    """A profile with m/min cutting speeds, as shop-floor files have them."""
+    """Unit profile with cutting speeds in m/min, as in shop-floor files."""
     return UnitProfile(
         name=name,
         feed=feed,

@@ -1,16 +1,16 @@
-"""Advice → edits of the file, in one of the profiles. The original file is sacred.
+"""Writing of optimisation advice into a program file, in one of two profiles.
 
 ``optimisation`` (default)
-    the record as entities, referred to by one surplus parameter at the end of the operation;
+    The record as entities, referred to by one surplus parameter at the end of the operation.
 ``standard``
-    the record as prefixed parameters of a copy of the operation's machine functions, which a
-    strict ISO 14649 reader takes.
+    The record as prefixed parameters of a copy of the operation's machine functions, which a
+    strict ISO 14649 reader accepts.
 
-In both the operation's own technology carries the feed. A technology that several operations
-share is copied before it is edited. Records that are already there are taken out first, so
-that writing the same advice twice gives the same bytes. Only parameters that change, and lines
-that are added or removed, differ from the file that was read. Outcomes and corrections
-(:mod:`stepnc_model.outcome_record`) stay; a file that holds some has no profile ``standard``.
+In both profiles the operation's own technology holds the feed. A technology shared by several
+operations is copied before it is edited. Existing records are removed first, so that writing
+the same advice twice gives the same bytes. Only changed parameters and added or removed lines
+differ from the original file. Outcomes and corrections (:mod:`stepnc_model.outcome_record`)
+stay; a file that holds some cannot be written in profile ``standard``.
 """
 
 from collections.abc import Sequence
@@ -34,39 +34,39 @@ from stepnc_model.technology import Number, Programmed
 SCHEMA = "OPTIMISATION_SCHEMA"
 
 ANSWERS = ("OUTCOME", "CORRECTION")
-"""entities of the same schema that are no part of a record"""
+"""Entities of the same schema that are not part of a record."""
 
 DIGITS = 12
-"""significant digits of a number written into the file"""
+"""Significant digits of numbers written into the file."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WorkingstepUpdate:
-    """Values that are written for one workingstep."""
+    """Values to be written for one workingstep."""
 
     workingstep: ResolvedWorkingstep
     programmed: Programmed
     record: AdviceRecord
     feed: float
-    """number for the file's feed attribute"""
+    """Number for the file's feed attribute."""
     speed: float | None = None
-    """number for the file's speed attribute; ``None``: unchanged"""
+    """Number for the file's speed attribute; ``None`` if unchanged."""
     depth: float | None = None
-    """Depth, mm of one pass; ``None``: unchanged"""
+    """Depth of one pass, mm; ``None`` if unchanged."""
 
 
 def write(
     program: Program, changes: Sequence[WorkingstepUpdate], profile: FileProfile
 ) -> bytes:
-    """The file with the advice in it.
+    """Write optimisation advice into a program; return the bytes of the new file.
 
-    Several workingsteps may run one operation; it can hold one feed only, and gets the lowest,
-    of the plunge too.
+    If several workingsteps run the same operation, which can hold only one feed, it gets the
+    lowest feed and the lowest plunge feed.
 
     Parameters
     ----------
     program : Program
-        As it was read.
+        Program as it was read.
     changes : sequence of WorkingstepUpdate
     profile : FileProfile
 
@@ -77,7 +77,7 @@ def write(
     Raises
     ------
     SchemaError
-        When the profile has no form for what the program holds.
+        If the profile cannot represent what the program holds.
     """
     _require_form(program, profile)
     chosen: dict[int, WorkingstepUpdate] = {}
@@ -97,7 +97,7 @@ def write(
 
 
 def _slower(one: WorkingstepUpdate, other: WorkingstepUpdate) -> WorkingstepUpdate:
-    """The change with the lower feed, with the lower plunge feed of both."""
+    """Update with the lower feed, and the lower plunge feed of both."""
     slower = one if one.feed < other.feed else other
     feeds = [each.record.plunge_feed_per_tooth for each in (one, other)]
     least = min((feed for feed in feeds if feed is not None), default=None)
@@ -105,14 +105,14 @@ def _slower(one: WorkingstepUpdate, other: WorkingstepUpdate) -> WorkingstepUpda
 
 
 def convert(program: Program, profile: FileProfile) -> bytes:
-    """The same program with all its records in one profile.
+    """Convert all records of a program to one profile; return the bytes of the new file.
 
-    Optima that are not complete records, as paper 002 prints them, stay as they are.
+    Incomplete records, as printed in paper 002, stay unchanged.
 
     Raises
     ------
     SchemaError
-        When the profile has no form for what the program holds.
+        If the profile cannot represent what the program holds.
     """
     _require_form(program, profile)
     draft = Draft(program)
@@ -129,7 +129,7 @@ def convert(program: Program, profile: FileProfile) -> bytes:
 
 
 def records(program: Program) -> dict[int, AdviceRecord]:
-    """Records of a program, whatever their profile, by the id of their operation."""
+    """Records of a program in either profile, by the id of their operation."""
     found = {
         int(step.operation_ref): find_record(program, step) for step in program.workingsteps
     }
@@ -137,23 +137,23 @@ def records(program: Program) -> dict[int, AdviceRecord]:
 
 
 def rounded(value: float) -> float:
-    """A number with the digits that are written."""
+    """Round a number to the digits that are written."""
     return float(f"{value:.{DIGITS}g}")
 
 
 def _require_form(program: Program, profile: FileProfile) -> None:
-    """Refuse profile ``standard`` where something would stay that a strict reader refuses."""
+    """Raise an error if profile ``standard`` cannot represent part of the program."""
     if profile is not FileProfile.STANDARD:
         return
     for keyword in ANSWERS:
         for number in program.file.ids_of(keyword):
-            raise program.error("has no form in profile 'standard'", Ref(number))
+            raise program.error("cannot be written in profile 'standard'", Ref(number))
 
 
 def _put_in(
     draft: Draft, step: ResolvedWorkingstep, record: AdviceRecord, profile: FileProfile
 ) -> None:
-    """Add a record in one of the profiles."""
+    """Add a record in the given profile."""
     if profile is FileProfile.OPTIMISATION:
         put_entities(draft, step, record)
         draft.edits.add_schema(SCHEMA)
@@ -162,7 +162,7 @@ def _put_in(
 
 
 def _finished(draft: Draft) -> bytes:
-    """The bytes, without the schema's name when the last of its entities was taken out."""
+    """Edited bytes; the schema name is removed together with the last of its entities."""
     file = draft.program.file
     has_answers = any(file.ids_of(keyword) for keyword in ANSWERS)
     optima = [
@@ -178,7 +178,7 @@ def _finished(draft: Draft) -> bytes:
 
 
 def _edit_conditions(draft: Draft, change: WorkingstepUpdate) -> None:
-    """Feed, speed and depth of a workingstep."""
+    """Write the feed, speed and depth of a workingstep."""
     step = change.workingstep
     _edit_number(draft, step, change.programmed.feed, change.feed)
     if change.speed is not None:
@@ -188,7 +188,7 @@ def _edit_conditions(draft: Draft, change: WorkingstepUpdate) -> None:
 
 
 def _edit_number(draft: Draft, step: ResolvedWorkingstep, number: Number, value: float) -> None:
-    """One programmed number, in an instance that only this operation uses."""
+    """Write one programmed number, in an instance that only this operation uses."""
     if rounded(value) == rounded(number.in_file(number.value)):
         return
     holder = draft.own(step.operation_ref, "its_technology")
@@ -204,7 +204,7 @@ def _edit_number(draft: Draft, step: ResolvedWorkingstep, number: Number, value:
 
 
 def _edit_depth(draft: Draft, step: ResolvedWorkingstep, depth: float) -> None:
-    """Depth of one pass: of the operation, or of a turning operation's strategy."""
+    """Write the depth of one pass: in the operation, or in a turning strategy."""
     operation = step.operation
     if isinstance(operation, TurningMachiningOperation):
         reference = operation.its_machining_strategy
@@ -216,7 +216,7 @@ def _edit_depth(draft: Draft, step: ResolvedWorkingstep, depth: float) -> None:
 
 
 def _with_first_programmed(record: AdviceRecord, old: AdviceRecord | None) -> AdviceRecord:
-    """A new record that remembers what the file said before it was ever optimised."""
+    """Record that keeps the values programmed before the first optimisation."""
     if old is None:
         return record
     return replace(

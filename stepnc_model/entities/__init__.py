@@ -1,1 +1,1 @@
-"""ISO 14649 entities as frozen dataclasses, attribute order = EXPRESS order."""
+"""ISO 14649 entities as frozen dataclasses, with attributes in EXPRESS order."""

@@ -1,7 +1,7 @@
 """Milling technology as NIST proposed it in 2009, with ``adaptive_allowed``.
 
-Quoted in paper 002, "Future work". The keyword stays MILLING_TECHNOLOGY; five parameters, two
-of them references, tell it from the standard's nine.
+Quoted in paper 002, "Future work". The keyword remains MILLING_TECHNOLOGY; it is recognised by
+its five parameters, two of them references, instead of the standard's nine.
 """
 
 from __future__ import annotations
@@ -11,43 +11,43 @@ from stepnc_model.part21.values import Ref
 
 
 class SpeedSpec(Entity, abstract=True):
-    """Supertype ``speed_spec``."""
+    """Supertype ``speed_spec``: a speed that may or may not be adapted."""
 
     adaptive_allowed: bool
 
 
 class Cutspeed(SpeedSpec):
-    """EXPRESS ``cutspeed``."""
+    """EXPRESS ``cutspeed``: programmed cutting speed."""
 
     value: float
 
 
 class SpindleSpeed(SpeedSpec):
-    """EXPRESS ``spindle_speed``."""
+    """EXPRESS ``spindle_speed``: programmed spindle speed."""
 
     value: float
 
 
 class FeedSpec(Entity, abstract=True):
-    """Supertype ``feed_spec``."""
+    """Supertype ``feed_spec``: a feed that may or may not be adapted."""
 
     adaptive_allowed: bool
 
 
 class FeedrateTcp(FeedSpec):
-    """EXPRESS ``feedrate_tcp``."""
+    """EXPRESS ``feedrate_tcp``: programmed feed of the tool centre point."""
 
     value: float
 
 
 class FeedratePerTooth(FeedSpec):
-    """EXPRESS ``feedrate_per_tooth``."""
+    """EXPRESS ``feedrate_per_tooth``: programmed feed per tooth."""
 
     value: float
 
 
 class AdaptiveMillingTechnology(Entity, abstract=True):
-    """EXPRESS ``milling_technology`` in the proposed form."""
+    """EXPRESS ``milling_technology`` in the form proposed by NIST."""
 
     its_speed: Ref[SpeedSpec]
     its_feed: Ref[FeedSpec]

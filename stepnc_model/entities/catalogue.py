@@ -1,4 +1,4 @@
-"""All entities by keyword, with the names that the two editions of ISO 14649 give them."""
+"""Catalogue of all entity classes by keyword, with the names of both editions of ISO 14649."""
 
 from collections.abc import Iterator
 from functools import cache
@@ -59,20 +59,20 @@ BY_ARITY: dict[tuple[str, int], type[Entity]] = {
 
 
 def class_of(keyword: str, arity: int) -> type[Entity] | None:
-    """Class of an instance by its keyword and number of parameters; None: not read."""
+    """Class of an instance by keyword and number of parameters; None if not supported."""
     return BY_ARITY.get((keyword, arity)) or classes().get(keyword)
 
 
 @cache
 def classes() -> dict[str, type[Entity]]:
-    """Class of every keyword, older names included."""
+    """Entity classes by keyword, including older names."""
     found = {cls.keyword: cls for module in MODULES for cls in _entities(module)}
     found.update({old: found[new] for old, new in OLDER_NAMES.items()})
     return found
 
 
 def _entities(module: object) -> Iterator[type[Entity]]:
-    """Entities that one module defines and a file may name."""
+    """Entity classes of one module that can occur in a file."""
     for value in vars(module).values():
         if not isinstance(value, type) or not issubclass(value, Entity):
             continue

@@ -1,8 +1,8 @@
-"""Types of attributes, and one attribute: Part 21 value to Python value and back.
+"""Conversion of attribute values between Part 21 and Python, by the annotated types.
 
-Annotations are read when an entity is first bound. Reading is tolerant. What a value lacks
-becomes an empty list, an empty text or ``None``, and what is odd about it a remark; nothing is
-raised.
+Annotations are read when an entity is first bound. Reading is tolerant and raises no errors:
+a missing or invalid value becomes an empty list, an empty text or ``None``, with a remark that
+describes the deviation.
 """
 
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ from stepnc_model.part21.values import Binary, Derived, Enumeration, Real, Ref, 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AttributeSlot:
-    """Type of one attribute; several fields are filled when it is a SELECT."""
+    """Type of one attribute; several fields are set if it is a SELECT."""
 
     is_optional: bool = False
     references: tuple[type[Entity], ...] = ()
@@ -30,7 +30,7 @@ class AttributeSlot:
     """Items of a list"""
 
     def expected(self) -> str:
-        """Noun for messages."""
+        """Description of the expected type, for messages."""
         names = [cls.express_name() for cls in self.references]
         names += dict.fromkeys(_NOUNS[kind] for kind in self.plain)
         if self.enumeration is not None:
@@ -56,13 +56,13 @@ def slots_of(cls: type[Entity]) -> dict[str, AttributeSlot]:
 
 @cache
 def _slots_of(cls: Any) -> dict[str, AttributeSlot]:
-    """Read all annotations of a class, once."""
+    """Slots of a class from its annotations, cached."""
     hints = get_type_hints(cls)
     return {name: _slot(hints[name]) for name in attributes(cls)}
 
 
 def _slot(hint: object) -> AttributeSlot:
-    """Read one annotation."""
+    """Slot for one annotation."""
     choices = _members(hint)
     classes = [choice for choice in choices if isinstance(choice, type)]
     lists = [get_args(choice)[0] for choice in choices if get_origin(choice) is tuple]
@@ -77,7 +77,7 @@ def _slot(hint: object) -> AttributeSlot:
 
 
 def _members(hint: object) -> tuple[Any, ...]:
-    """Members of a union; anything else is its only member."""
+    """Members of a union; any other annotation is its only member."""
     return get_args(hint) if get_origin(hint) in {Union, UnionType} else (hint,)
 
 
@@ -86,7 +86,7 @@ _TRUTH = {"T": True, "F": False}
 
 @dataclass(frozen=True, slots=True)
 class ConversionRemark:
-    """Remark on one value."""
+    """Remark on a converted value, with its severity."""
 
     severity: Severity
     message: str
@@ -97,21 +97,23 @@ Taken = tuple[object, ConversionRemark | None]
 
 
 def take(slot: AttributeSlot, value: Value) -> Taken:
-    """Python value of one parameter, or its stand-in when the slot does not take it."""
+    """Convert a parameter to Python; an empty value if the slot does not accept it."""
     taken, remark = _take(slot, value)
     return _stand_in(slot) if taken is None else taken, remark
 
 
 def take_missing(slot: AttributeSlot) -> Taken:
-    """Stand-in for a parameter that the instance is too short for."""
+    """Empty value for a parameter that is missing at the end of an instance."""
     if slot.is_optional or slot.items is not None:
-        text = "is missing at the end, as in older editions"
+        text = "missing at the end of the instance, as in older editions"
         return _stand_in(slot), ConversionRemark(Severity.NOTE, text)
-    return _stand_in(slot), ConversionRemark(Severity.ERROR, "is missing at the end")
+    return _stand_in(slot), ConversionRemark(
+        Severity.ERROR, "missing at the end of the instance"
+    )
 
 
 def give(slot: AttributeSlot, value: object) -> Value:
-    """Part 21 value of one attribute: the inverse of :func:`take`.
+    """Convert an attribute value to Part 21: the inverse of :func:`take`.
 
     Raises
     ------
@@ -130,11 +132,11 @@ def give(slot: AttributeSlot, value: object) -> Value:
         return Real(value)
     if value is None or isinstance(value, int | str | Typed | Derived):
         return value
-    raise TypeError(f"{value!r} is no value of an attribute")
+    raise TypeError(f"{value!r} is not a valid attribute value")
 
 
 def _stand_in(slot: AttributeSlot) -> object:
-    """Empty value of a type: readers may rely on lists and texts."""
+    """Empty value of a type, so that readers can rely on lists and texts."""
     if slot.is_optional:
         return None
     if slot.items is not None:
@@ -143,7 +145,7 @@ def _stand_in(slot: AttributeSlot) -> object:
 
 
 def _take(slot: AttributeSlot, value: Value) -> Taken:
-    """Python value of one parameter; ``None`` when the slot does not take it."""
+    """Convert a parameter to Python; ``None`` if the slot does not accept it."""
     if value is None or isinstance(value, Derived):
         return None, None if isinstance(value, Derived) else _unset(slot)
     if isinstance(value, tuple):
@@ -169,17 +171,17 @@ def _unset(slot: AttributeSlot) -> ConversionRemark | None:
         return None
     if slot.items is not None:
         return ConversionRemark(
-            Severity.NOTE, "$ where a list is required: read as an empty one"
+            Severity.NOTE, "$ where a list is required: read as an empty list"
         )
     if str in slot.plain:
         return ConversionRemark(
-            Severity.NOTE, "$ where a text is required: read as an empty one"
+            Severity.NOTE, "$ where a text is required: read as an empty text"
         )
     return ConversionRemark(Severity.WARNING, f"$ where {slot.expected()} is required")
 
 
 def _take_list(slot: AttributeSlot, value: tuple[Value, ...]) -> Taken:
-    """Every item, or none: a list with a hole would shift coordinates."""
+    """Convert all items of a list, or none: a gap would shift coordinates."""
     if slot.items is None:
         return None, ConversionRemark(
             Severity.ERROR, f"a list where {slot.expected()} is required"
@@ -192,12 +194,12 @@ def _take_list(slot: AttributeSlot, value: tuple[Value, ...]) -> Taken:
     if slot.items.references:
         return tuple(item for item in items if item is not None), remark
     return (), ConversionRemark(
-        Severity.ERROR, remark.message if remark else "items are left out"
+        Severity.ERROR, remark.message if remark else "items are missing"
     )
 
 
 def _first_remark(remarks: list[ConversionRemark | None]) -> ConversionRemark | None:
-    """The first thing that is odd about a list."""
+    """First remark on the items of a list, with the item's position."""
     for place, remark in enumerate(remarks, 1):
         if remark is not None:
             return ConversionRemark(remark.severity, f"item {place}: {remark.message}")
@@ -205,7 +207,7 @@ def _first_remark(remarks: list[ConversionRemark | None]) -> ConversionRemark | 
 
 
 def _take_single(slot: AttributeSlot, value: Value) -> Taken:
-    """A value without the brackets of its list."""
+    """Convert a value whose list brackets are missing."""
     items, remark = _take_list(slot, (value,))
     if remark is not None:
         return items, remark
@@ -213,7 +215,7 @@ def _take_single(slot: AttributeSlot, value: Value) -> Taken:
 
 
 def _take_typed(slot: AttributeSlot, value: Typed) -> Taken:
-    """A measure: the type is kept where it matters, unwrapped where the slot implies it."""
+    """Convert a measure; its type is kept where it matters, else dropped."""
     inner = value.value
     while isinstance(inner, Typed):
         inner = inner.value
@@ -223,7 +225,7 @@ def _take_typed(slot: AttributeSlot, value: Typed) -> Taken:
 
 
 def _take_enumeration(slot: AttributeSlot, value: Enumeration) -> Taken:
-    """A member of the slot's enumeration, or a truth value."""
+    """Convert a member of the slot's enumeration, or a truth value."""
     name = value.upper()
     if slot.enumeration is not None and name in set(slot.enumeration):
         return slot.enumeration(name), None
@@ -235,13 +237,13 @@ def _take_enumeration(slot: AttributeSlot, value: Enumeration) -> Taken:
 
 
 def _take_number(slot: AttributeSlot, value: int | Real) -> Taken:
-    """A finite number, whole where an integer is required."""
+    """Convert a finite number, which must be whole where an integer is required."""
     if float not in slot.plain and int not in slot.plain:
         return _refused(slot, value)
     if isinstance(value, int):
         return _take_integer(value) if float in slot.plain else (value, None)
     if not isfinite(value):
-        return None, ConversionRemark(Severity.ERROR, f"{value:g} is no finite number")
+        return None, ConversionRemark(Severity.ERROR, f"{value:g} is not a finite number")
     if float in slot.plain:
         return value, None
     if value.is_integer():
@@ -252,15 +254,15 @@ def _take_number(slot: AttributeSlot, value: int | Real) -> Taken:
 
 
 def _take_integer(value: int) -> Taken:
-    """An integer where a real is required, unless it is beyond all reals."""
+    """Convert an integer where a real is required, unless it is too large."""
     try:
         return float(value), None
     except OverflowError:
-        return None, ConversionRemark(Severity.ERROR, "an integer beyond all reals")
+        return None, ConversionRemark(Severity.ERROR, "the integer is too large for a real")
 
 
 def _refused(slot: AttributeSlot, value: object) -> Taken:
-    """A value of the wrong kind."""
+    """Remark on a value of the wrong kind."""
     shown = f".{value}." if isinstance(value, Enumeration) else repr(value)
     return None, ConversionRemark(
         Severity.ERROR, f"{shown} where {slot.expected()} is required"

@@ -1,15 +1,15 @@
-"""The base of every ISO 14649 entity: a frozen, slotted, keyword-only dataclass.
+"""Base class of all ISO 14649 entities: a frozen, slotted, keyword-only dataclass.
 
 The order of the fields, supertypes first, is the order of the parameters in a Part 21 file.
 Attributes that point to an instance hold a :class:`~stepnc_model.part21.values.Ref`, never the
-entity itself, so circular and dangling references cost nothing; looking them up is the work
-of :class:`stepnc_model.binding.Model`.
+entity itself, so that circular and dangling references cause no problems; they are resolved by
+:class:`stepnc_model.binding.Model`.
 
-Why not plain ``@dataclass``: it generates and compiles five methods for each class, half a
-millisecond apiece, and there are some three hundred classes on the way to ``--help``. Here one
-``__init__``, ``__repr__``, ``__eq__`` and ``__hash__``, driven by the fields, serve them all,
-and annotations stay strings (``from __future__ import annotations``) until somebody binds.
-``dataclasses.fields``, ``replace`` and ``asdict`` work as on any dataclass.
+Plain ``@dataclass`` is not used because it generates and compiles five methods per class,
+which takes half a millisecond each, and about three hundred classes are loaded before
+``--help``. Here all classes share one ``__init__``, ``__repr__``, ``__eq__`` and ``__hash__``,
+driven by the fields, and annotations stay strings (``from __future__ import annotations``)
+until they are needed. ``dataclasses.fields``, ``replace`` and ``asdict`` work as usual.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _WORD = re.compile(r"(?<=.)(?=[A-Z])|(?<=[a-z])(?=[0-9][a-z])")
 
 @dataclass_transform(frozen_default=True, kw_only_default=True, field_specifiers=(field,))
 class EntityType(type):
-    """Makes a dataclass of every entity, and its keyword of the name of the class."""
+    """Metaclass that makes each entity a dataclass and derives its keyword from its name."""
 
     def __new__(
         cls,
@@ -37,7 +37,7 @@ class EntityType(type):
         *,
         abstract: bool = False,
     ) -> Any:
-        """Make a class; no instance of a file may name an ``abstract`` one."""
+        """Create the class; an ``abstract`` class has no instances in a file."""
         made: Any = super().__new__(cls, name, bases, namespace)
         if "__slots__" in namespace:
             return made  # the dataclass makes its class once more, with slots
@@ -58,7 +58,7 @@ class Entity(metaclass=EntityType, abstract=True):
 
     @classmethod
     def express_name(cls) -> str:
-        """Name in the standard's spelling, ``plane_rough_milling``."""
+        """Name in the standard's spelling, such as ``plane_rough_milling``."""
         return _WORD.sub("_", cls.__name__).lower()
 
     def __init__(self, **attributes: object) -> None:
@@ -69,7 +69,7 @@ class Entity(metaclass=EntityType, abstract=True):
                 missing.append(name)
             object.__setattr__(self, name, value)
         if missing:
-            raise TypeError(f"{type(self).__name__} lacks {', '.join(missing)}")
+            raise TypeError(f"{type(self).__name__} requires {', '.join(missing)}")
         if attributes:
             raise TypeError(f"{type(self).__name__} has no {', '.join(attributes)}")
 
@@ -95,7 +95,7 @@ class Entity(metaclass=EntityType, abstract=True):
 
 
 def apart() -> Any:
-    """Field that the EXPRESS entity lacks: no Part 21 position, absent by default."""
+    """Field that the EXPRESS entity does not have: no Part 21 position, absent by default."""
     return field(default=None, metadata={"express": False})
 
 
@@ -105,5 +105,5 @@ def attributes(cls: type[Entity] | Entity) -> tuple[str, ...]:
 
 
 def values(instance: Entity) -> tuple[object, ...]:
-    """Values of all fields, in their order."""
+    """Values of all fields, in field order."""
     return tuple(getattr(instance, name) for name in instance.__dataclass_fields__)

@@ -8,7 +8,7 @@ from enum import StrEnum
 
 
 class Logical(StrEnum):
-    """LOGICAL of EXPRESS, where unknown is an answer."""
+    """EXPRESS type LOGICAL, with the third value unknown."""
 
     TRUE = "T"
     FALSE = "F"
@@ -16,7 +16,7 @@ class Logical(StrEnum):
 
 
 class ToolReferencePoint(StrEnum):
-    """Point of the tool that moves with the feed programmed."""
+    """Reference point on the tool for the programmed feed."""
 
     TCP = "TCP"
     CCP = "CCP"
@@ -31,14 +31,14 @@ class Hand(StrEnum):
 
 
 class RotDirection(StrEnum):
-    """Sense in which a contour is followed."""
+    """Direction of rotation in which a contour is followed."""
 
     CW = "CW"
     CCW = "CCW"
 
 
 class CutmodeType(StrEnum):
-    """Down milling or up milling."""
+    """Cut mode: climb (down) or conventional (up) milling."""
 
     CLIMB = "CLIMB"
     CONVENTIONAL = "CONVENTIONAL"
@@ -59,7 +59,7 @@ class PathmodeType(StrEnum):
 
 
 class StrokeConnectionStrategy(StrEnum):
-    """Way from the end of one stroke to the start of the next."""
+    """Move from the end of one stroke to the start of the next."""
 
     STRAGHTLINE = "STRAGHTLINE"
     """spelt so in ISO 14649-11"""
@@ -82,7 +82,7 @@ class ToolpathType(StrEnum):
 
 
 class SpeedName(StrEnum):
-    """Feed that has a name instead of a number."""
+    """Named feed, used instead of a number."""
 
     RAPID = "RAPID"
 
@@ -95,7 +95,7 @@ class ContactType(StrEnum):
 
 
 class BottomOrSide(StrEnum):
-    """Part of a feature that a surface finish is asked of."""
+    """Part of a feature to which a surface finish applies."""
 
     BOTTOM = "BOTTOM"
     SIDE = "SIDE"
@@ -103,7 +103,7 @@ class BottomOrSide(StrEnum):
 
 
 class FittingType(StrEnum):
-    """Partner of a fit: hole or shaft."""
+    """Partner of a fit: shaft or hole."""
 
     SHAFT = "SHAFT"
     HOLE = "HOLE"
@@ -118,7 +118,7 @@ class CoolantSelect(StrEnum):
 
 
 class ThreadCutDepthType(StrEnum):
-    """Development of the depth of thread passes (ISO 14649-12)."""
+    """Progression of the depth of thread passes (ISO 14649-12)."""
 
     CONSTANT_DEPTH = "CONSTANT_DEPTH"
     VARIABLE_DEPTH = "VARIABLE_DEPTH"
@@ -126,7 +126,7 @@ class ThreadCutDepthType(StrEnum):
 
 
 class ThreadingDirectionType(StrEnum):
-    """Flank along which a threading tool is fed in (ISO 14649-12)."""
+    """Flank along which a threading tool is fed (ISO 14649-12)."""
 
     LEFT = "LEFT"
     RIGHT = "RIGHT"
@@ -144,28 +144,28 @@ class HandOfToolType(StrEnum):
 
 
 class ThreadHandType(StrEnum):
-    """Hand of the thread a tool cuts (ISO 14649-121)."""
+    """Hand of the thread that a tool cuts (ISO 14649-121)."""
 
     LEFT = "LEFT"
     RIGHT = "RIGHT"
 
 
 class ThreadType(StrEnum):
-    """Inside or outside thread (ISO 14649-121)."""
+    """Internal or external thread (ISO 14649-121)."""
 
     INTERNAL = "INTERNAL"
     EXTERNAL = "EXTERNAL"
 
 
 class ThreadProfileType(StrEnum):
-    """Insert that cuts the crest as well, or not (ISO 14649-121)."""
+    """Threading insert with a full or partial profile (ISO 14649-121)."""
 
     FULL_PROFILE = "FULL_PROFILE"
     PARTIAL_PROFILE = "PARTIAL_PROFILE"
 
 
 class KnurlPatternType(StrEnum):
-    """Pattern of a knurling wheel; members after the knurls of ISO 14649-12."""
+    """Pattern of a knurling wheel, named after the knurls of ISO 14649-12."""
 
     STRAIGHT = "STRAIGHT"
     DIAGONAL = "DIAGONAL"
@@ -182,7 +182,7 @@ class TransitionCode(StrEnum):
 
 
 class TrimmingPreference(StrEnum):
-    """Preferred way of trimming where both are given (ISO 10303-42)."""
+    """Preferred way of trimming a curve if both are given (ISO 10303-42)."""
 
     CARTESIAN = "CARTESIAN"
     PARAMETER = "PARAMETER"
@@ -190,7 +190,7 @@ class TrimmingPreference(StrEnum):
 
 
 class BSplineCurveForm(StrEnum):
-    """Form of curve that a B-spline stands for (ISO 10303-42)."""
+    """Kind of curve that a B-spline represents (ISO 10303-42)."""
 
     POLYLINE_FORM = "POLYLINE_FORM"
     CIRCULAR_ARC = "CIRCULAR_ARC"
@@ -210,7 +210,7 @@ class KnotType(StrEnum):
 
 
 class AheadOrBehind(StrEnum):
-    """Sense of an offset from universal time (ISO 10303-41)."""
+    """Sign of an offset from universal time (ISO 10303-41)."""
 
     AHEAD = "AHEAD"
     EXACT = "EXACT"

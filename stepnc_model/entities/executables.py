@@ -1,7 +1,7 @@
 """Projects, setups and executables: workplans, workingsteps, probing, functions (ISO 14649-10).
 
-The project is the root of a program, with owner, date and status. Turning steps are those of
-ISO 14649-12. Lengths in mm.
+The project is the root of a program, with owner, date and status. Turning workingsteps are
+those of ISO 14649-12. Lengths are in mm.
 """
 
 from __future__ import annotations
@@ -34,21 +34,21 @@ from stepnc_model.part21.values import Ref
 
 
 class OffsetVector(Entity):
-    """Offset that the control measures: three variables each."""
+    """Offset measured by the control, in three variables."""
 
     translate: tuple[Ref[NcVariable], ...]
     rotate: tuple[Ref[NcVariable], ...] | None = None
 
 
 class SetupInstruction(Entity):
-    """Instruction for the operator."""
+    """Instruction for the operator of a setup."""
 
     description: str | None = None
     external_document: str | None = None
 
 
 class WorkpieceSetup(Entity):
-    """One workpiece in a setup; ``its_origin`` is given in the setup's coordinates."""
+    """Workpiece in a setup; ``its_origin`` is in setup coordinates."""
 
     its_workpiece: Ref[Workpiece]
     its_origin: Ref[Axis2Placement3d]
@@ -61,7 +61,7 @@ class WorkpieceSetup(Entity):
 
 
 class Setup(Entity):
-    """Clamping; ``its_origin`` is given in the machine's coordinates."""
+    """Setup of workpieces on the machine; ``its_origin`` is in machine coordinates."""
 
     its_id: str
     its_origin: Ref[Axis2Placement3d] | None = None
@@ -70,7 +70,7 @@ class Setup(Entity):
 
 
 class Executable(Entity, abstract=True):
-    """Anything a control can run."""
+    """Executable, anything that a control can run."""
 
     its_id: str
 
@@ -82,7 +82,7 @@ class Channel(Entity):
 
 
 class InProcessGeometry(Entity):
-    """Shape before, after, and what is removed."""
+    """Shape before and after a workingstep, and the removed volume."""
 
     as_is: Ref[AdvancedBrepShapeRepresentation] | None = None
     to_be: Ref[AdvancedBrepShapeRepresentation] | None = None
@@ -90,13 +90,13 @@ class InProcessGeometry(Entity):
 
 
 class Workingstep(Executable, abstract=True):
-    """Step that works above a security plane."""
+    """Workingstep, an executable with a security plane."""
 
     its_secplane: Ref[ElementarySurface]
 
 
 class MachiningWorkingstep(Workingstep):
-    """One operation on one feature."""
+    """Machining of one feature by one operation."""
 
     its_feature: Ref[ManufacturingFeature]
     its_operation: Ref[MachiningOperation]
@@ -104,7 +104,7 @@ class MachiningWorkingstep(Workingstep):
 
 
 class TurningWorkingstep(Workingstep):
-    """One turning operation on several features."""
+    """Machining of several features by one turning operation."""
 
     its_features: tuple[Ref[ManufacturingFeature], ...]
     its_operation: Ref[TurningMachiningOperation]
@@ -112,22 +112,22 @@ class TurningWorkingstep(Workingstep):
 
 
 class RapidMovement(Workingstep):
-    """Movement in rapid; the second supertype, ``operation``, is spelt out."""
+    """Movement in rapid; includes the attributes of the second supertype, ``operation``."""
 
     its_toolpath: Ref[ToolpathList] | None = None
     its_tool_direction: Ref[ToolDirection] | None = None
 
 
 class ReturnHome(RapidMovement):
-    """Movement to the home position."""
+    """Rapid movement to the home position."""
 
 
 class ProgramStructure(Executable, abstract=True):
-    """Executable that holds others."""
+    """Program structure, an executable that contains others."""
 
 
 class Workplan(ProgramStructure):
-    """Executables one after another."""
+    """Workplan, executables in sequence."""
 
     its_elements: tuple[Ref[Executable], ...]
     its_channel: Ref[Channel] | None = None
@@ -136,25 +136,25 @@ class Workplan(ProgramStructure):
 
 
 class Parallel(ProgramStructure):
-    """Executables at the same time."""
+    """Executables to run at the same time."""
 
     branches: tuple[Ref[Executable], ...]
 
 
 class NonSequential(ProgramStructure):
-    """Executables in any order."""
+    """Executables to run in any order."""
 
     its_elements: tuple[Ref[Executable], ...]
 
 
 class Selective(ProgramStructure):
-    """One of several executables."""
+    """Choice of one among several executables."""
 
     its_elements: tuple[Ref[Executable], ...]
 
 
 class IfStatement(ProgramStructure):
-    """One executable or the other."""
+    """Conditional execution of one of two executables."""
 
     condition: Ref[BooleanExpression]
     true_branch: Ref[Executable]
@@ -162,21 +162,21 @@ class IfStatement(ProgramStructure):
 
 
 class WhileStatement(ProgramStructure):
-    """Executable repeated."""
+    """Repeated execution while a condition holds."""
 
     condition: Ref[BooleanExpression]
     body: Ref[Executable]
 
 
 class Assignment(ProgramStructure):
-    """Variable gets a value."""
+    """Assignment of a value to a variable."""
 
     its_lvalue: Ref[NcVariable]
     its_rvalue: Ref[NcVariable | NcConstant]
 
 
 class NcFunction(Executable, abstract=True):
-    """Switching action or message."""
+    """NC function, a switching action or message."""
 
 
 class DisplayMessage(NcFunction):
@@ -186,53 +186,53 @@ class DisplayMessage(NcFunction):
 
 
 class OptionalStop(NcFunction):
-    """Stop if the switch is on."""
+    """Program stop that applies only if the optional stop switch is on."""
 
 
 class ProgramStop(NcFunction):
-    """Stop until started again."""
+    """Program stop until the operator restarts."""
 
 
 class LoadTool(NcFunction):
-    """Tool into the spindle."""
+    """Loading of a tool into the spindle."""
 
     its_tool: Ref[MachiningTool]
 
 
 class UnloadTool(NcFunction):
-    """Tool out of the spindle."""
+    """Unloading of the tool from the spindle."""
 
     its_tool: Ref[MachiningTool] | None = None
 
 
 class SetMark(NcFunction):
-    """Mark that other channels may wait for."""
+    """Mark that other channels can wait for."""
 
 
 class WaitForMark(NcFunction):
-    """Wait for the mark of another channel."""
+    """Waiting for the mark of another channel."""
 
     its_channel: Ref[Channel]
 
 
 class ExchangePallet(NcFunction):
-    """Next pallet."""
+    """Exchange of the pallet."""
 
 
 class IndexPallet(NcFunction):
-    """Pallet to a position."""
+    """Indexing of the pallet to a position."""
 
     its_index: int
 
 
 class IndexTable(NcFunction):
-    """Table to a position."""
+    """Indexing of the table to a position."""
 
     its_index: int
 
 
 class TouchProbing(Workingstep, abstract=True):
-    """Measurement; the second supertype, ``operation``, is spelt out."""
+    """Touch probing; includes the attributes of the second supertype, ``operation``."""
 
     its_toolpath: Ref[ToolpathList] | None = None
     its_tool_direction: Ref[ToolDirection] | None = None
@@ -240,7 +240,7 @@ class TouchProbing(Workingstep, abstract=True):
 
 
 class WorkpieceProbing(TouchProbing):
-    """One point of the workpiece."""
+    """Probing of one point of the workpiece."""
 
     start_position: Ref[Axis2Placement3d]
     its_workpiece: Ref[Workpiece]
@@ -250,7 +250,7 @@ class WorkpieceProbing(TouchProbing):
 
 
 class WorkpieceCompleteProbing(TouchProbing):
-    """Place and attitude of the workpiece."""
+    """Probing of the workpiece's position and orientation."""
 
     its_workpiece: Ref[Workpiece]
     probing_distance: Ref[TolerancedLengthMeasure]
@@ -259,7 +259,7 @@ class WorkpieceCompleteProbing(TouchProbing):
 
 
 class ToolProbing(TouchProbing, abstract=True):
-    """Measurement of a tool."""
+    """Probing of a tool."""
 
     offset: Ref[CartesianPoint]
     max_wear: float
@@ -267,11 +267,11 @@ class ToolProbing(TouchProbing, abstract=True):
 
 
 class ToolLengthProbing(ToolProbing):
-    """Length of a tool."""
+    """Probing of a tool's length."""
 
 
 class ToolRadiusProbing(ToolProbing):
-    """Radius of a tool."""
+    """Probing of a tool's radius."""
 
 
 class Person(Entity):
@@ -303,14 +303,14 @@ class Address(Entity):
 
 
 class PersonAndAddress(Entity):
-    """Owner of the project."""
+    """Person with address, the owner of a project."""
 
     its_person: Ref[Person]
     its_address: Ref[Address] | None = None
 
 
 class CalendarDate(Entity):
-    """Day (ISO 10303-41)."""
+    """Calendar date (ISO 10303-41)."""
 
     year_component: int
     day_component: int
@@ -318,7 +318,7 @@ class CalendarDate(Entity):
 
 
 class CoordinatedUniversalTimeOffset(Entity):
-    """Time zone (ISO 10303-41)."""
+    """Offset of a time zone from universal time (ISO 10303-41)."""
 
     hour_offset: int
     minute_offset: int | None = None
@@ -326,7 +326,7 @@ class CoordinatedUniversalTimeOffset(Entity):
 
 
 class LocalTime(Entity):
-    """Time of the day (ISO 10303-41)."""
+    """Time of day (ISO 10303-41)."""
 
     hour_component: int
     minute_component: int | None = None
@@ -335,27 +335,27 @@ class LocalTime(Entity):
 
 
 class DateAndTime(Entity):
-    """Moment (ISO 10303-41)."""
+    """Date and time of day (ISO 10303-41)."""
 
     date_component: Ref[CalendarDate]
     time_component: Ref[LocalTime]
 
 
 class ApprovalStatus(Entity):
-    """Name of a status (ISO 10303-41)."""
+    """Name of an approval status (ISO 10303-41)."""
 
     name: str
 
 
 class Approval(Entity):
-    """Status with its level (ISO 10303-41)."""
+    """Approval status with its level (ISO 10303-41)."""
 
     status: Ref[ApprovalStatus]
     level: str
 
 
 class Project(Entity):
-    """Root of a program."""
+    """Project, the root of a program."""
 
     its_id: str
     main_workplan: Ref[Workplan]

@@ -1,4 +1,4 @@
-"""Features of milling and drilling, threads (ISO 14649-10); mm and degrees."""
+"""Features of milling and drilling, and threads (ISO 14649-10); mm and degrees."""
 
 from __future__ import annotations
 
@@ -46,14 +46,14 @@ class MachiningFeature(Two5dManufacturingFeature, abstract=True):
 
 
 class Boss(MachiningFeature):
-    """Material left standing within another feature."""
+    """Boss, material left standing within another feature."""
 
     its_boundary: Ref[ClosedProfile]
     slope: float | None = None
 
 
 class PlanarFace(MachiningFeature):
-    """Face to be milled flat."""
+    """Planar face to be milled."""
 
     course_of_travel: Ref[LinearPath]
     removal_boundary: Ref[LinearProfile]
@@ -62,7 +62,7 @@ class PlanarFace(MachiningFeature):
 
 
 class Pocket(MachiningFeature, abstract=True):
-    """Hollow with a floor and walls."""
+    """Pocket, a cavity with a floor and walls."""
 
     its_boss: tuple[Ref[Boss], ...]
     slope: float | None = None
@@ -85,7 +85,7 @@ class OpenPocket(Pocket):
 
 
 class Slot(MachiningFeature):
-    """Profile swept along a path."""
+    """Slot, a profile swept along a path."""
 
     course_of_travel: Ref[TravelPath]
     swept_shape: Ref[OpenProfile]
@@ -93,7 +93,7 @@ class Slot(MachiningFeature):
 
 
 class Step(MachiningFeature):
-    """Corner taken off along an edge."""
+    """Step, a corner removed along an edge."""
 
     open_boundary: Ref[LinearPath]
     wall_boundary: Ref[VeeProfile] | None = None
@@ -101,7 +101,7 @@ class Step(MachiningFeature):
 
 
 class RoundHole(MachiningFeature):
-    """Hole by its diameter."""
+    """Round hole given by its diameter."""
 
     diameter: Ref[TolerancedLengthMeasure]
     change_in_diameter: Ref[DiameterTaper | AngleTaper] | None = None
@@ -109,7 +109,7 @@ class RoundHole(MachiningFeature):
 
 
 class ToolpathFeature(MachiningFeature):
-    """Whatever the tool path leaves."""
+    """Feature defined only by its tool path."""
 
 
 class RoundedEnd(MachiningFeature):
@@ -120,7 +120,7 @@ class RoundedEnd(MachiningFeature):
 
 
 class SphericalCap(MachiningFeature):
-    """Part of a sphere."""
+    """Spherical cap, part of a sphere."""
 
     internal_angle: Ref[NumericParameter]
     radius: Ref[NumericParameter]
@@ -133,7 +133,7 @@ class ProfileFeature(MachiningFeature, abstract=True):
 
 
 class GeneralOutsideProfile(ProfileFeature):
-    """Outside of the workpiece."""
+    """Outside profile of the workpiece."""
 
     feature_boundary: Ref[Profile]
 
@@ -146,44 +146,44 @@ class ShapeProfile(ProfileFeature, abstract=True):
 
 
 class GeneralShapeProfile(ShapeProfile):
-    """Shape of any profile."""
+    """Shape profile with a general profile."""
 
     profile_boundary: Ref[Profile]
 
 
 class PartialCircularShapeProfile(ShapeProfile):
-    """Shape of an arc."""
+    """Shape profile with an arc as its profile."""
 
     open_boundary: Ref[PartialCircularProfile]
 
 
 class CircularClosedShapeProfile(ShapeProfile):
-    """Shape of a circle."""
+    """Shape profile with a circle as its profile."""
 
     closed_boundary: Ref[CircularClosedProfile]
 
 
 class RectangularOpenShapeProfile(ShapeProfile):
-    """Shape of a U."""
+    """Shape profile with a U-shaped profile."""
 
     open_boundary: Ref[SquareUProfile]
 
 
 class RectangularClosedShapeProfile(ShapeProfile):
-    """Shape of a rectangle."""
+    """Shape profile with a rectangle as its profile."""
 
     closed_boundary: Ref[RectangularClosedProfile]
 
 
 class TransitionFeature(ManufacturingFeature, abstract=True):
-    """Feature that joins two others."""
+    """Transition between two other features."""
 
     first_feature: Ref[MachiningFeature]
     second_feature: Ref[MachiningFeature]
 
 
 class Chamfer(TransitionFeature):
-    """Broken edge."""
+    """Chamfered edge."""
 
     angle_to_plane: float
     first_offset_amount: Ref[TolerancedLengthMeasure]
@@ -198,46 +198,46 @@ class EdgeRound(TransitionFeature):
 
 
 class CompoundFeature(Two5dManufacturingFeature):
-    """Several features as one."""
+    """Compound of several features."""
 
     elements: tuple[Ref[MachiningFeature | TransitionFeature], ...]
 
 
 class CounterboreHole(CompoundFeature):
-    """Hole with a cylindrical sink."""
+    """Hole with a cylindrical counterbore."""
 
 
 class CountersunkHole(CompoundFeature):
-    """Hole with a conical sink."""
+    """Hole with a conical countersink."""
 
 
 class ReplicateFeature(Two5dManufacturingFeature, abstract=True):
-    """Feature repeated."""
+    """Pattern that repeats a feature."""
 
     replicate_base_feature: Ref[Two5dManufacturingFeature]
 
 
 class GeneralPattern(ReplicateFeature):
-    """Feature repeated at placements of its own."""
+    """Pattern with individual placements."""
 
     replicate_locations: tuple[Ref[Axis2Placement3d], ...]
 
 
 class CircularOffset(Entity):
-    """Copy of a circular pattern that is turned."""
+    """Relocated copy of a circular pattern."""
 
     angular_offset: float
     index: int
 
 
 class CircularOmit(Entity):
-    """Copy of a circular pattern that is left out."""
+    """Omitted copy of a circular pattern."""
 
     index: int
 
 
 class CircularPattern(ReplicateFeature):
-    """Feature repeated on a circle."""
+    """Pattern of copies on a circle."""
 
     angle_increment: float
     number_of_feature: int
@@ -248,7 +248,7 @@ class CircularPattern(ReplicateFeature):
 
 
 class RectangularOffset(Entity):
-    """Copy of a rectangular pattern that is moved."""
+    """Relocated copy of a rectangular pattern."""
 
     offset_direction: Ref[Direction]
     offset_distance: float
@@ -257,14 +257,14 @@ class RectangularOffset(Entity):
 
 
 class RectangularOmit(Entity):
-    """Copy of a rectangular pattern that is left out."""
+    """Omitted copy of a rectangular pattern."""
 
     row_index: int
     column_index: int
 
 
 class RectangularPattern(ReplicateFeature):
-    """Feature repeated in rows and columns; names after the draft of 2001."""
+    """Pattern of copies in rows and columns, with attribute names of the draft of 2001."""
 
     spacing: Ref[TolerancedLengthMeasure]
     its_direction: Ref[Direction]
@@ -277,7 +277,7 @@ class RectangularPattern(ReplicateFeature):
 
 
 class PartialAreaDefinition(Entity):
-    """Part of a feature's length."""
+    """Part of a feature's length to which something is limited."""
 
     effective_length: float
     placement: Ref[Axis2Placement3d]
@@ -285,14 +285,14 @@ class PartialAreaDefinition(Entity):
 
 
 class SpecificationUsageConstraint(Entity):
-    """Element of a document that applies."""
+    """Element of a specification document that applies."""
 
     element: str
     class_id: str
 
 
 class Specification(Entity):
-    """Document by its name."""
+    """Specification document, given by its name."""
 
     constraint: tuple[Ref[SpecificationUsageConstraint], ...]
     specification_id: str
@@ -301,7 +301,7 @@ class Specification(Entity):
 
 
 class Thread(MachiningFeature, abstract=True):
-    """Thread on a shape."""
+    """Thread on another feature."""
 
     partial_profile: Ref[PartialAreaDefinition]
     applied_shape: tuple[Ref[MachiningFeature], ...]
@@ -315,13 +315,13 @@ class Thread(MachiningFeature, abstract=True):
 
 
 class CatalogueThread(Thread):
-    """Thread by a standard."""
+    """Thread defined by a standard."""
 
     documentation: Ref[Specification]
 
 
 class DefinedThread(Thread):
-    """Thread by its sizes."""
+    """Thread defined by its dimensions."""
 
     pitch_diameter: float
     minor_diameter: float | None = None

@@ -1,6 +1,6 @@
 """Geometry of ISO 10303-42 as far as ISO 14649 programs use it.
 
-Lengths in mm; what the faces of a solid look like is kept in the file and not modelled here.
+Lengths are in mm; the faces of a solid are kept in the file and not modelled here.
 """
 
 from __future__ import annotations
@@ -17,23 +17,23 @@ from stepnc_model.part21.values import Ref, Typed
 
 
 class RepresentationItem(Entity, abstract=True):
-    """Anything that geometry is made of."""
+    """Geometric item, base of all geometry."""
 
     name: str
 
 
 class Point(RepresentationItem, abstract=True):
-    """Location in space."""
+    """Point in space."""
 
 
 class CartesianPoint(Point):
-    """Point by its coordinates, mm."""
+    """Point given by its coordinates, mm."""
 
     coordinates: tuple[float, ...]
 
 
 class Direction(RepresentationItem):
-    """Direction by its ratios; the length means nothing."""
+    """Direction given by its ratios; their length has no meaning."""
 
     direction_ratios: tuple[float, ...]
 
@@ -46,7 +46,7 @@ class Vector(RepresentationItem):
 
 
 class Placement(RepresentationItem, abstract=True):
-    """Location of a coordinate system."""
+    """Position of a coordinate system."""
 
     location: Ref[CartesianPoint]
 
@@ -71,7 +71,7 @@ class Axis2Placement3d(Placement):
 
 
 class Curve(RepresentationItem, abstract=True):
-    """Anything that has one parameter."""
+    """Curve, a geometric item with one parameter."""
 
 
 class Line(Curve):
@@ -82,7 +82,7 @@ class Line(Curve):
 
 
 class Conic(Curve, abstract=True):
-    """Plane curve of second order."""
+    """Conic section, a plane curve of second order."""
 
     position: Ref[Axis2Placement2d | Axis2Placement3d]
 
@@ -94,16 +94,16 @@ class Circle(Conic):
 
 
 class Ellipse(Conic):
-    """Full ellipse; the first half axis lies along x."""
+    """Full ellipse; the first semi-axis lies along x."""
 
     semi_axis_1: float
     semi_axis_2: float
 
 
 class Helix(Curve):
-    """Right-hand screw line about z.
+    """Right-hand helix about z.
 
-    No entity of ISO 10303-42: an addition of NIST's ``ex1E.stp``.
+    Not an entity of ISO 10303-42 but an addition of NIST's ``ex1E.stp``.
     """
 
     position: Ref[Axis2Placement3d]
@@ -116,7 +116,7 @@ class BoundedCurve(Curve, abstract=True):
 
 
 class Polyline(BoundedCurve):
-    """Straight segments from point to point."""
+    """Polyline of straight segments from point to point."""
 
     points: tuple[Ref[CartesianPoint], ...]
 
@@ -132,11 +132,11 @@ class TrimmedCurve(BoundedCurve):
 
 
 class FoundedItem(Entity, abstract=True):
-    """Item with a meaning only within another one."""
+    """Item that has a meaning only within another item."""
 
 
 class CompositeCurveSegment(FoundedItem):
-    """One curve of a chain, and how it meets the next."""
+    """Curve of a composite curve, with its transition to the next one."""
 
     transition: TransitionCode
     same_sense: bool
@@ -144,14 +144,14 @@ class CompositeCurveSegment(FoundedItem):
 
 
 class CompositeCurve(BoundedCurve):
-    """Chain of curves."""
+    """Composite curve, a chain of bounded curves."""
 
     segments: tuple[Ref[CompositeCurveSegment], ...]
     self_intersect: Logical
 
 
 class BSplineCurve(BoundedCurve):
-    """Polynomial curve by its control points."""
+    """B-spline curve given by its control points."""
 
     degree: int
     control_points_list: tuple[Ref[CartesianPoint], ...]
@@ -161,7 +161,7 @@ class BSplineCurve(BoundedCurve):
 
 
 class BSplineCurveWithKnots(BSplineCurve):
-    """Polynomial curve with its knots spelt out."""
+    """B-spline curve with explicit knots."""
 
     knot_multiplicities: tuple[int, ...]
     knots: tuple[float, ...]
@@ -169,11 +169,11 @@ class BSplineCurveWithKnots(BSplineCurve):
 
 
 class Surface(RepresentationItem, abstract=True):
-    """Anything that has two parameters."""
+    """Surface, a geometric item with two parameters."""
 
 
 class ElementarySurface(Surface):
-    """Simple surface; drafts of ISO 14649 write it where they mean a plane."""
+    """Elementary surface; drafts of ISO 14649 use it for a plane."""
 
     position: Ref[Axis2Placement3d]
 
@@ -183,7 +183,7 @@ class Plane(ElementarySurface):
 
 
 class CylindricalSurface(ElementarySurface):
-    """Unbounded cylinder about z."""
+    """Unbounded cylindrical surface about z."""
 
     radius: float
 
@@ -202,7 +202,7 @@ class Block(RepresentationItem):
 
 
 class RightCircularCylinder(RepresentationItem):
-    """Cylinder that rises from its placement along the axis, mm."""
+    """Solid cylinder that rises from its placement along the axis, mm."""
 
     position: Ref[Axis1Placement | Axis2Placement3d]
     height: float
@@ -210,7 +210,7 @@ class RightCircularCylinder(RepresentationItem):
 
 
 class AdvancedBrepShapeRepresentation(Entity):
-    """Solid by its faces; faces are not modelled, the references are."""
+    """Solid given by its faces, of which only the references are modelled."""
 
     name: str
     items: tuple[Ref[Entity], ...]

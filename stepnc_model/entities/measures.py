@@ -8,7 +8,7 @@ from stepnc_model.part21.values import Ref
 
 
 class PlusMinusValue(Entity):
-    """Tolerance by its limits, mm; both are written as positive numbers."""
+    """Tolerance given by its limits, mm; both are written as positive numbers."""
 
     upper_limit: float
     lower_limit: float
@@ -16,10 +16,10 @@ class PlusMinusValue(Entity):
 
 
 class LimitsAndFits(Entity):
-    """Tolerance by deviation and grade of ISO 286.
+    """Tolerance given by deviation and grade of ISO 286.
 
-    Both are of the type ``length_measure``, which cannot hold the letters of ISO 286; files
-    that write 'H' and 'IT7' are read as well.
+    Both attributes are of type ``length_measure``, which cannot hold the letters of ISO 286;
+    files that write 'H' and 'IT7' are read as well.
     """
 
     deviation: float | str
@@ -28,26 +28,26 @@ class LimitsAndFits(Entity):
 
 
 class TolerancedLengthMeasure(Entity):
-    """Length in mm and what it may deviate."""
+    """Length in mm with its tolerance."""
 
     theoretical_size: float
     implicit_tolerance: Ref[PlusMinusValue | LimitsAndFits]
 
 
 class PropertyParameter(Entity):
-    """Named property; abstract in the standard of 2004, written as such in drafts."""
+    """Named property; abstract in the standard of 2004, instantiated in drafts."""
 
     parameter_name: str
 
 
 class DescriptiveParameter(PropertyParameter):
-    """Property by a text."""
+    """Property given by a text."""
 
     descriptive_string: str
 
 
 class NumericParameter(PropertyParameter):
-    """Property by a number with its unit."""
+    """Property given by a number with its unit."""
 
     its_parameter_value: float
     its_parameter_unit: str
@@ -68,70 +68,70 @@ class NcConstant(Entity):
 
 
 class BooleanExpression(Entity, abstract=True):
-    """Expression that is true or false when the program runs."""
+    """Boolean expression, evaluated while the program runs."""
 
 
 class UnaryBooleanExpression(BooleanExpression, abstract=True):
-    """Expression of one operand."""
+    """Boolean expression with one operand."""
 
     operand: Ref[BooleanExpression]
 
 
 class NotExpression(UnaryBooleanExpression):
-    """True when its operand is false."""
+    """Negation: true if its operand is false."""
 
 
 class BinaryBooleanExpression(BooleanExpression, abstract=True):
-    """Expression of two operands."""
+    """Boolean expression with two operands."""
 
     operand1: Ref[BooleanExpression]
     operand2: Ref[BooleanExpression]
 
 
 class XorExpression(BinaryBooleanExpression):
-    """True when exactly one operand is true."""
+    """Exclusive or: true if exactly one operand is true."""
 
 
 class MultipleArityBooleanExpression(BooleanExpression, abstract=True):
-    """Expression of two or more operands."""
+    """Boolean expression with two or more operands."""
 
     operands: tuple[Ref[BooleanExpression], ...]
 
 
 class AndExpression(MultipleArityBooleanExpression):
-    """True when all operands are true."""
+    """Conjunction: true if all operands are true."""
 
 
 class OrExpression(MultipleArityBooleanExpression):
-    """True when an operand is true."""
+    """Disjunction: true if at least one operand is true."""
 
 
 class ComparisonExpression(BooleanExpression, abstract=True):
-    """Variable against a variable or a constant."""
+    """Comparison of a variable with a variable or a constant."""
 
     operand1: Ref[NcVariable]
     operand2: Ref[NcVariable | NcConstant]
 
 
 class ComparisonEqual(ComparisonExpression):
-    """First equals second."""
+    """Comparison: first operand equals second."""
 
 
 class ComparisonNotEqual(ComparisonExpression):
-    """First differs from second."""
+    """Comparison: first operand differs from second."""
 
 
 class ComparisonGreater(ComparisonExpression):
-    """First is above second."""
+    """Comparison: first operand is greater than second."""
 
 
 class ComparisonGreaterEqual(ComparisonExpression):
-    """First is at or above second."""
+    """Comparison: first operand is greater than or equal to second."""
 
 
 class ComparisonLess(ComparisonExpression):
-    """First is below second."""
+    """Comparison: first operand is less than second."""
 
 
 class ComparisonLessEqual(ComparisonExpression):
-    """First is at or below second."""
+    """Comparison: first operand is less than or equal to second."""

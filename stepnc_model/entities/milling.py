@@ -1,4 +1,4 @@
-"""Operations, strategies and approaches of milling and of making holes (ISO 14649-11).
+"""Operations, strategies and approaches of milling and hole making (ISO 14649-11).
 
 Lengths in mm, angles in degrees, times in s. Overlaps and reductions are ratios from 0 to 1;
 files of the draft of 2001 write percent.
@@ -20,7 +20,7 @@ from stepnc_model.part21.values import Ref
 
 
 class Two5dMillingStrategy(Entity, abstract=True):
-    """Strategy of covering an area at constant depth."""
+    """Strategy for covering an area at constant depth."""
 
     overlap: float | None = None
     """of neighbouring strokes, as a ratio of the tool diameter"""
@@ -28,14 +28,14 @@ class Two5dMillingStrategy(Entity, abstract=True):
 
 
 class UnidirectionalMilling(Two5dMillingStrategy):
-    """Strokes in one direction; UNIDIRECTIONAL in the draft of 2001."""
+    """Milling in strokes in one direction; UNIDIRECTIONAL in the draft of 2001."""
 
     feed_direction: Ref[Direction] | None = None
     cutmode: CutmodeType | None = None
 
 
 class BidirectionalMilling(Two5dMillingStrategy):
-    """Strokes to and fro; BIDIRECTIONAL in the draft of 2001."""
+    """Milling in strokes to and fro; BIDIRECTIONAL in the draft of 2001."""
 
     feed_direction: Ref[Direction] | None = None
     stepover_direction: LeftOrRight | None = None
@@ -43,14 +43,14 @@ class BidirectionalMilling(Two5dMillingStrategy):
 
 
 class ContourParallel(Two5dMillingStrategy):
-    """Offsets of the contour."""
+    """Milling in offsets of the contour."""
 
     rotation_direction: RotDirection
     cutmode: CutmodeType | None = None
 
 
 class BidirectionalContour(Two5dMillingStrategy):
-    """Strokes to and fro, then along the contour."""
+    """Milling in strokes to and fro, then along the contour."""
 
     feed_direction: Ref[Direction] | None = None
     stepover_direction: LeftOrRight | None = None
@@ -59,7 +59,7 @@ class BidirectionalContour(Two5dMillingStrategy):
 
 
 class ContourBidirectional(Two5dMillingStrategy):
-    """Along the contour, then strokes to and fro."""
+    """Milling along the contour, then in strokes to and fro."""
 
     feed_direction: Ref[Direction] | None = None
     stepover_direction: LeftOrRight | None = None
@@ -68,29 +68,29 @@ class ContourBidirectional(Two5dMillingStrategy):
 
 
 class ContourSpiral(Two5dMillingStrategy):
-    """Spiral that follows the contour."""
+    """Milling in a spiral that follows the contour."""
 
     rotation_direction: RotDirection
     cutmode: CutmodeType | None = None
 
 
 class CenterMilling(Two5dMillingStrategy):
-    """One stroke in the middle of the slot."""
+    """Milling with one stroke along the middle of a slot."""
 
 
 class ExplicitStrategy(Two5dMillingStrategy):
-    """As the tool path says; EXPLICIT in the draft of 2001."""
+    """Milling along an explicit tool path; EXPLICIT in the draft of 2001."""
 
 
 class Tolerances(Entity):
-    """Deviations allowed on a free-form surface, mm."""
+    """Permitted deviations on a free-form surface, mm."""
 
     chordal_tolerance: float
     scallop_height: float
 
 
 class FreeformStrategy(Entity, abstract=True):
-    """Strategy of covering a free-form surface."""
+    """Strategy for covering a free-form surface."""
 
     pathmode: PathmodeType
     cutmode: CutmodeType
@@ -99,32 +99,32 @@ class FreeformStrategy(Entity, abstract=True):
 
 
 class UvStrategy(FreeformStrategy):
-    """Along the parameters of the surface."""
+    """Free-form milling along the parameter lines of the surface."""
 
     forward_direction: Ref[Direction]
     sideward_direction: Ref[Direction]
 
 
 class PlaneCcStrategy(FreeformStrategy):
-    """Contact points in parallel planes."""
+    """Free-form milling with contact points in parallel planes."""
 
     its_plane_normal: Ref[Direction]
 
 
 class PlaneClStrategy(FreeformStrategy):
-    """Tool centre points in parallel planes."""
+    """Free-form milling with tool centre points in parallel planes."""
 
     its_plane_normal: Ref[Direction]
 
 
 class LeadingLineStrategy(FreeformStrategy):
-    """Strokes parallel to a curve."""
+    """Free-form milling in strokes parallel to a curve."""
 
     its_line: Ref[BoundedCurve]
 
 
 class DrillingTypeStrategy(Entity):
-    """Reduced cut and feed where a drill enters and leaves; depths in mm."""
+    """Reduced speed and feed where a drill enters and leaves; depths in mm."""
 
     reduced_cut_at_start: float | None = None
     reduced_feed_at_start: float | None = None
@@ -135,70 +135,70 @@ class DrillingTypeStrategy(Entity):
 
 
 class ApproachRetractStrategy(Entity, abstract=True):
-    """Way in which the tool comes to the cut or leaves it."""
+    """Move by which the tool approaches or leaves the cut."""
 
     tool_orientation: Ref[Direction] | None = None
 
 
 class PlungeStrategy(ApproachRetractStrategy, abstract=True):
-    """Way into material."""
+    """Plunge move into material."""
 
 
 class PlungeToolaxis(PlungeStrategy):
-    """Straight down the tool axis."""
+    """Plunge straight down the tool axis."""
 
 
 class PlungeRamp(PlungeStrategy):
-    """Down a straight ramp."""
+    """Plunge down a straight ramp."""
 
     angle: float
 
 
 class PlungeHelix(PlungeStrategy):
-    """Down a helix."""
+    """Plunge down a helix."""
 
     radius: float
     angle: float
 
 
 class PlungeZigzag(PlungeStrategy):
-    """Down a ramp to and fro."""
+    """Plunge down a ramp to and fro."""
 
     angle: float
     width: float
 
 
 class AirStrategy(ApproachRetractStrategy, abstract=True):
-    """Way through air."""
+    """Approach or retract through air."""
 
 
 class ApRetractAngle(AirStrategy):
-    """Straight, at an angle to the path."""
+    """Straight approach or retract at an angle to the path."""
 
     angle: float
     travel_length: float
 
 
 class ApRetractTangent(AirStrategy):
-    """Along an arc that meets the path tangentially."""
+    """Approach or retract along an arc tangential to the path."""
 
     radius: float
 
 
 class AlongPath(ApproachRetractStrategy):
-    """Along tool paths of its own."""
+    """Approach or retract along an explicit tool path."""
 
     path: Ref[ToolpathList]
 
 
 class MillingMachiningOperation(MachiningOperation, abstract=True):
-    """Operation of a rotating tool."""
+    """Operation with a rotating tool."""
 
     overcut_length: float | None = None
 
 
 class MillingTypeOperation(MillingMachiningOperation, abstract=True):
-    """Operation that mills."""
+    """Milling operation."""
 
     approach: Ref[ApproachRetractStrategy] | None = None
     retract: Ref[ApproachRetractStrategy] | None = None
@@ -217,22 +217,22 @@ class Two5dMillingOperation(MillingTypeOperation, abstract=True):
 
 
 class PlaneMilling(Two5dMillingOperation, abstract=True):
-    """Milling of a face."""
+    """Milling of a planar face."""
 
     axial_cutting_depth: float | None = None
     allowance_bottom: float | None = None
 
 
 class PlaneRoughMilling(PlaneMilling):
-    """Roughing of a face."""
+    """Roughing of a planar face."""
 
 
 class PlaneFinishMilling(PlaneMilling):
-    """Finishing of a face."""
+    """Finishing of a planar face."""
 
 
 class SideMilling(Two5dMillingOperation, abstract=True):
-    """Milling of a wall."""
+    """Milling of side walls."""
 
     axial_cutting_depth: float | None = None
     radial_cutting_depth: float | None = None
@@ -240,11 +240,11 @@ class SideMilling(Two5dMillingOperation, abstract=True):
 
 
 class SideRoughMilling(SideMilling):
-    """Roughing of a wall."""
+    """Roughing of side walls."""
 
 
 class SideFinishMilling(SideMilling):
-    """Finishing of a wall."""
+    """Finishing of side walls."""
 
 
 class BottomAndSideMilling(Two5dMillingOperation, abstract=True):
@@ -276,11 +276,11 @@ class DrillingTypeOperation(MillingMachiningOperation, abstract=True):
 
 
 class DrillingOperation(DrillingTypeOperation, abstract=True):
-    """Operation of a drill."""
+    """Operation with a drill."""
 
 
 class Drilling(DrillingOperation):
-    """Drilling in one go."""
+    """Drilling of a hole in one pass."""
 
 
 class CenterDrilling(DrillingOperation):
@@ -288,11 +288,11 @@ class CenterDrilling(DrillingOperation):
 
 
 class CounterSinking(DrillingOperation):
-    """Sinking of a cone."""
+    """Countersinking of a hole."""
 
 
 class MultistepDrilling(DrillingOperation):
-    """Drilling with retracts that break or remove the chip."""
+    """Drilling with retracts that break or remove chips."""
 
     retract_distance: float
     first_depth: float
@@ -309,24 +309,24 @@ class BoringOperation(DrillingTypeOperation, abstract=True):
 
 
 class Boring(BoringOperation):
-    """Widening with a boring tool."""
+    """Boring of a hole with a boring tool."""
 
 
 class Reaming(BoringOperation):
-    """Finishing with a reamer."""
+    """Finishing of a hole with a reamer."""
 
 
 class BackBoring(DrillingTypeOperation):
-    """Boring from behind."""
+    """Boring of a hole from behind."""
 
 
 class Tapping(DrillingTypeOperation):
-    """Tapping; ``compensation_chuck`` after the draft of 2001."""
+    """Tapping of a thread; ``compensation_chuck`` is from the draft of 2001."""
 
     compensation_chuck: bool
 
 
 class ThreadDrilling(DrillingTypeOperation):
-    """Thread drilling; ``helical_movement_on_forward`` after the draft of 2001."""
+    """Thread drilling; ``helical_movement_on_forward`` is from the draft of 2001."""
 
     helical_movement_on_forward: bool

@@ -17,7 +17,7 @@ class ToolpathSpeed(Entity):
 
 
 class Toolpath(Entity, abstract=True):
-    """Movement; what it leaves out it takes from its operation."""
+    """Tool path; missing values are taken from its operation."""
 
     its_priority: bool
     its_type: ToolpathType
@@ -28,26 +28,26 @@ class Toolpath(Entity, abstract=True):
 
 
 class ToolpathList(Entity):
-    """Tool paths in their order."""
+    """List of tool paths in order."""
 
     its_list: tuple[Ref[Toolpath], ...]
 
 
 class Feedstop(Toolpath):
-    """Pause at the end of a movement."""
+    """Dwell at the end of a movement."""
 
     dwell: float
     """s"""
 
 
 class Trajectory(Toolpath, abstract=True):
-    """Movement along a curve; ``its_direction`` false runs it backwards."""
+    """Movement along a curve; with ``its_direction`` false it runs backwards."""
 
     its_direction: bool | None = None
 
 
 class CutterLocationTrajectory(Trajectory):
-    """Curve of the tool centre point."""
+    """Trajectory given by the curve of the tool centre point."""
 
     basiccurve: Ref[BoundedCurve]
     its_toolaxis: Ref[BoundedCurve] | None = None
@@ -55,14 +55,14 @@ class CutterLocationTrajectory(Trajectory):
 
 
 class CurveWithNormalVector(Entity):
-    """Curve with the normal of the surface it lies on."""
+    """Curve with the normals of the surface on which it lies."""
 
     basiccurve: Ref[BoundedCurve]
     surface_normal: Ref[BoundedCurve]
 
 
 class CutterContactTrajectory(Trajectory):
-    """Curve of the point where cutter and surface touch."""
+    """Trajectory given by the curve of contact between cutter and surface."""
 
     basiccurve: Ref[CurveWithNormalVector | BoundedCurve]
     its_toolaxis: Ref[BoundedCurve] | None = None
@@ -70,63 +70,63 @@ class CutterContactTrajectory(Trajectory):
 
 
 class AxisTrajectory(Trajectory):
-    """Curves of the machine's own axes."""
+    """Trajectory given by curves of the machine axes."""
 
     axis_list: tuple[str, ...]
     commands: tuple[Ref[BoundedCurve], ...]
 
 
 class ParameterisedPath(Toolpath, abstract=True):
-    """Movement that a few parameters tell."""
+    """Tool path given by a few parameters."""
 
 
 class Connector(ParameterisedPath, abstract=True):
-    """Way from one cut to the next."""
+    """Connection from one cut to the next."""
 
 
 class ConnectSecplane(Connector):
-    """Way over the security plane."""
+    """Connection over the security plane."""
 
     up_dir: Ref[Direction] | None = None
     down_dir: Ref[Direction] | None = None
 
 
 class ConnectDirect(Connector):
-    """Straight way."""
+    """Straight connection between two cuts."""
 
 
 class ApproachLiftPath(ParameterisedPath, abstract=True):
-    """Way to the cut or from it."""
+    """Approach to the cut or lift from it."""
 
     fix_point: Ref[CartesianPoint]
     fix_point_dir: Ref[Direction] | None = None
 
 
 class ApLiftPathAngle(ApproachLiftPath):
-    """Straight way at an angle, degrees."""
+    """Straight approach or lift at an angle, degrees."""
 
     angle: float
     benddist: float
 
 
 class ApLiftPathTangent(ApproachLiftPath):
-    """Way along an arc that meets the path tangentially."""
+    """Approach or lift along an arc tangential to the path."""
 
     radius: float
 
 
 class Operation(Entity, abstract=True):
-    """Anything that moves the tool."""
+    """Operation, base of everything that moves the tool."""
 
     its_toolpath: Ref[ToolpathList] | None = None
     its_tool_direction: Ref[ToolDirection] | None = None
 
 
 class MachiningOperation(Operation, abstract=True):
-    """Operation that cuts: tool, technology and machine functions.
+    """Machining operation with its tool, technology and machine functions.
 
-    ``its_optimisation`` is no attribute of the standard. Files that carry an optimum refer
-    to it from one surplus parameter, behind ``its_machine_functions`` or at the very end.
+    ``its_optimisation`` is not an attribute of the standard. Files with an optimum refer to
+    it by one surplus parameter, after ``its_machine_functions`` or at the very end.
     """
 
     its_id: str

@@ -1,9 +1,9 @@
-"""The optimisation record of a machining operation: ``schemas/optimisation.exp`` in memory.
+"""Optimisation record of a machining operation: ``schemas/optimisation.exp`` in Python.
 
-The data model of [1]_, Fig. 10, made consistent, with what a machine that optimises, measures
-and learns has to add. Numbers are those of the file, in the units of ISO 14649-10, 4.2.1: mm,
-s, m/s, rev/s (signed), degrees; forces in N, powers in kW, energies in J, roughness in µm,
-specific force in N/mm². They become mm, s, N, W and rad where a program is read, not here.
+The data model follows [1]_, Fig. 10, made consistent, with additions for a machine that
+optimises, measures and learns. Numbers have the units of the file, ISO 14649-10, 4.2.1: mm, s,
+m/s, rev/s (signed), degrees; forces in N, powers in kW, energies in J, roughness in µm,
+specific force in N/mm². They become mm, s, N, W and rad when a program is read, not here.
 
 References
 ----------
@@ -22,7 +22,7 @@ from stepnc_model.part21.values import Ref
 
 
 class FaceMillingImmersion(StrEnum):
-    """``face_milling_immersion``: which part of the cutter's width cuts, [1]_ Fig. 6."""
+    """``face_milling_immersion``: part of the cutter's width that cuts, [1]_ Fig. 6."""
 
     FULL_IMMERSION = "FULL_IMMERSION"
     UNIDIRECTIONAL_PART_IMMERSION = "UNIDIRECTIONAL_PART_IMMERSION"
@@ -30,7 +30,7 @@ class FaceMillingImmersion(StrEnum):
 
 
 class Optimisation(Entity, abstract=True):
-    """Supertype ``optimisation``."""
+    """Supertype ``optimisation``: optimised feed and depth of an operation."""
 
     its_id: str
     main_drive_motor_power: Ref[MachinePower]
@@ -38,7 +38,7 @@ class Optimisation(Entity, abstract=True):
 
 
 class TimeCriticalOptimisation(Optimisation):
-    """EXPRESS ``time_critical_optimisation``: mm per tooth and mm."""
+    """EXPRESS ``time_critical_optimisation``: optimum for machining time, mm per tooth, mm."""
 
     feed_per_tooth_max: float
     axial_cutting_depth_max: float
@@ -46,7 +46,7 @@ class TimeCriticalOptimisation(Optimisation):
 
 
 class QualityCriticalOptimisation(Optimisation):
-    """EXPRESS ``quality_critical_optimisation``: mm per tooth and mm."""
+    """EXPRESS ``quality_critical_optimisation``: optimum for quality, mm per tooth, mm."""
 
     feed_per_tooth: float
     axial_cutting_depth: float
@@ -54,7 +54,7 @@ class QualityCriticalOptimisation(Optimisation):
 
 
 class EnergyCriticalOptimisation(Optimisation):
-    """EXPRESS ``energy_critical_optimisation``: mm per tooth and mm."""
+    """EXPRESS ``energy_critical_optimisation``: optimum for energy, mm per tooth, mm."""
 
     feed_per_tooth: float
     axial_cutting_depth: float
@@ -62,24 +62,24 @@ class EnergyCriticalOptimisation(Optimisation):
 
 
 class Power(Entity, abstract=True):
-    """Supertype ``power``: a numeric parameter in kW."""
+    """Supertype ``power``: a power as a numeric parameter in kW."""
 
     its_power_property: Ref[NumericParameter]
 
 
 class MachinePower(Power):
-    """EXPRESS ``machine_power``: what the main drive has."""
+    """EXPRESS ``machine_power``: power available at the main drive."""
 
 
 class MainCuttingPower(Power):
-    """EXPRESS ``main_cutting_power``: what the cut takes, at a signed speed in rev/s."""
+    """EXPRESS ``main_cutting_power``: power of the cut, at a signed speed in rev/s."""
 
     its_cutting_force: Ref[CuttingForce]
     spindle_speed: float
 
 
 class CuttingForce(Entity):
-    """EXPRESS ``cutting_force``: what the mean tangential force follows from."""
+    """EXPRESS ``cutting_force``: data from which the mean tangential force is calculated."""
 
     its_face_milling_type: Ref[FaceMillingType] | None = None
     spindle_speed: float
@@ -93,14 +93,14 @@ class CuttingForce(Entity):
 
 
 class FaceMillingType(Entity):
-    """EXPRESS ``face_milling_type``: the angle of contact in degrees, 180 in a full cut."""
+    """EXPRESS ``face_milling_type``: angle of contact in degrees, 180 in a full cut."""
 
     zeta: float
     immersion_type: FaceMillingImmersion
 
 
 class OptimisationRecord(Entity):
-    """EXPRESS ``optimisation_record``: how an optimum came about."""
+    """EXPRESS ``optimisation_record``: conditions and reasons of an optimum."""
 
     number_of_passes: int
     active_limit: str
@@ -116,7 +116,7 @@ class OptimisationRecord(Entity):
 
 
 class PredictedValues(Entity):
-    """EXPRESS ``predicted_values``: what the models expect of the whole operation."""
+    """EXPRESS ``predicted_values``: predictions of the models for the whole operation."""
 
     machining_time: float
     """s"""
@@ -131,7 +131,7 @@ class PredictedValues(Entity):
 
 
 class ProgrammedValues(Entity):
-    """EXPRESS ``programmed_values``: what the file said before the first optimisation."""
+    """EXPRESS ``programmed_values``: values in the file before the first optimisation."""
 
     feedrate: float | None = None
     """m/s"""
@@ -156,7 +156,7 @@ class FeedProfile(Entity):
 
 
 class Outcome(Entity):
-    """EXPRESS ``outcome``: what was measured while an operation ran."""
+    """EXPRESS ``outcome``: measurements taken while an operation ran."""
 
     its_operation: Ref[MachiningOperation]
     measured_at: str | None = None
@@ -174,7 +174,7 @@ class Outcome(Entity):
 
 
 class Correction(Entity):
-    """EXPRESS ``correction``: what was learned for a machine, a material and a tool."""
+    """EXPRESS ``correction``: correction learned for a machine, a material and a tool."""
 
     machine: str
     material: str

@@ -1,6 +1,6 @@
-"""Geometry of features: regions, bottoms, profiles, paths, ends of slots (ISO 14649-10).
+"""Geometry of features: regions, bottoms, profiles, paths, slot ends (ISO 14649-10).
 
-Lengths in mm, angles in degrees.
+Lengths are in mm, angles in degrees.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from stepnc_model.part21.values import Ref
 
 
 class ManufacturingFeature(Entity, abstract=True):
-    """Shape to be made, with the operations that make it."""
+    """Manufacturing feature: a shape to be made, with its operations."""
 
     its_id: str
     its_workpiece: Ref[Workpiece]
@@ -30,13 +30,13 @@ class ManufacturingFeature(Entity, abstract=True):
 
 
 class Region(ManufacturingFeature, abstract=True):
-    """Part of a free-form surface."""
+    """Region, part of a free-form surface."""
 
     feature_placement: Ref[Axis2Placement3d] | None = None
 
 
 class RegionProjection(Region):
-    """Region below a closed curve."""
+    """Region defined by projecting a closed curve."""
 
     proj_curve: Ref[BoundedCurve]
     proj_dir: Ref[Direction]
@@ -44,23 +44,23 @@ class RegionProjection(Region):
 
 
 class RegionSurfaceList(Region):
-    """Surfaces one by one."""
+    """Region given by a list of surfaces."""
 
     surface_list: tuple[Ref[BoundedSurface], ...]
 
 
 class TopologicalRegion(Region):
-    """Faces that hang together; the second supertype, ``open_shell``, is spelt out."""
+    """Region of connected faces; includes the second supertype, ``open_shell``."""
 
     name: str
     cfs_faces: tuple[Ref[Entity], ...]
 
 
 class MachinedSurface(Entity):
-    """Bottom or side of a feature.
+    """Machined surface, the bottom or side of a feature.
 
-    ISO 14649-10 names ``machining_feature``, which leaves out turning features; a turned seat
-    has a roughness too, so any manufacturing feature is read.
+    ISO 14649-10 refers to ``machining_feature``, which excludes turning features; turned
+    surfaces have a roughness too, so any manufacturing feature is accepted.
     """
 
     its_machining_feature: Ref[ManufacturingFeature]
@@ -68,7 +68,7 @@ class MachinedSurface(Entity):
 
 
 class SurfaceTextureParameter(Entity):
-    """Roughness by its parameter, the unit as the parameter's standard has it (µm)."""
+    """Surface roughness, given by a parameter in the unit of its standard (µm)."""
 
     its_value: float
     parameter_name: str
@@ -82,31 +82,31 @@ class HoleBottomCondition(Entity, abstract=True):
 
 
 class ThroughBottomCondition(HoleBottomCondition):
-    """The hole goes through."""
+    """Bottom condition of a through hole."""
 
 
 class BlindBottomCondition(HoleBottomCondition, abstract=True):
-    """The hole has a bottom."""
+    """Bottom condition of a blind hole."""
 
 
 class FlatHoleBottom(BlindBottomCondition):
-    """Flat bottom."""
+    """Flat bottom of a hole."""
 
 
 class FlatWithRadiusHoleBottom(BlindBottomCondition):
-    """Flat bottom with a rounded edge."""
+    """Flat bottom of a hole with a rounded edge."""
 
     corner_radius: Ref[TolerancedLengthMeasure]
 
 
 class SphericalHoleBottom(BlindBottomCondition):
-    """Round bottom."""
+    """Spherical bottom of a hole."""
 
     radius: Ref[TolerancedLengthMeasure]
 
 
 class ConicalHoleBottom(BlindBottomCondition):
-    """Bottom that a drill leaves."""
+    """Conical bottom of a hole, as left by a drill."""
 
     tip_angle: float
     tip_radius: Ref[TolerancedLengthMeasure] | None = None
@@ -117,28 +117,28 @@ class PocketBottomCondition(Entity, abstract=True):
 
 
 class ThroughPocketBottomCondition(PocketBottomCondition):
-    """The pocket goes through."""
+    """Bottom condition of a through pocket."""
 
 
 class PlanarPocketBottomCondition(PocketBottomCondition):
-    """Flat floor."""
+    """Flat floor of a pocket."""
 
 
 class RadiusedPocketBottomCondition(PocketBottomCondition):
-    """Floor that is part of a sphere."""
+    """Spherical floor of a pocket."""
 
     floor_radius_center: Ref[CartesianPoint]
     floor_radius: Ref[TolerancedLengthMeasure]
 
 
 class GeneralPocketBottomCondition(PocketBottomCondition):
-    """Floor of any shape."""
+    """Floor of a pocket with general shape."""
 
     shape: Ref[Region]
 
 
 class ThroughProfileFloor(Entity):
-    """The profile has no floor."""
+    """Floor condition of a profile without a floor."""
 
 
 class ProfileFloor(Entity, abstract=True):
@@ -149,19 +149,19 @@ class ProfileFloor(Entity, abstract=True):
 
 
 class GeneralProfileFloor(ProfileFloor):
-    """Floor of any shape, by its face."""
+    """Floor of a profile with general shape, given by its face."""
 
     floor: Ref[Entity]
 
 
 class PlanarProfileFloor(ProfileFloor):
-    """Flat floor."""
+    """Flat floor of a profile."""
 
     floor: Ref[Plane]
 
 
 class Profile(Entity, abstract=True):
-    """Plane curve that bounds a feature or is swept."""
+    """Profile, a plane curve that bounds a feature or is swept."""
 
     placement: Ref[Axis2Placement3d] | None = None
 
@@ -171,13 +171,13 @@ class OpenProfile(Profile, abstract=True):
 
 
 class LinearProfile(OpenProfile):
-    """Straight line."""
+    """Straight line profile."""
 
     profile_length: Ref[NumericParameter]
 
 
 class SquareUProfile(OpenProfile):
-    """Floor and two walls, each with an angle and a radius."""
+    """U profile with a floor and two walls, each with an angle and a radius."""
 
     width: Ref[TolerancedLengthMeasure]
     first_radius: Ref[TolerancedLengthMeasure]
@@ -187,13 +187,13 @@ class SquareUProfile(OpenProfile):
 
 
 class RoundedUProfile(OpenProfile):
-    """Two walls and a half circle."""
+    """U profile with two walls and a semicircular floor."""
 
     width: Ref[TolerancedLengthMeasure]
 
 
 class TeeProfile(OpenProfile):
-    """Section of a T slot."""
+    """Profile of a T slot."""
 
     first_angle: float
     second_angle: float
@@ -206,7 +206,7 @@ class TeeProfile(OpenProfile):
 
 
 class VeeProfile(OpenProfile):
-    """Two lines that meet in a radius."""
+    """V profile of two lines that meet in a radius."""
 
     profile_radius: Ref[TolerancedLengthMeasure]
     profile_angle: float
@@ -214,14 +214,14 @@ class VeeProfile(OpenProfile):
 
 
 class PartialCircularProfile(OpenProfile):
-    """Arc."""
+    """Profile in the form of an arc."""
 
     radius: Ref[TolerancedLengthMeasure]
     sweep_angle: float
 
 
 class GeneralProfile(OpenProfile):
-    """Any curve with two ends."""
+    """General open profile."""
 
     its_profile: Ref[BoundedCurve]
 
@@ -231,20 +231,20 @@ class ClosedProfile(Profile, abstract=True):
 
 
 class RectangularClosedProfile(ClosedProfile):
-    """Rectangle about the origin of its placement."""
+    """Rectangular profile about the origin of its placement."""
 
     profile_width: Ref[TolerancedLengthMeasure]
     profile_length: Ref[TolerancedLengthMeasure]
 
 
 class CircularClosedProfile(ClosedProfile):
-    """Circle."""
+    """Circular profile."""
 
     diameter: Ref[TolerancedLengthMeasure]
 
 
 class NgonClosedProfile(ClosedProfile):
-    """Regular polygon; NGON_PROFILE in the draft of 2001."""
+    """Profile in the form of a regular polygon; NGON_PROFILE in the draft of 2001."""
 
     diameter: Ref[TolerancedLengthMeasure]
     number_of_sides: int
@@ -252,82 +252,82 @@ class NgonClosedProfile(ClosedProfile):
 
 
 class GeneralClosedProfile(ClosedProfile):
-    """Any closed curve."""
+    """General closed profile."""
 
     closed_profile_shape: Ref[BoundedCurve]
 
 
 class TravelPath(Entity, abstract=True):
-    """Way along which a profile is swept."""
+    """Course of travel along which a profile is swept."""
 
     placement: Ref[Axis2Placement3d] | None = None
 
 
 class GeneralPath(TravelPath):
-    """Along any curve."""
+    """Course of travel along a general curve."""
 
     swept_path: Ref[BoundedCurve]
 
 
 class LinearPath(TravelPath):
-    """Along a straight line."""
+    """Course of travel along a straight line."""
 
     distance: Ref[TolerancedLengthMeasure]
     its_direction: Ref[Direction]
 
 
 class CircularPath(TravelPath, abstract=True):
-    """Along a circle."""
+    """Course of travel along a circle."""
 
     radius: Ref[TolerancedLengthMeasure]
 
 
 class CompleteCircularPath(CircularPath):
-    """Once around."""
+    """Course of travel along a full circle."""
 
 
 class PartialCircularPath(CircularPath):
-    """Along an arc."""
+    """Course of travel along an arc."""
 
     sweep_angle: float
 
 
 class SlotEndType(Entity, abstract=True):
-    """End of a slot."""
+    """Type of the end of a slot."""
 
 
 class OpenSlotEndType(SlotEndType):
-    """The tool runs out."""
+    """Open slot end, from which the tool runs out."""
 
 
 class RadiusedSlotEndType(SlotEndType):
-    """Half circle as wide as the slot."""
+    """Semicircular slot end, as wide as the slot."""
 
 
 class FlatSlotEndType(SlotEndType):
-    """Wall with a radius in each corner."""
+    """Flat slot end, a wall with a radius in each corner."""
 
     corner_radius1: Ref[TolerancedLengthMeasure]
     corner_radius2: Ref[TolerancedLengthMeasure]
 
 
 class WoodruffSlotEndType(SlotEndType):
-    """Arc that a disc cutter leaves in the floor."""
+    """Slot end with the arc that a disc cutter leaves in the floor."""
 
     radius: Ref[TolerancedLengthMeasure]
 
 
 class LoopSlotEndType(SlotEndType):
-    """The end meets the start."""
+    """Slot end that meets the start of the slot."""
 
 
 class DiameterTaper(Entity):
-    """Taper by the diameter at its end."""
+    """Taper given by the diameter at its end."""
 
     final_diameter: Ref[TolerancedLengthMeasure]
 
 
 class AngleTaper(Entity):
-    """Taper by its angle."""
+    """Taper given by its angle."""
 
     angle: float

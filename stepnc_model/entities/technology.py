@@ -44,7 +44,7 @@ class MillingTechnology(Technology):
 
 
 class ProcessModel(Entity):
-    """Model of the process, by the file that holds its data."""
+    """Process model, given by the file that holds its data."""
 
     ini_data_file: str
     its_type: str
@@ -80,29 +80,29 @@ class ToolDirection(Entity, abstract=True):
 
 
 class TwoAxes(ToolDirection):
-    """Tool of a lathe."""
+    """Tool direction of a lathe."""
 
 
 class ThreeAxes(ToolDirection):
-    """Tool along z."""
+    """Tool direction along z."""
 
 
 class ToolDirectionForMilling(ToolDirection, abstract=True):
-    """Tool that may be inclined."""
+    """Direction of a tool that may be inclined."""
 
 
 class ThreeAxesTiltedTool(ToolDirectionForMilling):
-    """Tool along a direction that stays."""
+    """Tool direction that is tilted but constant."""
 
     its_tool_direction: Ref[Direction]
 
 
 class FiveAxesConstTiltYaw(ToolDirectionForMilling):
-    """Tool at constant angles to the path, degrees."""
+    """Tool direction at constant angles to the path, degrees."""
 
     tilt_angle: float
     yaw_angle: float
 
 
 class FiveAxesVarTiltYaw(ToolDirectionForMilling):
-    """Tool whose angles the tool path tells."""
+    """Tool direction with varying angles, given by the tool path."""

@@ -11,13 +11,13 @@ from stepnc_model.part21.values import Ref
 
 
 class MachiningTool(Entity, abstract=True):
-    """Machining tool."""
+    """Base of all machining tools."""
 
     its_id: str
 
 
 class TouchProbe(Entity):
-    """Probe that measures by touching."""
+    """Touch probe for measuring."""
 
     its_id: str
 
@@ -31,7 +31,7 @@ class CuttingEdgeTechnologicalData(Entity):
 
 
 class CuttingComponent(Entity):
-    """One cutting edge; drafts write four parameters, the standard of 2004 five."""
+    """Cutting edge; drafts have four parameters, the standard of 2004 five."""
 
     tool_offset_length: float
     its_material: Ref[Material] | None = None
@@ -42,7 +42,7 @@ class CuttingComponent(Entity):
 
 
 class MillingToolDimension(Entity):
-    """Sizes of a tool body; TOOL_DIMENSION in the draft of 2001."""
+    """Dimensions of a tool body; TOOL_DIMENSION in the draft of 2001."""
 
     diameter: float
     tool_top_angle: float | None = None
@@ -68,7 +68,7 @@ class MillingToolBody(ToolBody, abstract=True):
 
 
 class CuttingTool(MachiningTool, abstract=True):
-    """Tool body with its edges; instances named so in drafts are milling tools."""
+    """Tool body with its edges; in drafts, instances of it are milling tools."""
 
     its_tool_body: Ref[ToolBody]
     its_cutting_edge: tuple[Ref[CuttingComponent], ...]
@@ -83,25 +83,25 @@ class MillingCuttingTool(CuttingTool):
 
 
 class MillingCutter(MillingToolBody, abstract=True):
-    """Tool that cuts with its side."""
+    """Milling cutter, a tool that cuts with its side."""
 
 
 class Facemill(MillingCutter):
-    """Cutter for faces."""
+    """Face mill, a cutter for faces."""
 
 
 class Endmill(MillingCutter):
-    """Cutter with edges on end and side."""
+    """End mill with edges on end and side."""
 
 
 class TaperedEndmill(Endmill):
-    """End mill whose side is a cone."""
+    """End mill with a conical side."""
 
     taper_angle: float | None = None
 
 
 class BallEndmill(Endmill):
-    """End mill whose end is half a sphere."""
+    """End mill with a hemispherical end."""
 
 
 class BullnoseEndmill(Endmill):
@@ -109,7 +109,7 @@ class BullnoseEndmill(Endmill):
 
 
 class SideMill(MillingCutter):
-    """Disc cutter."""
+    """Side mill, a disc-shaped cutter."""
 
     cutter_width: float | None = None
 
@@ -137,7 +137,7 @@ class ThreadMill(MillingCutter):
 
 
 class Drill(MillingToolBody, abstract=True):
-    """Tool that cuts with its point."""
+    """Drill, a tool that cuts with its point."""
 
 
 class TwistDrill(Drill):
@@ -145,7 +145,7 @@ class TwistDrill(Drill):
 
 
 class TaperedDrill(TwistDrill):
-    """Twist drill whose side is a cone."""
+    """Twist drill with a conical side."""
 
     taper_angle: float | None = None
 
@@ -159,7 +159,7 @@ class CenterDrill(MillingToolBody):
 
 
 class Countersink(MillingToolBody):
-    """Tool for conical sinks."""
+    """Countersink, a tool for conical sinks."""
 
     countersink_radius: float | None = None
 
@@ -169,7 +169,7 @@ class BacksideCountersink(Countersink):
 
 
 class Counterbore(MillingToolBody):
-    """Tool for cylindrical sinks."""
+    """Counterbore, a tool for cylindrical sinks."""
 
 
 class BacksideCounterbore(Counterbore):
@@ -177,33 +177,33 @@ class BacksideCounterbore(Counterbore):
 
 
 class Reamer(MillingToolBody):
-    """Tool that finishes a hole."""
+    """Reamer, a tool that finishes a hole."""
 
 
 class TaperedReamer(Reamer):
-    """Reamer whose side is a cone."""
+    """Reamer with a conical side."""
 
     taper_angle: float | None = None
 
 
 class CombinedDrillAndReamer(Reamer):
-    """Reamer with a drill before it."""
+    """Reamer combined with a drill in front of it."""
 
     drill_length: float | None = None
 
 
 class Tap(MillingToolBody):
-    """Tool that cuts a thread in one go."""
+    """Tap, a tool that cuts a thread in one pass."""
 
 
 class TaperedTap(Tap):
-    """Tap whose side is a cone."""
+    """Tap with a conical side."""
 
     taper_angle: float | None = None
 
 
 class CombinedDrillAndTap(Tap):
-    """Tap with a drill before it."""
+    """Tap combined with a drill in front of it."""
 
     drill_length: float | None = None
 
@@ -213,16 +213,16 @@ class MillingThreadingTool(MillingToolBody):
 
 
 class BoringTool(MillingToolBody):
-    """Tool with one adjustable edge.
+    """Boring tool with one adjustable edge.
 
-    Files with a sixth parameter, a BOOLEAN, exist; neither edition explains it, so its name
-    here is ours.
+    Some files have a sixth parameter, a BOOLEAN, that neither edition explains; its name here
+    was chosen by this project.
     """
 
     is_adjustable: bool | None = None
 
 
 class UserDefinedTool(MillingToolBody):
-    """Tool by a name that maker and user agree on."""
+    """Tool with a name that manufacturer and user agree on."""
 
     identifier: str

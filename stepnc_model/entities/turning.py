@@ -3,7 +3,7 @@
 Numbers are kept in the units of ISO 14649-10 §4.2.1: m/s, rev/s, mm per revolution, Pa, mm and
 degrees. A feed is a typed value, ``FEED_VELOCITY_TYPE`` in m/s or ``FEED_PER_REV_TYPE`` in mm.
 
-Order of the attributes after the flattened XSD of ISO 14649-12, less its private
+The order of the attributes follows the flattened XSD of ISO 14649-12, without its private
 ``ref_dt_cutting_tool``; it was not checked against the text of the standard.
 """
 
@@ -39,7 +39,7 @@ from stepnc_model.part21.values import Ref, Typed
 
 
 class TurningMachiningStrategy(Entity, abstract=True):
-    """Strategy of turning."""
+    """Base of all turning strategies."""
 
     overcut_length: float | None = None
     allow_multiple_passes: bool | None = None
@@ -50,7 +50,7 @@ class TurningMachiningStrategy(Entity, abstract=True):
 
 
 class UnidirectionalTurning(TurningMachiningStrategy):
-    """Passes in one direction."""
+    """Turning in passes in one direction."""
 
     feed_direction: Ref[Direction] | None = None
     back_path_direction: Ref[Direction] | None = None
@@ -62,7 +62,7 @@ class UnidirectionalTurning(TurningMachiningStrategy):
 
 
 class BidirectionalTurning(TurningMachiningStrategy):
-    """Passes to and fro."""
+    """Turning in passes to and fro."""
 
     feed_direction: Ref[Direction] | None = None
     stepover_direction: Ref[Direction] | None = None
@@ -70,7 +70,7 @@ class BidirectionalTurning(TurningMachiningStrategy):
 
 
 class ContourTurning(TurningMachiningStrategy):
-    """Passes along the contour."""
+    """Turning in passes along the contour."""
 
     feed_direction: Ref[Direction] | None = None
     back_path_direction: Ref[Direction] | None = None
@@ -83,7 +83,7 @@ class ContourTurning(TurningMachiningStrategy):
 
 
 class ThreadStrategy(TurningMachiningStrategy):
-    """Passes of a thread."""
+    """Strategy of thread passes."""
 
     cut_in_amount_function: ThreadCutDepthType
     threading_direction: ThreadingDirectionType
@@ -92,31 +92,31 @@ class ThreadStrategy(TurningMachiningStrategy):
 
 
 class GroovingStrategy(TurningMachiningStrategy):
-    """Plunges side by side."""
+    """Grooving in plunges side by side."""
 
     grooving_direction: Ref[Direction] | None = None
     travel_distance: float | None = None
 
 
 class MultistepGroovingStrategy(GroovingStrategy):
-    """Plunges with retracts that break the chip."""
+    """Grooving in plunges with retracts that break chips."""
 
     retract_distance: float
 
 
 class ExplicitTurningStrategy(TurningMachiningStrategy):
-    """As the tool path says."""
+    """Turning along an explicit tool path."""
 
 
 class ConstSpindleSpeed(Entity):
-    """The spindle turns evenly."""
+    """Constant spindle speed."""
 
     rot_speed: float
     """rev/s; negative is clockwise"""
 
 
 class ConstCuttingSpeed(Entity):
-    """The spindle follows the diameter."""
+    """Constant cutting speed: the spindle speed follows the diameter."""
 
     speed: float
     """m/s"""
@@ -153,7 +153,7 @@ class TurningMachineFunctions(MachineFunctions):
 
 
 class TurningMachiningOperation(MachiningOperation, abstract=True):
-    """Operation of a lathe."""
+    """Operation on a lathe."""
 
     approach: Ref[ApproachRetractStrategy] | None = None
     retract: Ref[ApproachRetractStrategy] | None = None
@@ -161,7 +161,7 @@ class TurningMachiningOperation(MachiningOperation, abstract=True):
 
 
 class Facing(TurningMachiningOperation, abstract=True):
-    """Turning of a face."""
+    """Facing operation."""
 
     allowance: float | None = None
 
@@ -175,7 +175,7 @@ class FacingFinish(Facing):
 
 
 class Grooving(TurningMachiningOperation, abstract=True):
-    """Plunging into a groove."""
+    """Grooving operation."""
 
     dwell: Typed | float | None = None
     """DWELL_TIME in s or DWELL_REVOLUTION in revolutions, as the typed value says"""
@@ -191,11 +191,11 @@ class GroovingFinish(Grooving):
 
 
 class CuttingIn(Grooving):
-    """Cutting in or off."""
+    """Cutting in or parting off."""
 
 
 class Contouring(TurningMachiningOperation, abstract=True):
-    """Turning along a contour."""
+    """Contour turning operation."""
 
     allowance: float | None = None
 
@@ -209,7 +209,7 @@ class ContouringFinish(Contouring):
 
 
 class Threading(TurningMachiningOperation, abstract=True):
-    """Turning of a thread."""
+    """Thread turning operation."""
 
     allowance: float | None = None
 
@@ -223,7 +223,7 @@ class ThreadingFinish(Threading):
 
 
 class Knurling(TurningMachiningOperation):
-    """Pressing of a knurl."""
+    """Knurling operation."""
 
 
 class TurningFeature(Two5dManufacturingFeature, abstract=True):
@@ -231,39 +231,39 @@ class TurningFeature(Two5dManufacturingFeature, abstract=True):
 
 
 class OuterRound(TurningFeature, abstract=True):
-    """Outside diameter."""
+    """Feature of the outside diameter."""
 
     diameter_at_placement: Ref[TolerancedLengthMeasure]
 
 
 class OuterDiameter(OuterRound):
-    """Cylinder or cone."""
+    """Outside cylinder or cone."""
 
     feature_length: Ref[TolerancedLengthMeasure]
     reduced_size: Ref[DiameterTaper | AngleTaper] | None = None
 
 
 class OuterDiameterToShoulder(OuterRound):
-    """Cylinder that ends at a shoulder."""
+    """Outside cylinder that ends at a shoulder."""
 
     v_shape_boundary: Ref[VeeProfile]
 
 
 class RevolvedFeature(TurningFeature, abstract=True):
-    """Profile turned about the axis at a radius, mm."""
+    """Feature with a profile revolved about the axis at a radius, mm."""
 
     material_side: Ref[Direction] | None = None
     radius: float
 
 
 class RevolvedFlat(RevolvedFeature):
-    """Face or cone."""
+    """Revolved face or cone."""
 
     flat_edge_shape: Ref[LinearProfile]
 
 
 class RevolvedRound(RevolvedFeature):
-    """Rounded edge."""
+    """Revolved rounded edge."""
 
     rounded_edge_shape: Ref[PartialCircularProfile]
 
@@ -275,7 +275,7 @@ class Groove(RevolvedFeature):
 
 
 class GeneralRevolution(RevolvedFeature):
-    """Contour of any shape."""
+    """Revolved contour of general shape."""
 
     outer_edge_profile: Ref[GeneralProfile]
 
@@ -294,21 +294,21 @@ class Knurl(TurningFeature, abstract=True):
 
 
 class StraightKnurl(Knurl):
-    """Teeth along the axis."""
+    """Knurl with teeth along the axis."""
 
 
 class DiagonalKnurl(Knurl):
-    """Teeth along one helix."""
+    """Knurl with teeth along one helix."""
 
     helix_angle: float
 
 
 class DiamondKnurl(Knurl):
-    """Teeth along two helices."""
+    """Knurl with teeth along two crossing helices."""
 
     helix1_angle: float
     helix2_angle: float | None = None
 
 
 class ToolKnurl(Knurl):
-    """As the knurling tool leaves it."""
+    """Knurl in the form that its tool leaves."""

@@ -34,7 +34,7 @@ class ChamferedCorner(CornerTransition):
 
 
 class CuttingEdgeProperties(Entity):
-    """Cutting edge of a turning tool."""
+    """Geometry of the cutting edge of a turning tool."""
 
     expected_tool_life: float | None = None
     """s"""
@@ -65,7 +65,7 @@ class GeneralTurningTool(TurningMachineCuttingTool):
 
 
 class TurningThreadingTool(TurningMachineCuttingTool):
-    """Tool for threads."""
+    """Turning tool for threads."""
 
     threading_pitch: float
     thread_hand: ThreadHandType
@@ -75,7 +75,7 @@ class TurningThreadingTool(TurningMachineCuttingTool):
 
 
 class GroovingTool(TurningMachineCuttingTool):
-    """Tool for grooves."""
+    """Turning tool for grooves."""
 
     cutting_width: float
     maximum_grooving_depth: float
@@ -85,7 +85,7 @@ class GroovingTool(TurningMachineCuttingTool):
 
 
 class KnurlingTool(TurningMachineCuttingTool):
-    """Tool for knurls; own attributes after AP238."""
+    """Knurling tool; its own attributes follow AP238."""
 
     knurl_pattern: KnurlPatternType
     cutting_length: float | None = None
@@ -94,6 +94,6 @@ class KnurlingTool(TurningMachineCuttingTool):
 
 
 class UserDefinedTurningTool(TurningMachineCuttingTool):
-    """Tool by a name that maker and user agree on."""
+    """Turning tool with a name that manufacturer and user agree on."""
 
     identifier: str

@@ -14,7 +14,7 @@ from stepnc_model.part21.values import Ref
 
 
 class Material(Entity):
-    """Material by its names and properties."""
+    """Material, given by its names and properties."""
 
     standard_identifier: str
     material_identifier: str
@@ -22,7 +22,7 @@ class Material(Entity):
 
 
 class Workpiece(Entity):
-    """Workpiece: the part, or the raw piece that it is made from."""
+    """Workpiece: the finished part, or the raw piece that it is made from."""
 
     its_id: str
     its_material: Ref[Material] | None = None

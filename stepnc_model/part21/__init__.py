@@ -1,1 +1,1 @@
-"""ISO 10303-21 clear text, ignorant of machining."""
+"""Reading and writing of ISO 10303-21 clear text, independent of machining."""

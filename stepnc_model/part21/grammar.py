@@ -1,10 +1,10 @@
-"""Pieces of the ISO 10303-21 grammar over bytes, and the scans made of them.
+"""Patterns of the ISO 10303-21 grammar over bytes, and the scans built from them.
 
-Every pattern is possessive: what it took it never gives back, so a scan is linear in the
-bytes it passes whatever they are. Repeated groups are atomic, ``(?>(?:…){0,n})``, and not
-``(?:…){0,n}+``: CPython before 3.11.5 gets that wrong (gh-106052), and Debian 12 ships 3.11.2.
-They are counted, because the engine keeps about 120 bytes for each round of a group until the
-group is done: 32 MB of slashes would take 4 GB. What is longer is scanned in runs.
+Every pattern is possessive and never backtracks, so that a scan is linear in the length of any
+input. Repeated groups are atomic, ``(?>(?:…){0,n})``, and not ``(?:…){0,n}+``, which CPython
+before 3.11.5 gets wrong (gh-106052); Debian 12 ships 3.11.2. Their repetitions are bounded,
+because the engine keeps about 120 bytes per repetition until the group is complete: 32 MB of
+slashes would take 4 GB. Longer text is scanned in several runs.
 """
 
 import re
@@ -12,27 +12,27 @@ import re
 from stepnc_model.part21.places import Slips, SyntaxSlip, error_at
 
 COMMENT = rb"(?>/\*(?s:.*?)\*/)"
-"""A comment; within it ``/*`` is text."""
+"""Comment; within it ``/*`` is plain text."""
 TIDY_COMMENT = rb"/\*(?>(?:[^*/]++|\*(?!/)|/(?!\*)){0,1000})\*/"
-"""A comment in which no other is opened."""
+"""Comment that does not contain another ``/*``."""
 BLANK = rb"(?>(?:\s++|" + TIDY_COMMENT + rb"){0,1000})"
 ROUNDS = rb"{0,10000}"
-"""Rounds of a group in one run."""
+"""Repetitions of a group in one run."""
 STRING = rb"'[^']*+'"
-"""A string, or the piece of one up to a doubled apostrophe."""
+"""String, or the piece of a string up to a doubled apostrophe."""
 BINARY = rb'"[^"\r\n;]*+"'
 SECTION_END = rb"(?i:ENDSEC(?![A-Za-z0-9_])|END-ISO-10303-21|DATA\s*+[;(])"
 """End of the instances of a section, also where ENDSEC is missing."""
 
 INSTANCE_HEAD = re.compile(rb"\#([0-9]++)\s*+=")
-"""``#19=``; its group is the number."""
+"""Start of an instance, ``#19=``; its group is the number."""
 KEYWORD = re.compile(rb"!?[A-Za-z_][A-Za-z0-9_]*+")
 
 MAX_DEPTH = 500
-"""Lists within lists; real files stay below ten. What comes deeper is an error, not a crash."""
+"""Greatest nesting depth of lists; real files stay below ten, deeper lists are an error."""
 
 MAX_INSTANCE = 1 << 21
-"""Bytes of one instance: a quarter of a million references. Real files stay below 100 KB."""
+"""Greatest length of an instance, bytes, a quarter of a million references."""
 
 _SPACE = re.compile(rb"\s*+")
 _COMMENT = re.compile(COMMENT)
@@ -46,7 +46,7 @@ _BRACKET = re.compile(
 def skip_blank(data: bytes, position: int, *, slips: Slips) -> int:
     """Offset of the first byte that is neither white space nor comment.
 
-    A comment opened within a comment is noted in ``slips``.
+    A comment that contains ``/*`` is noted in ``slips``.
 
     Raises
     ------
@@ -66,17 +66,17 @@ def skip_blank(data: bytes, position: int, *, slips: Slips) -> int:
 
 
 def _nested(data: bytes, start: int, end: int) -> SyntaxSlip:
-    """Say how much a comment holds that opens another one."""
+    """Deviation for a comment that contains ``/*``, with the number of hidden instances."""
     hidden = len(_HEAD_IN_COMMENT.findall(data, start, end))
     text = f"; it hides {hidden} instances" if hidden else ""
     return SyntaxSlip(offset=start, message=f"nested comment: '/*' within a comment{text}")
 
 
 def closing(data: bytes, position: int, *, stop: int | None = None) -> int:
-    """Offset behind the bracket that closes the one at ``position``; -1 if none does.
+    """Offset behind the bracket that closes the one at ``position``; -1 if there is none.
 
-    The search ends at ``stop``, at a ``;`` outside strings and comments, or where no instance
-    can go on.
+    The search ends at ``stop``, at a ``;`` outside strings and comments, or where an instance
+    cannot continue.
 
     Raises
     ------
@@ -101,7 +101,7 @@ def closing(data: bytes, position: int, *, stop: int | None = None) -> int:
 
 
 def run_end(pattern: re.Pattern[bytes], data: bytes, position: int) -> int:
-    """End of the last of the adjoining matches from ``position`` on."""
+    """End of the last of consecutive matches from ``position`` on."""
     while (match := pattern.match(data, position)) and match.end() > position:
         position = match.end()
     return position

@@ -1,9 +1,9 @@
-r"""Index of the instances of a DATA section: one pass, no object per instance.
+r"""Index of the instances of the DATA sections, built in one pass without objects per instance.
 
-One regular expression takes the ordinary instance in a single step. What it does not take is
-looked at piece by piece: an instance with ``#`` in a string or without its ``;``, comments,
-the end of the section, and text that belongs nowhere. Every byte of a section is an instance,
-blank, or noted; nothing is left out silently.
+One regular expression matches an ordinary instance in a single step. Everything else is parsed
+piece by piece: an instance with ``#`` in a string or without its ``;``, comments, the end of
+the section, and stray text. Every byte of a section is an instance, blank, or noted; nothing
+is skipped silently.
 """
 
 import re
@@ -60,28 +60,28 @@ _SECTION_END = re.compile(SECTION_END)
 _MAX_ID_DIGITS = 18
 _MAX_KEYWORD = 400
 _MAX_KEYWORDS = 10_000
-"""entity names of one file; the largest schemas define 2000"""
+"""Greatest number of entity names in one file; the largest schemas define 2000."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Index:
-    """Instances of a file in the order of the file, as columns of equal length."""
+    """Instances of a file in file order, as columns of equal length."""
 
     ids: "array[int]"
     starts: "array[int]"
-    """offset of the ``#``"""
+    """Offsets of the ``#``."""
     ends: "array[int]"
-    """offset behind the ``;``"""
+    """Offsets behind the ``;``."""
     codes: "array[int]"
-    """position in ``keywords``"""
+    """Positions in ``keywords``."""
     keywords: tuple[str, ...]
-    """upper case; empty for complex instances"""
+    """Keywords in upper case; empty for complex instances."""
     positions: dict[int, int]
-    """id → position in the columns"""
+    """Position in the columns by id."""
 
 
 class IndexBuilder:
-    """Running state while the sections of one file are indexed."""
+    """Builder of the index of one file, section by section."""
 
     def __init__(self, data: bytes, slips: Slips) -> None:
         self._slips = slips
@@ -94,7 +94,7 @@ class IndexBuilder:
         self._code_of.default_factory = self._code_of.__len__
 
     def add_section(self, position: int) -> int:
-        """Index the instances from ``position`` on; the offset at which the section ends."""
+        """Index the instances from ``position`` on; return the offset of the section's end."""
         while True:
             position = self._ordinary(position)
             position = skip_blank(self._data, position, slips=self._slips)
@@ -107,7 +107,7 @@ class IndexBuilder:
                 position = self._unusual(head)
 
     def _ordinary(self, position: int) -> int:
-        """Take ordinary instances and comments; the offset of the first other thing."""
+        """Index ordinary instances and skip comments; return the offset of anything else."""
         add_id, add_start = self._ids.append, self._starts.append
         add_end, add_code = self._ends.append, self._codes.append
         code_of = self._code_of
@@ -123,7 +123,7 @@ class IndexBuilder:
         return len(self._data)
 
     def _unusual(self, head: re.Match[bytes]) -> int:
-        """Take the instance with this head piece by piece; the offset behind it."""
+        """Parse an unusual instance piece by piece; return the offset behind it."""
         data, start = self._data, head.start()
         if len(head[1]) > _MAX_ID_DIGITS:
             raise error_at(data, start, f"instance name too long: #{head[1][:20].decode()}…")
@@ -152,21 +152,19 @@ class IndexBuilder:
         return end
 
     def finish(self) -> Index:
-        """Index of all sections.
+        """Complete index of all sections.
 
         Raises
         ------
         Part21Error
-            If two instances have the same id, an instance is longer than ``MAX_INSTANCE``,
-            or there are more names of entities than any schema has.
+            If two instances have the same id, an instance is longer than ``MAX_INSTANCE``, or
+            there are more entity names than any schema defines.
         """
         sizes = list(map(sub, self._ends, self._starts))
         if max(sizes, default=0) > MAX_INSTANCE:
             raise self._too_long(sizes)
         if len(self._code_of) > _MAX_KEYWORDS:
-            message = (
-                f"{len(self._code_of)} names of entities; at most {_MAX_KEYWORDS} are read"
-            )
+            message = f"{len(self._code_of)} entity names; at most {_MAX_KEYWORDS} are allowed"
             raise error_at(self._data, 0, message)
         positions = dict(zip(self._ids, range(len(self._ids)), strict=True))
         if len(positions) != len(self._ids):
@@ -189,7 +187,7 @@ class IndexBuilder:
         return error_at(self._data, self._starts[longest], message)
 
     def _duplicate(self) -> Part21Error:
-        """Error that names the first id given twice and both its lines."""
+        """Error that names the first duplicate id and both its lines."""
         first: dict[int, int] = {}
         for number, start in zip(self._ids, self._starts, strict=True):
             if number in first:
@@ -201,16 +199,16 @@ class IndexBuilder:
 
 
 def skip_junk(data: bytes, position: int, *, slips: Slips) -> int:
-    """Note text that belongs nowhere; the offset at which something known may begin."""
+    """Note stray text; return the offset where known syntax may begin again."""
     end = max(run_end(_JUNK, data, position), position + 1)
     last = position + len(data[position:end].rstrip())
-    message = f"text that belongs to no instance: {excerpt(data, position, last)}"
+    message = f"text outside any instance: {excerpt(data, position, last)}"
     slips.append(SyntaxSlip(offset=position, message=message))
     return end
 
 
 def _check_unended(data: bytes, start: int, stop: int, *, name: str) -> None:
-    """Raise if the body of an instance stops at a string or comment without end, or nowhere."""
+    """Raise an error if an instance is cut off or has an unterminated string or comment."""
     if stop == len(data):
         label = f"{name} {_keyword(data, data.index(b'=', start) + 1).decode()}".strip()
         raise error_at(data, start, f"the file is cut off within {label}")
@@ -221,9 +219,9 @@ def _check_unended(data: bytes, start: int, stop: int, *, name: str) -> None:
 
 
 def _check_strings(data: bytes, head: re.Match[bytes], end: int) -> None:
-    """Raise if a string swallows another instance because its apostrophe is missing.
+    """Raise an error if a string with a missing apostrophe contains another instance.
 
-    ``#5=`` within a string is no fault as long as the instance around it is in order.
+    A text such as ``#5=`` within a string is allowed if the instance around it is valid.
     """
     start = head.end()
     if end - start > MAX_INSTANCE or INSTANCE_HEAD.search(data, start, end) is None:
@@ -242,7 +240,7 @@ def _check_strings(data: bytes, head: re.Match[bytes], end: int) -> None:
 
 
 def _keyword(data: bytes, position: int) -> bytes:
-    """Keyword at ``position`` behind blanks; empty for a complex instance."""
+    """Keyword at ``position`` after blanks; empty for a complex instance."""
     start = skip_blank(data, position, slips=[])
     match = KEYWORD.match(data, start)
     if match is not None and len(match[0]) > _MAX_KEYWORD:

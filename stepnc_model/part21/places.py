@@ -1,8 +1,7 @@
-"""Places in a file: offsets, lines and columns, and deviations from ISO 10303-21 at a place.
+"""Offsets, lines and columns of a file, and deviations from ISO 10303-21 at a place.
 
-A reader that tolerates faults must not be made to describe millions of them. The frame of a
-file may have so many and no more; of those within an instance, the first are kept and the
-others counted.
+A tolerant reader must not be made to describe millions of faults. The number of deviations
+outside instances is limited; within an instance, the first are kept and the others counted.
 """
 
 from array import array
@@ -16,16 +15,16 @@ _BLOCK = 1 << 14
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SyntaxSlip:
-    """A deviation from the syntax at an offset; the reader makes a finding of it."""
+    """Deviation from the syntax at an offset, to be turned into a finding by the reader."""
 
     offset: int
-    """byte in the file, or in the text that was parsed"""
+    """Byte offset in the file or in the parsed text."""
     message: str
     severity: Severity = Severity.WARNING
 
 
 class Lines:
-    """Line numbers of a file; counts its line breaks once, block by block.
+    """Line numbers of a file, from line breaks counted once per block.
 
     Lines end in LF or CR LF; a file that has neither may end them in CR.
     """
@@ -45,7 +44,7 @@ class Lines:
 
 
 def line_break(data: bytes) -> bytes:
-    """Bytes that end a line in this file; LF when it has one line only."""
+    """Bytes that end a line in this file; LF if it has only one line."""
     first = data.find(b"\n")
     if first > 0 and data[first - 1 : first] == b"\r":
         return b"\r\n"
@@ -55,7 +54,7 @@ def line_break(data: bytes) -> bytes:
 
 
 def error_at(data: bytes, offset: int, message: str) -> Part21Error:
-    """Error that names the line and the column of an offset."""
+    """Error that names the line and column of an offset."""
     newline = line_break(data)[-1:]
     line = data.count(newline, 0, offset) + 1
     column = offset - data.rfind(newline, 0, offset)
@@ -63,33 +62,33 @@ def error_at(data: bytes, offset: int, message: str) -> Part21Error:
 
 
 def excerpt(data: bytes, start: int, end: int) -> str:
-    """At most forty characters of the file, on one line, for a message."""
+    """At most forty characters of the file on one line, for a message."""
     text = data[start : min(end, start + 40)].decode("latin-1")
     shown = " ".join("".join(c if c.isprintable() else " " for c in text).split())
     return f"'{shown}…'" if end - start > 40 else f"'{shown}'"
 
 
 MOST_OF_FILE = 10_000
-"""deviations outside instances; the worst of the public files read have a dozen"""
+"""Greatest number of deviations outside instances; real files have a dozen at most."""
 
 MOST_OF_INSTANCE = 100
-"""deviations of one instance that are described"""
+"""Greatest number of deviations described per instance."""
 
 
 class Slips(Protocol):
-    """Sink of deviations; a list will do."""
+    """Collector of deviations, such as a list."""
 
     def append(self, slip: SyntaxSlip, /) -> None:
-        """Note one."""
+        """Add a deviation."""
 
 
 class FileSlips:
-    """Deviations of the frame of a file. Running state; too many of them are an error.
+    """Deviations outside the instances of a file; too many of them are an error.
 
     Parameters
     ----------
     data : bytes
-        The file, for the place of the error.
+        Contents of the file, for the place of the error.
     """
 
     def __init__(self, data: bytes) -> None:
@@ -97,7 +96,7 @@ class FileSlips:
         self._data = data
 
     def append(self, slip: SyntaxSlip, /) -> None:
-        """Note one.
+        """Add a deviation.
 
         Raises
         ------
@@ -106,7 +105,7 @@ class FileSlips:
         """
         if len(self.noted) == MOST_OF_FILE:
             message = (
-                f"more than {MOST_OF_FILE} deviations from ISO 10303-21: this is no usable "
+                f"more than {MOST_OF_FILE} deviations from ISO 10303-21: this is not a usable "
                 f"exchange structure; the last one: {slip.message}"
             )
             raise error_at(self._data, slip.offset, message)
@@ -114,14 +113,14 @@ class FileSlips:
 
 
 class InstanceSlips:
-    """Deviations of one instance. Running state: the first ones, and how many there are."""
+    """Deviations of one instance: the first ones, and their total number."""
 
     def __init__(self) -> None:
         self.noted: list[SyntaxSlip] = []
         self.count = 0
 
     def append(self, slip: SyntaxSlip, /) -> None:
-        """Note one, or count it."""
+        """Add a deviation, or only count it if there are too many."""
         self.count += 1
         if self.count <= MOST_OF_INSTANCE:
             self.noted.append(slip)

@@ -1,4 +1,4 @@
-"""Read access to an ISO 10303-21 file: an index now, parameters when they are asked for.
+"""Read access to an ISO 10303-21 file: an index at once, parameters on request.
 
 The HEADER section is read as far as it follows the standard [1]_.
 
@@ -28,22 +28,22 @@ _ARITY = {"FILE_DESCRIPTION": 2, "FILE_NAME": 7, "FILE_SCHEMA": 1}
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HeaderReading:
-    """Schemas that a header names, and what was wrong with it."""
+    """Schemas named in a header, and deviations in it."""
 
     schemas: tuple[str, ...]
-    """names as written, blank ones dropped"""
+    """Schema names as written, without blank ones."""
     slips: tuple[SyntaxSlip, ...]
 
 
 def read_header(data: bytes, statements: tuple[Statement, ...]) -> HeaderReading:
-    """Read the header statements of a file; deviations are noted, never fatal."""
+    """Read the header statements of a file; deviations are noted and never fatal."""
     slips: list[SyntaxSlip] = []
     values: dict[str, tuple[Value, ...]] = {}
     for statement in statements:
         if statement.keyword not in _ARITY:
             continue
         if statement.keyword in values:
-            message = f"{statement.keyword} is given twice; the first counts"
+            message = f"{statement.keyword} is given twice; the first one is used"
             slips.append(SyntaxSlip(offset=statement.start, message=message))
             continue
         values[statement.keyword] = _parameters(data, statement, slips=slips)
@@ -56,7 +56,7 @@ def read_header(data: bytes, statements: tuple[Statement, ...]) -> HeaderReading
 def _parameters(
     data: bytes, statement: Statement, *, slips: list[SyntaxSlip]
 ) -> tuple[Value, ...]:
-    """Values of one statement; none where they cannot be read."""
+    """Values of one header statement; empty if they cannot be read."""
     record = parse_record(data[statement.start : statement.end].decode("latin-1"))
     slips.extend(replace(slip, offset=statement.start + slip.offset) for slip in record.slips)
     if record.error is not None:
@@ -87,15 +87,15 @@ def _texts(value: Value) -> tuple[str, ...]:
 _RULE = "ISO 10303-21"
 
 MAX_EXAMINED = 1 << 23
-"""Bytes of instances out of the plain form that a check reads, ten times slower than others."""
+"""Limit for checking instances in non-plain form, bytes; their parsing is ten times slower."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Part21File:
-    """Immutable view on one file's bytes.
+    """Immutable view of one file's bytes.
 
-    Not slotted: line numbers, header and the instances of each keyword are worked out when
-    they are first asked for and kept.
+    The class has no slots: line numbers, header and instances by keyword are computed on
+    first use and cached.
     """
 
     data: bytes
@@ -109,15 +109,15 @@ class Part21File:
         Parameters
         ----------
         data : bytes
-            The whole file.
+            Contents of the whole file.
         name : str
-            What messages call it.
+            File name for messages.
 
         Raises
         ------
         Part21Error
-            If the bytes are no exchange structure, break off within an instance, string or
-            comment, give an id twice, or pass one of the bounds of the reader.
+            If the bytes are not an exchange structure, break off within an instance, string or
+            comment, define an id twice, or exceed a limit of the reader.
         """
         return cls(data=data, name=name, structure=read_structure(data))
 
@@ -128,11 +128,11 @@ class Part21File:
         return len(self._index.ids)
 
     def ids(self) -> Sequence[int]:
-        """Ids of all DATA sections in the order of the file."""
+        """Ids of the instances of all DATA sections in file order."""
         return self._index.ids
 
     def ids_of(self, keyword: str) -> Sequence[int]:
-        """Ids of all instances of a keyword in the order of the file."""
+        """Ids of all instances of a keyword in file order."""
         return self._ids_by_keyword.get(keyword.upper(), ())
 
     def keyword(self, id: int) -> str:
@@ -166,7 +166,7 @@ class Part21File:
         return self._record(id).parts
 
     def parameter_spans(self, id: int) -> tuple[tuple[int, int], ...]:
-        """Byte spans of the parameters of a simple instance, comments around them left out.
+        """Byte spans of the parameters of a simple instance, without comments around them.
 
         Raises
         ------
@@ -195,7 +195,7 @@ class Part21File:
 
     @property
     def schemas(self) -> tuple[str, ...]:
-        """Names in FILE_SCHEMA as written; blank ones are dropped."""
+        """Schema names in FILE_SCHEMA as written, without blank ones."""
         return self._header.schemas
 
     def schema_list_span(self) -> tuple[int, int]:
@@ -216,11 +216,11 @@ class Part21File:
 
     @cached_property
     def findings(self) -> tuple[Finding, ...]:
-        """Deviations from the syntax, in the order of the file.
+        """Deviations from the syntax, in file order.
 
-        Malformed parameters, which :meth:`parameters` refuses, are findings of severity
-        ``ERROR``. All instances are looked at when this is first asked for; of many findings
-        the first are told, and how many more there are.
+        Malformed parameters, which :meth:`parameters` rejects, are findings of severity
+        ``ERROR``. All instances are inspected on first use; of very many findings, the
+        first are listed and the rest counted.
         """
         found = FindingList()
         frame = ((slip, None) for slip in (*self.structure.slips, *self._header.slips))
@@ -235,7 +235,7 @@ class Part21File:
 
     @cached_property
     def _index(self) -> Index:
-        """Columns of the instances, near at hand."""
+        """Index of the instances."""
         return self.structure.index
 
     @cached_property
@@ -248,7 +248,7 @@ class Part21File:
 
     @cached_property
     def _ids_by_keyword(self) -> "dict[str, array[int]]":
-        """Ids by keyword; spellings in other letter cases are one keyword."""
+        """Ids by keyword, regardless of letter case."""
         found: dict[str, array[int]] = {name: array("q") for name in self._index.keywords}
         columns = [found[name] for name in self._index.keywords]
         for id, code in zip(self._index.ids, self._index.codes, strict=True):
@@ -256,12 +256,12 @@ class Part21File:
         return found
 
     def _body(self, id: int) -> int:
-        """Offset behind the ``=``."""
+        """Offset behind the ``=`` of an instance."""
         start, end = self.span(id)
         return self.data.index(b"=", start, end) + 1
 
     def _text(self, id: int) -> str:
-        """The instance from ``#`` to ``;``, one character per byte."""
+        """Text of an instance from ``#`` to ``;``, one character per byte."""
         index = self._index
         position = index.positions[id]
         return self.data[index.starts[position] : index.ends[position]].decode("latin-1")
@@ -270,7 +270,7 @@ class Part21File:
         return parse_record(self._text(id).partition("=")[2])
 
     def _record(self, id: int) -> InstanceRecord:
-        """Parsed instance; raises where it is malformed."""
+        """Parsed instance; an error if it is malformed."""
         record = self._read(id)
         if record.error is not None:
             offset = self._body(id) + record.error.offset
@@ -278,29 +278,29 @@ class Part21File:
         return record
 
     def _simple(self, id: int) -> InstanceRecord:
-        """Parsed instance that is not complex."""
+        """Parsed instance; an error if it is malformed or complex."""
         record = self._record(id)
         if record.is_complex:
-            message = f"#{id} is a complex instance: it has parts, no parameters"
+            message = f"#{id} is a complex instance, which has parts instead of parameters"
             raise error_at(self.data, self.span(id)[0], message)
         return record
 
     def is_examined(self, id: int) -> bool:
-        """Whether a check of the whole file looks into an instance.
+        """Whether a check of the whole file inspects an instance.
 
-        Those in the plain form of the standard all are; of the others, whose reading is slow,
-        as many as ``MAX_EXAMINED`` bytes hold. :meth:`parameters` reads every instance.
+        All instances in the plain form of the standard are inspected; of the others, which are
+        slow to parse, up to ``MAX_EXAMINED`` bytes. :meth:`parameters` reads every instance.
         """
         return id not in self._unexamined
 
     @cached_property
     def _untidy(self) -> "array[int]":
-        """Ids of the instances that need a second look, in the order of the file."""
+        """Ids of the instances that are not in the plain form, in file order."""
         return array("q", (id for id in self._index.ids if not is_tidy(self._text(id))))
 
     @cached_property
     def _unexamined(self) -> frozenset[int]:
-        """Ids of those of them for which no second look is left."""
+        """Ids of non-plain instances beyond the limit of ``MAX_EXAMINED`` bytes."""
         left, found = MAX_EXAMINED, set()
         for id in self._untidy:
             start, end = self.span(id)
@@ -310,13 +310,13 @@ class Part21File:
         return frozenset(found)
 
     def _not_examined(self) -> Finding:
-        """Finding on the instances that were not examined."""
+        """Finding about the instances that were not checked."""
         first = min(self._unexamined, key=self.span)
         return Finding(
             severity=Severity.WARNING,
             message=(
                 f"{len(self._unexamined)} instances from here on are not in the plain form of "
-                f"the standard and were not checked: more than {MAX_EXAMINED >> 20} MB of such"
+                f"the standard and were not checked: more than {MAX_EXAMINED >> 20} MB of them"
             ),
             entity=self.label(first),
             line=self.line(first),
@@ -324,7 +324,7 @@ class Part21File:
         )
 
     def _within(self, found: FindingList) -> "Iterator[tuple[SyntaxSlip, int | None]]":
-        """Deviations within instances, the error that ends the reading of one last."""
+        """Deviations within instances; an error that stops the parsing comes last."""
         for id in self._untidy:
             if not self.is_examined(id):
                 continue
@@ -334,7 +334,7 @@ class Part21File:
             found.count(Severity.WARNING, record.unlisted)
 
     def _finding(self, slip: SyntaxSlip, label: str = "") -> Finding:
-        """Finding on a deviation."""
+        """Finding for a deviation."""
         return Finding(
             severity=slip.severity,
             message=slip.message,

@@ -1,7 +1,7 @@
-"""One instance in any condition: a tolerant parser with an explicit stack.
+"""Tolerant parser of a single instance in any condition, with an explicit stack.
 
-It reads what :mod:`stepnc_model.part21.tidy` leaves: complex instances, comments between
-parameters, the slips of real files. Depth of lists is no depth of calls.
+It reads what :mod:`stepnc_model.part21.tidy` does not accept: complex instances, comments
+between parameters, the deviations of real files. Nested lists do not use recursion.
 
 References
 ----------
@@ -23,29 +23,29 @@ Part: TypeAlias = tuple[str, tuple[Value, ...]]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class InstanceRecord:
-    """Keyword and parameters of an instance, and the faults in its syntax."""
+    """Keyword and parameters of an instance, with its syntax deviations."""
 
     parts: tuple[Part, ...]
     is_complex: bool
     spans: tuple[tuple[int, int], ...]
-    """Spans of the top-level parameters of a simple instance, in the text"""
+    """Spans of the top-level parameters of a simple instance, in the text."""
     end: int
-    """offset of the bracket that closes a simple instance"""
+    """Offset of the bracket that closes a simple instance."""
     slips: tuple[SyntaxSlip, ...]
-    """the first deviations"""
+    """First deviations."""
     unlisted: int
-    """deviations beyond those"""
+    """Number of further deviations."""
     error: SyntaxSlip | None
-    """why the parameters cannot be used"""
+    """Error that makes the parameters unusable."""
 
 
 def parse_record(text: str) -> InstanceRecord:
-    """Read ``KEYWORD(...);`` or ``(A(...)B(...));`` with the tolerance real files need.
+    """Parse ``KEYWORD(...);`` or ``(A(...)B(...));``, tolerating deviations of real files.
 
     Parameters
     ----------
     text : str
-        What follows the ``=`` of an instance, one character per byte of the file.
+        Text after the ``=`` of an instance, one character per byte of the file.
     """
     parser = _Parser()
     error = None
@@ -68,19 +68,19 @@ def parse_record(text: str) -> InstanceRecord:
 
 @dataclass(slots=True, kw_only=True)
 class _Frame:
-    """An open bracket."""
+    """Open bracket on the parser's stack."""
 
     keyword: str
-    """Keyword of a part or of a typed value"""
+    """Keyword of a part or of a typed value."""
     is_part: bool
     is_complex: bool = False
     values: list[Value] = field(default_factory=list)
     is_full: bool = False
-    """a value stands last, so that a comma or a bracket must follow"""
+    """Whether the last item is a value, so that a comma or a bracket must follow."""
 
 
 class _Parser:
-    """Running state of :func:`parse_record`."""
+    """State of :func:`parse_record`."""
 
     def __init__(self) -> None:
         self.parts: list[Part] = []
@@ -95,7 +95,7 @@ class _Parser:
         self._last_end = 0
 
     def take(self, match: re.Match[str]) -> None:
-        """Accept the next token."""
+        """Process the next token."""
         kind = match.lastgroup
         if kind == "blank":
             return
@@ -116,7 +116,7 @@ class _Parser:
         self._last_end = match.end()
 
     def finish(self, offset: int) -> None:
-        """Check that the text held a whole instance."""
+        """Check that the text contained a whole instance."""
         if not self._is_done:
             raise MalformedError(offset, "the instance ends before its brackets close")
 
@@ -143,7 +143,7 @@ class _Parser:
 
     def _close(self, match: re.Match[str]) -> None:
         if not self._frames:
-            raise MalformedError(match.start(), "')' closes nothing")
+            raise MalformedError(match.start(), "')' without an open bracket")
         frame = self._frames.pop()
         if frame.values and not frame.is_full:
             raise MalformedError(match.start(), "a value is missing before ')'")

@@ -1,8 +1,8 @@
-r"""Strings of ISO 10303-21: what stands between the apostrophes, decoded and encoded.
+r"""Decoding and encoding of ISO 10303-21 strings, without the enclosing apostrophes.
 
-Decoding accepts every directive of the standard [1]_ and keeps what is none, so that a path
-such as ``C:\temp`` survives. Encoding writes ASCII only, with ``\X2\`` for the basic plane and
-``\X4\`` for the rest.
+Decoding accepts every directive of the standard [1]_ and keeps other backslashes, so that a
+path such as ``C:\temp`` survives. Encoding writes ASCII only, with ``\X2\`` for the basic
+plane and ``\X4\`` for the rest.
 
 References
 ----------
@@ -31,15 +31,15 @@ _SURROGATES = range(0xD800, 0xE000)
 
 
 def decode(raw: str) -> str:
-    r"""Text of a string as the file writes it.
+    r"""Decode a string as written in the file.
 
-    Line breaks within a string carry no meaning and go. Bytes above 127 are UTF-8 where that
-    is possible and Latin-1 otherwise. ``\N\`` and ``\F\`` become a line and a form feed.
+    Line breaks within a string are dropped. Bytes above 127 are read as UTF-8 if valid and as
+    Latin-1 otherwise. ``\N\`` and ``\F\`` become a line feed and a form feed.
 
     Parameters
     ----------
     raw : str
-        What stands between the apostrophes, one character per byte of the file.
+        Text between the apostrophes, one character per byte of the file.
 
     Examples
     --------
@@ -63,7 +63,7 @@ def decode(raw: str) -> str:
 
 
 def _high_half(character: str, *, page: str) -> str:
-    r"""Character that ``\S\`` stands for in a part of ISO 8859; empty where it is undefined."""
+    r"""Character of ``\S\`` in a part of ISO 8859; empty where it is undefined."""
     return bytes([ord(character) | 0x80]).decode(page, errors="ignore")
 
 
@@ -85,13 +85,13 @@ def _meaning(match: re.Match[str]) -> str:
 
 
 def _wide(digits: str) -> str:
-    """Characters of 32-bit units; empty if one of them is no code point."""
+    """Characters of 32-bit units; empty if one of them is not a code point."""
     points = [int(digits[i : i + 8], 16) for i in range(0, len(digits), 8)]
     return "".join(map(chr, points)) if max(points) <= 0x10FFFF else ""
 
 
 def _bytes_above_ascii(raw: str) -> str:
-    """UTF-8 where the bytes are that, Latin-1 otherwise."""
+    """Decode bytes above 127 as UTF-8 if valid, else as Latin-1."""
     try:
         return raw.encode("latin-1").decode("utf-8")
     except UnicodeDecodeError:
@@ -99,7 +99,7 @@ def _bytes_above_ascii(raw: str) -> str:
 
 
 def encode(text: str) -> str:
-    r"""ASCII form of any text, without the apostrophes around it.
+    r"""Encode text in ASCII, without the enclosing apostrophes.
 
     Examples
     --------
@@ -110,7 +110,7 @@ def encode(text: str) -> str:
 
 
 def _escape(match: re.Match[str]) -> str:
-    """Doubled character, or the run of characters in hexadecimal."""
+    """Double an apostrophe or backslash, or encode a run of characters in hexadecimal."""
     run = match[0]
     if run in {"'", "\\"}:
         return run * 2
@@ -123,7 +123,7 @@ def _escape(match: re.Match[str]) -> str:
 
 
 def _by_width(run: str) -> list[tuple[bool, str]]:
-    """Cut a run where its characters stop or begin to need 32 bits."""
+    """Split a run of characters where its need for 32 bits changes."""
     groups: list[tuple[bool, str]] = []
     for character in run:
         point = ord(character)

@@ -1,8 +1,8 @@
-"""The frame of an exchange structure: header statements, sections, and where they end.
+"""Structure of an exchange file: header statements, sections, and their ends.
 
-Order and completeness of the sections are not insisted on: what is missing or out of place is
-noted and reading goes on. Only a text that does not open as ISO 10303-21 or that holds no
-instances and no DATA section is refused.
+Order and completeness of the sections are not enforced: missing or misplaced parts are noted
+and reading continues. Only a text that does not start as ISO 10303-21, or that has neither
+instances nor a DATA section, is rejected.
 """
 
 import re
@@ -42,45 +42,45 @@ _FOREIGN = re.compile(
 )
 
 _MAX_STEPS = 100_000
-"""sections, header entities and stray texts of one file"""
+"""Greatest number of sections, header entities and stray texts of one file."""
 _MAX_STATEMENT = 1 << 20
-"""bytes of one header entity, or of the parameters of DATA"""
+"""Greatest length of a header entity or of the parameters of DATA, bytes."""
 _MAX_UNCLOSED = 10
-"""of these whose brackets do not close: each is scanned to where it might have ended"""
+"""Greatest number of header entities with unclosed brackets, which are slow to scan."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Statement:
-    """One entity of the header."""
+    """Entity of the header."""
 
     keyword: str
-    """upper case"""
+    """Keyword in upper case."""
     start: int
     bracket: int
-    """offset of the ``(``"""
+    """Offset of the ``(``."""
     end: int
-    """offset behind the ``)``"""
+    """Offset behind the ``)``."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FileStructure:
-    """Structure of a file: its statements and its index."""
+    """Header statements and index of a file."""
 
     statements: tuple[Statement, ...]
     index: Index
     data_end: int
-    """offset at which the last DATA section ends: its ENDSEC, or what stands in its place"""
+    """Offset where the last DATA section ends: its ENDSEC, or what stands in its place."""
     slips: tuple[SyntaxSlip, ...]
 
 
 def read_structure(data: bytes) -> FileStructure:
-    """Find header statements and instances.
+    """Find the header statements and instances of a file.
 
     Raises
     ------
     Part21Error
-        If the text is no exchange structure, breaks off within an instance, string or
-        comment, gives an id twice, or passes a bound.
+        If the text is not an exchange structure, breaks off within an instance, string or
+        comment, defines an id twice, or exceeds a limit.
     """
     scan = _Scan(data)
     position = scan.opening()
@@ -99,7 +99,7 @@ def read_structure(data: bytes) -> FileStructure:
 
 
 class _Scan:
-    """Running state of :func:`read_structure`."""
+    """State of :func:`read_structure`."""
 
     def __init__(self, data: bytes) -> None:
         self.slips = FileSlips(data)
@@ -113,7 +113,7 @@ class _Scan:
         self._unclosed = 0
 
     def opening(self) -> int:
-        """Offset behind ``ISO-10303-21;``."""
+        """Check the opening line; return the offset behind ``ISO-10303-21;``."""
         data = self._data
         start = len(_BYTE_ORDER_MARK) if data.startswith(_BYTE_ORDER_MARK) else 0
         if _blank_to_end(data, start):
@@ -129,7 +129,7 @@ class _Scan:
         return match.end()
 
     def step(self, position: int) -> int:
-        """Take what begins at ``position``; the offset behind it."""
+        """Read the part that begins at ``position``; return the offset behind it."""
         self._steps += 1
         if self._steps > _MAX_STEPS:
             message = f"more than {_MAX_STEPS} sections and header entities"
@@ -146,7 +146,7 @@ class _Scan:
         return skip_junk(self._data, position, slips=self.slips)
 
     def _section(self, match: re.Match[bytes]) -> int:
-        """Take the word that opens or closes a section, and a section of another schema."""
+        """Read a word that opens or closes a section; skip sections that are not supported."""
         if match.lastgroup == "end":
             return self._end_section(match)
         if self._open:
@@ -165,7 +165,7 @@ class _Scan:
 
     def _end_section(self, match: re.Match[bytes]) -> int:
         if not self._open:
-            self._note(match.start(), "ENDSEC ends no section")
+            self._note(match.start(), "ENDSEC without an open section")
         self._check_semicolon(match, "ENDSEC")
         self._open = ""
         return match.end()
@@ -189,7 +189,7 @@ class _Scan:
         return self.data_end
 
     def _statement(self, match: re.Match[bytes]) -> int:
-        """Take an entity of the header."""
+        """Read an entity of the header."""
         data = self._data
         keyword = match[1].decode("ascii").upper()
         if self._open != "HEADER":
@@ -218,7 +218,7 @@ class _Scan:
         return end
 
     def check_end(self, position: int) -> None:
-        """Say what is missing or too much at the end of the file."""
+        """Note missing or surplus text at the end of the file."""
         if self.data_end < 0:
             raise error_at(self._data, len(self._data), "the file has no DATA section")
         if not self.is_closed:
@@ -227,7 +227,7 @@ class _Scan:
             self._note(position, "END-ISO-10303-21 is missing")
         elif not _blank_to_end(self._data, position):
             rest = excerpt(self._data, position, len(self._data)).strip()
-            self._note(position, f"text after the end of the file is not read: {rest}")
+            self._note(position, f"text after the end of the file is ignored: {rest}")
 
     def _check_semicolon(self, match: re.Match[bytes], word: str) -> None:
         if not match[0].endswith(b";"):

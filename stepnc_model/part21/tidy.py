@@ -1,6 +1,6 @@
-"""Parameters that follow the standard to the letter: one regular expression, one loop.
+"""Fast parser of parameters that strictly follow the standard, by one regular expression.
 
-Nearly all text of nearly all files is of this kind. What is not goes to
+Nearly all text of nearly all files is of this kind. Everything else is parsed by
 :mod:`stepnc_model.part21.record`; both give the same values where both apply.
 """
 
@@ -17,12 +17,12 @@ _SCALAR = (
 
 
 def _list_of(value: str) -> str:
-    """Pattern of a bracketed list of a pattern."""
+    """Pattern of a bracketed list whose items match a pattern."""
     return rf"\(\s*+(?>(?:{value}\s*+(?>(?:,\s*+{value}\s*+)*))?)\)"
 
 
 def _value_of_depth(depth: int) -> str:
-    """Pattern of a value whose lists and types nest at most so deep."""
+    """Pattern of a value with lists and types nested up to a depth."""
     if depth == 0:
         return _SCALAR
     inner = _value_of_depth(depth - 1)
@@ -43,9 +43,9 @@ _TOKEN = re.compile(
 
 
 def is_tidy(text: str) -> bool:
-    """Whether ``#1=KEYWORD(...);`` follows the standard to the letter.
+    """Whether ``#1=KEYWORD(...);`` strictly follows the standard in its plain form.
 
-    Comments, and lists in lists in lists, are allowed by the standard but not tidy.
+    The standard also allows comments and deeper nested lists, which are not tidy.
     """
     return _TIDY.fullmatch(text) is not None
 
@@ -82,17 +82,17 @@ def tidy_values(text: str) -> tuple[Value, ...]:
 
 
 def _references(text: str) -> tuple[Value, ...]:
-    """Values of ``(#1,#2)``."""
+    """Values of a flat list of references, ``(#1,#2)``."""
     return tuple(map(Ref, text[2:-1].split(",#")))
 
 
 def _reals(text: str) -> tuple[Value, ...]:
-    """Values of ``(0.,1.)``."""
+    """Values of a flat list of reals, ``(0.,1.)``."""
     return tuple(map(_real, text[1:-1].split(",")))
 
 
 def _real(lexeme: str) -> Real:
-    """Real with its characters, made without the detour over ``Real.__new__``."""
+    """Real with its characters, created without calling ``Real.__new__`` for speed."""
     real = _new_float(Real, lexeme)
     real.lexeme = lexeme
     return real

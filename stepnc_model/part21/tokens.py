@@ -1,4 +1,4 @@
-"""Tokens of parameters as real files write them, and the values that single ones stand for.
+"""Tokens of Part 21 parameters in real files, and the values of single tokens.
 
 References
 ----------
@@ -33,7 +33,7 @@ TOKEN = re.compile(
     r"|(?P<unended>'|/\*|\")|(?P<other>.)",
     re.ASCII | re.DOTALL,
 )
-"""Any text is a sequence of these; the last two groups are what cannot stand there."""
+"""Pattern of all tokens; the last two groups match invalid text."""
 
 _INTEGER = re.compile(r"[+-]?[0-9]++", re.ASCII)
 _STANDARD_REAL = re.compile(r"[+-]?[0-9]++\.[0-9]*+(?>(?:E[+-]?[0-9]++)?)", re.ASCII)
@@ -42,7 +42,7 @@ _NO_NUMBER = frozenset({"NAN", "INF", "INFINITY", "IND", "QNAN", "SNAN"})
 
 
 class MalformedError(Exception):
-    """Stops the parser; never leaves this package."""
+    """Internal error that stops the parser of an instance."""
 
     def __init__(self, offset: int, message: str) -> None:
         super().__init__(message)
@@ -50,7 +50,7 @@ class MalformedError(Exception):
 
 
 def scalar(match: re.Match[str], *, slips: Slips) -> Value:
-    """Value of a token that is neither bracket, comma nor keyword."""
+    """Value of a token other than a bracket, comma or keyword."""
     token = match[0]
     match match.lastgroup:
         case "reference":
@@ -61,7 +61,7 @@ def scalar(match: re.Match[str], *, slips: Slips) -> Value:
             return decode(token[1:-1])
         case "enumeration":
             if token[1] == "." or token[-2] == ".":
-                slips.append(_slip(match, "an enumeration has one dot on either side"))
+                slips.append(_slip(match, "an enumeration must have one dot on each side"))
             return Enumeration(token.strip(".").upper())
         case "unset":
             return None
@@ -72,27 +72,29 @@ def scalar(match: re.Match[str], *, slips: Slips) -> Value:
         case "quoted":
             return _quoted(match, slips=slips)
         case "unended":
-            raise MalformedError(match.start(), f"what {token} begins does not end")
+            raise MalformedError(match.start(), f"text that starts with {token} does not end")
         case _:
             raise MalformedError(match.start(), f"invalid character {token!r}")
 
 
 def _reference(match: re.Match[str]) -> Ref[object]:
-    """Reference whose number is of a size that an instance can have."""
+    """Reference with a number of valid length."""
     if len(match[0]) > 19:
         raise MalformedError(match.start(), f"instance name too long: {shown(match)}")
     return Ref(match[0][1:])
 
 
 def _number(match: re.Match[str], *, slips: Slips) -> Value:
-    """Integer or real; a real in another notation is kept as it is, and noted."""
+    """Integer or real; a real in non-standard notation keeps its text and is noted."""
     token = match[0]
     if _INTEGER.fullmatch(token):
         if len(token) > _MAX_DIGITS:
-            raise MalformedError(match.start(), f"an integer of {len(token)} digits")
+            raise MalformedError(
+                match.start(), f"an integer of {len(token)} digits is too long"
+            )
         return int(token)
     if not _STANDARD_REAL.fullmatch(token):
-        slips.append(_slip(match, "a real has digits, a point and an upper-case exponent"))
+        slips.append(_slip(match, "a real needs digits, a point and an upper-case exponent"))
     return Real(float(token), token)
 
 
@@ -100,7 +102,7 @@ def _word(match: re.Match[str], *, slips: Slips) -> Enumeration:
     """Word without dots, read as an enumeration."""
     word = match[0].upper()
     if word in _NO_NUMBER or word.startswith("!"):
-        raise MalformedError(match.start(), f"{match[0]} is no value")
+        raise MalformedError(match.start(), f"{match[0]} is not a valid value")
     slips.append(_slip(match, f"read as .{word}."))
     return Enumeration(word)
 
@@ -115,10 +117,10 @@ def _quoted(match: re.Match[str], *, slips: Slips) -> Value:
 
 
 def _slip(match: re.Match[str], message: str) -> SyntaxSlip:
-    """Deviation at a token."""
+    """Deviation from the standard at a token."""
     return SyntaxSlip(offset=match.start(), message=f"{shown(match)}: {message}")
 
 
 def shown(match: re.Match[str]) -> str:
-    """Token for a message, cut where it is long."""
+    """Token as shown in messages, shortened if long."""
     return match[0] if len(match[0]) <= 40 else match[0][:39] + "…"

@@ -1,7 +1,7 @@
 """Parameter values of an ISO 10303-21 instance, as small immutable types.
 
-A value keeps what the text said: a :class:`Real` remembers its lexeme, so writing what was
-read gives the same characters. ``$`` is ``None`` and a list is a ``tuple``.
+A value keeps its text: a :class:`Real` remembers its characters, so that unchanged values are
+written as they were read. ``$`` is ``None`` and a list is a ``tuple``.
 """
 
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ T_co = TypeVar("T_co", covariant=True)
 
 
 class Ref(int, Generic[T_co]):
-    """Reference ``#42`` to an instance; the type argument names the entity expected there."""
+    """Reference ``#42`` to an instance; the type argument names the expected entity."""
 
     __slots__ = ()
 
@@ -22,43 +22,43 @@ class Ref(int, Generic[T_co]):
 
 
 class Real(float):
-    """A real number that remembers its characters.
+    """Real number that remembers its characters in the file.
 
-    ``Real(0.5)`` makes its own lexeme; the reader passes the one found.
+    ``Real(0.5)`` has no characters of its own; the reader passes those found.
     """
 
     __slots__ = ("lexeme",)
     lexeme: str
 
     def __new__(cls, value: float, lexeme: str = "") -> Self:
-        """Keep the characters beside the value."""
+        """Create a number with the characters it was read from."""
         real = super().__new__(cls, value)
         real.lexeme = lexeme
         return real
 
 
 class Enumeration(str):
-    """``.CLIMB.`` without its dots; ``.T.``, ``.F.`` and ``.U.`` too."""
+    """Enumeration value ``.CLIMB.`` without its dots; also ``.T.``, ``.F.`` and ``.U.``."""
 
     __slots__ = ()
 
 
 class Binary(str):
-    """``"0A3F"`` without its quotes: first digit = number of unused bits."""
+    """Binary value ``"0A3F"`` without its quotes; its first digit counts unused bits."""
 
     __slots__ = ()
 
 
 @dataclass(frozen=True, slots=True)
 class Typed:
-    """``LENGTH_MEASURE(0.01)``: a value with its type named."""
+    """Value with an explicit type, such as ``LENGTH_MEASURE(0.01)``."""
 
     keyword: str
     value: "Value"
 
 
 class Derived:
-    """``*``: an attribute that a subtype derives."""
+    """The value ``*``: an attribute that a subtype derives."""
 
     __slots__ = ()
 
@@ -72,4 +72,4 @@ Value: TypeAlias = (
     "Derived | Ref[object] | int | Real | str | Enumeration | Binary | Typed"
     " | tuple[Value, ...] | None"
 )
-"""``None`` is ``$``; a plain ``str`` is a decoded string."""
+"""Any parameter value; ``None`` is ``$``, and a plain ``str`` is a decoded string."""

@@ -1,9 +1,9 @@
-"""Writing: one value as text, and edits of a file that leave every other byte as it is.
+"""Writing of values, and edits of a file that leave all other bytes unchanged.
 
-What is added goes before the ENDSEC of the last DATA section, one instance on a line, with ids
-above the largest that is kept. Text is ASCII; lines end as the file's own lines do.
+New instances are inserted before the ENDSEC of the last DATA section, one per line, with ids
+above the largest that is kept. Text is ASCII; line ends are those of the file.
 
-Edits are byte splices: what stands where, so that all other bytes stay as they are.
+Edits are byte splices: byte spans with the text that replaces them.
 """
 
 import math
@@ -20,11 +20,11 @@ from stepnc_model.part21.strings import decode, encode
 from stepnc_model.part21.values import Binary, Derived, Enumeration, Real, Ref, Typed, Value
 
 Span: TypeAlias = tuple[int, int]
-"""Bytes from and to."""
+"""Byte span: start and end."""
 Element: TypeAlias = Span | bytes
-"""An element of a list: a place in the file, or new text."""
+"""Element of a list: a span in the file, or new text."""
 Splice: TypeAlias = tuple[int, int, bytes]
-"""Bytes from and to, and what stands there instead."""
+"""Start and end of a byte span, and the text that replaces it."""
 
 _BLANK = b" \t"
 _BREAK = b"\r\n"
@@ -33,16 +33,16 @@ _BREAK = b"\r\n"
 def list_splices(
     data: bytes, elements: Sequence[Element], *, spans: Sequence[Span], close: int
 ) -> list[Splice]:
-    """Splices that turn a bracketed list into another one.
+    """Splices that change a bracketed list into another list.
 
     Parameters
     ----------
     data : bytes
-        The file.
+        Contents of the file.
     elements : sequence of span or bytes
-        The list as it shall be.
+        Elements of the new list.
     spans : sequence of span
-        The elements as they are.
+        Spans of the current elements.
     close : int
         Offset of the bracket that ends the list.
     """
@@ -68,7 +68,7 @@ def _text(data: bytes, element: Element) -> bytes:
 
 
 def line_span(data: bytes, span: Span) -> Span:
-    """A span with the rest of its lines, if they are blank; the span itself otherwise."""
+    """Span extended to whole lines if the rest of them is blank; otherwise unchanged."""
     start, end = line_start(data, span[0]), span[1]
     while data[end : end + 1] and data[end] in _BLANK:
         end += 1
@@ -80,7 +80,7 @@ def line_span(data: bytes, span: Span) -> Span:
 
 
 def line_start(data: bytes, offset: int) -> int:
-    """Begin of the line if only blanks stand before the offset, else the offset."""
+    """Start of the line if only blanks precede the offset, else the offset."""
     start = offset
     while start and data[start - 1] in _BLANK:
         start -= 1
@@ -88,7 +88,7 @@ def line_start(data: bytes, offset: int) -> int:
 
 
 def spliced(data: bytes, splices: Iterable[Splice], *, start: int, end: int) -> bytes:
-    """The bytes from ``start`` to ``end`` with the splices that begin there."""
+    """Bytes from ``start`` to ``end`` with the splices that begin there."""
     pieces: list[bytes] = []
     position = start
     for first, last, text in sorted(splices):
@@ -103,18 +103,17 @@ _BINARY = re.compile(r"[0-3][0-9A-F]*+")
 
 
 def format_value(value: Value) -> bytes:
-    """Text of a value; reading it gives the value back.
+    """Format a value as Part 21 text, such that reading it returns the value.
 
-    A real that was read keeps its characters; another one gets the shortest that give the
-    same number.
+    A real that was read keeps its characters; others get the shortest text for the same number.
 
     Raises
     ------
     TypeError
         If the value has no form in ISO 10303-21.
     ValueError
-        If a number is not finite, or an enumeration or binary holds other characters than
-        those allowed.
+        If a number is not finite, or an enumeration or binary contains characters that are not
+        allowed.
     """
     pieces: list[bytes] = []
     pending: list[Value | bytes] = [value]
@@ -132,7 +131,7 @@ def format_value(value: Value) -> bytes:
 
 
 def _bracketed(values: tuple[Value, ...]) -> "list[Value | bytes]":
-    """Values of a list with brackets and commas between them."""
+    """List values with brackets and commas between them."""
     items: list[Value | bytes] = [b"("]
     for position, value in enumerate(values):
         items += [b",", value] if position else [value]
@@ -140,15 +139,15 @@ def _bracketed(values: tuple[Value, ...]) -> "list[Value | bytes]":
 
 
 def _keyword(keyword: str) -> bytes:
-    """Keyword as the file writes it."""
+    """Keyword as bytes, after a check of its characters."""
     name = keyword.encode("ascii", errors="replace")
     if KEYWORD.fullmatch(name) is None:
-        raise ValueError(f"{keyword!r} is no keyword")
+        raise ValueError(f"{keyword!r} is not a valid keyword")
     return name
 
 
 def _scalar(value: Value) -> str:
-    """Text of a value that holds no other."""
+    """Text of a value that contains no other values."""
     if value is None:
         return "$"
     if isinstance(value, Derived):
@@ -167,14 +166,14 @@ def _scalar(value: Value) -> str:
 
 
 def _checked(value: str, pattern: re.Pattern[str]) -> str:
-    """The characters of a value if they are those allowed."""
+    """Return the value if it matches the pattern of allowed characters."""
     if pattern.fullmatch(value) is None:
-        raise ValueError(f"{value!r} is no {type(value).__name__.lower()}")
+        raise ValueError(f"{value!r} is not a valid {type(value).__name__.lower()}")
     return str.__str__(value)
 
 
 def _real(value: float) -> str:
-    """Characters that were read, else the shortest with a point in the mantissa."""
+    """Text of a real: as it was read, or else the shortest with a point."""
     lexeme = value.lexeme if isinstance(value, Real) else ""
     if lexeme:
         return lexeme
@@ -189,13 +188,13 @@ def _real(value: float) -> str:
 class Edits:
     """Changes of one file, collected and then applied at once.
 
-    Running state: every verb changes it. The file itself is never changed; an instance that
-    was added can be edited and removed like one of the file.
+    The object has state, but the file itself never changes; an instance that was added can be
+    edited and removed like an instance of the file.
 
     Parameters
     ----------
     file : Part21File
-        What is edited.
+        File to be edited.
     """
 
     def __init__(self, file: Part21File) -> None:
@@ -210,7 +209,7 @@ class Edits:
         return id in self._added or (id in self.file and id not in self._removed)
 
     def replace_parameter(self, id: int, position: int, value: Value) -> None:
-        """Put a value in the place of a parameter, counted from 0.
+        """Replace a parameter, counted from 0.
 
         Raises
         ------
@@ -221,15 +220,17 @@ class Edits:
         """
         parameters = self._parameters(id)
         if not 0 <= position < len(parameters):
-            raise IndexError(f"#{id} has {len(parameters)} parameters, no number {position}")
+            raise IndexError(
+                f"#{id} has {len(parameters)} parameters, none at position {position}"
+            )
         parameters[position] = format_value(value)
 
     def append_parameter(self, id: int, value: Value) -> None:
-        """Add a parameter behind the last one."""
+        """Add a parameter after the last one."""
         self._parameters(id).append(format_value(value))
 
     def remove_parameter(self, id: int, position: int) -> None:
-        """Take a parameter away, counted from 0; those behind it move up.
+        """Remove a parameter, counted from 0; those behind it move up.
 
         Raises
         ------
@@ -238,18 +239,20 @@ class Edits:
         """
         parameters = self._parameters(id)
         if not 0 <= position < len(parameters):
-            raise IndexError(f"#{id} has {len(parameters)} parameters, no number {position}")
+            raise IndexError(
+                f"#{id} has {len(parameters)} parameters, none at position {position}"
+            )
         del parameters[position]
 
     def next_id(self) -> int:
-        """Id that the next added instance gets: one above the largest of those kept."""
+        """Id of the next added instance: one above the largest id kept."""
         if self._largest is None:
             kept = (id for id in self.file.ids() if id not in self._removed)
             self._largest = max((*self._added, max(kept, default=0)))
         return self._largest + 1
 
     def add(self, keyword: str, parameters: tuple[Value, ...]) -> Ref[object]:
-        """Add an instance at the end of the last DATA section; the reference to it."""
+        """Add an instance at the end of the last DATA section; return its reference."""
         id = self.next_id()
         texts: list[Element] = [format_value(value) for value in parameters]
         self._added[id] = _Added(keyword=_keyword(keyword), parameters=texts)
@@ -257,7 +260,7 @@ class Edits:
         return Ref(id)
 
     def remove(self, id: int) -> None:
-        """Remove an instance, and its line if nothing else stands there.
+        """Remove an instance, and its line if it contains nothing else.
 
         Raises
         ------
@@ -275,12 +278,12 @@ class Edits:
             self._largest = None
 
     def add_schema(self, name: str) -> None:
-        """Add a name to FILE_SCHEMA unless it is there."""
+        """Add a name to FILE_SCHEMA unless it is already there."""
         if not any(_is_schema(text, name) for text in self._schema_names()):
             self._schema_elements().append(format_value(name))
 
     def remove_schema(self, name: str) -> None:
-        """Take a name out of FILE_SCHEMA."""
+        """Remove a name from FILE_SCHEMA."""
         names = self._schema_names()
         elements = self._schema_elements()
         self._schemas = [
@@ -290,7 +293,7 @@ class Edits:
         ]
 
     def apply(self) -> bytes:
-        """The file with all changes; without changes, its own bytes."""
+        """Bytes of the file with all changes; without changes, its own bytes."""
         data = self.file.data
         splices = self._splices()
         if not self._added:
@@ -303,7 +306,7 @@ class Edits:
         return before + gap + lines + spliced(data, splices, start=place, end=len(data))
 
     def _splices(self) -> list[Splice]:
-        """Splices of everything that is in the file already."""
+        """Splices for all changes within the existing text of the file."""
         file = self.file
         splices: list[Splice] = []
         for id, elements in self._changed.items():
@@ -318,7 +321,7 @@ class Edits:
         return splices
 
     def _parameters(self, id: int) -> list[Element]:
-        """Parameters of an instance as they stand now, to be changed in place."""
+        """Current parameters of an instance, as a list to be modified in place."""
         if id in self._added:
             return self._added[id].parameters
         if id in self._removed:
@@ -337,13 +340,13 @@ class Edits:
         return tuple((origin + first, origin + last) for first, last in spans)
 
     def _schema_elements(self) -> list[Element]:
-        """Names in FILE_SCHEMA as they stand now, to be changed in place."""
+        """Current names in FILE_SCHEMA, as a list to be modified in place."""
         if self._schemas is None:
             self._schemas = list(self._schema_spans())
         return self._schemas
 
     def _schema_names(self) -> list[str]:
-        """The same as text without apostrophes."""
+        """Current names in FILE_SCHEMA as text without apostrophes."""
         data = self.file.data
         texts = (
             element if isinstance(element, bytes) else data[element[0] : element[1]]
@@ -354,17 +357,17 @@ class Edits:
 
 @dataclass(slots=True, kw_only=True)
 class _Added:
-    """An instance that is not in the file yet."""
+    """Instance that is not yet in the file."""
 
     keyword: bytes
     parameters: list[Element]
 
     def text(self, id: int) -> bytes:
-        """Its line, without the break."""
+        """Line of the instance, without line break."""
         texts = (element for element in self.parameters if isinstance(element, bytes))
         return b"#%d=%s(%s);" % (id, self.keyword, b",".join(texts))
 
 
 def _is_schema(text: str, name: str) -> bool:
-    """Whether an entry of FILE_SCHEMA names a schema, with or without its object identifier."""
+    """Whether an entry of FILE_SCHEMA names a schema, ignoring an object identifier."""
     return text.partition("{")[0].strip().upper() == name.strip().upper()

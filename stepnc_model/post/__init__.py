@@ -1,1 +1,1 @@
-"""NC code: neutral blocks, the dialects of controls, and a reader for each."""
+"""Postprocessing to NC code: neutral blocks, a writer and a reader for each dialect."""

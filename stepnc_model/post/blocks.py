@@ -1,9 +1,9 @@
-"""Neutral blocks: what an NC program says, before any control spells it.
+"""Neutral blocks: the content of an NC program, independent of a control's dialect.
 
 Numbers are resolved: mm, mm/s, mm/rev, rev/s, s, rad. Coordinates are those of the tool path;
 on a lathe x is a radius.
 
-Drilling cycles are taken apart for controls that lack one, and for readers. Motion after
+Drilling cycles are expanded for readers and for controls that lack them. Moves follow
 LinuxCNC, "G-Code reference", G73 and G81 to G86; controls differ in the distance that they keep
 above the last depth, which is an argument here.
 """
@@ -17,7 +17,7 @@ from stepnc_model.toolpath.path import ArcPlane, CycleKind, Point
 
 
 class MachineType(StrEnum):
-    """Type of machine that a program is for."""
+    """Type of machine that an NC program is for."""
 
     MILL = "mill"
     LATHE = "lathe"
@@ -27,34 +27,34 @@ class Cycles(StrEnum):
     """Form in which drilling cycles are written."""
 
     EXPANDED = "expanded"
-    """as lines"""
+    """Written as single moves."""
     OWN = "own"
-    """as cycles of the control, where it has them"""
+    """Written as cycles of the control, where it has them."""
 
 
 class RateMode(StrEnum):
-    """Reference of a feed: per minute, per revolution, inverse time."""
+    """Reference of a feed: per minute or per revolution."""
 
     PER_MINUTE = "per minute"
-    """of time; inside in mm/s"""
+    """Feed per time; internally in mm/s."""
     PER_REVOLUTION = "per revolution"
-    """of the spindle, mm"""
+    """Feed per revolution of the spindle, mm."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Rate:
-    """A feed with its mode."""
+    """Feed with its mode."""
 
     value: float
-    """Value, mm/s or mm/rev"""
+    """Feed, mm/s or mm/rev."""
     mode: RateMode = RateMode.PER_MINUTE
 
 
 class SpindleDirection(StrEnum):
-    """Sense of the spindle, as canonical commands name it.
+    """Direction of the spindle, as canonical commands name it.
 
     M3, clockwise, drives a right-hand screw into the workpiece (EIA RS-274-D). A mill turns
-    its tool so, negative about z; a lathe turns its workpiece the other way for the same
+    its tool this way, negative about z; a lathe turns its workpiece the other way for the same
     effect, positive about z.
     """
 
@@ -63,7 +63,7 @@ class SpindleDirection(StrEnum):
 
     @property
     def opposite(self) -> "SpindleDirection":
-        """The other one."""
+        """Opposite direction."""
         return (
             SpindleDirection.COUNTERCLOCKWISE
             if self is SpindleDirection.CLOCKWISE
@@ -72,17 +72,17 @@ class SpindleDirection(StrEnum):
 
 
 class CoolantKind(StrEnum):
-    """Ways of cooling."""
+    """Kinds of coolant supply."""
 
     FLOOD = "flood"
     MIST = "mist"
     THROUGH = "through"
-    """through the tool"""
+    """Coolant through the tool."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProgramStart:
-    """Head of a program."""
+    """Start of an NC program."""
 
     name: str
     machine: MachineType = MachineType.MILL
@@ -90,23 +90,23 @@ class ProgramStart:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Comment:
-    """Remark for the reader."""
+    """Comment for the reader of the NC program."""
 
     text: str
     workingstep: str = ""
-    """id of the workingstep that begins here"""
+    """Name of the workingstep that begins here."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Message:
-    """Text on the screen, or a comment where a control has none."""
+    """Message on the screen; written as a comment if a control has no messages."""
 
     text: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ToolChange:
-    """Tool into the spindle, with its length offset."""
+    """Tool change, with the tool's length offset."""
 
     number: int
     id: str = ""
@@ -117,7 +117,7 @@ class SpindleOn:
     """Spindle on at constant speed."""
 
     speed: float
-    """Speed, rev/s"""
+    """Spindle speed, rev/s."""
     sense: SpindleDirection = SpindleDirection.CLOCKWISE
 
 
@@ -126,9 +126,9 @@ class SurfaceSpeed:
     """Spindle on at constant surface speed."""
 
     speed: float
-    """Speed, mm/s"""
+    """Surface speed, mm/s."""
     limit: float | None = None
-    """Limit, rev/s"""
+    """Limit of the spindle speed, rev/s."""
     sense: SpindleDirection = SpindleDirection.CLOCKWISE
 
 
@@ -144,32 +144,32 @@ class SpindleOrient:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Coolant:
-    """All coolant that is on from here; none: off."""
+    """All coolant that is on from here; empty for off."""
 
     kinds: frozenset[CoolantKind] = frozenset()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Retract:
-    """Rapid along z only: nothing is known of x and y after a tool change."""
+    """Rapid move along z only, as x and y are unknown after a tool change."""
 
     z: float
     is_way: bool = False
-    """between two workingsteps, not part of a path"""
+    """Whether the move lies between two workingsteps, outside a tool path."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Rapid:
-    """Straight in rapid."""
+    """Straight rapid move."""
 
     end: Point
     is_way: bool = False
-    """between two workingsteps, not part of a path"""
+    """Whether the move lies between two workingsteps, outside a tool path."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Linear:
-    """Straight at a feed."""
+    """Straight move at a feed."""
 
     end: Point
     rate: Rate
@@ -181,73 +181,73 @@ class Circular:
 
     end: Point
     centre: Point
-    """its coordinate along the normal of the plane means nothing"""
+    """Centre of the arc; its coordinate along the normal of the plane has no meaning."""
     turn: float
-    """Turn, rad, positive counter-clockwise; more than 2π for several turns"""
+    """Angle of the arc, rad, positive counter-clockwise; more than 2π for several turns."""
     rate: Rate
     plane: ArcPlane = ArcPlane.XY
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ThreadingMove:
-    """Straight, bound to the angle of the spindle."""
+    """Straight threading move, synchronised with the spindle angle."""
 
     end: Point
     lead: float
-    """Lead, mm per revolution along the axis that moves most"""
+    """Lead, mm per revolution along the axis that moves most."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RigidTap:
-    """Thread cut down along z and out again, both bound to the angle of the spindle."""
+    """Rigid tap down along z and out again, synchronised with the spindle angle."""
 
     start: Point
     bottom_z: float
     lead: float
-    """Lead, mm per revolution"""
+    """Lead, mm per revolution."""
     speed: float
-    """Speed, rev/s"""
+    """Spindle speed, rev/s."""
     sense: SpindleDirection = SpindleDirection.CLOCKWISE
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Pause:
-    """Dwell."""
+    """Dwell for a time in seconds."""
 
     seconds: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProgramStopBlock:
-    """Stop until started again."""
+    """Program stop until the operator restarts."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OptionalStopBlock:
-    """Stop when the switch is on."""
+    """Program stop that applies only if the optional stop switch is on."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProgramEnd:
-    """End and rewind."""
+    """End of the program, with rewind."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DrillingCycle:
-    """A drilling cycle from the retract plane and back to it, and the blocks it stands for."""
+    """Drilling cycle from the retract plane and back, with the single moves it stands for."""
 
     kind: CycleKind
     at: tuple[float, float]
-    """x and y"""
+    """Position x, y of the hole, mm."""
     retract_z: float
     bottom_z: float
     rate: Rate
     step_depth: float = 0.0
-    """Step depth, mm of each peck"""
+    """Depth of each peck, mm."""
     retract_distance: float = 0.0
-    """Retract distance, mm of a short retract, or above the last depth after a full one"""
+    """Distance of a short retract, or above the last depth after a full retract, mm."""
     dwell: float = 0.0
-    """Dwell, s at the bottom"""
+    """Dwell at the bottom, s."""
     expansion: tuple["Block", ...] = ()
 
 
@@ -278,19 +278,19 @@ Block = (
 MOST_PECKS = 10_000
 
 LEAST = 1e-9
-"""mm; a peck that leaves less has reached the bottom"""
+"""Remaining depth below which a peck has reached the bottom, mm."""
 
 
 def expanded(
     cycle: DrillingCycle, spindle: SpindleOn | SurfaceSpeed | None = None
 ) -> DrillingCycle:
-    """The cycle with its expansion.
+    """Drilling cycle with its expansion into single moves.
 
     Parameters
     ----------
     cycle : DrillingCycle
     spindle : SpindleOn or SurfaceSpeed, optional
-        What turns again after a cycle that stops the spindle.
+        Spindle state to restore after a cycle that stops the spindle.
     """
     return replace(cycle, expansion=tuple(_expansion(cycle, spindle)))
 
@@ -316,11 +316,11 @@ def _expansion(
 
 
 def _pecks(cycle: DrillingCycle) -> Iterator[Block]:
-    """Down in steps; between them a full or a short retract."""
+    """Peck down in steps with a full or a short retract between them."""
     x, y = cycle.at
     count = (cycle.retract_z - cycle.bottom_z) / cycle.step_depth
     if count > MOST_PECKS:
-        raise PostError(f"a drilling cycle of {count:.4g} pecks: {MOST_PECKS} at most")
+        raise PostError(f"a drilling cycle of {count:.4g} pecks: at most {MOST_PECKS} allowed")
     depth = cycle.retract_z - cycle.step_depth
     while depth > cycle.bottom_z + LEAST:
         yield Linear(end=(x, y, depth), rate=cycle.rate)

@@ -1,12 +1,12 @@
-"""Canonical machining commands: what a control does, one call a line.
+"""Canonical machining commands: the actions of a control, one call per line.
 
 Names and arguments are those of [1]_ in the layout of NIST's STEP-NC interpreter: three axes,
 arcs as (first end, second end, first centre, second centre, rotation, end along the normal) in
-the order x y, z x or y z of their plane. Feed per revolution, constant surface speed and
+the axis order x y, z x or y z of their plane. Feed per revolution, constant surface speed and
 synchronised motion, which [1]_ lacks, are named as LinuxCNC prints them. Units: mm, mm/min or
-mm/rev, rpm or m/min, s. Of coolants only flood and mist are known: through the tool is flood.
+mm/rev, rpm or m/min, s. Only flood and mist coolant exist: coolant through the tool is flood.
 
-What is read are our own commands, NIST's, and those that LinuxCNC prints.
+The reader accepts our own commands, NIST's, and those that LinuxCNC prints.
 
 References
 ----------
@@ -54,7 +54,7 @@ from stepnc_model.units import m_min_from_speed, mm_min_from_speed, rpm_from_rev
 PLACES = 4
 
 UNLIMITED = 1e30
-"""rpm, what LinuxCNC prints for no limit"""
+"""Spindle speed limit that LinuxCNC prints for no limit, rpm."""
 
 PLANES = {
     ArcPlane.XY: "CANON_PLANE_XY",
@@ -67,7 +67,7 @@ Argument = float | int | str
 
 @dataclass(frozen=True, slots=True)
 class Canonical:
-    """One canonical command."""
+    """Canonical machining command with its arguments."""
 
     name: str
     arguments: tuple[Argument, ...] = ()
@@ -77,13 +77,13 @@ class Canonical:
 
 
 def write(blocks: Iterable[Block]) -> Iterator[str]:
-    """Numbered lines of canonical commands."""
+    """Write blocks as numbered lines of canonical commands."""
     for number, command in enumerate(commands(blocks), 1):
         yield f"{number:5} {command}"
 
 
 def commands(blocks: Iterable[Block], *, places: int = PLACES) -> Iterator[Canonical]:
-    """Canonical commands of neutral blocks, cycles expanded.
+    """Convert neutral blocks to canonical commands, with cycles expanded.
 
     Parameters
     ----------
@@ -97,13 +97,13 @@ def commands(blocks: Iterable[Block], *, places: int = PLACES) -> Iterator[Canon
 
 
 def synchronised(start: Point, end: Point, lead: float) -> float:
-    """Lead in mm along a path, from the lead along the axis that moves most."""
+    """Lead along a path, mm, from the lead along the axis that moves most."""
     most = max(abs(e - s) for s, e in zip(start, end, strict=True))
     return lead * dist(start, end) / most
 
 
 class _Writer:
-    """Running state: what was said and holds."""
+    """Writer of canonical commands that tracks the modal state."""
 
     def __init__(self) -> None:
         self.at: Point = (0.0, 0.0, 0.0)
@@ -127,7 +127,7 @@ class _Writer:
         }
 
     def commands(self, block: Block) -> Iterator[Canonical]:
-        """Commands of one block."""
+        """Canonical commands of one block."""
         maker = self._makers.get(type(block))
         if maker is not None:
             yield from maker(block)
@@ -200,7 +200,7 @@ class _Writer:
         yield Canonical(f"START_SPINDLE_{block.sense.name}")
 
     def _set_limit(self, limit: float) -> Iterator[Canonical]:
-        """0 for constant speed, above 0 for constant surface speed."""
+        """Set the spindle mode: 0 for constant speed, a limit for constant surface speed."""
         if limit != self.limit:
             self.limit, self.speed = limit, None
             yield Canonical("SET_SPINDLE_MODE", (limit,))
@@ -241,11 +241,11 @@ PLAIN: dict[type, Callable[[Any], Canonical]] = {
     OptionalStopBlock: lambda _: Canonical("OPTIONAL_PROGRAM_STOP"),
     ProgramEnd: lambda _: Canonical("PROGRAM_END"),
 }
-"""commands of blocks without memory"""
+"""Commands of blocks that do not depend on modal state."""
 
 
 def _shown(argument: Argument) -> str:
-    """One argument as text."""
+    """Format one argument as text."""
     if isinstance(argument, float):
         text = f"{argument:.4f}"
         return "0.0000" if text == "-0.0000" else text
@@ -268,7 +268,7 @@ NUMBERS = {
     "DWELL": slice(0, 1),
     "ORIENT_SPINDLE": slice(-2, -1),
 }
-"""which arguments count: LinuxCNC adds rotary axes behind and spindle numbers before"""
+"""Arguments that are evaluated: LinuxCNC appends rotary axes and prepends spindle numbers."""
 
 NAMES = frozenset({
     "SELECT_PLANE",
@@ -308,12 +308,12 @@ TEXTS = frozenset({"COMMENT", "MESSAGE"})
 
 
 def read(lines: Iterable[str]) -> Iterator[Canonical]:
-    """Canonical commands of a text: ours, NIST's, or what LinuxCNC prints.
+    """Read canonical commands in our own form, NIST's, or LinuxCNC's.
 
     Raises
     ------
     PostError
-        At a line that is no canonical command.
+        If a line is not a canonical command.
     """
     for number, line in enumerate(lines, 1):
         if line.strip():
@@ -321,10 +321,10 @@ def read(lines: Iterable[str]) -> Iterator[Canonical]:
 
 
 def _parsed(line: str, number: int) -> Canonical:
-    """One command."""
+    """Parse one line as a canonical command."""
     found = LINE.fullmatch(line)
     if found is None or (found[1] not in NUMBERS and found[1] not in NAMES):
-        raise PostError(f"'{shown(line)}' is no canonical command", line=number)
+        raise PostError(f"'{shown(line)}' is not a canonical command", line=number)
     name, text = found[1], found[2]
     if name in TEXTS:
         return Canonical(name, (text.strip('"'),))
@@ -332,7 +332,7 @@ def _parsed(line: str, number: int) -> Canonical:
     if name not in NUMBERS:
         return Canonical(name, () if name.startswith("START_SPINDLE") else (text,))
     if not all(NUMBER.fullmatch(part) and isfinite(float(part)) for part in parts):
-        raise PostError(f"{name}({shown(text)}): its arguments must be numbers", line=number)
+        raise PostError(f"{name}({shown(text)}): the arguments must be numbers", line=number)
     values: list[Argument] = [float(part) for part in parts]
     chosen = values[NUMBERS[name]] if len(values) > 1 else values
     wanted = {"ARC_FEED": 6}.get(name, 3 if NUMBERS[name] == slice(0, 3) else 1)
@@ -341,6 +341,8 @@ def _parsed(line: str, number: int) -> Canonical:
     if name == "ARC_FEED":
         turns = float(chosen[4])
         if not turns or turns != int(turns):
-            raise PostError(f"{name}: {turns:g} turns: whole ones are needed", line=number)
+            raise PostError(
+                f"{name}: {turns:g} turns: must be a whole number other than 0", line=number
+            )
         chosen[4] = int(turns)
     return Canonical(name, tuple(chosen))

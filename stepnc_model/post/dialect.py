@@ -1,4 +1,4 @@
-"""Names of the controls for which NC code is written and read."""
+"""Controls for which NC code is written and read."""
 
 from enum import StrEnum
 
@@ -7,18 +7,18 @@ class Dialect(StrEnum):
     """Dialects of NC code."""
 
     CANONICAL = "canonical"
-    """canonical machining commands, which no control runs and all can be compared by"""
+    """Canonical machining commands, which no control runs; all dialects compare to them."""
     LINUXCNC = "linuxcnc"
     FANUC = "fanuc"
     HAAS = "haas"
     SINUMERIK = "sinumerik"
-    """840D"""
+    """Siemens Sinumerik 840D."""
     HEIDENHAIN = "heidenhain"
-    """Klartext, mills only"""
+    """Heidenhain Klartext, mills only."""
 
     @property
     def suffix(self) -> str:
-        """Ending of its files."""
+        """File name extension of the dialect."""
         return SUFFIXES[self]
 
 

@@ -1,4 +1,4 @@
-"""The controls for which NC code is written and read: one front for all dialects."""
+"""Common interface for writing and reading the NC code of all supported controls."""
 
 from collections.abc import Callable, Iterable, Iterator
 from typing import Protocol
@@ -16,18 +16,18 @@ from stepnc_model.post.sinumerik import Sinumerik, SinumerikReader
 
 
 class Writer(Protocol):
-    """Writer of one program."""
+    """Writer of one NC program."""
 
     def lines(self, blocks: Iterable[Block], cycles: Cycles) -> Iterator[str]:
-        """The program, line by line."""
+        """Lines of the NC program."""
         ...
 
 
 class NcReader(Protocol):
-    """Reader of one program."""
+    """Reader of one NC program."""
 
     def blocks(self, lines: Iterable[str]) -> Iterator[Block]:
-        """Neutral blocks of the program."""
+        """Neutral blocks of the NC program."""
         ...
 
 
@@ -51,12 +51,12 @@ READERS: dict[Dialect, Callable[[MachineType], NcReader]] = {
 def write(
     blocks: Iterable[Block], control: Dialect, *, cycles: Cycles = Cycles.EXPANDED
 ) -> Iterator[str]:
-    """Lines of NC code, without their ends; made as they are asked for.
+    """Write NC code line by line, without line ends; lines are generated lazily.
 
     Raises
     ------
     PostError
-        At a block that the control cannot do.
+        If the control cannot execute a block.
     """
     if control is Dialect.CANONICAL:
         return canonical.write(blocks)
@@ -66,29 +66,29 @@ def write(
 def read_blocks(
     lines: Iterable[str], control: Dialect, *, machine: MachineType = MachineType.MILL
 ) -> Iterator[Block]:
-    """Neutral blocks of NC code, as far as its dialect is known.
+    """Read NC code as neutral blocks.
 
     Parameters
     ----------
     lines : iterable of str
     control : Dialect
     machine : MachineType
-        What the code is for; Fanuc and Haas code does not say.
+        Machine that the code is for; Fanuc and Haas code does not say.
 
     Raises
     ------
     PostError
-        At a word that is not known there, or an arc that is none, with its line.
+        If a word is unknown to the dialect or an arc is invalid, with its line.
     """
     if control is Dialect.CANONICAL:
-        raise PostError("canonical commands are no NC code: they have no blocks")
+        raise PostError("canonical commands are not NC code: they cannot be read as blocks")
     return READERS[control](machine).blocks(lines)
 
 
 def read(
     lines: Iterable[str], control: Dialect, *, machine: MachineType = MachineType.MILL
 ) -> tuple[Canonical, ...]:
-    """Canonical commands of NC code; the arguments are those of :func:`read_blocks`."""
+    """Read NC code as canonical commands; arguments as for :func:`read_blocks`."""
     if control is Dialect.CANONICAL:
         return tuple(canonical.read(lines))
     return tuple(commands(read_blocks(lines, control, machine=machine)))

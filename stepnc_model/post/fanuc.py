@@ -2,15 +2,15 @@
 
 After Fanuc, "Series 0i-MODEL F Operator's Manual" (B-64604EN, B-64604EN-1 for lathes,
 B-64604EN-2 for machining centres) and, for rigid tapping by lead,
-"Series 0i Connection Manual (Function)" (B-63833EN-1). Dwell in ms, X of a lathe is a
-diameter, its G98 and G99 are the modes of feed. How far above the last depth a peck begins is
-parameter 5115, its short retract 5114.
+"Series 0i Connection Manual (Function)" (B-63833EN-1). Dwells are in ms, X of a lathe is a
+diameter, and its G98 and G99 are the feed modes. Parameter 5115 sets how far above the last
+depth a peck begins, parameter 5114 its short retract.
 
 For Haas controls after Haas, "Mill Operator's Manual" and "Lathe Operator's Manual" (Next
-Generation Control): much as Fanuc, but P of a dwell is in s when it has a point and in ms when
-not, M88 and M89 switch coolant through the spindle, G84 starts the spindle itself (G74 on a
-mill and G184 on a lathe for left-hand threads), and a mill has no thread cutting. How far above
-the last depth a peck begins is setting 22.
+Generation Control): similar to Fanuc, but P of a dwell is in s with a decimal point and in ms
+without, M88 and M89 switch coolant through the spindle, G84 starts the spindle itself (G74 on a
+mill and G184 on a lathe for left-hand threads), and a mill has no thread cutting. Setting 22 is
+the height above the last depth where a peck begins.
 """
 
 import re
@@ -47,37 +47,37 @@ from stepnc_model.post.words import (
 from stepnc_model.toolpath.path import ArcPlane, Point
 
 LONGEST = 100
-"""characters of a comment"""
+"""Greatest length of a comment in characters."""
 
 MOST_TOOLS = 99
-"""numbers of tools on a lathe have two digits"""
+"""Greatest tool number on a lathe, which has two digits."""
 
 LATHE_MODES = {RateMode.PER_MINUTE: "G98", RateMode.PER_REVOLUTION: "G99"}
 
 REFUSED = re.compile(r"[^A-Z0-9 .,+\-*/=#\[\]&_?@]")
-"""what no character set is sure to have; % and ; would end the tape or the block"""
+"""Characters not in every character set; % and ; would end the program or the block."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DialectTraits:
-    """Differences between the controls of this family."""
+    """Differences between the controls of the Fanuc family."""
 
     head: str
-    """number of the program"""
+    """Program number."""
     seconds: Callable[[float], str]
-    """P word of a dwell"""
+    """Format a dwell in seconds as a P word."""
     seconds_of: Callable[[float, bool], float]
-    """dwell in s of a P word, and of one that has no point"""
+    """Dwell in s from a P value, given whether it lacks a decimal point."""
     coolant: Mapping[CoolantKind, str]
     coolant_ends: tuple[str, ...]
     threads: Mapping[MachineType, str]
-    """thread cutting"""
+    """G code of thread cutting by machine type."""
     taps: Mapping[tuple[MachineType, SpindleDirection], str]
-    """rigid tapping"""
+    """G code of rigid tapping by machine type and spindle direction."""
     tap_speed: str
-    """what goes before the S word of a rigid tap"""
+    """Word before the S word of a rigid tap."""
     retract: frozenset[MachineType]
-    """where a rigid tap names the plane it returns to, absolute"""
+    """Machine types where a rigid tap names its absolute retract plane."""
 
 
 FANUC = DialectTraits(
@@ -98,7 +98,7 @@ FANUC = DialectTraits(
 
 
 class Fanuc(IsoCode):
-    """Writer for Fanuc and its kin."""
+    """Writer of NC code for Fanuc and Haas controls."""
 
     def __init__(self, manner: DialectTraits = FANUC) -> None:
         super().__init__()
@@ -106,11 +106,11 @@ class Fanuc(IsoCode):
         self.coolant_codes = manner.coolant
 
     def number(self, value: float, places: int) -> str:
-        """With its point: without one old controls count in µm."""
+        """Format a number with a decimal point: without it old controls count in µm."""
         return pointed(value, places)
 
     def start(self, name: str) -> Iterator[str]:
-        """Percent sign, number, modes."""
+        """Write the percent sign, the program number and the initial modes."""
         yield "%"
         yield f"{self.manner.head} {self.text(name)}"
         is_lathe = self.machine is MachineType.LATHE
@@ -121,39 +121,39 @@ class Fanuc(IsoCode):
         )
 
     def end(self, _: ProgramEnd) -> Iterator[str]:
-        """End, rewind and percent sign."""
+        """Write the program end and the percent sign."""
         yield from self.line("M30")
         yield "%"
 
     def text(self, text: str) -> str:
-        """A comment in capitals."""
+        """Comment in capitals and safe characters."""
         plain = ascii_text(text).upper().replace("(", "[").replace(")", "]")
         return f"({REFUSED.sub(' ', plain)[:LONGEST]})"
 
     def tool_change(self, block: ToolChange) -> Iterator[str]:
-        """T and M6, the offset with the next z; on a lathe both in T."""
+        """Write T and M6, with the offset in the next z move; on a lathe T holds both."""
         if self.machine is MachineType.MILL:
             yield from self.line(f"T{block.number}", "M6")
             self.pend(f"G43 H{block.number}")
             return
         if block.number > MOST_TOOLS:
-            raise PostError(f"tool {block.number}: a lathe has {MOST_TOOLS} at most")
+            raise PostError(f"tool {block.number}: a lathe has at most {MOST_TOOLS} tools")
         yield from self.line(f"T{block.number:02}{block.number:02}")
         self.pend("")
 
     def mode_code(self, mode: RateMode) -> str:
-        """G94 and G95, or G98 and G99 on a lathe."""
+        """G code of a feed mode: G94 and G95, or G98 and G99 on a lathe."""
         is_lathe = self.machine is MachineType.LATHE
         return LATHE_MODES[mode] if is_lathe else super().mode_code(mode)
 
     def surface_speed(self, speed: str, limit: str, sense: str) -> Iterator[str]:
-        """G50 with the limit, then G96; a limit said before stays where none is given."""
+        """Write G50 with the limit, then G96; without a limit the previous one stays."""
         if limit:
             yield from self.line("G50", f"S{limit}")
         yield from self.line("G96", f"S{speed}", sense)
 
     def coolant_off(self) -> Iterator[str]:
-        """All coolant off."""
+        """Switch all coolant off."""
         codes = [self.manner.coolant_ends[0]] if self.cooling - {self._through} else []
         if self._through in self.cooling:
             codes.append(self.manner.coolant_ends[-1])
@@ -166,20 +166,20 @@ class Fanuc(IsoCode):
         return self.manner.coolant[CoolantKind.THROUGH]
 
     def seconds(self, value: float) -> str:
-        """P word of a dwell."""
+        """Dwell time as a P word."""
         return self.manner.seconds(value)
 
     def thread_words(self, start: Point, block: ThreadingMove) -> list[str]:
-        """Thread cutting with the lead in F."""
+        """Thread cutting code with the lead as the F word."""
         if self.machine not in self.manner.threads:
-            raise PostError(f"a synchronised line: this {self.machine} has none")
+            raise PostError(f"a synchronised move: this {self.machine} does not support it")
         return [self.manner.threads[self.machine], f"F{self.number(block.lead, 4)}"]
 
     def rigid_tap(self, block: RigidTap) -> Iterator[str]:
-        """The speed, the cycle with the lead in F, and its end."""
+        """Write the speed, the tapping cycle with the lead in F, and its end."""
         code = self.manner.taps.get((self.machine, block.sense))
         if code is None:
-            raise PostError(f"a left-hand rigid tap: this {self.machine} has none")
+            raise PostError(f"a left-hand rigid tap: this {self.machine} does not support it")
         is_mill = self.machine is MachineType.MILL
         retract = ""
         if self.machine in self.manner.retract:
@@ -211,7 +211,7 @@ TAPS = {
 
 
 class FanucReader(IsoReader):
-    """Reader of Fanuc code and its kin."""
+    """Reader of NC code for Fanuc and Haas controls."""
 
     quiet: ClassVar[frozenset[str]] = frozenset({"M29"})
     head: ClassVar[re.Pattern[str]] = re.compile(r"%|O[0-9]{4,5}")
@@ -228,12 +228,12 @@ class FanucReader(IsoReader):
         self.coolant_ends = frozenset(manner.coolant_ends)
 
     def seconds(self, words: LineWords) -> float:
-        """P word of a dwell."""
+        """Dwell time from the P word, s."""
         value = words.need("P", "G4")
         return self.manner.seconds_of(value, "P" in words.pointless)
 
     def tool(self, words: LineWords) -> Iterator[Block]:
-        """T and M6; on a lathe T alone, its offset behind."""
+        """Tool change by T and M6; on a lathe by T alone, with its offset."""
         if self.machine is MachineType.MILL:
             yield from super().tool(words)
             return
@@ -243,18 +243,20 @@ class FanucReader(IsoReader):
             yield ToolChange(number=whole(whole(number, "T") // 100, "T"))
 
     def lead(self, end: Point, words: LineWords) -> float:
-        """F, which is the feed as well."""
+        """Lead from F, which is the feed as well, mm."""
         return self._lead()
 
     def tap(self, words: LineWords, act: GCode) -> Iterator[Block]:
-        """Rigid taps by lead."""
+        """Rigid tap with its lead in F."""
         sense = (
             SpindleDirection.CLOCKWISE
             if act is GCodeAction.TAP
             else SpindleDirection.COUNTERCLOCKWISE
         )
         if self.mode is not RateMode.PER_REVOLUTION:
-            raise PostError("a rigid tap is read with its lead, in the mode per revolution")
+            raise PostError(
+                "a rigid tap is only supported with feed per revolution, its lead in F"
+            )
         x, y, bottom = self.end(words)
         retract = words.take("R")
         self.at = (x, y, self.at[2] if retract is None else retract)
@@ -263,7 +265,7 @@ class FanucReader(IsoReader):
 
     def _lead(self) -> float:
         if not self.feed:
-            raise PostError("a thread without F")
+            raise PostError("a thread has no F word")
         return self.feed
 
 

@@ -1,8 +1,8 @@
-"""Blocks on the grid of a control: end points are rounded first, arcs are made to fit them.
+"""Rounding of blocks to the coordinate grid of a control, with arcs fitted to rounded ends.
 
-An arc's centre is moved along the bisector of its rounded chord, so that the radii to both of
-its ends agree within the rounding and no control refuses it. Arcs whose chord says little of
-their centre (nearly full circles) are cut in two before; arcs below the grid become lines.
+The centre of an arc is moved onto the bisector of its rounded chord, so that the radii to both
+ends agree within the rounding and no control refuses it. Nearly full circles, whose chord
+hardly determines the centre, are first cut in two; arcs below the grid become lines.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -25,23 +25,23 @@ from stepnc_model.toolpath.path import ArcPlane, Point
 FULL = 2.0 * pi
 
 LEAST_RADIUS = 0.005
-"""mm; LinuxCNC refuses arcs of smaller radii as points, and no machine could tell"""
+"""Least radius of an arc, mm; LinuxCNC treats smaller arcs as points."""
 
 WHOLE = 1e-6
-"""rad by which a full turn may be missed: noise of the arithmetic"""
+"""Rounding tolerance of a full turn, rad."""
 
 NOISE = 1e-9
-"""rad; no arc on a grid is so short: its ends are the same point"""
+"""Angle below which an arc's ends are the same point, rad."""
 
 WIDE = 1.5 * pi
-"""rad; the chord of a wider arc is too short to place its centre"""
+"""Angle above which an arc's chord is too short to place its centre, rad."""
 
 NARROW = 0.5 * pi
-"""rad; after full turns, the chord of a narrower arc is"""
+"""Angle below which the rest after full turns has too short a chord, rad."""
 
 
 def on_grid(blocks: Iterable[Block], places: int) -> Iterator[Block]:
-    """Blocks with rounded coordinates.
+    """Round the coordinates of blocks to the grid of a control.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def on_grid(blocks: Iterable[Block], places: int) -> Iterator[Block]:
 def flat(
     blocks: Iterable[Block], keeps: Callable[[DrillingCycle], bool] | None = None
 ) -> Iterator[Block]:
-    """Blocks with every cycle that is not kept replaced by what it stands for."""
+    """Replace cycles that are not kept by their expansion into single moves."""
     for block in blocks:
         if isinstance(block, DrillingCycle) and not (keeps is not None and keeps(block)):
             yield from block.expansion
@@ -94,7 +94,7 @@ def flat(
 
 
 def merged(blocks: Iterable[Block]) -> Iterator[Block]:
-    """Blocks without the rapids that lead from one cycle to the next on its retract plane."""
+    """Remove rapids that lead from one cycle to the next on its retract plane."""
     last: DrillingCycle | None = None
     held: Rapid | None = None
     for block in blocks:
@@ -118,7 +118,7 @@ def merged(blocks: Iterable[Block]) -> Iterator[Block]:
 
 
 def single_turns(blocks: Iterable[Block]) -> Iterator[Block]:
-    """Blocks with every arc of more than one turn cut into single turns."""
+    """Split every arc of more than one turn into single turns."""
     at: Point = (0.0, 0.0, 0.0)
     for block in blocks:
         if isinstance(block, Circular):
@@ -129,7 +129,7 @@ def single_turns(blocks: Iterable[Block]) -> Iterator[Block]:
 
 
 def pieces(start: Point, arc: Circular) -> Iterator[Circular]:
-    """The arc in pieces whose chords place their centres well."""
+    """Split an arc so that each chord determines its centre well."""
     sense = 1.0 if arc.turn > 0.0 else -1.0
     full, rest = divmod(abs(arc.turn), FULL)
     if FULL - rest < WHOLE:
@@ -147,7 +147,7 @@ def pieces(start: Point, arc: Circular) -> Iterator[Circular]:
 
 
 def turns(start: Point, arc: Circular) -> Iterator[Circular]:
-    """The arc in single turns: full ones, then the rest."""
+    """Split an arc into full turns and the rest."""
     sense = 1.0 if arc.turn > 0.0 else -1.0
     full, rest = divmod(abs(arc.turn), FULL)
     if FULL - rest < WHOLE:
@@ -157,7 +157,7 @@ def turns(start: Point, arc: Circular) -> Iterator[Circular]:
 
 
 def cut(start: Point, arc: Circular, parts: list[float]) -> Iterator[Circular]:
-    """The arc cut into parts by angle; the last one ends where the arc ends."""
+    """Split an arc into parts by angle; the last part ends where the arc ends."""
     if len(parts) < 2:
         yield arc
         return
@@ -170,11 +170,11 @@ def cut(start: Point, arc: Circular, parts: list[float]) -> Iterator[Circular]:
 
 
 def along(start: Point, arc: Circular, turned: float, part: float) -> Point:
-    """Point of an arc at an angle in rad from its start, and a part of its rise."""
+    """Point of an arc at an angle from its start in rad, and at a fraction of its rise."""
     first, second, normal = arc.plane.axes
     u, v = start[first] - arc.centre[first], start[second] - arc.centre[second]
     point = list(start)
-    # Full turns come back to the start exactly.
+    # Full turns return to the start exactly.
     if abs(turned) % FULL > WHOLE and FULL - abs(turned) % FULL > WHOLE:
         point[first] = arc.centre[first] + u * cos(turned) - v * sin(turned)
         point[second] = arc.centre[second] + u * sin(turned) + v * cos(turned)
@@ -196,13 +196,13 @@ def end_of(block: Block, at: Point) -> Point:
 
 
 def rounded(point: Point, places: int) -> Point:
-    """A point on the grid, without negative zeros."""
+    """Point rounded to the grid, without negative zeros."""
     x, y, z = point
     return round(x, places) + 0.0, round(y, places) + 0.0, round(z, places) + 0.0
 
 
 def sweep(start: Point, end: Point, centre: Point, plane: ArcPlane, *, sense: float) -> float:
-    """Angle in rad, above 0 and at most 2π, from start to end about a centre."""
+    """Angle from start to end about a centre, rad, above 0 and at most 2π."""
     first, second, _ = plane.axes
     a, b = start[first] - centre[first], start[second] - centre[second]
     c, d = end[first] - centre[first], end[second] - centre[second]
@@ -213,25 +213,25 @@ def sweep(start: Point, end: Point, centre: Point, plane: ArcPlane, *, sense: fl
 def turn_between(
     start: Point, end: Point, centre: Point, plane: ArcPlane, *, sense: float, slack: float
 ) -> float:
-    """Angle in rad, signed by the sense, of an arc that a program gives by its ends and centre.
+    """Signed angle of an arc given by its ends and centre, rad.
 
     Raises
     ------
     PostError
-        When its radii to both ends differ by more than ``slack`` in mm.
+        If the radii to both ends differ by more than ``slack`` in mm.
     """
     first, second, _ = plane.axes
     radii = [hypot(p[first] - centre[first], p[second] - centre[second]) for p in (start, end)]
     if min(radii) <= 0.0 or abs(radii[0] - radii[1]) > slack:
         raise PostError(
-            f"no arc: its radii are {radii[0]:.4f} and {radii[1]:.4f} mm, "
-            f"{slack:g} mm may lie between them"
+            f"invalid arc: the radii to its ends are {radii[0]:.4f} and {radii[1]:.4f} mm, "
+            f"they may differ by {slack:g} mm"
         )
     return sense * sweep(start, end, centre, plane, sense=sense)
 
 
 def _arc(at: Point, arc: Circular, places: int) -> Iterator[Circular | Linear]:
-    """The arc on the grid, from a point of the grid."""
+    """Fit an arc to the grid, starting from a point of the grid."""
     start = at
     for piece in pieces(at, arc):
         for fitted in _fitted(start, piece, places):
@@ -240,7 +240,7 @@ def _arc(at: Point, arc: Circular, places: int) -> Iterator[Circular | Linear]:
 
 
 def _fitted(start: Point, arc: Circular, places: int) -> Iterator[Circular | Linear]:
-    """One piece on the grid: an arc, or a line where the grid is too coarse for one."""
+    """Fit one arc piece to the grid; a line where the grid is too coarse for an arc."""
     first, second, _ = arc.plane.axes
     end = rounded(arc.end, places)
     sense = 1.0 if arc.turn > 0.0 else -1.0
@@ -269,7 +269,7 @@ def _fitted(start: Point, arc: Circular, places: int) -> Iterator[Circular | Lin
 
 
 def _bisected(start: Point, end: Point, arc: Circular) -> Point:
-    """The centre moved along the chord, onto its bisector."""
+    """Centre of an arc moved onto the bisector of its chord."""
     first, second, _ = arc.plane.axes
     u, v = end[first] - start[first], end[second] - start[second]
     p = arc.centre[first] - 0.5 * (start[first] + end[first])
@@ -282,7 +282,7 @@ def _bisected(start: Point, end: Point, arc: Circular) -> Point:
 
 
 def _from(start: Point, centre: Point, plane: ArcPlane, places: int) -> Point:
-    """The centre at a rounded distance from the start, as I, J and K give it."""
+    """Centre at a rounded distance from the start, as given by I, J and K."""
     first, second, _ = plane.axes
     point = list(start)
     for axis in (first, second):

@@ -48,7 +48,7 @@ from stepnc_model.units import mm_min_from_speed, rpm_from_rev_s
 PLACES = 3
 ANGLE_PLACES = 4
 LONGEST = 80
-"""characters of a comment"""
+"""Greatest length of a comment in characters."""
 
 LONGEST_NAME = 16
 KEPT = frozenset({
@@ -68,7 +68,7 @@ TITLES = {
 
 
 class Heidenhain:
-    """Writer of one program. Running state: what is in force, and where the tool is."""
+    """Writer of Klartext; tracks the modal state and the position of the tool."""
 
     def __init__(self) -> None:
         self.modal = Modal()
@@ -102,10 +102,10 @@ class Heidenhain:
         }
 
     def lines(self, blocks: Iterable[Block], cycles: Cycles) -> Iterator[str]:
-        """The program, line by line."""
+        """Lines of the Klartext program."""
         kept = _keeps if cycles is Cycles.OWN else None
         for block in on_grid(_shaped(flat(blocks, kept)), PLACES):
-            # The speed of a new tool stands in its call.
+            # The speed of a new tool is part of its tool call.
             if self._tool is not None and not isinstance(block, (SpindleOn, Comment)):
                 yield from self._called("")
             yield from self._makers[type(block)](block)
@@ -126,11 +126,11 @@ class Heidenhain:
         yield from self._line(f"END PGM {self.name} MM")
 
     def _comment(self, block: Comment | Message) -> Iterator[str]:
-        # A tilde would carry the block on into the next line.
+        # A tilde would continue the block on the next line.
         return self._line(f"; {ascii_text(block.text).replace('~', '-')[:LONGEST]}")
 
     def _refuse(self, block: Block) -> Iterator[str]:
-        raise PostError(f"{type(block).__name__}: a mill with Klartext has none")
+        raise PostError(f"{type(block).__name__}: Klartext for mills does not support it")
 
     def _tool_change(self, block: ToolChange) -> Iterator[str]:
         self._tool = block
@@ -149,7 +149,7 @@ class Heidenhain:
         yield from self._line("M3" if block.sense is SpindleDirection.CLOCKWISE else "M4")
 
     def _speed(self, speed: float) -> Iterator[str]:
-        """Speed, in the call of a new tool or in one of its own."""
+        """Write the spindle speed, in the call of a new tool or in a separate call."""
         text = f"S{decimal(rpm_from_rev_s(speed), 3)}"
         if self._tool is not None:
             yield from self._called(text)
@@ -162,7 +162,7 @@ class Heidenhain:
         yield from self._line("M19")
 
     def _coolant(self, block: Coolant) -> Iterator[str]:
-        """M8 for every kind: which M switches others is up to the machine's builder."""
+        """Write M8 for every kind of coolant: other M codes depend on the machine's builder."""
         if bool(block.kinds) is not self._cooling:
             self._cooling = bool(block.kinds)
             yield from self._line("M8" if block.kinds else "M9")
@@ -190,7 +190,7 @@ class Heidenhain:
     def _circular(self, block: Circular) -> Iterator[str]:
         first, second, normal = block.plane.axes
         if self._helix_end is not None:
-            # A helix ends by its angle, a hair beside: a full circle from there would be none.
+            # A helix ends by its angle, nearly at its end: a full circle needs the exact point.
             yield from self._linear(Linear(end=self._helix_end, rate=block.rate))
         rise = block.end[normal] - (self.at[normal] or 0.0)
         centre = [f"{'XYZ'[i]}{_signed(block.centre[i])}" for i in sorted((first, second))]
@@ -199,7 +199,9 @@ class Heidenhain:
         rate = self._rate(block.rate)
         is_helix = abs(rise) > 0.0 or abs(block.turn) > FULL + 1e-6
         if is_helix and block.plane is not ArcPlane.XY:
-            raise PostError(f"a helix in the plane {block.plane}: Klartext has it in XY only")
+            raise PostError(
+                f"a helix in the plane {block.plane}: Klartext supports helices in XY only"
+            )
         self.at = list(block.end)
         if is_helix:
             angle = f"IPA{_signed(degrees(block.turn), ANGLE_PLACES)}"
@@ -233,7 +235,7 @@ class Heidenhain:
     def _definition(
         self, number: str, parameters: list[tuple[str, float, str]]
     ) -> Iterator[str]:
-        """A cycle's definition over several lines, when it is a new one."""
+        """Write a cycle definition over several lines, if it is new."""
         lines = [f"  {name}={_signed(value, 4)} ;{title}" for name, value, title in parameters]
         text = " ~\n".join([f"CYCL DEF {number} {TITLES[number]}", *lines])
         if self.modal.word("cycle", text):
@@ -252,18 +254,18 @@ class Heidenhain:
         return words
 
     def _rate(self, rate: Rate) -> str:
-        """F in mm/min, FU in mm per revolution."""
+        """F word in mm/min or FU word in mm per revolution, if it changes."""
         if rate.mode is RateMode.PER_MINUTE:
             text = f"F{decimal(mm_min_from_speed(rate.value), 3)}"
         else:
             text = f"FU{decimal(rate.value, 4)}"
         if float(text.lstrip("FU")) <= 0.0:
-            raise PostError(f"feed {rate.value:g} ({rate.mode}): below what an F word can say")
+            raise PostError(f"feed {rate.value:g} ({rate.mode}): too small for an F word")
         return self.modal.word("F", text)
 
 
 def _keeps(cycle: DrillingCycle) -> bool:
-    """Cycles that Klartext has; their feed is per minute."""
+    """Whether Klartext has a drilling cycle; its feed is per minute."""
     return (
         cycle.kind in KEPT
         and (not cycle.dwell or cycle.kind in DWELLING)
@@ -281,7 +283,7 @@ def _cycle(block: DrillingCycle) -> tuple[str, list[tuple[str, float, str]]]:
     surface = ("Q203", block.retract_z, "SURFACE COORDINATE")
     second = ("Q204", 0.0, "2ND SET-UP CLEARANCE")
     if block.kind is CycleKind.BORE:
-        # A retraction feed of 0 means that of reaming.
+        # A retraction feed of 0 means the reaming feed.
         out = ("Q208", 0.0, "RETRACTION FEED RATE")
         return "201", [clearance, down, feed, dwell, out, surface, second]
     if block.kind in {CycleKind.DRILL, CycleKind.DWELL}:
@@ -308,7 +310,7 @@ def _cycle(block: DrillingCycle) -> tuple[str, list[tuple[str, float, str]]]:
 
 
 def _shaped(blocks: Iterable[Block]) -> Iterator[Block]:
-    """Helices as they are; flat arcs in single turns."""
+    """Split flat arcs into single turns; helices stay unchanged."""
     at: Point = (0.0, 0.0, 0.0)
     for block in blocks:
         if (
@@ -322,6 +324,6 @@ def _shaped(blocks: Iterable[Block]) -> Iterator[Block]:
 
 
 def _signed(value: float, places: int = PLACES) -> str:
-    """A number with its sign, as Klartext has it."""
+    """Format a number with its sign, as in Klartext."""
     text = decimal(value, places)
     return text if text.startswith("-") else f"+{text}"

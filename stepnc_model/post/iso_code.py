@@ -1,6 +1,6 @@
-"""Common part of controls with G-code: ISO 6983 words, modal and in a fixed order.
+"""Common part of the G-code writers: modal ISO 6983 words in a fixed order.
 
-A dialect derives from :class:`IsoCode` and says what it does otherwise.
+A dialect derives from :class:`IsoCode` and overrides what differs.
 """
 
 from abc import ABC, abstractmethod
@@ -48,14 +48,14 @@ RATE_PLACES = {RateMode.PER_MINUTE: 3, RateMode.PER_REVOLUTION: 4}
 
 
 class IsoCode(ABC):
-    """Writer of one program. Running state: what is in force, and where the tool is."""
+    """Writer of one G-code program; tracks the modal state and the position of the tool."""
 
     places: ClassVar[int] = 3
-    """Places of a coordinate"""
+    """Decimal places of a coordinate."""
     speed_places: ClassVar[int] = 0
-    """Speed places of an S word"""
+    """Decimal places of an S word."""
     last_number: ClassVar[int] = 99999
-    """block numbers end here: they are optional"""
+    """Greatest block number; later blocks have none."""
     coolant_codes: Mapping[CoolantKind, str] = {
         CoolantKind.FLOOD: "M8",
         CoolantKind.MIST: "M7",
@@ -70,7 +70,7 @@ class IsoCode(ABC):
         CycleKind.BORE_STOP: "G86",
     }
     dwelling: ClassVar[frozenset[CycleKind]] = frozenset({CycleKind.DWELL})
-    """cycles that wait at the bottom"""
+    """Cycles that dwell at the bottom."""
 
     def __init__(self) -> None:
         self.modal = Modal()
@@ -105,7 +105,7 @@ class IsoCode(ABC):
         }
 
     def lines(self, blocks: Iterable[Block], cycles: Cycles) -> Iterator[str]:
-        """The program, line by line."""
+        """Lines of the G-code program."""
         kept = self.keeps if cycles is Cycles.OWN else None
         shaped = self.shaped(flat(blocks, kept))
         for block in merged(on_grid(shaped, self.places)):
@@ -114,18 +114,18 @@ class IsoCode(ABC):
                 yield from self.line("G80")
             yield from self._makers[type(block)](block)
 
-    # What dialects do otherwise.
+    # Methods that dialects override.
 
     def number(self, value: float, places: int) -> str:
-        """A number in the form of the control."""
+        """Format a number as the control expects it."""
         return decimal(value, places)
 
     def shaped(self, blocks: Iterable[Block]) -> Iterator[Block]:
-        """Blocks with arcs as the control takes them."""
+        """Adapt arcs to what the control supports."""
         return single_turns(blocks)
 
     def keeps(self, cycle: DrillingCycle) -> bool:
-        """Whether the control has a cycle of its own for this one."""
+        """Whether the control has its own cycle for this one."""
         return (
             self.machine is MachineType.MILL
             and cycle.kind in self.cycle_codes
@@ -134,48 +134,48 @@ class IsoCode(ABC):
 
     @abstractmethod
     def start(self, name: str) -> Iterator[str]:
-        """Head of the program."""
+        """Write the head of the program."""
 
     @abstractmethod
     def end(self, _: ProgramEnd) -> Iterator[str]:
-        """Foot of the program."""
+        """Write the end of the program."""
 
     @abstractmethod
     def text(self, text: str) -> str:
-        """A comment with its marks."""
+        """Comment with its delimiters."""
 
     @abstractmethod
     def tool_change(self, block: ToolChange) -> Iterator[str]:
-        """Tool change and length offset."""
+        """Write a tool change and the length offset."""
 
     def mode_code(self, mode: RateMode) -> str:
-        """Word for a mode of feed."""
+        """G code of a feed mode."""
         return "G94" if mode is RateMode.PER_MINUTE else "G95"
 
     @abstractmethod
     def surface_speed(self, speed: str, limit: str, sense: str) -> Iterator[str]:
-        """Lines of a constant surface speed in m/min with its limit in rpm, or none."""
+        """Write a constant surface speed in m/min, with an optional limit in rpm."""
 
     @abstractmethod
     def thread_words(self, start: Point, block: ThreadingMove) -> list[str]:
-        """Motion and lead of a synchronised line."""
+        """Motion code and lead of a synchronised move."""
 
     @abstractmethod
     def rigid_tap(self, block: RigidTap) -> Iterator[str]:
-        """Lines of a rigid tap at the current position."""
+        """Write a rigid tap at the current position."""
 
     def seconds(self, value: float) -> str:
-        """Duration of a dwell, with its letter."""
+        """Duration of a dwell with its letter."""
         return f"P{self.number(value, 3)}"
 
     def turn_words(self, block: Circular) -> list[str]:
-        """Word for the number of turns of an arc."""
+        """Words for the number of turns of an arc."""
         return []
 
-    # What they share.
+    # Methods that all dialects share.
 
     def line(self, *words: str) -> Iterator[str]:
-        """One numbered line of all words that say something."""
+        """Write one numbered line of the words that are not empty."""
         kept = [word for word in words if word]
         if kept:
             self._number += 10
@@ -184,15 +184,15 @@ class IsoCode(ABC):
             yield " ".join(kept)
 
     def comment(self, block: Comment) -> Iterator[str]:
-        """A remark on a line of its own."""
+        """Write a comment on a separate line."""
         yield self.text(block.text)
 
     def message(self, block: Message) -> Iterator[str]:
-        """A comment, where a control shows no text without stopping."""
+        """Write a message as a comment; not all controls show text without stopping."""
         yield self.text(block.text)
 
     def spindle_on(self, block: SpindleOn) -> Iterator[str]:
-        """Constant speed."""
+        """Switch the spindle on at constant speed."""
         code = "G97" if self.is_surface_speed else ""
         self.is_surface_speed = False
         yield from self.line(code, self.speed(block.speed), SENSE_CODES[block.sense])
@@ -202,11 +202,11 @@ class IsoCode(ABC):
         return f"S{decimal(rpm_from_rev_s(speed), self.speed_places)}"
 
     def orient(self, _: SpindleOrient) -> Iterator[str]:
-        """Spindle at angle 0."""
+        """Orient the spindle at angle 0."""
         return self.line("M19")
 
     def coolant(self, block: Coolant) -> Iterator[str]:
-        """Coolant: off as a whole, then on what is to be."""
+        """Switch coolant: off as a whole if any kind ends, then on as needed."""
         codes = {self.coolant_codes[kind]: None for kind in sorted(block.kinds)}
         if not self.cooling <= set(codes):
             yield from self.coolant_off()
@@ -216,22 +216,22 @@ class IsoCode(ABC):
                 self.cooling.add(code)
 
     def coolant_off(self) -> Iterator[str]:
-        """All coolant off."""
+        """Switch all coolant off."""
         self.cooling.clear()
         return self.line("M9")
 
     def rapid(self, block: Rapid) -> Iterator[str]:
-        """Straight in rapid."""
+        """Write a straight rapid move."""
         words = self.coordinates(block.end)
         if words:
             yield from self.line(self.modal.word("motion", "G0"), *self._offset(), *words)
 
     def pause(self, block: Pause) -> Iterator[str]:
-        """Dwell."""
+        """Write a dwell."""
         return self.line("G4", self.seconds(block.seconds))
 
     def drilling_cycle(self, block: DrillingCycle) -> Iterator[str]:
-        """A canned cycle: in full, or its next position."""
+        """Write a canned cycle in full, or only its next position."""
         x, y = block.at
         words = [f"X{self.number(x, self.places)}", f"Y{self.number(y, self.places)}"]
         key = (
@@ -243,7 +243,7 @@ class IsoCode(ABC):
             block.dwell,
         )
         if key != self._cycle:
-            # In another plane the cycle would drill along its normal.
+            # In another plane the cycle would drill along the normal of that plane.
             head = [self.plane_words(ArcPlane.XY), self.mode(block.rate.mode), "G99"]
             words = [*head, self.cycle_codes[block.kind], *words]
             words += [
@@ -261,7 +261,7 @@ class IsoCode(ABC):
         yield from self.line(*words)
 
     def coordinates(self, end: Point) -> list[str]:
-        """Words of the axes that move; a lathe's X is a diameter."""
+        """Words of the axes that move; X of a lathe is a diameter."""
         words: list[str] = []
         at = self.at
         if end[0] != at[0]:
@@ -270,30 +270,30 @@ class IsoCode(ABC):
         if end[1] != at[1] and self.machine is MachineType.MILL:
             words.append(f"Y{self.number(end[1], self.places)}")
         elif end[1] and self.machine is MachineType.LATHE:
-            raise PostError(f"y = {end[1]:g} mm: a lathe has no y")
+            raise PostError(f"y = {end[1]:g} mm: a lathe has no y axis")
         if end[2] != at[2]:
             words.append(f"Z{self.number(end[2], self.places)}")
         self.at = list(end)
         return words
 
     def mode(self, mode: RateMode) -> str:
-        """Word of a mode of feed when it is new."""
+        """G code of a feed mode, if it changes."""
         word = self.modal.word("mode", self.mode_code(mode))
         if word:
             self.modal.forget("F")
         return word
 
     def rate(self, rate: Rate) -> str:
-        """F word when it is new."""
+        """F word, if it changes."""
         return self.modal.word("F", f"F{self.rate_text(rate)}")
 
     def rate_text(self, rate: Rate) -> str:
-        """A feed in mm/min or mm per revolution."""
+        """Feed as text, in mm/min or mm per revolution."""
         is_per_minute = rate.mode is RateMode.PER_MINUTE
         value = mm_min_from_speed(rate.value) if is_per_minute else rate.value
         text = self.number(value, RATE_PLACES[rate.mode])
         if float(text) <= 0.0:
-            raise PostError(f"feed {value:g} ({rate.mode}): below what an F word can say")
+            raise PostError(f"feed {value:g} ({rate.mode}): too small for an F word")
         return text
 
     def _start(self, block: ProgramStart) -> Iterator[str]:
@@ -301,11 +301,11 @@ class IsoCode(ABC):
         return self.start(block.name)
 
     def plane_words(self, plane: ArcPlane) -> str:
-        """Word of a plane when it is new."""
+        """G code of an arc plane, if it changes."""
         return self.modal.word("plane", PLANE_CODES[plane])
 
     def pend(self, words: str) -> None:
-        """Words that go with the next rapid along z, as length offsets do."""
+        """Keep words for the next rapid along z, as needed for length offsets."""
         self._pending = words
         self.at = [None, None, None]
         self.modal.forget("motion", "F")
@@ -316,7 +316,7 @@ class IsoCode(ABC):
 
     def _surface_speed(self, block: SurfaceSpeed) -> Iterator[str]:
         if self.machine is MachineType.MILL:
-            raise PostError("constant surface speed: a milling machine has none")
+            raise PostError("constant surface speed: not supported on a milling machine")
         limit = ""
         if block.limit is not None:
             limit = decimal(rpm_from_rev_s(block.limit), self.speed_places)
@@ -347,7 +347,7 @@ class IsoCode(ABC):
             offsets[place] = block.centre[axis] - from_
         plane = self.plane_words(block.plane)
         mode = self.mode(block.rate.mode)
-        # A full circle moves no axis: both axes of the plane are always said.
+        # A full circle moves no axis: always write both axes of the plane.
         self.at = [None if i in {first, second} else v for i, v in enumerate(start)]
         words = self.coordinates(block.end)
         centre = [
@@ -362,7 +362,7 @@ class IsoCode(ABC):
         start = self.known()
         head, *lead = self.thread_words(start, block)
         words = self.coordinates(block.end)
-        # Another control may take the lead for the feed: both are said anew.
+        # Some controls take the lead as the feed: write both again.
         self.modal.forget("motion", "F")
         yield from self.line(head, *words, *lead)
 

@@ -1,8 +1,8 @@
-"""Reading G-code: one modal machine for all dialects of ISO 6983, neutral blocks come out.
+"""Reader of G-code: a modal machine for all ISO 6983 dialects that yields neutral blocks.
 
-Strict: a code or word that is not known, or that nothing uses, is an error; so is an arc whose
-radii differ. A dialect derives from :class:`IsoReader` and says what it does otherwise.
-Coordinates are absolute and metric; arc centres are relative to the start.
+The reader is strict: unknown or unused codes and words are errors, and so are arcs whose radii
+differ. A dialect derives from :class:`IsoReader` and overrides what differs. Coordinates are
+absolute and metric; arc centres are relative to the start.
 """
 
 import re
@@ -53,16 +53,16 @@ from stepnc_model.toolpath.path import ArcPlane, CycleKind, Point
 from stepnc_model.units import rev_s_from_rpm, speed_from_m_min, speed_from_mm_min
 
 ROUND = 0.01
-"""mm by which the radii to both ends of an arc may differ (MD21000 of the Sinumerik 840D)"""
+"""Greatest difference of the radii to both ends of an arc, mm (MD21000 of the 840D)."""
 
 PECK_CLEARANCE = 0.254
-"""mm above the last depth: fixed in LinuxCNC, a parameter of the machine elsewhere"""
+"""Height above the last depth after a retract, mm: fixed in LinuxCNC, a parameter elsewhere."""
 
 COMMENT = re.compile(r"\(([^()]*)\)")
 
 
 class IsoReader(ABC):
-    """Reader of one program. Running state: what is in force, and where the tool is."""
+    """Reader of one G-code program; tracks the modal state and the position of the tool."""
 
     codes: Mapping[MachineType, Mapping[str, GCode]] = {}
     coolants: Mapping[str, frozenset[CoolantKind]] = {
@@ -71,9 +71,9 @@ class IsoReader(ABC):
     }
     coolant_ends: frozenset[str] = frozenset({"M9"})
     quiet: ClassVar[frozenset[str]] = frozenset()
-    """M words that change nothing here"""
+    """M words without effect here."""
     head: ClassVar[re.Pattern[str]] = re.compile("%")
-    """lines that hold no words"""
+    """Pattern of lines without words."""
 
     def __init__(self, machine: MachineType) -> None:
         self.machine = machine
@@ -93,12 +93,12 @@ class IsoReader(ABC):
         self._cycle: DrillingCycle | None = None
 
     def blocks(self, lines: Iterable[str]) -> Iterator[Block]:
-        """Neutral blocks of the program.
+        """Read the program as neutral blocks.
 
         Raises
         ------
         PostError
-            With the line and what is wrong with it.
+            With the line number and the problem.
         """
         for number, line in enumerate(lines, 1):
             try:
@@ -106,7 +106,7 @@ class IsoReader(ABC):
             except PostError as error:
                 raise PostError(str(error), line=number) from None
 
-    # What dialects do otherwise.
+    # Methods that dialects override.
 
     def line(self, line: str) -> Iterator[Block]:
         """Blocks of one line: its comments, then its words."""
@@ -117,11 +117,11 @@ class IsoReader(ABC):
             yield from self.block(LineWords(pairs(text)))
 
     def comment(self, text: str) -> Block:
-        """Text of a comment."""
+        """Comment block from the text of a comment."""
         return Comment(text=text)
 
     def seconds(self, words: LineWords) -> float:
-        """Duration of a dwell."""
+        """Duration of a dwell, s."""
         return words.need("P", "G4")
 
     @abstractmethod
@@ -133,26 +133,26 @@ class IsoReader(ABC):
         """Blocks of a rigid tap."""
 
     def surface_limit(self, words: LineWords) -> float | None:
-        """Greatest speed at constant surface speed, rev/s."""
+        """Greatest spindle speed at constant surface speed, rev/s."""
         return self.limit
 
     def tool(self, words: LineWords) -> Iterator[Block]:
-        """Tool words: T chooses, M6 changes."""
+        """Tool change: T selects the tool, M6 changes it."""
         number = words.take("T")
         if number is not None:
             self._tool = whole(number, "T")
         if "M6" in words.functions:
             words.functions.remove("M6")
             if self._tool is None:
-                raise PostError("M6 without a tool")
+                raise PostError("M6 without a tool number: T is missing")
             self.sense = None
             yield ToolChange(number=self._tool)
 
     def extra(self, words: LineWords) -> Iterator[Block]:
-        """Further blocks that a dialect has."""
+        """Further blocks that only a dialect has."""
         yield from ()
 
-    # What they share.
+    # Methods that all dialects share.
 
     def block(self, words: LineWords) -> Iterator[Block]:
         """Blocks of the words of one line."""
@@ -169,18 +169,18 @@ class IsoReader(ABC):
         yield from self._stops(words)
         words.finish()
         if words.functions:
-            raise PostError(f"word {words.functions[0]}: not known")
+            raise PostError(f"word {words.functions[0]}: unknown M code")
 
     def rate(self) -> Rate:
-        """The feed in force."""
+        """Feed in force."""
         if not self.feed:
-            raise PostError("a motion at feed without F")
+            raise PostError("a feed move without F")
         if self.mode is RateMode.PER_MINUTE:
             return Rate(value=speed_from_mm_min(self.feed))
         return Rate(value=self.feed, mode=RateMode.PER_REVOLUTION)
 
     def end(self, words: LineWords) -> Point:
-        """Target of the axis words."""
+        """End point given by the axis words."""
         x, y, z = self.at
         given = words.take("X")
         if given is not None:
@@ -194,11 +194,11 @@ class IsoReader(ABC):
     def _act(self, code: str) -> GCode:
         act = self.codes[self.machine].get(code)
         if act is None:
-            raise PostError(f"word {code}: not known on this {self.machine}")
+            raise PostError(f"word {code}: unknown G code on this {self.machine}")
         return act
 
     def settle(self, acts: list[GCode], words: LineWords) -> None:
-        """Take in what holds from here on."""
+        """Update the modal state from the G codes of a line."""
         if any(sum(isinstance(act, kind) for act in acts) > 1 for kind in (ArcPlane, RateMode)):
             raise PostError("two G codes of one group in one block")
         for act in acts:
@@ -223,7 +223,7 @@ class IsoReader(ABC):
 
     def _spindle(self, words: LineWords, *, changed: bool) -> Iterator[Block]:
         if sum(code == "M5" or code in SENSES for code in words.functions) > 1:
-            raise PostError("two words for the spindle in one block")
+            raise PostError("two spindle commands in one block")
         speed = words.take("S")
         if speed is not None:
             self.speed, changed = speed, True
@@ -240,18 +240,18 @@ class IsoReader(ABC):
             yield turning
 
     def turning(self) -> SpindleOn | SurfaceSpeed | None:
-        """Spindle mode, or None while it stands."""
+        """State of the spindle, or None while it is stopped."""
         if self.sense is None:
             return None
         if self.speed is None:
-            raise PostError("spindle on without S")
+            raise PostError("spindle on without a speed S")
         if self.is_surface_speed:
             speed = speed_from_m_min(self.speed)
             return SurfaceSpeed(speed=speed, limit=self.limit, sense=self.sense)
         return SpindleOn(speed=rev_s_from_rpm(self.speed), sense=self.sense)
 
     def _switches(self, words: LineWords) -> Iterator[Block]:
-        """Coolant, orientation, and what changes nothing."""
+        """Coolant, spindle orientation, and M words without effect."""
         for code in list(words.functions):
             if code in self.coolant_ends:
                 self._coolant = frozenset()
@@ -266,7 +266,7 @@ class IsoReader(ABC):
                 yield Coolant(kinds=self._coolant)
 
     def _motion(self, acts: list[GCode], words: LineWords) -> Iterator[Block]:
-        """The motion that the block names, or the one in force when axes move."""
+        """Execute the motion of the block, or the modal motion if axes move."""
         named = [act for act in acts if act in MOTIONS]
         if len(named) > 1:
             raise PostError("two motions in one block")
@@ -283,7 +283,7 @@ class IsoReader(ABC):
     def _moved(self, words: LineWords) -> Iterator[Block]:
         motion = self.motion
         if motion is None:
-            raise PostError("axes move, but no motion is in force")
+            raise PostError("axes move, but no motion command (G0 to G3) is active")
         if isinstance(motion, CycleKind):
             yield from self._drilled(words, motion)
         elif motion in TAPS:
@@ -307,15 +307,15 @@ class IsoReader(ABC):
     def _thread(self, words: LineWords) -> Block:
         end = self.end(words)
         if end == self.at:
-            raise PostError("a thread leads to where the tool is")
+            raise PostError("a threading move has no length")
         lead = self.lead(end, words)
         if lead <= 0.0:
-            raise PostError(f"a thread with a lead of {lead:g} mm: it must be positive")
+            raise PostError(f"a thread with a lead of {lead:g} mm: the lead must be positive")
         self.at = end
         return ThreadingMove(end=end, lead=lead)
 
     def turns(self, words: LineWords) -> int:
-        """Full turns of an arc, besides what its end points say."""
+        """Number of full turns of an arc, besides the turn given by its end points."""
         given = words.take("P")
         return 0 if given is None else whole(given, "P") - 1
 
@@ -332,14 +332,14 @@ class IsoReader(ABC):
         return Circular(end=end, centre=middle, turn=turn, plane=self.plane, rate=self.rate())
 
     def _drilled(self, words: LineWords, kind: CycleKind) -> Iterator[Block]:
-        """A canned cycle, at the position given."""
+        """Read a canned cycle at its position, with modal values of the previous one."""
         x, y, bottom = self.end(words) if "Z" in words else (*self.end(words)[:2], None)
         last = self._cycle if self._cycle is not None and self._cycle.kind is kind else None
         retract, step, dwell = words.take("R"), words.take("Q"), self.cycle_dwell(words)
         if last is None and (bottom is None or retract is None):
             raise PostError("a drilling cycle without Z or R")
         if kind in {CycleKind.PECK, CycleKind.CHIP_BREAK} and not (step or last):
-            raise PostError("a cycle that pecks without Q")
+            raise PostError("a peck drilling cycle without Q")
         cycle = DrillingCycle(
             kind=kind,
             at=(x, y),
@@ -353,13 +353,13 @@ class IsoReader(ABC):
         yield from self.drilled(cycle)
 
     def drilled(self, cycle: DrillingCycle) -> Iterator[Block]:
-        """The way to a cycle, the cycle, and the way back."""
+        """Move to a cycle, execute it, and retract."""
         start_z = self.at[2]
         x, y = cycle.at
         if self.plane is not ArcPlane.XY:
-            raise PostError(f"a drilling cycle in the plane {self.plane}: it is read in XY")
+            raise PostError(f"a drilling cycle in the plane {self.plane}: only XY is supported")
         if cycle.bottom_z >= cycle.retract_z:
-            raise PostError("a drilling cycle must lead down")
+            raise PostError("the bottom of a drilling cycle must lie below its retract plane")
         if start_z < cycle.retract_z:
             yield Retract(z=cycle.retract_z)
         yield Rapid(end=(x, y, max(start_z, cycle.retract_z)))
@@ -372,11 +372,11 @@ class IsoReader(ABC):
             yield Retract(z=back)
 
     def cycle_dwell(self, words: LineWords) -> float | None:
-        """Dwell of a cycle, s."""
+        """Dwell of a cycle, s, or None."""
         return self.seconds(words) if "P" in words else None
 
     def tapped(self, bottom: float, lead: float, sense: SpindleDirection) -> Block:
-        """A rigid tap where the tool is."""
+        """Rigid tap at the position of the tool."""
         if not self.speed or lead <= 0.0:
             raise PostError("a rigid tap without S, or without a lead")
         speed = rev_s_from_rpm(self.speed)

@@ -40,7 +40,7 @@ from stepnc_model.toolpath.path import ArcPlane, CycleKind, Point
 from stepnc_model.units import rev_s_from_rpm
 
 LONGEST = 200
-"""characters of a comment; a line may have 255"""
+"""Greatest length of a comment in characters; a line may have 255."""
 
 ACTIVE = (
     "MSG,",
@@ -54,11 +54,11 @@ ACTIVE = (
     "PY,",
     "ABORT,",
 )
-"""what comments must not begin with: such do something"""
+"""Beginnings that turn a comment into a command."""
 
 
 class LinuxCnc(IsoCode):
-    """Writer for LinuxCNC."""
+    """Writer of NC code for LinuxCNC."""
 
     places: ClassVar[int] = 4
     speed_places: ClassVar[int] = 3
@@ -72,11 +72,11 @@ class LinuxCnc(IsoCode):
     }
 
     def shaped(self, blocks: Iterable[Block]) -> Iterator[Block]:
-        """Arcs as they are: P counts their turns."""
+        """Keep arcs unchanged: P counts their turns."""
         return iter(blocks)
 
     def start(self, name: str) -> Iterator[str]:
-        """Percent sign, name, modes."""
+        """Write the percent sign, the name and the initial modes."""
         yield "%"
         yield self.text(name)
         is_lathe = self.machine is MachineType.LATHE
@@ -85,28 +85,28 @@ class LinuxCnc(IsoCode):
         yield from self.line(self.wide_codes[self.machine])
 
     def end(self, _: ProgramEnd) -> Iterator[str]:
-        """End and percent sign."""
+        """Write the program end and the percent sign."""
         yield from self.line("M2")
         yield "%"
 
     def text(self, text: str) -> str:
-        """A comment that does nothing."""
+        """Comment that LinuxCNC does not interpret as a command."""
         plain = ascii_text(text).strip()
         is_active = plain.upper().replace(" ", "").startswith(ACTIVE)
         return bracketed(f"- {plain}" if is_active else plain, LONGEST)
 
     def message(self, block: Message) -> Iterator[str]:
-        """Text on the screen."""
+        """Write a message to the operator's screen."""
         yield bracketed(f"MSG,{block.text}", LONGEST)
 
     def tool_change(self, block: ToolChange) -> Iterator[str]:
-        """Tool, then its offset."""
+        """Write the tool change and the length offset."""
         yield from self.line(f"T{block.number}", "M6")
         yield from self.line(f"G43 H{block.number}")
         self.pend("")
 
     def surface_speed(self, speed: str, limit: str, sense: str) -> Iterator[str]:
-        """G96 with its limit."""
+        """Write G96 with its speed limit."""
         return self.line("G96", f"D{limit}" if limit else "", f"S{speed}", sense)
 
     def thread_words(self, start: Point, block: ThreadingMove) -> list[str]:
@@ -115,19 +115,19 @@ class LinuxCnc(IsoCode):
         return ["G33", f"K{self.number(lead, 4)}"]
 
     def rigid_tap(self, block: RigidTap) -> Iterator[str]:
-        """G33.1, there and back."""
+        """Write G33.1, which taps and retracts."""
         yield from self.line(self.speed(block.speed), SENSE_CODES[block.sense])
         z = f"Z{self.number(block.bottom_z, self.places)}"
         yield from self.line("G33.1", z, f"K{self.number(block.lead, 4)}")
 
     def turn_words(self, block: Circular) -> list[str]:
-        """P, the turns begun."""
+        """P word with the number of turns, begun turns included."""
         turns = int(abs(block.turn) / FULL - 1e-9) + 1
         return [f"P{turns}"] if turns > 1 else []
 
 
 class LinuxCncReader(IsoReader):
-    """Reader of LinuxCNC's G-code."""
+    """Reader of LinuxCNC NC code."""
 
     codes: Mapping[MachineType, Mapping[str, GCode]] = {
         machine: COMMON
@@ -144,29 +144,29 @@ class LinuxCncReader(IsoReader):
     }
 
     def comment(self, text: str) -> Block:
-        """A message, or a comment."""
+        """Message or comment block from a comment."""
         if text.upper().startswith("MSG,"):
             return Message(text=text[4:])
         return Comment(text=text)
 
     def lead(self, end: Point, words: LineWords) -> float:
-        """K, along the path."""
+        """Lead along the axis that moves most, mm, from K along the path."""
         return along_path(self.at, end, words.need("K", "G33"))
 
     def surface_limit(self, words: LineWords) -> float | None:
-        """D of the same block, or none."""
+        """Speed limit from D in the same block, rev/s, or None."""
         limit = words.take("D")
         return None if limit is None else rev_s_from_rpm(limit)
 
     def tap(self, words: LineWords, act: GCode) -> Iterator[Block]:
-        """G33.1, in the sense of the spindle."""
+        """Rigid tap by G33.1, in the current direction of the spindle."""
         if self.sense is None:
-            raise PostError("G33.1 while the spindle stands")
+            raise PostError("G33.1 while the spindle is stopped")
         bottom = self.end(words)[2]
         yield self.tapped(bottom, words.need("K", "G33.1"), self.sense)
 
 
 def along_path(start: Point, end: Point, lead: float) -> float:
-    """Lead along the axis that moves most, from one along the path."""
+    """Convert a lead along the path to the lead along the axis that moves most, mm."""
     most = max(abs(e - s) for s, e in zip(start, end, strict=True))
     return lead * most / dist(start, end)

@@ -1,8 +1,8 @@
-"""Feed, spindle and coolant of a move as a control needs them: resolved from its technology.
+"""Feed, spindle and coolant of a move as a control needs them, resolved from its technology.
 
 ISO 14649-10 §4.2.1: a spindle speed is negative when the tool of a mill turns clockwise, as
-right-hand tools need; that is M3. On a lathe the workpiece turns, positive counter-clockwise
-about z, as right-hand tools in front of the axis need; that is M3 as well.
+right-hand tools need; this is M3. On a lathe the workpiece turns, positive counter-clockwise
+about z, as right-hand tools in front of the axis need; this is M3 as well.
 """
 
 from dataclasses import dataclass
@@ -40,37 +40,37 @@ Spindle = SpindleOn | SurfaceSpeed | SpindleOff
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ModalState:
-    """Modal state during a move."""
+    """Spindle, feed and lead of a move."""
 
     spindle: Spindle | None
-    """None: the file does not say, what holds stays"""
+    """Spindle state; None if the file does not give one, so that the current state stays."""
     rate: Rate | None
     lead: float | None = None
-    """Lead, mm per revolution of a synchronised move"""
+    """Lead of a synchronised move, mm per revolution."""
     note: str = ""
-    """what a reader of the code must be told"""
+    """Remark for readers of the NC code."""
 
 
 def conditions(
     program: Program, feed: Feed, tool: Ref[Entity] | None, machine: MachineType
 ) -> ModalState:
-    """Feed and spindle of one move.
+    """Resolve the feed and spindle of one move.
 
     Parameters
     ----------
     program : Program
     feed : Feed
     tool : Ref, optional
-        The tool in the spindle; without one nothing can turn feed per tooth or cutting speed
-        into numbers of a control.
+        Tool in the spindle; without a tool, feed per tooth and cutting speed cannot be
+        converted to numbers for a control.
     machine : MachineType
 
     Raises
     ------
     SchemaError
-        When the tool cannot be used.
+        If the tool cannot be used.
     PostError
-        When a synchronised move has no lead.
+        If a synchronised move has no lead.
     """
     try:
         found = programmed(program, feed.technology)
@@ -97,7 +97,7 @@ def conditions(
 
 
 def _lathe_spindle(found: Programmed, feed: Feed) -> tuple[SpindleOn | SurfaceSpeed, float]:
-    """Spindle of a lathe, and its speed where that is constant, else 0."""
+    """Spindle of a lathe, and its speed if constant, else 0."""
     sense = (
         SpindleDirection.CLOCKWISE
         if found.speed.scale > 0.0
@@ -117,12 +117,12 @@ def _mill_spindle(
     tool: Ref[Entity] | None,
     cutter: Tool | None,
 ) -> tuple[SpindleOn, str]:
-    """Spindle of a mill, and what is odd about it."""
+    """Spindle of a mill, and a remark on an unusual direction."""
     hand = None if tool is None else hand_of(program, tool)
     is_left = hand is Hand.LEFT
     if found.speed.quantity is ProgrammedQuantity.CUTTING_SPEED:
         if cutter is None or cutter.diameter <= 0.0:
-            message = "a cutting speed without a diameter of a tool"
+            message = "a cutting speed needs a tool with a diameter"
             raise PostError(f"{program.label(feed.technology)}: {message}")
         sense = SpindleDirection.COUNTERCLOCKWISE if is_left else SpindleDirection.CLOCKWISE
         speed = found.spindle_speed(cutter.diameter) * feed.speed_ratio
@@ -139,7 +139,7 @@ def _mill_spindle(
 
 
 def _rate(found: Programmed, feed: Feed, *, teeth: int, speed: float) -> Rate:
-    """The feed, per revolution or per minute as the file has it."""
+    """Feed of a move, per revolution or per minute as in the file."""
     if feed.velocity is not None:
         return Rate(value=feed.velocity)
     if feed.per_revolution is not None:
@@ -153,7 +153,7 @@ def _rate(found: Programmed, feed: Feed, *, teeth: int, speed: float) -> Rate:
 
 
 def _lead(program: Program, found: Programmed, feed: Feed, speed: float) -> float:
-    """Lead of a synchronised move."""
+    """Lead of a synchronised move, mm per revolution."""
     number: Number = found.feed
     if feed.per_revolution is not None:
         return feed.per_revolution
@@ -166,7 +166,7 @@ def _lead(program: Program, found: Programmed, feed: Feed, speed: float) -> floa
 
 
 def _incomplete(program: Program, feed: Feed, why: str) -> ModalState:
-    """Findings on a technology whose numbers are missing or 0."""
+    """Modal state for a technology with missing or zero values, with a remark."""
     technology = program.get(feed.technology)
     label = program.label(feed.technology)
     spindle: Spindle | None = None
@@ -191,13 +191,13 @@ def _incomplete(program: Program, feed: Feed, why: str) -> ModalState:
 
 
 def constant_speed(spindle: SurfaceSpeed, radius: float) -> SpindleOn:
-    """The constant speed that a surface speed comes to at a radius in mm.
+    """Constant spindle speed that corresponds to a surface speed at a radius in mm.
 
-    Threads need it: their feed is bound to the angle of the spindle.
+    Threads need it: their feed is synchronised with the spindle angle.
     """
     speed = spindle.speed / (2.0 * pi * radius) if radius > 0.0 else spindle.limit
     if speed is None:
-        raise PostError("constant surface speed on the axis, without a limit")
+        raise PostError("constant surface speed on the axis needs a spindle speed limit")
     limited = min(speed, spindle.limit) if spindle.limit is not None else speed
     return SpindleOn(speed=limited, sense=spindle.sense)
 

@@ -1,11 +1,11 @@
-"""Tool paths as neutral blocks: tools, spindle, coolant and safe ways between workingsteps.
+"""Conversion of tool paths to neutral blocks with tools, spindle, coolant and safe moves.
 
-Between workingsteps the tool rises to the highest security plane first, then moves across,
-then down. Tools change there: where a machine has its own place for it, M6 or the turret must
-know. Tools are numbered from 1 in the order of their first use; the list stands at the
-head of the program.
+Between workingsteps the tool first rises to the highest security plane, then moves across, then
+down. Tools change there: if a machine has a separate tool change position, M6 or the turret
+handles it. Tools are numbered from 1 in the order of their first use; the list is at the head
+of the program.
 
-Moves that differ only in whether they touch material are one: a control need not know.
+Moves that differ only in whether they touch material are merged: a control need not know.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -61,13 +61,13 @@ from stepnc_model.toolpath.path import (
 )
 
 STRAIGHT = 1e-9
-"""mm by which two lines may be longer than the one from end to end"""
+"""Length tolerance within which two lines count as collinear, mm."""
 
 INTERPOLATED = {MoveType.CONTACT, MoveType.NO_CONTACT}
 
 
 def unsplit(start: Point, steps: Sequence[Step]) -> Iterator[Step]:
-    """Steps with the cuts between contact and air taken out."""
+    """Merge moves that were split only between contact and air."""
     held: Move | None = None
     for step in steps:
         if held is not None:
@@ -87,7 +87,7 @@ def unsplit(start: Point, steps: Sequence[Step]) -> Iterator[Step]:
 
 
 def _joined(start: Point, one: Move, other: Move) -> Move | None:
-    """Both as one move, or None where they are two."""
+    """Merge two moves into one, or return None if they must stay separate."""
     if one.type is other.type or {one.type, other.type} != INTERPOLATED:
         return None
     if one.feed != other.feed:
@@ -119,38 +119,38 @@ FUNCTIONS: dict[str, Callable[[Function], Block]] = {
 }
 
 MOST = {RateMode.PER_MINUTE: 1e4, RateMode.PER_REVOLUTION: 1e3}
-"""mm/s and mm; no machine feeds faster"""
+"""Greatest feed accepted by mode, mm/s and mm/rev."""
 
 ON_LATHE = 1e-6
-"""mm that y may differ from 0 on a lathe"""
+"""Tolerance of y on a lathe, mm."""
 
 FASTEST = 1e4
-"""rev/s; no spindle turns faster"""
+"""Greatest spindle speed accepted, rev/s."""
 
 
 def blocks_of(
     program: Program, paths: Sequence[ToolPath | Function], *, name: str
 ) -> Iterator[Block]:
-    """Neutral blocks of a program, made as they are asked for.
+    """Convert tool paths to neutral blocks, generated lazily.
 
     Parameters
     ----------
     program : Program
-        Where tools and technologies are looked up.
+        Program in which tools and technologies are looked up.
     paths : sequence of ToolPath and Function
-        In the order in which they run.
+        Paths and functions in execution order.
     name : str
 
     Raises
     ------
     SchemaError, PostError
-        When a tool cannot be used, or a cut has no feed.
+        If a tool cannot be used, or a cut has no feed.
     """
     return _Sequence(program, paths).blocks(name)
 
 
 def tool_numbers(paths: Iterable[ToolPath]) -> dict[Ref[Entity], int]:
-    """Numbers of the tools, from 1 in the order of their first use."""
+    """Tool numbers, from 1 in the order of first use."""
     used = dict.fromkeys(path.tool_ref for path in paths if path.tool_ref is not None)
     return {ref: number for number, ref in enumerate(used, 1)}
 
@@ -160,17 +160,17 @@ def _is_turning(paths: Sequence[ToolPath | Function]) -> bool:
 
 
 def _turns_first(path: ToolPath) -> bool:
-    """Whether a path begins with a spindle speed of its own."""
+    """Whether a path begins with its own spindle speed."""
     return bool(path.steps) and isinstance(path.steps[0], SpindleSpeedChange)
 
 
 def _safe_z(path: ToolPath) -> float:
-    """Height over which the tool comes to a path."""
+    """Height z at which the tool arrives at a path, mm."""
     return path.start[2] if path.safe_z is None else max(path.safe_z, path.start[2])
 
 
 class _Sequence:
-    """Running state: tool, spindle, coolant and position between blocks."""
+    """Converter that tracks tool, spindle, coolant and position between blocks."""
 
     def __init__(self, program: Program, paths: Sequence[ToolPath | Function]) -> None:
         self.program = program
@@ -182,15 +182,15 @@ class _Sequence:
         self.at: Point | None = None
         self.tool: Ref[Entity] | None = None
         self.programmed: SpindleOn | SurfaceSpeed | SpindleOff | None = None
-        """what the technology asks for"""
+        """Spindle state that the technology asks for."""
         self.turning: SpindleOn | SurfaceSpeed | SpindleOff | SpindleOrient | None = None
-        """what the spindle does; None: unknown"""
+        """Current state of the spindle; None if unknown."""
         self.coolant = Coolant()
         self._known: dict[Feed, ModalState] = {}
         self._notes: set[str] = set()
 
     def blocks(self, name: str) -> Iterator[Block]:
-        """The program."""
+        """Neutral blocks of the whole program."""
         yield ProgramStart(name=name, machine=self.machine)
         for ref, number in self.numbers.items():
             yield Comment(text=self._listed(ref, number))
@@ -209,7 +209,7 @@ class _Sequence:
         yield ProgramEnd()
 
     def _listed(self, ref: Ref[Entity], number: int) -> str:
-        """One line of the list of tools."""
+        """Line of the tool list for one tool."""
         tool = tool_of(self.program, ref)
         size = f" D{tool.diameter:g}" if tool.diameter else ""
         return f"T{number} {tool.id}{size}"
@@ -221,17 +221,17 @@ class _Sequence:
             yield Comment(text=f"{function.keyword} is not written")
             return
         if function.keyword in STOPS:
-            # Hands may reach in.
+            # The operator may reach into the machine.
             yield from self._spindle(SpindleOff())
             yield from self._cool(Coolant())
         yield maker(function)
 
     def _path(self, path: ToolPath) -> Iterator[Block]:
-        """One workingstep."""
+        """Blocks of one workingstep."""
         yield Comment(text=path.id, workingstep=path.id)
         beside = max(abs(point[1]) for point in (path.start, *(m.end for m in path.moves)))
         if self.machine is MachineType.LATHE and beside > ON_LATHE:
-            raise PostError(f"y = {beside:g} mm: the program turns, and a lathe has no y")
+            raise PostError(f"y = {beside:g} mm in a turning program: a lathe has no y axis")
         self._known.clear()
         if path.tool_ref is not None and path.tool_ref != self.tool:
             yield from self._change(path.tool_ref)
@@ -259,7 +259,7 @@ class _Sequence:
                 index = cycle.last + 1
 
     def _change(self, ref: Ref[Entity]) -> Iterator[Block]:
-        """Tool change: all off, up, and the new tool in."""
+        """Change the tool: spindle and coolant off, retract, new tool."""
         yield from self._spindle(SpindleOff())
         yield from self._cool(Coolant())
         if self.at is not None:
@@ -269,7 +269,7 @@ class _Sequence:
         yield ToolChange(number=self.numbers[ref], id=tool_of(self.program, ref).id)
 
     def _go(self, start: Point) -> Iterator[Block]:
-        """Up, across, down."""
+        """Move up, across and down to the start of a path."""
         if self.at == start:
             return
         x, y, _ = start
@@ -324,29 +324,29 @@ class _Sequence:
             )
 
     def _rate(self, found: ModalState) -> Rate:
-        """A feed that a control can run."""
+        """Feed of a move, checked against what a control can run."""
         if found.rate is None or not isfinite(found.rate.value) or found.rate.value <= 0.0:
-            raise PostError(f"a cut without feed: {found.note or 'the feed is 0'}")
+            raise PostError(f"a cut has no feed: {found.note or 'the feed is 0'}")
         if found.rate.value > MOST[found.rate.mode]:
             value, mode, most = found.rate.value, found.rate.mode, MOST[found.rate.mode]
             unit = "mm/s" if mode is RateMode.PER_MINUTE else "mm/rev"
-            raise PostError(f"a feed of {value:g} {unit}: {most:g} {unit} at most")
+            raise PostError(f"a feed of {value:g} {unit}: at most {most:g} {unit} allowed")
         return found.rate
 
     def _constant(self, move: Move) -> Iterator[Block]:
-        """A thread's spindle keeps its speed."""
+        """Hold the spindle speed constant for a thread."""
         if isinstance(self.programmed, SurfaceSpeed):
             radius = max(abs((self.at or move.end)[0]), abs(move.end[0]))
             fixed = constant_speed(self.programmed, radius)
-            # The first pass decides: later ones must meet its thread.
+            # The first pass determines the speed: later passes must meet its thread.
             if not isinstance(self.turning, SpindleOn):
                 yield Comment(text="constant spindle speed for the thread")
                 yield from self._spindle(fixed)
 
     def _cycle(self, cycle: CannedCycle, steps: Sequence[Step]) -> Iterator[Block]:
-        """A cycle of the control, with what it stands for; a rigid tap has nothing else."""
+        """Drilling cycle of the control with its expansion, or a rigid tap."""
         if self.at is None:
-            raise PostError("a cycle before the first move")
+            raise PostError("a drilling cycle comes before the first move")
         x, y, _ = self.at
         found = self._conditions(cycle.feed)
         yield from self._take(found)
@@ -391,7 +391,7 @@ class _Sequence:
         self.turning = None
 
     def _conditions(self, feed: Feed) -> ModalState:
-        """Feed and spindle, looked up once a path."""
+        """Feed and spindle of a move, cached per path."""
         found = self._known.get(feed)
         if found is None:
             with self.program.using(feed.technology):
@@ -400,7 +400,7 @@ class _Sequence:
         return found
 
     def _take(self, found: ModalState) -> Iterator[Block]:
-        """Blocks for a change of technology: the spindle follows when it differs."""
+        """Blocks for a change of technology, such as a new spindle speed."""
         if found.note and found.note not in self._notes:
             self._notes.add(found.note)
             yield Comment(text=found.note)
@@ -410,7 +410,9 @@ class _Sequence:
 
     def _spindle(self, wanted: SpindleOn | SurfaceSpeed | SpindleOff) -> Iterator[Block]:
         if isinstance(wanted, SpindleOn) and wanted.speed > FASTEST:
-            raise PostError(f"a spindle at {wanted.speed:g} rev/s: {FASTEST:g} rev/s at most")
+            raise PostError(
+                f"a spindle speed of {wanted.speed:g} rev/s: must be at most {FASTEST:g} rev/s"
+            )
         if wanted != self.turning:
             self.turning = wanted
             yield wanted
@@ -421,12 +423,12 @@ class _Sequence:
             yield wanted
 
     def _seconds(self, dwell: Dwell) -> float:
-        """Duration of a dwell."""
+        """Duration of a dwell, s."""
         if dwell.seconds is not None:
             return dwell.seconds
         spindle = self.turning
         if isinstance(spindle, SurfaceSpeed):
             spindle = constant_speed(spindle, abs((self.at or (0.0, 0.0, 0.0))[0]))
         if dwell.revolutions is None or not isinstance(spindle, SpindleOn):
-            raise PostError("a dwell in revolutions while the spindle stands")
+            raise PostError("a dwell in revolutions while the spindle is stopped")
         return dwell.revolutions / spindle.speed

@@ -1,6 +1,6 @@
-"""Reading Klartext of Heidenhain controls, as far as it is written here.
+"""Reader of Heidenhain Klartext, for the subset that the writer produces.
 
-Strict: a line that is not known is an error, and so is an arc whose radii differ.
+The reader is strict: unknown lines and arcs whose radii differ are errors.
 """
 
 import re
@@ -39,7 +39,7 @@ from stepnc_model.toolpath.path import ArcPlane, CycleKind, Point
 from stepnc_model.units import rev_s_from_rpm, speed_from_mm_min
 
 ROUND = 0.016
-"""mm by which the radii to both ends of an arc may differ (iTNC 530, MP7431)"""
+"""Greatest difference of the radii to both ends of an arc, mm (iTNC 530, MP7431)."""
 
 WORD = re.compile(
     rf"(DR(?=[+-](?:\s|$))|(?:IPA|IZ|FU|[XYZF])(?={NUMBER}))({NUMBER}|[+-])|(FMAX|R0)|\S+"
@@ -58,18 +58,18 @@ PLANES = {"XY": ArcPlane.XY, "XZ": ArcPlane.ZX, "YZ": ArcPlane.YZ}
 READ = frozenset({
     "Q200", "Q201", "Q202", "Q203", "Q206", "Q211", "Q239", "Q256", "Q257", "Q258", "Q259",
 })  # fmt: skip
-"""parameters of cycles that count"""
+"""Cycle parameters that are evaluated."""
 
 ZERO = frozenset({"Q204", "Q205", "Q208", "Q210", "Q212"})
-"""those that are read as 0 only"""
+"""Cycle parameters that are accepted only with the value 0."""
 
 
 class HeidenhainReader:
-    """Reader of one program. Running state: what is in force, and where the tool is."""
+    """Reader of one Klartext program; tracks the modal state and the position of the tool."""
 
     def __init__(self, machine: MachineType) -> None:
         if machine is MachineType.LATHE:
-            raise PostError("Klartext is read for mills only")
+            raise PostError("Klartext is supported for mills only")
         self.at: Point = (0.0, 0.0, 0.0)
         self.speed: float | None = None
         self.rate: Rate | None = None
@@ -90,18 +90,18 @@ class HeidenhainReader:
         }
 
     def blocks(self, lines: Iterable[str]) -> Iterator[Block]:
-        """Neutral blocks of the program.
+        """Read the program as neutral blocks.
 
         Raises
         ------
         PostError
-            With the line and what is wrong with it.
+            With the line number and the problem.
         """
         held, start = "", 0
         for number, line in enumerate(lines, 1):
             start = start or number
             code, mark, text = line.rstrip().partition(";")
-            # A tilde carries the block on; behind it stand the names of parameters.
+            # A tilde continues the block on the next line, after the name of a parameter.
             held += " " + (code if mark else code.removesuffix("~")).strip()
             if line.rstrip().endswith("~"):
                 continue
@@ -113,12 +113,12 @@ class HeidenhainReader:
                 raise PostError(str(error), line=start) from None
             held, start = "", 0
         if held:
-            raise PostError("the last block goes on, but nothing follows", line=start)
+            raise PostError("the last block is continued, but no line follows", line=start)
 
     def _block(self, numbered: str) -> Iterator[Block]:
         number, _, text = numbered.partition(" ")
         if not number.isdigit():
-            raise PostError(f"'{shown(numbered)}': a block begins with its number")
+            raise PostError(f"'{shown(numbered)}': a block must begin with its number")
         text = text.strip()
         if not text or SILENT.fullmatch(text):
             return
@@ -136,7 +136,7 @@ class HeidenhainReader:
         elif found := DEFINITION.fullmatch(text):
             self._cycle = (found[1], _parameters(found[2]))
         else:
-            raise PostError(f"'{shown(text)}': not known")
+            raise PostError(f"'{shown(text)}': unknown Klartext block")
 
     def _tool(self, number: str | None, speed: str | None) -> Iterator[Block]:
         if speed is not None:
@@ -157,7 +157,7 @@ class HeidenhainReader:
         for found in WORD.finditer(text):
             letter = found[1] or found[3]
             if letter is None or letter in words:
-                raise PostError(f"word {shown(found[0])}: not known here, or said twice")
+                raise PostError(f"word {shown(found[0])}: unknown here, or given twice")
             words[letter] = found[2] or ""
         if kind == "CC":
             if len(words) != 2 or not set(words) <= set("XYZ"):
@@ -172,7 +172,7 @@ class HeidenhainReader:
         else:
             yield self._arc(words) if kind == "C" else self._helix(words)
         if words:
-            raise PostError(f"word {next(iter(words))}: nothing in this block uses it")
+            raise PostError(f"word {next(iter(words))}: not used by this block")
 
     def _set_rate(self, words: dict[str, str]) -> None:
         if "F" in words:
@@ -183,7 +183,7 @@ class HeidenhainReader:
 
     def _feed(self) -> Rate:
         if self.rate is None or self.rate.value <= 0.0:
-            raise PostError("a motion at feed without F")
+            raise PostError("a feed move without F")
         return self.rate
 
     def _end(self, words: dict[str, str]) -> Point:
@@ -204,7 +204,7 @@ class HeidenhainReader:
         """Plane and centre of the last CC."""
         plane = PLANES.get("".join(sorted(self.centre)))
         if plane is None:
-            raise PostError("an arc without CC in two axes before it")
+            raise PostError("an arc without a preceding CC in two axes")
         x, y, z = (
             self.centre.get(letter, value) for letter, value in zip("XYZ", self.at, strict=True)
         )
@@ -217,14 +217,14 @@ class HeidenhainReader:
         turn = turn_between(start, end, centre, plane, sense=sense, slack=ROUND)
         normal = plane.axes[2]
         if start[normal] != end[normal]:
-            raise PostError("C leads out of the plane of its CC")
+            raise PostError("C leaves the plane of its CC")
         self.at = end
         return Circular(end=end, centre=centre, turn=turn, plane=plane, rate=self._feed())
 
     def _helix(self, words: dict[str, str]) -> Block:
         plane, centre = self._middle()
         if "IPA" not in words or plane is not ArcPlane.XY:
-            raise PostError("CP is read with IPA, about a CC in x and y")
+            raise PostError("CP is only supported with IPA, about a CC in x and y")
         turn, sense = radians(number_of("IPA", words.pop("IPA"))), _sense(words)
         rise = number_of("IZ", words.pop("IZ", "0"))
         if turn * sense <= 0.0:
@@ -239,16 +239,16 @@ class HeidenhainReader:
         return Circular(end=end, centre=centre, turn=turn, plane=plane, rate=self._feed())
 
     def _called(self) -> Iterator[Block]:
-        """The cycle defined last, where the tool is."""
+        """Execute the last defined cycle at the position of the tool."""
         if self._cycle is None:
-            raise PostError("CYCL CALL without a cycle")
+            raise PostError("CYCL CALL without a defined cycle")
         number, values = self._cycle
         wanted = {"Q200", "Q201", "Q203", "Q239" if number == "207" else "Q206"}
         if not wanted <= set(values):
             missing = " ".join(sorted(wanted - set(values)))
             raise PostError(f"cycle {number}: {missing} is missing")
         if values["Q201"] >= 0.0:
-            raise PostError(f"cycle {number}: Q201={values['Q201']:g} must lead down")
+            raise PostError(f"cycle {number}: Q201={values['Q201']:g} must be negative")
         surface, bottom = values["Q203"], values["Q203"] + values["Q201"]
         at = (self.at[0], self.at[1], surface + values["Q200"])
         if at[2] != self.at[2]:
@@ -266,7 +266,7 @@ class HeidenhainReader:
             )
             return
         if values["Q206"] <= 0.0:
-            raise PostError(f"cycle {number}: Q206={values['Q206']:g} is no feed")
+            raise PostError(f"cycle {number}: Q206={values['Q206']:g} is not a valid feed")
         kind, step, above = _kind(number, values)
         yield expanded(
             DrillingCycle(
@@ -283,24 +283,24 @@ class HeidenhainReader:
 
 
 def _parameters(text: str) -> dict[str, float]:
-    """Parameters of a cycle, behind its title."""
+    """Parameters of a cycle definition, after its title."""
     found: dict[str, float] = {}
     for name, value in PARAMETER.findall(text):
         number = number_of(f"{name}=", value)
         is_zero = name in ZERO and not number
         if name in found or not (name in READ or is_zero):
-            raise PostError(f"word {name}={value}: not read, or said twice")
+            raise PostError(f"word {name}={value}: not supported, or given twice")
         if number < 0.0 and name not in {"Q201", "Q203", "Q239"}:
             raise PostError(f"word {name}={value}: must not be negative")
         found[name] = number
     rest = PARAMETER.sub("", text)
     if not TITLE.fullmatch(rest):
-        raise PostError(f"'{shown(rest)}': not known in a cycle")
+        raise PostError(f"'{shown(rest)}': unknown text in a cycle definition")
     return found
 
 
 def _unsigned(word: str, text: str) -> float:
-    """A number that must not be negative."""
+    """Value of a word that must not be negative."""
     value = number_of(word, text)
     if value < 0.0:
         raise PostError(f"word {word}{text}: must not be negative")
@@ -308,7 +308,7 @@ def _unsigned(word: str, text: str) -> float:
 
 
 def _kind(number: str, values: dict[str, float]) -> tuple[CycleKind, float, float]:
-    """Kind of a drilling cycle, depth of its pecks and how far it retracts."""
+    """Kind of a drilling cycle, its peck depth and its retract distance, mm."""
     if number == "201":
         return CycleKind.BORE, 0.0, 0.0
     if number == "205" and values.get("Q257"):

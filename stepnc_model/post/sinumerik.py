@@ -52,7 +52,7 @@ PECKING = frozenset({CycleKind.PECK, CycleKind.CHIP_BREAK})
 
 
 class Sinumerik(IsoCode):
-    """Writer for the Sinumerik 840D."""
+    """Writer of NC code for the Sinumerik 840D."""
 
     speed_places: ClassVar[int] = 3
     last_number: ClassVar[int] = 99_999_999
@@ -65,9 +65,9 @@ class Sinumerik(IsoCode):
     }
 
     def shaped(self, blocks: Iterable[Block]) -> Iterator[Block]:
-        """TURN= counts the turns of an arc, unless it comes back to where it began.
+        """Split arcs that return to their start; other arcs count their turns with TURN=.
 
-        Whether a circle that ends at its start counts as one turn more, manuals do not say.
+        Manuals do not say whether a circle that ends at its start counts as one turn more.
         """
         at: Point = (0.0, 0.0, 0.0)
         for block in blocks:
@@ -78,12 +78,12 @@ class Sinumerik(IsoCode):
             at = end_of(block, at)
 
     def keeps(self, cycle: DrillingCycle) -> bool:
-        """A retract of 0 would mean the control's own."""
+        """Whether a cycle is kept; a retract distance of 0 would select the default."""
         is_said = cycle.kind not in PECKING or cycle.retract_distance > 0.0
         return is_said and super().keeps(cycle)
 
     def start(self, name: str) -> Iterator[str]:
-        """Name and modes."""
+        """Write the program name and the initial modes."""
         yield self.text(name)
         is_lathe = self.machine is MachineType.LATHE
         self.plane_words(ArcPlane.ZX if is_lathe else ArcPlane.XY)
@@ -93,20 +93,20 @@ class Sinumerik(IsoCode):
             yield from self.line("DIAMON")
 
     def end(self, _: ProgramEnd) -> Iterator[str]:
-        """End and rewind."""
+        """Write the program end."""
         return self.line("M30")
 
     def text(self, text: str) -> str:
-        """The rest of a line."""
+        """Comment to the end of the line."""
         return f"; {ascii_text(text)[:LONGEST]}"
 
     def message(self, block: Message) -> Iterator[str]:
-        """Text on the screen."""
+        """Write a message to the operator's screen."""
         quoted = ascii_text(block.text).replace('"', "'")
         return self.line(f'MSG("{quoted[:LONGEST]}")')
 
     def tool_change(self, block: ToolChange) -> Iterator[str]:
-        """Tool, then its edge 1; a turret turns at T."""
+        """Write the tool call and cutting edge D1; on a lathe T alone turns the turret."""
         yield from self.line(
             f"T{block.number}", "M6" if self.machine is MachineType.MILL else ""
         )
@@ -114,20 +114,20 @@ class Sinumerik(IsoCode):
         self.pend("")
 
     def mode_code(self, mode: RateMode) -> str:
-        """G94 and G95 would end a constant surface speed."""
+        """G code of a feed mode; G94 and G95 would end a constant surface speed."""
         if self.is_surface_speed:
             return "G961" if mode is RateMode.PER_MINUTE else "G96"
         return super().mode_code(mode)
 
     def spindle_on(self, block: SpindleOn) -> Iterator[str]:
-        """Constant speed; G97 brings feed per revolution with it."""
+        """Switch the spindle on at constant speed; G97 implies feed per revolution."""
         if self.is_surface_speed:
             self.modal.set("mode", "G95")
             self.modal.forget("F")
         return super().spindle_on(block)
 
     def surface_speed(self, speed: str, limit: str, sense: str) -> Iterator[str]:
-        """LIMS= with the limit, then G96, which brings feed per revolution with it."""
+        """Write LIMS= with the limit, then G96, which implies feed per revolution."""
         if limit:
             yield from self.line(f"LIMS={limit}")
         self.modal.set("mode", "G96")
@@ -135,17 +135,17 @@ class Sinumerik(IsoCode):
         yield from self.line("G96", f"S{speed}", sense)
 
     def seconds(self, value: float) -> str:
-        """F of a G4 is in s."""
+        """Dwell time as the F word of G4, in seconds."""
         return f"F{self.number(value, 3)}"
 
     def thread_words(self, start: Point, block: ThreadingMove) -> list[str]:
-        """G33 with the lead of the axis that moves most."""
+        """G33 with the lead along the axis that moves most."""
         moves = [abs(e - s) for s, e in zip(start, block.end, strict=True)]
         letter = "IJK"[moves.index(max(moves))]
         return ["G33", f"{letter}{self.number(block.lead, 4)}"]
 
     def rigid_tap(self, block: RigidTap) -> Iterator[str]:
-        """G331 down and G332 up; a negative lead cuts a left-hand thread."""
+        """Write G331 down and G332 up; a negative lead cuts a left-hand thread."""
         sign = 1.0 if block.sense is SpindleDirection.CLOCKWISE else -1.0
         lead = f"K{self.number(sign * block.lead, 4)}"
         bottom = f"Z{self.number(block.bottom_z, self.places)}"
@@ -155,16 +155,16 @@ class Sinumerik(IsoCode):
         yield from self.line("G332", top, lead)
 
     def orient(self, _: SpindleOrient) -> Iterator[str]:
-        """Spindle at angle 0."""
+        """Orient the spindle at angle 0."""
         return self.line("SPOS=0")
 
     def turn_words(self, block: Circular) -> list[str]:
-        """TURN=, full turns besides the arc itself."""
+        """TURN= with the number of full turns besides the arc itself."""
         full = int(abs(block.turn) / FULL - 1e-9)
         return [f"TURN={full}"] if full else []
 
     def drilling_cycle(self, block: DrillingCycle) -> Iterator[str]:
-        """A call where the tool is; its feed is that in force."""
+        """Write a cycle call at the current position, with the feed in force."""
         yield from self.rapid(Rapid(end=(*block.at, block.retract_z)))
         plane, mode = self.plane_words(ArcPlane.XY), self.mode(block.rate.mode)
         yield from self.line(plane, mode, self.rate(block.rate))
@@ -173,7 +173,7 @@ class Sinumerik(IsoCode):
         yield from self.line(f"{self.cycle_codes[block.kind]}({arguments})")
 
     def _arguments(self, block: DrillingCycle) -> list[str]:
-        """RTP, RFP, SDIS, DP and what each cycle adds."""
+        """Arguments RTP, RFP, SDIS and DP, and those of the individual cycle."""
         top = self.number(block.retract_z, self.places)
         head = [top, top, "0", self.number(block.bottom_z, self.places)]
         dwell = self.number(block.dwell, 3)
@@ -194,7 +194,7 @@ class Sinumerik(IsoCode):
 
 CYCLES = {"81": CycleKind.DRILL, "82": CycleKind.DWELL, "85": CycleKind.BORE}
 READ = {"81": (), "82": (1,), "83": (2, 4, 6, 7, 10, 12), "85": (1, 2, 3)}
-"""arguments after RTP, RFP, SDIS and DP that are read"""
+"""Indices of the arguments after RTP, RFP, SDIS and DP that are read, by cycle."""
 
 CALL = re.compile(r"(?:N\d+\s*)?CYCLE(8[1235])\(([^()]*)\)")
 MESSAGE = re.compile(r'(?:N\d+\s*)?MSG\("([^"]*)"\)')
@@ -215,7 +215,7 @@ CODES: dict[str, GCode] = (
 
 
 class SinumerikReader(IsoReader):
-    """Reader of Sinumerik code."""
+    """Reader of Sinumerik NC code."""
 
     codes: Mapping[MachineType, Mapping[str, GCode]] = dict.fromkeys(MachineType, CODES)
 
@@ -227,7 +227,7 @@ class SinumerikReader(IsoReader):
         self._pause = 0.0
 
     def line(self, line: str) -> Iterator[Block]:
-        """A comment, a call, or words."""
+        """Blocks of one line: a message, a cycle call, or words, and a comment."""
         message = MESSAGE.fullmatch(line.strip())
         code, mark, text = ("", "", "") if message else line.partition(";")
         call = CALL.fullmatch(code.strip())
@@ -241,24 +241,24 @@ class SinumerikReader(IsoReader):
             yield Comment(text=text.strip())
 
     def _assignments(self, code: str) -> Iterator[Block]:
-        """Words with more than one letter, then the others."""
+        """Read words with several letters, then the others."""
         if DIAMETER.search(code):
             self.machine, self.is_diameter = MachineType.LATHE, True
             code = DIAMETER.sub(" ", code)
         self._assigned = {}
         for name, text in ASSIGNED.findall(code):
             if name in self._assigned:
-                raise PostError(f"word {name}={text}: a second {name} in one block")
+                raise PostError(f"word {name}={text}: {name} appears twice in one block")
             self._assigned[name] = number_of(f"{name}=", text)
         words = LineWords(pairs(ASSIGNED.sub(" ", code)))
         if "LIMS" in self._assigned:
             self.limit = rev_s_from_rpm(whole(self._assigned.pop("LIMS"), "LIMS="))
         yield from self.block(words)
         if self._assigned:
-            raise PostError(f"word {next(iter(self._assigned))}=: nothing here uses it")
+            raise PostError(f"word {next(iter(self._assigned))}=: not used by this block")
 
     def settle(self, acts: list[GCode], words: LineWords) -> None:
-        """G94 to G97 are one group; F of a G4 is no feed."""
+        """Update the modal state; G94 to G97 are one group, and the F of G4 is no feed."""
         if GCodeAction.DWELL in acts:
             self._pause = words.need("F", "G4")
         if RateMode.PER_MINUTE in acts or RateMode.PER_REVOLUTION in acts:
@@ -270,36 +270,36 @@ class SinumerikReader(IsoReader):
         super().settle(acts, words)
 
     def seconds(self, words: LineWords) -> float:
-        """F, in s."""
+        """Dwell time from F, s."""
         return self._pause
 
     def tool(self, words: LineWords) -> Iterator[Block]:
-        """T and M6, or T alone on a lathe; D is the edge."""
+        """Tool change by T and M6, or by T alone on a lathe; D selects the edge."""
         words.take("D")
         if self.machine is MachineType.LATHE and "T" in words:
             words.functions.append("M6")
         return super().tool(words)
 
     def extra(self, words: LineWords) -> Iterator[Block]:
-        """Spindle at an angle."""
+        """Spindle orientation by SPOS=."""
         angle = self._assigned.pop("SPOS", None)
         if angle:
-            raise PostError(f"word SPOS={angle:g}: an angle of 0 is read")
+            raise PostError(f"word SPOS={angle:g}: only angle 0 is supported")
         if angle is not None:
             yield SpindleOrient()
 
     def turns(self, words: LineWords) -> int:
-        """TURN=, full turns besides the arc itself."""
+        """Number of full turns from TURN=, besides the arc itself."""
         given = self._assigned.pop("TURN", 0.0)
         return whole(given, "TURN=") if given else 0
 
     def lead(self, end: Point, words: LineWords) -> float:
-        """I, J or K, of the axis that moves most."""
+        """Lead from I, J or K of the axis that moves most, mm."""
         moves = [abs(e - s) for s, e in zip(self.at, end, strict=True)]
         return words.need("IJK"[moves.index(max(moves))], "G33")
 
     def tap(self, words: LineWords, act: GCode) -> Iterator[Block]:
-        """G331 down and G332 up make one tap."""
+        """Combine G331 down and G332 up into one rigid tap."""
         z, lead = words.need("Z", "a tap"), words.need("K", "a tap")
         if act is GCodeAction.TAP:
             self._tap = (z, lead)
@@ -313,10 +313,10 @@ class SinumerikReader(IsoReader):
         yield self.tapped(bottom, abs(lead), self.sense)
 
     def _called(self, number: str, texts: list[str]) -> Iterator[Block]:
-        """A drilling cycle where the tool is."""
+        """Read a drilling cycle at the current position."""
         filled = [text.strip() for text in texts]
         if not all(re.fullmatch(NUMBER, text) for text in filled if text):
-            raise PostError(f"CYCLE{number}: its arguments must be numbers")
+            raise PostError(f"CYCLE{number}: the arguments must be numbers")
         arguments = [number_of(f"CYCLE{number} ", text or "0") for text in filled]
         if len(arguments) < 4:
             raise PostError(f"CYCLE{number}: needs at least RTP, RFP, SDIS and DP")
@@ -343,11 +343,15 @@ class SinumerikReader(IsoReader):
             yield Retract(z=top)
 
     def _refuse_more(self, number: str, rest: list[float]) -> None:
-        """Arguments that would change the cycle and are not read must not be there."""
+        """Raise an error on arguments that would change the cycle but are not supported."""
         for index, value in enumerate(rest):
             if value and index not in READ[number]:
-                raise PostError(f"CYCLE{number}: argument {index + 5}, {value:g}, is not read")
+                raise PostError(
+                    f"CYCLE{number}: argument {index + 5}, {value:g}, is not supported"
+                )
         if number == "83" and rest[6] not in {0.0, 1.0}:
-            raise PostError(f"CYCLE83: a feed of {rest[6]:g} at the first peck is not read")
+            raise PostError(
+                f"CYCLE83: a feed of {rest[6]:g} at the first peck is not supported"
+            )
         if number == "85" and any(f not in {0.0, self.feed} for f in rest[2:4]):
-            raise PostError("CYCLE85: feeds other than the one in force are not read")
+            raise PostError("CYCLE85: feeds other than the current one are not supported")

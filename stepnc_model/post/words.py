@@ -1,7 +1,7 @@
-"""Words of NC code: numbers, texts, the memory of what is in force, and the codes of ISO 6983.
+"""Words of NC code: numbers, texts, modal words, and the G codes of ISO 6983.
 
-A line of G-code is letters with numbers, each taken once. What the codes of the dialects do has
-names of its own; codes that most dialects share stand here.
+A line of G-code consists of letters with numbers, each used once. The actions of G codes have
+names here; codes that most dialects share are listed in tables.
 """
 
 import re
@@ -15,30 +15,30 @@ from stepnc_model.toolpath.path import ArcPlane, CycleKind
 
 
 class Modal:
-    """Modal words: a word is written only when its value changes. Running state."""
+    """Modal words of a writer: a word is written only when its value changes."""
 
     def __init__(self) -> None:
         self._words: dict[str, str] = {}
 
     def word(self, group: str, text: str) -> str:
-        """The text when it is new in its group, else nothing."""
+        """Return the text if it is new in its group, else an empty string."""
         if self._words.get(group) == text:
             return ""
         self._words[group] = text
         return text
 
     def set(self, group: str, text: str) -> None:
-        """Know what is in force without writing it."""
+        """Record what is in force without writing it."""
         self._words[group] = text
 
     def forget(self, *groups: str) -> None:
-        """Know nothing more of some groups."""
+        """Forget the current words of some groups."""
         for group in groups:
             self._words.pop(group, None)
 
 
 def decimal(value: float, places: int) -> str:
-    """A number in its shortest form: ``10``, ``-0.5``."""
+    """Format a number in its shortest form: ``10``, ``-0.5``."""
     text = f"{value:.{places}f}"
     if "." in text:
         text = text.rstrip("0").rstrip(".")
@@ -46,20 +46,20 @@ def decimal(value: float, places: int) -> str:
 
 
 def pointed(value: float, places: int) -> str:
-    """A number that always has its point, as old controls need it: ``10.``, ``-0.5``."""
+    """Format a number always with a decimal point, as old controls need: ``10.``, ``-0.5``."""
     text = decimal(value, places)
     return text if "." in text else text + "."
 
 
 def ascii_text(text: str) -> str:
-    """A text in printable ASCII: accents fall, what is left unknown becomes ``?``."""
+    """Text in printable ASCII: accents are dropped, other characters become ``?``."""
     plain = unicodedata.normalize("NFKD", text.replace("ß", "ss").replace("Ø", "D"))
     kept = (c for c in plain if not unicodedata.combining(c))
     return "".join(c if " " <= c <= "~" else "?" for c in kept)
 
 
 def bracketed(text: str, longest: int) -> str:
-    """A comment in round brackets, which it must not hold itself."""
+    """Comment in round brackets; brackets in the text become square."""
     inner = ascii_text(text).replace("(", "[").replace(")", "]")
     return f"({inner[:longest]})"
 
@@ -68,25 +68,25 @@ NUMBER = r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)"
 WORD = re.compile(rf"\s*([A-Z])\s*({NUMBER})")
 
 LARGEST = 1e9
-"""no word of NC code means more: coordinates are mm"""
+"""Greatest value accepted in a word of NC code."""
 
 UNSIGNED = frozenset("DFHNPQST")
-"""words that are never negative: feeds, speeds, tools, pauses"""
+"""Letters of words that are never negative: feeds, speeds, tools, dwells."""
 
 LONGEST = 60
-"""characters of a line that a message shows"""
+"""Greatest number of characters of a line that a message shows."""
 
 
 class LineWords:
-    """The words of a line. Running state: what was taken is gone."""
+    """Words of one line of G-code; each word is removed when it is used."""
 
     def __init__(self, pairs: Iterator[tuple[str, str]]) -> None:
         self.codes: list[str] = []
-        """G words, shortened: ``G1``"""
+        """G words in short form, such as ``G1``."""
         self.functions: list[str] = []
-        """M words, shortened: ``M3``"""
+        """M words in short form, such as ``M3``."""
         self.pointless: set[str] = set()
-        """letters of numbers without a point: some controls count those in thousandths"""
+        """Letters of numbers without a decimal point: some controls count them in µm or ms."""
         self._values: dict[str, float] = {}
         for letter, text in pairs:
             value = number_of(letter, text)
@@ -96,7 +96,7 @@ class LineWords:
                 kind = self.codes if letter == "G" else self.functions
                 kind.append(f"{letter}{value:g}")
             elif letter in self._values:
-                raise PostError(f"word {letter}{text}: a second {letter} in one block")
+                raise PostError(f"word {letter}{text}: {letter} appears twice in one block")
             elif letter in UNSIGNED and value < 0.0:
                 raise PostError(f"word {letter}{text}: must not be negative")
             else:
@@ -106,73 +106,73 @@ class LineWords:
         return letter in self._values
 
     def take(self, letter: str) -> float | None:
-        """Value of a word, which is used up by this."""
+        """Take the value of a word, or None if the line does not have it."""
         return self._values.pop(letter, None)
 
     def need(self, letter: str, purpose: str) -> float:
-        """Value of a word that must be there."""
+        """Take the value of a word that must be present."""
         value = self.take(letter)
         if value is None:
             raise PostError(f"{purpose}: the word {letter} is missing")
         return value
 
     def finish(self) -> None:
-        """Nothing may be left over."""
+        """Raise an error if any word was not used."""
         if self._values:
             words = " ".join(f"{letter}{value:g}" for letter, value in self._values.items())
-            raise PostError(f"word {words}: nothing in this block uses it")
+            raise PostError(f"word {words}: not used by this block")
 
 
 def pairs(text: str) -> Iterator[tuple[str, str]]:
-    """Letters and numbers of a line without comments.
+    """Split a line without comments into letters and numbers.
 
     Raises
     ------
     PostError
-        At what is no word.
+        If part of the line is not a word of NC code.
     """
     at = 0
     end = len(text.rstrip())
     while at < end:
         found = WORD.match(text, at)
         if found is None:
-            raise PostError(f"'{shown(text[at:end])}': no word of NC code")
+            raise PostError(f"'{shown(text[at:end])}': not a word of NC code")
         yield found[1], found[2]
         at = found.end()
 
 
 def number_of(word: str, text: str) -> float:
-    """Value of a word.
+    """Value of a word of NC code.
 
     Raises
     ------
     PostError
-        When no machine is so large.
+        If the value is too large.
     """
     value = float(text)
     if not abs(value) <= LARGEST:
-        raise PostError(f"word {word}{shown(text)}: beyond {LARGEST:g}")
+        raise PostError(f"word {word}{shown(text)}: value exceeds {LARGEST:g}")
     return value
 
 
 def shown(text: str) -> str:
-    """Beginning of a line, as messages show it."""
+    """Beginning of a line, as shown in messages."""
     plain = " ".join(text.split())
     return plain if len(plain) <= LONGEST else f"{plain[:LONGEST]}…"
 
 
 def whole(value: float, word: str) -> int:
-    """A number that must be whole and positive, as tools and turns are."""
+    """Convert a value to a positive whole number, as needed for tools and turns."""
     if value != int(value) or value < 1.0:
         raise PostError(f"word {word}{value:g}: must be a whole number above 0")
     return int(value)
 
 
 class GCodeAction(Enum):
-    """Action of a G code."""
+    """Actions that G codes stand for."""
 
     NOTHING = auto()
-    """says what is so anyway: metric, absolute, zero points, no cutter compensation"""
+    """No effect, because it is the assumed state: metric, absolute, no cutter compensation."""
     RAPID = auto()
     LINEAR = auto()
     CLOCKWISE = auto()
@@ -181,7 +181,7 @@ class GCodeAction(Enum):
     TAP = auto()
     LEFT_TAP = auto()
     TAP_OUT = auto()
-    """the way out of a tap, where it is a block of its own"""
+    """Retract of a tap, where it is a separate block."""
     DWELL = auto()
     SURFACE_SPEED = auto()
     SPINDLE_SPEED = auto()
@@ -194,7 +194,7 @@ class GCodeAction(Enum):
 
 
 GCode = GCodeAction | ArcPlane | RateMode | CycleKind
-"""what a G code stands for: an action, or a plane, a mode of feed, a drilling cycle"""
+"""Meaning of a G code: an action, a plane, a feed mode or a drilling cycle."""
 
 
 COMMON: dict[str, GCode] = {

@@ -1,1 +1,1 @@
-"""EXPRESS schemas of the entities that ISO 14649 lacks."""
+"""EXPRESS schemas of entities that ISO 14649 does not define."""

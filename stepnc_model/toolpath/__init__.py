@@ -1,1 +1,1 @@
-"""Tool paths: lines and arcs by station, made from features or taken from the file."""
+"""Tool paths as lines and arcs by station, generated from features or read from the file."""

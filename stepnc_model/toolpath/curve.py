@@ -1,7 +1,7 @@
 """Curves of the file as chains of lines and circular arcs in space.
 
 ISO 10303-42: polylines, composite and trimmed curves, circles, lines and B-splines, and the
-helix of NIST's ``ex1E.stp``. Circles stay arcs; ellipses and B-splines become chords within
+helix of NIST's ``ex1E.stp``. Circles remain arcs; ellipses and B-splines become chords within
 ``CHORD_TOLERANCE``.
 
 References
@@ -38,7 +38,7 @@ from stepnc_model.units import rad_from_deg
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Spline:
-    """A curve by its degree, knots and control points."""
+    """B-spline curve, given by its degree, knots and control points."""
 
     degree: int
     knots: tuple[float, ...]
@@ -46,7 +46,7 @@ class Spline:
 
     @property
     def spans(self) -> tuple[float, ...]:
-        """Parameters where its polynomials meet, from its start to its end."""
+        """Distinct knot values of the curve, from its start to its end."""
         return tuple(sorted(set(self.knots[self.degree : len(self.poles) + 1])))
 
     def at(self, parameter: float) -> Point:
@@ -70,40 +70,46 @@ class Spline:
 
 
 def spline_of(program: Program, ref: Ref[Entity]) -> Spline:
-    """B-spline behind a reference.
+    """Read a B-spline curve.
 
     Raises
     ------
     PathError
-        When it is none, or its knots and control points do not fit together.
+        If it is not a B-spline, or its knots and control points do not match.
     """
     curve = program.get(ref)
     if not isinstance(curve, BSplineCurve):
-        raise program.path_error("is no B-spline curve", ref)
+        raise program.path_error("is not a B-spline curve", ref)
     poles = tuple(point_of(program, point) for point in curve.control_points_list)
     degree = curve.degree
     if degree < 1 or len(poles) <= degree:
-        raise program.path_error(f"degree {degree} with {len(poles)} control points", ref)
+        raise program.path_error(
+            f"degree {degree} does not suit {len(poles)} control points", ref
+        )
     knots = _knots(program, ref, curve)
     if any(a > b for a, b in pairwise(knots)):
-        raise program.path_error("its knots fall: each must be at least the one before", ref)
+        raise program.path_error("the knots decrease: each must be at least the previous", ref)
     if len(knots) != len(poles) + degree + 1:
-        message = f"{len(knots)} knots for {len(poles)} control points of degree {degree}"
+        message = (
+            f"{len(knots)} knots do not match {len(poles)} control points of degree {degree}"
+        )
         raise program.path_error(message, ref)
     return Spline(degree=degree, knots=knots, poles=poles)
 
 
 def _knots(program: Program, ref: Ref[Entity], curve: BSplineCurve) -> tuple[float, ...]:
-    """Knot vector; open and uniform where the curve spells none out."""
+    """Knot vector; open and uniform if the curve does not give one."""
     if isinstance(curve, BSplineCurveWithKnots):
         if len(curve.knots) != len(curve.knot_multiplicities):
             counts = (
-                f"{len(curve.knots)} knots, {len(curve.knot_multiplicities)} multiplicities"
+                f"{len(curve.knots)} knots but {len(curve.knot_multiplicities)} multiplicities"
             )
             raise program.path_error(counts, ref)
         for times in curve.knot_multiplicities:
             if not 1 <= times <= curve.degree + 1:
-                message = f"multiplicity {times}: 1 to {curve.degree + 1} for its degree"
+                message = (
+                    f"multiplicity {times}: must be 1 to {curve.degree + 1} for this degree"
+                )
                 raise program.path_error(message, ref)
         return tuple(
             float(knot)
@@ -116,24 +122,24 @@ def _knots(program: Program, ref: Ref[Entity], curve: BSplineCurve) -> tuple[flo
 
 
 CHORD_TOLERANCE = 1e-3
-"""mm between a curve that is no arc and the chords that stand for it"""
+"""Greatest distance between a curve and the chords that replace it, mm."""
 
 JOINED = 1e-2
-"""mm of gap between two curves of a chain that a file is forgiven"""
+"""Greatest gap between two curves of a chain that is accepted, mm."""
 
 ON_CIRCLE = 1e-2
-"""mm by which a trimming point may lie beside its circle"""
+"""Greatest distance of a trimming point from its circle, mm."""
 
 MOST_CHORDS = 4096
 
 MOST_NESTED = 20
-"""curves within curves"""
+"""Greatest nesting depth of curves within curves."""
 
 MOST_CURVES = 20_000
-"""curves that one curve is made of"""
+"""Greatest number of curves that one curve may consist of."""
 
 MOST_TURNS = 10_000
-"""of a helix"""
+"""Greatest number of turns of a helix."""
 
 PRINCIPAL = 1e-9
 
@@ -144,26 +150,26 @@ class Bend:
 
     centre: Point
     normal: Point
-    """unit vector; counter-clockwise is seen from its tip"""
+    """Unit normal; counter-clockwise is seen from its tip."""
     turn: float
-    """Turn, rad"""
+    """Angle of the arc, rad."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Segment:
-    """One line, or one arc when it has a bend."""
+    """Line in space, or an arc if it has a bend."""
 
     start: Point
     end: Point
     bend: Bend | None = None
 
     def reversed(self) -> "Segment":
-        """The same way back."""
+        """Segment traversed in the opposite direction."""
         bend = replace(self.bend, turn=-self.bend.turn) if self.bend else None
         return Segment(start=self.end, end=self.start, bend=bend)
 
     def within(self, frame: Frame) -> "Segment":
-        """A segment given in a frame, in the coordinates around it."""
+        """Convert a segment from a frame to the surrounding coordinates."""
         bend = self.bend and Bend(
             centre=frame.point(self.bend.centre),
             normal=frame.direction(self.bend.normal),
@@ -173,28 +179,30 @@ class Segment:
 
 
 def segments_of(program: Program, ref: Ref[Entity]) -> tuple[Segment, ...]:
-    """Lines and arcs of a bounded curve, in its sense.
+    """Lines and arcs of a bounded curve, in its direction.
 
     Raises
     ------
     PathError
-        When the curve is of another kind, has no length, or its parts do not join.
+        If the kind of curve is not supported, it has no length, or its parts do not join.
     """
     with program.using(ref):
         budget = iter(range(MOST_CURVES))
         found = _segments(program, ref, _CurveVisit(budget))
         segments = tuple(segment for segment in found if not _is_point(segment))
     if not segments:
-        raise program.path_error("has no length", ref)
+        raise program.path_error("the curve has no length", ref)
     for one, other in pairwise(segments):
         gap = dist(one.end, other.start)
         if gap > JOINED:
-            raise program.path_error(f"its parts do not join: a gap of {gap:.4g} mm", ref)
+            raise program.path_error(
+                f"the parts of the curve do not join: gap of {gap:.4g} mm", ref
+            )
     return segments
 
 
 def move_of(segment: Segment, type: MoveType, feed: Feed | None) -> Iterator[Move]:
-    """Moves along a segment: one, or chords where its plane is no principal one."""
+    """Moves along a segment: one, or chords if its plane is not a principal plane."""
     bend = segment.bend
     if bend is None:
         yield Move(end=segment.end, type=type, feed=feed)
@@ -212,7 +220,7 @@ def move_of(segment: Segment, type: MoveType, feed: Feed | None) -> Iterator[Mov
 
 @dataclass(frozen=True, slots=True)
 class _CurveVisit:
-    """Nesting level of a curve, and how many more may be followed."""
+    """Nesting level of a curve, and the remaining number of curves."""
 
     budget: Iterator[int]
     level: int = 0
@@ -222,9 +230,9 @@ class _CurveVisit:
 
 
 def _segments(program: Program, ref: Ref[Entity], visit: _CurveVisit) -> Iterator[Segment]:
-    """Lines and arcs of a curve."""
+    """Lines and arcs of a curve of any supported kind."""
     if visit.level > MOST_NESTED or next(visit.budget, None) is None:
-        message = f"contains itself, or more than {MOST_NESTED} levels or {MOST_CURVES} curves"
+        message = f"contains itself, or over {MOST_NESTED} levels or {MOST_CURVES} curves"
         raise program.path_error(message, ref)
     curve = program.get(ref)
     if isinstance(curve, Polyline):
@@ -240,10 +248,10 @@ def _segments(program: Program, ref: Ref[Entity], visit: _CurveVisit) -> Iterato
         yield from _spline(program, ref)
     elif isinstance(curve, (Circle, Ellipse)):
         if isinstance(curve, Circle) and not curve.radius > 0.0:
-            raise program.path_error(f"radius {curve.radius:g} mm: it must be positive", ref)
+            raise program.path_error(f"radius {curve.radius:g} mm must be positive", ref)
         yield from _conic(program, curve, 0.0, 2.0 * pi)
     else:
-        raise program.path_error("a curve of this kind cannot be followed", ref)
+        raise program.path_error("this kind of curve is not supported", ref)
 
 
 def _backwards(segments: Sequence[Segment]) -> Iterator[Segment]:
@@ -253,7 +261,7 @@ def _backwards(segments: Sequence[Segment]) -> Iterator[Segment]:
 def _trimmed(
     program: Program, ref: Ref[Entity], curve: TrimmedCurve, visit: _CurveVisit
 ) -> Iterator[Segment]:
-    """Part of a line, circle, ellipse or helix."""
+    """Lines and arcs of a trimmed line, circle, ellipse, helix or bounded curve."""
     basis = program.get(curve.basis_curve)
     sense = curve.sense_agreement is not False
     if isinstance(basis, Line):
@@ -277,7 +285,7 @@ def _trimmed(
         inner = tuple(_segments(program, curve.basis_curve, visit.inner()))
         yield from inner if sense else _backwards(inner)
     else:
-        raise program.path_error("a curve of this kind cannot be trimmed", ref)
+        raise program.path_error("this kind of curve cannot be trimmed", ref)
 
 
 def _trims(curve: TrimmedCurve) -> tuple[tuple[object, ...], tuple[object, ...]]:
@@ -287,7 +295,7 @@ def _trims(curve: TrimmedCurve) -> tuple[tuple[object, ...], tuple[object, ...]]
 def _cartesian(
     program: Program, curve: TrimmedCurve, trims: tuple[object, ...]
 ) -> Point | None:
-    """The trimming point, unless the parameter is preferred and given."""
+    """Trimming point, unless the parameter is preferred and given."""
     points = [trim for trim in trims if isinstance(trim, Ref)]
     is_other = len(points) < len(trims)
     if points and not (
@@ -302,7 +310,7 @@ def _parameter(program: Program, ref: Ref[Entity], trims: tuple[object, ...]) ->
         value = trim.value if isinstance(trim, Typed) else trim
         if isinstance(value, (int, float)):
             return float(value)
-    raise program.path_error("is trimmed by neither point nor parameter", ref)
+    raise program.path_error("the curve is trimmed by neither a point nor a parameter", ref)
 
 
 def _line_point(
@@ -333,7 +341,7 @@ def _angle(
     frame: Frame,
     trims: tuple[object, ...],
 ) -> float:
-    """Parameter of a trim in rad; parameters of a file are in degrees."""
+    """Parameter of a trim, rad; parameters in the file are in degrees."""
     point = _cartesian(program, curve, trims)
     if point is None:
         return rad_from_deg(_parameter(program, ref, trims))
@@ -344,12 +352,12 @@ def _angle(
     if not isinstance(basis, Helix):
         off = max(off, abs(beside))
     if off > ON_CIRCLE:
-        raise program.path_error(f"a trimming point lies {off:.4g} mm beside its circle", ref)
+        raise program.path_error(f"a trimming point lies {off:.4g} mm off its circle", ref)
     return atan2(b, a)
 
 
 def local(frame: Frame, point: Point) -> Point:
-    """A point in the coordinates of a frame."""
+    """Coordinates of a point in a frame."""
     from_origin = tuple(p - o for p, o in zip(point, frame.origin, strict=True))
     a, b, c = (
         sum(f * d for f, d in zip(from_origin, axis, strict=True))
@@ -361,7 +369,7 @@ def local(frame: Frame, point: Point) -> Point:
 def _exact_ends(
     program: Program, curve: TrimmedCurve, segments: tuple[Segment, ...]
 ) -> Iterator[Segment]:
-    """The segments between the trimming points themselves, as the file writes them."""
+    """Segments that start and end exactly at the trimming points of the file."""
     start = _cartesian(program, curve, tuple(curve.trim_1))
     end = _cartesian(program, curve, tuple(curve.trim_2))
     last = len(segments) - 1
@@ -400,33 +408,33 @@ def _helix(
     helix: Helix,
     frame: Frame,
 ) -> Iterator[Segment]:
-    """Part of a right-hand helix between two points; the rise and the pitch tell the turns."""
+    """Part of a right-hand helix between two points; rise and pitch give the turns."""
     ends = [_cartesian(program, curve, trims) for trims in _trims(curve)]
     if ends[0] is None or ends[1] is None or not helix.pitch:
         raise program.path_error("a helix needs a pitch and two trimming points", ref)
     start, end = local(frame, ends[0]), local(frame, ends[1])
     first, second = atan2(start[1], start[0]), atan2(end[1], end[0])
     rise = end[2] - start[2]
-    # Files round the pitch: the whole turns follow from it, the rest from the points.
+    # Files round the pitch: it gives the whole turns, the points give the rest.
     whole = 2.0 * pi * rise / helix.pitch
     rest = (second - first) % (2.0 * pi)
     turn = rest + 2.0 * pi * round((whole - rest) / (2.0 * pi))
     if not abs(turn) <= MOST_TURNS * 2.0 * pi:
-        message = f"a pitch of {helix.pitch:g} mm: more than {MOST_TURNS} turns"
+        message = f"a pitch of {helix.pitch:g} mm gives more than {MOST_TURNS} turns"
         raise program.path_error(message, ref)
     bend = Bend(centre=frame.origin, normal=frame.z, turn=turn)
     yield Segment(start=ends[0], end=ends[1], bend=bend)
 
 
 def _spline(program: Program, ref: Ref[Entity]) -> Iterator[Segment]:
-    """Chords of a B-spline."""
+    """Chords of a B-spline curve."""
     spline = spline_of(program, ref)
     for low, high in pairwise(spline.spans):
         yield from _chords(spline.at, low, high)
 
 
 def _chords(curve: Callable[[float], Point], low: float, high: float) -> Iterator[Segment]:
-    """Chords of equal parameter that stay within the tolerance; their number doubles."""
+    """Equal-parameter chords within the tolerance; their number is doubled until they fit."""
     count = 4
     while count < MOST_CHORDS:
         ends = [curve(low + (high - low) * i / count) for i in range(count + 1)]
@@ -465,5 +473,5 @@ def _bend_points(segment: Segment, bend: Bend) -> Iterator[Point]:
 
 
 def _is_point(segment: Segment) -> bool:
-    """A segment without length, as files leave between their curves."""
+    """Whether a segment has no length, as files leave between their curves."""
     return segment.start == segment.end and segment.bend is None

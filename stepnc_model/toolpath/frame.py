@@ -1,19 +1,19 @@
 """Coordinate systems and patterns: placements of the file, from a feature to the setup.
 
 ISO 14649-10: a feature is placed on its workpiece or in its compound feature, a workpiece in
-its setup. Tool paths come out in the coordinates of the setup.
+its setup. Tool paths are generated in the coordinates of the setup.
 
-A pattern (ISO 14649-10, replicate features) is the places of its copies. How the standard is
-read here, the same for all patterns:
+A pattern (ISO 14649-10, replicate features) defines the places of its copies. The standard is
+interpreted in the same way for all patterns:
 
-* the base feature is placed relative to its pattern, and is itself the first copy;
+* the base feature is placed relative to its pattern and is itself the first copy;
 * indices of rows, columns and places on a circle count from 1, the base feature;
-* ``number_of_feature`` of a circle counts the copies that are there: a circle has as many
-  places as copies and omitted ones together;
+* ``number_of_feature`` of a circle counts the copies that exist: a circle has as many
+  places as existing and omitted copies together;
 * a copy on a circle keeps its orientation, turned by ``base_feature_rotation`` from each
   place to the next;
 * ``replicate_locations`` are placements of copies in the coordinates of the pattern; the base
-  feature at a place of its own comes before them.
+  feature comes before them if its place is different.
 """
 
 from collections.abc import Iterator
@@ -37,12 +37,12 @@ from stepnc_model.toolpath.path import Point, cross, dot, plus, times
 from stepnc_model.units import rad_from_deg
 
 PARALLEL = 1e-9
-"""sine below which two directions are taken as one"""
+"""Sine below which two directions are parallel."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Frame:
-    """A coordinate system, by its origin and axes in the system around it."""
+    """Coordinate system, given by its origin and axes in the surrounding system."""
 
     origin: Point = (0.0, 0.0, 0.0)
     x: Point = (1.0, 0.0, 0.0)
@@ -50,7 +50,7 @@ class Frame:
     z: Point = (0.0, 0.0, 1.0)
 
     def point(self, at: Point) -> Point:
-        """A point of this system in the coordinates around it."""
+        """Convert a point from this frame to the surrounding coordinates."""
         turned = self.direction(at)
         return (
             turned[0] + self.origin[0],
@@ -59,7 +59,7 @@ class Frame:
         )
 
     def direction(self, along: Point) -> Point:
-        """A direction of this system in the coordinates around it."""
+        """Convert a direction from this frame to the surrounding coordinates."""
         a, b, c = along
         return (
             a * self.x[0] + b * self.y[0] + c * self.z[0],
@@ -68,7 +68,7 @@ class Frame:
         )
 
     def inner(self, frame: "Frame") -> "Frame":
-        """A frame given in this system, in the coordinates around this one."""
+        """Convert a frame given in this system to the surrounding coordinates."""
         return Frame(
             origin=self.point(frame.origin),
             x=self.direction(frame.x),
@@ -77,7 +77,7 @@ class Frame:
         )
 
     def inverse(self) -> "Frame":
-        """The coordinates around this system, seen from within it."""
+        """Frame of the surrounding system as seen from within this one."""
         columns = tuple(zip(self.x, self.y, self.z, strict=True))
         back = Frame(x=columns[0], y=columns[1], z=columns[2])
         x, y, z = back.direction(self.origin)
@@ -85,25 +85,25 @@ class Frame:
 
     @property
     def is_upright(self) -> bool:
-        """Whether z points along the z around it."""
+        """Whether z points along the surrounding z axis."""
         return abs(self.z[0]) + abs(self.z[1]) < PARALLEL and self.z[2] > 0.0
 
 
 def frame_of(program: Program, ref: Ref[Entity] | None) -> Frame:
-    """Frame of a placement; the coordinates around it where there is none.
+    """Frame of a placement; the identity if there is none.
 
     Raises
     ------
     PathError
-        When its axes are no directions, or parallel.
+        If its axes are invalid or parallel.
     """
     if ref is None:
         return Frame()
     placement = program.get(ref)
     if not isinstance(placement, Placement):
-        raise program.path_error("is no placement", ref)
+        raise program.path_error("is not a placement", ref)
     origin = point_of(program, placement.location)
-    # A placement in the plane has no axis, one on an axis has no reference direction.
+    # A placement in the plane has no axis; a placement on an axis has no reference direction.
     z = _direction(program, ref, getattr(placement, "axis", None)) or (0.0, 0.0, 1.0)
     towards = _direction(program, ref, getattr(placement, "ref_direction", None))
     if towards is None:
@@ -112,24 +112,24 @@ def frame_of(program: Program, ref: Ref[Entity] | None) -> Frame:
     across = dot(towards, z)
     x = _unit(tuple(t - across * c for t, c in zip(towards, z, strict=True)))
     if x is None:
-        raise program.path_error("its ref_direction lies along its axis", ref)
+        raise program.path_error("the ref_direction is parallel to the axis", ref)
     return Frame(origin=origin, x=x, y=cross(z, x), z=z)
 
 
 def point_of(program: Program, ref: Ref[Entity]) -> Point:
-    """Coordinates of a point, missing ones 0."""
+    """Coordinates of a point; missing ones are 0."""
     coordinates = getattr(program.get(ref), "coordinates", None)
     if coordinates is None:
-        raise program.path_error("is no point", ref)
+        raise program.path_error("is not a point", ref)
     x, y, z = (*coordinates, 0.0, 0.0, 0.0)[:3]
     return float(x), float(y), float(z)
 
 
 def direction_of(program: Program, ref: Ref[Entity]) -> Point:
-    """Unit vector of a direction."""
+    """Unit vector of a direction entity."""
     found = _direction(program, ref, ref)
     if found is None:
-        raise program.path_error("is no direction", ref)
+        raise program.path_error("is not a direction", ref)
     return found
 
 
@@ -139,7 +139,7 @@ def workpiece_frame(program: Program, setup: Ref[Setup] | None) -> Frame:
         return Frame()
     entity = program.get(setup)
     if not isinstance(entity, Setup):
-        raise program.path_error("stands where a setup belongs", setup)
+        raise program.path_error("is not a setup, where one is expected", setup)
     placed = entity.its_workpiece_setup
     if not placed:
         return Frame()
@@ -148,7 +148,7 @@ def workpiece_frame(program: Program, setup: Ref[Setup] | None) -> Frame:
 
 
 def compound_of(program: Program, feature: Ref[Entity]) -> Ref[CompoundFeature] | None:
-    """Compound feature that a feature is an element of."""
+    """Compound feature that has a feature as an element, or None."""
     compounds = program.model.of_type(CompoundFeature)
     return next((ref for ref, compound in compounds if feature in compound.elements), None)
 
@@ -156,10 +156,10 @@ def compound_of(program: Program, feature: Ref[Entity]) -> Ref[CompoundFeature] 
 def surrounding_frame(
     program: Program, setup: Ref[Setup] | None, feature: Ref[Entity]
 ) -> Frame:
-    """Frame that a feature is placed in: its compound feature's, else its workpiece's.
+    """Frame in which a feature is placed: that of its compound feature, or its workpiece.
 
-    ISO 14649-10: elements of a compound feature are placed relative to it, also when a
-    workingstep names an element.
+    ISO 14649-10: elements of a compound feature are placed relative to it, even if a
+    workingstep names an element directly.
     """
     frame = workpiece_frame(program, setup)
     compound = compound_of(program, feature)
@@ -180,15 +180,15 @@ def _direction(program: Program, at: Ref[Entity], ref: Ref[Entity] | None) -> Po
         return None
     ratios = getattr(program.get(ref), "direction_ratios", None)
     if ratios is None:
-        raise program.path_error(f"{ref} is no direction", at)
+        raise program.path_error(f"{ref} is not a direction", at)
     unit = _unit((*map(float, ratios), 0.0, 0.0)[:3])
     if unit is None:
-        raise program.path_error("its ratios are all 0: it points nowhere", ref)
+        raise program.path_error("the direction ratios are all 0", ref)
     return unit
 
 
 def _unit(vector: tuple[float, ...]) -> Point | None:
-    """The vector at length 1, or None when it has none."""
+    """Vector scaled to length 1; None for a zero vector."""
     size = sqrt(sum(part * part for part in vector))
     if not PARALLEL < size < float("inf"):
         return None
@@ -196,22 +196,22 @@ def _unit(vector: tuple[float, ...]) -> Point | None:
 
 
 MAX_COPIES = 10_000
-"""features of one pattern; more is a trap"""
+"""Greatest number of copies of a pattern; more indicates an error."""
 
 SAME_PLACE = 1e-6
-"""mm between two placements of one and the same copy"""
+"""Distance below which two placements are the same copy, mm."""
 
 ON_CIRCLE = 0.01
-"""mm by which the base feature may lie beside the circle that its pattern names"""
+"""Greatest distance of the base feature from its pattern's circle, mm."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlacedFeature:
-    """A feature that is no pattern, where it stands."""
+    """Feature that is not a pattern, with its position in the setup."""
 
     feature: Ref[Entity]
     frame: Frame
-    """its own, in the coordinates of the setup"""
+    """Frame of the feature, in setup coordinates."""
 
 
 def placements(
@@ -230,18 +230,18 @@ def placements(
     Yields
     ------
     PlacedFeature
-        At most ``MAX_COPIES`` of them.
+        At most ``MAX_COPIES`` places.
 
     Raises
     ------
     PathError
-        When a pattern contains itself, lacks a size, has no such place as it omits or moves,
+        If a pattern contains itself, lacks a size, omits or moves a place that does not exist,
         or has too many copies.
     """
     within = surrounding_frame(program, setup, feature)
     for count, placed in enumerate(_expanded(program, feature, within, ())):
         if count == MAX_COPIES:
-            raise program.path_error(f"more than {MAX_COPIES} copies", feature)
+            raise program.path_error(f"the pattern has more than {MAX_COPIES} copies", feature)
         yield placed
 
 
@@ -250,7 +250,9 @@ def _expanded(
 ) -> Iterator[PlacedFeature]:
     """Copies of a feature that is placed within a frame."""
     if feature in outer:
-        raise program.path_error("contains itself", feature, "replicate_base_feature")
+        raise program.path_error(
+            "the pattern contains itself", feature, "replicate_base_feature"
+        )
     entity = program.get(feature)
     own = frame_of(program, getattr(entity, "feature_placement", None))
     if not isinstance(entity, ReplicateFeature):
@@ -263,7 +265,7 @@ def _expanded(
     with program.using(feature):
         copies = _copies(program, feature, entity, first)
         for copy in copies:
-            # The base places itself: what is left is the way from it to the copy.
+            # The base feature places itself: what remains is the move from it to the copy.
             shifted = pattern.inner(copy.inner(undone))
             yield from _expanded(program, base, shifted, (*outer, feature))
 
@@ -278,11 +280,11 @@ def _copies(
         return _circular(program, ref, pattern, first)
     if isinstance(pattern, RectangularPattern):
         return _rectangular(program, ref, pattern, first)
-    raise program.path_error("a pattern of this kind cannot be laid out", ref)
+    raise program.path_error("this kind of pattern is not supported", ref)
 
 
 def _general(program: Program, pattern: GeneralPattern, first: Frame) -> Iterator[Frame]:
-    """Base feature and copies, each once."""
+    """Frames of the base feature and the copies of a general pattern, without duplicates."""
     done: list[Frame] = []
     copies = (frame_of(program, each) for each in pattern.replicate_locations)
     for frame in chain((first,), copies):
@@ -294,7 +296,7 @@ def _general(program: Program, pattern: GeneralPattern, first: Frame) -> Iterato
 def _circular(
     program: Program, ref: Ref[Entity], pattern: CircularPattern, first: Frame
 ) -> Iterator[Frame]:
-    """Copies about the z axis of the pattern, counter-clockwise."""
+    """Frames of copies around the z axis of the pattern, counter-clockwise."""
     missing = {program.get(each).index for each in pattern.missing_base_feature}
     places = pattern.number_of_feature + len(missing)
     _check_count(program, ref, places, "number_of_feature")
@@ -313,7 +315,7 @@ def _circular(
 def _on_circle(
     program: Program, ref: Ref[Entity], pattern: CircularPattern, first: Frame
 ) -> Frame:
-    """Base feature on the circle: where it is placed, else on the x axis of the pattern."""
+    """Base feature on the circle: as placed, or else on the x axis of the pattern."""
     away = hypot(first.origin[0], first.origin[1])
     if pattern.base_feature_diameter is None:
         return first
@@ -321,13 +323,13 @@ def _on_circle(
     if away < ON_CIRCLE:
         return replace(first, origin=(radius, 0.0, first.origin[2]))
     if abs(away - radius) > ON_CIRCLE:
-        message = f"radius {radius:g} mm, but the base feature lies {away:g} mm from the centre"
+        message = f"radius {radius:g} mm, but the base feature is {away:g} mm from the centre"
         raise program.path_error(message, ref, "base_feature_diameter")
     return first
 
 
 def _turned(frame: Frame, *, around: float, about: float) -> Frame:
-    """A frame moved around the z axis, and turned about its own."""
+    """Frame moved around the pattern's z axis, and rotated about its own."""
     return Frame(
         origin=_rotated(frame.origin, around),
         x=_rotated(frame.x, about),
@@ -339,7 +341,7 @@ def _turned(frame: Frame, *, around: float, about: float) -> Frame:
 def _rectangular(
     program: Program, ref: Ref[Entity], pattern: RectangularPattern, first: Frame
 ) -> Iterator[Frame]:
-    """Copies row by row, each row along its direction."""
+    """Frames of copies row by row, each row along its direction."""
     rows = 1 if pattern.number_of_rows is None else pattern.number_of_rows
     columns = pattern.number_of_columns
     _check_count(program, ref, rows, "number_of_rows")
@@ -350,7 +352,9 @@ def _rectangular(
     row_step = (0.0, 0.0, 0.0)
     if rows > 1:
         if pattern.row_spacing is None or pattern.row_layout_direction is None:
-            raise program.path_error("several rows need a spacing and a direction", ref)
+            raise program.path_error(
+                "a pattern with several rows needs a row spacing and direction", ref
+            )
         across = direction_of(program, pattern.row_layout_direction)
         row_step = times(across, program.get(pattern.row_spacing).theoretical_size)
     missing = {
@@ -377,13 +381,13 @@ def _rectangular(
 
 def _check_count(program: Program, ref: Ref[Entity], count: int, attribute: str) -> None:
     if not 1 <= count <= MAX_COPIES:
-        message = f"{count} copies: a pattern has 1 to {MAX_COPIES}"
+        message = f"{count} copies: a pattern must have 1 to {MAX_COPIES}"
         raise program.path_error(message, ref, attribute)
 
 
 def _check_index(program: Program, ref: Ref[Entity], index: int, count: int) -> None:
     if not 1 <= index <= count:
-        message = f"index {index}: the places of this pattern count from 1 to {count}"
+        message = f"index {index}: the places of this pattern are numbered 1 to {count}"
         raise program.path_error(message, ref)
 
 

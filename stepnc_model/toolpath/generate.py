@@ -1,7 +1,7 @@
-"""The tool paths of a whole program, in its order.
+"""Tool paths of a whole program, in program order.
 
-An executable for which no path can be made raises, or is handed to the caller, who goes on
-with the rest: the other workingsteps do not depend on it.
+An executable for which no path can be made raises an error, or is passed to the caller, who
+continues with the rest: the other workingsteps do not depend on it.
 """
 
 from collections.abc import Callable, Iterator, Mapping
@@ -30,32 +30,32 @@ from stepnc_model.toolpath.task import job_of
 from stepnc_model.toolpath.turning.operation import turning_path
 
 OnFault = Callable[[ProgramLine, SchemaError], None]
-"""where executables go for which no path can be made, with the reason"""
+"""Callback for executables without a tool path, called with the reason."""
 
 
 def raised(_executable: ProgramLine, error: SchemaError) -> NoReturn:
-    """End with the first executable for which no path can be made."""
+    """Raise the error of the first executable for which no path can be made."""
     raise error
 
 
 def generate(program: Program, on_fault: OnFault = raised) -> Iterator[ToolPath | Function]:
-    """Tool paths and functions of a program, one after another.
+    """Generate the tool paths and functions of a program, one after another.
 
     Parameters
     ----------
     program : Program
     on_fault : callable
-        Called with each executable that is left out, and its error; raises it unless given.
+        Called with each executable that is left out, and its error; by default raises it.
 
     Yields
     ------
     ToolPath or Function
-        In the order of the program; coordinates are those of each one's setup.
+        In program order; coordinates are those of the respective setup.
 
     Raises
     ------
     SchemaError
-        Unless another ``on_fault`` goes on.
+        Unless ``on_fault`` handles the error.
     """
     steps = {int(step.ref): step for step in program.workingsteps}
     skipped: int | None = None
@@ -85,29 +85,31 @@ def generate(program: Program, on_fault: OnFault = raised) -> Iterator[ToolPath 
 def require_ready(
     program: Program, step: ResolvedWorkingstep, missing: Mapping[int, str]
 ) -> None:
-    """Refuse to go on with a feature on which an earlier workingstep was left out.
+    """Raise an error if an earlier workingstep on the same feature was left out.
 
-    A finishing cutter or a reamer would meet what the one before it should have removed.
+    A finishing cutter or a reamer would meet material that should have been removed before.
 
     Parameters
     ----------
     missing : mapping
-        Workingstep left out by the instance number of its feature.
+        Name of the omitted workingstep by the instance number of its feature.
     """
     for feature in step.features:
         if int(feature) in missing:
-            message = f"its feature is not ready: '{missing[int(feature)]}' was left out"
+            message = (
+                f"the feature is not ready: workingstep '{missing[int(feature)]}' was left out"
+            )
             at = step.ref
             raise PathError(message, entity=program.label(at), line=program.line(at))
 
 
 def workingstep_path(program: Program, step: ResolvedWorkingstep) -> ToolPath:
-    """Tool path of one workingstep: the one of the file, else one made from its feature.
+    """Tool path of one workingstep: as given in the file, or else made from its feature.
 
     Raises
     ------
     SchemaError, PathError
-        When the file does not say enough, or the tool cannot do it.
+        If the file lacks information, or the tool cannot do the operation.
     """
     with program.using(step.operation_ref, *step.features, step.setup):
         job = job_of(program, step)
@@ -122,7 +124,7 @@ def workingstep_path(program: Program, step: ResolvedWorkingstep) -> ToolPath:
 
 
 def _other(program: Program, executable: ProgramLine) -> Iterator[ToolPath | Function]:
-    """An executable that is no usable workingstep."""
+    """Paths and functions of an executable that is not a usable workingstep."""
     fault = program.fault_of(executable.ref)
     if fault is not None:
         raise fault
@@ -130,18 +132,18 @@ def _other(program: Program, executable: ProgramLine) -> Iterator[ToolPath | Fun
     if isinstance(entity, (Workplan, NonSequential)):
         return
     if isinstance(entity, RapidMovement):
-        # Without a path the way is the control's: over the security plane to what follows.
+        # Without a path, the control moves over the security plane to what follows.
         path = rapid_movement_path(program, executable)
         yield path if path is not None else _function(executable, entity)
     elif isinstance(entity, (OptionalStop, ProgramStop, DisplayMessage)):
         yield _function(executable, entity)
     else:
-        message = "an executable of this kind cannot be made into a tool path"
+        message = "this kind of executable cannot be converted to a tool path"
         raise program.error(message, executable.ref)
 
 
 def _function(executable: ProgramLine, entity: Entity) -> Function:
-    """A stop, a message, or a movement that is left to the control."""
+    """Function for a stop, a message, or a movement that is left to the control."""
     return Function(
         ref=executable.ref,
         keyword=executable.keyword,
@@ -151,7 +153,7 @@ def _function(executable: ProgramLine, entity: Entity) -> Function:
 
 
 def _new_setup(program: Program, step: ResolvedWorkingstep) -> Function:
-    """A stop where the workpiece has to be clamped anew."""
+    """Program stop for clamping the workpiece in the next setup."""
     name = program.get(step.setup).its_id if step.setup is not None else ""
     return Function(
         ref=step.ref,

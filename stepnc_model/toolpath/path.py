@@ -1,4 +1,4 @@
-"""A tool path: lines and arcs by station, each with what it is for.
+"""Data model of tool paths: lines and arcs by station, each with its purpose.
 
 Types of moves after Shin et al., "Developing a virtual machining model to generate MTConnect
 machine-monitoring data from STEP-NC", Int. J. Prod. Res. 54 (2016) 4487-4505, section 3.2.2:
@@ -6,8 +6,8 @@ approach, retract, rapid, interpolation in contact and not in contact; each inte
 linear or circular. Coordinates are those of the setup, mm; on a lathe x is the radius, y is 0
 and z the spindle axis, away from the chuck.
 
-NC functions between workingsteps, which a control does besides cutting (ISO 14649-10), are
-here too, and vectors of three numbers.
+The module also holds NC functions between workingsteps, which a control does besides cutting
+(ISO 14649-10), and operations on vectors of three numbers.
 """
 
 from collections.abc import Iterator
@@ -21,29 +21,29 @@ from stepnc_model.errors import Finding
 from stepnc_model.part21.values import Ref
 
 Point = tuple[float, float, float]
-"""x, y, z in mm"""
+"""Coordinates x, y, z, mm."""
 
 FARTHEST = 1e5
-"""mm; no machine goes there"""
+"""Greatest coordinate accepted, mm; no machine reaches further."""
 
 
 class MoveType(StrEnum):
-    """Purpose of a move."""
+    """Purpose of a move in a tool path."""
 
     APPROACH = "approach"
-    """to the first cut, down into the material if need be"""
+    """Move to the first cut, down into the material if need be."""
     RETRACT = "retract"
-    """away from the last cut"""
+    """Move away from the last cut."""
     RAPID = "rapid"
-    """between cuts"""
+    """Rapid move between cuts."""
     NO_CONTACT = "no contact"
-    """interpolation through air: overcut, links"""
+    """Interpolation through air: overcut, links."""
     CONTACT = "contact"
-    """interpolation that cuts"""
+    """Interpolation that cuts material."""
 
 
 class ArcPlane(StrEnum):
-    """Plane of an arc; counter-clockwise is seen from the tip of its normal."""
+    """Plane of an arc; counter-clockwise as seen from the tip of its normal."""
 
     XY = "XY"
     ZX = "ZX"
@@ -57,48 +57,48 @@ class ArcPlane(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Feed:
-    """At which feed and speed a move runs: those of a technology, or ratios of them."""
+    """Feed and spindle speed of a move, by technology, ratios or explicit values."""
 
     technology: Ref[Entity]
     ratio: float = 1.0
-    """Ratio of the programmed feed"""
+    """Ratio to the programmed feed."""
     speed_ratio: float = 1.0
-    """Speed ratio of the programmed spindle speed"""
+    """Ratio to the programmed spindle speed."""
     per_revolution: float | None = None
-    """Per revolution, mm; overrides the programmed feed"""
+    """Feed per revolution, mm; overrides the programmed feed."""
     velocity: float | None = None
-    """Velocity, mm/s; overrides the programmed feed"""
+    """Feed, mm/s; overrides the programmed feed."""
     is_synchronised: bool = False
-    """bound to the angle of the spindle: threads"""
+    """Whether the feed is synchronised with the spindle angle, as for threads."""
     is_plunge: bool = False
-    """of a mill's way down into the material, whose feed may be another than that of the cut"""
+    """Whether a mill moves down into the material, where another feed may apply."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Arc:
-    """Arc of a move: about a centre, with a rise along the normal when it is a helix."""
+    """Arc of a move about a centre; a helix if it rises along the normal."""
 
     centre: Point
-    """its coordinate along the normal of the plane means nothing"""
+    """Centre of the arc; its coordinate along the normal of the plane has no meaning."""
     turn: float
-    """Turn, rad, positive counter-clockwise; more than 2π for several turns"""
+    """Angle of the arc, rad, positive counter-clockwise; more than 2π for several turns."""
     plane: ArcPlane = ArcPlane.XY
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Move:
-    """One line or arc, from where the last one ended."""
+    """Line or arc that starts where the previous move ended."""
 
     end: Point
     type: MoveType
     feed: Feed | None = None
-    """None: rapid"""
+    """Feed of the move; None for rapid."""
     arc: Arc | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Dwell:
-    """Pause; exactly one of the two is given."""
+    """Pause in a tool path, in seconds or in revolutions."""
 
     seconds: float | None = None
     revolutions: float | None = None
@@ -108,7 +108,7 @@ class SpindleCommand(StrEnum):
     """Command to the spindle between moves."""
 
     START = "start"
-    """in the direction of cutting"""
+    """Start in the direction of cutting."""
     REVERSE = "reverse"
     STOP = "stop"
     ORIENT = "orient"
@@ -116,7 +116,7 @@ class SpindleCommand(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SpindleSpeedChange:
-    """The spindle turns as a technology programs it, from here on, also in rapid."""
+    """Change of the spindle to a technology's speed, also for following rapid moves."""
 
     technology: Ref[Entity]
 
@@ -125,10 +125,10 @@ Step = Move | Dwell | SpindleCommand | SpindleSpeedChange
 
 
 class CycleKind(StrEnum):
-    """Cycles that controls have of their own."""
+    """Kinds of canned cycles that controls offer."""
 
     DRILL = "drill"
-    """feed in, rapid out"""
+    """Feed in, rapid out."""
     DWELL = "drill with dwell"
     PECK = "peck, full retract"
     CHIP_BREAK = "peck, short retract"
@@ -139,24 +139,24 @@ class CycleKind(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CannedCycle:
-    """A run of steps that a control can make with one of its own cycles."""
+    """Run of steps that a control can make with a canned cycle."""
 
     kind: CycleKind
     first: int
-    """index of the first step that the cycle replaces: the feed from the retract plane"""
+    """Index of the first step that the cycle replaces: the feed from the retract plane."""
     last: int
-    """index of the last one: back on the retract plane"""
+    """Index of the last step: back on the retract plane."""
     retract_z: float
-    """Retract z, mm, of the retract plane"""
+    """Height z of the retract plane, mm."""
     bottom_z: float
-    """Bottom z, mm"""
+    """Height z of the bottom, mm."""
     feed: Feed
     step_depth: float = 0.0
-    """Step depth, mm of each peck"""
+    """Depth of each peck, mm."""
     retract_distance: float = 0.0
-    """Retract distance, mm of a short retract"""
+    """Distance of a short retract, mm."""
     dwell: float = 0.0
-    """Dwell, s at the bottom"""
+    """Dwell at the bottom, s."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -165,20 +165,20 @@ class ToolPath:
 
     workingstep: Ref[Entity]
     id: str
-    """Id of the workingstep"""
+    """Name of the workingstep (``its_id``)."""
     operation_ref: Ref[Entity]
     tool_ref: Ref[Entity] | None
-    """None: a rapid movement with whatever tool there is"""
+    """Tool of the path; None for a rapid movement with whatever tool is in the spindle."""
     technology_ref: Ref[Entity] | None
     functions_ref: Ref[Entity] | None
     is_turning: bool
     start: Point
     steps: tuple[Step, ...]
     safe_z: float | None = None
-    """height over which the tool comes and goes; that of the start unless given"""
+    """Height z at which the tool arrives and leaves, mm; by default that of the start."""
     cycles: tuple[CannedCycle, ...] = ()
     findings: tuple[Finding, ...] = ()
-    """what was assumed"""
+    """Findings about assumptions that were made."""
 
     def __post_init__(self) -> None:
         for point in (self.start, *(move.end for move in self.moves)):
@@ -190,23 +190,23 @@ class ToolPath:
 
     @property
     def moves(self) -> tuple[Move, ...]:
-        """The moves without the pauses between them."""
+        """Moves of the path, without dwells and spindle commands."""
         return tuple(step for step in self.steps if isinstance(step, Move))
 
     @property
     def end(self) -> Point:
-        """End of the path."""
+        """End point of the path."""
         return next((move.end for move in reversed(self.moves)), self.start)
 
     def segments(self) -> Iterator[tuple[Point, Move]]:
-        """Each move with the point where it starts."""
+        """Iterate over the moves with their start points."""
         start = self.start
         for move in self.moves:
             yield start, move
             start = move.end
 
     def stations(self) -> tuple[float, ...]:
-        """Arc length in mm from the start to the end of each move."""
+        """Arc length from the start to the end of each move, mm."""
         return tuple(accumulate(length(start, move) for start, move in self.segments()))
 
 
@@ -225,7 +225,7 @@ def radius(start: Point, arc: Arc) -> float:
 
 
 def points_along(start: Point, move: Move, *, step: float) -> Iterator[Point]:
-    """Points on a move after its start, the last one its end.
+    """Points on a move after its start, up to and including its end.
 
     Parameters
     ----------
@@ -253,19 +253,19 @@ def points_along(start: Point, move: Move, *, step: float) -> Iterator[Point]:
 
 
 LEFT_OUT = "LEFT_OUT"
-"""keyword that no file has: here a workingstep is missing"""
+"""Keyword of a placeholder for a missing workingstep; files never contain it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Function:
-    """One NC function in the order of the program."""
+    """NC function at its place in the program, such as a stop or a message."""
 
     ref: Ref[Entity]
     keyword: str
-    """EXPRESS name in capitals, ``OPTIONAL_STOP``"""
+    """EXPRESS name in capitals, such as ``OPTIONAL_STOP``."""
     id: str
     text: str = ""
-    """Text of a message"""
+    """Text of a message."""
 
 
 def plus(one: Point, other: Point) -> Point:
@@ -279,17 +279,17 @@ def minus(one: Point, other: Point) -> Point:
 
 
 def times(vector: Point, factor: float) -> Point:
-    """Vector times a number."""
+    """Product of a vector and a number."""
     return vector[0] * factor, vector[1] * factor, vector[2] * factor
 
 
 def dot(one: Point, other: Point) -> float:
-    """Scalar product."""
+    """Scalar product of two vectors."""
     return sum(a * b for a, b in zip(one, other, strict=True))
 
 
 def cross(one: Point, other: Point) -> Point:
-    """Vector product."""
+    """Vector product of two vectors."""
     return (
         one[1] * other[2] - one[2] * other[1],
         one[2] * other[0] - one[0] * other[2],

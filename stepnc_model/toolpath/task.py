@@ -1,7 +1,7 @@
-"""Input of every tool path, and the path in the making.
+"""Input of tool path generation, and the builder of a path.
 
-The input is the workingstep with its tool, its frame and its heights. The path builder is
-running state, one object for one workingstep.
+The input is the workingstep with its tool, its frame and its heights. The path builder keeps
+running state, one object per workingstep.
 """
 
 from dataclasses import dataclass, replace
@@ -38,40 +38,40 @@ from stepnc_model.toolpath.path import (
 )
 
 DEFAULT_CLEARANCE = 5.0
-"""mm from the feature up to the retract plane where the file gives none"""
+"""Default distance from the feature up to the retract plane, mm."""
 
 ABOVE_STOCK = 1.0
-"""mm over the stock at which the tool may move in rapid"""
+"""Height above the stock at which the tool may move in rapid, mm."""
 
 DEFAULT_SECURITY = 50.0
-"""mm above zero where a file gives no security plane"""
+"""Default height of the security plane above zero, mm."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ToolPathTask:
-    """One workingstep with what its tool path needs to know."""
+    """Workingstep with everything needed to generate its tool path."""
 
     program: Program
     step: ResolvedWorkingstep
     tool: Tool
     security_z: float
-    """Security z, mm, height of the security plane in the setup"""
+    """Height z of the security plane in the setup, mm."""
     stock: Stock | None
     findings: tuple[Finding, ...] = ()
 
     @property
     def feed(self) -> Feed:
-        """The programmed feed."""
+        """Programmed feed of the workingstep."""
         return Feed(technology=self.step.technology_ref)
 
     @property
     def plunge_feed(self) -> Feed:
-        """The feed on the way down into the material: as advised, else the programmed one.
+        """Feed of downward moves into the material: the recorded plunge feed or else the feed.
 
         Raises
         ------
         PathError
-            When the advised one is not positive.
+            If the recorded plunge feed is not positive.
         """
         plunge = replace(self.feed, is_plunge=True)
         record = find_record(self.program, self.step)
@@ -79,14 +79,14 @@ class ToolPathTask:
         if per_tooth is None:
             return plunge
         if per_tooth <= 0.0:
-            message = f"plunge feed {per_tooth:g} mm/tooth: it must be positive"
+            message = f"plunge feed {per_tooth:g} mm/tooth must be positive"
             raise self.fault(message, self.step.operation_ref, "plunge_feed_per_tooth")
         return replace(plunge, per_revolution=per_tooth * self.tool.teeth)
 
     def rapid_z(self, at: Point) -> float:
-        """Height to which the tool may come in rapid over a point: its own, or above the stock.
+        """Lowest height in rapid above a point: its own height, or above the stock.
 
-        Nobody keeps account of what is cut away: the stock counts as it was bought.
+        Removed material is not tracked: the raw stock counts.
         """
         stock, half = self.stock, 0.5 * self.tool.diameter
         if stock is None:
@@ -102,31 +102,31 @@ class ToolPathTask:
         return feature_frame(self.program, self.step.setup, feature)
 
     def fault(self, message: str, ref: Ref[Entity], attribute: str = "") -> PathError:
-        """Why no path can be made, at one instance."""
+        """Error that no path can be made because of one entity."""
         return self.program.path_error(message, ref, attribute)
 
     def note(
         self, message: str, ref: Ref[Entity] | None = None, attribute: str = ""
     ) -> Finding:
-        """Note an assumption."""
+        """Create a finding that notes an assumption."""
         at = self.step.operation_ref if ref is None else ref
         return self.program.finding(Severity.NOTE, message, at, attribute)
 
     def warning(
         self, message: str, ref: Ref[Entity] | None = None, attribute: str = ""
     ) -> Finding:
-        """Warn of what a machinist would want to see."""
+        """Create a finding that warns the machinist."""
         at = self.step.operation_ref if ref is None else ref
         return self.program.finding(Severity.WARNING, message, at, attribute)
 
 
 def job_of(program: Program, step: ResolvedWorkingstep) -> ToolPathTask:
-    """Input of the tool path of a workingstep.
+    """Collect the input of a workingstep's tool path.
 
     Raises
     ------
     SchemaError, PathError
-        When its tool or security plane cannot be used.
+        If the tool or security plane cannot be used.
     """
     with program.using(step.ref, step.operation_ref, step.setup):
         stock = stock_of(program, step.setup)
@@ -142,15 +142,15 @@ def job_of(program: Program, step: ResolvedWorkingstep) -> ToolPathTask:
 
 
 def stock_of(program: Program, setup: Ref[Setup] | None) -> Stock | None:
-    """The raw part, by the bounding geometry of the raw piece or of the workpiece.
+    """Raw part, from the bounding geometry of the raw piece or the workpiece.
 
-    Else what the user says, in the coordinates of every setup.
+    Otherwise the stock given by the user, in the coordinates of every setup.
     """
     return drawn_stock(program, setup) or program.stock
 
 
 def drawn_stock(program: Program, setup: Ref[Setup] | None) -> Stock | None:
-    """The raw part as the file has it; None where it says nothing of it."""
+    """Raw part as given in the file; None if the file does not describe it."""
     workpiece = program.workpiece()
     if workpiece is None:
         return None
@@ -167,7 +167,7 @@ def drawn_stock(program: Program, setup: Ref[Setup] | None) -> Stock | None:
 
 
 def _placed(shape: Block | RightCircularCylinder, frame: Frame) -> Stock:
-    """The box around a body in a frame."""
+    """Bounding box of a body placed in a frame."""
     radius = None
     if isinstance(shape, Block):
         low, high = (0.0, 0.0, 0.0), (shape.x, shape.y, shape.z)
@@ -176,7 +176,7 @@ def _placed(shape: Block | RightCircularCylinder, frame: Frame) -> Stock:
         high = (shape.radius, shape.radius, shape.height)
         radius = shape.radius
     if max(map(abs, (*low, *high))) > FARTHEST:
-        raise ValueError(f"a size beyond {FARTHEST:g} mm")
+        raise ValueError(f"the stock is larger than {FARTHEST:g} mm")
     corners = [
         frame.point((x, y, z))
         for x in (low[0], high[0])
@@ -205,10 +205,10 @@ def clamps_of(program: Program, setup: Ref[Setup] | None) -> tuple[Point, ...]:
 def _security(
     program: Program, step: ResolvedWorkingstep, stock: Stock | None
 ) -> tuple[float, tuple[Finding, ...]]:
-    """Height of the security plane: the workingstep's, else the setup's, else a default.
+    """Height of the security plane: from the workingstep, the setup, or a default, mm.
 
-    Files give it in the coordinates of the setup, or in those of the feature. The first
-    reading holds where it brings the plane above the feature.
+    Files give it in the coordinates of the setup or of the feature. The first reading is used
+    where it puts the plane above the feature.
     """
     entity = program.get(step.ref)
     planes = [getattr(entity, "its_secplane", None)]
@@ -218,7 +218,7 @@ def _security(
     found = [plane for plane in planes if plane is not None]
     if not found:
         height = max(DEFAULT_SECURITY, (stock.high[2] if stock else 0.0) + DEFAULT_CLEARANCE)
-        text = f"no security plane: z = {height:g} mm assumed"
+        text = f"no security plane given: assuming z = {height:g} mm"
         return height, (program.finding(Severity.NOTE, text, step.ref, "its_secplane"),)
     height = frame_of(program, program.get(found[0]).position).origin[2]
     if isinstance(step.operation, TurningMachiningOperation) or not step.features:
@@ -229,21 +229,21 @@ def _security(
 def _raised(
     program: Program, step: ResolvedWorkingstep, stock: Stock | None, height: float
 ) -> tuple[float, tuple[Finding, ...]]:
-    """A security plane that lies above the feature and above the stock."""
+    """Raise a security plane above the feature and above the stock, with findings."""
     findings: list[Finding] = []
     top = feature_frame(program, step.setup, step.features[0]).origin[2]
     if 0.0 < height <= top:
         text = (
-            f"z = {height:g} mm in the setup is not above the feature, which begins at "
-            f"z = {top:g} mm: taken from there, z = {top + height:g} mm"
+            f"security plane z = {height:g} mm is not above the feature, whose top is at "
+            f"z = {top:g} mm: measured from there instead, z = {top + height:g} mm"
         )
         height += top
         findings.append(program.finding(Severity.WARNING, text, step.ref, "its_secplane"))
     if stock is not None and height < stock.high[2] + ABOVE_STOCK:
         safe = stock.high[2] + DEFAULT_CLEARANCE
         text = (
-            f"z = {height:g} mm is not above the stock, which ends at "
-            f"z = {stock.high[2]:g} mm: z = {safe:g} mm taken"
+            f"security plane z = {height:g} mm is not above the stock, whose top is at "
+            f"z = {stock.high[2]:g} mm: using z = {safe:g} mm"
         )
         height = safe
         findings.append(program.finding(Severity.WARNING, text, step.ref, "its_secplane"))
@@ -251,11 +251,11 @@ def _raised(
 
 
 SAME = 1e-9
-"""mm; a move shorter than this is none"""
+"""Length below which a move is dropped, mm."""
 
 
 class PathBuilder:
-    """Collects the steps of a path; knows where the tool is."""
+    """Collect the steps of a tool path and track the tool position."""
 
     def __init__(self, job: ToolPathTask, start: Point, *, is_turning: bool = False) -> None:
         self._job = job
@@ -266,26 +266,26 @@ class PathBuilder:
         self._findings: list[Finding] = list(job.findings)
         self._plunge_feed = job.plunge_feed
         self.at = start
-        """where the tool is"""
+        """Current position of the tool."""
 
     @property
     def count(self) -> int:
-        """Steps so far: the index of the next one."""
+        """Number of steps so far, the index of the next one."""
         return len(self._steps)
 
     def rapid(self, end: Point, type: MoveType = MoveType.RAPID) -> None:
-        """Straight, in rapid."""
+        """Append a straight rapid move."""
         self.add(Move(end=end, type=type))
 
     def descend(self, end: Point, type: MoveType = MoveType.RAPID) -> None:
-        """Straight down: in rapid as far as no stock can stand, at the feed from there on."""
+        """Move straight down: in rapid where no stock can be, then at the feed."""
         x, y, z = end
         safe_z = min(self._job.rapid_z(end), self.at[2])
         self.rapid((x, y, max(safe_z, z)), type)
         self.line(end, MoveType.NO_CONTACT)
 
     def line(self, end: Point, type: MoveType, feed: Feed | None = None) -> None:
-        """Straight, at the programmed feed or at another one."""
+        """Append a straight move at the programmed feed or a given feed."""
         self.add(Move(end=end, type=type, feed=feed or self._feed(end, type)))
 
     def arc(
@@ -297,45 +297,45 @@ class PathBuilder:
         turn: float,
         plane: ArcPlane = ArcPlane.XY,
     ) -> None:
-        """About a centre, at the programmed feed."""
+        """Append an arc about a centre at the programmed feed."""
         arc = Arc(centre=centre, turn=turn, plane=plane)
         self.add(Move(end=end, type=type, feed=self._feed(end, type), arc=arc))
 
     def _feed(self, end: Point, type: MoveType) -> Feed:
-        """The programmed feed, or that of an approach that goes down: a plunge or a ramp."""
+        """Programmed feed, or the plunge feed for an approach that goes down."""
         is_plunge = type is MoveType.APPROACH and end[2] < self.at[2] - SAME
         return self._plunge_feed if is_plunge else self._job.feed
 
     def add(self, move: Move) -> None:
-        """Append a move, unless it leads nowhere."""
+        """Append a move, unless it has no length."""
         if move.arc is None and _is_same(self.at, move.end):
             return
         self._steps.append(move)
         self.at = move.end
 
     def dwell(self, *, seconds: float | None = None, revolutions: float | None = None) -> None:
-        """Pause."""
+        """Append a dwell in seconds or revolutions."""
         self._steps.append(Dwell(seconds=seconds, revolutions=revolutions))
 
     def spindle(self, command: SpindleCommand) -> None:
-        """Stop, start or reverse the spindle."""
+        """Append a spindle command: stop, start or reverse."""
         self._steps.append(command)
 
     def cycle(self, cycle: CannedCycle) -> None:
-        """Say that a run of steps is a cycle that controls have."""
+        """Record that a run of steps is a canned cycle of controls."""
         self._cycles.append(cycle)
 
     def find(self, finding: Finding) -> None:
-        """Say what was assumed, once."""
+        """Add a finding unless it is already there."""
         if finding not in self._findings:
             self._findings.append(finding)
 
     def warn(self, message: str, ref: Ref[Entity], attribute: str = "") -> None:
-        """Say what a machinist would want to see, once."""
+        """Add a warning unless it is already there."""
         self.find(self._job.warning(message, ref, attribute))
 
     def finished(self) -> ToolPath:
-        """The path."""
+        """Completed tool path."""
         step = self._job.step
         return ToolPath(
             workingstep=step.ref,

@@ -1,1 +1,1 @@
-"""Tool paths that the file gives, used as they are."""
+"""Explicit tool paths of the file, used as they are given."""

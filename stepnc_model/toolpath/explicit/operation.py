@@ -1,13 +1,13 @@
-"""Tool paths that the file itself gives: lists of trajectories, connectors and pauses.
+"""Explicit tool paths of the file: lists of trajectories, connectors and pauses.
 
-ISO 14649-10, ``its_toolpath`` of an operation or of a rapid movement. How it is read here:
+ISO 14649-10, ``its_toolpath`` of an operation or of a rapid movement. Interpretation:
 
-* trajectories of a workingstep are in the coordinates of its feature, those of a rapid
+* trajectories of a workingstep are in the coordinates of its feature, trajectories of a rapid
   movement and of machine axes in the coordinates of the setup;
-* a connector (``CONNECT``) runs at feed, unless its speed is rapid: what a tool path leaves
-  out it takes from its operation, and a file may connect within a pocket;
-* trajectories that do not meet are joined straight where the gap is short, else over the
-  security plane, and down in rapid only beside or above the raw part.
+* a connector (``CONNECT``) runs at feed unless its speed is rapid: values that a tool path
+  leaves out come from its operation, and a file may connect within a pocket;
+* trajectories that do not meet are joined straight where the gap is short, otherwise over the
+  security plane, with rapid descent only beside or above the raw part.
 """
 
 from collections.abc import Sequence
@@ -31,11 +31,11 @@ from stepnc_model.toolpath.task import ToolPathTask, stock_of
 
 
 def explicit_path(job: ToolPathTask) -> ToolPath:
-    """Tool path of an operation that has one in the file, exactly as given.
+    """Tool path of an operation exactly as given in the file.
 
-    It starts at the first point of the first trajectory and ends at the last point of the
-    last: no way from the security plane and back is added, so that workingsteps which go on
-    where the one before ended can be joined without one.
+    The path starts at the first point of the first trajectory and ends at the last point of the
+    last one: no moves from or to the security plane are added, so that consecutive workingsteps
+    can be joined directly.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ def explicit_path(job: ToolPathTask) -> ToolPath:
     Raises
     ------
     PathError
-        When the operation has no path, or one that cannot be followed.
+        If the operation has no path, or its path cannot be followed.
     """
     step = job.step
     around = PathSurroundings(
@@ -77,7 +77,7 @@ def explicit_path(job: ToolPathTask) -> ToolPath:
 
 
 def rapid_movement_path(program: Program, executable: ProgramLine) -> ToolPath | None:
-    """Path of a ``RAPID_MOVEMENT`` or ``RETURN_HOME``, all of it in rapid.
+    """Path of a ``RAPID_MOVEMENT`` or ``RETURN_HOME``, all in rapid.
 
     Parameters
     ----------
@@ -87,18 +87,18 @@ def rapid_movement_path(program: Program, executable: ProgramLine) -> ToolPath |
     Returns
     -------
     ToolPath or None
-        None where the file leaves the way to the control: over the security plane to the next
+        None where the file leaves the route to the control: over the security plane to the next
         workingstep (ISO 14649-10).
 
     Raises
     ------
     PathError
-        When the executable is no rapid movement, or its path cannot be followed.
+        If the executable is not a rapid movement, or its path cannot be followed.
     """
     ref = executable.ref
     movement = program.get(ref)
     if not isinstance(movement, RapidMovement):
-        raise program.path_error("is no rapid movement", ref)
+        raise program.path_error("is not a rapid movement", ref)
     if movement.its_toolpath is None:
         return None
     with program.using(ref):
@@ -134,20 +134,20 @@ def _walked(
     *,
     at: Ref[Entity],
 ) -> tuple[ExplicitPathBuilder, Point]:
-    """Paths followed in each of some frames, and where they start."""
+    """Follow paths in each of several frames; return the builder and the start point."""
     walk = ExplicitPathBuilder(around)
     for frame in frames:
         walk.follow(paths, frame)
     if walk.start is None:
-        raise around.program.path_error("its tool path leads nowhere", at, "its_toolpath")
+        raise around.program.path_error("the tool path contains no moves", at, "its_toolpath")
     return walk, walk.start
 
 
 def _frames(job: ToolPathTask) -> tuple[Frame, ...]:
-    """Frames that the path is followed in: one for each copy of a pattern.
+    """Frames in which the path is followed: one for each copy of a pattern.
 
-    A path for an element of a compound feature is given in the coordinates of the compound:
-    so it is in example 3 of ISO 14649-11, where it begins on the security plane.
+    A path for an element of a compound feature is given in the coordinates of the compound, as
+    in example 3 of ISO 14649-11, where it begins on the security plane.
     """
     if not job.step.features:
         return (workpiece_frame(job.program, job.step.setup),)
@@ -160,8 +160,8 @@ def _frames(job: ToolPathTask) -> tuple[Frame, ...]:
 def _paths(
     program: Program, ref: Ref[Entity], paths: Ref[ToolpathList] | None
 ) -> tuple[Ref[Toolpath], ...]:
-    """Tool paths in their order."""
+    """Tool paths of an explicit path list, in order."""
     if paths is None:
-        raise program.path_error("has no tool path of its own", ref, "its_toolpath")
+        raise program.path_error("has no explicit tool path", ref, "its_toolpath")
     with program.using(paths):
         return tuple(program.get(paths).its_list)

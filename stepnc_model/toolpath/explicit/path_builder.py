@@ -1,14 +1,14 @@
-"""An explicit path while it is being followed: running state, one object for one path.
+"""Builder of explicit tool paths; keeps running state, one object per path.
 
-Some ways to a cut and from it are told by a few parameters (ISO 14649-10).
+Some approach and lift paths are given by a few parameters (ISO 14649-10):
 
 * ``ap_lift_path_angle``: from the fixed point straight to the bend, ``benddist`` before the
   cut, and from there down onto its tangent at ``angle`` to it;
 * ``ap_lift_path_tangent``: from the fixed point straight onto an arc of ``radius`` that runs
-  into the tangent of the cut, in the plane of both.
+  tangentially into the cut, in the plane of both.
 
-A lift is an approach run backwards. So the two are read here: the standard draws them, and
-says no more.
+A lift is an approach run backwards. The standard only draws the two paths; the above is how
+they are interpreted here.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -59,30 +59,30 @@ from stepnc_model.toolpath.task import DEFAULT_CLEARANCE
 from stepnc_model.units import rad_from_deg
 
 NO_LENGTH = 1e-9
-"""mm"""
+"""Length below which a segment is dropped, mm."""
 
 LEAST_RISE = 1e-3
-"""of a unit vector along z, below which a direction leads to no security plane"""
+"""Least z component of a unit direction that leads to a security plane."""
 
 
 def approach_segments(
     program: Program, ref: Ref[ApproachLiftPath], *, frame: Frame, cut: Segment
 ) -> tuple[Segment, ...]:
-    """Way from the fixed point to the start of a cut.
+    """Approach from the fixed point to the start of a cut.
 
     Parameters
     ----------
     program : Program
     ref : Ref
     frame : Frame
-        That the fixed point is given in.
+        Frame in which the fixed point is given.
     cut : Segment
-        First one of the cut, in the setup.
+        First segment of the cut, in the setup.
 
     Raises
     ------
     PathError
-        When no such way exists.
+        If there is no such path.
     """
     start, tangent = cut.start, _tangent(cut)
     path = program.get(ref)
@@ -97,13 +97,13 @@ def approach_segments(
         )
     if isinstance(path, ApLiftPathTangent):
         return _onto_arc(program, ref, path.radius, fix, start=start, tangent=tangent)
-    raise program.path_error("an approach of this kind cannot be followed", ref)
+    raise program.path_error("this kind of approach is not supported", ref)
 
 
 def lift_segments(
     program: Program, ref: Ref[ApproachLiftPath], *, frame: Frame, cut: Segment
 ) -> tuple[Segment, ...]:
-    """Way from the end of a cut, by its last segment, to the fixed point."""
+    """Lift from the end of a cut, given by its last segment, to the fixed point."""
     back = approach_segments(program, ref, frame=frame, cut=cut.reversed())
     return tuple(segment.reversed() for segment in reversed(back))
 
@@ -111,24 +111,26 @@ def lift_segments(
 def point_on_plane(
     program: Program, at: Point, direction: Ref[Entity] | None, *, frame: Frame, height: float
 ) -> Point:
-    """Point of the security plane that a direction leads to, straight up where none is given.
+    """Point of the security plane reached in a direction; straight up if none is given.
 
     Raises
     ------
     PathError
-        When the direction does not lead up to it.
+        If the direction does not lead to the plane.
     """
     if direction is None:
         return at[0], at[1], height
     along = frame.direction(direction_of(program, direction))
     if abs(along[2]) < LEAST_RISE:
-        raise program.path_error("leads to no security plane: it is level", direction)
+        raise program.path_error(
+            "the direction is level: it does not reach the security plane", direction
+        )
     part = (height - at[2]) / along[2]
     return at[0] + part * along[0], at[1] + part * along[1], height
 
 
 def _tangent(segment: Segment) -> Point:
-    """Unit vector along the start of a segment; the rise of a helix is left out."""
+    """Unit tangent at the start of a segment, without the rise of a helix."""
     bend = segment.bend
     if bend is None:
         return _unit(minus(segment.end, segment.start))
@@ -145,13 +147,13 @@ def _onto_arc(
     start: Point,
     tangent: Point,
 ) -> tuple[Segment, ...]:
-    """Line from a point and arc that meet tangentially, and meet the cut tangentially."""
+    """Line and arc from a point that run tangentially into each other and into the cut."""
     away = minus(fix, start)
     forward = dot(away, tangent)
     aside = minus(away, times(tangent, forward))
     height = sqrt(dot(aside, aside))
     if not radius > 0.0 or height < NO_LENGTH:
-        message = "the fixed point lies on the tangent of the cut: no arc leads there"
+        message = "the fixed point lies on the tangent of the cut: no arc is possible"
         raise program.path_error(message, ref)
     across = times(aside, 1.0 / height)
     # In the plane of tangent (u) and across (v) the centre is (0, radius).
@@ -178,38 +180,38 @@ def _unit(vector: Point) -> Point:
 
 
 SHORT_GAP = 1.0
-"""mm between two trajectories that a straight move joins"""
+"""Greatest gap between two trajectories that a straight move bridges, mm."""
 
 SAME = 1e-6
-"""mm between two points that are one"""
+"""Distance below which two points are the same, mm."""
 
 RAPID_CHORD = 0.05
-"""rad of an arc that a rapid takes as one chord: controls have no rapid arcs"""
+"""Angle of an arc replaced by one chord in rapid, rad; controls have no rapid arcs."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PathSurroundings:
-    """Surroundings of a path: program, stock, tool, technology."""
+    """Inputs of an explicit path: program, security plane, stock, tool and technology."""
 
     program: Program
     security_z: float
-    """Security z, mm"""
+    """Height z of the security plane, mm."""
     stock: Stock | None
     tool: Tool | None
     technology: Ref[Entity] | None
-    """None: everything is rapid"""
+    """Technology of the operation; None if everything is rapid."""
 
 
 class ExplicitPathBuilder:
-    """Collects the steps of explicit tool paths; knows where the tool is."""
+    """Collect the steps of explicit tool paths and track the tool position."""
 
     def __init__(self, around: PathSurroundings) -> None:
         self._around = around
         self._last: Segment | None = None
         self.start: Point | None = None
-        """where the path begins"""
+        """Start point of the path."""
         self.at: Point | None = None
-        """where the tool is"""
+        """Current position of the tool."""
         self.steps: list[Step] = []
         self.findings: list[Finding] = []
 
@@ -220,16 +222,16 @@ class ExplicitPathBuilder:
                 self._follow(ref, paths[index + 1 :], frame)
 
     def _follow(self, ref: Ref[Toolpath], rest: Sequence[Ref[Toolpath]], frame: Frame) -> None:
-        """Append one tool path; those after it tell where a connector leads."""
+        """Append one tool path; the following paths define where a connector leads."""
         program = self._around.program
         path = program.get(ref)
         if not isinstance(path, Toolpath):
-            raise program.error("stands where a tool path belongs", ref)
+            raise program.error("is not a tool path, where one is expected", ref)
         pace = pace_of(program, ref, self._around.technology)
         if path.its_machine_functions is not None:
-            self._note("machine functions of a single tool path are not switched", ref)
+            self._note("machine functions of a single tool path are ignored", ref)
         if pace.feed is None and path.its_technology is not None:
-            # Tools that fold open by the sense of the spindle depend on it.
+            # Tools that fold open by the direction of rotation depend on the spindle here.
             self.steps.append(SpindleSpeedChange(technology=path.its_technology))
         if isinstance(path, Trajectory):
             self._trace(self._segments(Ref(ref), frame), pace)
@@ -242,23 +244,23 @@ class ExplicitPathBuilder:
         elif isinstance(path, ApproachLiftPath):
             self._approach_or_lift(ref, path, self._next(rest, frame), frame)
         else:
-            raise program.path_error("a tool path of this kind cannot be followed", ref)
+            raise program.path_error("this kind of tool path is not supported", ref)
 
     def _segments(self, ref: Ref[Trajectory], frame: Frame) -> tuple[Segment, ...]:
-        """Way of a trajectory."""
+        """Segments of a trajectory."""
         return trajectory_segments(
             self._around.program, ref, frame=frame, tool=self._around.tool, at=self.at
         )
 
     def _next(self, rest: Sequence[Ref[Toolpath]], frame: Frame) -> Segment | None:
-        """First segment of the trajectory that follows."""
+        """First segment of the following trajectory, or None."""
         for ref in rest:
             if isinstance(self._around.program.get(ref), Trajectory):
                 return next(iter(self._segments(Ref(ref), frame)), None)
         return None
 
     def _trace(self, segments: Sequence[Segment], pace: MoveSpeeds) -> None:
-        """Along segments, from wherever the tool is."""
+        """Follow segments, moving to their start first."""
         if not segments:
             return
         self._join(segments[0].start)
@@ -270,14 +272,14 @@ class ExplicitPathBuilder:
         self._last = segments[-1]
 
     def _pause(self, ref: Ref[Entity], path: Feedstop) -> None:
-        """Stand still."""
+        """Append a dwell."""
         if not 0.0 < path.dwell < inf:
-            message = f"dwell {path.dwell:g} s: it must be positive"
+            message = f"dwell {path.dwell:g} s must be positive"
             raise self._around.program.path_error(message, ref)
         self.steps.append(Dwell(seconds=path.dwell))
 
     def _join(self, target: Point) -> None:
-        """Move to the start of the next trajectory."""
+        """Move to the start of the next trajectory, straight or over the security plane."""
         if self.at is None:
             self.start = self.at = target
             return
@@ -291,7 +293,7 @@ class ExplicitPathBuilder:
         self._down((target[0], target[1], self._around.security_z), target)
 
     def _over(self, path: ConnectSecplane, following: Segment | None, frame: Frame) -> None:
-        """Up to the security plane, over, and down."""
+        """Move up to the security plane, over, and down."""
         program, height = self._around.program, self._around.security_z
         if self.at is not None:
             up = point_on_plane(program, self.at, path.up_dir, frame=frame, height=height)
@@ -304,7 +306,7 @@ class ExplicitPathBuilder:
             self._down(above, target)
 
     def _straight(self, following: Segment | None, pace: MoveSpeeds) -> None:
-        """Straight to the next trajectory."""
+        """Move straight to the next trajectory."""
         if following is not None and self.at is not None:
             self._add([Move(end=following.start, type=pace.type, feed=pace.feed)])
 
@@ -315,28 +317,28 @@ class ExplicitPathBuilder:
         following: Segment | None,
         frame: Frame,
     ) -> None:
-        """Move to the next cut, or from the last one, by the type of the path."""
+        """Move to the next cut, or away from the last one, by the type of the path."""
         program = self._around.program
         pace = pace_of(program, ref, self._around.technology)
         cut = self._last if path.its_type is ToolpathType.LIFT else following
         if cut is None:
-            raise program.path_error("there is no trajectory that it leads to or from", ref)
+            raise program.path_error("there is no trajectory to approach or leave", ref)
         make = lift_segments if path.its_type is ToolpathType.LIFT else approach_segments
         self._trace(make(program, Ref(ref), frame=frame, cut=cut), pace)
 
     @property
     def _feed(self) -> Feed | None:
-        """The programmed feed."""
+        """Programmed feed; None if everything is rapid."""
         technology = self._around.technology
         return None if technology is None else Feed(technology=technology)
 
     def _rise(self, end: Point) -> None:
-        """Up in rapid, unless the tool is as high already."""
+        """Move up in rapid unless the tool is already as high."""
         if self.at is not None and self.at[2] < end[2]:
             self._add([Move(end=end, type=MoveType.RETRACT)])
 
     def _down(self, above: Point, target: Point) -> None:
-        """Over in rapid, and down: in rapid where no stock can be, at feed where it can."""
+        """Move over in rapid, then down: in rapid where no stock can be, else at feed."""
         height = max(above[2], self.at[2] if self.at is not None else above[2])
         self._add([Move(end=(above[0], above[1], height), type=MoveType.RAPID)])
         if self._is_clear(target):
@@ -367,7 +369,7 @@ class ExplicitPathBuilder:
         )
 
     def _add(self, moves: Iterable[Move]) -> None:
-        """Append moves; what lies along a rapid arc becomes chords."""
+        """Append moves, replacing rapid arcs by chords."""
         for move in moves:
             for part in _without_rapid_arcs(self.at or move.end, move):
                 if part.arc is not None or self.at is None or dist(self.at, part.end) > SAME:
@@ -385,7 +387,7 @@ def _moves(segment: Segment, pace: MoveSpeeds) -> Iterator[Move]:
 
 
 def _without_rapid_arcs(start: Point, move: Move) -> Iterator[Move]:
-    """A move as a control can make it."""
+    """Split a rapid arc into chords; yield other moves unchanged."""
     if move.arc is None or move.feed is not None:
         yield move
         return

@@ -1,12 +1,12 @@
-"""Trajectories of the file as lines and arcs of the tool's tip, and their feeds.
+"""Trajectories of the file as lines and arcs of the tool tip, with their feeds.
 
-ISO 14649-10: by the tool centre point, by the point where cutter and surface touch, or by the
-axes of the machine.
+ISO 14649-10: a trajectory is given by the tool centre point, by the point where cutter and
+surface touch, or by the axes of the machine.
 
-A feed is rapid, a factor, or a curve of factors along the way (``its_speed``). What is left out
-comes from the technology of the tool path, else from that of the operation. A
-``toolpath_speed`` is a B-spline of one coordinate, the factor on the feedrate; its parameter
-runs evenly along the path.
+A feed is rapid, a factor, or a curve of factors along the path (``its_speed``). A missing speed
+comes from the technology of the tool path, or else of the operation. A ``toolpath_speed`` is a
+B-spline of one coordinate, the factor on the feedrate; its parameter runs evenly along the
+path.
 """
 
 from collections.abc import Iterator, Sequence
@@ -34,7 +34,7 @@ from stepnc_model.toolpath.frame import Frame, point_of
 from stepnc_model.toolpath.path import Feed, Move, MoveType, Point, length
 
 PIECES = 64
-"""pieces of a path along which a curve of factors is sampled, at least"""
+"""Least number of pieces of a path along which a curve of factors is sampled."""
 
 TYPES = {
     ToolpathType.APPROACH: MoveType.APPROACH,
@@ -44,34 +44,34 @@ TYPES = {
     ToolpathType.CONTACT: MoveType.CONTACT,
     ToolpathType.TRAJECTORY_PATH: MoveType.CONTACT,
 }
-"""what the moves of a tool path at feed are for"""
+"""Type of the moves of a tool path at feed, by the path's own type."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MoveSpeeds:
-    """Feeds of the moves of one tool path."""
+    """Move type and feed of the moves of one tool path."""
 
     type: MoveType
     feed: Feed | None
-    """None: rapid"""
+    """Feed of the moves; None for rapid."""
     factors: Spline | None = None
-    """on the feed, along the path"""
+    """Factors on the feed along the path."""
 
 
 def pace_of(program: Program, ref: Ref[Toolpath], technology: Ref[Entity] | None) -> MoveSpeeds:
-    """Pace of a tool path.
+    """Move type and feed of a tool path.
 
     Parameters
     ----------
     program : Program
     ref : Ref
     technology : Ref or None
-        Of the operation; None for a rapid movement, where everything is rapid.
+        Technology of the operation; None for a rapid movement, where everything is rapid.
 
     Raises
     ------
     PathError
-        When the factor on the feed is not positive.
+        If the factor on the feed is not positive.
     """
     path = program.get(ref)
     type = TYPES.get(path.its_type, MoveType.CONTACT)
@@ -85,31 +85,31 @@ def pace_of(program: Program, ref: Ref[Toolpath], technology: Ref[Entity] | None
     if isinstance(speed, Ref):
         entity: Entity = program.get(speed)
         if not isinstance(entity, ToolpathSpeed):
-            raise program.path_error(f"{speed} is no speed", ref, "its_speed")
+            raise program.path_error(f"{speed} is not a tool path speed", ref, "its_speed")
         factors = spline_of(program, entity.speed)
         for factor, *others in factors.poles:
             _check(program, ref, factor)
             if any(others):
                 raise program.path_error(
-                    "factors on the feed have one coordinate", ref, "its_speed"
+                    "feed factors must have one coordinate", ref, "its_speed"
                 )
         return MoveSpeeds(type=type, feed=feed, factors=factors)
     value = speed.value if isinstance(speed, Typed) else speed
     if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise program.path_error(f"{value} is no factor on the feed", ref, "its_speed")
+        raise program.path_error(f"{value} is not a valid feed factor", ref, "its_speed")
     _check(program, ref, float(value))
     return MoveSpeeds(type=type, feed=replace(feed, ratio=float(value)))
 
 
 def paced(start: Point, moves: Sequence[Move], factors: Spline) -> Iterator[Move]:
-    """Moves in pieces, each with the factor of its middle.
+    """Split moves into pieces, each with the feed factor at its middle.
 
     Parameters
     ----------
     start : Point
-        Where the first move starts.
+        Start of the first move.
     moves : sequence of Move
-        All of one tool path, at feed.
+        All moves of one tool path, at feed.
     factors : Spline
     """
     starts = [start, *(move.end for move in moves[:-1])]
@@ -129,7 +129,7 @@ def paced(start: Point, moves: Sequence[Move], factors: Spline) -> Iterator[Move
 
 
 def _pieces(start: Point, move: Move, count: int) -> Iterator[Move]:
-    """A move in pieces of equal length."""
+    """Split a move into pieces of equal length."""
     arc = move.arc and replace(move.arc, turn=move.arc.turn / count)
     for index in range(1, count):
         yield replace(move, end=_point_at(start, move, index / count), arc=arc)
@@ -137,7 +137,7 @@ def _pieces(start: Point, move: Move, count: int) -> Iterator[Move]:
 
 
 def _point_at(start: Point, move: Move, part: float) -> Point:
-    """Point at a part of a line, an arc or a helix."""
+    """Point at a fraction of a line, an arc or a helix."""
     point = [a + part * (b - a) for a, b in zip(start, move.end, strict=True)]
     if move.arc is not None:
         first, second, _ = move.arc.plane.axes
@@ -150,15 +150,13 @@ def _point_at(start: Point, move: Move, part: float) -> Point:
 
 def _check(program: Program, ref: Ref[Entity], factor: float) -> None:
     if not 0.0 < factor < inf:
-        raise program.path_error(
-            f"factor {factor:g} on the feed: it must be positive", ref, "its_speed"
-        )
+        raise program.path_error(f"feed factor {factor:g} must be positive", ref, "its_speed")
 
 
 AXES = ("X", "Y", "Z")
 
 UPRIGHT = 1e-6
-"""sine of the angle by which a tool axis may lean, or a normal differ from the tool's axis"""
+"""Greatest sine of a tool axis's lean, or between a normal and the tool's axis."""
 
 
 def trajectory_segments(
@@ -169,18 +167,18 @@ def trajectory_segments(
     tool: Tool | None,
     at: Point | None,
 ) -> tuple[Segment, ...]:
-    """Way of the tool's tip along a trajectory, in its direction.
+    """Path of the tool tip along a trajectory, in its direction.
 
     Parameters
     ----------
     program : Program
     ref : Ref
     frame : Frame
-        That its curve is given in.
+        Frame in which the curve is given.
     tool : Tool or None
-        Needed where the curve is that of the cutter's contact.
+        Needed for curves of the cutter contact point.
     at : Point or None
-        Where the tool is: axes that are not named stay there.
+        Position of the tool: axes that are not named stay there.
 
     Returns
     -------
@@ -190,7 +188,7 @@ def trajectory_segments(
     Raises
     ------
     PathError
-        When the curve cannot be followed with a tool that stands along z.
+        If the curve cannot be followed with a tool parallel to z.
     """
     trajectory = program.get(ref)
     if isinstance(trajectory, AxisTrajectory):
@@ -203,7 +201,7 @@ def trajectory_segments(
         else:
             segments = _contact(program, ref, trajectory, frame=frame, tool=tool)
     else:
-        raise program.path_error("a trajectory of this kind cannot be followed", ref)
+        raise program.path_error("this kind of trajectory is not supported", ref)
     if trajectory.its_direction is False:
         return tuple(segment.reversed() for segment in reversed(segments))
     return segments
@@ -212,22 +210,22 @@ def trajectory_segments(
 def _axes(
     program: Program, ref: Ref[Entity], trajectory: AxisTrajectory, at: Point | None
 ) -> tuple[Segment, ...]:
-    """Polylines of single axes, point by point at the same time."""
+    """Segments of single-axis polylines whose points are reached simultaneously."""
     names = [name.strip().upper() for name in trajectory.axis_list]
     if len(set(names)) != len(names) or not set(names) <= set(AXES):
-        raise program.path_error(f"axes {', '.join(names)}: of X, Y and Z, each once", ref)
+        raise program.path_error(f"axes {', '.join(names)}: only X, Y and Z, each once", ref)
     if len(names) != len(trajectory.commands):
         counts = f"{len(names)} axes, {len(trajectory.commands)} commands"
         raise program.path_error(counts, ref)
     if at is None and len(names) < len(AXES):
-        raise program.path_error("does not say where its other axes are", ref)
+        raise program.path_error("the positions of the other axes are unknown", ref)
     columns = {
         AXES.index(name): _values(program, ref, command)
         for name, command in zip(names, trajectory.commands, strict=True)
     }
     counts_of = {len(values) for values in columns.values()}
     if len(counts_of) != 1:
-        raise program.path_error("its axes have different numbers of points", ref)
+        raise program.path_error("the axes have different numbers of points", ref)
     rest = at or (0.0, 0.0, 0.0)
     x, y, z = (columns.get(axis, [rest[axis]] * max(counts_of)) for axis in range(3))
     points = list(zip(x, y, z, strict=True))
@@ -237,7 +235,7 @@ def _axes(
 
 
 def _values(program: Program, ref: Ref[Entity], command: Ref[Entity]) -> list[float]:
-    """Positions of one axis."""
+    """Positions of a single axis along its command curve, mm."""
     return [point[0] for point in _points(program, ref, command)]
 
 
@@ -249,13 +247,13 @@ def _contact(
     frame: Frame,
     tool: Tool | None,
 ) -> tuple[Segment, ...]:
-    """Tip of a tool that touches a surface, by the normals of the surface."""
+    """Path of the tip of a tool that touches a surface, from the surface normals."""
     curve = program.get(trajectory.basiccurve)
     if not isinstance(curve, CurveWithNormalVector):
-        message = "has no surface normals: the tool's place beside the surface is not known"
+        message = "the curve has no surface normals: the tool position is not known"
         raise program.path_error(message, ref)
     if tool is None or tool.diameter <= 0.0:
-        raise program.path_error("needs a rotating tool", ref)
+        raise program.path_error("a contact trajectory needs a rotating tool", ref)
     contacts = _points(program, ref, curve.basiccurve)
     normals = _points(program, ref, curve.surface_normal)
     if len(contacts) != len(normals):
@@ -268,30 +266,32 @@ def _contact(
 
 
 def _points(program: Program, ref: Ref[Entity], curve: Ref[Entity]) -> list[Point]:
-    """Points of a polyline: other curves have no normal for each of their points."""
+    """Points of a polyline; other curves have no normal for each point."""
     line = program.get(curve)
     if not isinstance(line, Polyline):
-        raise program.path_error(f"{curve} is no polyline: only those are followed here", ref)
+        raise program.path_error(
+            f"{curve} is not a polyline: only polylines are supported here", ref
+        )
     return [point_of(program, point) for point in line.points]
 
 
 def _tip(
     program: Program, ref: Ref[Entity], tool: Tool, *, contact: Point, normal: Point
 ) -> Point:
-    """Tip of a tool that touches a point.
+    """Tip of a tool that touches a surface at a point.
 
-    With the tool's radius R, the radius r of its corner and the unit normal n it lies at
+    With the tool's radius R, its corner radius r and the unit normal n it lies at
     ``contact + r·n + (R − r)·n_xy/|n_xy| − r·z``: R = r for a ball, r = 0 for a flat end.
     """
     size = dist(normal, (0.0, 0.0, 0.0))
     if size <= 0.0:
-        raise program.path_error("a surface normal is 0: it points nowhere", ref)
+        raise program.path_error("a surface normal has zero length", ref)
     x, y, z = (part / size for part in normal)
     corner = tool.corner_radius or 0.0
     flat = 0.5 * tool.diameter - corner
     across = hypot(x, y)
     if flat > UPRIGHT and across < UPRIGHT:
-        message = "a flat tool on level ground: the normal does not tell where its axis is"
+        message = "a flat tool on a level surface: its position is ambiguous"
         raise program.path_error(message, ref)
     aside = corner + (flat / across if flat > UPRIGHT else 0.0)
     return contact[0] + aside * x, contact[1] + aside * y, contact[2] + corner * (z - 1.0)
@@ -300,7 +300,7 @@ def _tip(
 def _check_axis(
     program: Program, ref: Ref[Entity], curve: Ref[Entity] | None, frame: Frame
 ) -> None:
-    """Refuse a tool axis that leans: paths are those of three axes."""
+    """Raise an error if the tool axis is tilted: only three-axis paths are supported."""
     if curve is None:
         return
     axis = program.get(curve)
@@ -309,8 +309,8 @@ def _check_axis(
     elif isinstance(axis, BSplineCurve):
         ends = axis.control_points_list
     else:
-        raise program.path_error("its tool axis is no polyline or B-spline", ref)
+        raise program.path_error("the tool axis is not a polyline or B-spline", ref)
     for end in ends:
         x, y, z = frame.direction(point_of(program, end))
         if z <= 0.0 or hypot(x, y) > UPRIGHT * z:
-            raise program.path_error("its tool axis leans: paths are those of three axes", ref)
+            raise program.path_error("the tool axis is tilted: only three-axis paths work", ref)

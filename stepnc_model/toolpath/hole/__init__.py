@@ -1,1 +1,1 @@
-"""Holes: depths, feeds and the steps of the drilling family."""
+"""Drilling, boring, reaming and tapping: depths, feeds and moves of hole operations."""

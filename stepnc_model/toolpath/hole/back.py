@@ -1,28 +1,29 @@
-"""Boring from behind: through a narrower hole, then up into its back (ISO 14649-11).
+"""Back boring: through a narrower hole, then upwards into its back (ISO 14649-11).
 
 Above the hole the spindle stops with the edge in a known direction, and the tool is shifted the
-opposite way; so it passes the hole, stands below it back on the axis, turns, and feeds up. It
-leaves the way it came. No move inside the workpiece is rapid.
+opposite way, so that it passes the hole. Below the hole it moves back to the axis, starts
+turning and feeds up. It leaves in reverse order. No move inside the workpiece is rapid.
 
-How a file is read here:
+Interpretation of the file:
 
-* ``cutting_depth`` counts from the back of the part up;
-* the programmed point is the tip of the tool. The edge that bores lies above it: by
-  ``cutting_edge_length``, or where the tool is a cone of lip angle α by the height of the cone
-  from the tool's diameter D to that of the hole, ``(D − d)/2 · tan α``. Where neither is given
-  it is the programmed point. EXAMPLE3 of ISO 14649-11, which brings its path, feeds up by 3 mm
-  and stops with the tip below the back of the part: how high its tool is, no attribute tells;
-* the diameter d of the hole that is passed is the narrowest of ``previous_diameter`` and of the
-  other holes in the compound feature; where neither is known, that of the widest tool which
+* ``cutting_depth`` is measured upwards from the back of the part;
+* the programmed point is the tip of the tool. The boring edge lies above it: by
+  ``cutting_edge_length``, or for a conical tool of lip angle α by the height of the cone
+  from the tool's diameter D to the hole's diameter d, ``(D − d)/2 · tan α``. If neither is
+  given, the edge is at the programmed point. EXAMPLE3 of ISO 14649-11, which has an explicit
+  path, feeds up by 3 mm and stops with the tip below the back of the part: no attribute gives
+  the height of its tool;
+* the diameter d of the passed hole is the smallest of ``previous_diameter`` and the other
+  holes in the compound feature; if none is known, the diameter of the widest tool that
   went through the same feature before;
 * the edge points along ``direction_for_spindle_orientation``, else along the
   ``oriented_spindle_stop`` of the machine functions.
 
-Tools whose edge folds away need no shift; their paths are for the file to give.
+Tools with a folding edge need no shift; the file has to give their paths explicitly.
 
-A bore reaches from its shoulder down to its mouth, at the back of the part. A feature whose
-axis points up begins at the shoulder and goes down to its depth plane; one whose axis points
-down, seen from behind, begins at the mouth.
+A bore extends from its shoulder down to its mouth at the back of the part. A feature whose axis
+points up begins at the shoulder and ends at its depth plane; a feature whose axis points down,
+seen from behind, begins at the mouth.
 """
 
 from collections.abc import Iterator
@@ -70,7 +71,7 @@ from stepnc_model.toolpath.task import PathBuilder, ToolPathTask
 def back_holes(job: ToolPathTask) -> Iterator[Hole]:
     """Bores at the back of holes, in the order of the file.
 
-    Each one's top is its shoulder, its depth the way from there down to its mouth.
+    The top of each is its shoulder, and its depth the distance from there down to its mouth.
 
     Yields
     ------
@@ -79,10 +80,10 @@ def back_holes(job: ToolPathTask) -> Iterator[Hole]:
     Raises
     ------
     PathError
-        When there is none, its axis does not lie along the tool, or it lacks a size.
+        If there is no bore, its axis is not parallel to the tool, or a size is missing.
     """
     if not job.step.features:
-        raise job.fault("has no feature: nothing tells where to bore", job.step.ref)
+        raise job.fault("the workingstep has no feature to bore", job.step.ref)
     for feature in job.step.features:
         for placed in placements(job.program, job.step.setup, feature):
             with job.program.using(placed.feature):
@@ -90,7 +91,7 @@ def back_holes(job: ToolPathTask) -> Iterator[Hole]:
 
 
 def _hole(job: ToolPathTask, placed: PlacedFeature) -> Hole:
-    """One bore, or the element of a compound feature that opens at the back."""
+    """Bore of a placed feature, or the element of a compound feature open at the back."""
     named = job.program.get(placed.feature)
     ref, frame = placed.feature, placed.frame
     if isinstance(named, CompoundFeature):
@@ -117,7 +118,7 @@ def _hole(job: ToolPathTask, placed: PlacedFeature) -> Hole:
 def _element(
     job: ToolPathTask, placed: PlacedFeature, compound: CompoundFeature
 ) -> Ref[Entity]:
-    """Hole of a compound feature that opens lowest; of several the tapered or widest one."""
+    """Hole of a compound feature with the lowest mouth; among equals the tapered or widest."""
     found: dict[Ref[Entity], tuple[float, bool, float]] = {}
     for ref in compound.elements:
         entity = job.program.get(ref)
@@ -126,28 +127,26 @@ def _element(
             is_tapered = entity.change_in_diameter is not None
             found[ref] = (-round(mouth, 6), is_tapered, size_of(job, ref, entity))
     if not found:
-        message = "has no round hole among its elements"
+        message = "the compound feature has no round hole among its elements"
         raise job.fault(message, placed.feature, "elements")
     return max(found, key=found.__getitem__)
 
 
 def _ends(job: ToolPathTask, ref: Ref[Entity], frame: Frame) -> tuple[float, float]:
-    """Heights of a bore's shoulder and mouth."""
+    """Heights z of a bore's shoulder and mouth, mm."""
     if abs(frame.z[0]) + abs(frame.z[1]) > PARALLEL:
         along = ", ".join(f"{part:.4g}" for part in frame.z)
-        message = (
-            f"its axis ({along}) does not lie along the tool: a setup of its own is needed"
-        )
+        message = f"the bore axis ({along}) is not parallel to the tool: use a separate setup"
         raise job.fault(message, ref)
     depth = feature_depth(job.program, ref)
     if depth is None:
-        raise job.fault("has no depth: nothing tells where its other end is", ref, "depth")
+        raise job.fault("the bore has no depth: its other end is unknown", ref, "depth")
     z = frame.origin[2]
     return (z, z - depth) if frame.is_upright else (z + depth, z)
 
 
 def _entry(job: ToolPathTask, placed: PlacedFeature, own: float) -> float:
-    """Height where the tool enters: the top of the compound feature, else of the stock."""
+    """Height z where the tool enters: the top of the compound feature, else of the stock."""
     named = job.program.get(placed.feature)
     frame = placed.frame
     if not isinstance(named, CompoundFeature):
@@ -165,37 +164,37 @@ def _entry(job: ToolPathTask, placed: PlacedFeature, own: float) -> float:
 
 
 def _inner(job: ToolPathTask, compound: Frame, ref: Ref[Entity]) -> Frame:
-    """Frame of an element, by that of its compound feature."""
+    """Frame of an element of a compound feature, in setup coordinates."""
     placement = getattr(job.program.get(ref), "feature_placement", None)
     return compound.inner(frame_of(job.program, placement))
 
 
 SHIFT_CLEARANCE = 0.5
-"""mm between the edge and the wall of the hole that it passes, customary"""
+"""Clearance between the edge and the wall of the passed hole, mm, customary."""
 
 MOUTH_CLEARANCE = 1.0
-"""mm between the edge and the back of the part where no overcut is given, customary"""
+"""Default clearance between the edge and the back of the part, mm, customary."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Bore:
-    """Back boring of one hole; mm, heights are those of the tip."""
+    """Shift and heights of the tip for back boring one hole, mm."""
 
     shift: tuple[float, float]
-    """from the axis, away from the edge"""
+    """Shift of the tool from the axis, away from the edge, mm."""
     below_z: float
-    """where the edge is clear of the back of the part"""
+    """Height z of the tip where the edge is clear of the back of the part, mm."""
     shoulder_z: float
-    """where the edge reaches the shoulder"""
+    """Height z of the tip where the edge reaches the shoulder, mm."""
 
 
 def bore_of(job: ToolPathTask, operation: DrillingTypeOperation, hole: Hole) -> Bore:
-    """Shift and heights of a bore.
+    """Calculate the shift and heights of a back bore.
 
     Raises
     ------
     PathError
-        When the tool does not pass the hole, or does not fit the bore behind it.
+        If the tool does not pass the hole, or does not fit the bore behind it.
     """
     passed = _passed(job, operation, hole)
     _check_tool(job, hole, passed)
@@ -213,7 +212,7 @@ def bore_of(job: ToolPathTask, operation: DrillingTypeOperation, hole: Hole) -> 
 
 
 def bore_back(course: PathBuilder, cut: HoleCut) -> None:
-    """Bore one hole; the tool stands above it on the retract plane, and ends there."""
+    """Bore one hole from behind; the tool starts and ends on the retract plane above it."""
     bore = bore_of(cut.job, cut.operation, cut.hole)
     above, below = cut.hole.at(cut.retract_z), cut.hole.at(bore.below_z)
     x, y = above[0] + bore.shift[0], above[1] + bore.shift[1]
@@ -236,7 +235,7 @@ def bore_back(course: PathBuilder, cut: HoleCut) -> None:
 def back_findings(
     job: ToolPathTask, operation: DrillingTypeOperation, hole: Hole, bore: Bore
 ) -> Iterator[Finding]:
-    """Assumptions on a bore, and remarks for a machinist.
+    """Report assumptions and warnings about a back bore.
 
     Yields
     ------
@@ -244,25 +243,25 @@ def back_findings(
     """
     tool = job.program.get(job.step.tool_ref)
     if _direction(job) is None:
-        text = "nothing tells where the edge of the stopped tool points: along +x assumed"
+        text = "the direction of the stopped tool's edge is not given: assuming +x"
         yield job.note(text, job.step.tool_ref, "direction_for_spindle_orientation")
     if _bar(job) is None:
-        text = "no diameter of the bar: whether it passes the hole is not checked"
+        text = "no boring bar diameter given: clearance in the hole is not checked"
         yield job.note(text, job.step.tool_ref, "tool_holder_diameter_for_spindle_orientation")
     if _edge(job, _passed(job, operation, hole)) is None:
-        text = "no length of the edge: its upper end is taken as the programmed point"
+        text = "no cutting edge length given: assuming the edge at the programmed point"
         yield job.warning(text, job.step.tool_ref, "its_tool_body")
     if _is_reduced(job, operation):
-        text = "one feed from behind: reductions at start and end are not used"
+        text = "back boring has a single feed: reductions at start and end are ignored"
         yield job.note(text, attribute="its_machining_strategy")
     given = operation.cutting_depth
     if given is not None and hole.depth is not None and given > hole.depth + TOLERANCE:
-        text = f"{given:g} mm is deeper than the bore of {hole.depth:g} mm"
+        text = f"{given:g} mm is deeper than the bore depth of {hole.depth:g} mm"
         yield job.warning(text, attribute="cutting_depth")
     reach = hole.entry_z - bore.below_z
     overall = tool.overall_assembly_length if isinstance(tool, MillingCuttingTool) else None
     if overall and reach > overall:
-        text = f"{overall:g} mm of tool for a depth of {reach:.4g} mm"
+        text = f"{overall:g} mm tool length is shorter than the depth of {reach:.4g} mm"
         yield job.warning(text, job.step.tool_ref, "overall_assembly_length")
     mouth_z = _mouth_z(hole)
     if job.stock is not None and mouth_z > job.stock.low[2] + TOLERANCE:
@@ -274,11 +273,11 @@ def back_findings(
 
 
 def _length(job: ToolPathTask, operation: DrillingTypeOperation, hole: Hole) -> float:
-    """Length of the bore from its mouth, which must leave a shoulder."""
+    """Length of the bore from its mouth, mm, which must leave a shoulder."""
     at = job.step.operation_ref
     given = operation.cutting_depth
     if given is not None and not 0.0 < given < inf:
-        message = f"{given:g} mm removes nothing: it must be positive"
+        message = f"{given:g} mm: the cutting depth must be positive"
         raise job.fault(message, at, "cutting_depth")
     length = (hole.depth or 0.0) if given is None else given
     shoulder_z = _mouth_z(hole) + length
@@ -307,26 +306,26 @@ def _is_reduced(job: ToolPathTask, operation: DrillingTypeOperation) -> bool:
 
 
 def _mouth_z(hole: Hole) -> float:
-    """Height where a bore opens at the back of the part."""
+    """Height z where a bore opens at the back of the part, mm."""
     return hole.top[2] - (hole.depth or 0.0)
 
 
 def _passed(job: ToolPathTask, operation: DrillingTypeOperation, hole: Hole) -> float:
-    """Diameter in mm of the hole that the tool passes on its way."""
+    """Diameter of the hole that the tool passes on its way, mm."""
     at = job.step.operation_ref
     given = operation.previous_diameter
     if given is not None and not 0.0 < given < inf:
-        raise job.fault(f"{given:g} mm: it must be positive", at, "previous_diameter")
+        raise job.fault(f"{given:g} mm: the diameter must be positive", at, "previous_diameter")
     widths = [*_narrower(job, hole), *([given] if given is not None else [])]
     widths = widths or _drilled(job)[-1:]
     if not widths:
-        message = "nothing tells the diameter of the hole that the tool passes"
+        message = "previous_diameter is needed: the diameter of the passed hole is unknown"
         raise job.fault(message, at, "previous_diameter")
     return min(widths)
 
 
 def _narrower(job: ToolPathTask, hole: Hole) -> Iterator[float]:
-    """Least diameters of the other holes of the same compound feature."""
+    """Smallest diameters of the other holes of the same compound feature, mm."""
     ref = compound_of(job.program, hole.ref)
     for element in job.program.get(ref).elements if ref is not None else ():
         entity = job.program.get(element)
@@ -336,7 +335,7 @@ def _narrower(job: ToolPathTask, hole: Hole) -> Iterator[float]:
 
 
 def _drilled(job: ToolPathTask) -> list[float]:
-    """Diameters of the tools that went through the same feature before, narrow ones first."""
+    """Diameters of the tools that went through the same feature before, smallest first, mm."""
     return sorted(
         tool_of(job.program, before.tool_ref).diameter
         for before in job.program.before(job.step)
@@ -346,25 +345,25 @@ def _drilled(job: ToolPathTask) -> list[float]:
 
 
 def _check_tool(job: ToolPathTask, hole: Hole, passed: float) -> None:
-    """Refuse a tool that bores nothing, too much, or has an edge on the other side too."""
+    """Raise an error if the tool is too narrow, too wide, or has more than one edge."""
     at, width = job.step.operation_ref, job.tool.diameter
     if width <= passed + TOLERANCE:
-        message = f"tool of {width:g} mm bores nothing behind a hole of {passed:g} mm"
+        message = f"tool of {width:g} mm is not wider than the passed hole of {passed:g} mm"
         raise job.fault(message, at, "its_tool")
     is_tapered = getattr(job.program.get(hole.ref), "change_in_diameter", None) is not None
     if hole.diameter is not None and not is_tapered and width > hole.diameter + hole.tolerance:
         message = (
-            f"tool of {width:g} mm for a bore of {hole.diameter:g} mm "
-            f"that may be {hole.tolerance:g} mm wider"
+            f"tool of {width:g} mm diameter is too wide for a bore of {hole.diameter:g} mm "
+            f"with a tolerance of {hole.tolerance:g} mm"
         )
         raise job.fault(message, at, "its_tool")
     if job.tool.teeth > 1:
-        message = f"{job.tool.teeth} teeth: a tool passes a narrower hole with one edge only"
+        message = f"{job.tool.teeth} teeth: only a single-edge tool can pass a narrower hole"
         raise job.fault(message, job.step.tool_ref, "its_tool_body")
 
 
 def _check_bar(job: ToolPathTask, shift: float, passed: float) -> None:
-    """Refuse a bar that does not pass the hole beside its axis."""
+    """Raise an error if the shifted boring bar does not pass the hole."""
     bar = _bar(job)
     if shift + 0.5 * (bar or 0.0) > 0.5 * passed + TOLERANCE:
         what = "its axis" if bar is None else f"a bar of {bar:g} mm"
@@ -374,19 +373,21 @@ def _check_bar(job: ToolPathTask, shift: float, passed: float) -> None:
 
 
 def _bar(job: ToolPathTask) -> float | None:
-    """Diameter in mm of the bar that carries the edge."""
+    """Diameter of the bar that carries the boring edge, mm; None if not given."""
     tool = job.program.get(job.step.tool_ref)
     if not isinstance(tool, MillingCuttingTool):
-        raise job.fault("is no rotating tool: it bores no hole", job.step.tool_ref)
+        raise job.fault("is not a rotating tool: it cannot bore", job.step.tool_ref)
     bar = tool.tool_holder_diameter_for_spindle_orientation
     if bar is not None and not 0.0 < bar < inf:
         attribute = "tool_holder_diameter_for_spindle_orientation"
-        raise job.fault(f"{bar:g} mm: it must be positive", job.step.tool_ref, attribute)
+        raise job.fault(
+            f"{bar:g} mm: the diameter must be positive", job.step.tool_ref, attribute
+        )
     return bar
 
 
 def _direction(job: ToolPathTask) -> tuple[float, float] | None:
-    """Direction of the edge of the stopped tool, across its axis; None where it is unknown."""
+    """Direction of the stopped tool's edge across its axis; None if unknown."""
     tool = job.program.get(job.step.tool_ref)
     ref = (
         tool.direction_for_spindle_orientation if isinstance(tool, MillingCuttingTool) else None
@@ -404,7 +405,7 @@ def _direction(job: ToolPathTask) -> tuple[float, float] | None:
 
 
 def _edge(job: ToolPathTask, passed: float) -> float | None:
-    """Height in mm of the boring edge above the tip; None where nothing tells."""
+    """Height of the boring edge above the tip, mm; None if unknown."""
     angle = lip_angle(job)
     if angle > 0.0:
         return 0.5 * (job.tool.diameter - passed) * tan(angle)
@@ -412,9 +413,9 @@ def _edge(job: ToolPathTask, passed: float) -> float | None:
 
 
 def _clearance(job: ToolPathTask, operation: DrillingTypeOperation) -> float:
-    """Way in mm from the back of the part down to where the edge is clear of it."""
+    """Distance from the back of the part down to where the edge is clear of it, mm."""
     overcut = operation.overcut_length or MOUTH_CLEARANCE
     if not 0.0 < overcut < inf:
-        message = f"{overcut:g} mm: it must not be negative"
+        message = f"{overcut:g} mm: the overcut length must not be negative"
         raise job.fault(message, job.step.operation_ref, "overcut_length")
     return overcut

@@ -1,13 +1,13 @@
-"""Moves of a tool in one hole, from the retract plane and back to it.
+"""Moves of a tool in one hole, from the retract plane to the bottom and back.
 
-ISO 14649-11: on its way out a tool feeds. Cycles of controls that drill, and those that stop
-the spindle, come out in rapid; they are named all the same where ``feed_on_retract`` is not
-given, for they leave the same hole.
+ISO 14649-11: a tool leaves the hole at feed. Drilling cycles of controls, and cycles that
+stop the spindle, retract in rapid; they are used all the same where ``feed_on_retract`` is not
+given, because they leave the same hole.
 
 Feeds may be reduced where a drill enters and where it leaves. ISO 14649-11,
-``drilling_type_strategy``: the values at the start hold down to ``depth_of_start``, those at
-the end from ``depth_of_end`` on. Both depths are those of the full diameter, below the top of
-the hole; so NIST's interpreter reads them as well.
+``drilling_type_strategy``: the values at the start apply down to ``depth_of_start``, those at
+the end from ``depth_of_end`` on. Both depths refer to the full diameter, below the top of the
+hole, as NIST's interpreter reads them.
 """
 
 from dataclasses import dataclass, replace
@@ -32,22 +32,22 @@ PERCENT = 100.0
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FeedStage:
-    """One feed, down to a height of the tip."""
+    """Feed that applies down to a height of the tool tip."""
 
     end_z: float
-    """End z, mm"""
+    """Height z of the tip at the end of the stage, mm."""
     feed: Feed
 
 
 def stages_of(
     job: ToolPathTask, operation: DrillingTypeOperation, hole: Hole, depth: Depth
 ) -> tuple[FeedStage, ...]:
-    """Feeds from the top of a hole to its bottom, in order.
+    """Feed stages from the top of a hole to its bottom, in order.
 
     Raises
     ------
     PathError
-        When a reduction is no ratio, or a tap has no pitch.
+        If a reduction is not a valid ratio, or a tap has no pitch.
     """
     bottom = hole.top[2] - depth.tip
     if isinstance(operation, Tapping):
@@ -56,7 +56,7 @@ def stages_of(
         return (FeedStage(end_z=bottom, feed=job.feed),)
     strategy: Entity = job.program.get(operation.its_machining_strategy)
     if not isinstance(strategy, DrillingTypeStrategy):
-        message = "is no strategy of drilling"
+        message = "is not a drilling strategy"
         raise job.fault(message, operation.its_machining_strategy)
     start = _reduced(job, operation, strategy, "start")
     end = _reduced(job, operation, strategy, "end")
@@ -78,15 +78,15 @@ def stages_of(
 
 
 def retract_feed(job: ToolPathTask, operation: DrillingTypeOperation, last: Feed) -> Feed:
-    """Feed out of the hole: ``feed_on_retract`` times the programmed one, else that itself.
+    """Feed out of the hole: the last feed, scaled by ``feed_on_retract`` if given.
 
-    The spindle keeps the speed that it has at the bottom.
+    The spindle keeps its speed from the bottom of the hole.
     """
     ratio = operation.feed_on_retract
     if ratio is None:
         return replace(last, ratio=1.0)
     if not 0.0 < ratio < inf:
-        message = f"{ratio:g}: it must be positive"
+        message = f"{ratio:g}: the feed ratio must be positive"
         raise job.fault(message, job.step.operation_ref, "feed_on_retract")
     return replace(last, ratio=1.0 if last.is_synchronised else ratio)
 
@@ -97,7 +97,7 @@ def _reduced(
     strategy: DrillingTypeStrategy,
     where: str,
 ) -> Feed:
-    """Programmed feed and speed, times the ratios at the start or at the end."""
+    """Programmed feed and speed, scaled by the ratios at the start or the end of the hole."""
     ratios = []
     for name in (f"reduced_feed_at_{where}", f"reduced_cut_at_{where}"):
         ratio = getattr(strategy, name)
@@ -107,14 +107,14 @@ def _reduced(
             # Files of the draft of 2001 write percent.
             ratio /= PERCENT
         if not 0.0 < ratio <= 1.0:
-            message = f"{ratio:g}: a ratio from 0 to 1, or percent up to 100"
+            message = f"{ratio:g}: must be a ratio from 0 to 1, or a percentage up to 100"
             raise job.fault(message, job.step.operation_ref, name)
         ratios.append(ratio)
     return replace(job.feed, ratio=ratios[0], speed_ratio=ratios[1])
 
 
 def _merged(stages: list[FeedStage]) -> tuple[FeedStage, ...]:
-    """Stages without those that the next one continues."""
+    """Merge consecutive stages that have the same feed."""
     kept = [
         stage
         for stage, following in zip(stages, [*stages[1:], None], strict=True)
@@ -124,7 +124,7 @@ def _merged(stages: list[FeedStage]) -> tuple[FeedStage, ...]:
 
 
 def _thread_feed(job: ToolPathTask) -> Feed:
-    """One pitch per revolution: the programmed feed over the programmed speed."""
+    """Feed of one pitch per revolution: the programmed feed divided by the programmed speed."""
     values = programmed(job.program, job.step.technology_ref)
     speed = values.spindle_speed(job.tool.diameter)
     pitch = values.feed_per_tooth(speed, job.tool.teeth) * job.tool.teeth
@@ -132,39 +132,39 @@ def _thread_feed(job: ToolPathTask) -> Feed:
 
 
 PECK_CLEARANCE = 1.0
-"""mm above the last depth where a drill that comes back begins to feed, customary"""
+"""Height above the last depth where a returning drill starts to feed, mm, customary."""
 
 MOST_PECKS = 1000
 
 SAME_DEPTH = 1e-6
-"""mm"""
+"""Tolerance within which two depths are equal, mm."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HoleCut:
-    """One hole with what its making needs; heights in mm, in the setup."""
+    """Hole with the heights and feeds for cutting it, mm, in setup coordinates."""
 
     job: ToolPathTask
     operation: DrillingTypeOperation
     hole: Hole
     retract_z: float
     bottom_z: float
-    """Bottom z of the tip"""
+    """Height z of the tool tip at the bottom, mm."""
     stages: tuple[FeedStage, ...]
 
     @property
     def feed(self) -> Feed:
-        """Feed at the bottom."""
+        """Feed at the bottom of the hole."""
         return self.stages[-1].feed
 
     @property
     def is_one_feed(self) -> bool:
-        """Whether one feed holds for the whole depth."""
+        """Whether one feed applies over the whole depth."""
         return len(self.stages) == 1
 
 
 def cut_hole(course: PathBuilder, cut: HoleCut) -> None:
-    """Make one hole; the tool stands above it on the retract plane, and ends there."""
+    """Cut one hole; the tool starts and ends on the retract plane above it."""
     if isinstance(cut.operation, Tapping):
         _tap(course, cut)
     elif isinstance(cut.operation, MultistepDrilling):
@@ -176,7 +176,7 @@ def cut_hole(course: PathBuilder, cut: HoleCut) -> None:
 
 
 def _drill(course: PathBuilder, cut: HoleCut) -> None:
-    """In and out."""
+    """Drill to the bottom in one feed and retract."""
     first = course.count
     feed_to(course, cut, cut.bottom_z)
     dwell(course, cut, cut.operation.dwell_time_bottom, "dwell_time_bottom")
@@ -191,10 +191,10 @@ def _drill(course: PathBuilder, cut: HoleCut) -> None:
 
 
 def _peck(course: PathBuilder, cut: HoleCut, operation: MultistepDrilling) -> None:
-    """Step by step, with a short retract that breaks the chip or a full one that clears it.
+    """Drill in pecks, with a short retract to break chips or a full retract to clear them.
 
-    ISO 14649-11: a retract distance of 0 or less means the retract plane. The depths are those
-    of the tip. Retracts are rapid, the last one too unless ``feed_on_retract`` is given.
+    ISO 14649-11: a retract distance of 0 or less means the retract plane. The depths refer to
+    the tip. Retracts are rapid, the last one too unless ``feed_on_retract`` is given.
     """
     first = course.count
     distance = operation.retract_distance or 0.0
@@ -219,16 +219,16 @@ def _peck(course: PathBuilder, cut: HoleCut, operation: MultistepDrilling) -> No
 
 
 def _pecks(cut: HoleCut, operation: MultistepDrilling) -> list[float]:
-    """Heights of the tip after each step but the last."""
+    """Heights z of the tip after each peck except the last, mm."""
     at = cut.job.step.operation_ref
     for name in ("first_depth", "depth_of_step"):
         value = getattr(operation, name)
         if value is None or not 0.0 < value < inf:
-            raise cut.job.fault(f"{value} mm: it must be positive", at, name)
+            raise cut.job.fault(f"{value} mm: the depth must be positive", at, name)
     top = cut.hole.top[2]
     count = (top - operation.first_depth - cut.bottom_z - SAME_DEPTH) / operation.depth_of_step
     if count > MOST_PECKS:
-        message = f"{count:.0f} steps to the bottom: {MOST_PECKS} at most"
+        message = f"{count:.0f} pecks to the bottom: at most {MOST_PECKS} allowed"
         raise cut.job.fault(message, at, "depth_of_step")
     heights: list[float] = []
     z = top - operation.first_depth
@@ -239,7 +239,7 @@ def _pecks(cut: HoleCut, operation: MultistepDrilling) -> list[float]:
 
 
 def _bore(course: PathBuilder, cut: HoleCut, operation: BoringOperation) -> None:
-    """In and out, with a test cut before and a stop of the spindle where they are given."""
+    """Bore to the bottom and retract, with a test cut and a spindle stop where given."""
     if operation.depth_of_testcut:
         _test_cut(course, cut, operation, operation.depth_of_testcut)
     first = course.count
@@ -260,7 +260,7 @@ def _bore(course: PathBuilder, cut: HoleCut, operation: BoringOperation) -> None
 
 
 def _is_oriented(cut: HoleCut) -> bool:
-    """Whether the spindle stops at an angle."""
+    """Whether the spindle stops at a defined angle."""
     ref = cut.job.step.functions_ref
     functions = cut.job.program.get(ref) if ref is not None else None
     return (
@@ -272,11 +272,11 @@ def _is_oriented(cut: HoleCut) -> bool:
 def _test_cut(
     course: PathBuilder, cut: HoleCut, operation: BoringOperation, depth: float
 ) -> None:
-    """A short cut, then out of the way to be measured, ISO 14649-11."""
+    """Make a short test cut and move away for measuring, ISO 14649-11."""
     z = cut.hole.top[2] - depth
     if not cut.bottom_z < z < cut.hole.top[2]:
         whole = cut.hole.top[2] - cut.bottom_z
-        message = f"{depth:g} mm: it must lie between 0 and the depth of {whole:g} mm"
+        message = f"{depth:g} mm: the test cut must lie between 0 and the depth of {whole:g} mm"
         raise cut.job.fault(message, cut.job.step.operation_ref, "depth_of_testcut")
     feed_to(course, cut, z)
     retract(course, cut)
@@ -287,14 +287,14 @@ def _test_cut(
         course.rapid(cut.hole.at(height))
         course.rapid((x, y, height))
         course.rapid(cut.hole.at(height))
-    text = "the hole is to be measured after the test cut: the path has no stop for it"
+    text = "measure the hole after the test cut: the path contains no program stop for it"
     course.find(cut.job.warning(text, attribute="depth_of_testcut"))
     course.spindle(SpindleCommand.START)
     course.rapid(cut.hole.at(cut.retract_z))
 
 
 def _tap(course: PathBuilder, cut: HoleCut) -> None:
-    """In by one pitch per revolution, and out the same way with the spindle reversed."""
+    """Tap by one pitch per revolution, and retract with the spindle reversed."""
     first = course.count
     feed_to(course, cut, cut.bottom_z)
     dwell(course, cut, cut.operation.dwell_time_bottom, "dwell_time_bottom")
@@ -305,7 +305,7 @@ def _tap(course: PathBuilder, cut: HoleCut) -> None:
 
 
 def feed_to(course: PathBuilder, cut: HoleCut, z: float) -> None:
-    """Down to a height, with the feed of each stage."""
+    """Feed down to a height with the feed of each stage."""
     for stage in cut.stages:
         if course.at[2] > stage.end_z + SAME_DEPTH and course.at[2] > z + SAME_DEPTH:
             end = cut.hole.at(max(z, stage.end_z))
@@ -313,23 +313,23 @@ def feed_to(course: PathBuilder, cut: HoleCut, z: float) -> None:
 
 
 def retract(course: PathBuilder, cut: HoleCut) -> None:
-    """Out to the retract plane at a feed."""
+    """Retract at feed to the retract plane."""
     feed = retract_feed(cut.job, cut.operation, cut.feed)
     course.line(cut.hole.at(cut.retract_z), MoveType.RETRACT, feed)
 
 
 def dwell(course: PathBuilder, cut: HoleCut, seconds: float | None, attribute: str) -> None:
-    """Pause where one is given."""
+    """Dwell for a time in seconds, if one is given."""
     if not seconds:
         return
     if not 0.0 < seconds < inf:
-        message = f"{seconds:g} s: it must not be negative"
+        message = f"{seconds:g} s: the dwell must not be negative"
         raise cut.job.fault(message, cut.job.step.operation_ref, attribute)
     course.dwell(seconds=seconds)
 
 
 def _name_cycle(course: PathBuilder, cut: HoleCut, kind: CycleKind, first: int) -> None:
-    """Say that the steps since the first one are a cycle of controls."""
+    """Record that the steps since the first one form a canned cycle."""
     operation = cut.operation
     step_depth = retract_distance = 0.0
     if isinstance(operation, MultistepDrilling):

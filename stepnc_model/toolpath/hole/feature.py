@@ -1,11 +1,11 @@
-"""Holes of a workingstep: where they stand, how wide they are, and how deep a tool goes.
+"""Holes of a workingstep: position, diameter, and the depth to which a tool goes.
 
-Round holes, the elements of counterbored and countersunk holes, patterns of them, and other
-features whose placement and depth plane make them a place to drill (ISO 14649-10).
+These are round holes, the elements of counterbored and countersunk holes, patterns of them, and
+other features whose placement and depth plane define where to drill (ISO 14649-10).
 
 ISO 14649-10: the depth of a hole is the length of its cylindrical part, from its placement to
-its depth plane. ISO 14649-11: ``cutting_depth`` is measured from where the cylindrical part of
-the tool begins, of a centre drill from its tip. A countersink, whose cylinder may stay above
+its depth plane. ISO 14649-11: ``cutting_depth`` is measured from the start of the cylindrical
+part of the tool; for a centre drill, from its tip. A countersink, whose cylinder may stay above
 the part, is measured like a centre drill here.
 """
 
@@ -54,76 +54,74 @@ from stepnc_model.toolpath.task import ToolPathTask
 from stepnc_model.units import rad_from_deg
 
 SINK_TOOLS = ("COUNTERSINK", "COUNTERBORE", "BACKSIDE_COUNTERSINK", "BACKSIDE_COUNTERBORE")
-"""tools that make the wide part of a compound hole"""
+"""EXPRESS keywords of tools that cut the wide part of a compound hole."""
 
 DEFAULT_TOLERANCE = 0.01
-"""mm by which a tool may be wider than a hole that names no tolerance"""
+"""Amount by which a tool may be wider than a hole without a tolerance, mm."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Hole:
-    """One hole in the coordinates of the setup; lengths in mm."""
+    """Hole in setup coordinates; lengths in mm."""
 
     ref: Ref[Entity]
-    """the round hole, or the feature that is drilled into"""
+    """Round hole, or another feature that is drilled."""
     frame: Frame
-    """Frame of the feature that the workingstep names"""
+    """Frame of the feature named by the workingstep."""
     top: Point
-    """centre where its depth counts from"""
+    """Centre of the plane from which the depth is measured."""
     entry_z: float
-    """where a tool meets the part: the top of the compound feature that it belongs to"""
+    """Height z where a tool enters the part: the top of the enclosing compound feature, mm."""
     depth: float | None
-    """Depth of its cylindrical part, below the top; None where the file gives none"""
+    """Depth of the cylindrical part below the top, mm; None where the file gives none."""
     diameter: float | None
-    """at the top; None for a feature that is no round hole"""
+    """Diameter at the top, mm; None for a feature that is not a round hole."""
     narrowest: float | None
-    """diameter of a taper's narrow end"""
+    """Diameter at the narrow end of a taper, mm."""
     tolerance: float
-    """by which it may be wider"""
+    """Amount by which the hole may be wider than its diameter, mm."""
     bottom: Entity | None
 
     @property
     def is_tapered(self) -> bool:
-        """Whether the hole narrows."""
+        """Whether the hole narrows with depth."""
         return self.narrowest != self.diameter
 
     @property
     def is_through(self) -> bool:
-        """Whether it is a through hole."""
+        """Whether the hole is a through hole."""
         return isinstance(self.bottom, (ThroughBottomCondition, ThroughPocketBottomCondition))
 
     def at(self, z: float) -> Point:
-        """Point on its axis."""
+        """Point on the hole's axis at height z."""
         return self.top[0], self.top[1], z
 
     def point(self, job: ToolPathTask, ref: Ref[CartesianPoint]) -> Point:
-        """A point given in the coordinates of the feature."""
+        """Convert a point from feature coordinates to setup coordinates."""
         return self.frame.point(point_of(job.program, ref))
 
 
 def holes_of(job: ToolPathTask, operation: DrillingTypeOperation) -> Iterator[Hole]:
-    """Holes that an operation makes, in the order of the file.
+    """Holes that an operation machines, in the order of the file.
 
     Raises
     ------
     PathError
-        When there is none, its axis does not lie along the tool, or it lacks a size.
+        If there is no hole, its axis is not parallel to the tool, or a size is missing.
     """
     if not job.step.features:
-        raise job.fault("has no feature: nothing tells where to drill", job.step.ref)
+        raise job.fault("the workingstep has no feature to drill", job.step.ref)
     for feature in job.step.features:
         for placed in placements(job.program, job.step.setup, feature):
             yield _hole(job, operation, placed)
 
 
 def _hole(job: ToolPathTask, operation: DrillingTypeOperation, placed: PlacedFeature) -> Hole:
-    """One hole, or the element of a compound feature that is meant."""
+    """Hole of a placed feature, or of the matching element of a compound feature."""
     frame = placed.frame
     if not frame.is_upright:
         along = ", ".join(f"{part:.4g}" for part in frame.z)
-        message = (
-            f"its axis ({along}) does not lie along the tool: a setup of its own is needed"
-        )
+        message = f"the hole axis ({along}) is not parallel to the tool: use a separate setup"
         raise job.fault(message, placed.feature)
     with job.program.using(placed.feature):
         compound = job.program.get(placed.feature)
@@ -133,12 +131,12 @@ def _hole(job: ToolPathTask, operation: DrillingTypeOperation, placed: PlacedFea
         placement = getattr(job.program.get(element), "feature_placement", None)
         inner = frame.inner(frame_of(job.program, placement))
         if not inner.is_upright:
-            raise job.fault("its axis does not lie along the tool", element)
+            raise job.fault("the hole axis is not parallel to the tool", element)
         return _sized(job, element, placed, inner, entry_z=frame.origin[2])
 
 
 def _entry(job: ToolPathTask, placed: PlacedFeature) -> float:
-    """Height of the compound feature around a feature that is named by itself."""
+    """Height z of the compound feature around a feature that is named directly."""
     own = placed.frame.origin[2]
     if compound_of(job.program, placed.feature) is None:
         return own
@@ -152,9 +150,9 @@ def _element(
     ref: Ref[Entity],
     elements: Sequence[Ref[Entity]],
 ) -> Ref[Entity]:
-    """Round hole of a compound feature that the operation and its tool make.
+    """Round hole of a compound feature that the operation and its tool machine.
 
-    A countersink or counterbore makes the tapered element, else the widest; a centre drill
+    A countersink or counterbore machines the tapered element, else the widest; a centre drill
     the uppermost; any other tool the narrowest that it fits into, else the widest.
     """
     holes = ((each, job.program.get(each)) for each in elements)
@@ -162,7 +160,9 @@ def _element(
         each: size_of(job, each, hole) for each, hole in holes if isinstance(hole, RoundHole)
     }
     if not widths:
-        raise job.fault("has no round hole among its elements", ref, "elements")
+        raise job.fault(
+            "the compound feature has no round hole among its elements", ref, "elements"
+        )
     if isinstance(operation, CenterDrilling):
         return max(widths, key=lambda each: _height(job, each))
     if isinstance(operation, CounterSinking) or job.tool.keyword in SINK_TOOLS:
@@ -189,7 +189,7 @@ def _has_taper(job: ToolPathTask, element: Ref[Entity]) -> bool:
 def _sized(
     job: ToolPathTask, ref: Ref[Entity], placed: PlacedFeature, own: Frame, *, entry_z: float
 ) -> Hole:
-    """A hole with its sizes; its depth counts from the top of the feature that is named."""
+    """Hole with its dimensions; its depth is measured from the top of the named feature."""
     entity = job.program.get(ref)
     depth = feature_depth(job.program, ref)
     diameter = narrowest = None
@@ -213,17 +213,17 @@ def _sized(
 
 
 def size_of(job: ToolPathTask, ref: Ref[Entity], hole: RoundHole) -> float:
-    """Diameter at the top."""
+    """Diameter of a round hole at its top, mm."""
     diameter = float(job.program.get(hole.diameter).theoretical_size)
     if not 0.0 < diameter < inf:
-        raise job.fault(f"{diameter:g} mm: it must be positive", ref, "diameter")
+        raise job.fault(f"{diameter:g} mm: the diameter must be positive", ref, "diameter")
     return diameter
 
 
 def narrowest_of(
     job: ToolPathTask, hole: RoundHole, diameter: float, depth: float | None
 ) -> float:
-    """Diameter at the depth plane of a tapered hole; its own where it does not narrow."""
+    """Diameter at the depth plane, mm: the narrow end of a tapered hole."""
     if hole.change_in_diameter is None:
         return diameter
     taper = job.program.get(hole.change_in_diameter)
@@ -236,7 +236,7 @@ def narrowest_of(
 
 
 def tolerance_of(job: ToolPathTask, entity: Entity) -> float:
-    """Upper limit of a hole's diameter."""
+    """Amount by which a hole may be wider than its diameter, mm."""
     if isinstance(entity, RoundHole):
         given = job.program.get(entity.diameter).implicit_tolerance
         limits = job.program.get(given) if given is not None else None
@@ -246,39 +246,39 @@ def tolerance_of(job: ToolPathTask, entity: Entity) -> float:
 
 
 TOLERANCE = 1e-6
-"""mm"""
+"""Tolerance of lengths, mm."""
 
 FITTING = (Drilling, MultistepDrilling, Reaming, Boring, ThreadDrilling)
-"""operations whose tool must not be wider than the hole"""
+"""Operations whose tool must not be wider than the hole."""
 
 TAPERED_TOOLS = ("TAPERED_DRILL", "TAPERED_REAMER")
-"""tools that may be wider than the narrow end of a taper"""
+"""EXPRESS keywords of tools that may be wider than the narrow end of a taper."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Depth:
-    """Depths below the top of a hole, mm."""
+    """Depths of a tool below the top of a hole, mm."""
 
     full: float
-    """Full of the full diameter of the tool; negative when it stays above the hole"""
+    """Depth of the tool's full diameter; negative if it stays above the hole, mm."""
     tip: float
-    """Tip of the tip of the tool"""
+    """Depth of the tool tip, mm."""
 
 
 def depth_of(job: ToolPathTask, operation: DrillingTypeOperation, hole: Hole) -> Depth:
-    """Depth of an operation in a hole.
+    """Depth to which an operation goes in a hole.
 
     Raises
     ------
     PathError
-        When the depth is missing or not positive, the tool is wider than the hole, or a blind
-        hole would leave the workpiece.
+        If the depth is missing or not positive, the tool is wider than the hole, or a blind
+        hole would break through the workpiece.
     """
     _check_width(job, operation, hole)
     point = tip_length(job)
     given = operation.cutting_depth
     if given is not None and not 0.0 < given < inf:
-        message = f"{given:g} mm removes nothing: it must be positive"
+        message = f"{given:g} mm: the cutting depth must be positive"
         raise job.fault(message, job.step.operation_ref, "cutting_depth")
     if isinstance(operation, (CenterDrilling, CounterSinking)):
         is_sink = isinstance(operation, CounterSinking)
@@ -295,11 +295,11 @@ def depth_of(job: ToolPathTask, operation: DrillingTypeOperation, hole: Hole) ->
 
 
 def tip_length(job: ToolPathTask) -> float:
-    """Height in mm from the tip of the tool to its full diameter.
+    """Height from the tip of the tool to its full diameter, mm.
 
     With the angle α between lip and face plane it is ``R·tan α``. With a rounded corner of
-    radius r whose centre stands e beside the axis, the tool of APT, it is the height of that
-    centre, ``e·tan α + r/cos α``; a corner without a centre touches the cylinder, e = R − r.
+    radius r whose centre lies e off the axis, as in the APT tool, it is the height of that
+    centre, ``e·tan α + r/cos α``; a corner without a given centre has e = R − r.
     """
     body = _body(job)
     radius = 0.5 * job.tool.diameter
@@ -317,16 +317,16 @@ def tip_length(job: ToolPathTask) -> float:
 def depth_findings(
     job: ToolPathTask, operation: DrillingTypeOperation, hole: Hole, depth: Depth
 ) -> list[Finding]:
-    """Remarks for a machinist."""
+    """Findings about the depth of a hole compared with its tool."""
     found = list(_bottom_findings(job, operation, hole, depth))
     edge = job.tool.cutting_edge_length
     if edge is not None and isinstance(operation, DrillingOperation) and depth.tip > edge:
-        text = f"cutting edge of {edge:g} mm for a depth of {depth.tip:.4g} mm"
+        text = f"cutting edge of {edge:g} mm is shorter than the depth of {depth.tip:.4g} mm"
         found.append(job.warning(text, job.step.tool_ref))
     tool = job.program.get(job.step.tool_ref)
     overall = tool.overall_assembly_length if isinstance(tool, MillingCuttingTool) else None
     if overall and depth.tip > overall:
-        text = f"{overall:g} mm of tool for a depth of {depth.tip:.4g} mm"
+        text = f"{overall:g} mm tool length is shorter than the depth of {depth.tip:.4g} mm"
         found.append(job.warning(text, job.step.tool_ref, "overall_assembly_length"))
     return found
 
@@ -334,37 +334,37 @@ def depth_findings(
 def _bottom_findings(
     job: ToolPathTask, operation: DrillingTypeOperation, hole: Hole, depth: Depth
 ) -> Iterator[Finding]:
-    """Remark on a full diameter that does not end where the hole does."""
+    """Report a full diameter that does not end at the depth of the hole."""
     if hole.depth is None or isinstance(operation, (CenterDrilling, CounterSinking)):
         return
     if not hole.is_through and depth.full > hole.depth + TOLERANCE:
-        text = f"{depth.full:g} mm is deeper than the hole of {hole.depth:g} mm"
+        text = f"{depth.full:g} mm is deeper than the hole depth of {hole.depth:g} mm"
         yield job.warning(text, attribute="cutting_depth")
     if operation.cutting_depth is None and depth.full < hole.depth - TOLERANCE:
         text = (
-            "the tip stops on the bottom: the full diameter ends "
+            "the tip stops at the hole bottom: the full diameter ends "
             f"{hole.depth - depth.full:.4g} mm above the depth of the hole"
         )
         yield job.note(text, hole.ref, "bottom_condition")
 
 
 def _check_width(job: ToolPathTask, operation: DrillingTypeOperation, hole: Hole) -> None:
-    """Refuse a tool that is wider than the hole."""
+    """Raise an error if the tool is wider than the hole."""
     if hole.diameter is None or hole.narrowest is None or not isinstance(operation, FITTING):
         return
     width = hole.diameter if job.tool.keyword in TAPERED_TOOLS else hole.narrowest
     if job.tool.diameter > width + hole.tolerance:
         message = (
-            f"tool of {job.tool.diameter:g} mm for a hole of {width:g} mm "
-            f"that may be {hole.tolerance:g} mm wider"
+            f"tool of {job.tool.diameter:g} mm diameter is too wide for a hole of {width:g} mm "
+            f"with a tolerance of {hole.tolerance:g} mm"
         )
         raise job.fault(message, job.step.operation_ref, "its_tool")
 
 
 def _check_stock(job: ToolPathTask, hole: Hole, depth: Depth) -> None:
-    """Refuse a hole whose depth leaves the workpiece through its bottom.
+    """Raise an error if a hole's depth leads through the bottom of the workpiece.
 
-    A through hole ends there; what its tool needs to break through is no depth of the hole.
+    The tool's breakthrough below a through hole is not counted.
     """
     if job.stock is None:
         return
@@ -380,46 +380,50 @@ def _check_stock(job: ToolPathTask, hole: Hole, depth: Depth) -> None:
 
 
 def _bottom(job: ToolPathTask, hole: Hole) -> float:
-    """Depth of the hole, which must be known."""
+    """Depth of the hole, mm; an error if the file does not give it."""
     if hole.depth is None:
-        raise job.fault("has no depth, and the operation no cutting_depth", hole.ref, "depth")
+        raise job.fault(
+            "neither the hole's depth nor the operation's cutting_depth is given",
+            hole.ref,
+            "depth",
+        )
     return hole.depth
 
 
 def _body(job: ToolPathTask) -> MillingToolBody:
-    """Body of a rotating tool."""
+    """Body of the operation's rotating tool."""
     body = body_of(job.program, job.step.tool_ref)
     if body is None:
-        raise job.fault("is no rotating tool: it drills no hole", job.step.tool_ref)
+        raise job.fault("is not a rotating tool: it cannot drill", job.step.tool_ref)
     return body
 
 
 def lip_angle(job: ToolPathTask) -> float:
-    """Angle in rad between lip and face plane; small numbers are radians already."""
+    """Angle between lip and face plane, rad; small numbers in the file are already radians."""
     ref = _body(job).dimension
     top = job.program.get(ref).tool_top_angle or 0.0
     angle = top if top < LEAST_TOP_ANGLE_DEG else rad_from_deg(top)
     if not 0.0 <= angle < 0.5 * pi:
-        message = f"{top:g}: the angle between lip and face plane is 0 to 90 degrees"
+        message = f"{top:g}: the angle between lip and face plane must be 0 to 90 degrees"
         raise job.fault(message, ref, "tool_top_angle")
     return angle
 
 
 def _overcut(job: ToolPathTask, operation: DrillingTypeOperation) -> float:
-    """Way in mm that the full diameter goes on below a through hole."""
+    """Distance that the full diameter goes below a through hole, mm."""
     overcut = operation.overcut_length or 0.0
     if not 0.0 <= overcut < inf:
-        message = f"{overcut:g} mm: it must not be negative"
+        message = f"{overcut:g} mm: the overcut length must not be negative"
         raise job.fault(message, job.step.operation_ref, "overcut_length")
     return overcut
 
 
 def _below(job: ToolPathTask, hole: Hole) -> float:
-    """Depth in mm to which the bottom of a blind hole lets a tip go below the depth plane.
+    """Depth to which a tip may go below the depth plane of a blind hole, mm.
 
-    A flat bottom, with or without a corner radius, ends there: no tip may pass it. A conical
-    one is what a drill leaves, ISO 14649-10: the cone begins there and is the drill's own. A
-    spherical one reaches down by the height of its cap.
+    A flat bottom, with or without a corner radius, ends at the depth plane: no tip may pass it.
+    A conical bottom is left by the drill itself and begins there, ISO 14649-10. A spherical
+    bottom reaches down by the height of its cap.
     """
     if isinstance(hole.bottom, ConicalHoleBottom):
         return inf
@@ -427,29 +431,31 @@ def _below(job: ToolPathTask, hole: Hole) -> float:
         sphere = job.program.get(hole.bottom.radius).theoretical_size
         radius = 0.5 * hole.diameter
         if not radius - TOLERANCE <= sphere < inf:
-            message = f"sphere of radius {sphere:g} mm below a hole of radius {radius:g} mm"
+            message = (
+                f"sphere radius {sphere:g} mm is smaller than the hole radius {radius:g} mm"
+            )
             raise job.fault(message, hole.ref, "bottom_condition")
         return sphere - sqrt(max(0.0, sphere**2 - radius**2))
     return 0.0
 
 
 def _sink(job: ToolPathTask, hole: Hole) -> float:
-    """Depth of a countersink's tip when its cone is as wide as the sink at the top."""
+    """Depth of a countersink's tip at which its cone has the sink's diameter at the top, mm."""
     if hole.diameter is None or not hole.is_tapered:
-        message = "needs a cutting_depth: the hole has no taper that tells how wide the sink is"
+        message = "cutting_depth is needed: the hole has no taper that gives the sink diameter"
         raise job.fault(message, job.step.operation_ref, "cutting_depth")
     if hole.diameter > job.tool.diameter + TOLERANCE:
-        message = f"tool of {job.tool.diameter:g} mm for a sink of {hole.diameter:g} mm"
+        message = f"tool of {job.tool.diameter:g} mm for a wider sink of {hole.diameter:g} mm"
         raise job.fault(message, job.step.operation_ref, "its_tool")
     angle = lip_angle(job)
     if angle <= 0.0:
-        raise job.fault("has no point that could sink a cone", job.step.tool_ref)
+        raise job.fault("the tool has no tip angle: it cannot countersink", job.step.tool_ref)
     return tip_length(job) - 0.5 * (job.tool.diameter - hole.diameter) * tan(angle)
 
 
 def _centre(job: ToolPathTask, point: float) -> float:
-    """Depth of a centre drill's tip: its own point, up to the full diameter."""
+    """Depth of a centre drill's tip, mm: the length of its point."""
     if point <= 0.0:
-        message = "needs a cutting_depth: the tool has no point that tells how deep"
+        message = "cutting_depth is needed: the tool has no tip angle that gives a depth"
         raise job.fault(message, job.step.operation_ref, "cutting_depth")
     return point

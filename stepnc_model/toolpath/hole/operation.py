@@ -1,22 +1,22 @@
 """Tool paths of drilling, boring, reaming and tapping (ISO 14649-11).
 
-Over the hole on the security plane, in rapid down to the retract plane, into the hole and back,
-to the next hole. Not one rapid goes below the retract plane, but those of a drill that pecks.
+The tool moves to the hole on the security plane, in rapid down to the retract plane, into the
+hole and back, and on to the next hole. Only pecking makes rapids below the retract plane.
 
-In thread drilling one tool drills a hole and mills its thread on a helix. The tool drills along
-the axis, and mills the thread on its way out. With ``helical_movement_on_forward`` it needs the
-helix on its way in as well: there it cuts, and out it goes through the thread that it has cut.
+In thread drilling, one tool drills a hole and mills its thread on a helix. The tool drills
+along the axis and mills the thread on its way out. With ``helical_movement_on_forward`` it cuts
+on a helix on its way in as well, and moves out through the thread that it has cut.
 
-The thread is the feature itself, or the one whose ``applied_shape`` is the hole. The programmed
-point runs at ``(D_thread − D_tool)/2`` from the axis. A half circle of half that radius leads
-from the axis onto the helix, tangentially, while the tool goes a quarter of a turn about the
-axis: it rises a quarter of the pitch, and stays in the thread. It leaves the same way.
+The thread is the feature itself, or a thread whose ``applied_shape`` is the hole. The
+programmed point runs at ``(D_thread − D_tool)/2`` from the axis. A tangential half circle of
+half that radius leads from the axis onto the helix, while the tool moves a quarter turn about
+the axis: it rises by a quarter of the pitch and stays in the thread. It leaves the same way.
 
-A right-hand thread goes up counter-clockwise, which is climb milling with a right-hand tool.
-The lowest full tooth is where the tip of the tool ends, so any number of teeth above it follows
-in the same groove. A blind hole is left by one pitch before the tool moves sideways.
+A right-hand thread is cut upwards counter-clockwise, which is climb milling with a right-hand
+tool. The lowest full tooth is at the tip of the tool, so any teeth above it follow in the same
+groove. In a blind hole the tool rises by one pitch before it moves sideways.
 
-``number_of_threads`` is the pitch in metric units, and the threads per inch in English ones
+``number_of_threads`` is the pitch in metric units, or the threads per inch in English units
 (ISO 14649-10).
 """
 
@@ -52,18 +52,18 @@ from stepnc_model.toolpath.path import MoveType, ToolPath
 from stepnc_model.toolpath.task import DEFAULT_CLEARANCE, PathBuilder, ToolPathTask
 
 LEAST_RADIUS = 0.02
-"""mm from the axis to the helix; controls take smaller arcs as points"""
+"""Least radius of the helix, mm; controls treat smaller arcs as points."""
 
 MOST_TURNS = 1000
 
 INCH = 25.4
-"""mm, by definition"""
+"""Millimetres per inch, by definition."""
 
 PITCHES = ("MM", "MILLIMETRE", "MILLIMETER", "PITCH")
-"""units that make ``number_of_threads`` a pitch in mm"""
+"""Units with which ``number_of_threads`` is a pitch in mm."""
 
 DENSITIES = ("INCH", "IN", "1/INCH", "1/IN", "TPI")
-"""units that make it a number of threads per inch"""
+"""Units with which ``number_of_threads`` is a number of threads per inch."""
 
 LEFT = ("LEFT", "LEFT HAND", "LH", "L")
 RIGHT = ("RIGHT", "RIGHT HAND", "RH", "R", "")
@@ -71,24 +71,24 @@ RIGHT = ("RIGHT", "RIGHT HAND", "RH", "R", "")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ThreadHelix:
-    """A thread as the way of the tip; mm."""
+    """Helical path of the tool tip for thread milling, mm."""
 
     radius: float
     pitch: float
     turns: int
     low_z: float
-    """Low z of the tip, where the turns end below"""
+    """Height z of the tip at the lower end of the turns, mm."""
     sense: float
-    """1 for a right-hand thread, −1 for a left-hand one"""
+    """Sense of the thread: 1 for right-hand, −1 for left-hand."""
 
     @property
     def high_z(self) -> float:
-        """Of the tip, where the turns end above."""
+        """Height z of the tip at the upper end of the turns, mm."""
         return self.low_z + self.turns * self.pitch
 
 
 def threaded_holes(job: ToolPathTask, operation: DrillingTypeOperation) -> Iterator[Hole]:
-    """Holes that are drilled and threaded; where a thread is named, those that it lies in.
+    """Holes to be drilled and threaded; for a named thread, the hole that it applies to.
 
     Yields
     ------
@@ -97,7 +97,7 @@ def threaded_holes(job: ToolPathTask, operation: DrillingTypeOperation) -> Itera
     Raises
     ------
     PathError
-        When there is none, its axis does not lie along the tool, or it lacks a size.
+        If there is no hole, its axis is not parallel to the tool, or a size is missing.
     """
     for hole in holes_of(job, operation):
         thread = job.program.get(hole.ref)
@@ -120,12 +120,12 @@ def threaded_holes(job: ToolPathTask, operation: DrillingTypeOperation) -> Itera
 
 
 def drill_thread(course: PathBuilder, cut: HoleCut, operation: ThreadDrilling) -> None:
-    """Drill and thread one hole; the tool stands above it, and ends there.
+    """Drill and thread one hole; the tool starts and ends above it.
 
     Raises
     ------
     PathError
-        When no thread is there, or the tool and the thread do not fit.
+        If there is no thread, or the tool does not fit the thread.
     """
     if operation.helical_movement_on_forward:
         _thread_in_and_out(course, cut)
@@ -135,14 +135,14 @@ def drill_thread(course: PathBuilder, cut: HoleCut, operation: ThreadDrilling) -
 
 
 def _drill_in_thread_out(course: PathBuilder, cut: HoleCut) -> None:
-    """Along the axis to the bottom, and up on the helix."""
+    """Drill along the axis to the bottom, and thread upwards on a helix."""
     pitch = _pitch(cut)
     teeth_top_z = cut.hole.top[2] - tip_length(cut.job)
     free_z = cut.bottom_z if cut.hole.is_through else cut.bottom_z + pitch
     wanted_z = teeth_top_z - _length(cut)
     start_z = max(free_z, wanted_z)
     if start_z > wanted_z + TOLERANCE:
-        text = f"the thread ends {start_z - wanted_z:.4g} mm above its length: no room below it"
+        text = f"the thread is {start_z - wanted_z:.4g} mm too short: no room below it"
         course.find(cut.job.warning(text, cut.hole.ref))
     helix = _helix(cut, low_z=start_z + 0.25 * pitch, clear_z=teeth_top_z)
     feed_to(course, cut, cut.bottom_z)
@@ -154,16 +154,16 @@ def _drill_in_thread_out(course: PathBuilder, cut: HoleCut) -> None:
 
 
 def _thread_in_and_out(course: PathBuilder, cut: HoleCut) -> None:
-    """Down on the helix, and up through the thread."""
+    """Cut downwards on the helix, and return upwards through the thread."""
     helix = _helix(cut, low_z=cut.bottom_z, clear_z=cut.hole.top[2])
     if helix.radius > 0.5 * cut.job.tool.diameter:
         message = (
-            f"on a helix of radius {helix.radius:g} mm a tool of {cut.job.tool.diameter:g} mm "
-            "leaves a core"
+            f"on a helix of radius {helix.radius:g} mm, a tool of {cut.job.tool.diameter:g} mm "
+            "leaves a core standing"
         )
         raise cut.job.fault(message, cut.job.step.operation_ref, "its_tool")
     if not cut.is_one_feed:
-        text = "one feed on the helix: reductions at start and end are not used"
+        text = "the helix has a single feed: reductions at start and end are ignored"
         course.find(cut.job.note(text, attribute="its_machining_strategy"))
     course.line(cut.hole.at(helix.high_z + 0.25 * helix.pitch), MoveType.NO_CONTACT)
     _onto(course, cut, helix, rise=-1.0)
@@ -174,11 +174,11 @@ def _thread_in_and_out(course: PathBuilder, cut: HoleCut) -> None:
 
 
 def _helix(cut: HoleCut, *, low_z: float, clear_z: float) -> ThreadHelix:
-    """Whole turns of the tip, from one height up to another or just above."""
+    """Helix of whole turns of the tip, from one height up to at least another."""
     pitch = _pitch(cut)
     turns = max(1, ceil((clear_z - low_z) / pitch - TOLERANCE))
     if turns > MOST_TURNS:
-        message = f"{turns} turns of {pitch:g} mm: {MOST_TURNS} at most"
+        message = f"{turns} turns of {pitch:g} mm: at most {MOST_TURNS} allowed"
         raise cut.job.fault(message, _thread_ref(cut), "number_of_threads")
     return ThreadHelix(
         radius=_radius(cut), pitch=pitch, turns=turns, low_z=low_z, sense=_sense(cut)
@@ -186,7 +186,7 @@ def _helix(cut: HoleCut, *, low_z: float, clear_z: float) -> ThreadHelix:
 
 
 def _onto(course: PathBuilder, cut: HoleCut, helix: ThreadHelix, *, rise: float) -> None:
-    """Half a circle from the axis onto the helix, up or down."""
+    """Move on a half circle from the axis onto the helix, up or down."""
     x, y, z = course.at
     end = (x + helix.radius, y, z + rise * 0.25 * helix.pitch)
     centre = (x + 0.5 * helix.radius, y, z)
@@ -196,7 +196,7 @@ def _onto(course: PathBuilder, cut: HoleCut, helix: ThreadHelix, *, rise: float)
 def _turns(
     course: PathBuilder, cut: HoleCut, helix: ThreadHelix, *, rise: float, type: MoveType
 ) -> None:
-    """All turns of the helix, up or down."""
+    """Move along all turns of the helix, up or down."""
     x, y, z = course.at
     end = (x, y, helix.high_z if rise > 0.0 else helix.low_z)
     turn = rise * helix.sense * 2.0 * pi * helix.turns
@@ -204,7 +204,7 @@ def _turns(
 
 
 def _off(course: PathBuilder, cut: HoleCut, helix: ThreadHelix) -> None:
-    """Half a circle from the helix up to the axis."""
+    """Move on a half circle from the helix up to the axis."""
     x, y, z = course.at
     end = cut.hole.at(z + 0.25 * helix.pitch)
     centre = (x - 0.5 * helix.radius, y, z)
@@ -216,57 +216,57 @@ def _pause(course: PathBuilder, cut: HoleCut) -> None:
 
 
 def _thread_ref(cut: HoleCut) -> Ref[Thread]:
-    """Thread of a hole: one that the workingstep names before others that lie on it."""
+    """Thread of a hole; a thread named by the workingstep comes first."""
     threads = cut.job.program.model.of_type(Thread)
     found = [ref for ref, thread in threads if cut.hole.ref in (ref, *thread.applied_shape)]
     named = [ref for ref in found if ref in cut.job.step.features]
     if not found:
-        message = (
-            "no thread names it as its applied_shape: nothing tells a pitch (number_of_threads)"
-        )
+        message = "no thread has this hole as its applied_shape: the pitch is unknown"
         raise cut.job.fault(message, cut.hole.ref)
     return (named or found)[0]
 
 
 def _pitch(cut: HoleCut) -> float:
-    """Pitch in mm, by the unit of the thread's number."""
+    """Pitch of the thread, mm, from its number and unit."""
     ref = _thread_ref(cut)
     number = cut.job.program.get(cut.job.program.get(ref).number_of_threads)
     value, unit = number.its_parameter_value, number.its_parameter_unit.strip().upper()
     if not 0.0 < value < inf:
-        raise cut.job.fault(f"{value:g}: it must be positive", ref, "number_of_threads")
+        raise cut.job.fault(f"{value:g}: the pitch must be positive", ref, "number_of_threads")
     if unit in PITCHES:
         return value
     if unit in DENSITIES:
         return INCH / value
-    message = f"unit '{unit}': a pitch in MM, or threads per INCH"
+    message = f"unit '{unit}': expected a pitch in MM, or threads per INCH"
     raise cut.job.fault(message, ref, "number_of_threads")
 
 
 def _sense(cut: HoleCut) -> float:
-    """1 for a right-hand thread, −1 for a left-hand one."""
+    """Sense of the thread: 1 for right-hand, −1 for left-hand."""
     ref = _thread_ref(cut)
     hand = cut.job.program.get(cut.job.program.get(ref).thread_hand).descriptive_string
     text = hand.strip().upper().replace("-", " ").replace("_", " ")
     if text not in (*LEFT, *RIGHT):
-        raise cut.job.fault(f"'{hand}': LEFT or RIGHT", ref, "thread_hand")
+        raise cut.job.fault(f"'{hand}': expected LEFT or RIGHT", ref, "thread_hand")
     return -1.0 if text in LEFT else 1.0
 
 
 def _radius(cut: HoleCut) -> float:
-    """Radius in mm of the helix of the tool's axis."""
+    """Radius of the helix of the tool's axis, mm."""
     ref = _thread_ref(cut)
     thread = cut.job.program.get(ref)
     major, width = thread.major_diameter, cut.job.tool.diameter
     if not 0.0 < major < inf:
-        raise cut.job.fault(f"{major:g} mm: it must be positive", ref, "major_diameter")
+        raise cut.job.fault(
+            f"{major:g} mm: the diameter must be positive", ref, "major_diameter"
+        )
     radius = 0.5 * (major - width)
     if radius < LEAST_RADIUS:
-        message = f"tool of {width:g} mm for a thread of {major:g} mm leaves no way round"
+        message = f"tool of {width:g} mm is too wide to mill a thread of {major:g} mm diameter"
         raise cut.job.fault(message, cut.job.step.operation_ref, "its_tool")
     minor = thread.minor_diameter if isinstance(thread, DefinedThread) else None
     if minor and width > minor + cut.hole.tolerance:
-        message = f"tool of {width:g} mm for a thread whose minor diameter is {minor:g} mm"
+        message = f"tool of {width:g} mm is wider than the minor diameter of {minor:g} mm"
         raise cut.job.fault(message, cut.job.step.operation_ref, "its_tool")
     return radius
 
@@ -276,16 +276,18 @@ def _length(cut: HoleCut) -> float:
     ref = _thread_ref(cut)
     length = cut.job.program.get(cut.job.program.get(ref).partial_profile).effective_length
     if not 0.0 < length < inf:
-        raise cut.job.fault(f"{length:g} mm: it must be positive", ref, "partial_profile")
+        raise cut.job.fault(
+            f"{length:g} mm: the length must be positive", ref, "partial_profile"
+        )
     return length
 
 
 ON_AXIS = 1e-3
-"""mm by which a start point may lie beside the axis of its hole"""
+"""Greatest distance of a start point from the axis of its hole, mm."""
 
 
 def hole_path(job: ToolPathTask) -> ToolPath:
-    """Tool path of an operation of the drilling family.
+    """Generate the tool path of a drilling, boring, reaming or tapping operation.
 
     Parameters
     ----------
@@ -299,15 +301,15 @@ def hole_path(job: ToolPathTask) -> ToolPath:
     Raises
     ------
     PathError
-        When the file does not say enough, or the hole and the tool do not fit.
+        If the file lacks information, or the tool does not fit the hole.
     """
     operation = job.step.operation
     if not isinstance(operation, DrillingTypeOperation):
-        raise job.fault("is no operation that makes holes", job.step.operation_ref)
+        raise job.fault("is not a hole-making operation", job.step.operation_ref)
     with job.program.using(job.step.operation_ref, *job.step.features):
         holes = tuple(_holes(job, operation))
         if not holes:
-            raise job.fault("its pattern omits every hole", job.step.features[0])
+            raise job.fault("the pattern omits every hole", job.step.features[0])
         course = PathBuilder(job, holes[0].at(job.security_z))
         _notes(course, job, operation)
         cuts = [_cut(course, job, operation, hole) for hole in holes]
@@ -321,7 +323,7 @@ def hole_path(job: ToolPathTask) -> ToolPath:
 
 
 def _holes(job: ToolPathTask, operation: DrillingTypeOperation) -> Iterator[Hole]:
-    """Holes that the operation makes."""
+    """Holes that the operation machines."""
     if isinstance(operation, BackBoring):
         return back_holes(job)
     if isinstance(operation, ThreadDrilling):
@@ -330,7 +332,7 @@ def _holes(job: ToolPathTask, operation: DrillingTypeOperation) -> Iterator[Hole
 
 
 def _make(course: PathBuilder, cut: HoleCut) -> None:
-    """Make one hole; the tool stands above it on the retract plane, and ends there."""
+    """Machine one hole; the tool starts and ends on the retract plane above it."""
     if isinstance(cut.operation, BackBoring):
         bore_back(course, cut)
     elif isinstance(cut.operation, ThreadDrilling):
@@ -340,21 +342,21 @@ def _make(course: PathBuilder, cut: HoleCut) -> None:
 
 
 def _notes(course: PathBuilder, job: ToolPathTask, operation: DrillingTypeOperation) -> None:
-    """Assumptions on the operation as a whole."""
+    """Report assumptions about the operation as a whole."""
     if operation.retract_plane is None:
-        text = f"no retract plane: {DEFAULT_CLEARANCE:g} mm above the feature assumed"
+        text = f"no retract plane given: assuming {DEFAULT_CLEARANCE:g} mm above the feature"
         course.find(job.note(text, attribute="retract_plane"))
     if operation.start_point is not None:
         x, y, _ = point_of(job.program, operation.start_point)
         if hypot(x, y) > ON_AXIS:
-            text = f"start point {hypot(x, y):g} mm beside the axis: the hole stays on its axis"
+            text = f"start point {hypot(x, y):g} mm off the axis: ignored, drilling on the axis"
             course.find(job.warning(text, attribute="start_point"))
 
 
 def _cut(
     course: PathBuilder, job: ToolPathTask, operation: DrillingTypeOperation, hole: Hole
 ) -> HoleCut:
-    """Moves that make one hole."""
+    """Depths, heights and feeds for one hole."""
     if isinstance(operation, BackBoring):
         return _back_cut(course, job, operation, hole)
     depth = depth_of(job, operation, hole)
@@ -373,7 +375,7 @@ def _cut(
 def _back_cut(
     course: PathBuilder, job: ToolPathTask, operation: BackBoring, hole: Hole
 ) -> HoleCut:
-    """Moves that bore one hole from behind."""
+    """Depths, heights and feeds for boring one hole from behind."""
     bore = bore_of(job, operation, hole)
     for finding in back_findings(job, operation, hole, bore):
         course.find(finding)
@@ -388,12 +390,12 @@ def _back_cut(
 
 
 def _retract_z(job: ToolPathTask, operation: DrillingTypeOperation, hole: Hole) -> float:
-    """Height of the retract plane, which never lies above the security plane."""
+    """Height z of the retract plane, at most that of the security plane, mm."""
     above = operation.retract_plane
     if above is None:
         above = DEFAULT_CLEARANCE
     if not 0.0 < above < inf:
-        message = f"{above:g} mm: it must lie above the feature"
+        message = f"{above:g} mm: the retract plane must lie above the feature"
         raise job.fault(message, job.step.operation_ref, "retract_plane")
     if job.security_z <= hole.entry_z:
         message = (
@@ -405,7 +407,7 @@ def _retract_z(job: ToolPathTask, operation: DrillingTypeOperation, hole: Hole) 
 
 
 def _link(course: PathBuilder, last: HoleCut, cut: HoleCut) -> None:
-    """Over to the next hole: on the retract plane where no stock can stand in the way."""
+    """Move to the next hole: on the retract plane if no stock can stand in the way."""
     height = max(last.retract_z, cut.retract_z)
     stock = cut.job.stock
     if stock is None or stock.high[2] >= height:

@@ -1,1 +1,1 @@
-"""Milling: areas and flanks of features, exact offsets, and the passes of each level."""
+"""Milling tool paths: areas and flanks of features, exact offsets, and passes by level."""

@@ -1,7 +1,7 @@
 """Areas that a milling feature removes: walls and floor in the setup, level by level.
 
-The walls of an area stand around it, the area on their left. A wall may lean, or run into the
-floor with a radius, so the area shrinks with depth: each wall knows its inset at a height.
+The walls of an area surround it, with the area on their left. A wall may be inclined or meet
+the floor with a radius, so the area shrinks with depth: each wall has an inset by height.
 """
 
 from collections.abc import Callable
@@ -16,35 +16,35 @@ from stepnc_model.toolpath.milling.strategy import EndMillShape
 from stepnc_model.units import rad_from_deg
 
 SAMPLES = 24
-"""heights at which a cutter that is not flat is held against a wall that is not straight"""
+"""Number of heights at which a non-flat cutter is compared with a non-straight wall."""
 
 THIRDS = 60
-"""times that the place of the closest contact is narrowed to two thirds"""
+"""Iterations of the ternary search for the closest contact."""
 
 Inset = Callable[[float], float]
-"""how far a wall stands in the area at a height above the floor, mm; 0 at the top"""
+"""Inset of a wall at a height above the floor, mm; 0 at the top."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Wall:
-    """One boundary of an area, as it is at the top."""
+    """Boundary of a milling area, with its outline at the top."""
 
     loop: Loop
     inset: Inset
     top: float = inf
-    """z in the setup; the cutter passes over an island that is lower than the area"""
+    """Top z in the setup, mm; the cutter passes over an island lower than the area."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TeeSlotUndercut:
-    """The wide part of a tee slot, at its floor."""
+    """Wide part of a tee slot at its floor."""
 
     width: float
-    """Width, mm"""
+    """Width of the undercut, mm."""
     depth: float
-    """Depth, mm, its height above the floor"""
+    """Height of the undercut above the floor, mm."""
     is_open: bool
-    """at both ends"""
+    """Whether the slot is open at both ends."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,35 +52,35 @@ class Area:
     """Area to be cleared down to a floor."""
 
     ref: Ref[Entity]
-    """the feature"""
+    """Feature that the area belongs to."""
     walls: tuple[Wall, ...]
     top: float
-    """z in the setup"""
+    """Top z of the area in the setup, mm."""
     bottom: float
     face: Loop | None = None
-    """a face without walls: what is to be swept, the tool running over its edge"""
+    """Face without walls, to be swept with the tool running over its edge."""
     middle: Chain | None = None
-    """centre line of a slot"""
+    """Centre line of a slot."""
     ends: tuple[float, float] = (0.0, 0.0)
-    """how far the slot goes on beyond the ends of its centre line, mm"""
+    """Extension of the slot beyond each end of its centre line, mm."""
     rises: tuple[Inset, Inset] | None = None
-    """how much of each end of a slot stands in it at a height above the floor, mm"""
+    """Inset of each slot end by height above the floor, mm."""
     bar: TeeSlotUndercut | None = None
-    """Bar of a tee slot"""
+    """Undercut of a tee slot."""
     solid: Loop | None = None
-    """the material of an area with open sides, without what the tool needs to run out"""
+    """Material of an area with open sides, without the room for the tool to run out."""
     outside: Chain = ()
-    """edges of the walls that are none, beyond an open side"""
+    """Boundary edges beyond an open side, where there is no wall."""
 
     @property
     def depth(self) -> float:
-        """From the top to the floor, mm."""
+        """Depth from the top to the floor, mm."""
         return self.top - self.bottom
 
     def boundaries(self, z: float, cutter: EndMillShape) -> tuple[Loop, ...]:
-        """Walls for a flat cutter of the same radius that has its tip at z.
+        """Wall outlines for a flat cutter of the same radius with its tip at z.
 
-        Empty where the walls leave no room, or where there are none.
+        Empty where the walls leave no room, or where there are no walls.
         """
         loops: list[Loop] = []
         for wall in self.walls:
@@ -96,13 +96,13 @@ class Area:
 
     @property
     def terraces(self) -> list[float]:
-        """Tops of the islands that the cutter passes over, the highest first."""
+        """Tops z of the islands that the cutter passes over, the highest first, mm."""
         return sorted({wall.top for wall in self.walls if wall.top < self.top}, reverse=True)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Flank:
-    """Wall that is cut along, the free side on its left: outside profiles, bosses, steps."""
+    """Wall that is milled along, with the free side on its left: profiles, bosses, steps."""
 
     ref: Ref[Entity]
     chain: Chain
@@ -111,21 +111,21 @@ class Flank:
     top: float
     bottom: float
     width: float | None = None
-    """Width, mm to be removed beside it, where the feature says so"""
+    """Width to be removed beside the wall, mm, where the feature gives it."""
 
     @property
     def depth(self) -> float:
-        """From the top to the floor, mm."""
+        """Depth from the top to the floor, mm."""
         return self.top - self.bottom
 
 
 def upright(_height: float) -> float:
-    """A wall that stands straight."""
+    """Inset of a vertical wall: zero at every height."""
     return 0.0
 
 
 def leaning(*, depth: float, slope_deg: float | None, fillet: float = 0.0) -> Inset:
-    """A wall that leans by an angle to the vertical and meets the floor in a radius."""
+    """Inset of a wall with a slope angle that meets the floor with a fillet radius."""
     slope = tan(rad_from_deg(slope_deg)) if slope_deg else 0.0
     if slope == 0.0 and fillet == 0.0:
         return upright
@@ -137,13 +137,13 @@ def leaning(*, depth: float, slope_deg: float | None, fillet: float = 0.0) -> In
 
 
 def chord(radius: float, height: float) -> float:
-    """Half width of a circle at a height above its lowest point, up to its middle."""
+    """Half width of a circle at a height above its lowest point, up to its middle, mm."""
     up = min(max(height, 0.0), radius)
     return sqrt(max(radius**2 - (radius - up) ** 2, 0.0))
 
 
 def rounding(height: float, radius: float) -> float:
-    """Inset of a radius that is tangent to a straight wall above and to the floor."""
+    """Inset of a fillet that is tangent to a vertical wall and to the floor, mm."""
     return radius - chord(radius, height)
 
 
@@ -151,7 +151,7 @@ def extra(inset: Inset, cutter: EndMillShape, *, bottom: float, top: float) -> f
     """Distance beyond its radius that a cutter must keep from a wall, mm.
 
     The largest sum of the wall's inset and the cutter's reach over the heights from its tip,
-    ``bottom``, up to ``top``, less the radius.
+    ``bottom``, up to ``top``, minus the radius.
     """
     if inset is upright and cutter.taper == 0.0:
         return 0.0
@@ -175,7 +175,7 @@ def extra(inset: Inset, cutter: EndMillShape, *, bottom: float, top: float) -> f
 
 
 def _greatest(function: Callable[[float], float], low: float, high: float) -> float:
-    """Maximum of a function that rises and then falls, by thirds."""
+    """Maximum of a unimodal function by ternary search."""
     for _ in range(THIRDS):
         third = (high - low) / 3.0
         if function(low + third) < function(high - third):

@@ -1,7 +1,7 @@
 """Plane contours of lines and exact arcs, as complex numbers x + iy, mm.
 
-A loop is closed, and what it bounds lies on its left: outer boundaries run counter-clockwise,
-islands clockwise. Arcs turn through π at most; longer ones are halved on the way in.
+A loop is closed and bounds the area on its left: outer boundaries run counter-clockwise,
+islands clockwise. Arcs turn through π at most; longer arcs are halved on input.
 """
 
 from collections.abc import Iterable, Sequence
@@ -19,37 +19,37 @@ Floats = NDArray[np.float64]
 Points = NDArray[np.complex128]
 
 TINY = 1e-9
-"""mm; two points nearer than this are one"""
+"""Distance below which two points are the same, mm."""
 
 REMEMBERED = 256
-"""results of a function of contours that are kept: levels of a pocket are alike"""
+"""Number of cached results per function of contours: levels of a pocket are alike."""
 
 
 @dataclass(frozen=True, slots=True)
 class ContourEdge:
-    """A line, or an arc when it has a centre."""
+    """Line, or an arc if it has a centre, of a plane contour."""
 
     start: complex
     end: complex
     centre: complex | None = None
     turn: float = 0.0
-    """Turn, rad, positive counter-clockwise"""
+    """Angle of the arc, rad, positive counter-clockwise."""
 
     @property
     def length(self) -> float:
-        """Arc length, mm."""
+        """Length of the edge, mm."""
         if self.centre is None:
             return abs(self.end - self.start)
         return abs(self.turn) * abs(self.start - self.centre)
 
     def at(self, part: float) -> complex:
-        """Point at a part of the length, 0 to 1."""
+        """Point at a fraction of the length, 0 to 1."""
         if self.centre is None:
             return self.start + part * (self.end - self.start)
         return self.centre + (self.start - self.centre) * _turned(part * self.turn)
 
     def along(self, part: float) -> complex:
-        """Unit vector of the way there."""
+        """Unit tangent vector at a fraction of the length."""
         if self.centre is None:
             way = self.end - self.start
             return way / abs(way)
@@ -57,7 +57,7 @@ class ContourEdge:
         return outward / abs(outward) * (1j if self.turn > 0.0 else -1j)
 
     def between(self, low: float, high: float) -> "ContourEdge":
-        """Piece between two parts of the length; its ends are exact where they are its own."""
+        """Piece between two fractions of the length; ends of the edge are kept exactly."""
         return ContourEdge(
             start=self.start if low <= 0.0 else self.at(low),
             end=self.end if high >= 1.0 else self.at(high),
@@ -66,36 +66,36 @@ class ContourEdge:
         )
 
     def reversed(self) -> "ContourEdge":
-        """The same way back."""
+        """Edge traversed in the opposite direction."""
         return ContourEdge(start=self.end, end=self.start, centre=self.centre, turn=-self.turn)
 
 
 Chain = tuple[ContourEdge, ...]
-"""edges one after another"""
+"""Consecutive edges, each starting where the previous one ends."""
 
 Loop = Chain
-"""edges that come back to where they start"""
+"""Closed chain of edges."""
 
 
 def line(start: complex, end: complex) -> ContourEdge:
-    """A straight edge."""
+    """Straight edge between two points."""
     return ContourEdge(start, end)
 
 
 def circle(centre: complex, radius: float) -> Loop:
-    """A circle counter-clockwise, in two halves."""
+    """Counter-clockwise circle as two half circles."""
     right, left = centre + radius, centre - radius
     return (ContourEdge(right, left, centre, pi), ContourEdge(left, right, centre, pi))
 
 
 def polygon(points: Sequence[complex]) -> Loop:
-    """Straight edges through points and back to the first."""
+    """Closed loop of straight edges through the points."""
     ends = [*points[1:], points[0]]
     return tuple(line(a, b) for a, b in zip(points, ends, strict=True) if abs(a - b) > TINY)
 
 
 def halved(chain: Iterable[ContourEdge]) -> Chain:
-    """The same way, no arc of it longer than half a turn."""
+    """Split arcs of a chain so that none is longer than half a turn."""
     found: list[ContourEdge] = []
     for edge in chain:
         count = max(1, ceil(abs(edge.turn) / pi - TINY))
@@ -105,17 +105,17 @@ def halved(chain: Iterable[ContourEdge]) -> Chain:
 
 
 def reversed_chain(chain: Chain) -> Chain:
-    """The same way back."""
+    """Chain traversed in the opposite direction."""
     return tuple(edge.reversed() for edge in reversed(chain))
 
 
 def chain_length(chain: Iterable[ContourEdge]) -> float:
-    """Length, mm."""
+    """Length of a chain, mm."""
     return sum(edge.length for edge in chain)
 
 
 def divided(chain: Chain, length: float) -> tuple[Chain, Chain]:
-    """The first so many mm of a chain, and the rest of it."""
+    """Split a chain after a length in mm into its first part and the rest."""
     for index, edge in enumerate(chain):
         if length < edge.length:
             part = max(length, 0.0) / edge.length
@@ -127,7 +127,7 @@ def divided(chain: Chain, length: float) -> tuple[Chain, Chain]:
 
 
 def stretched(chain: Chain, before: float, after: float) -> Chain:
-    """The chain prolonged straight at its start and its end, or cut back where negative, mm."""
+    """Extend a chain straight at its start and end, or shorten it where negative, mm."""
     total = chain_length(chain)
     if max(-before, 0.0) + max(-after, 0.0) >= total - TINY:
         return ()
@@ -141,7 +141,7 @@ def stretched(chain: Chain, before: float, after: float) -> Chain:
 
 
 def area(loop: Loop) -> float:
-    """Area on the left, mm²; negative for a clockwise loop (Green's theorem)."""
+    """Area on the left of a loop, mm²; negative if clockwise (Green's theorem)."""
     total = 0.0
     for edge in loop:
         total += 0.5 * (edge.start.conjugate() * edge.end).imag
@@ -152,17 +152,17 @@ def area(loop: Loop) -> float:
 
 
 def counter_clockwise(loop: Loop) -> Loop:
-    """The loop, turned round if need be."""
+    """Loop in counter-clockwise direction."""
     return loop if area(loop) >= 0.0 else reversed_chain(loop)
 
 
 def clockwise(loop: Loop) -> Loop:
-    """The loop as the boundary of an island."""
+    """Loop in clockwise direction, as the boundary of an island."""
     return reversed_chain(counter_clockwise(loop))
 
 
 def vertices(chain: Chain, *, tolerance: float) -> list[complex]:
-    """Points of the chain whose chords stay within a tolerance in mm; without its last end."""
+    """Points along a chain with chords within a tolerance in mm, without its last end."""
     points: list[complex] = []
     for edge in chain:
         count = 1
@@ -175,19 +175,19 @@ def vertices(chain: Chain, *, tolerance: float) -> list[complex]:
 
 
 def shape(loop: Loop, *, tolerance: float) -> Polygon:
-    """The area of a loop as a polygon."""
+    """Area of a loop as a polygon, with chords within a tolerance in mm."""
     return _shape(tuple(loop), tolerance)
 
 
 @lru_cache(maxsize=REMEMBERED)
 def _shape(loop: Loop, tolerance: float) -> Polygon:
-    """The same of a loop that can be remembered."""
+    """Cached implementation of ``shape``."""
     points = np.array(vertices(loop, tolerance=tolerance), dtype=complex)
     return shapely.polygons(np.column_stack((points.real, points.imag)))
 
 
 def moved(chain: Chain, *, by: complex = 0j, turned: complex = 1 + 0j) -> Chain:
-    """The chain turned about the origin by a unit number, then moved."""
+    """Rotate a chain about the origin by a unit complex number, then translate it."""
     return tuple(
         replace(
             edge,
@@ -200,7 +200,7 @@ def moved(chain: Chain, *, by: complex = 0j, turned: complex = 1 + 0j) -> Chain:
 
 
 def rotated_to(loop: Loop, near: complex) -> Loop:
-    """The loop, starting at its point nearest to another one."""
+    """Loop that starts at its point nearest to a given point."""
     index, part = nearest(loop, near)
     edge = loop[index]
     if part * edge.length < TINY:
@@ -211,7 +211,7 @@ def rotated_to(loop: Loop, near: complex) -> Loop:
 
 
 def nearest(chain: Chain, point: complex) -> tuple[int, float]:
-    """Index of the edge, and the part of its length, where a chain is nearest to a point."""
+    """Edge index and fraction of its length where a chain is nearest to a point."""
     parts = [_foot(edge, point) for edge in chain]
     distances = [abs(edge.at(part) - point) for edge, part in zip(chain, parts, strict=True)]
     index = min(range(len(chain)), key=distances.__getitem__)
@@ -219,7 +219,7 @@ def nearest(chain: Chain, point: complex) -> tuple[int, float]:
 
 
 def _foot(edge: ContourEdge, point: complex) -> float:
-    """Part of an edge's length nearest to a point."""
+    """Fraction of an edge's length nearest to a point."""
     if edge.centre is None:
         way = edge.end - edge.start
         return min(1.0, max(0.0, ((point - edge.start) / way).real))

@@ -1,8 +1,8 @@
-"""Contour-parallel passes over an area: rings within rings, and what they would leave uncut.
+"""Contour-parallel passes over an area: nested rings, and passes over what they leave uncut.
 
 Rings are offsets of the wall. With a step above the cutter's radius they leave islands, in the
-corners where ``s > R·(1 + sin(θ/2))`` and in the middle; those get passes of their own, so that
-the area is swept whatever the overlap is.
+corners where ``s > R·(1 + sin(θ/2))`` and in the middle; these get extra passes, so that the
+area is swept completely whatever the overlap is.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -29,41 +29,41 @@ from stepnc_model.toolpath.milling.contour import (
 from stepnc_model.toolpath.milling.offset import erode
 
 CHORD = 2e-3
-"""mm of tolerance where areas are compared by polygons"""
+"""Chord tolerance where areas are compared as polygons, mm."""
 
 NEGLIGIBLE = 2.0 * CHORD
-"""mm; a part that is nowhere thicker than twice this is an error of the chords"""
+"""Half thickness below which a remaining part is an error of the chords, mm."""
 
 MOST_RINGS = 2000
 
 
 @dataclass(frozen=True, slots=True)
 class MillingPass:
-    """One cut at constant depth: a loop, or a chain with two ends."""
+    """Milling cut at constant depth: a loop, or a chain with two ends."""
 
     chain: Chain
     is_closed: bool
 
     def from_near(self, point: complex | None) -> "MillingPass":
-        """The same pass, a loop started where it comes nearest to a point."""
+        """Pass that starts nearest to a point, if it is a loop; else unchanged."""
         if point is None or not self.is_closed:
             return self
         return MillingPass(rotated_to(self.chain, point), is_closed=True)
 
     @property
     def start(self) -> complex:
-        """First point."""
+        """First point of the pass."""
         return self.chain[0].start
 
     @property
     def end(self) -> complex:
-        """Last point."""
+        """Last point of the pass."""
         return self.chain[-1].end
 
 
 @dataclass(slots=True)
 class _Node:
-    """A part of the area at one level of offset, with the parts inside it."""
+    """Part of the area at one offset level, with the parts inside it."""
 
     polygon: Polygon
     loops: list[Loop]
@@ -73,24 +73,24 @@ class _Node:
 def rings(
     walls: Sequence[Loop], *, distance: float, radius: float, step: float
 ) -> tuple[MillingPass, ...]:
-    """Passes that clear an area, from the inside out.
+    """Contour-parallel passes that clear an area, from the inside out.
 
     Parameters
     ----------
     walls : sequence of Loop
-        The area lies on the left of each.
+        The area lies on the left of each wall.
     distance : float, mm
-        Of the outermost passes from the walls.
+        Distance of the outermost passes from the walls.
     radius : float, mm
-        Of the cutter.
+        Radius of the cutter.
     step : float, mm
-        Between neighbouring passes.
+        Distance between neighbouring passes.
 
     Returns
     -------
     tuple of MillingPass
-        Outer passes counter-clockwise, passes around islands clockwise. Empty when the cutter
-        does not fit in.
+        Outer passes counter-clockwise, passes around islands clockwise. Empty if the cutter
+        does not fit.
     """
     return _rings(tuple(walls), distance, radius, step)
 
@@ -99,7 +99,7 @@ def rings(
 def _rings(
     walls: tuple[Loop, ...], distance: float, radius: float, step: float
 ) -> tuple[MillingPass, ...]:
-    """The same of walls that can be remembered."""
+    """Cached implementation of ``rings``."""
     levels = list(_levels(walls, distance, step))
     if not levels:
         return ()
@@ -117,7 +117,7 @@ def _rings(
 def swept(
     passes: Sequence[MillingPass], radius: float, *, tolerance: float = CHORD
 ) -> BaseGeometry:
-    """Area that a cutter sweeps along passes."""
+    """Area swept by a cutter along passes, as polygons."""
     return shapely.union_all([
         LineString(_coordinates(each.chain, tolerance)).buffer(radius, quad_segs=32)
         for each in passes
@@ -125,7 +125,7 @@ def swept(
 
 
 def area_of(loops: Sequence[Loop], *, tolerance: float = CHORD) -> BaseGeometry:
-    """Area of rings as polygons: outer ones less those that run clockwise."""
+    """Area bounded by rings, as polygons: outer rings minus clockwise ones."""
     outer = [shape(loop, tolerance=tolerance) for loop in loops if area(loop) > 0.0]
     holes = [shape(loop, tolerance=tolerance) for loop in loops if area(loop) <= 0.0]
     return shapely.difference(shapely.union_all(outer), shapely.union_all(holes))
@@ -138,11 +138,13 @@ def _levels(walls: Sequence[Loop], distance: float, step: float) -> Iterator[tup
         if not loops:
             return
         yield loops
-    raise ValueError(f"steps of {step:g} mm make more than {MOST_RINGS} rings")
+    raise ValueError(
+        f"steps of {step:g} mm need more than {MOST_RINGS} rings: increase the step"
+    )
 
 
 def _tree(levels: Sequence[tuple[Loop, ...]]) -> list[_Node]:
-    """Parts of the area, each with what lies inside it at the next level."""
+    """Tree of the area's parts, each with its parts at the next offset level."""
     roots: list[_Node] = []
     above: list[_Node] = []
     for loops in levels:
@@ -172,7 +174,7 @@ def _nodes(loops: Sequence[Loop]) -> list[_Node]:
 
 
 def _valid(polygon: Polygon) -> Polygon:
-    """The polygon, mended where coarse chords make it touch itself."""
+    """Polygon repaired where coarse chords make it touch itself."""
     if polygon.is_valid:
         return polygon
     mended = polygon.buffer(0.0)
@@ -182,7 +184,7 @@ def _valid(polygon: Polygon) -> Polygon:
 
 
 def _inside_out(node: _Node) -> Iterator[Loop]:
-    """Loops of a part after those of what lies inside it; no recursion."""
+    """Loops of a part, after those of its inner parts; without recursion."""
     stack, found = [node], []
     while stack:
         top = stack.pop()
@@ -197,7 +199,7 @@ def _uncut(
     between: Iterable[tuple[Loop, ...]],
     radius: float,
 ) -> list[MillingPass]:
-    """Passes through what the rings leave: rings half way between two levels, then strokes."""
+    """Passes through what the rings leave: rings half way between levels, then strokes."""
     passes = [MillingPass(loop, is_closed=True) for loops in levels for loop in loops]
     left = _parts(area_of(levels[0]).difference(swept(passes, radius)))
     found: list[MillingPass] = []
@@ -208,7 +210,7 @@ def _uncut(
         if any(trace.intersects(part) for part in left):
             reached = trace.buffer(radius, quad_segs=32)
             whole = [part for part in left if reached.covers(part)]
-            # A ring is worth its way only where it runs through what is left.
+            # An extra ring is worth it only if at least half of it runs through what is left.
             if sum(part.length for part in whole) >= 0.5 * trace.length:
                 found.append(MillingPass(loop, is_closed=True))
                 left = [part for part in left if not reached.covers(part)]
@@ -218,7 +220,7 @@ def _uncut(
 
 
 def _through(part: Polygon, radius: float) -> list[MillingPass]:
-    """A stroke through a part that is left, or passes along its edge and within."""
+    """Stroke through a remaining part, or else passes along its edge and within it."""
     stroke = _axis(part)
     if stroke is not None and stroke.buffer(radius * 0.999).covers(part):
         (x0, y0), (x1, y1) = stroke.coords
@@ -227,7 +229,7 @@ def _through(part: Polygon, radius: float) -> list[MillingPass]:
     stack = [part]
     while stack:
         piece = stack.pop()
-        # Anything within a radius of the part lies inside: the way need not follow its edge.
+        # Anything within a radius of the path is cut: it need not follow the edge exactly.
         ring = piece.exterior.simplify(0.5 * radius)
         points = [complex(x, y) for x, y in ring.coords]
         edges = tuple(line(a, b) for a, b in pairwise(points) if abs(a - b) > TINY)
@@ -239,7 +241,7 @@ def _through(part: Polygon, radius: float) -> list[MillingPass]:
 
 
 def _axis(part: Polygon) -> LineString | None:
-    """Longest line of symmetry of the narrowest box about a part, if it stays inside."""
+    """Longest axis of the narrowest box around a part, clipped to the part; or None."""
     box = part.minimum_rotated_rectangle
     if not isinstance(box, Polygon):
         return None
@@ -260,7 +262,7 @@ def _axis(part: Polygon) -> LineString | None:
 
 
 def _interleaved(ordered: list[MillingPass], extra: list[MillingPass]) -> Iterator[MillingPass]:
-    """Each extra pass before the first ring that runs close to it."""
+    """Insert each extra pass after the ring that runs closest to it."""
     if not extra:
         yield from ordered
         return
@@ -276,7 +278,7 @@ def _interleaved(ordered: list[MillingPass], extra: list[MillingPass]) -> Iterat
 
 
 def _parts(geometry: BaseGeometry) -> list[Polygon]:
-    """Polygons of a geometry that are worth a pass."""
+    """Polygons of a geometry that are large enough for a pass."""
     parts = shapely.get_parts(geometry).tolist()
     return [
         part
@@ -286,6 +288,6 @@ def _parts(geometry: BaseGeometry) -> list[Polygon]:
 
 
 def _coordinates(chain: Chain, tolerance: float) -> list[tuple[float, float]]:
-    """Points of a chain for shapely, its last end among them."""
+    """Points of a chain including its last end, as coordinate pairs for shapely."""
     points = [*vertices(chain, tolerance=tolerance), chain[-1].end]
     return [(point.real, point.imag) for point in points]

@@ -1,8 +1,8 @@
 """Approach to a pass and retract from it (ISO 14649-11).
 
-Plunges go down to the level of a pass: along the tool's axis, down a ramp along the pass
-itself, down a helix, or to and fro. Air strategies come down beside the pass and meet it along
-an arc or a straight line. What does not fit is replaced by what does, and said.
+Plunges descend to the level of a pass: along the tool's axis, down a ramp along the pass
+itself, down a helix, or to and fro. Air strategies descend beside the pass and meet it along
+an arc or a straight line. A strategy that does not fit is replaced, with a finding.
 """
 
 from cmath import rect
@@ -35,27 +35,27 @@ from stepnc_model.toolpath.task import PathBuilder, ToolPathTask
 from stepnc_model.units import rad_from_deg
 
 STEEPEST_DEG = 89.0
-"""degrees; a steeper ramp is a plunge"""
+"""Steepest angle of a ramp, degrees; steeper ones are plunges."""
 
 MOST_TURNS = 500
-"""laps or legs of a ramp; more lie on too short a piece of the pass"""
+"""Greatest number of laps or legs of a ramp."""
 
 HELIX_TRIES = 4
-"""times that the radius of a helix that does not fit is halved"""
+"""Number of times that a helix radius is halved until the helix fits."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Heights:
-    """Heights in the setup, mm, from the highest to the lowest."""
+    """Heights of the approach in the setup, mm, from the highest to the lowest."""
 
     travel: float
-    """above all material: the tool moves sideways in rapid"""
+    """Height above all material, at which the tool travels sideways in rapid."""
     retract: float
-    """the retract plane of the operation; down to here in rapid"""
+    """Retract plane of the operation, down to which the tool moves in rapid."""
     above: float
-    """just above the material of this level"""
+    """Height just above the material of this level."""
     level: float
-    """Level of the pass"""
+    """Height of the pass."""
 
 
 def enter(
@@ -67,10 +67,10 @@ def enter(
     room: CentreArea,
     approach: Ref[Entity] | None,
 ) -> MillingPass:
-    """Bring the tool to the start of a pass; what is left of the pass to be cut."""
+    """Move the tool to the start of a pass; return the part of the pass still to be cut."""
     strategy = job.program.get(approach) if approach is not None else None
     if isinstance(strategy, AlongPath):
-        text = "an approach along paths of its own is not made: the tool comes straight down"
+        text = "approach along an explicit path is not supported: the tool moves straight down"
         course.find(job.warning(text, approach))
     if isinstance(strategy, (ApRetractAngle, ApRetractTangent)):
         way = _lead(strategy, cut, room)
@@ -78,12 +78,18 @@ def enter(
             _down(course, way[0].start, heights)
             trace(course, way, z=heights.level, end_z=heights.level, type=MoveType.APPROACH)
             return cut
-        course.find(job.note(f"no room for {strategy.express_name()}: straight down", approach))
+        course.find(
+            job.note(f"no room for {strategy.express_name()}: moving straight down", approach)
+        )
     if isinstance(strategy, (PlungeRamp, PlungeHelix, PlungeZigzag)):
         angle = strategy.angle
         if angle is not None and 0.0 < angle <= STEEPEST_DEG:
             return _slanted(course, job, cut, strategy, heights=heights, room=room)
-        course.find(job.note(f"an angle of {angle}° is no ramp: straight down", approach))
+        course.find(
+            job.note(
+                f"an angle of {angle}° is not a valid ramp: moving straight down", approach
+            )
+        )
     _down(course, cut.start, heights)
     return cut
 
@@ -97,7 +103,7 @@ def leave(
     room: CentreArea,
     retract: Ref[Entity] | None,
 ) -> None:
-    """Take the tool from the end of a pass to the height of travel."""
+    """Retract the tool from the end of a pass to the travel height."""
     strategy = job.program.get(retract) if retract is not None else None
     if isinstance(strategy, (ApRetractAngle, ApRetractTangent)):
         back = MillingPass(reversed_chain(cut.chain), cut.is_closed)
@@ -108,17 +114,17 @@ def leave(
             trace(course, way, z=z, end_z=z, type=MoveType.RETRACT)
         else:
             course.find(
-                job.note(f"no room for {strategy.express_name()}: straight up", retract)
+                job.note(f"no room for {strategy.express_name()}: moving straight up", retract)
             )
     elif isinstance(strategy, AlongPath):
-        text = "a retract along paths of its own is not made: the tool goes straight up"
+        text = "retract along an explicit path is not supported: the tool moves straight up"
         course.find(job.warning(text, retract))
     x, y, _ = course.at
     course.rapid((x, y, heights.travel), MoveType.RETRACT)
 
 
 def trace(course: PathBuilder, chain: Chain, *, z: float, end_z: float, type: MoveType) -> None:
-    """Follow a chain, rising or sinking evenly along its length."""
+    """Follow a chain, rising or descending evenly along its length."""
     total = chain_length(chain)
     done = 0.0
     for edge in chain:
@@ -133,7 +139,7 @@ def trace(course: PathBuilder, chain: Chain, *, z: float, end_z: float, type: Mo
 
 
 def _over(course: PathBuilder, at: complex, heights: Heights) -> None:
-    """Sideways at the height of travel, then down to just above the material."""
+    """Move sideways at the travel height, then down to just above the material."""
     x, y = at.real, at.imag
     course.rapid((x, y, max(course.at[2], heights.travel)))
     course.rapid((x, y, heights.travel))
@@ -143,7 +149,7 @@ def _over(course: PathBuilder, at: complex, heights: Heights) -> None:
 
 
 def _down(course: PathBuilder, at: complex, heights: Heights) -> None:
-    """Straight down to the level of the pass."""
+    """Move straight down to the level of the pass."""
     _over(course, at, heights)
     course.line((at.real, at.imag, heights.level), MoveType.APPROACH)
 
@@ -157,18 +163,18 @@ def _slanted(
     heights: Heights,
     room: CentreArea,
 ) -> MillingPass:
-    """Down at an angle: a helix, round and round a loop, or to and fro."""
+    """Descend at an angle: on a helix, around a loop, or to and fro."""
     length = (heights.above - heights.level) / tan(rad_from_deg(strategy.angle))
     if isinstance(strategy, PlungeHelix):
         if _helix(course, cut, heights, room, radius=strategy.radius, length=length):
             return cut
-        course.find(job.note("no room for the helix: a ramp along the pass", None, "approach"))
+        course.find(job.note("no room for the helix: ramping along the pass", None, "approach"))
     total = chain_length(cut.chain)
     limit = total
     if isinstance(strategy, PlungeZigzag) and strategy.width and strategy.width > 0.0:
         limit = min(total, strategy.width)
     if length > MOST_TURNS * limit:
-        text = f"a ramp of {length:.4g} mm on {limit:.4g} mm of the pass: straight down"
+        text = f"ramp of {length:.4g} mm on a {limit:.4g} mm pass is too long: straight down"
         course.find(job.note(text, None, "approach"))
         _down(course, cut.start, heights)
         return cut
@@ -181,7 +187,7 @@ def _slanted(
 def _around(
     course: PathBuilder, cut: MillingPass, heights: Heights, length: float
 ) -> MillingPass:
-    """Down along a loop; the loop from where the level is reached."""
+    """Ramp down along a loop; return the loop from where the level is reached."""
     laps, rest = divmod(length, chain_length(cut.chain))
     head, tail = divided(cut.chain, rest)
     _over(course, cut.start, heights)
@@ -193,7 +199,7 @@ def _around(
 def _zigzag(
     course: PathBuilder, cut: MillingPass, heights: Heights, length: float, limit: float
 ) -> None:
-    """Move to and fro along the beginning of the pass, back at its start on the level."""
+    """Ramp to and fro along the beginning of the pass, ending at its start on the level."""
     count = max(1, ceil(0.5 * length / limit - TINY))
     way, _ = divided(cut.chain, 0.5 * length / count)
     legs = (way, reversed_chain(way)) * count
@@ -216,12 +222,12 @@ def _helix(
     radius: float | None,
     length: float,
 ) -> bool:
-    """Down a helix to the start of the pass, on its free side; whether it fits."""
+    """Descend a helix to the start of the pass, on its free side; return whether it fits."""
     found = _helix_centre(cut, room, radius)
     if found is None:
         return False
     centre, size = found
-    # With the free side on the left a counter-clockwise helix cuts as the pass does.
+    # With the free side on the left, a counter-clockwise helix keeps the pass's cut mode.
     turn = length / size * (1.0 if room.side.imag > 0.0 else -1.0)
     _over(course, centre + (cut.start - centre) * rect(1.0, -turn), heights)
     course.arc(
@@ -236,7 +242,7 @@ def _helix(
 def _helix_centre(
     cut: MillingPass, room: CentreArea, radius: float | None
 ) -> tuple[complex, float] | None:
-    """Centre and radius of a circle through the start that stays in the room."""
+    """Centre and radius of a circle through the start of a pass that stays in the room."""
     size = radius or 0.0
     along = cut.chain[0].along(0.0)
     for _ in range(HELIX_TRIES):
@@ -254,7 +260,7 @@ def _helix_centre(
 def _lead(
     strategy: ApRetractAngle | ApRetractTangent, cut: MillingPass, room: CentreArea
 ) -> Chain:
-    """Way onto the start of a pass from its free side; empty when there is no room."""
+    """Lead-in to the start of a pass from its free side; empty if there is no room."""
     at, along = cut.start, cut.chain[0].along(0.0)
     if isinstance(strategy, ApRetractTangent):
         radius = strategy.radius or 0.0

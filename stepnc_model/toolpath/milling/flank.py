@@ -1,8 +1,8 @@
-"""Passes beside a wall, and those that make the bar of a tee slot, one level at a time.
+"""Milling passes along a wall, and passes that undercut a tee slot, level by level.
 
-Walls are those of outside profiles, bosses and steps. The neck of a tee slot is a slot like any
-other and is milled first; nothing looks whether it was. Above the bar the T-slot mill cannot be
-lifted, so every pass runs from outside the part to its other side.
+Walls are those of outside profiles, bosses and steps. The neck of a tee slot is an ordinary
+slot and has to be milled first; this is not checked. Above the undercut the T-slot mill cannot
+be lifted, so every pass runs from outside the part to its other side.
 """
 
 from collections.abc import Iterator
@@ -34,9 +34,9 @@ MOST_PASSES = 1000
 def flank_layer(
     job: ToolPathTask, flank: Flank, level: CutLevel, way: ResolvedStrategy, *, is_single: bool
 ) -> Layer | None:
-    """Passes at one level, from the outside in; None when the cutter cannot follow the wall.
+    """Passes along a wall at one level, from the outside in; None if the cutter does not fit.
 
-    ``is_single``: only what an earlier operation left on the wall is taken off.
+    ``is_single``: remove only what an earlier operation left on the wall.
     """
     cutter = level.cutter
     lean = extra(flank.inset, cutter, bottom=level.z - flank.bottom, top=flank.depth)
@@ -47,7 +47,7 @@ def flank_layer(
     passes: list[MillingPass] = []
     for index in reversed(range(count)):
         for cut in _at(job, flank, cutter, near + index * way.step):
-            # The last pass follows the whole wall; those before it only where there is stock.
+            # The last pass follows the whole wall; earlier passes only where there is stock.
             passes += [cut] if index == 0 or not near_stock else inside(cut, near_stock)
     if not passes:
         return None
@@ -68,7 +68,7 @@ def flank_layer(
 def _at(
     job: ToolPathTask, flank: Flank, cutter: EndMillShape, distance: float
 ) -> list[MillingPass]:
-    """The wall at a distance; a closed one starts in the middle of its longest line."""
+    """Passes at a distance from the wall; closed ones start in the longest straight edge."""
     if flank.is_closed:
         return [
             MillingPass(rotated_to(loop, _start(loop)), is_closed=True)
@@ -80,13 +80,13 @@ def _at(
 
 
 def _start(loop: Loop) -> complex:
-    """Middle of the longest line, or of the longest arc."""
+    """Middle of the longest line, or of the longest arc if there is no line."""
     lines = [edge for edge in loop if edge.centre is None] or list(loop)
     return max(lines, key=lambda edge: edge.length).at(0.5)
 
 
 def _count(job: ToolPathTask, flank: Flank, way: ResolvedStrategy, left: float) -> int:
-    """Passes side by side that remove everything up to the side of the stock."""
+    """Number of parallel passes that remove all material up to the side of the stock."""
     width = flank.width
     if width is None:
         stock = _stock(job)
@@ -97,14 +97,14 @@ def _count(job: ToolPathTask, flank: Flank, way: ResolvedStrategy, left: float) 
     count = max(1, ceil((width - left) / way.step - 1e-6))
     if count > MOST_PASSES:
         raise job.fault(
-            f"{count} passes of {way.step:g} mm beside its wall: {MOST_PASSES} are enough",
+            f"{count} passes of {way.step:g} mm along the wall: at most {MOST_PASSES} allowed",
             flank.ref,
         )
     return count
 
 
 def _stock(job: ToolPathTask) -> Loop | None:
-    """The stock seen along z: a rectangle; a bar by the square about it."""
+    """Stock seen along z as a rectangle; a round bar as its bounding square."""
     if job.stock is None:
         return None
     (x0, y0, _), (x1, y1, _) = job.stock.low, job.stock.high
@@ -112,27 +112,28 @@ def _stock(job: ToolPathTask) -> Loop | None:
 
 
 FITS = 1e-3
-"""mm by which the mill may differ from the bar that it makes in one pass"""
+"""Tolerance between the mill and the undercut that it cuts in one pass, mm."""
 
 
 def tee_layers(
     job: ToolPathTask, area: Area, bar: TeeSlotUndercut, cutter: EndMillShape
 ) -> Iterator[Layer]:
-    """Passes that make the bar, from its top down.
+    """Layers of passes that cut the undercut of a tee slot, from its top down.
 
     Raises
     ------
     PathError
-        When the mill cannot come in, is wider or thicker than the bar, or leaves its middle.
+        If the slot is not open at both ends, or the mill does not suit the undercut.
     """
     if not bar.is_open:
         raise job.fault(
-            "a T-slot mill comes and goes through open ends: both must be open", area.ref
+            "a T-slot mill enters and leaves through the slot ends: both must be open", area.ref
         )
     thickness = _thickness(job, bar)
     if thickness > bar.depth + FITS:
         raise job.fault(
-            f"a mill of {thickness:g} mm thickness in a bar of {bar.depth:g} mm", area.ref
+            f"a mill {thickness:g} mm thick does not fit an undercut of {bar.depth:g} mm",
+            area.ref,
         )
     start = area.bottom + bar.depth - thickness
     count = ceil((start - area.bottom) / thickness - FITS)
@@ -155,12 +156,12 @@ def tee_layers(
 def _chains(
     job: ToolPathTask, area: Area, bar: TeeSlotUndercut, cutter: EndMillShape
 ) -> list[Chain]:
-    """The middle of the slot, or a way along either side of the bar."""
+    """Centre line of the slot, or a path along each side of the undercut."""
     aside = 0.5 * bar.width - cutter.radius
     if aside < -FITS or aside > cutter.radius:
         raise job.fault(
-            f"'{job.tool.id}' of {job.tool.diameter:g} mm for a bar of {bar.width:g} mm: "
-            "it may not be wider, nor narrower than half of it",
+            f"'{job.tool.id}' of {job.tool.diameter:g} mm for an undercut of {bar.width:g} mm: "
+            "the mill must be between half and all of the undercut's width",
             area.ref,
         )
     way = stretched(area.middle or (), *area.ends)
@@ -168,11 +169,11 @@ def _chains(
         return [way]
     left, right = beside(way, aside), beside(reversed_chain(way), aside)
     if len(left) != 1 or len(right) != 1:
-        raise job.fault("its course turns too sharply for the mill", area.ref)
+        raise job.fault("the slot's course turns too sharply for the mill", area.ref)
     return [left[0], right[0]]
 
 
 def _thickness(job: ToolPathTask, bar: TeeSlotUndercut) -> float:
-    """Thickness of the mill, mm; that of the bar where the file does not say."""
+    """Thickness of the T-slot mill, mm; the undercut depth where the file does not say."""
     thickness = getattr(body_of(job.program, job.step.tool_ref), "cutting_thickness", None)
     return float(thickness) if thickness and thickness > 0.0 else bar.depth

@@ -1,4 +1,4 @@
-"""One level of an area: its passes in their order, and where the cutter's centre may be."""
+"""Ordered passes at one level of a milling area, and the room for the cutter's centre."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -42,32 +42,32 @@ from stepnc_model.toolpath.milling.strokes import (
 from stepnc_model.toolpath.task import ToolPathTask
 
 CHORD = 1e-4
-"""mm of tolerance where a point is looked for in an area"""
+"""Chord tolerance for testing whether a point lies in an area, mm."""
 
 HAIR = CHORD
-"""mm; a point nearer to the boundary than this lies on it: chords cannot tell"""
+"""Distance from the boundary, mm, within which a point counts as on it."""
 
 SHORTEST = 0.02
-"""mm; between points of a way so close it cannot come nearer by more than a hair"""
+"""Path length, mm, below which the clearance test is not refined further."""
 
 Clearance = Callable[[complex], float]
-"""how far a point lies from the boundary of the room, mm; negative outside"""
+"""Distance of a point from the boundary of the allowed area, mm; negative outside."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CentreArea:
-    """Area in which the centre of the cutter may be."""
+    """Area in which the cutter's centre may move."""
 
     clearance: Clearance
     side: complex = 1j
-    """i when the free side is on the left of the way, -i when it is on the right"""
+    """Side of the path that is free: i for the left, -i for the right."""
 
     def holds(self, chain: Chain) -> bool:
-        """Whether a way stays within."""
+        """Whether a chain stays within the area."""
         return all(self._holds(edge) for edge in chain)
 
     def _holds(self, edge: ContourEdge) -> bool:
-        """The clearance changes by no more than the way: halves until that settles it."""
+        """Whether an edge stays inside, by bisection with the clearance at midpoints."""
         parts = [(0.0, 1.0)]
         while parts:
             low, high = parts.pop()
@@ -80,23 +80,23 @@ class CentreArea:
         return all(self.clearance(point) >= -HAIR for point in (edge.start, edge.end))
 
     def holds_circle(self, centre: complex, radius: float) -> bool:
-        """Whether a circle lies within."""
+        """Whether a circle lies within the area."""
         return self.clearance(centre) >= radius - HAIR
 
 
 def nowhere(_point: complex) -> float:
-    """No room beside the pass: the cutter is as wide as its slot."""
+    """Clearance function without any room: the cutter is as wide as its slot."""
     return -inf
 
 
 def within(loops: Sequence[Loop]) -> Clearance:
-    """Room that lies on the left of loops."""
+    """Clearance function of the area on the left of loops."""
     return _within(tuple(loops))
 
 
 @lru_cache(maxsize=REMEMBERED)
 def _within(loops: tuple[Loop, ...]) -> Clearance:
-    """The same of loops that can be remembered."""
+    """Cached implementation of ``within``."""
     edges = ContourEdges.of([edge for loop in loops for edge in loop])
     area = area_of(loops, tolerance=CHORD)
     shapely.prepare(area)
@@ -110,64 +110,64 @@ def _within(loops: tuple[Loop, ...]) -> Clearance:
 
 
 def beside(wall: Chain, distance: float) -> Clearance:
-    """Room that keeps a distance from a wall."""
+    """Clearance function of the region at least a distance away from a wall."""
     edges = ContourEdges.of(wall)
     return lambda point: float(distances(np.array([point]), edges)[0]) - distance
 
 
 JUST_FITS = 1e-3
-"""mm; a slot narrower than the tool by no more than this is as wide as the tool"""
+"""Amount, mm, by which a slot may be narrower than the tool and still count as equal."""
 
 LEFT_OVER = 0.01
-"""mm² that strokes may leave at the wall before a pass along it is added"""
+"""Area that strokes may leave at the wall before a pass along it is added, mm²."""
 
 
 MOST_ROWS = 10_000
-"""strokes over one face; more is a slip of the pen"""
+"""Greatest number of strokes over one face."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CutLevel:
-    """One height, and the cutter that comes there."""
+    """Level of a milling area and the cutter that reaches it."""
 
     z: float
     above: float
-    """z of the material over this level"""
+    """Height z of the material above this level, mm."""
     cutter: EndMillShape
     allowance: float
-    """Allowance, mm left on the walls"""
+    """Allowance left on the walls, mm."""
 
     @property
     def distance(self) -> float:
-        """Of the cutter's centre from the walls, mm."""
+        """Distance of the cutter's centre from the walls, mm."""
         return self.cutter.radius + self.allowance
 
     def touching(self, solid: Loop | None) -> tuple[Loop, ...]:
-        """Boundary of where the cutter touches some material."""
+        """Boundary of the region where the cutter touches the given material."""
         return offset(solid, -self.cutter.radius) if solid is not None else ()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Layer:
-    """Passes at one height, and where the cutter's centre may be between them."""
+    """Passes at one height, and the room for the cutter's centre between them."""
 
     z: float
     above: float
-    """z of the material over this level"""
+    """Height z of the material above this level, mm."""
     passes: tuple[MillingPass, ...]
     room: CentreArea
     loops: tuple[Loop, ...] = ()
-    """boundary of where the centre may be, when it is known"""
+    """Boundary of the area for the cutter's centre, where known."""
     solid: tuple[Loop, ...] = ()
-    """boundary of where the cutter touches material; none where it does everywhere"""
+    """Boundary of the region where the cutter meets material; empty if it does everywhere."""
     is_from_outside: bool = False
-    """every pass begins and ends beside the part, straight down and up"""
+    """Whether every pass begins and ends beside the part, straight down and up."""
 
 
 def clear(
     job: ToolPathTask, area: Area, level: CutLevel, way: ResolvedStrategy
 ) -> Layer | None:
-    """Passes that clear a level; None when the cutter does not fit in."""
+    """Passes that clear a level; None if the cutter does not fit."""
     if area.face is not None:
         return _face(job, area, level, way)
     boundaries = area.boundaries(level.z, level.cutter)
@@ -180,7 +180,7 @@ def clear(
 
 
 def wall_passes(area: Area, level: CutLevel, way: ResolvedStrategy) -> Layer | None:
-    """Passes along the walls of a level; None when the cutter does not fit in."""
+    """Passes along the walls of a level; None if the cutter does not fit."""
     boundaries = area.boundaries(level.z, level.cutter)
     loops = erode(boundaries, level.distance)
     if loops:
@@ -200,7 +200,7 @@ def _layer(
     *,
     is_left: bool,
 ) -> Layer | None:
-    """The passes with the room around them, free on their left or on their right."""
+    """Layer of passes with the room around them, free on their left or right."""
     if not passes:
         return None
     return Layer(
@@ -222,7 +222,7 @@ def _covered(
     loops: tuple[Loop, ...],
     way: ResolvedStrategy,
 ) -> tuple[MillingPass, ...]:
-    """Passes of an area with walls, as the strategy wants them."""
+    """Passes over an area with walls, in the pattern of the strategy."""
     radius = level.cutter.radius
     walls = tuple(_turned(MillingPass(loop, is_closed=True), way) for loop in loops)
     if way.covering in {Covering.DEFAULT, Covering.RINGS, Covering.SPIRAL}:
@@ -247,7 +247,7 @@ def _rings(
     loops: tuple[Loop, ...],
     way: ResolvedStrategy,
 ) -> tuple[MillingPass, ...]:
-    """Rings within rings, in the order and the sense of the strategy."""
+    """Contour-parallel rings, in the order and direction of the strategy."""
     radius = level.cutter.radius
     found = rings(boundaries, distance=level.distance, radius=radius, step=way.step)
     ordered = [_turned(each, way) for each in (found if way.is_inside_out else found[::-1])]
@@ -257,21 +257,21 @@ def _rings(
 
 
 def _turned(cut: MillingPass, way: ResolvedStrategy) -> MillingPass:
-    """A pass that runs around its area as the strategy wants it."""
+    """Orient a closed pass in the direction of the strategy."""
     if way.is_counter_clockwise or not cut.is_closed:
         return cut
     return MillingPass(reversed_chain(cut.chain), is_closed=True)
 
 
 def _strokes(loops: Sequence[Loop], way: ResolvedStrategy) -> tuple[MillingPass, ...]:
-    """Strokes over an area."""
+    """Strokes over an area in the order of the strategy."""
     return _joined(scan(loops, along=way.along, step=way.step), loops, way)
 
 
 def _joined(
     rows: list[list[Stroke]], loops: Sequence[Loop], way: ResolvedStrategy
 ) -> tuple[MillingPass, ...]:
-    """Rows in the order of the strategy, one way or to and fro."""
+    """Rows of strokes in the order of the strategy, one way or to and fro."""
     ordered = rows if way.steps_left else rows[::-1]
     if not way.is_lifted:
         return zigzags(ordered, loops)
@@ -287,7 +287,7 @@ def _joined(
 def _face(
     job: ToolPathTask, area: Area, level: CutLevel, way: ResolvedStrategy
 ) -> Layer | None:
-    """Passes over a face, the tool running over its edge."""
+    """Passes over a face, with the tool running over its edge."""
     face = area.face
     assert face is not None
     radius, distance = level.cutter.radius, level.distance
@@ -311,14 +311,14 @@ def _face(
 
 
 def _rows(job: ToolPathTask, face: Loop, way: ResolvedStrategy, radius: float) -> list[float]:
-    """Places of the strokes across a face: full steps, overhanging equally on both sides."""
+    """Positions of the strokes across a face: full steps, overhanging equally on both sides."""
     turned = moved(face, turned=way.along.conjugate())
     heights = [point.imag for point in vertices(turned, tolerance=1e-3)]
     low, high = min(heights), max(heights)
     count = max(1, ceil((high - low - 2.0 * radius) / way.step - TINY) + 1)
     if count > MOST_ROWS:
         raise job.fault(
-            f"steps of {way.step:g} mm make {count} strokes: {MOST_ROWS} at most",
+            f"steps of {way.step:g} mm need {count} strokes: at most {MOST_ROWS} are allowed",
             job.step.operation_ref,
         )
     first = 0.5 * (low + high) - 0.5 * (count - 1) * way.step
@@ -328,7 +328,7 @@ def _rows(job: ToolPathTask, face: Loop, way: ResolvedStrategy, radius: float) -
 def _narrow(
     area: Area, level: CutLevel, boundaries: tuple[Loop, ...]
 ) -> tuple[MillingPass, ...]:
-    """One pass where the cutter just fits; none where it does not."""
+    """One pass where the cutter just fits; empty where it does not."""
     loops = erode(boundaries, level.distance - JUST_FITS)
     if not loops:
         return ()
@@ -339,7 +339,7 @@ def _narrow(
 def _middle(
     area: Area, level: CutLevel, boundaries: tuple[Loop, ...]
 ) -> tuple[MillingPass, ...]:
-    """The centre line of a slot, run out at open ends and short of the walls at others."""
+    """Centre line of a slot, extended at open ends and short of the walls at closed ends."""
     middle = area.middle
     if middle is None:
         return ()
@@ -355,7 +355,7 @@ def _middle(
 
 
 def _along_walls(area: Area, loop: Loop, boundaries: Sequence[Loop]) -> list[MillingPass]:
-    """A ring without the parts of it that follow no wall, beyond an open side."""
+    """Parts of a ring that follow a wall, without those beyond an open side."""
     outside = area.outside
     if not outside:
         return [MillingPass(loop, is_closed=True)]
@@ -367,7 +367,7 @@ def _along_walls(area: Area, loop: Loop, boundaries: Sequence[Loop]) -> list[Mil
     )
     if is_wall.all():
         return [MillingPass(loop, is_closed=True)]
-    # Start behind a part that follows no wall, so that no chain is cut in two.
+    # Start behind a part that follows no wall, so that no chain is split in two.
     first = int(np.flatnonzero(~is_wall)[-1]) + 1
     chains: list[list[ContourEdge]] = [[]]
     for index in range(len(loop)):
@@ -384,7 +384,7 @@ def _along_walls(area: Area, loop: Loop, boundaries: Sequence[Loop]) -> list[Mil
 
 
 def _inset(boundaries: Sequence[Loop], area: Area) -> float:
-    """Distance that the first wall has moved in at this level, mm."""
+    """Inset of the first wall at this level, mm."""
     loop: Chain = area.walls[0].loop
     point = boundaries[0][0].at(0.5)
     return float(distances(np.array([point]), ContourEdges.of(loop))[0])

@@ -1,12 +1,12 @@
-"""Offsets of contours with exact arcs: what a disc whose centre keeps inside can trace.
+"""Exact offsets of contours with lines and arcs, as traced by the centre of a disc.
 
-The region is the common part of what lies on the left of each loop, so islands may overlap each
+The region is the intersection of the areas left of each loop, so islands may overlap each
 other or the wall. Its erosion by d is bounded by points whose distance from the nearest edge is
 exactly d. Such points lie on the offset of an edge, or on the arc about a vertex where the
-region is not convex. All of those curves are split where they meet, and the pieces whose middle
-is nearer than d to any edge are dropped: what is left are the rings. Nothing is approximated
-by chords, and an offset of an offset is never taken. Crossings of many edges at once, and
-distances of points from them, come first.
+region is not convex. All these curves are split where they meet, and pieces whose midpoint is
+closer than d to any edge are dropped: the rest are the rings. Nothing is approximated by
+chords, and an offset of an offset is never taken. The first half of the module computes
+crossings of many edges at once and distances of points from them.
 
 References
 ----------
@@ -40,25 +40,25 @@ from stepnc_model.toolpath.milling.contour import (
 )
 
 ON = 1e-9
-"""relative slack of a crossing at the very end of an edge"""
+"""Tolerance of the bounding boxes when looking for crossings, mm."""
 
 
 @dataclass(frozen=True, slots=True)
 class ContourEdges:
-    """Edges as columns, each (N,)."""
+    """Contour edges as columns, each (N,)."""
 
     start: Points
     end: Points
     centre: Points
-    """of lines: 0"""
+    """Centres of arcs; 0 for lines, (N,)."""
     radius: Floats
-    """Radius, mm, of lines: 0"""
+    """Radii of arcs, mm; 0 for lines, (N,)."""
     turn: Floats
-    """Turn, rad, of lines: 0"""
+    """Angles of arcs, rad; 0 for lines, (N,)."""
 
     @classmethod
     def of(cls, edges: Sequence[ContourEdge]) -> "ContourEdges":
-        """Columns of a list of edges."""
+        """Build the columns from a list of edges."""
         start = np.array([edge.start for edge in edges], dtype=complex)
         centre = np.array(
             [0j if edge.centre is None else edge.centre for edge in edges], dtype=complex
@@ -73,7 +73,7 @@ class ContourEdges:
         )
 
     def pick(self, index: NDArray[np.intp]) -> "ContourEdges":
-        """Some of the edges, by their indices."""
+        """Select edges by their indices."""
         return ContourEdges(
             self.start[index],
             self.end[index],
@@ -83,12 +83,12 @@ class ContourEdges:
         )
 
     def boxes(self) -> tuple[Floats, Floats, Floats, Floats]:
-        """Least x, least y, greatest x, greatest y; arcs by a box that surely holds them."""
+        """Bounding boxes: least x, least y, greatest x, greatest y; not tight for arcs."""
         middle = self.start + 0.5 * (self.end - self.start)
         arc = self.turn != 0.0
         spoke = np.where(arc, self.start - self.centre, 0.0)
         middle = np.where(arc, self.centre + spoke * np.exp(0.5j * self.turn), middle)
-        # The sagitta bounds how far an arc of half a turn bulges beyond its three points.
+        # The sagitta bounds how far an arc up to half a turn bulges beyond its three points.
         bulge = np.abs(middle - 0.5 * (self.start + self.end))
         xs = np.stack([self.start.real, self.end.real, middle.real])
         ys = np.stack([self.start.imag, self.end.imag, middle.imag])
@@ -101,7 +101,7 @@ class ContourEdges:
 
 
 def distances(points: Points, edges: ContourEdges) -> Floats:
-    """Distance of each point from the nearest of the edges, mm, (M,)."""
+    """Distance of each point from the nearest edge, mm, (M,)."""
     found = np.full(len(points), np.inf)
     is_line = edges.turn == 0.0
     lines, arcs = edges.pick(np.flatnonzero(is_line)), edges.pick(np.flatnonzero(~is_line))
@@ -122,19 +122,19 @@ def distances(points: Points, edges: ContourEdges) -> Floats:
 
 
 def crossings(edges: Sequence[ContourEdge]) -> list[list[float]]:
-    """For each edge the parts of its length where another one crosses or touches it."""
+    """Fractions of each edge's length where another edge crosses or touches it."""
     return _found(len(edges), *_pairs(ContourEdges.of(edges), None))
 
 
 def crossings_with(
     edges: Sequence[ContourEdge], others: Sequence[ContourEdge]
 ) -> list[list[float]]:
-    """For each edge the parts of its length where one of the others crosses or touches it."""
+    """Fractions of each edge's length where an edge of a second set crosses or touches it."""
     return _found(len(edges), *_pairs(ContourEdges.of(edges), ContourEdges.of(others)))
 
 
 def _found(count: int, index: NDArray[np.intp], parts: Floats) -> list[list[float]]:
-    """Parts sorted by edge, each edge's in order."""
+    """Crossing fractions grouped by edge, in rising order."""
     order = np.lexsort((parts, index))
     bounds = np.searchsorted(index[order], np.arange(count + 1))
     values = parts[order].tolist()
@@ -142,7 +142,7 @@ def _found(count: int, index: NDArray[np.intp], parts: Floats) -> list[list[floa
 
 
 def _pairs(edges: ContourEdges, others: ContourEdges | None) -> tuple[NDArray[np.intp], Floats]:
-    """Edge index and part of every crossing; both of a pair where there are no others."""
+    """Edge index and fraction of every crossing, of both edges if there is only one set."""
     second = edges if others is None else others
     ax0, ay0, ax1, ay1 = edges.boxes()
     bx0, by0, bx1, by1 = second.boxes()
@@ -170,7 +170,7 @@ def _pairs(edges: ContourEdges, others: ContourEdges | None) -> tuple[NDArray[np
 
 
 def _meet(a: ContourEdges, b: ContourEdges) -> tuple[Points, Points]:
-    """Two points (or NaN) where the lines or circles of pairs of edges meet."""
+    """Intersections of the lines or circles of paired edges: two points each, or NaN."""
     first = np.full(len(a.start), np.nan + 0j)
     second = first.copy()
     a_line, b_line = a.turn == 0.0, b.turn == 0.0
@@ -186,7 +186,7 @@ def _meet(a: ContourEdges, b: ContourEdges) -> tuple[Points, Points]:
 
 
 def _line_line(a: ContourEdges, b: ContourEdges) -> Points:
-    """Crossing of two lines; NaN for parallel ones."""
+    """Intersections of paired lines; NaN for parallel lines."""
     u, v = a.end - a.start, b.end - b.start
     cross = (u.conj() * v).imag
     flat = np.abs(cross) <= 1e-12 * np.abs(u) * np.abs(v)
@@ -195,7 +195,7 @@ def _line_line(a: ContourEdges, b: ContourEdges) -> Points:
 
 
 def _line_circle(lines: ContourEdges, arcs: ContourEdges) -> tuple[Points, Points]:
-    """Crossings of a line and a circle; a near miss of a tangent counts as a touch."""
+    """Intersections of lines and circles; a near-tangent line counts as touching."""
     way = (lines.end - lines.start) / np.abs(lines.end - lines.start)
     from_centre = (lines.start - arcs.centre) / way
     half = _half_chord(arcs.radius, from_centre.imag)
@@ -204,7 +204,7 @@ def _line_circle(lines: ContourEdges, arcs: ContourEdges) -> tuple[Points, Point
 
 
 def _circle_circle(a: ContourEdges, b: ContourEdges) -> tuple[Points, Points]:
-    """Crossings of two circles; NaN for concentric ones."""
+    """Intersections of paired circles; NaN for concentric circles."""
     between = b.centre - a.centre
     gap = np.abs(between)
     gap = np.where(gap < 1e-9, np.nan, gap)
@@ -215,7 +215,7 @@ def _circle_circle(a: ContourEdges, b: ContourEdges) -> tuple[Points, Points]:
 
 
 def _half_chord(radius: Floats, distance: Floats) -> Floats:
-    """Half of the chord of a circle at a distance from its centre."""
+    """Half the chord of a circle at a distance from its centre, mm."""
     square = radius**2 - distance**2
     touch = np.abs(square) <= 1e-9 * np.maximum(radius, 1e-3)
     chord: Floats = np.where(touch, 0.0, np.sqrt(np.where(square < 0.0, np.nan, square)))
@@ -223,7 +223,7 @@ def _half_chord(radius: Floats, distance: Floats) -> Floats:
 
 
 def _part_of(edges: ContourEdges, where: Points) -> Floats:
-    """Part of each edge's length at a point on its line or circle; NaN beyond its ends."""
+    """Fraction of each edge's length at a point on its line or circle; NaN beyond its ends."""
     with np.errstate(divide="ignore", invalid="ignore"):
         on_line = ((where - edges.start) / (edges.end - edges.start)).real
         spoke = (where - edges.centre) / (edges.start - edges.centre)
@@ -234,7 +234,7 @@ def _part_of(edges: ContourEdges, where: Points) -> Floats:
             edges.radius * np.abs(edges.turn),
         )
         slack = 1e-7 / np.maximum(length, 1e-7)
-        # Just before the start an arc's part is almost a whole turn.
+        # Just before the start, an arc's fraction is almost a whole turn.
         whole = np.where(edges.turn == 0.0, np.inf, 2.0 * pi / np.abs(edges.turn))
         part = np.where(part > whole - slack, 0.0, part)
     inside = (part >= -slack) & (part <= 1.0 + slack)
@@ -242,7 +242,7 @@ def _part_of(edges: ContourEdges, where: Points) -> Floats:
 
 
 def _part(spoke: Points, turn: Floats) -> Floats:
-    """Part of an arc's turn at a spoke relative to its start; above 1 beyond the arc."""
+    """Fraction of an arc's angle at a spoke relative to its start; above 1 beyond the arc."""
     sign = np.where(turn < 0.0, -1.0, 1.0)
     size = np.where(turn == 0.0, 1.0, np.abs(turn))
     angle: Floats = (np.angle(spoke) * sign) % (2.0 * pi) / size
@@ -250,76 +250,76 @@ def _part(spoke: Points, turn: Floats) -> Floats:
 
 
 SLACK = 1e-7
-"""mm by which a piece may be nearer than the offset asks for"""
+"""Tolerance by which a piece may be closer than the offset distance, mm."""
 
 SHORTEST = 1e-7
-"""mm; shorter pieces are rounding"""
+"""Length below which a piece is a rounding error, mm."""
 
 JOIN = 1e-4
-"""mm between pieces that are one chain"""
+"""Greatest gap between pieces of one chain, mm."""
 
 SMOOTH = 1e-9
-"""rad; a smaller bend at a vertex is none"""
+"""Bend at a vertex that counts as smooth, rad."""
 
 FLAT = 1e-4
-"""mm; a loop that is thinner than this bounds nothing"""
+"""Thickness below which a loop bounds nothing, mm."""
 
 
 def erode(loops: Sequence[Loop], distance: float) -> tuple[Loop, ...]:
-    """Boundary of where the centre of a disc may be, its radius the distance.
+    """Boundary of the possible centres of a disc inside a region.
 
     Parameters
     ----------
     loops : sequence of Loop
-        The region lies on the left of each; they may cross one another.
+        The region lies on the left of each loop; loops may cross one another.
     distance : float, mm
-        Positive.
+        Radius of the disc, positive.
 
     Returns
     -------
     tuple of Loop
-        The region lies on their left: outer rings counter-clockwise, rings around islands
-        clockwise. Empty when the disc is too large.
+        The result lies on their left: outer rings counter-clockwise, rings around islands
+        clockwise. Empty if the disc is too large.
     """
     return _eroded(tuple(loops), distance)
 
 
 @lru_cache(maxsize=REMEMBERED)
 def _eroded(loops: tuple[Loop, ...], distance: float) -> tuple[Loop, ...]:
-    """The same of loops that can be remembered."""
+    """Cached implementation of ``erode``."""
     sources = [edge for loop in loops for edge in halved(loop)]
     candidates = [
         edge for loop in loops for edge in _parallels(halved(loop), distance, is_closed=True)
     ]
     pieces, middles = _apart(candidates, sources, distance)
     if len(loops) > 1 and pieces:
-        # The middles keep the distance: chords may be as coarse as a part of it.
+        # The midpoints keep the distance: chords may be as coarse as a fraction of it.
         inside = contains(loops, middles, tolerance=0.2 * distance)
         pieces = [piece for piece, good in zip(pieces, inside, strict=True) if good]
     return _stitched(pieces)
 
 
 def dilate(loops: Sequence[Loop], distance: float) -> tuple[Loop, ...]:
-    """Boundary of all discs about points inside the loops, which have no holes."""
+    """Boundary of the union of discs centred inside loops without holes."""
     outside = [reversed_chain(loop) for loop in loops]
     return tuple(reversed_chain(loop) for loop in erode(outside, distance))
 
 
 def offset(loop: Loop, distance: float) -> tuple[Loop, ...]:
-    """One outline without holes, smaller by a distance, or larger where it is negative."""
+    """Offset of one outline without holes: inwards if positive, outwards if negative, mm."""
     if distance > 0.0:
         return erode([loop], distance)
     return dilate([loop], -distance) if distance < 0.0 else (loop,)
 
 
 def rounded(loop: Loop, radius: float) -> tuple[Loop, ...]:
-    """The outline with its inner corners rounded: all that a disc inside it can cover."""
+    """Outline with its inner corners rounded: the area that a disc inside it can cover."""
     inner = erode([loop], radius)
     return dilate(inner, radius) if inner else ()
 
 
 def beside(chain: Chain, distance: float) -> tuple[Chain, ...]:
-    """Chains at a distance to the left of one that has two ends, from its start to its end."""
+    """Offset of an open chain to its left, as chains from its start to its end."""
     sources = halved(chain)
     candidates = _parallels(sources, distance, is_closed=False)
     return _chained(_apart(candidates, sources, distance)[0])
@@ -328,7 +328,7 @@ def beside(chain: Chain, distance: float) -> tuple[Chain, ...]:
 def contains(
     loops: Sequence[Loop], points: Iterable[complex], *, tolerance: float
 ) -> list[bool]:
-    """Whether points lie on the left of every loop; arcs by chords within a tolerance in mm."""
+    """Whether points lie on the left of every loop, with arcs as chords within a tolerance."""
     found = np.array(list(points), dtype=complex)
     inside = np.ones(len(found), dtype=bool)
     for loop in loops:
@@ -340,7 +340,7 @@ def contains(
 def _apart(
     candidates: Sequence[ContourEdge], sources: Sequence[ContourEdge], distance: float
 ) -> tuple[list[ContourEdge], list[complex]]:
-    """Pieces of the candidates that keep the distance from the sources, with their middles."""
+    """Pieces of the candidates that keep the distance from the sources, with midpoints."""
     pieces = [
         piece
         for edge, parts in zip(candidates, crossings(candidates), strict=True)
@@ -354,7 +354,7 @@ def _apart(
 
 
 def _parallels(chain: Chain, distance: float, *, is_closed: bool) -> list[ContourEdge]:
-    """Edges at a distance to the left, and arcs about the vertices that are not convex."""
+    """Offset edges to the left, and arcs about the vertices that are not convex."""
     sides = (_parallel(edge, distance) for edge in chain)
     found = [side for side in sides if side is not None]
     for edge, following in pairwise((*chain, chain[0]) if is_closed else chain):
@@ -373,7 +373,7 @@ def _parallels(chain: Chain, distance: float, *, is_closed: bool) -> list[Contou
 
 
 def _parallel(edge: ContourEdge, distance: float) -> ContourEdge | None:
-    """The edge at a distance to its left; None when an arc shrinks to nothing."""
+    """Offset of an edge to its left; None if an arc shrinks to nothing."""
     if edge.centre is None:
         aside = 1j * distance * edge.along(0.0)
         return ContourEdge(edge.start + aside, edge.end + aside)
@@ -391,7 +391,7 @@ def _parallel(edge: ContourEdge, distance: float) -> ContourEdge | None:
 
 
 def _split(edge: ContourEdge, parts: list[float]) -> list[ContourEdge]:
-    """The edge cut at some parts of its length."""
+    """Cut an edge at given fractions of its length."""
     least = SHORTEST / max(edge.length, SHORTEST)
     cuts = [0.0]
     for part in parts:
@@ -404,7 +404,7 @@ def _split(edge: ContourEdge, parts: list[float]) -> list[ContourEdge]:
 
 
 def _stitched(pieces: list[ContourEdge]) -> tuple[Loop, ...]:
-    """Loops of pieces whose ends meet; what does not close or bounds nothing is dropped."""
+    """Closed loops of pieces whose ends meet; open chains and empty loops are dropped."""
     loops: list[Loop] = []
     pieces = _pruned(pieces)
     for chain in _chains(pieces, range(len(pieces))):
@@ -416,10 +416,10 @@ def _stitched(pieces: list[ContourEdge]) -> tuple[Loop, ...]:
 
 
 def _pruned(pieces: list[ContourEdge]) -> list[ContourEdge]:
-    """The pieces without those that lead nowhere.
+    """Pieces without dead ends.
 
-    Where two edges are almost in line, the pieces behind their crossing are nearer than the
-    distance by less than the slack: they stay, and a chain that follows one never closes.
+    Where two edges are almost collinear, pieces behind their crossing are closer than the
+    distance by less than the slack: they remain, and a chain that follows one never closes.
     """
     starts = np.array([piece.start for piece in pieces], dtype=complex)
     ends = np.array([piece.end for piece in pieces], dtype=complex)
@@ -433,7 +433,7 @@ def _pruned(pieces: list[ContourEdge]) -> list[ContourEdge]:
 
 
 def _chained(pieces: list[ContourEdge]) -> tuple[Chain, ...]:
-    """Chains of pieces whose ends meet, each from an end that no other piece leads to."""
+    """Chains of pieces whose ends meet, each from a piece that no other piece leads to."""
     if not pieces:
         return ()
     ends = np.array([piece.end for piece in pieces], dtype=complex)
@@ -444,7 +444,7 @@ def _chained(pieces: list[ContourEdge]) -> tuple[Chain, ...]:
 
 
 def _chains(pieces: list[ContourEdge], firsts: Iterable[int]) -> Iterator[list[ContourEdge]]:
-    """From each first piece on, whatever starts where the last one ends."""
+    """Follow pieces end to start from each first piece."""
     starts = np.array([piece.start for piece in pieces], dtype=complex)
     is_free = np.ones(len(pieces), dtype=bool)
     for first in firsts:
@@ -464,19 +464,19 @@ def _chains(pieces: list[ContourEdge], firsts: Iterable[int]) -> Iterator[list[C
 
 
 def _closed(chain: list[ContourEdge]) -> Loop:
-    """The loop with each edge ending exactly where the next one starts."""
+    """Loop in which each edge ends exactly where the next one starts."""
     merged = _merged(chain)
     ends = [*(edge.start for edge in merged[1:]), merged[0].start]
     return tuple(
         ContourEdge(edge.start, end, edge.centre, edge.turn)
         for edge, end in zip(merged, ends, strict=True)
-        # Where ends are brought together a piece of a few rounding errors may vanish.
+        # Where ends are joined, a piece of a few rounding errors may vanish.
         if edge.centre is not None or abs(end - edge.start) > TINY
     )
 
 
 def _merged(chain: list[ContourEdge]) -> list[ContourEdge]:
-    """The chain with edges that continue each other made one."""
+    """Chain in which edges that continue each other are merged."""
     merged: list[ContourEdge] = []
     for edge in chain:
         if merged and _continues(merged[-1], edge):

@@ -1,8 +1,8 @@
-"""Milling: from areas and flanks to the tool's path, level by level.
+"""Tool path of a milling workingstep from its areas and flanks, level by level.
 
 Finishing after a roughing operation cuts the walls at each level and sweeps the floor once;
-without one it clears the whole depth. Passes between which the tool stays in the area are
-linked at the feed; for all others it is lifted.
+without roughing it clears the whole depth. Passes between which the tool stays in the area are
+linked at the feed; between other passes the tool is lifted.
 """
 
 from collections.abc import Iterator
@@ -43,40 +43,40 @@ from stepnc_model.toolpath.path import MoveType, ToolPath
 from stepnc_model.toolpath.task import ABOVE_STOCK, DEFAULT_CLEARANCE, PathBuilder, ToolPathTask
 
 T_SLOT_MILL = "T_SLOT_MILL"
-"""body of the only tool that makes the bar of a tee slot"""
+"""EXPRESS keyword of the only tool that cuts the undercut of a tee slot."""
 
 GAP = 0.5
-"""mm above the material of a level where the way down through air ends"""
+"""Clearance above the material of a level where the descent through air ends, mm."""
 
 LINK = 2.0
-"""steps between two passes that are linked at the feed; further apart the tool is lifted"""
+"""Greatest distance of two passes linked at the feed, in steps between passes."""
 
 LARGEST = 1000.0
-"""mm of allowance; more is a slip"""
+"""Greatest allowance accepted, mm."""
 
 MOST_LEVELS = 1000
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Allowance:
-    """Allowance of an operation, mm."""
+    """Allowances of a milling operation on walls and floor, mm."""
 
     side: float
     bottom: float
 
 
 def milling_path(job: ToolPathTask) -> ToolPath:
-    """Tool path of a milling workingstep.
+    """Generate the tool path of a milling workingstep.
 
     Raises
     ------
     PathError
-        When the tool does not fit, or feature, strategy or allowances allow no path.
+        If the tool does not fit, or feature, strategy or allowances allow no path.
     """
     operation = job.step.operation
     if not isinstance(operation, Two5dMillingOperation):
         raise job.fault(
-            f"{job.step.operation_type} needs a tool path of its own: none is given",
+            f"{job.step.operation_type} needs an explicit tool path, but none is given",
             job.step.operation_ref,
             "its_toolpath",
         )
@@ -89,7 +89,7 @@ def milling_path(job: ToolPathTask) -> ToolPath:
         for shape in shapes(job, placed.feature, placed.frame)
     ]
     if not found:
-        raise job.fault("has no feature: nothing tells what to cut", job.step.ref)
+        raise job.fault("the workingstep has no feature to mill", job.step.ref)
     first = found[0][1][0].passes[0].start
     course = PathBuilder(job, (first.real, first.imag, job.security_z))
     for finding in way.findings:
@@ -112,12 +112,14 @@ def milling_path(job: ToolPathTask) -> ToolPath:
             and shape.bar is not None
             and job.tool.keyword != T_SLOT_MILL
         ):
-            text = "only the neck of the tee slot is made: its bar takes a T-slot mill"
+            text = "only the neck of the tee slot is cut: its undercut needs a T-slot mill"
             course.find(job.warning(text, shape.ref))
         lowest = min(layer.z for layer in layers)
         missing = lowest - shape.bottom - allowance_of(job, operation).bottom
         if missing > 1e-6:
-            text = f"the tool does not fit below z = {lowest:g} mm: {missing:.4g} mm are left"
+            text = (
+                f"the tool does not fit below z = {lowest:g} mm: {missing:.4g} mm remain uncut"
+            )
             course.find(job.warning(text, shape.ref))
     x, y, _ = course.at
     course.rapid((x, y, job.security_z), MoveType.RETRACT)
@@ -125,7 +127,7 @@ def milling_path(job: ToolPathTask) -> ToolPath:
 
 
 def _warn_beside_stock(course: PathBuilder, job: ToolPathTask, shape: Area | Flank) -> None:
-    """Say that a feature lies wholly beside the stock: a placement may count twice."""
+    """Warn that a feature lies wholly outside the stock, as by a placement applied twice."""
     if job.stock is None:
         return
     chains = (shape.chain,) if isinstance(shape, Flank) else [wall.loop for wall in shape.walls]
@@ -134,25 +136,27 @@ def _warn_beside_stock(course: PathBuilder, job: ToolPathTask, shape: Area | Fla
     for pick, axis in ((lambda at: at.real, 0), (lambda at: at.imag, 1)):
         low, high = min(map(pick, points)), max(map(pick, points))
         if low > job.stock.high[axis] or high < job.stock.low[axis]:
-            text = f"lies beside the stock: {'xy'[axis]} from {low:g} to {high:g} mm"
+            text = (
+                f"the feature lies outside the stock: {'xy'[axis]} from {low:g} to {high:g} mm"
+            )
             course.find(job.warning(text, shape.ref))
             return
 
 
 def allowance_of(job: ToolPathTask, operation: Entity) -> Allowance:
-    """Allowance of an operation on walls and floor.
+    """Allowances of an operation on walls and floor.
 
     Raises
     ------
     PathError
-        When it is negative.
+        If an allowance is negative or too large.
     """
     values = {}
     for name in ("allowance_side", "allowance_bottom"):
         value = getattr(operation, name, None) or 0.0
         if not 0.0 <= value < LARGEST:
             raise job.fault(
-                f"{value:g} mm: an allowance lies between 0 and {LARGEST:g} mm",
+                f"{value:g} mm: an allowance must lie between 0 and {LARGEST:g} mm",
                 job.step.operation_ref,
                 name,
             )
@@ -161,7 +165,7 @@ def allowance_of(job: ToolPathTask, operation: Entity) -> Allowance:
 
 
 def levels(top: float, bottom: float, depth: float) -> list[float]:
-    """Heights of equal levels down to the bottom, none deeper than a depth, mm."""
+    """Heights of equal levels down to the bottom, each at most a given depth apart, mm."""
     count = max(1, ceil((top - bottom) / depth - 1e-9))
     return [top + (bottom - top) * (index + 1) / count for index in range(count)]
 
@@ -169,7 +173,7 @@ def levels(top: float, bottom: float, depth: float) -> list[float]:
 def _layers(
     job: ToolPathTask, shape: Area | Flank, cutter: EndMillShape, way: ResolvedStrategy
 ) -> Iterator[Layer]:
-    """Passes of one shape, from the top down as far as the cutter fits in."""
+    """Layers of passes of one shape, from the top down as far as the cutter fits."""
     if isinstance(shape, Area) and shape.bar is not None and job.tool.keyword == T_SLOT_MILL:
         yield from tee_layers(job, shape, shape.bar, cutter)
         return
@@ -202,7 +206,7 @@ def _heights(
     floor: float,
     depth: float,
 ) -> Iterator[float]:
-    """Levels of a shape; the tops of low islands are levels too.
+    """Heights of the levels of a shape, including the tops of low islands.
 
     Yields
     ------
@@ -213,7 +217,7 @@ def _heights(
     stops = [top + allowance.bottom for top in tops if floor < top + allowance.bottom < start]
     if (start - floor) / depth > MOST_LEVELS:
         raise job.fault(
-            f"{depth:g} mm: more than {MOST_LEVELS} levels over {start - floor:g} mm",
+            f"{depth:g} mm needs more than {MOST_LEVELS} levels over {start - floor:g} mm",
             job.step.operation_ref,
             "axial_cutting_depth",
         )
@@ -230,14 +234,14 @@ def _layer(
     floor: float,
     earlier: Allowance | None,
 ) -> Layer | None:
-    """Passes of one level, or None where the cutter does not fit."""
+    """Layer of passes at one level; None if the cutter does not fit."""
     operation = job.step.operation
     if isinstance(shape, Flank):
         finishes = isinstance(operation, (SideFinishMilling, BottomAndSideFinishMilling))
         return flank_layer(job, shape, level, way, is_single=finishes and earlier is not None)
     if isinstance(operation, SideMilling):
         if not shape.walls:
-            raise job.fault("has no walls that could be milled from the side", shape.ref)
+            raise job.fault("the feature has no walls for side milling", shape.ref)
         return wall_passes(shape, level, way)
     if isinstance(operation, BottomAndSideFinishMilling) and earlier is not None:
         has_floor_left = earlier.bottom > floor - shape.bottom
@@ -247,7 +251,7 @@ def _layer(
 
 
 def _earlier(job: ToolPathTask) -> Allowance | None:
-    """Allowance of the last earlier operation of the same kind on the feature, or None."""
+    """Allowances of the last earlier milling operation on the feature, or None."""
     kinds = (PlaneMilling, SideMilling, BottomAndSideMilling)
     for step in reversed(job.program.before(job.step)):
         if isinstance(step.operation, kinds):
@@ -258,17 +262,17 @@ def _earlier(job: ToolPathTask) -> Allowance | None:
 def _span(
     job: ToolPathTask, shape: Area | Flank, allowance: Allowance, earlier: Allowance | None
 ) -> tuple[float, float]:
-    """Heights between which the operation removes material."""
+    """Start and end height of the material that the operation removes, mm."""
     floor = shape.bottom + allowance.bottom
     start = shape.top
     if isinstance(job.step.operation, PlaneFinishMilling) and earlier is not None:
         start = min(start, shape.bottom + earlier.bottom)
     if earlier is not None and abs(start - floor) <= 1e-9:
-        # Nothing was left on the floor: one pass smooths it.
+        # The earlier operation left nothing on the floor: one pass smooths it.
         return floor, floor
     if start - floor <= 1e-9:
         raise job.fault(
-            f"leaves {allowance.bottom:g} mm of {start - shape.bottom:g} mm: "
+            f"an allowance of {allowance.bottom:g} mm on {start - shape.bottom:g} mm of stock: "
             "nothing is removed",
             job.step.operation_ref,
             "allowance_bottom",
@@ -277,13 +281,13 @@ def _span(
 
 
 def _axial_depth(job: ToolPathTask, total: float) -> float:
-    """Depth of a level: as programmed, else what the cutting edge reaches, mm."""
+    """Depth of a level, mm: as programmed, or else the length of the cutting edge."""
     depth = getattr(job.step.operation, "axial_cutting_depth", None)
     if depth is None:
         return min(total, job.tool.cutting_edge_length or total) or 1.0
     if not 0.0 < depth < float("inf"):
         raise job.fault(
-            f"{depth:g} mm: a depth of cut is positive",
+            f"{depth:g} mm: the depth of cut must be positive",
             job.step.operation_ref,
             "axial_cutting_depth",
         )
@@ -291,22 +295,22 @@ def _axial_depth(job: ToolPathTask, total: float) -> float:
 
 
 def _retract_z(job: ToolPathTask, course: PathBuilder, shape: Area | Flank) -> float:
-    """Height of the retract plane over a shape."""
+    """Height z of the retract plane above a shape, mm."""
     distance = job.step.operation.retract_plane
     if distance is None:
         distance = DEFAULT_CLEARANCE
-        text = f"no retract plane: {distance:g} mm above the feature assumed"
+        text = f"no retract plane given: assuming {distance:g} mm above the feature"
         course.find(job.note(text, None, "retract_plane"))
     if distance < 0.0:
         raise job.fault(
-            f"{distance:g} mm: the retract plane lies above the feature",
+            f"{distance:g} mm: the retract plane must lie above the feature",
             job.step.operation_ref,
             "retract_plane",
         )
     if job.security_z <= shape.top:
         raise job.fault(
             f"the security plane at z = {job.security_z:g} mm does not lie above the feature, "
-            f"which begins at z = {shape.top:g} mm",
+            f"whose top is at z = {shape.top:g} mm",
             job.step.ref,
             "its_secplane",
         )
@@ -322,7 +326,7 @@ def _cut_layer(
     heights: Heights,
     way: ResolvedStrategy,
 ) -> None:
-    """All passes of one level."""
+    """Cut all passes of one level."""
     room = layer.room
     last: MillingPass | None = None
     for cut in layer.passes:
@@ -350,7 +354,7 @@ def _warn_of_plunge(
     layer: Layer,
     cut: MillingPass,
 ) -> None:
-    """Say that an end mill goes straight down into solid material, where it does."""
+    """Warn where an end mill plunges straight down into solid material."""
     if not isinstance(operation, (PlaneRoughMilling, BottomAndSideRoughMilling)):
         return
     strategy = job.program.get(operation.approach) if operation.approach is not None else None
@@ -358,12 +362,12 @@ def _warn_of_plunge(
     if is_straight and (
         not layer.solid or any(contains(layer.solid, [cut.start], tolerance=1e-3))
     ):
-        text = "straight down into the material: a ramp spares the tool"
+        text = "the tool plunges straight into the material: consider a ramp or helix"
         course.find(job.warning(text, attribute="approach"))
 
 
 def _cut(course: PathBuilder, chain: Chain, layer: Layer) -> None:
-    """Follow a pass, through material and through air."""
+    """Follow a pass through material and through air."""
     found = pieces(chain, layer.solid) if layer.solid else [ClippedChain(chain, is_inside=True)]
     for piece in found:
         type = MoveType.CONTACT if piece.is_inside else MoveType.NO_CONTACT
@@ -371,7 +375,7 @@ def _cut(course: PathBuilder, chain: Chain, layer: Layer) -> None:
 
 
 def _travel_z(job: ToolPathTask, retract_z: float) -> float:
-    """Height at which the tool moves sideways: over the stock, which may stand higher."""
+    """Height z of sideways travel, above the stock where that is higher, mm."""
     if job.stock is None or retract_z >= job.stock.high[2] + ABOVE_STOCK:
         return retract_z
     return max(job.security_z, job.stock.high[2] + ABOVE_STOCK)
@@ -380,7 +384,7 @@ def _travel_z(job: ToolPathTask, retract_z: float) -> float:
 def _is_linked(
     here: complex, following: MillingPass, layer: Layer, way: ResolvedStrategy
 ) -> bool:
-    """Whether the way to the next pass may be made at the feed."""
+    """Whether the tool may go to the next pass at the feed without lifting."""
     distance = abs(following.start - here)
     if distance < TINY:
         return True

@@ -1,13 +1,13 @@
-"""Profiles, courses of travel and slots of ISO 14649-10 as plane contours in the setup, mm.
+"""Profiles, travel paths and slots of ISO 14649-10 as plane contours in the setup, mm.
 
-Rectangles lie about the origin of their placement, the length along x. A polygon has a corner
-on x. Angles are in degrees.
+Rectangles are centred at the origin of their placement, with the length along x. A polygon has
+a corner on the x axis. Angles are in degrees.
 
-A slot is an open profile swept along a course of travel. The course runs through the middle of
-the profile. An open end is run out of; a radiused end is a half circle about the end of the
-course, beyond it; a flat end stops there. So does a Woodruff end at the top, and runs down to
-the floor along the arc that a disc leaves. The width of a profile is the one at the top; angles
-of walls are from the vertical.
+A slot is an open profile swept along a course of travel through the middle of the profile.
+The tool runs out of an open end; a radiused end is a half circle about the end of the course,
+beyond it; a flat end stops at the end of the course. A Woodruff end does so at the top and
+descends to the floor along the arc that a disc leaves. The width of a profile is measured at
+the top; wall angles are from the vertical.
 """
 
 from cmath import rect
@@ -75,18 +75,18 @@ from stepnc_model.toolpath.task import ToolPathTask
 from stepnc_model.units import rad_from_deg
 
 FLATTEST_DEG = 89.0
-"""degrees from the vertical"""
+"""Greatest wall angle from the vertical, degrees."""
 
 CHORD = 1e-3
-"""mm of tolerance where an outline is looked at as a polygon"""
+"""Chord tolerance for polygons of an outline, mm."""
 
 
 def slope_of(job: ToolPathTask, slope: float | None, ref: Ref[Entity]) -> float:
-    """Lean of a wall in degrees from the vertical; 0 where none is given."""
+    """Wall angle from the vertical, degrees; 0 if not given."""
     value = slope or 0.0
     if not 0.0 <= value < FLATTEST_DEG:
         raise job.fault(
-            f"a wall at {value:g}°: it leans by at least 0° and less than {FLATTEST_DEG:g}°, "
+            f"a wall at {value:g}°: the slope must be at least 0° and below {FLATTEST_DEG:g}°, "
             "wider above than below",
             ref,
         )
@@ -94,30 +94,30 @@ def slope_of(job: ToolPathTask, slope: float | None, ref: Ref[Entity]) -> float:
 
 
 def require_simple(job: ToolPathTask, loop: Loop, ref: Ref[Entity]) -> None:
-    """Refuse a boundary that crosses itself."""
+    """Raise an error if a boundary crosses itself."""
     if not shape(loop, tolerance=CHORD).is_valid:
-        raise job.fault("its boundary crosses itself", ref)
+        raise job.fault("the feature's boundary crosses itself", ref)
 
 
 def require_upright(job: ToolPathTask, frame: Frame, ref: Ref[Entity]) -> None:
-    """Refuse a feature whose z axis does not point against the tool."""
+    """Raise an error if a feature's z axis does not point towards the tool."""
     if not frame.is_upright:
         x, y, z = frame.z
         raise job.fault(
-            f"its axis ({x:.4g}, {y:.4g}, {z:.4g}) does not lie along the tool: "
-            "only setups that bring it upright can be made",
+            f"the feature's axis ({x:.4g}, {y:.4g}, {z:.4g}) is not parallel to the tool: "
+            "use a setup that turns the feature upright",
             ref,
             "feature_placement",
         )
 
 
 def closed_outline(job: ToolPathTask, ref: Ref[ClosedProfile], frame: Frame) -> Loop:
-    """Boundary of a closed profile, counter-clockwise.
+    """Boundary of a closed profile, as a counter-clockwise loop.
 
     Raises
     ------
     PathError
-        When it does not close, crosses itself, or its kind is unknown.
+        If the profile does not close, crosses itself or is of an unknown kind.
     """
     profile = job.program.get(ref)
     placed = frame.inner(frame_of(job.program, profile.placement))
@@ -137,13 +137,13 @@ def closed_outline(job: ToolPathTask, ref: Ref[ClosedProfile], frame: Frame) -> 
         chain = _chain(job, profile.closed_profile_shape, placed)
         gap = abs(chain[-1].end - chain[0].start)
         if gap > JOINED:
-            raise job.fault(f"does not close: a gap of {gap:.4g} mm", ref)
+            raise job.fault(f"the profile does not close: gap of {gap:.4g} mm", ref)
         return counter_clockwise(halved(_joined([*chain, line(chain[-1].end, chain[0].start)])))
-    raise job.fault("is no closed profile", ref)
+    raise job.fault("is not a closed profile", ref)
 
 
 def open_outline(job: ToolPathTask, ref: Ref[Entity], frame: Frame) -> Chain:
-    """Curve of an open profile that lies on the plane."""
+    """Curve of an open profile that lies in the plane."""
     profile = job.program.get(ref)
     placed = frame.inner(frame_of(job.program, getattr(profile, "placement", None)))
     require_upright(job, placed, ref)
@@ -152,11 +152,11 @@ def open_outline(job: ToolPathTask, ref: Ref[Entity], frame: Frame) -> Chain:
     if isinstance(profile, PartialCircularProfile):
         radius = size(job.program, profile.radius, ref)
         return _arc(placed, radius, rad_from_deg(profile.sweep_angle))
-    raise job.fault("an open boundary of this kind cannot be followed", ref)
+    raise job.fault("this kind of open boundary is not supported", ref)
 
 
 def course(job: ToolPathTask, ref: Ref[Entity], frame: Frame) -> Chain:
-    """Curve along which a profile is swept."""
+    """Course of travel along which a profile is swept, as a chain."""
     path = job.program.get(ref)
     placed = frame.inner(frame_of(job.program, getattr(path, "placement", None)))
     require_upright(job, placed, ref)
@@ -164,7 +164,7 @@ def course(job: ToolPathTask, ref: Ref[Entity], frame: Frame) -> Chain:
         length = size(job.program, path.distance, ref)
         x, y, z = direction_of(job.program, path.its_direction)
         if abs(z) > TINY:
-            raise job.fault("leads out of its plane", ref, "its_direction")
+            raise job.fault("the course of travel leaves its plane", ref, "its_direction")
         ends = [(0.0, 0.0), (length * x, length * y)]
         return (line(*(_on_plane(placed, end) for end in ends)),)
     if isinstance(path, CompleteCircularPath):
@@ -173,11 +173,11 @@ def course(job: ToolPathTask, ref: Ref[Entity], frame: Frame) -> Chain:
         return _arc(placed, size(job.program, path.radius, ref), rad_from_deg(path.sweep_angle))
     if isinstance(path, GeneralPath):
         return _chain(job, path.swept_path, placed)
-    raise job.fault("is no course of travel", ref)
+    raise job.fault("is not a course of travel", ref)
 
 
 def chain_of(segments: tuple[Segment, ...]) -> Chain:
-    """The segments seen along z."""
+    """Segments projected along z, as a chain."""
     edges: list[ContourEdge] = []
     for segment in segments:
         at = segment.start
@@ -193,19 +193,19 @@ def chain_of(segments: tuple[Segment, ...]) -> Chain:
 
 
 def _chain(job: ToolPathTask, ref: Ref[Entity], frame: Frame) -> Chain:
-    """A curve of the file in the setup, seen along z."""
+    """Curve of the file in setup coordinates, projected along z."""
     segments = segments_of(job.program, ref)
     chain = halved(chain_of(tuple(segment.within(frame) for segment in segments)))
     if not chain:
-        raise job.fault("has no length", ref)
+        raise job.fault("the curve has no length", ref)
     for edge in chain:
         if not max(abs(edge.start), abs(edge.end)) < MOST:
-            raise job.fault(f"a point at {edge.end:g} mm: no part is so large", ref)
+            raise job.fault(f"a point at {edge.end:g} mm is too far away: check units", ref)
     return chain
 
 
 def _joined(edges: list[ContourEdge]) -> Chain:
-    """The edges with each starting exactly where the one before ends; the rest is rounding."""
+    """Join edges so that each starts exactly where the previous one ends."""
     found = [edge for edge in edges if edge.length > TINY]
     starts = [found[0].start, *(edge.end for edge in found[:-1])] if found else []
     return tuple(
@@ -217,7 +217,7 @@ def _joined(edges: list[ContourEdge]) -> Chain:
 def _ngon(
     job: ToolPathTask, ref: Ref[Entity], profile: NgonClosedProfile, frame: Frame
 ) -> Loop:
-    """Regular polygon by its circumscribed circle or its width across flats."""
+    """Regular polygon, given by its circumscribed circle or its width across flats."""
     sides = profile.number_of_sides
     if sides is None or not 3 <= sides <= 1000:
         raise job.fault(f"{sides} sides: a polygon has 3 at least", ref, "number_of_sides")
@@ -229,31 +229,31 @@ def _ngon(
 
 
 def _arc(frame: Frame, radius: float, sweep: float) -> Chain:
-    """Arc about the origin of a frame, from its x axis."""
+    """Arc about the origin of a frame, starting at its x axis."""
     start, centre = _on_plane(frame, (radius, 0.0)), _on_plane(frame, (0.0, 0.0))
     end = centre + (start - centre) * rect(1.0, sweep)
     return halved([ContourEdge(start, end, centre, sweep)])
 
 
 def _on_plane(frame: Frame, at: tuple[float, float]) -> complex:
-    """A point of a frame seen along z."""
+    """Point of a frame, projected along z."""
     point: Point = frame.point((at[0], at[1], 0.0))
     return complex(point[0], point[1])
 
 
 ROUNDEST = 1e-3
-"""mm by which the radius of a corner stays below half the width"""
+"""Margin by which a corner radius stays below half the width, mm."""
 
 
 def slot_area(
     job: ToolPathTask, ref: Ref[Entity], slot: Slot, frame: Frame, bottom: float
 ) -> Area:
-    """Area of a slot.
+    """Area to be removed for a slot.
 
     Raises
     ------
     PathError
-        When it has no width, or turns more sharply than half its width.
+        If the slot has no width, or turns more sharply than half its width.
     """
     top = frame.origin[2]
     middle = course(job, slot.course_of_travel, frame)
@@ -267,9 +267,9 @@ def slot_area(
         loops = _ring(middle, half)
     elif any(isinstance(end, LoopSlotEndType) for end in ends):
         gap = abs(middle[-1].end - middle[0].start)
-        raise job.fault(f"its course does not close: a gap of {gap:.4g} mm", ref)
+        raise job.fault(f"the slot's course does not close: gap of {gap:.4g} mm", ref)
     else:
-        # One end condition stands for both ends.
+        # A single end condition applies to both ends.
         pair = [*ends, *ends][:2] if ends else [OpenSlotEndType(), OpenSlotEndType()]
         first, last = (_beyond(job, end, half) for end in pair)
         beyond = (first, last)
@@ -283,7 +283,7 @@ def slot_area(
             if rise is not upright
         ]
     if not loops:
-        raise job.fault(f"its course turns more sharply than its half width {half:g} mm", ref)
+        raise job.fault(f"the course curves more tightly than the half width {half:g} mm", ref)
     return Area(
         ref=ref,
         walls=(*(Wall(loop=loop, inset=inset) for loop in loops), *stops),
@@ -301,7 +301,7 @@ def slot_area(
 def _band(
     job: ToolPathTask, ref: Ref[Entity], middle: Chain, half: float, ends: Sequence[Entity]
 ) -> tuple[tuple[Loop, ...], Chain]:
-    """Outline of a slot with two ends, and the edges of it that lie beyond open ends."""
+    """Outline of a slot with two ends, and its edges beyond open ends."""
     before, after = (
         _beyond(job, end, half) if isinstance(end, OpenSlotEndType) else 0.0 for end in ends
     )
@@ -329,14 +329,14 @@ def _band(
 
 
 def _beyond(job: ToolPathTask, end: Entity, half: float) -> float:
-    """Length of a slot beyond the end of its course, mm."""
+    """Extension of a slot beyond the end of its course, mm."""
     if isinstance(end, OpenSlotEndType):
         return job.tool.diameter + run_out(job)
     return half if isinstance(end, RadiusedSlotEndType) else 0.0
 
 
 def _bar(job: ToolPathTask, ref: Ref[Entity], *, is_open: bool) -> TeeSlotUndercut | None:
-    """The wide part of a tee slot."""
+    """Wide undercut of a tee slot; None for other profiles."""
     profile = job.program.get(ref)
     if not isinstance(profile, TeeProfile):
         return None
@@ -348,7 +348,7 @@ def _bar(job: ToolPathTask, ref: Ref[Entity], *, is_open: bool) -> TeeSlotUnderc
 
 
 def _rise(job: ToolPathTask, end: Entity, depth: float) -> Inset:
-    """Length of an end within the slot: upright, or the arc of a Woodruff end."""
+    """Inset of a slot end by height: upright, or the arc of a Woodruff end."""
     if not isinstance(end, WoodruffSlotEndType):
         return upright
     radius = size(job.program, end.radius, job.step.features[0])
@@ -357,7 +357,7 @@ def _rise(job: ToolPathTask, end: Entity, depth: float) -> Inset:
 
 
 def _stop(way: Chain) -> Loop:
-    """Square behind the end of a course, far larger than the slot."""
+    """Square behind the end of a course, much larger than the slot."""
     end, along = way[-1].end, way[-1].along(1.0)
     far = 4.0 * chain_length(way)
     right, left = end - 1j * far * along, end + 1j * far * along
@@ -366,39 +366,39 @@ def _stop(way: Chain) -> Loop:
 
 
 def _corner(job: ToolPathTask, end: FlatSlotEndType, half: float) -> float:
-    """The smaller radius of the corners of a flat end: nothing is cut into."""
+    """Smaller corner radius of a flat slot end, mm, so that nothing is overcut."""
     radii = []
     for ref in (end.corner_radius1, end.corner_radius2):
         radius = (job.program.get(ref).theoretical_size or 0.0) if ref is not None else 0.0
         if not 0.0 <= radius <= half * (1.0 + 1e-9):
             raise job.fault(
-                f"corner radius {radius:g} mm: it lies between 0 and half the width of the "
+                f"corner radius {radius:g} mm must lie between 0 and half the width of the "
                 f"slot, {half:g} mm",
                 ref,
                 "theoretical_size",
             )
         radii.append(radius)
-    # Just below half the width, so that a middle line is left to round about.
+    # Just below half the width, so that a middle line remains after the inward offset.
     return min(*radii, half - ROUNDEST)
 
 
 def _solid(middle: Chain, half: float) -> Loop:
-    """The slot between the ends of its course."""
+    """Outline of the slot between the ends of its course."""
     left, right = beside(middle, half), beside(reversed_chain(middle), half)
     caps = (line(right[0][-1].end, left[0][0].start), line(left[0][-1].end, right[0][0].start))
     return counter_clockwise((*right[0], caps[0], *left[0], caps[1]))
 
 
 def _cap(start: complex, end: complex, centre: complex, kind: Entity) -> Chain:
-    """Line or half circle from one side of a slot to the other, around its end."""
+    """End of a slot outline: a line or half circle from one side to the other."""
     if isinstance(kind, RadiusedSlotEndType):
-        # From the right side to the left one behind the start, and the other way round.
+        # From the right side to the left side at the start, and vice versa at the end.
         return halved([ContourEdge(start, end, centre, -pi)])
     return (line(start, end),)
 
 
 def _ring(middle: Chain, half: float) -> tuple[Loop, ...]:
-    """Outline of a slot that comes back to its start."""
+    """Outline of a slot with a closed course."""
     loop = counter_clockwise(middle)
     inner = erode([loop], half)
     outer = tuple(reversed_chain(each) for each in erode([reversed_chain(loop)], half))
@@ -406,7 +406,7 @@ def _ring(middle: Chain, half: float) -> tuple[Loop, ...]:
 
 
 def _section(job: ToolPathTask, ref: Ref[Entity], depth: float) -> tuple[float, Inset]:
-    """Half the width at the top, and the inset of the walls."""
+    """Half the width of a slot profile at the top, and the inset of its walls by height."""
     profile = job.program.get(ref)
     if isinstance(profile, (SquareUProfile, TeeProfile)):
         return 0.5 * size(job.program, profile.width, ref), _square(job, profile, depth)
@@ -422,11 +422,11 @@ def _section(job: ToolPathTask, ref: Ref[Entity], depth: float) -> tuple[float, 
         return half, lambda height: half - chord(radius, min(height, depth))
     if isinstance(profile, GeneralProfile):
         return _general(job, ref, profile, depth)
-    raise job.fault("a slot of this profile cannot be milled", ref)
+    raise job.fault("a slot with this kind of profile cannot be milled", ref)
 
 
 def _square(job: ToolPathTask, profile: SquareUProfile | TeeProfile, depth: float) -> Inset:
-    """The steeper of the two walls counts on both sides: nothing is cut into."""
+    """Wall inset of a square or tee profile; the flatter wall is used for both sides."""
     angles = [profile.first_angle or 0.0, profile.second_angle or 0.0]
     slope = max(
         tan(rad_from_deg(min(angle, 90.0 - angle) if angle > 45.0 else angle))
@@ -445,7 +445,7 @@ def _square(job: ToolPathTask, profile: SquareUProfile | TeeProfile, depth: floa
 def _general(
     job: ToolPathTask, ref: Ref[Entity], profile: GeneralProfile, depth: float
 ) -> tuple[float, Inset]:
-    """Any profile, drawn in the x, z plane about the middle; the narrower side counts twice."""
+    """Half width and inset of a general profile in the x-z plane; the narrower side counts."""
     points = []
     for segment in segments_of(job.program, profile.its_profile):
         points += [segment.start, segment.end]
@@ -454,7 +454,7 @@ def _general(
         [(abs(x), z - lowest) for x, _, z in points if sign * x >= 0.0] for sign in (1.0, -1.0)
     ]
     if any(len(side) < 2 for side in sides):
-        raise job.fault("needs a wall on either side of its middle", ref)
+        raise job.fault("the profile needs a wall on each side of its middle", ref)
 
     def half(height: float) -> float:
         return min(_width(sorted(side, key=lambda at: at[1]), height) for side in sides)
@@ -464,7 +464,7 @@ def _general(
 
 
 def _width(side: Sequence[tuple[float, float]], height: float) -> float:
-    """Half width of one side at a height, linear between its corners."""
+    """Half width of one side of a profile at a height, interpolated between its corners."""
     for (x0, z0), (x1, z1) in pairwise(side):
         if z0 <= height <= z1 and z1 > z0:
             return x0 + (x1 - x0) * (height - z0) / (z1 - z0)

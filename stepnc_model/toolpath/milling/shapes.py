@@ -1,8 +1,8 @@
-"""Milling features as areas and flanks (ISO 14649-10).
+"""Conversion of milling features to areas and flanks (ISO 14649-10).
 
-A feature lies in its own coordinates, its depth plane below their origin. Pockets are cleared
-to their boundary, bosses stand as islands, faces are swept and run over; outside profiles,
-bosses and steps are cut along. An open side of a pocket is run out of.
+A feature is given in its own coordinates, with its depth plane below their origin. Pockets are
+cleared to their boundary, bosses remain as islands, faces are swept and run over; outside
+profiles, bosses and steps are cut along. The tool runs out of an open side of a pocket.
 """
 
 from collections.abc import Callable, Iterator
@@ -76,7 +76,7 @@ from stepnc_model.units import rad_from_deg
 def step_flank(
     job: ToolPathTask, ref: Ref[Entity], feature: Step, frame: Frame, bottom: float
 ) -> Flank:
-    """From the edge to the side of the stock on the right of its sense."""
+    """Flank of a step: from its edge to the side of the stock on the right of its direction."""
     edge = course(job, feature.open_boundary, frame)
     chain = reversed_chain(edge)
     width = None
@@ -106,10 +106,10 @@ def outside_flank(
     frame: Frame,
     bottom: float,
 ) -> Flank:
-    """Outline with the part inside; an open one with the part on its left."""
+    """Flank of an outside profile or boss; an open outline has the part on its left."""
     boundary = boundary_of(feature)
     if boundary is None:
-        raise job.fault("has no boundary", ref)
+        raise job.fault("the feature has no boundary", ref)
     is_closed = isinstance(job.program.get(boundary), ClosedProfile)
     top = frame.origin[2]
     if is_closed:
@@ -130,12 +130,12 @@ def outside_flank(
 
 
 CHORD = 1e-3
-"""mm of tolerance where an outline is looked at as a polygon"""
+"""Chord tolerance for polygons of an outline, mm."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Island:
-    """Boss that reaches above the floor, and its wall."""
+    """Boss that rises above the floor, with its wall."""
 
     ref: Ref[Boss]
     wall: Wall
@@ -144,12 +144,12 @@ class Island:
 def closed_pocket(
     job: ToolPathTask, ref: Ref[Entity], feature: ClosedPocket, frame: Frame, bottom: float
 ) -> Area:
-    """Area of a pocket with walls all around.
+    """Area of a closed pocket.
 
     Raises
     ------
     PathError
-        When its boundary crosses itself, or an island touches it.
+        If the boundary crosses itself, or an island touches it.
     """
     outline = closed_outline(job, feature.feature_boundary, frame)
     require_simple(job, outline, ref)
@@ -161,16 +161,16 @@ def closed_pocket(
 def open_pocket(
     job: ToolPathTask, ref: Ref[Entity], feature: OpenPocket, frame: Frame, bottom: float
 ) -> Area:
-    """Area of a pocket that the tool runs out of.
+    """Area of a pocket with an open side.
 
     Raises
     ------
     PathError
-        When its boundary closes, or crosses itself.
+        If the boundary closes or crosses itself.
     """
     chain = open_outline(job, feature.open_boundary, frame)
     if abs(chain[0].start - chain[-1].end) < 1e-6:
-        raise job.fault("its boundary closes: an open pocket has an opening", ref)
+        raise job.fault("the boundary is closed: an open pocket needs an opening", ref)
     solid = counter_clockwise((*chain, line(chain[-1].end, chain[0].start)))
     require_simple(job, solid, ref)
     box = _box(job, chain)
@@ -187,7 +187,7 @@ def islands(
     frame: Frame,
     bottom: float,
 ) -> Iterator[Island]:
-    """Bosses that reach above the floor; they are placed beside the feature, not within it."""
+    """Bosses that rise above the floor; they are placed beside the feature, not within it."""
     # In a pattern or a compound feature the bosses move along with their feature.
     placement = getattr(job.program.get(owner), "feature_placement", None)
     beside = frame.inner(frame_of(job.program, placement).inverse())
@@ -212,7 +212,7 @@ def _pocket(
     bottom: float,
     outline: Loop,
 ) -> tuple[Area, list[Island]]:
-    """Boundary with rounded corners, islands, and the edge along the floor."""
+    """Area of a pocket with rounded corners and floor fillet, and its islands."""
     top = frame.origin[2]
     fillet = size_or_zero(job.program, feature.planar_radius)
     slope = slope_of(job, feature.slope, ref)
@@ -222,7 +222,7 @@ def _pocket(
     walls = [*(Wall(loop=loop, inset=inset) for loop in loops), *(one.wall for one in found)]
     condition = job.program.get(feature.bottom_condition) if feature.bottom_condition else None
     if isinstance(condition, GeneralPocketBottomCondition):
-        raise job.fault("a floor of any shape cannot be milled yet", ref, "bottom_condition")
+        raise job.fault("a floor of general shape is not supported", ref, "bottom_condition")
     if isinstance(condition, RadiusedPocketBottomCondition):
         walls.append(_dish(job, condition, frame, bottom))
     return Area(ref=ref, walls=tuple(walls), top=top, bottom=bottom), found
@@ -234,14 +234,16 @@ def _with_corners(
     radius_ref: Ref[TolerancedLengthMeasure] | None,
     outline: Loop,
 ) -> tuple[Loop, ...]:
-    """The outline with its sharp corners rounded as the feature asks."""
+    """Outline with its sharp corners rounded as the feature specifies."""
     radius = size_or_zero(job.program, radius_ref)
     if radius <= 0.0:
         return (outline,)
     loops = rounded(outline, radius)
     if len(loops) != 1:
         raise job.fault(
-            f"corners of {radius:g} mm do not fit in its boundary", ref, "orthogonal_radius"
+            f"corner radius {radius:g} mm does not fit in the boundary",
+            ref,
+            "orthogonal_radius",
         )
     return loops
 
@@ -249,7 +251,7 @@ def _with_corners(
 def _dish(
     job: ToolPathTask, condition: RadiusedPocketBottomCondition, frame: Frame, bottom: float
 ) -> Wall:
-    """Floor that is part of a sphere, its lowest point on the depth plane at least."""
+    """Spherical floor as a wall, with its lowest point at or above the depth plane."""
     x, y, z = frame.point(point_of(job.program, condition.floor_radius_center))
     radius = size(job.program, condition.floor_radius, condition.floor_radius_center)
     raised = max(z - radius - bottom, 0.0)
@@ -260,7 +262,7 @@ def _dish(
 
 
 def _box(job: ToolPathTask, chain: Chain) -> Chain:
-    """From the end of an open pocket's wall to its start, by a box in front of the opening."""
+    """Box in front of the opening, from the end of an open pocket's wall to its start."""
     start, end = chain[0].start, chain[-1].end
     opening = start - end
     reach = job.tool.diameter + run_out(job)
@@ -274,29 +276,31 @@ def _box(job: ToolPathTask, chain: Chain) -> Chain:
 
 
 def _require_apart(job: ToolPathTask, outline: Loop, found: list[Island]) -> None:
-    """Refuse an island that touches the wall of its pocket."""
+    """Raise an error if an island touches the wall of its pocket."""
     outer = shape(outline, tolerance=CHORD)
     for island in found:
         solid = shape(island.wall.loop, tolerance=CHORD)
         if outer.exterior.distance(solid) <= CHORD or not outer.covers(solid):
-            raise job.fault("touches the wall of its pocket", island.ref, "its_boundary")
+            raise job.fault(
+                "the boss touches the wall of its pocket", island.ref, "its_boundary"
+            )
 
 
 def shapes(job: ToolPathTask, ref: Ref[Entity], frame: Frame) -> Iterator[Area | Flank]:
-    """Area and flanks that a feature removes.
+    """Areas and flanks that a feature removes.
 
     Parameters
     ----------
     job : ToolPathTask
     ref : Ref
-        The feature, no pattern.
+        A feature, not a pattern.
     frame : Frame
-        Its place in the setup.
+        Position of the feature in the setup.
 
     Raises
     ------
     PathError
-        When it lacks a size, its boundary is none, or its kind cannot be milled.
+        If a size is missing, the boundary is invalid, or the kind of feature cannot be milled.
     """
     feature = job.program.get(ref)
     require_upright(job, frame, ref)
@@ -304,14 +308,14 @@ def shapes(job: ToolPathTask, ref: Ref[Entity], frame: Frame) -> Iterator[Area |
         for element in feature.elements:
             part = job.program.get(element)
             if isinstance(part, CompoundFeature):
-                raise job.fault("a compound feature within another one", ref, "elements")
+                raise job.fault("nested compound features are not supported", ref, "elements")
             if not isinstance(part, TransitionFeature):
                 placement = getattr(part, "feature_placement", None)
                 yield from shapes(job, element, frame.inner(frame_of(job.program, placement)))
         return
     make = next((make for kind, make in MAKERS if isinstance(feature, kind)), None)
     if make is None:
-        raise job.fault("a feature of this kind cannot be milled", ref)
+        raise job.fault("this kind of feature cannot be milled", ref)
     yield make(job, ref, feature, frame, floor_of(job, ref, frame))
 
 
@@ -321,8 +325,8 @@ def floor_of(job: ToolPathTask, ref: Ref[Entity], frame: Frame) -> float:
     bottom = frame.origin[2] - depth
     if job.stock is not None and bottom < job.stock.low[2] - 1e-6:
         raise job.fault(
-            f"its floor at z = {bottom:g} mm lies below the workpiece, "
-            f"which ends at z = {job.stock.low[2]:g} mm",
+            f"the feature's floor at z = {bottom:g} mm lies below the workpiece, "
+            f"whose bottom is at z = {job.stock.low[2]:g} mm",
             ref,
             "depth",
         )
@@ -332,7 +336,7 @@ def floor_of(job: ToolPathTask, ref: Ref[Entity], frame: Frame) -> float:
 def _face(
     job: ToolPathTask, ref: Ref[Entity], feature: PlanarFace, frame: Frame, bottom: float
 ) -> Area:
-    """Rectangle of travel and profile, or the boundary given, around its bosses."""
+    """Area of a planar face: its boundary, or travel times profile, around its bosses."""
     if feature.face_boundary is not None:
         face = closed_outline(job, feature.face_boundary, frame)
         require_simple(job, face, ref)
@@ -351,7 +355,7 @@ def _face(
 
 
 def _swept(job: ToolPathTask, feature: PlanarFace, frame: Frame) -> Loop:
-    """Travel times profile; the profile lies across the travel, towards +x, or +y along x."""
+    """Rectangle of travel and profile; the profile points towards +x, or +y for travel in x."""
     travel = course(job, feature.course_of_travel, frame)
     start, along = travel[0].start, travel[0].end - travel[0].start
     width = parameter(job.program, job.program.get(feature.removal_boundary).profile_length)
@@ -366,7 +370,7 @@ def _swept(job: ToolPathTask, feature: PlanarFace, frame: Frame) -> Loop:
 def _hole(
     job: ToolPathTask, ref: Ref[Entity], feature: RoundHole, frame: Frame, bottom: float
 ) -> Area:
-    """Round hole, straight or tapered; a cone or cap lies below its depth plane."""
+    """Area of a straight or tapered round hole; a conical or spherical bottom lies below it."""
     radius = 0.5 * size(job.program, feature.diameter, ref)
     top = frame.origin[2]
     centre = complex(frame.origin[0], frame.origin[1])
@@ -391,19 +395,23 @@ def _hole(
 def _below(
     job: ToolPathTask, ref: Ref[Entity], condition: HoleBottomCondition | None, radius: float
 ) -> tuple[float, Inset]:
-    """Depth of a cone or cap under the cylinder, and its half width over its lowest point."""
+    """Depth of a conical or spherical bottom, and its half width by height above its tip."""
     if isinstance(condition, ConicalHoleBottom):
         written = condition.tip_angle or 0.0
         angle = vee_angle(written)
         if not 0.0 < angle < pi:
-            raise job.fault(f"a tip of {written:g} degrees is no cone", ref, "bottom_condition")
+            raise job.fault(
+                f"a tip angle of {written:g} degrees is not a valid cone",
+                ref,
+                "bottom_condition",
+            )
         deep = radius / tan(0.5 * angle)
         return deep, lambda height: radius * max(height, 0.0) / deep
     if isinstance(condition, SphericalHoleBottom):
         sphere = size(job.program, condition.radius, ref)
         if sphere < radius * (1.0 - 1e-9):
             raise job.fault(
-                f"sphere of radius {sphere:g} mm below a hole of radius {radius:g} mm",
+                f"sphere radius {sphere:g} mm is smaller than the hole radius {radius:g} mm",
                 ref,
                 "bottom_condition",
             )
@@ -420,12 +428,12 @@ def _taper_angle(
     radius: float,
     depth: float,
 ) -> float:
-    """Lean of a tapered hole's wall in degrees."""
+    """Wall angle of a tapered hole from the vertical, degrees."""
     if isinstance(taper, AngleTaper):
         return slope_of(job, taper.angle, ref)
     final = 0.5 * size(job.program, taper.final_diameter, ref)
     if final > radius:
-        raise job.fault("widens with depth: nothing can be milled from above", ref)
+        raise job.fault("the hole widens with depth: it cannot be milled from above", ref)
     return atan((radius - final) / depth) / rad_from_deg(1.0)
 
 
@@ -440,4 +448,4 @@ MAKERS: tuple[tuple[type[Entity], Callable[..., Area | Flank]], ...] = (
     (Boss, outside_flank),
     (ShapeProfile, outside_flank),
 )
-"""what makes an area or a flank of a feature"""
+"""Functions that convert each kind of feature to an area or a flank."""

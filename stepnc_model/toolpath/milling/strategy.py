@@ -1,8 +1,8 @@
-"""Cutter and strategy of an operation on an area, as numbers and directions.
+"""Cutter shape and milling strategy of an operation, resolved to numbers and directions.
 
-ISO 14649-11. A rotation and a cut mode together say whether rings go from the inside out or
-from the outside in: the material must lie on the side that the mode asks for. With a right-hand
-tool climb milling has it on the right of the way.
+ISO 14649-11. A rotation direction and a cut mode together determine whether rings go from the
+inside out or from the outside in: the material must lie on the side that the mode requires. In
+climb milling with a right-hand tool it lies on the right of the path.
 """
 
 from dataclasses import dataclass
@@ -36,13 +36,13 @@ from stepnc_model.toolpath.task import ToolPathTask
 from stepnc_model.units import rad_from_deg
 
 RUN_OUT = 2.0
-"""mm beyond an open side where no overcut length is given"""
+"""Default run-out beyond an open side where no overcut length is given, mm."""
 
 LONGEST = 1000.0
-"""mm of overcut; more is a slip"""
+"""Greatest overcut length accepted, mm."""
 
 STEEPEST_DEG = 80.0
-"""degrees between the side of a tapered tool and its axis"""
+"""Greatest angle between the side of a tapered tool and its axis, degrees."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -50,14 +50,14 @@ class EndMillShape:
     """Flat, ball, bull-nose or tapered end mill."""
 
     radius: float
-    """Radius, mm, where it is widest at the end: the nominal one"""
+    """Nominal radius, at the widest place of the tool's end, mm."""
     corner: float = 0.0
-    """Corner, mm, radius of the corner; the radius itself for a ball"""
+    """Corner radius, mm; equal to the radius for a ball end mill."""
     taper: float = 0.0
-    """tangent of the angle of the side"""
+    """Tangent of the taper angle of the side."""
 
     def reach(self, height: float) -> float:
-        """Radius at a height above the tip."""
+        """Radius of the cutter at a height above its tip, mm."""
         if height < self.corner:
             below = self.corner - height
             return self.radius - self.corner + sqrt(self.corner**2 - below**2)
@@ -65,38 +65,40 @@ class EndMillShape:
 
 
 def cutter_of(job: ToolPathTask) -> EndMillShape:
-    """Cutter of a milling workingstep.
+    """Shape of the cutter of a milling workingstep.
 
     Raises
     ------
     PathError
-        When the tool has no diameter, or corners larger than itself.
+        If the tool has no diameter, or a corner radius larger than its radius.
     """
     tool = job.tool
     radius, corner = 0.5 * tool.diameter, tool.corner_radius or 0.0
     if radius <= 0.0:
-        raise job.fault("is no rotating tool: nothing can be milled with it", job.step.tool_ref)
+        raise job.fault(
+            "the tool has no diameter: it cannot be used for milling", job.step.tool_ref
+        )
     if corner > radius * (1.0 + 1e-9):
         raise job.fault(
-            f"corner radius {corner:g} mm on a tool of {tool.diameter:g} mm: "
-            "it is at most half the diameter",
+            f"corner radius {corner:g} mm on a tool of {tool.diameter:g} mm diameter: "
+            "it must be at most half the diameter",
             job.step.tool_ref,
         )
     return EndMillShape(radius=radius, corner=corner, taper=_taper(job))
 
 
 def run_out(job: ToolPathTask) -> float:
-    """Distance of the tool's rim beyond an open side: the overcut length, if given.
+    """Distance of the tool's rim beyond an open side, mm: the overcut length, if given.
 
     Raises
     ------
     PathError
-        When it is negative.
+        If the overcut length is negative or too large.
     """
     overcut = getattr(job.step.operation, "overcut_length", None)
     if overcut is not None and not 0.0 <= overcut < LONGEST:
         raise job.fault(
-            f"{overcut:g} mm: it must be at least 0, below {LONGEST:g} mm",
+            f"{overcut:g} mm: the overcut length must be at least 0 and below {LONGEST:g} mm",
             job.step.operation_ref,
             "overcut_length",
         )
@@ -104,30 +106,30 @@ def run_out(job: ToolPathTask) -> float:
 
 
 def _taper(job: ToolPathTask) -> float:
-    """Tangent of the side's angle to the axis; most tapered end mills of files have none."""
+    """Tangent of the taper angle of the tool's side; 0 where the file gives no taper."""
     angle = getattr(body_of(job.program, job.step.tool_ref), "taper_angle", None)
     if not angle:
         return 0.0
     if not 0.0 < angle < STEEPEST_DEG:
         raise job.fault(
-            f"taper of {angle:g}°: it must lie between 0° and {STEEPEST_DEG:g}°",
+            f"taper angle {angle:g}° must lie between 0° and {STEEPEST_DEG:g}°",
             job.step.tool_ref,
         )
     return tan(rad_from_deg(angle))
 
 
 WIDEST = 0.95
-"""of the diameter: neighbouring passes overlap by the rest at least"""
+"""Greatest step between passes, as a fraction of the tool diameter."""
 
 LEAST = 0.002
-"""of the diameter: smaller steps than this are a slip"""
+"""Least step between passes, as a fraction of the tool diameter."""
 
 
 class Covering(StrEnum):
-    """Pattern of the passes in an area."""
+    """Pattern of the passes over a milling area."""
 
     DEFAULT = auto()
-    """strokes to and fro over faces, rings in pockets"""
+    """Strokes to and fro over faces, rings in pockets."""
     RINGS = auto()
     SPIRAL = auto()
     ONE_WAY = auto()
@@ -150,38 +152,40 @@ COVERINGS: tuple[tuple[type[Entity], Covering], ...] = (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ResolvedStrategy:
-    """A strategy, resolved."""
+    """Milling strategy of an operation, resolved to numbers and directions."""
 
     covering: Covering
     step: float
-    """Step, mm between neighbouring passes"""
+    """Step between neighbouring passes, mm."""
     along: complex
-    """unit vector of the first stroke in the setup"""
+    """Unit vector of the first stroke in the setup."""
     steps_left: bool
-    """strokes progress to the left of the first one"""
+    """Whether strokes progress to the left of the first stroke."""
     is_lifted: bool
-    """the tool is lifted between strokes"""
+    """Whether the tool is lifted between strokes."""
     is_counter_clockwise: bool
-    """outer rings"""
+    """Whether outer rings run counter-clockwise."""
     is_inside_out: bool
     has_wall_on_right: bool
-    """of passes along a wall"""
+    """Whether passes along a wall have it on their right."""
     findings: tuple[Finding, ...] = ()
 
 
 def way_of(job: ToolPathTask, cutter: EndMillShape) -> ResolvedStrategy:
-    """Strategy of a milling workingstep.
+    """Resolve the strategy of a milling workingstep.
 
     Raises
     ------
     PathError
-        When its overlap or radial depth leaves no progress, or it asks for a path that is not
-        given.
+        If the overlap or radial depth leaves no progress, or the strategy asks for an explicit
+        path that is not given.
     """
     ref = getattr(job.step.operation, "its_machining_strategy", None)
     strategy = job.program.get(ref) if ref is not None else None
     if ref is not None and isinstance(strategy, ExplicitStrategy):
-        raise job.fault("asks for an explicit tool path, and none is given", ref)
+        raise job.fault(
+            "the strategy asks for an explicit tool path, but the operation has none", ref
+        )
     step, findings = _step(job, cutter, strategy, ref or job.step.operation_ref)
     along = _along(job, strategy)
     mode = getattr(strategy, "cutmode", None) or getattr(strategy, "spiral_cutmode", None)
@@ -198,7 +202,7 @@ def way_of(job: ToolPathTask, cutter: EndMillShape) -> ResolvedStrategy:
         ),
         step=step,
         along=along,
-        # One way and climbing, the uncut material lies on the right.
+        # In one-way climb milling the uncut material lies on the right.
         steps_left=side is LeftOrRight.LEFT if side is not None else not on_right,
         is_lifted=connection is StrokeConnectionStrategy.LIFT_SHIFT_PLUNGE
         or isinstance(strategy, UnidirectionalMilling),
@@ -212,7 +216,7 @@ def way_of(job: ToolPathTask, cutter: EndMillShape) -> ResolvedStrategy:
 def _step(
     job: ToolPathTask, cutter: EndMillShape, strategy: Entity | None, strategy_ref: Ref[Entity]
 ) -> tuple[float, list[Finding]]:
-    """Distance of neighbouring passes in mm: from the overlap, at most the radial depth."""
+    """Step between neighbouring passes, mm: from the overlap, at most the radial depth."""
     diameter = 2.0 * cutter.radius
     findings = []
     overlap = strategy.overlap if isinstance(strategy, Two5dMillingStrategy) else None
@@ -220,24 +224,24 @@ def _step(
     at = job.step.operation_ref
     if radial is not None and not 0.0 < radial < float("inf"):
         raise job.fault(
-            f"{radial:g} mm: a width of cut is positive", at, "radial_cutting_depth"
+            f"{radial:g} mm: the width of cut must be positive", at, "radial_cutting_depth"
         )
     if overlap is None and radial is None:
-        text = f"neither overlap nor radial depth: steps of {WIDEST:.0%} of the tool assumed"
+        text = f"no overlap or radial depth given: assuming {WIDEST:.0%} of the tool diameter"
         findings.append(job.note(text))
     ratio = overlap or 0.0
     if ratio > 1.0:
         ratio /= 100.0
     if not 0.0 <= ratio < 1.0:
         raise job.fault(
-            f"overlap {overlap:g}: it must be at least 0 and below 1, or 100 in percent",
+            f"overlap {overlap:g} must be at least 0 and below 1, or below 100 in percent",
             strategy_ref,
             "overlap",
         )
     step = min(diameter * min(1.0 - ratio, WIDEST), radial or diameter)
     if step < LEAST * diameter:
         raise job.fault(
-            f"steps of {step:g} mm: at least {LEAST * diameter:g} mm for this tool",
+            f"step of {step:g} mm: must be at least {LEAST * diameter:g} mm for this tool",
             at if radial == step else strategy_ref,
             "radial_cutting_depth" if radial == step else "overlap",
         )
@@ -245,14 +249,16 @@ def _step(
 
 
 def _along(job: ToolPathTask, strategy: Entity | None) -> complex:
-    """Direction of the strokes in the setup; along x where none is given."""
+    """Direction of the strokes in the setup; along x if not given."""
     ref = getattr(strategy, "feed_direction", None)
     if ref is None:
         return 1.0 + 0.0j
-    # ISO 14649-11 gives it in the coordinates of the feature.
+    # ISO 14649-11 gives the direction in the coordinates of the feature.
     direction = direction_of(job.program, ref)
     x, y, _ = job.frame(job.step.features[0]).direction(direction)
     size = abs(complex(x, y))
     if size < 1e-6:
-        raise job.fault("points along the tool: strokes lie across it", ref)
+        raise job.fault(
+            "the feed direction points along the tool axis: it must lie across it", ref
+        )
     return complex(x, y) / size

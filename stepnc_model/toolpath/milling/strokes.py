@@ -1,7 +1,7 @@
-"""Passes over an area: parallel strokes, spirals made of rings, and what lies inside of a pass.
+"""Milling passes over an area: parallel strokes, spirals of rings, and clipping to an area.
 
-Strokes run to and fro or one way, linked without leaving the area. A spiral's rings go over
-into the next one on a slant, without a stop. Passes are cut where they enter or leave an area.
+Strokes run to and fro or one way, linked without leaving the area. The rings of a spiral are
+joined by slanted links without a stop. Passes are cut where they enter or leave an area.
 """
 
 from collections.abc import Iterable, Sequence
@@ -29,30 +29,30 @@ from stepnc_model.toolpath.milling.cover import MillingPass
 from stepnc_model.toolpath.milling.offset import contains, crossings_with
 
 CHORD = 1e-4
-"""mm of tolerance where an area is measured across the strokes"""
+"""Chord tolerance for measuring an area across the strokes, mm."""
 
 ASIDE = 1e-6
-"""mm by which the outermost strokes stay inside: they cross the wall and do not lie on it"""
+"""Distance by which the outermost strokes stay inside, so that they cross the wall, mm."""
 
 SHORTEST = 1e-3
-"""mm; a shorter stroke is left out"""
+"""Shortest stroke that is kept, mm."""
 
 MOST_ROWS = 20_000
 
 TOUCH = 1e-6
-"""part of a link's length near its ends where it may touch the wall"""
+"""Fraction of a link's length at its ends where it may touch the wall."""
 
 
 @dataclass(frozen=True, slots=True)
 class Stroke:
-    """Part of a scan line inside the area, along increasing x of the turned system."""
+    """Part of a scan line inside the area, along increasing x of the rotated system."""
 
     low: complex
     high: complex
 
 
 def singles(rows: Sequence[Sequence[Stroke]]) -> tuple[MillingPass, ...]:
-    """Each stroke a pass of its own."""
+    """Make each stroke a separate pass."""
     return tuple(
         MillingPass((line(stroke.low, stroke.high),), is_closed=False)
         for row in rows
@@ -61,7 +61,7 @@ def singles(rows: Sequence[Sequence[Stroke]]) -> tuple[MillingPass, ...]:
 
 
 def scan(loops: Sequence[Loop], *, along: complex, step: float) -> list[list[Stroke]]:
-    """Strokes row by row from the right of a direction to its left."""
+    """Rows of parallel strokes over an area, from the right of a direction to its left."""
     back = along.conjugate()
     turned = [moved(loop, turned=back) for loop in loops]
     heights = [point.imag for loop in turned for point in vertices(loop, tolerance=CHORD)]
@@ -70,7 +70,9 @@ def scan(loops: Sequence[Loop], *, along: complex, step: float) -> list[list[Str
     low, high = min(heights) + ASIDE, max(heights) - ASIDE
     count = max(1, ceil((high - low) / step - TINY) + 1) if high > low else 1
     if count > MOST_ROWS:
-        raise ValueError(f"{count} strokes side by side: {MOST_ROWS} are enough")
+        raise ValueError(
+            f"{count} parallel strokes: at most {MOST_ROWS} are allowed, increase the step"
+        )
     rows = np.linspace(low, high, count) if count > 1 else [0.5 * (low + high)]
     return [_row(turned, float(height), along) for height in rows]
 
@@ -78,13 +80,13 @@ def scan(loops: Sequence[Loop], *, along: complex, step: float) -> list[list[Str
 def rows_at(
     loops: Sequence[Loop], heights: Sequence[float], *, along: complex
 ) -> list[list[Stroke]]:
-    """Strokes at given distances to the left of the origin."""
+    """Rows of strokes at given distances to the left of the origin."""
     turned = [moved(loop, turned=along.conjugate()) for loop in loops]
     return [_row(turned, height, along) for height in heights]
 
 
 def linked(start: complex, end: complex, loops: Sequence[Loop]) -> Chain | None:
-    """Way from one point to another inside the area: straight, or along the wall."""
+    """Link between two points inside the area: straight, or along the wall; else None."""
     if abs(end - start) < TINY:
         return ()
     if is_inside(start, end, loops):
@@ -97,7 +99,7 @@ def linked(start: complex, end: complex, loops: Sequence[Loop]) -> Chain | None:
 
 
 def is_inside(start: complex, end: complex, loops: Sequence[Loop]) -> bool:
-    """Whether the straight way between two points of the area stays in it."""
+    """Whether the straight line between two points of the area stays in it."""
     edges = [edge for loop in loops for edge in loop]
     way = line(start, end)
     parts = crossings_with([way], edges)[0]
@@ -108,7 +110,7 @@ def is_inside(start: complex, end: complex, loops: Sequence[Loop]) -> bool:
 
 
 def contains_point(point: complex, loops: Sequence[Loop]) -> bool:
-    """Whether a point lies in the area, or within a hair of its boundary."""
+    """Whether a point lies in the area or nearly on its boundary."""
     if any(
         abs(loop[i].at(part) - point) < 10.0 * ASIDE
         for loop in loops
@@ -119,7 +121,7 @@ def contains_point(point: complex, loops: Sequence[Loop]) -> bool:
 
 
 def zigzags(rows: Sequence[Sequence[Stroke]], loops: Sequence[Loop]) -> tuple[MillingPass, ...]:
-    """Rows joined to and fro."""
+    """Join rows of strokes to and fro into zigzag passes."""
     return tuple(found for cell in _cells(rows) for found in _zigzag(cell, loops))
 
 
@@ -131,7 +133,7 @@ def _is_within(point: complex, loops: Sequence[Loop]) -> bool:
 
 
 def _row(turned: Sequence[Loop], height: float, along: complex) -> list[Stroke]:
-    """Strokes of one scan line in the turned system, given back in the original one."""
+    """Strokes of one scan line of the rotated system, returned in the original system."""
     edges = [edge for loop in turned for edge in loop]
     xs = [point.real for edge in edges for point in (edge.start, edge.end, edge.at(0.5))]
     span = max(xs) - min(xs) + 2.0
@@ -146,7 +148,7 @@ def _row(turned: Sequence[Loop], height: float, along: complex) -> list[Stroke]:
 
 
 def _cells(rows: Sequence[Sequence[Stroke]]) -> list[list[Stroke]]:
-    """Runs of strokes that lie side by side, one in each row."""
+    """Groups of adjacent strokes, one stroke in each row."""
     cells: list[list[Stroke]] = []
     open_cells: list[list[Stroke]] = []
     for row in rows:
@@ -165,7 +167,7 @@ def _cells(rows: Sequence[Sequence[Stroke]]) -> list[list[Stroke]]:
 
 
 def _overlap(one: Stroke, other: Stroke) -> bool:
-    """Whether two strokes of neighbouring rows lie side by side."""
+    """Whether two strokes of adjacent rows overlap sideways."""
     way = one.high - one.low
     way /= abs(way)
     ends = [((point - one.low) / way).real for point in (other.low, other.high)]
@@ -173,7 +175,7 @@ def _overlap(one: Stroke, other: Stroke) -> bool:
 
 
 def _zigzag(cell: Sequence[Stroke], loops: Sequence[Loop]) -> list[MillingPass]:
-    """The strokes of a cell to and fro, joined where a way between them stays inside."""
+    """Zigzag over the strokes of a cell, joined where the link stays inside."""
     chains: list[list[ContourEdge]] = []
     for index, stroke in enumerate(cell):
         ends = (stroke.low, stroke.high) if index % 2 == 0 else (stroke.high, stroke.low)
@@ -185,7 +187,7 @@ def _zigzag(cell: Sequence[Stroke], loops: Sequence[Loop]) -> list[MillingPass]:
 
 
 def _along_wall(loop: Loop, start: complex, end: complex) -> Chain | None:
-    """Shorter way along a loop between two points that lie on it."""
+    """Shorter route along a loop between two points on it; None if they are not on it."""
     (i, p), (j, q) = nearest(loop, start), nearest(loop, end)
     if abs(loop[i].at(p) - start) > 1e-3 or abs(loop[j].at(q) - end) > 1e-3:
         return None
@@ -201,7 +203,7 @@ def _along_wall(loop: Loop, start: complex, end: complex) -> Chain | None:
 
 
 def _between(loop: Loop, first: tuple[int, float], last: tuple[int, float]) -> Chain:
-    """Part of a loop from one place to another, each an edge and a part of its length."""
+    """Part of a loop between two places, each given as edge index and part of its length."""
     (i, p), (j, q) = first, last
     if i == j and q >= p:
         pieces = [loop[i].between(p, q)]
@@ -213,10 +215,10 @@ def _between(loop: Loop, first: tuple[int, float], last: tuple[int, float]) -> C
 
 
 COARSE_CHORD = 1e-3
-"""mm of tolerance where a point is looked for in an area"""
+"""Chord tolerance for testing whether a point lies in an area, mm."""
 
 SHORTEST_PIECE = 0.1
-"""mm; a shorter piece inside is no cut"""
+"""Shortest clipped piece that is cut, mm."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -228,7 +230,7 @@ class ClippedChain:
 
 
 def pieces(chain: Chain, loops: Sequence[Loop]) -> list[ClippedChain]:
-    """A chain cut at the boundary of an area on the left of every loop."""
+    """Split a chain at the boundary of the area on the left of every loop."""
     edges = [edge for loop in loops for edge in loop]
     parts = crossings_with(chain, edges)
     split = [piece for edge, at in zip(chain, parts, strict=True) for piece in _split(edge, at)]
@@ -241,7 +243,7 @@ def pieces(chain: Chain, loops: Sequence[Loop]) -> list[ClippedChain]:
 
 
 def inside(cut: MillingPass, loops: Sequence[Loop]) -> list[MillingPass]:
-    """Parts of a pass inside an area; the pass itself where it stays there."""
+    """Clip a pass to an area; the pass is unchanged where it stays inside."""
     found = pieces(cut.chain, loops)
     if len(found) == 1:
         return [cut] if found[0].is_inside else []
@@ -256,31 +258,31 @@ def inside(cut: MillingPass, loops: Sequence[Loop]) -> list[MillingPass]:
 
 
 def _split(edge: ContourEdge, parts: list[float]) -> Chain:
-    """The edge cut at some parts of its length."""
+    """Cut an edge at given fractions of its length."""
     cuts = [0.0, *(part for part in parts if 1e-9 < part < 1.0 - 1e-9), 1.0]
     return tuple(edge.between(low, high) for low, high in pairwise(cuts) if high > low)
 
 
 SLANT = 2.0
-"""steps along the way for one step across it"""
+"""Length of the link between two rings along the path, in steps across it."""
 
 FARTHEST = 2.0 * SLANT
-"""steps; rings further apart are no neighbours"""
+"""Greatest distance of two rings that are linked, in steps."""
 
 
 def spirals(
     rings: Iterable[MillingPass], loops: Sequence[Loop], *, step: float
 ) -> tuple[MillingPass, ...]:
-    """Neighbouring rings joined to one pass, in their order; every ring is still run whole.
+    """Join neighbouring rings into spiral passes; every ring is still cut completely.
 
     Parameters
     ----------
     rings : iterable of MillingPass
-        Those that are not closed stay passes of their own.
+        Rings in cutting order; open passes remain separate.
     loops : sequence of Loop
-        Boundary of where the cutter's centre may be.
+        Boundary of the area allowed for the cutter centre.
     step : float, mm
-        Between neighbouring rings.
+        Distance between neighbouring rings.
     """
     found: list[list[MillingPass]] = []
     for ring in rings:
@@ -295,7 +297,7 @@ def spirals(
 def _following(
     last: MillingPass, ring: MillingPass, loops: Sequence[Loop], step: float
 ) -> MillingPass | None:
-    """The ring from where the slant from the last one meets it; None where there is no way."""
+    """Next ring, started where the slanted link meets it; None if it cannot be linked."""
     if not (last.is_closed and ring.is_closed):
         return None
     ahead = last.end + SLANT * step * last.chain[-1].along(1.0)
@@ -305,7 +307,7 @@ def _following(
 
 
 def _joined(run: Sequence[MillingPass]) -> MillingPass:
-    """A run of rings with the slants between them."""
+    """Join a run of rings with slanted links."""
     if len(run) == 1:
         return run[0]
     chain: Chain = run[0].chain

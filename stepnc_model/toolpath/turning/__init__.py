@@ -1,1 +1,1 @@
-"""Turning: half-plane profiles, the stock that is left, and the passes of each operation."""
+"""Turning tool paths: half-plane profiles, the remaining stock, and passes by operation."""

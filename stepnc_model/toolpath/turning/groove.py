@@ -1,12 +1,12 @@
-"""Grooving and cutting in: plunges side by side, then the walls and the floor.
+"""Grooving and cutting in: plunges side by side, then passes along the walls and the floor.
 
-Plunges start in the middle, or at the side that the grooving direction comes from, and their
-step leaves no strip. A finish comes down each wall and runs on the floor towards the other
-one, so that the insert is never drawn back over its width.
+Plunges start in the middle, or at the side where the grooving direction starts, and their
+step leaves no strip uncut. A finish runs down each wall and along the floor towards the other
+wall, so that the insert is never pulled backwards across its width.
 
-The programmed point is the insert's left corner, the one at the chuck, as a sharp corner; paths
-are made for the centre of that corner's radius. The insert may be where both of its corners and
-all between them may be.
+The programmed point is the insert's left corner, at the chuck side, as a sharp corner; paths
+are computed for the centre of that corner's radius. A position of the insert is allowed if both
+corners and everything between them are clear of the part.
 """
 
 from collections.abc import Sequence
@@ -53,17 +53,17 @@ from stepnc_model.toolpath.turning.setting import (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GroovingInsert:
-    """A grooving insert, mm."""
+    """Dimensions of a grooving insert, mm."""
 
     width: float
     corner: float
-    """radius of its corners"""
+    """Radius of the insert's corners, mm."""
     reach: float
-    """how deep it may go"""
+    """Greatest grooving depth of the insert, mm."""
 
     @property
     def flat(self) -> float:
-        """Between the centres of its corners."""
+        """Distance between the centres of the two corner radii, mm."""
         return self.width - 2.0 * self.corner
 
     def rolled(self, profile: RadiusProfile, allowance: float = 0.0) -> RadiusProfile:
@@ -71,7 +71,7 @@ class GroovingInsert:
         return highest(self._spread(grown(profile, self.corner + allowance)))
 
     def _spread(self, centres: RadiusProfile) -> list[ProfilePiece]:
-        """The way of both corners, and level lines between equal heights."""
+        """Offset the profile for both corners and bridge equal heights with level lines."""
         pieces = [*centres.pieces, *(_shifted(p, -self.flat) for p in centres.pieces)]
         for piece in centres.pieces:
             spots = [piece.start, piece.end]
@@ -82,23 +82,25 @@ class GroovingInsert:
 
 
 def insert_of(job: ToolPathTask) -> GroovingInsert:
-    """Insert of the tool of a grooving operation.
+    """Grooving insert of the operation's tool.
 
     Raises
     ------
     PathError
-        When it is no grooving tool, or has no width.
+        If the tool is not a grooving tool or has no valid width.
     """
     tool = job.program.get(job.step.tool_ref)
     if not isinstance(tool, GroovingTool):
-        raise job.fault("is no grooving tool", job.step.tool_ref)
+        raise job.fault("is not a grooving tool", job.step.tool_ref)
     width = tool.cutting_width
     if width is None or not 0.0 < width < 1e3:
-        raise job.fault(f"a width of {width} mm", job.step.tool_ref, "cutting_width")
+        raise job.fault(
+            f"an insert width of {width} mm is not valid", job.step.tool_ref, "cutting_width"
+        )
     corner = tool.corner_radius
     corner = job.tool.corner_radius or 0.0 if corner is None else corner
     if not 0.0 <= 2.0 * corner <= width:
-        message = f"corners of {corner:g} mm on an insert of {width:g} mm"
+        message = f"corner radius {corner:g} mm is too large for the width {width:g} mm"
         raise job.fault(message, job.step.tool_ref, "corner_radius")
     reach = tool.maximum_grooving_depth
     return GroovingInsert(width=float(width), corner=float(corner), reach=float(reach or 1e6))
@@ -115,14 +117,14 @@ def _shifted(piece: ProfilePiece, by: float) -> ProfilePiece:
 
 
 FITS = 1e-6
-"""mm by which an insert may be wider than its groove"""
+"""Tolerance by which an insert may be wider than its groove, mm."""
 
 OVERLAP = 0.8
-"""of the flat of an insert: the greatest step between plunges where none is given"""
+"""Greatest default step between plunges, as a fraction of the insert's flat."""
 
 
 class Plunger:
-    """Plunges an insert; running state: what it cut so far."""
+    """Builder of plunge moves; it tracks the material that the insert has cut."""
 
     def __init__(
         self, job: ToolPathTask, course: PathBuilder, bar: TurningBlank, insert: GroovingInsert
@@ -133,11 +135,11 @@ class Plunger:
         self.feed = cutting_feed(job)
         self.plane = HalfPlane(tip_x=-insert.corner, tip_z=-insert.corner)
         self.rim = insert.rolled(bar.left)
-        """where the insert touches the stock"""
+        """Profile of the left corner's centre where the insert touches the stock."""
         self.home = course.at
 
     def over(self, u: float) -> None:
-        """Go over a place, in rapid."""
+        """Move above position u in rapid."""
         kind = MoveType.RAPID if self.course.count else MoveType.APPROACH
         at, v = self.plane.spot(self.course.at)
         level = max(v, self._clear(min(at, u), max(at, u)))
@@ -145,7 +147,7 @@ class Plunger:
             self.course.rapid(self.plane.point(spot), kind)
 
     def down(self, pieces: Sequence[ProfilePiece]) -> None:
-        """Feed along pieces."""
+        """Feed along pieces, classified as contact or air."""
         for piece in pieces:
             for part, is_contact in split(piece, self.rim):
                 kind = MoveType.CONTACT if is_contact else MoveType.NO_CONTACT
@@ -153,16 +155,16 @@ class Plunger:
                 self.course.add(Move(end=end, type=kind, feed=self.feed, arc=arc))
 
     def up(self, u: float) -> None:
-        """Feed out of the groove: its walls are too near for a rapid."""
+        """Feed out of the groove at position u; its walls are too close for a rapid."""
         self._feed((u, self._clear(u, u)))
 
     def go_home(self) -> None:
-        """Back to the safe point."""
+        """Return to the safe point in rapid."""
         self.course.rapid((self.home[0], 0.0, self.course.at[2]), MoveType.RETRACT)
         self.course.rapid(self.home, MoveType.RETRACT)
 
     def peck(self, u: float, depths: Sequence[float], back: float) -> None:
-        """Plunge in steps, each followed by a short way back."""
+        """Plunge in steps, each followed by a short retract."""
         top = self.rim.at(u)
         start = self._clear(u, u)
         for index, depth in enumerate(depths):
@@ -173,11 +175,11 @@ class Plunger:
                 self._feed((u, start))
 
     def start_of(self, u: float) -> Spot:
-        """Start of a plunge."""
+        """Start point of a plunge at position u."""
         return u, self._clear(u, u)
 
     def _clear(self, low: float, high: float) -> float:
-        """Level at which all is clear over an interval."""
+        """Clear level over an interval of u, mm."""
         beside = self.rim.top(low - RAPID_CLEARANCE, high + RAPID_CLEARANCE)
         return max(beside, 0.0) + RAPID_CLEARANCE
 
@@ -192,12 +194,12 @@ def groove(
     bar: TurningBlank,
     outlines: tuple[FeatureOutline, ...],
 ) -> None:
-    """Make the path of a grooving or cutting-in operation.
+    """Generate the path of a grooving or cutting-in operation.
 
     Raises
     ------
     PathError
-        When the insert is too wide or too short, or there is nothing to remove.
+        If the insert is too wide or too short, or there is nothing to remove.
     """
     insert = insert_of(job)
     allowance = allowance_of(job, job.step.operation_ref, job.step.operation)
@@ -218,11 +220,11 @@ def _groove(
     outline: FeatureOutline,
     allowance: float,
 ) -> None:
-    """One groove: plunges, or its walls and floor."""
+    """Generate the moves of one groove: plunges, or passes along its walls and floor."""
     insert = plunger.insert
     surface = surface_of((outline,), HalfPlane())
     if not surface.pieces:
-        raise job.fault("a groove needs a floor", outline.ref)
+        raise job.fault("the groove has no floor", outline.ref)
     around = [
         *bar.left.within(-inf, surface.low).pieces,
         *surface.pieces,
@@ -236,7 +238,7 @@ def _groove(
     _check_depth(job, plunger, outline, bar.left.top(*mouth) + insert.corner - bottom)
     left = bottom - insert.corner - allowance - outline.radii[0]
     if left > SEEN:
-        text = f"the insert does not come to the bottom: {left:.3g} mm stay"
+        text = f"the insert does not reach the bottom: {left:.3g} mm remain"
         plunger.course.find(job.warning(text, outline.ref))
     if isinstance(job.step.operation, GroovingFinish):
         _finish(job, plunger, centres, low, high)
@@ -247,7 +249,7 @@ def _groove(
 
 
 def _mouth(surface: RadiusProfile, stock: RadiusProfile) -> tuple[float, float]:
-    """Opening of a groove in the stock."""
+    """Interval of u in which a groove is open in the stock."""
     cuts = {end for piece in surface.pieces for end in (piece.low, piece.high)}
     for piece in surface.pieces:
         for other in stock.pieces:
@@ -268,11 +270,11 @@ def _room(
     mouth: tuple[float, float],
     allowance: float,
 ) -> tuple[float, float]:
-    """Range of the centre of the left corner between the walls, at their widest."""
+    """Range of u of the left corner's centre between the walls at their widest."""
     width = mouth[1] - mouth[0]
     if width < insert.width + 2.0 * allowance - FITS:
         message = (
-            f"{width:g} mm wide with {allowance:g} mm on each wall: "
+            f"{width:g} mm groove width with {allowance:g} mm allowance on each wall: "
             f"too narrow for an insert of {insert.width:g} mm"
         )
         raise job.fault(message, outline.ref)
@@ -284,19 +286,21 @@ def _room(
 def _check_depth(
     job: ToolPathTask, plunger: Plunger, outline: FeatureOutline, depth: float
 ) -> None:
-    """The insert must reach the floor, and there must be something above it."""
+    """Check that the insert reaches the floor and that there is material above it."""
     if depth > plunger.insert.reach + FITS:
         message = (
-            f"{depth:.4g} mm deep: the insert reaches {plunger.insert.reach:g} mm "
+            f"{depth:.4g} mm groove depth, the insert reaches {plunger.insert.reach:g} mm "
             "(maximum_grooving_depth)"
         )
         raise job.fault(message, outline.ref)
     if depth <= FITS:
-        raise job.fault("there is nothing to remove: the stock lies on the floor", outline.ref)
+        raise job.fault(
+            "nothing to remove: the stock is already at the groove floor", outline.ref
+        )
 
 
 def _places(job: ToolPathTask, insert: GroovingInsert, low: float, high: float) -> list[float]:
-    """Positions of the plunges, in their order."""
+    """Positions u of the plunges, in their order."""
     strategy = strategy_of(job)
     step = max(OVERLAP * insert.flat, 0.25 * insert.width)
     direction = None
@@ -305,7 +309,9 @@ def _places(job: ToolPathTask, insert: GroovingInsert, low: float, high: float) 
         if strategy.travel_distance is not None:
             step = strategy.travel_distance
             if not 0.0 < step <= insert.width:
-                message = f"a step of {step:g} mm with an insert of {insert.width:g} mm"
+                message = (
+                    f"a step of {step:g} mm exceeds the insert width of {insert.width:g} mm"
+                )
                 raise strategy_fault(job, message, "travel_distance")
     count = ceil((high - low) / step - FITS)
     if count <= 0:
@@ -318,7 +324,7 @@ def _places(job: ToolPathTask, insert: GroovingInsert, low: float, high: float) 
 
 
 def _plunge(job: ToolPathTask, plunger: Plunger, u: float, depth: float) -> None:
-    """One plunge, in pecks if the strategy says so, and a pause on the floor."""
+    """Make a plunge, with pecks if the strategy asks for them, and a dwell at the floor."""
     if depth <= FITS:
         return
     strategy = strategy_of(job)
@@ -331,14 +337,16 @@ def _plunge(job: ToolPathTask, plunger: Plunger, u: float, depth: float) -> None
 
 
 def _dwell(job: ToolPathTask, course: PathBuilder) -> None:
-    """Pause on the floor, in seconds or revolutions as the file says."""
+    """Dwell at the floor, in seconds or revolutions as written in the file."""
     operation = job.step.operation
     written = operation.dwell if isinstance(operation, Grooving) else None
     if written is None:
         return
     value = written.value if isinstance(written, Typed) else written
     if not isinstance(value, (int, float)) or not 0.0 <= value < 1e4:
-        raise job.fault("a dwell must not be negative", job.step.operation_ref, "dwell")
+        raise job.fault(
+            "the dwell must be a number from 0 to 10 000", job.step.operation_ref, "dwell"
+        )
     if isinstance(written, Typed) and "REV" in written.keyword.upper():
         course.dwell(revolutions=float(value))
     elif value > 0.0:
@@ -348,7 +356,7 @@ def _dwell(job: ToolPathTask, course: PathBuilder) -> None:
 def _finish(
     job: ToolPathTask, plunger: Plunger, centres: RadiusProfile, low: float, high: float
 ) -> None:
-    """Down the wall at the front and along the floor, then down the one at the chuck."""
+    """Run down the front wall and along the floor, then down the wall at the chuck."""
     middle = 0.5 * (low + high)
     floor = centres.within(low - FITS, high + FITS)
     chuck_side = list(floor.within(floor.low, middle).chain())
@@ -366,7 +374,7 @@ def _finish(
 def _cut_in(
     job: ToolPathTask, plunger: Plunger, outline: FeatureOutline, feature: Entity
 ) -> None:
-    """One plunge to the feature's radius; past the axis by the corner where it is 0."""
+    """Plunge to the feature's radius; at radius 0 go past the axis by the corner radius."""
     insert = plunger.insert
     least = outline.radii[0]
     if isinstance(feature, Groove):

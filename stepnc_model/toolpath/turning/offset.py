@@ -1,8 +1,8 @@
-"""Offsets in a half plane, exact in lines and arcs: what a round nose and its edges can reach.
+"""Exact offsets of lines and arcs in a half plane: the reach of a round nose and its edges.
 
-The centre of a nose that touches a profile runs on the profile grown by the radius: the
+The centre of a nose that touches a profile runs on the profile grown by the nose radius: the
 boundary of the Minkowski sum with a disc. It is the upper envelope of the pieces moved along
-their normals and of circles about the corners; trimmed corners follow of themselves.
+their normals and of circles about the corners; corners are trimmed automatically.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -19,44 +19,44 @@ from stepnc_model.toolpath.turning.profile import (
 )
 
 EVEN = 1e-9
-"""mm by which a radius must be more than another one"""
+"""Smallest difference between two radii that counts, mm."""
 
 UPRIGHT_ANGLE = 0.5 * pi - 1e-6
-"""rad; an edge as steep or steeper leaves no wall behind"""
+"""Edge angle, rad, from which an edge counts as upright and leaves no material behind."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class InsertFlanks:
-    """Angles by which the edges of an insert rise from its nose, rad from the u axis."""
+    """Angles by which the edges of an insert rise from its nose, from the u axis, rad."""
 
     ahead: float = 0.5 * pi
-    """towards −u"""
+    """Rise angle of the edge on the −u side, rad."""
     behind: float = 0.5 * pi
-    """towards +u"""
+    """Rise angle of the edge on the +u side, rad."""
 
 
 def grown(profile: RadiusProfile, radius: float) -> RadiusProfile:
-    """Centre of a disc that rolls over a profile."""
+    """Path of the centre of a disc of this radius that rolls over a profile."""
     if radius <= EVEN:
         return profile
     return highest(_rolled(profile.chain(), radius, 1))
 
 
 def cut(stock: RadiusProfile, path: Sequence[ProfilePiece], radius: float) -> RadiusProfile:
-    """Stock after the centre of a nose ran along a path."""
+    """Remaining stock after the centre of a nose has run along a path."""
     swept = lowest(_rolled(path, radius, -1))
     left = lowest([*stock.pieces, *swept.pieces])
     return left.within(stock.low, stock.high)
 
 
 def lowered(stock: RadiusProfile, surface: RadiusProfile) -> RadiusProfile:
-    """Stock after everything above a surface was removed."""
+    """Remaining stock after everything above a surface has been removed."""
     left = lowest([*stock.pieces, *surface.pieces])
     return left.within(stock.low, stock.high)
 
 
 def reachable(profile: RadiusProfile, edges: InsertFlanks) -> RadiusProfile:
-    """A profile without what the edges of the insert cannot come to."""
+    """Profile that remains because the edges of the insert cannot reach below it."""
     rays: list[ProfilePiece] = []
     for angle, towards in ((edges.behind, -1), (edges.ahead, 1)):
         if angle < UPRIGHT_ANGLE:
@@ -65,7 +65,7 @@ def reachable(profile: RadiusProfile, edges: InsertFlanks) -> RadiusProfile:
 
 
 def excess(profile: RadiusProfile, pieces: Iterable[ProfilePiece]) -> float:
-    """By how much a profile lies above pieces at most, mm."""
+    """Greatest height of a profile above the given pieces, mm."""
     worst = 0.0
     for piece in pieces:
         for i in range(1, 16):
@@ -75,7 +75,7 @@ def excess(profile: RadiusProfile, pieces: Iterable[ProfilePiece]) -> float:
 
 
 def thickness(stock: RadiusProfile, surface: RadiusProfile) -> float:
-    """Greatest distance from a surface out to the stock over it, mm."""
+    """Greatest thickness of the stock over a surface, mm."""
     chain = surface.chain()
     worst = 0.0
     cuts = {u for p in (*stock.pieces, *surface.pieces) for u in (p.low, p.high)}
@@ -88,7 +88,7 @@ def thickness(stock: RadiusProfile, surface: RadiusProfile) -> float:
 
 
 def _rolled(chain: Sequence[ProfilePiece], radius: float, side: int) -> Iterator[ProfilePiece]:
-    """Pieces moved by a radius to the upper or lower side, and circles about the corners."""
+    """Move pieces by a radius to the upper or lower side and add circles about the corners."""
     for piece in chain:
         moved = _moved(piece, radius, side)
         if moved is not None:
@@ -100,7 +100,7 @@ def _rolled(chain: Sequence[ProfilePiece], radius: float, side: int) -> Iterator
 
 
 def _moved(piece: ProfilePiece, radius: float, side: int) -> ProfilePiece | None:
-    """One piece along its normal, or nothing where it folds."""
+    """Offset a piece along its normal, or return None where the offset vanishes."""
     if piece.is_upright:
         return None
     if piece.centre is None:
@@ -126,7 +126,7 @@ def _moved(piece: ProfilePiece, radius: float, side: int) -> ProfilePiece | None
 
 
 def _rays(profile: RadiusProfile, angle: float, towards: int) -> Iterator[ProfilePiece]:
-    """Lines that fall at an angle from whatever stands in the way of an edge."""
+    """Lines that fall at an angle from each obstacle of an insert edge."""
     slope = tan(angle)
     floor = profile.bottom(profile.low, profile.high)
     limit = profile.low if towards < 0 else profile.high
@@ -138,7 +138,7 @@ def _rays(profile: RadiusProfile, angle: float, towards: int) -> Iterator[Profil
 
 
 def _obstacles(profile: RadiusProfile, angle: float, towards: int) -> Iterator[Spot]:
-    """Corners, and where an arc is as steep as the edge."""
+    """Corners, and the points where an arc is as steep as the insert edge."""
     for piece in profile.pieces:
         yield piece.start
         yield piece.end

@@ -1,16 +1,16 @@
-"""The tool path of one turning workingstep, from its features, tool and strategy.
+"""Tool path of a turning workingstep from its features, tool and strategy.
 
 Procedure and types of moves after Shin et al., "Developing a virtual machining model to
 generate MTConnect machine-monitoring data from STEP-NC", Int. J. Prod. Res. 54 (2016)
 4487-4505, section 3.2.2: removal volume, offset by the nose, scan lines, net cuts, approach
-and retract, links. What is programmed is the imaginary tool tip: see
+and retract, links. The programmed point is the imaginary tool tip: see
 :mod:`stepnc_model.toolpath.turning.profile`.
 
-In knurling the wheel is pressed in at the front and fed along once. Contouring and facing make
-scan lines or passes along the contour, and the last pass on it. Facing is contouring seen
-across the spindle axis. Roughing leaves the allowance; what scan lines leave above it goes with
-a last pass along the surface. Finishing follows the whole surface, in as many passes as the
-depth asks for.
+In knurling the wheel is pressed in at the front and fed along once. Contouring and facing
+follow scan lines or passes along the contour, with the last pass on the contour. Facing is
+contouring seen across the spindle axis. Roughing leaves the allowance; a last pass along the
+surface removes what scan lines leave above it. Finishing follows the whole surface, in as many
+passes as the depth requires.
 """
 
 from stepnc_model.entities.turning import (
@@ -62,7 +62,7 @@ from stepnc_model.toolpath.turning.setting import (
 from stepnc_model.toolpath.turning.thread import thread, threaded_feature
 
 DEEP = 3.0
-"""mm in one pass that a turner would not take unasked"""
+"""Depth of a single pass, mm, from which an unasked single pass is a warning."""
 
 
 def contour(
@@ -72,12 +72,12 @@ def contour(
     outlines: tuple[FeatureOutline, ...],
     plane: HalfPlane,
 ) -> None:
-    """Make the path of a contouring or facing operation.
+    """Generate the path of a contouring or facing operation.
 
     Raises
     ------
     PathError
-        When there is nothing to remove, or the allowance is larger than the stock.
+        If there is nothing to remove, or the allowance is larger than the stock.
     """
     setting = setting_of(job, plane)
     allowance = allowance_of(job, job.step.operation_ref, job.step.operation)
@@ -88,7 +88,7 @@ def contour(
     for finding in (*setting.link.findings, *leftovers(job, region, outlines)):
         course.find(finding)
     walk = TurningPathBuilder(course, plane, region.stock, nose=nose, feeds=setting.feeds)
-    # Right at the end stands what is no feature: it is not to be taken off.
+    # At the very end stands material that belongs to no feature: do not remove it.
     own = region.surface.within(region.low + SEEN, max(region.low + SEEN, region.own_high))
     deep = thickness(region.stock, own) if own.pieces else 0.0
     _check_stock(job, region, deep, allowance)
@@ -104,7 +104,7 @@ def contour(
 
 
 def plane_of(job: ToolPathTask, tip: tuple[float, float]) -> HalfPlane:
-    """Facing looks across the axis, contouring along it, unless the feed direction says so."""
+    """Half plane of the passes: across the axis for facing, else along it or as fed."""
     is_across = isinstance(job.step.operation, Facing)
     feed = getattr(strategy_of(job), "feed_direction", None)
     along = direction_in(job, HalfPlane(), feed)
@@ -116,24 +116,24 @@ def plane_of(job: ToolPathTask, tip: tuple[float, float]) -> HalfPlane:
 def _check_stock(
     job: ToolPathTask, region: TurningRegion, deep: float, allowance: float
 ) -> None:
-    """There must be something to take off; a finish may follow what is at its size."""
+    """Check that there is stock to remove; a finish may follow a surface already at size."""
     is_finish = isinstance(job.step.operation, (ContouringFinish, FacingFinish))
     if deep <= SEEN and not is_finish:
         raise job.fault(
-            "there is nothing to remove: the stock lies on the feature", job.step.ref
+            "nothing to remove: the stock is already at the size of the feature", job.step.ref
         )
     if allowance >= deep > SEEN:
-        message = f"an allowance of {allowance:g} mm where {deep:.4g} mm of stock stand"
+        message = f"the allowance of {allowance:g} mm exceeds the {deep:.4g} mm of stock"
         raise job.fault(message, job.step.operation_ref, "allowance")
 
 
 def _find_one_pass(
     job: ToolPathTask, course: PathBuilder, setting: TurningSetting, total: float
 ) -> None:
-    """Say so where all is taken at once because nothing tells a depth."""
+    """Report a single pass that is taken because no cutting depth is given."""
     if setting.depths or setting.is_one_pass or total <= SEEN:
         return
-    text = f"no cutting depth is given: {total:.3g} mm in one pass"
+    text = f"no cutting depth given: {total:.3g} mm are cut in one pass"
     find = job.warning if total >= DEEP else job.note
     course.find(find(text, operation_of(job).its_machining_strategy, "cutting_depth"))
 
@@ -145,7 +145,7 @@ def _scanned(
     setting: TurningSetting,
     allowance: float,
 ) -> None:
-    """Scan lines from the outside in, then once along the surface."""
+    """Cut scan lines from the outside in, then follow the surface once."""
     centres = region.centres(allowance)
     bottom = max(
         centres.bottom(region.low, region.front), region.floor + region.nose + allowance
@@ -153,7 +153,10 @@ def _scanned(
     top = _top(region, centres)
     sums = cumulative(top - bottom + region.nose, setting.depths)
     if len(sums) > MOST_PASSES:
-        raise job.fault(f"more than {MOST_PASSES} passes", job.step.operation_ref)
+        raise job.fault(
+            f"the cutting depth needs more than {MOST_PASSES} passes: increase it",
+            job.step.operation_ref,
+        )
     for index, depth in enumerate(sums):
         is_back = setting.is_reversed != (setting.is_to_and_fro and index % 2 == 1)
         level = top + region.nose - depth
@@ -162,7 +165,7 @@ def _scanned(
 
 
 def _top(region: TurningRegion, centres: RadiusProfile) -> float:
-    """Greatest v of the stock over the region."""
+    """Greatest v of the stock over the region, mm."""
     return region.stock.top(centres.low, centres.high)
 
 
@@ -175,7 +178,7 @@ def _along(
     allowance: float,
     total: float,
 ) -> None:
-    """Passes along the contour, each nearer to it."""
+    """Make passes along the contour, each closer to it."""
     for depth in cumulative(total, setting.depths):
         _follow(job, walk, region, setting, allowance + total - depth)
 
@@ -189,7 +192,7 @@ def _finish(
     allowance: float,
     total: float,
 ) -> None:
-    """Passes along the contour; the last one touches all of it."""
+    """Make passes along the contour; the last pass covers all of it."""
     for depth in cumulative(total, setting.depths)[:-1]:
         _follow(job, walk, region, setting, allowance + total - depth)
     chain = region.chain(allowance)
@@ -212,7 +215,7 @@ def _follow(
     setting: TurningSetting,
     allowance: float,
 ) -> None:
-    """Once along the surface where something stands on it."""
+    """Follow the surface once where stock stands on it."""
     towards = 1 if setting.is_reversed else -1
     pieces = touching(walk, oriented(region.chain(allowance), towards=towards), setting.overcut)
     if pieces:
@@ -221,23 +224,23 @@ def _follow(
 
 
 EVEN = 1e-6
-"""mm between the radii of a cylinder's ends"""
+"""Greatest difference of radii between the ends of a cylinder, mm."""
 
 
 def knurl(
     job: ToolPathTask, course: PathBuilder, bar: TurningBlank, outline: FeatureOutline
 ) -> None:
-    """Press in and feed along.
+    """Generate the path of a knurling operation: press in and feed along the feature.
 
     Raises
     ------
     PathError
-        When the feature is no knurl, tells no depth, or is no cylinder.
+        If the feature is not a knurl, has no tooth depth or is not a cylinder.
     """
     ref = job.step.features[0]
     feature = job.program.get(ref)
     if not isinstance(feature, Knurl) or feature.tooth_depth is None:
-        raise job.fault("a knurl needs a feature with a tooth depth", ref, "tooth_depth")
+        raise job.fault("knurling needs a knurl feature with a tooth depth", ref, "tooth_depth")
     depth = size_or_zero(job.program, feature.tooth_depth)
     least, radius = outline.radii
     if radius - least > EVEN:
@@ -280,7 +283,7 @@ def turning_path(job: ToolPathTask) -> ToolPath:
         for finding in bar.findings:
             course.find(finding)
         if operation.retract_plane is None:
-            text = f"no retract plane: {DEFAULT_CLEARANCE:g} mm off the stock assumed"
+            text = f"no retract plane given: assuming {DEFAULT_CLEARANCE:g} mm off the stock"
             course.find(job.note(text, attribute="retract_plane"))
         _make(job, course, bar, outlines)
     return course.finished()
@@ -292,14 +295,14 @@ def _make(
     bar: TurningBlank,
     outlines: tuple[FeatureOutline, ...],
 ) -> None:
-    """The path by the kind of the operation."""
+    """Generate the path for the kind of operation."""
     operation = job.step.operation
     if isinstance(operation, (Contouring, Facing)):
         tool = job.program.get(job.step.tool_ref)
         if not isinstance(tool, TurningMachineCuttingTool):
-            raise job.fault("is no turning tool", job.step.tool_ref)
+            raise job.fault("is not a turning tool", job.step.tool_ref)
         if job.tool.corner_radius is None:
-            text = "no nose radius: a sharp tool assumed"
+            text = "no nose radius given: assuming a sharp tool"
             course.find(job.note(text, job.step.tool_ref, "cutting_edge"))
         tip = tip_of(tool.hand_of_tool, job.tool.corner_radius or 0.0)
         contour(job, course, bar, outlines, plane_of(job, tip))
@@ -310,13 +313,16 @@ def _make(
     elif isinstance(operation, Knurling):
         knurl(job, course, bar, outlines[0])
     else:
-        raise job.fault("no path is made for this kind of operation", job.step.operation_ref)
+        raise job.fault(
+            "path generation does not support this kind of turning operation",
+            job.step.operation_ref,
+        )
 
 
 def _outlines(job: ToolPathTask) -> tuple[FeatureOutline, ...]:
-    """Outlines of the features, the foremost one first, all of them within the bar."""
+    """Outlines of the features within the bar, ordered from the front."""
     if not job.step.features:
-        raise job.fault("has no feature: nothing tells what to turn", job.step.ref)
+        raise job.fault("the workingstep has no feature to turn", job.step.ref)
     reach = _reach(job)
     found = tuple(
         outline_of(job, threaded_feature(job, ref), reach) for ref in job.step.features
@@ -328,33 +334,37 @@ def _outlines(job: ToolPathTask) -> tuple[FeatureOutline, ...]:
 
 
 def _reach(job: ToolPathTask) -> float:
-    """Radius of the bar, or 0 where none is known."""
+    """Radius of the bar, mm, or 0 where no stock is given."""
     if job.stock is None:
         return 0.0
     return job.stock.radius or max(map(abs, (*job.stock.low[:2], *job.stock.high[:2])))
 
 
 def _check_bar(job: ToolPathTask, outline: FeatureOutline) -> None:
-    """A feature must lie within the bar: not behind it, not around it."""
+    """Check that a feature lies within the bar in z and in radius."""
     stock = job.stock
     if stock is None:
         return
     if outline.low < stock.low[2] or outline.low > stock.high[2]:
         message = (
-            f"reaches to z = {outline.low:g} mm; "
-            f"the bar from {stock.low[2]:g} to {stock.high[2]:g} mm"
+            f"the feature reaches to z = {outline.low:g} mm; "
+            f"the bar extends from {stock.low[2]:g} to {stock.high[2]:g} mm"
         )
         raise job.fault(message, outline.ref)
     least = outline.radii[0]
     if least > _reach(job):
-        message = f"a radius of {least:g} mm: that of the bar is {_reach(job):g} mm"
+        message = (
+            f"the feature's radius of {least:g} mm exceeds the bar radius of {_reach(job):g} mm"
+        )
         raise job.fault(message, outline.ref)
     if least < 0.0:
-        raise job.fault(f"a radius of {least:g} mm: it must not be negative", outline.ref)
+        raise job.fault(
+            f"the feature's radius of {least:g} mm must not be negative", outline.ref
+        )
 
 
 def _safe_point(job: ToolPathTask, bar: TurningBlank) -> Point:
-    """Outside the bar and in front of it."""
+    """Safe point outside the bar and in front of it."""
     clearance = clearance_of(job)
     front = bar.raw.high + clearance
     return bar.radius + clearance, 0.0, max(job.security_z, front)

@@ -1,13 +1,13 @@
 """Outlines of turning features in the half plane of the lathe: lines and arcs of z and x.
 
-A feature reaches from its placement against its z axis; its profile lies in its x, z plane,
-or where the profile is placed. The radius of a revolved feature is that of its profile's
-origin. A taper reduces the diameter away from the placement. A shoulder reaches up to the
-outside of the stock.
+A feature extends from its placement in the negative z direction; its profile lies in its
+x-z plane, or where the profile is placed. The radius of a revolved feature is measured to the
+origin of its profile. A taper reduces the diameter away from the placement. A shoulder reaches
+up to the outside of the stock.
 
-A groove is placed in its middle; the radius of the feature is that of its bottom. Width and
-angles of a square U are those of its floor and of its walls from the upright; the first wall
-is the one in front. Walls go up to the outside of the stock.
+A groove is placed at its middle; the radius of the feature is the radius of the groove bottom.
+The width of a square U profile is measured at its floor, its wall angles from the perpendicular
+to the axis; the first wall is the front one. Walls extend to the outside of the stock.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -46,13 +46,13 @@ from stepnc_model.toolpath.turning.profile import ProfilePiece, Spot, arc_pieces
 from stepnc_model.units import rad_from_deg
 
 STRAIGHT = 1e-9
-"""rad between two lines that make no corner"""
+"""Smallest angle between two lines that counts as a corner, rad."""
 
 
 def groove_pieces(
     job: ToolPathTask, feature: Groove, frame: Frame, reach: float
 ) -> tuple[ProfilePiece, ...]:
-    """Section of a groove, pieces of z and x from the front wall to the one at the chuck."""
+    """Section of a groove: pieces in z and x from the front wall to the wall at the chuck."""
     program = job.program
     profile = program.get(feature.sweep)
     _check_face(job, feature, frame)
@@ -60,7 +60,7 @@ def groove_pieces(
     middle, bottom = placed.origin[2], feature.radius
     if bottom >= reach:
         message = (
-            f"its bottom at a radius of {bottom:g} mm lies outside the stock: {reach:g} mm"
+            f"groove bottom at radius {bottom:g} mm: outside the stock radius {reach:g} mm"
         )
         raise job.fault(message, feature.sweep)
     height = reach - bottom
@@ -82,37 +82,39 @@ def groove_pieces(
         _check_open(job, feature, pieces)
         return pieces
     if isinstance(profile, TeeProfile):
-        message = "a tee groove is wider below than at its mouth: no plunge comes to it"
+        message = "a tee groove is wider below than at its mouth: plunging cannot reach it"
         raise job.fault(message, feature.sweep)
-    raise job.fault("a groove of this profile cannot be turned", feature.sweep)
+    raise job.fault("a groove with this kind of profile cannot be turned", feature.sweep)
 
 
 def _check_face(job: ToolPathTask, feature: Groove, frame: Frame) -> None:
-    """Material below the groove, not towards the chuck: it opens outwards."""
+    """Check that the groove opens outwards: its material must lie below it, not along z."""
     side = feature.material_side
     if side is None:
         return
     ratios = (*job.program.get(side).direction_ratios, 0.0, 0.0, 0.0)[:3]
     x, y, z = map(float, ratios)
     if abs(frame.direction((x, y, z))[2]) > abs(x):
-        message = "its material lies along the axis: a groove on a face is not supported"
+        message = (
+            "the groove's material side points along the axis: face grooves are not supported"
+        )
         raise job.fault(message, side)
 
 
 def _check_open(job: ToolPathTask, feature: Groove, pieces: Sequence[ProfilePiece]) -> None:
-    """All of the section must be seen from outside, from one wall to the other."""
+    """Check that the whole groove section is visible from outside, from wall to wall."""
     if not pieces:
         return
     towards = 1.0 if pieces[-1].end[0] > pieces[0].start[0] else -1.0
     if any((piece.end[0] - piece.start[0]) * towards < -STRAIGHT for piece in pieces):
         message = (
-            "its section opens to a face or is undercut: no plunge from outside comes to it"
+            "the groove opens to a face or is undercut: a plunge from outside cannot reach it"
         )
         raise job.fault(message, feature.sweep)
 
 
 def rounded(corners: Sequence[Spot], radii: Sequence[float]) -> Iterator[ProfilePiece]:
-    """Lines between corners, with an arc of the given radius in each inner corner."""
+    """Lines between corners, with an arc of the given radius at each inner corner."""
     start = corners[0]
     for index in range(1, len(corners) - 1):
         before, corner, after = corners[index - 1], corners[index], corners[index + 1]
@@ -160,7 +162,7 @@ def _square(
     ]
     if sum(radii) > 2.0 * half + STRAIGHT:
         message = (
-            f"its corners of {radii[0]:g} and {radii[1]:g} mm are wider than {2 * half:g} mm"
+            f"corners of {radii[0]:g} and {radii[1]:g} mm exceed the width {2 * half:g} mm"
         )
         raise job.fault(message, profile.width)
     return rounded(corners, [0.0, *radii, 0.0])
@@ -185,11 +187,13 @@ def _vee(
     half = 0.5 * vee_angle(profile.profile_angle)
     tilt = rad_from_deg(profile.tilt_angle or 0.0)
     radius = size_or_zero(job.program, profile.profile_radius)
-    # The radius is that of the bottom: the corner itself lies below it.
+    # The radius is measured to the rounded bottom: the sharp corner lies below it.
     apex = foot[1] - radius * (1.0 / sin(half) - 1.0)
     rise = foot[1] + height - apex
     if max(abs(tilt + half), abs(tilt - half)) >= 0.5 * pi:
-        raise job.fault("a wall of its vee lies beyond the horizontal", profile.profile_radius)
+        raise job.fault(
+            "a wall of the vee is tilted beyond the horizontal", profile.profile_radius
+        )
     corners = [
         (foot[0] + rise * tan(half + tilt), apex + rise),
         (foot[0], apex),
@@ -209,7 +213,7 @@ def _bowl(radius: float, turn: float, foot: Spot) -> Iterator[ProfilePiece]:
 def _general(
     job: ToolPathTask, feature: Groove, profile: GeneralProfile, frame: Frame
 ) -> Iterator[ProfilePiece]:
-    """A curve in the x, z plane of the feature, its x from the bottom up."""
+    """Pieces of a groove whose profile is a general curve in the feature's x-z plane."""
     pieces: list[ProfilePiece] = []
     for segment in segments_of(job.program, profile.its_profile):
         at = segment.within(frame)
@@ -223,24 +227,24 @@ def _general(
         centre = (at.bend.centre[2], feature.radius + at.bend.centre[0])
         pieces += arc_pieces((z, x), (end_z, end_x), centre=centre, turn=turn)
     if any(a.end != b.start and dist(a.end, b.start) > 0.01 for a, b in pairwise(pieces)):
-        raise job.fault("the parts of its profile do not join", feature.sweep)
+        raise job.fault("the profile segments do not join", feature.sweep)
     return iter(pieces)
 
 
 IN_PLANE = 1e-3
-"""mm by which a profile may leave its plane through the axis"""
+"""Greatest distance by which a profile may leave its plane through the axis, mm."""
 
 ALONG_AXIS = 1e-6
-"""sine between the axis of a feature and that of the spindle"""
+"""Greatest sine of the angle between a feature's axis and the spindle axis."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FeatureOutline:
-    """Surface of one feature, from the front to the chuck."""
+    """Surface of a turning feature, ordered from the front to the chuck."""
 
     ref: Ref[Entity]
     pieces: tuple[ProfilePiece, ...]
-    """of z and x"""
+    """Lines and arcs in z and x, front first."""
 
     @property
     def low(self) -> float:
@@ -254,13 +258,13 @@ class FeatureOutline:
 
     @property
     def radii(self) -> tuple[float, float]:
-        """Least and greatest radius of the ends of its pieces, mm."""
+        """Least and greatest radius among the end points of the pieces, mm."""
         values = [x for piece in self.pieces for _, x in (piece.start, piece.end)]
         return min(values), max(values)
 
 
 def outline_of(job: ToolPathTask, ref: Ref[Entity], reach: float) -> FeatureOutline:
-    """Outline of a feature.
+    """Outline of a turning feature in the half plane of the lathe.
 
     Parameters
     ----------
@@ -268,12 +272,12 @@ def outline_of(job: ToolPathTask, ref: Ref[Entity], reach: float) -> FeatureOutl
     ref : Ref
         A turning feature.
     reach : float, mm
-        Radius up to which its walls go.
+        Radius to which the walls of grooves and shoulders extend.
 
     Raises
     ------
     PathError, SchemaError
-        When it is no outside turning feature, or does not turn about the spindle axis.
+        If it is not an outside turning feature, or its axis is not the spindle axis.
     """
     program = job.program
     with program.using(ref):
@@ -291,14 +295,14 @@ def outline_of(job: ToolPathTask, ref: Ref[Entity], reach: float) -> FeatureOutl
         else:
             pieces = _in_half_plane(job, ref, _segments(job, ref, feature, frame))
     if not pieces:
-        raise job.fault("its profile has no length", ref)
+        raise job.fault("the feature's profile has no length", ref)
     return FeatureOutline(ref=ref, pieces=_front_first(pieces))
 
 
 def _segments(
     job: ToolPathTask, ref: Ref[Entity], feature: Entity, frame: Frame
 ) -> Sequence[Segment]:
-    """Lines and arcs of a feature in the setup."""
+    """Lines and arcs of a feature in setup coordinates."""
     program = job.program
     if isinstance(feature, OuterDiameter):
         return (_cylinder(job, ref, feature).within(frame),)
@@ -332,7 +336,7 @@ def _segments(
 
 
 def _cylinder(job: ToolPathTask, ref: Ref[Entity], feature: OuterDiameter) -> Segment:
-    """Cylinder or cone, from the placement on."""
+    """Generating line of a cylinder or cone, starting at the feature's placement."""
     radius = 0.5 * size_or_zero(job.program, feature.diameter_at_placement)
     length = size_or_zero(job.program, feature.feature_length)
     end = radius
@@ -343,7 +347,7 @@ def _cylinder(job: ToolPathTask, ref: Ref[Entity], feature: OuterDiameter) -> Se
         else:
             end = radius - length * tan(rad_from_deg(taper.angle))
     if end < 0.0:
-        message = f"its taper ends at a radius of {end:.4g} mm, beyond the axis"
+        message = f"the taper ends at radius {end:.4g} mm, beyond the axis"
         raise job.fault(message, ref, "reduced_size")
     return Segment(start=(radius, 0.0, 0.0), end=(end, 0.0, -length))
 
@@ -351,11 +355,11 @@ def _cylinder(job: ToolPathTask, ref: Ref[Entity], feature: OuterDiameter) -> Se
 def _shouldered(
     job: ToolPathTask, feature: OuterDiameterToShoulder, frame: Frame, reach: float
 ) -> tuple[ProfilePiece, ...]:
-    """Cylinder and shoulder, with the radius between them."""
+    """Cylinder and shoulder with the corner radius between them."""
     program = job.program
     vee = program.get(feature.v_shape_boundary)
     if vee.placement is None:
-        raise job.fault("does not say where the shoulder is", feature.v_shape_boundary)
+        raise job.fault("the shoulder profile has no placement", feature.v_shape_boundary)
     start = frame.origin[2]
     end = frame.point(frame_of(program, vee.placement).origin)[2]
     radius = 0.5 * size_or_zero(job.program, feature.diameter_at_placement)
@@ -371,13 +375,13 @@ def _shouldered(
 def _in_half_plane(
     job: ToolPathTask, ref: Ref[Entity], segments: Sequence[Segment]
 ) -> tuple[ProfilePiece, ...]:
-    """Segments in the setup as pieces of z and x, turned about the axis into y = 0."""
+    """Convert segments in the setup to pieces in z and x, rotated about the axis into y = 0."""
     points = [point for segment in segments for point in (segment.start, segment.end)]
     far = max(points, key=lambda point: hypot(point[0], point[1]))
     angle = atan2(far[1], far[0])
     across, along = -sin(angle), cos(angle)
     if any(abs(x * across + y * along) > IN_PLANE for x, y, _ in points):
-        raise job.fault("its profile does not lie in a plane through the spindle axis", ref)
+        raise job.fault("the profile does not lie in a plane through the spindle axis", ref)
     pieces: list[ProfilePiece] = []
     for segment in segments:
         (z, x), (end_z, end_x) = (
@@ -397,7 +401,7 @@ def _in_half_plane(
 
 
 def _front_first(pieces: Iterable[ProfilePiece]) -> tuple[ProfilePiece, ...]:
-    """The pieces from the greater z on; a face from the axis on."""
+    """Order the pieces by falling z; a face starts at the axis."""
     forward = tuple(pieces)
     start, end = forward[0].start, forward[-1].end
     if (start[0], -start[1]) < (end[0], -end[1]):
@@ -406,27 +410,29 @@ def _front_first(pieces: Iterable[ProfilePiece]) -> tuple[ProfilePiece, ...]:
 
 
 def _check_axis(job: ToolPathTask, ref: Ref[Entity], frame: Frame) -> None:
-    """The axis of the feature must be that of the spindle."""
+    """Check that the feature's axis coincides with the spindle axis."""
     if abs(abs(frame.z[2]) - 1.0) > ALONG_AXIS:
-        raise job.fault("its axis is not that of the spindle", ref, "feature_placement")
+        raise job.fault(
+            "the feature's axis is not parallel to the spindle axis", ref, "feature_placement"
+        )
     beside = hypot(frame.origin[0], frame.origin[1])
     if beside > IN_PLANE:
-        message = f"its placement lies {beside:.4g} mm beside the spindle axis"
+        message = f"the feature's placement lies {beside:.4g} mm off the spindle axis"
         raise job.fault(message, ref, "feature_placement")
 
 
 def _check_side(
     job: ToolPathTask, ref: Ref[Entity], frame: Frame, side: Ref[Direction] | None
 ) -> None:
-    """Material must lie inside, or towards the chuck."""
+    """Check that the material lies inside the surface or towards the chuck."""
     if side is None:
         return
     ratios = (*job.program.get(side).direction_ratios, 0.0, 0.0, 0.0)[:3]
     outwards = ratios[0]
     away = frame.direction((float(ratios[0]), float(ratios[1]), float(ratios[2])))[2]
     if outwards > abs(away) and outwards > 0.0:
-        message = "its material lies outside: turning on the inside is not supported"
+        message = "the material lies outside the surface: internal turning is not supported"
         raise job.fault(message, ref, "material_side")
     if away > abs(outwards) and away > 0.0:
-        message = "its material lies away from the chuck: a back face is not supported"
+        message = "the material lies away from the chuck: back facing is not supported"
         raise job.fault(message, ref, "material_side")

@@ -1,12 +1,12 @@
-"""Passes of a nose: scan lines down to a surface, passes along it, and the ways between them.
+"""Turning passes: scan lines down to a surface, passes along it, and the moves between them.
 
-Steps 3 and 4 of Shin et al. (2016), section 3.2.2. A scan line is cut where the centre of the
-nose may be at its level and where it touches the stock; where a line starts behind something
-that stays, the tool comes down along it.
+Steps 3 and 4 of Shin et al. (2016), section 3.2.2. A scan line is cut where the nose centre
+is allowed at its level and where it touches the stock; where a line starts behind remaining
+material, the tool descends along that material.
 
-The approach to the first cut and the retract from the last one are as the operation says:
+The approach to the first cut and the retract from the last one follow the operation:
 ISO 14649-11 ``ap_retract_angle`` (straight, at an angle to the path) and
-``ap_retract_tangent`` (a quarter of a circle that meets the path tangentially). The others
+``ap_retract_tangent`` (a quarter of a circle tangential to the path). The other strategies
 plunge, which a lathe does anyway.
 """
 
@@ -37,13 +37,13 @@ from stepnc_model.toolpath.turning.setting import ALONG, PassLink, TurningSettin
 from stepnc_model.units import rad_from_deg
 
 LEAST_LIFT = 0.05
-"""mm off the surface below which no rapid goes back over it"""
+"""Least lift off the surface for a rapid return over it, mm."""
 
-BLOCKED = "would run into what is left: the tool goes along the axes, where it is clear"
+BLOCKED = "would hit the remaining stock: the tool takes a clear route along the axes"
 
 
 def lift_off(walk: TurningPathBuilder, link: PassLink) -> None:
-    """Leave the surface after a pass; straight out where the lift would cut."""
+    """Lift off the surface after a pass; straight out where the lift direction would cut."""
     direction = link.lift or _customary(link)
     end = _moved(walk.at, direction, link.lift_height)
     if walk.meets(ProfilePiece(start=walk.at, end=end)):
@@ -52,14 +52,14 @@ def lift_off(walk: TurningPathBuilder, link: PassLink) -> None:
                 walk,
                 link,
                 "lift_direction",
-                "the lift would run into what is left: straight out",
+                "the lift would hit the remaining stock: lifting straight out",
             )
         direction = (0.0, 1.0)
     walk.lift(direction, link.lift_height)
 
 
 def onward(walk: TurningPathBuilder, link: PassLink, start: Spot) -> None:
-    """Lift, go back and step over to where the next pass starts."""
+    """Lift, return and step over to the start of the next pass."""
     if not walk.has_cut:
         walk.travel(start)
         return
@@ -71,21 +71,23 @@ def onward(walk: TurningPathBuilder, link: PassLink, start: Spot) -> None:
         return
     gain = link.lift_height * (link.lift or _customary(link))[1]
     if gain < LEAST_LIFT:
-        text = f"{gain:g} mm off the surface are no room for a rapid: the tool goes up for it"
+        text = (
+            f"{gain:g} mm off the surface is too little for a rapid: the tool retracts further"
+        )
         _warn(walk, link, "lift_height", text)
         walk.travel(start)
         return
     corner = meeting((walk.at, back), (start, stepover))
     if corner is None:
         if not (_is_straight(back) and _is_straight(stepover)):
-            text = "does not lead to the next pass: the tool goes along the axes"
+            text = "does not lead to the next pass: the tool moves along the axes"
             _warn(walk, link, "back_path_direction", text)
         walk.travel(start)
     elif walk.meets(ProfilePiece(start=walk.at, end=corner)):
-        _warn(walk, link, "back_path_direction", f"the way back {BLOCKED}")
+        _warn(walk, link, "back_path_direction", f"the return path {BLOCKED}")
         walk.travel(start)
     elif walk.meets(ProfilePiece(start=corner, end=start)):
-        _warn(walk, link, "stepover_direction", f"the step over {BLOCKED}")
+        _warn(walk, link, "stepover_direction", f"the stepover {BLOCKED}")
         walk.travel(start)
     else:
         walk.rush(corner, min(gain, RAPID_CLEARANCE))
@@ -93,14 +95,14 @@ def onward(walk: TurningPathBuilder, link: PassLink, start: Spot) -> None:
 
 
 def step_over(walk: TurningPathBuilder, link: PassLink, start: Spot, ahead: float) -> Spot:
-    """Go from one pass to the one back, without a lift; where that one then starts."""
+    """Step over to the next pass without a lift; return where that pass starts."""
     if link.stepover is None or not walk.has_cut:
         walk.travel(start)
         return start
     end = meeting((walk.at, link.stepover), (start, (-ahead, 0.0)))
     if end is None or walk.meets(ProfilePiece(start=walk.at, end=end)):
         if not _is_straight(link.stepover):
-            _warn(walk, link, "stepover_direction", f"the step over {BLOCKED}")
+            _warn(walk, link, "stepover_direction", f"the stepover {BLOCKED}")
         walk.travel(start)
         return start
     _step(walk, link, end)
@@ -108,7 +110,7 @@ def step_over(walk: TurningPathBuilder, link: PassLink, start: Spot, ahead: floa
 
 
 def meeting(one: tuple[Spot, Spot], other: tuple[Spot, Spot]) -> Spot | None:
-    """Point where a way along a direction turns into one that ends at another spot.
+    """Corner of an L-shaped route: leave a point in one direction, arrive in another.
 
     Examples
     --------
@@ -128,7 +130,7 @@ def meeting(one: tuple[Spot, Spot], other: tuple[Spot, Spot]) -> Spot | None:
 
 
 def _step(walk: TurningPathBuilder, link: PassLink, end: Spot) -> None:
-    """The step over, at its feed; in rapid where it has none and there is room."""
+    """Make the stepover at its feed, or in rapid where no feed is given and there is room."""
     if link.is_stepover_fed:
         walk.step([ProfilePiece(start=walk.at, end=end)] if dist(walk.at, end) > TOUCH else [])
     else:
@@ -152,7 +154,7 @@ def _warn(walk: TurningPathBuilder, link: PassLink, attribute: str, text: str) -
 
 
 LEAST_CUT = 1e-3
-"""mm of contact along a pass that is worth one"""
+"""Least contact length for which a pass is made, mm."""
 
 
 def scan(
@@ -163,18 +165,18 @@ def scan(
     *,
     towards: int,
 ) -> None:
-    """Cut everything at one level.
+    """Cut all material at one level.
 
     Parameters
     ----------
     walk : TurningPathBuilder
     centres : RadiusProfile
-        Where the centre may be at the lowest.
+        Lowest allowed path of the nose centre.
     level : float, mm
-        v of the centre.
+        Height v of the nose centre.
     setting : TurningSetting
     towards : int
-        −1 to the chuck or to the axis, +1 back.
+        −1 for passes to the chuck or the axis, +1 for passes in the other direction.
     """
     spans = centres.below(level + TOUCH)
     for low, high in spans if towards > 0 else reversed(spans):
@@ -199,7 +201,7 @@ def _line(
     bound: float,
     setting: TurningSetting,
 ) -> None:
-    """One scan line, with the way to it."""
+    """Cut one scan line, including the approach to it."""
     u, level = start
     towards = 1.0 if end > u else -1.0
     before = u - towards * setting.overcut
@@ -230,7 +232,7 @@ def _line(
 def _descent(
     walk: TurningPathBuilder, centres: RadiusProfile, u: float, towards: float
 ) -> list[ProfilePiece]:
-    """The way down along what stands before a line, from where the tool is free."""
+    """Descent to a scan line along the surface before it, from where the tool is free."""
     side = centres.within(u, centres.high) if towards < 0 else centres.within(centres.low, u)
     pieces = list(side.chain())
     if towards > 0.0:
@@ -251,7 +253,7 @@ def _backwards(pieces: Sequence[ProfilePiece]) -> list[ProfilePiece]:
 def touching(
     walk: TurningPathBuilder, chain: Sequence[ProfilePiece], overcut: float
 ) -> list[ProfilePiece]:
-    """A chain from before its first cut to the end of its last one; nothing if it has none."""
+    """Part of a chain from its lead-in to its last cut; empty if it does not cut."""
     parts = [found for piece in chain for found in split(piece, walk.rim)]
     contacts = [i for i, (part, is_contact) in enumerate(parts) if is_contact and _is_cut(part)]
     if not contacts:
@@ -261,12 +263,12 @@ def touching(
 
 
 def oriented(chain: Sequence[ProfilePiece], *, towards: int) -> list[ProfilePiece]:
-    """A chain that runs towards −u, or the same back."""
+    """Chain in the requested direction, given a chain that runs towards −u."""
     return list(chain) if towards < 0 else _backwards(chain)
 
 
 def shortened(chain: Sequence[ProfilePiece], start: float) -> list[ProfilePiece]:
-    """A chain towards −u without what lies behind a u."""
+    """Chain towards −u without the part beyond a start position u."""
     found: list[ProfilePiece] = []
     for piece in chain:
         if piece.low >= start - NARROW and not piece.is_upright:
@@ -283,7 +285,7 @@ def _is_cut(part: ProfilePiece) -> bool:
 
 
 def _lead(before: Sequence[ProfilePiece], overcut: float) -> list[ProfilePiece]:
-    """The last part of a chain that is at least as long as the overcut, in u."""
+    """Last part of a chain that is at least as long as the overcut in u."""
     if not before or overcut <= 0.0:
         return []
     end = before[-1].end[0]
@@ -302,7 +304,7 @@ def _lead(before: Sequence[ProfilePiece], overcut: float) -> list[ProfilePiece]:
 def entrance(
     job: ToolPathTask, walk: TurningPathBuilder, pieces: Sequence[ProfilePiece], link: PassLink
 ) -> None:
-    """Go to where a chain starts; before the first cut as the approach says."""
+    """Go to the start of a chain; before the first cut, use the approach strategy."""
     start = pieces[0].start
     along = pieces[0].tangent(start)
     lead = () if walk.has_cut else _lead_in(job, operation_of(job).approach, start, along)
@@ -311,7 +313,7 @@ def entrance(
 
 
 def departure(job: ToolPathTask, walk: TurningPathBuilder, link: PassLink) -> None:
-    """Leave the last cut as the retract says, else by the lift of every pass."""
+    """Leave the last cut with the retract strategy, or else with the lift of every pass."""
     back = (-walk.heading[0], -walk.heading[1])
     lead = _lead_in(job, operation_of(job).retract, walk.at, back)
     if lead:
@@ -323,7 +325,7 @@ def departure(job: ToolPathTask, walk: TurningPathBuilder, link: PassLink) -> No
 def _lead_in(
     job: ToolPathTask, ref: Ref[ApproachRetractStrategy] | None, end: Spot, along: Spot
 ) -> tuple[ProfilePiece, ...]:
-    """The way to a spot where the path runs along a direction, over the free side."""
+    """Lead-in to a spot where the path runs in a direction, on the side free of material."""
     strategy = job.program.get(ref) if ref is not None else None
     up = (along[1], -along[0])
     if up[1] < 0.0 or (up[1] == 0.0 and up[0] < 0.0):
@@ -331,7 +333,7 @@ def _lead_in(
     if isinstance(strategy, ApRetractAngle):
         angle, length = rad_from_deg(strategy.angle), strategy.travel_length
         if not (0.0 < length < 1e4 and 0.0 <= strategy.angle <= 90.0):
-            message = f"{length:g} mm at {strategy.angle:g} degrees is no way to the path"
+            message = f"{length:g} mm at {strategy.angle:g} degrees is not a valid lead-in"
             raise job.fault(message, ref or job.step.ref)
         a, b = length * cos(angle), length * sin(angle)
         start = (end[0] - a * along[0] + b * up[0], end[1] - a * along[1] + b * up[1])
@@ -339,7 +341,11 @@ def _lead_in(
     if isinstance(strategy, ApRetractTangent):
         size = strategy.radius
         if not 0.0 < size < 1e4:
-            raise job.fault(f"a radius of {size:g} mm", ref or job.step.ref, "radius")
+            raise job.fault(
+                f"approach radius {size:g} mm must be from 0 to 10 000 mm",
+                ref or job.step.ref,
+                "radius",
+            )
         centre = (end[0] + size * up[0], end[1] + size * up[1])
         start = (centre[0] - size * along[0], centre[1] - size * along[1])
         is_left = along[0] * up[1] - along[1] * up[0] > 0.0

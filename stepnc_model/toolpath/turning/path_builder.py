@@ -1,8 +1,8 @@
-"""The way of a turning tool through what is left of the bar: running state of one workingstep.
+"""Builder of turning tool paths through the remaining stock of one workingstep.
 
-Every feed takes material off the stock that is kept here; no rapid comes nearer to it than
-``RAPID_CLEARANCE``: where one would, the tool feeds. Moves are along the axes, so that
-both are exact. Steps 5 and 6 of Shin et al. (2016), section 3.2.2.
+Every feed removes material from the stock that is tracked here. No rapid comes closer to it
+than ``RAPID_CLEARANCE``; where it would, the tool feeds instead. Moves run along the axes, so
+that both are exact. Steps 5 and 6 of Shin et al. (2016), section 3.2.2.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -22,29 +22,29 @@ from stepnc_model.toolpath.turning.profile import (
 )
 
 RAPID_CLEARANCE = 1.0
-"""mm between the tool and the stock in rapid"""
+"""Least distance between the tool and the stock in rapid moves, mm."""
 
 BESIDE = 1e-5
-"""mm off a wall that the tool touches"""
+"""Distance to a wall, mm, within which the tool touches it without cutting."""
 
 TOUCH = 1e-6
-"""mm of overlap that is no contact"""
+"""Overlap of tool and stock that does not count as contact, mm."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Feeds:
-    """Feeds of the moves of one operation."""
+    """Feeds of the moves of one turning operation."""
 
     cutting: Feed
     lift: Feed
     stepover: Feed
-    """of ways through air to the next pass"""
+    """Feed of moves through air to the next pass."""
     entering: Feed
-    """of such ways where they cut"""
+    """Feed of moves to the next pass where they cut."""
 
 
 class TurningPathBuilder:
-    """Moves a nose through the stock and says what the moves are."""
+    """Move a nose through the stock and classify the moves as contact or air."""
 
     def __init__(
         self,
@@ -61,36 +61,36 @@ class TurningPathBuilder:
         self.feeds = feeds
         self.stock = stock
         self.at: Spot = plane.spot(course.at)
-        """centre of the nose"""
+        """Position of the nose centre."""
         self.heading: Spot = (-1.0, 0.0)
-        """unit vector of the last feed"""
+        """Unit vector at the end of the last feed."""
         self.has_cut = False
         self._home = self.at
         self._measure()
 
     @property
     def rim(self) -> RadiusProfile:
-        """Profile of the centre of the nose where it touches the stock."""
+        """Profile of the nose centre where the nose touches the stock."""
         return self._rim
 
     def travel(self, end: Spot) -> None:
-        """Go somewhere, in rapid as far as there is room."""
+        """Travel to a spot, in rapid where there is room."""
         self._travel(end, MoveType.RAPID if self.has_cut else MoveType.APPROACH)
 
     def home(self) -> None:
-        """Go back to where the path started."""
+        """Return to the start of the path."""
         self._travel(self._home, MoveType.RETRACT)
 
     def feed(self, pieces: Sequence[ProfilePiece]) -> None:
-        """Feed along pieces and take off what is in the way."""
+        """Feed along pieces and remove the material in the way."""
         self._run(pieces, air=self.feeds.cutting, contact=self.feeds.cutting)
 
     def step(self, pieces: Sequence[ProfilePiece]) -> None:
-        """The same on the way to a pass, at the feeds of the step over."""
+        """Feed along pieces on the way to a pass, at the stepover feeds."""
         self._run(pieces, air=self.feeds.stepover, contact=self.feeds.entering)
 
     def rush(self, end: Spot, margin: float) -> None:
-        """Straight to a spot, in rapid where the stock is at least a margin away."""
+        """Move straight to a spot, in rapid where the stock is at least a margin away."""
         clear = grown(self.stock, self.nose + margin)
         for part, is_near in split(ProfilePiece(start=self.at, end=end), clear):
             if is_near:
@@ -99,7 +99,7 @@ class TurningPathBuilder:
                 self._straight(part.end, MoveType.RAPID, None)
 
     def meets(self, piece: ProfilePiece) -> bool:
-        """Whether the tool would cut on a way; along a wall that it touches it does not."""
+        """Whether the tool would cut along a piece; sliding along a wall does not count."""
         return any(self._is_in(part.point(0.5)) for part in _parts(piece, self._rim))
 
     def _is_in(self, spot: Spot) -> bool:
@@ -120,7 +120,7 @@ class TurningPathBuilder:
                 self._measure()
 
     def lift(self, direction: Spot, height: float) -> None:
-        """Move off the surface."""
+        """Lift the tool off the surface by a height in a direction."""
         end = (self.at[0] + height * direction[0], self.at[1] + height * direction[1])
         self._straight(end, MoveType.NO_CONTACT, self.feeds.lift)
 
@@ -140,7 +140,7 @@ class TurningPathBuilder:
             self.step([ProfilePiece(start=start, end=spot)])
 
     def _way_out(self, spot: Spot) -> list[Spot]:
-        """Point above or behind a spot where the tool has room; the spot itself if it has."""
+        """Point above or behind a spot where the tool has clearance; empty if not needed."""
         u, v = spot
         height = self._clear.at(u) - v
         if height <= TOUCH:
@@ -152,7 +152,7 @@ class TurningPathBuilder:
         return [(u, self._clear.at(u))]
 
     def _open(self, spot: Spot) -> Iterator[tuple[float, float]]:
-        """Intervals behind a spot where a rapid at its level has room."""
+        """Intervals behind a spot where a rapid at its level has clearance."""
         for low, high in self._clear.below(spot[1] + TOUCH):
             if high > spot[0]:
                 yield max(low, spot[0]), high
@@ -160,7 +160,7 @@ class TurningPathBuilder:
             yield self._clear.high + TOUCH, self._clear.high + 1.0
 
     def _corners(self, start: Spot, end: Spot) -> Iterator[Spot]:
-        """Corners of a way that stays clear, along one axis at a time."""
+        """Corners of a clear route between two spots, along one axis at a time."""
         low, high = min(start[0], end[0]), max(start[0], end[0])
         top = self._clear.top(low, high)
         if top <= start[1] + TOUCH:
@@ -188,13 +188,13 @@ class TurningPathBuilder:
 
 
 def split(piece: ProfilePiece, rim: RadiusProfile) -> Iterator[tuple[ProfilePiece, bool]]:
-    """Parts of a piece, each with whether it cuts."""
+    """Split a piece where it enters or leaves the stock; each part with whether it cuts."""
     for is_contact, parts in _runs(_parts(piece, rim), rim):
         yield parts[0] if len(parts) == 1 else _joined(parts), is_contact
 
 
 def _parts(piece: ProfilePiece, rim: RadiusProfile) -> list[ProfilePiece]:
-    """A piece, cut wherever it may enter or leave the stock."""
+    """Cut a piece wherever it may enter or leave the stock."""
     if piece.is_upright:
         (u, first), (_, second) = piece.start, piece.end
         top = rim.at(u)
@@ -215,7 +215,7 @@ def _parts(piece: ProfilePiece, rim: RadiusProfile) -> list[ProfilePiece]:
 def _runs(
     parts: Iterable[ProfilePiece], rim: RadiusProfile
 ) -> Iterator[tuple[bool, list[ProfilePiece]]]:
-    """Neighbours that cut alike."""
+    """Group neighbouring parts by whether they cut."""
     run: list[ProfilePiece] = []
     was_contact = False
     for part in parts:

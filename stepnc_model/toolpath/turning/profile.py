@@ -1,22 +1,22 @@
 """Profiles in a half plane: v as a function of u, in lines and exact arcs, with steps.
 
-A half plane has the coordinates u, along the passes, and v, out of the material. A piece runs
-over an interval of u, to and fro; a line may also stand upright. Arcs lie on the upper or the
+A half plane has the coordinates u, along the passes, and v, out of the material. A piece covers
+an interval of u in either direction; a line may also be upright. Arcs lie on the upper or the
 lower side of their circle, so that each has one v for each u.
 
-The upper envelope of pieces is what bounds material; the lower one is what is left of it.
-Everything else follows: growing by a radius, cutting by a nose that runs along a path, and
+The upper envelope of pieces bounds material; the lower envelope is the material that remains.
+Everything else follows: growing by a radius, cutting with a nose that runs along a path, and
 the part of a profile that an edge can reach.
 
 Turning sees the spindle axis as u and the radius as v; facing sees them the other way round.
 Passes run towards −u and material lies below.
 
-Paths are made for the centre of the nose. What is programmed is the imaginary tool tip, the
-corner of the square around the nose, as ``feedrate_reference`` TCP and the setting lengths
-``functional_length`` and ``f_dimension`` mean it: for a right-hand outside tool the centre less
-one nose radius in x and in z (tip position 3 of Fanuc and LinuxCNC), for a left-hand one the
-centre less one radius in x and plus one in z (position 4), for a neutral one the centre less
-one radius in x (position 8). :class:`HalfPlane` is the one place where this is done.
+Paths are computed for the nose centre. The programmed point is the imaginary tool tip, the
+corner of the square around the nose, as assumed by ``feedrate_reference`` TCP and the setting
+lengths ``functional_length`` and ``f_dimension``: for a right-hand outside tool, centre minus
+one nose radius in x and in z (tip position 3 of Fanuc and LinuxCNC), for a left-hand tool the
+centre minus one radius in x and plus one in z (position 4), for a neutral tool the centre minus
+one radius in x (position 8). Only :class:`HalfPlane` does this conversion.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -28,32 +28,32 @@ from stepnc_model.entities.enums import HandOfToolType
 from stepnc_model.toolpath.path import Arc, ArcPlane, Point
 
 Spot = tuple[float, float]
-"""u, v in mm"""
+"""Coordinates u, v of a point in a half plane, mm."""
 
 UPRIGHT = 1e-9
-"""mm of u below which a line stands upright"""
+"""Length in u below which a line counts as upright, mm."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProfilePiece:
-    """A line, or an arc when it has a centre."""
+    """Line, or an arc if it has a centre, in a half plane."""
 
     start: Spot
     end: Spot
     centre: Spot | None = None
     side: int = 0
-    """+1 on the upper side of its circle, −1 on the lower one"""
+    """Side of the arc's circle: +1 upper, −1 lower."""
     radius: float = 0.0
-    """Radius, mm, of the circle"""
+    """Radius of the arc's circle, mm."""
 
     @property
     def low(self) -> float:
-        """Least u."""
+        """Least u, mm."""
         return min(self.start[0], self.end[0])
 
     @property
     def high(self) -> float:
-        """Greatest u."""
+        """Greatest u, mm."""
         return max(self.start[0], self.end[0])
 
     @property
@@ -63,21 +63,21 @@ class ProfilePiece:
 
     @property
     def turn(self) -> float:
-        """Angle of the arc from start to end, rad, counter-clockwise positive; 0 of a line."""
+        """Angle of the arc from start to end, rad, counter-clockwise positive; 0 for a line."""
         if self.centre is None:
             return 0.0
         first, second = (
             atan2(spot[1] - self.centre[1], spot[0] - self.centre[0])
             for spot in (self.start, self.end)
         )
-        # Forwards in u the upper side is clockwise, and no piece turns by more than π.
+        # For rising u the upper side is clockwise, and no piece turns by more than π.
         is_clockwise = (self.end[0] > self.start[0]) == (self.side > 0)
         size = (first - second if is_clockwise else second - first) % (2.0 * pi)
         size = size if size < pi + 1e-3 else 0.0
         return -size if is_clockwise else size
 
     def at(self, u: float) -> float:
-        """Its v over one u within the interval."""
+        """Height v at a position u within the interval, mm."""
         if self.centre is not None:
             inside = self.radius**2 - (u - self.centre[0]) ** 2
             return self.centre[1] + self.side * sqrt(max(0.0, inside))
@@ -85,15 +85,15 @@ class ProfilePiece:
         return max(b, d) if self.is_upright else b + (d - b) * (u - a) / (c - a)
 
     def reversed(self) -> "ProfilePiece":
-        """The same way back."""
+        """Piece traversed in the opposite direction."""
         return self._between(self.end, self.start)
 
     def part(self, first: float, second: float) -> "ProfilePiece":
-        """Part between two values of u, in this order."""
+        """Part of the piece between two values of u, in this order."""
         return self._between(self._spot(first), self._spot(second))
 
     def point(self, part: float) -> Spot:
-        """Point at a share, 0 to 1, of its length."""
+        """Point at a fraction, 0 to 1, of the piece's length."""
         (a, b), (c, d) = self.start, self.end
         if self.centre is None:
             return a + part * (c - a), b + part * (d - b)
@@ -103,7 +103,7 @@ class ProfilePiece:
         )
 
     def tangent(self, spot: Spot) -> Spot:
-        """Unit vector of its direction at one of its spots."""
+        """Unit tangent vector at a spot on the piece."""
         if self.centre is None:
             length = dist(self.start, self.end) or 1.0
             a, b = self.end[0] - self.start[0], self.end[1] - self.start[1]
@@ -115,7 +115,7 @@ class ProfilePiece:
         )
 
     def distance(self, spot: Spot) -> float:
-        """Least distance to a spot, mm."""
+        """Least distance from the piece to a spot, mm."""
         ends = min(dist(spot, self.start), dist(spot, self.end))
         if self.centre is not None:
             u, v = spot[0] - self.centre[0], spot[1] - self.centre[1]
@@ -131,7 +131,7 @@ class ProfilePiece:
         return min(ends, abs(a * v - b * u) / sqrt(square))
 
     def _spot(self, u: float) -> Spot:
-        """Its own end where that is meant, so that joints stay closed."""
+        """Point at u, exactly the piece's end where u is an end, so that joints stay closed."""
         for spot in (self.start, self.end):
             if u == spot[0] and not self.is_upright:
                 return spot
@@ -144,7 +144,7 @@ class ProfilePiece:
 
 
 def arc_pieces(start: Spot, end: Spot, *, centre: Spot, turn: float) -> Iterator[ProfilePiece]:
-    """An arc of any turn as pieces, cut where its circle stands upright."""
+    """Split an arc of any angle into pieces at the points where its circle is upright."""
     radius = 0.5 * (dist(start, centre) + dist(end, centre))
     first = atan2(start[1] - centre[1], start[0] - centre[0])
     step = pi if turn > 0.0 else -pi
@@ -162,7 +162,7 @@ def arc_pieces(start: Spot, end: Spot, *, centre: Spot, turn: float) -> Iterator
 
 
 def half_circle(centre: Spot, radius: float, side: int) -> ProfilePiece:
-    """The upper or the lower half of a circle."""
+    """Upper or lower half of a circle as a piece."""
     return ProfilePiece(
         start=(centre[0] - radius, centre[1]),
         end=(centre[0] + radius, centre[1]),
@@ -173,7 +173,7 @@ def half_circle(centre: Spot, radius: float, side: int) -> ProfilePiece:
 
 
 def crossings(one: ProfilePiece, other: ProfilePiece) -> Iterator[float]:
-    """Values of u where two pieces may cross: all of them, and perhaps some more."""
+    """Values of u where two pieces may cross: all crossings and perhaps some others."""
     low, high = max(one.low, other.low), min(one.high, other.high)
     if low >= high:
         return
@@ -235,37 +235,37 @@ def _circle_circle(one: ProfilePiece, other: ProfilePiece) -> tuple[float, ...]:
 
 
 NARROW = 1e-9
-"""mm; an interval of u that is narrower holds nothing"""
+"""Width in u below which an interval counts as empty, mm."""
 
 JOINT = 1e-6
-"""mm of v between two pieces that is no step"""
+"""Difference in v between two pieces that does not count as a step, mm."""
 
 TIE = 1e-12
-"""mm by which a piece must be better to end the one before it"""
+"""Advantage in v, mm, from which another piece replaces the current envelope piece."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RadiusProfile:
-    """Pieces in the order of u, none upright; a step of v between two of them is a wall."""
+    """Pieces ordered by u, none upright; a step of v between two pieces is a wall."""
 
     pieces: tuple[ProfilePiece, ...] = ()
 
     @property
     def low(self) -> float:
-        """Least u."""
+        """Least u, mm."""
         return self.pieces[0].low if self.pieces else inf
 
     @property
     def high(self) -> float:
-        """Greatest u."""
+        """Greatest u, mm."""
         return self.pieces[-1].high if self.pieces else -inf
 
     def at(self, u: float) -> float:
-        """Its v over one u, the higher one at a wall; −inf beside the profile."""
+        """Height v at a position u, the higher value at a wall; −inf outside the profile."""
         return max((p.at(u) for p in self.pieces if p.low <= u <= p.high), default=-inf)
 
     def within(self, low: float, high: float) -> "RadiusProfile":
-        """The part over an interval of u."""
+        """Part of the profile over an interval of u."""
         return RadiusProfile(
             pieces=tuple(
                 piece.part(max(low, piece.low), min(high, piece.high))
@@ -275,7 +275,7 @@ class RadiusProfile:
         )
 
     def top(self, low: float, high: float) -> float:
-        """Greatest v over a closed interval of u; −inf beside the profile."""
+        """Greatest v over a closed interval of u; −inf outside the profile."""
         found = -inf
         for piece in self.pieces:
             first, second = max(low, piece.low), min(high, piece.high)
@@ -286,11 +286,11 @@ class RadiusProfile:
         return found
 
     def bottom(self, low: float, high: float) -> float:
-        """Least v over an interval of u; +inf beside the profile."""
+        """Least v over an interval of u; +inf outside the profile."""
         return -mirrored(self.within(low, high).pieces).top(low, high)
 
     def chain(self) -> tuple[ProfilePiece, ...]:
-        """The pieces with the walls between them, joined, in the order of u."""
+        """Joined pieces including the walls between them, in the order of u."""
         joined: list[ProfilePiece] = []
         for each in self.pieces:
             piece = each
@@ -308,7 +308,7 @@ class RadiusProfile:
         return tuple(joined)
 
     def below(self, level: float) -> list[tuple[float, float]]:
-        """Intervals of u where the profile is at a level or below it; its gaps count too."""
+        """Intervals of u where the profile is at or below a level."""
         return _intervals(self, level, is_above=False)
 
     def above(self, level: float) -> list[tuple[float, float]]:
@@ -327,12 +327,12 @@ def lowest(pieces: Iterable[ProfilePiece]) -> RadiusProfile:
 
 
 def mirrored(pieces: Iterable[ProfilePiece]) -> RadiusProfile:
-    """Pieces of a profile turned upside down."""
+    """Profile of the pieces turned upside down."""
     return RadiusProfile(pieces=tuple(map(_upside_down, pieces)))
 
 
 def level_line(level: float, low: float, high: float) -> ProfilePiece:
-    """A horizontal line."""
+    """Horizontal line at a level, from low to high u."""
     return ProfilePiece(start=(low, level), end=(high, level))
 
 
@@ -347,7 +347,7 @@ def _upside_down(piece: ProfilePiece) -> ProfilePiece:
 
 
 def _from(piece: ProfilePiece, start: Spot) -> ProfilePiece:
-    """A piece that starts exactly where the last one ended."""
+    """Copy of a piece that starts exactly at a given point."""
     return ProfilePiece(
         start=start, end=piece.end, centre=piece.centre, side=piece.side, radius=piece.radius
     )
@@ -356,7 +356,7 @@ def _from(piece: ProfilePiece, start: Spot) -> ProfilePiece:
 def _intervals(
     profile: RadiusProfile, level: float, *, is_above: bool
 ) -> list[tuple[float, float]]:
-    """Ranges where a profile is above a level, or not; joined where they touch."""
+    """Intervals where a profile is above a level, or not above it; merged where they touch."""
     line = level_line(level, profile.low, profile.high)
     found: list[tuple[float, float]] = []
     for piece in profile.pieces:
@@ -372,7 +372,7 @@ def _intervals(
 
 
 def _envelope(pieces: Iterable[ProfilePiece], sign: float) -> RadiusProfile:
-    """The best piece over each interval between ends and crossings."""
+    """Envelope of pieces: upper for sign 1, lower for sign −1."""
     forward = sorted(
         (p if p.start[0] <= p.end[0] else p.reversed() for p in pieces if _is_wide(p)),
         key=lambda piece: piece.low,
@@ -398,7 +398,7 @@ def _is_wide(piece: ProfilePiece) -> bool:
 
 
 def _cells(forward: Sequence[ProfilePiece]) -> Iterator[tuple[float, float, list[int]]]:
-    """Intervals between neighbouring cuts, each with the pieces over it."""
+    """Intervals between neighbouring cuts, each with the indices of the pieces over it."""
     cuts = {end for piece in forward for end in (piece.low, piece.high)}
     for index, piece in enumerate(forward):
         for other in forward[index + 1 :]:
@@ -418,7 +418,7 @@ def _cells(forward: Sequence[ProfilePiece]) -> Iterator[tuple[float, float, list
 
 
 def _spread(cuts: Sequence[float]) -> list[float]:
-    """Cuts without those that lie on top of the one before."""
+    """Cuts without values that coincide with the previous one."""
     found: list[float] = []
     for cut in cuts:
         if not found or cut - found[-1] > NARROW:
@@ -428,10 +428,10 @@ def _spread(cuts: Sequence[float]) -> list[float]:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HalfPlane:
-    """Axes u and v on the lathe, and the tip relative to the centre of the nose."""
+    """Orientation of u and v on the lathe, and the tip offset from the nose centre."""
 
     is_across: bool = False
-    """u is the radius and v the axis: facing"""
+    """Whether u is the radius and v the axis, as in facing."""
     tip_x: float = 0.0
     tip_z: float = 0.0
 
@@ -446,19 +446,19 @@ class HalfPlane:
         return (x, z) if self.is_across else (z, x)
 
     def arc(self, piece: ProfilePiece) -> Arc | None:
-        """Arc of a piece."""
+        """Arc of a piece in programmed coordinates; None for a line."""
         if piece.centre is None:
             return None
         turn = -piece.turn if self.is_across else piece.turn
         return Arc(centre=self.point(piece.centre), turn=turn, plane=ArcPlane.ZX)
 
     def seen(self, pieces: Iterable[ProfilePiece]) -> tuple[ProfilePiece, ...]:
-        """Pieces of z and x as this half plane sees them, or the other way round."""
+        """Convert pieces between z, x and the coordinates of this half plane."""
         pieces = tuple(pieces)
         return tuple(_swapped(pieces)) if self.is_across else pieces
 
     def material(self, profile: RadiusProfile) -> RadiusProfile:
-        """Profile of radii over z, as seen from outside."""
+        """Convert a profile of radius over z to this half plane, seen from outside."""
         if not self.is_across or not profile.pieces:
             return profile
         chain = profile.chain()
@@ -471,13 +471,13 @@ class HalfPlane:
 
 
 def tip_of(hand: HandOfToolType | None, radius: float) -> Spot:
-    """Distance in x and in z from the centre of the nose to the programmed tip, mm."""
+    """Offset in x and z from the nose centre to the programmed tip, mm."""
     towards_z = {HandOfToolType.LEFT: 1.0, HandOfToolType.NEUTRAL: 0.0}
     return -radius, towards_z.get(hand, -1.0) * radius if hand else -radius
 
 
 def _swapped(pieces: Iterable[ProfilePiece]) -> Iterator[ProfilePiece]:
-    """Pieces with their coordinates exchanged, cut anew."""
+    """Exchange the coordinates of pieces, splitting arcs anew."""
     for piece in pieces:
         start, end = (piece.start[1], piece.start[0]), (piece.end[1], piece.end[0])
         if piece.centre is None:

@@ -1,12 +1,12 @@
-"""Removal volume of a turning workingstep: where the centre of the nose may be, and the stock.
+"""Removal volume of a turning workingstep: allowed nose centre positions and the stock.
 
 Steps 1 and 2 of Shin et al. (2016), section 3.2.2: the volume between feature and bar, and its
-offset by the nose. Beside its features a workingstep keeps to what the part will be there. In
-front of them it may pass: the surface is continued there, tangentially and then straight.
+offset by the nose. Behind its features, a workingstep respects the finished part. In front of
+them the tool may pass: the surface is extended there, first tangentially and then straight.
 
-The bar is as earlier workingsteps left it. Everything outside their features is gone, but for
-their allowance and for what their noses left in corners. What no feature of the program removes
-is the part.
+The bar is taken as earlier workingsteps left it. Everything outside their features is gone,
+except for their allowance and the material that their noses left in corners. Whatever no
+feature of the program removes is the part.
 """
 
 from collections.abc import Iterator
@@ -50,14 +50,14 @@ from stepnc_model.units import rad_from_deg
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TurningBlank:
-    """Blank in the chuck, as profiles of radii over z."""
+    """Bar in the chuck, as profiles of radius over z at three stages of the program."""
 
     raw: RadiusProfile
-    """before the program"""
+    """Bar before the program."""
     left: RadiusProfile
-    """before the workingstep"""
+    """Bar before the workingstep."""
     part: RadiusProfile
-    """after the program, as far as its features can be read"""
+    """Part after the program, as far as its features can be read."""
     findings: tuple[Finding, ...] = ()
 
     @property
@@ -67,52 +67,52 @@ class TurningBlank:
 
 
 def surface_of(outlines: tuple[FeatureOutline, ...], plane: HalfPlane) -> RadiusProfile:
-    """Surface that features leave, seen from outside; the deeper one where they overlap."""
+    """Surface that features leave, seen from outside; the deepest where features overlap."""
     surfaces = [highest(plane.seen(outline.pieces)) for outline in outlines]
     return lowest([piece for surface in surfaces for piece in surface.pieces])
 
 
 SEEN = 1e-3
-"""mm of material left behind that is worth a word"""
+"""Least height of remaining material that is reported, mm."""
 
 CLEAR = 1.0
-"""mm of room in front of the overcut"""
+"""Clearance in front of the overcut, mm."""
 
 NEAR = 1e-3
-"""mm beside an end at which its piece is looked at"""
+"""Distance from the end of a piece at which its slope is sampled, mm."""
 
 FLAT = 1e-9
-"""sine of a surface that is parallel to the passes"""
+"""Greatest sine of a surface angle that counts as parallel to the passes."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TurningRegion:
-    """Region to be turned, in the half plane of the passes."""
+    """Region to be turned, in the half plane of the passes, mm."""
 
     plane: HalfPlane
     nose: float
-    """Nose, mm, radius"""
+    """Nose radius, mm."""
     surface: RadiusProfile
-    """what stays, without allowance"""
+    """Surface that remains, without allowance."""
     stock: RadiusProfile
     low: float
-    """Low, mm, u where the features end"""
+    """Position u of the end of the features, mm."""
     front: float
-    """Front, mm, u beyond which nothing stands"""
+    """Position u beyond which no material stands, mm."""
     own_high: float
-    """Own high, mm, u where the features begin"""
+    """Position u of the start of the features, mm."""
     floor: float
-    """Floor, mm, least v of the features"""
+    """Least v of the features, mm."""
     wall: float | None
-    """Wall, mm, v up to which something stands at their end"""
+    """Height v of the wall at the end of the features, mm; None without a wall."""
 
     def centres(self, allowance: float) -> RadiusProfile:
-        """Lowest profile of the centre of the nose."""
+        """Lowest allowed path of the nose centre, with an allowance in mm."""
         rolled = grown(self.surface, self.nose + allowance)
         return rolled.within(self._low(allowance), self.front)
 
     def chain(self, allowance: float) -> tuple[ProfilePiece, ...]:
-        """The way of the centre along the surface, towards −u and up the wall at the end."""
+        """Path of the nose centre along the surface, towards −u and up the wall at the end."""
         forward = self.centres(allowance).chain()
         backward = [piece.reversed() for piece in reversed(forward)]
         if backward and self.wall is not None and self.wall > backward[-1].end[1] + JOINT:
@@ -121,7 +121,7 @@ class TurningRegion:
         return tuple(backward)
 
     def _low(self, allowance: float) -> float:
-        """Stop of the centre: over the end, or beside the wall."""
+        """Lowest u of the nose centre: over the feature end, or at the wall."""
         reach = self.nose + allowance
         end = self.surface.within(self.low, self.low + reach).pieces
         foot = end[0].start[1] if end else -inf
@@ -138,7 +138,7 @@ def region_of(
     allowance: float,
     overcut: float,
 ) -> TurningRegion:
-    """Removal volume of features.
+    """Region to be turned for a set of features.
 
     Parameters
     ----------
@@ -147,7 +147,7 @@ def region_of(
     outlines : tuple of FeatureOutline
     plane : HalfPlane
     allowance, overcut : float, mm
-        Material that stays, and the way in front of the cut.
+        Material that remains on the surface, and the feed length in front of the cut.
     """
     nose = job.tool.corner_radius or 0.0
     own = surface_of(outlines, plane)
@@ -186,15 +186,15 @@ def region_of(
 
 
 def edges_of(job: ToolPathTask, plane: HalfPlane) -> InsertFlanks:
-    """Angles of the edges of the insert, from the ISO 3002-1 angles of the file.
+    """Angles of the insert edges, from the ISO 3002-1 angles of the file.
 
-    The major edge stands at the cutting edge angle from the feed to the chuck, the minor one
-    at 180° less that and the included angle from the turned surface. An included angle that
-    is not given lets the tool go along no falling wall.
+    The major edge stands at the cutting edge angle from the feed to the chuck; the minor edge
+    stands at 180° minus that angle and the included angle from the turned surface. Without an
+    included angle the tool cannot follow a falling wall.
     """
     tool = job.program.get(job.step.tool_ref)
     if not isinstance(tool, TurningMachineCuttingTool):
-        raise job.fault("is no turning tool", job.step.tool_ref)
+        raise job.fault("is not a turning tool", job.step.tool_ref)
     edge = job.program.get(tool.cutting_edge)
     major = rad_from_deg(edge.tool_cutting_edge_angle or 90.0)
     minor = max(0.0, pi - major - rad_from_deg(edge.tool_included_angle or 90.0))
@@ -211,27 +211,25 @@ def edges_of(job: ToolPathTask, plane: HalfPlane) -> InsertFlanks:
 def leftovers(
     job: ToolPathTask, region: TurningRegion, outlines: tuple[FeatureOutline, ...]
 ) -> Iterator[Finding]:
-    """Material of the features that the shape of the insert cannot reach."""
+    """Report material of the features that the insert's shape cannot reach."""
     seen = [piece for outline in outlines for piece in region.plane.seen(outline.pieces)]
     left = excess(region.surface, [piece for piece in seen if not piece.is_upright])
     if left > SEEN:
-        text = (
-            f"an undercut that the edges of the insert cannot reach: up to {left:.3g} mm stay"
-        )
+        text = f"the insert edges cannot reach an undercut: up to {left:.3g} mm remain"
         yield job.warning(text, outlines[0].ref)
     tight = [
         p.radius for p in seen if p.centre and p.side < 0 and p.radius < region.nose - SEEN
     ]
     if tight:
         text = (
-            f"an inside radius of {min(tight):.3g} mm is smaller than the nose, "
-            f"{region.nose:.3g} mm: what the nose leaves stays"
+            f"an inside radius of {min(tight):.3g} mm is smaller than the nose radius of "
+            f"{region.nose:.3g} mm: material remains in the corner"
         )
         yield job.warning(text, outlines[0].ref)
 
 
 def _gaps(part: RadiusProfile, own: RadiusProfile) -> Iterator[ProfilePiece]:
-    """The part between features."""
+    """Surface of the finished part in the gaps between features."""
     for one, other in pairwise(own.pieces):
         if other.low - one.high > JOINT:
             yield from part.within(one.high, other.low).pieces
@@ -240,7 +238,7 @@ def _gaps(part: RadiusProfile, own: RadiusProfile) -> Iterator[ProfilePiece]:
 def _continued(
     surface: RadiusProfile, foremost: Spot, lowest_start: float, *, length: float, front: float
 ) -> Iterator[ProfilePiece]:
-    """The surface in front of its start: along its tangent, then flat."""
+    """Extension of the surface in front of its start: along its tangent, then flat."""
     u, v = foremost
     level = min(v, lowest_start)
     if lowest_start < v - JOINT:
@@ -250,7 +248,7 @@ def _continued(
         inside = last.high - min(NEAR, 0.5 * (last.high - last.low))
         along = last.tangent(foremost)
         if last.at(inside) > v and abs(along[1]) > FLAT:
-            # Upright tangents have no sign of their own: it falls towards the front.
+            # An upright tangent has no direction in u: fall towards the front.
             end = (u + length * abs(along[0]), v - length * abs(along[1]))
             if end[0] - u > JOINT:
                 yield ProfilePiece(start=foremost, end=end)
@@ -259,14 +257,14 @@ def _continued(
 
 
 FACING_STOCK = 5.0
-"""mm of bar in front of a contour that is waste even where no feature faces it off"""
+"""Bar in front of a contour that counts as waste even if no feature faces it off, mm."""
 
 Known = dict[int, FeatureOutline | None]
-"""outlines by the number of their feature; None where one cannot be read"""
+"""Outlines by feature number; None for a feature that cannot be read."""
 
 
 def bar_of(job: ToolPathTask, outlines: tuple[FeatureOutline, ...]) -> TurningBlank:
-    """The bar before a workingstep; where the file has none, as large as the features."""
+    """Bar before a workingstep; without stock in the file, a bar around the features."""
     raw, findings = _raw(job, outlines)
     reach = raw.top(raw.low, raw.high)
     known: Known = {}
@@ -289,7 +287,7 @@ def _after(
     outlines: tuple[FeatureOutline, ...],
     bar: TurningBlank,
 ) -> RadiusProfile:
-    """Bar after an earlier workingstep; unchanged where that step makes no sense."""
+    """Bar after an earlier workingstep; unchanged if that step cannot be evaluated."""
     allowance = max(0.0, getattr(step.operation, "allowance", None) or 0.0)
     if isinstance(step.operation, Facing):
         return _faced(outlines, allowance, bar.left)
@@ -318,14 +316,14 @@ def _after(
 def _raw(
     job: ToolPathTask, outlines: tuple[FeatureOutline, ...]
 ) -> tuple[RadiusProfile, tuple[Finding, ...]]:
-    """The bar of the file, or one around the features."""
+    """Raw bar of the file, or an assumed bar around the features, with findings."""
     stock = job.stock
     if stock is not None and stock.high[2] > stock.low[2]:
         radius = stock.radius or max(map(abs, (*stock.low[:2], *stock.high[:2])))
         return _cylinder(radius, stock.low[2], stock.high[2]), ()
     radius = max(outline.radii[1] for outline in outlines)
     low, high = min(o.low for o in outlines), max(o.high for o in outlines)
-    text = f"no bar is known: a diameter of {2.0 * radius:g} mm, that of the features, assumed"
+    text = f"no stock given: assuming a bar of {2.0 * radius:g} mm diameter, as the features"
     finding = job.program.finding(Severity.WARNING, text, job.step.ref)
     return _cylinder(radius, min(low, high - JOINT), high), (finding,)
 
@@ -337,7 +335,7 @@ def _cylinder(radius: float, low: float, high: float) -> RadiusProfile:
 def _outlines(
     job: ToolPathTask, step: ResolvedWorkingstep, reach: float, known: Known
 ) -> tuple[FeatureOutline, ...]:
-    """Outlines of the features that another workingstep turns and that can be read."""
+    """Readable outlines of the features that another workingstep turns."""
     if not isinstance(step.operation, (Contouring, Facing, Grooving)):
         return ()
     for ref in step.features:
@@ -345,7 +343,7 @@ def _outlines(
             try:
                 known[int(ref)] = outline_of(job, ref, reach)
             except SchemaError:
-                # Its own workingstep says what is wrong; here the bar just stays as it was.
+                # That workingstep reports its own error; here the bar just stays unchanged.
                 known[int(ref)] = None
     found = (known[int(ref)] for ref in step.features)
     return tuple(outline for outline in found if outline is not None)
@@ -354,7 +352,7 @@ def _outlines(
 def _faced(
     outlines: tuple[FeatureOutline, ...], allowance: float, left: RadiusProfile
 ) -> RadiusProfile:
-    """A bar without what stood in front of faces."""
+    """Bar after everything in front of faced features is removed."""
     for outline in outlines:
         z = max(outline.low, outline.high) + allowance
         inner, outer = outline.radii
@@ -367,7 +365,7 @@ def _faced(
 
 
 def _trimmed(job: ToolPathTask, part: RadiusProfile, known: Known) -> RadiusProfile:
-    """A part without the bar in front of its foremost feature; a groove's walls are none."""
+    """Part without the bar in front of its foremost feature, not counting grooves."""
     outlines = [outline for outline in known.values() if outline is not None]
     fronts = [o.high for o in outlines if not isinstance(job.program.get(o.ref), Groove)]
     front = max(fronts, default=part.high)
@@ -375,7 +373,7 @@ def _trimmed(job: ToolPathTask, part: RadiusProfile, known: Known) -> RadiusProf
 
 
 def _without_front(left: RadiusProfile) -> RadiusProfile:
-    """A bar without the front that has no radius any more."""
+    """Bar without front pieces of zero radius."""
     pieces: list[ProfilePiece] = list(left.pieces)
     while pieces and max(pieces[-1].start[1], pieces[-1].end[1]) <= JOINT:
         pieces.pop()

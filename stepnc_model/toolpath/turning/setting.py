@@ -1,7 +1,7 @@
 """Strategy of a turning operation as numbers: depths, overcut, feeds, and links between passes.
 
-Links are lift, back path and step over. Directions that contradict each other are left out, and
-a finding says so; what is left out or not given takes the customary way.
+Links are lift, return path and stepover. Contradictory directions are ignored with a finding;
+ignored or missing directions are replaced by the customary ones.
 """
 
 from collections.abc import Iterator, Sequence
@@ -27,68 +27,68 @@ from stepnc_model.toolpath.turning.profile import HalfPlane, Spot
 from stepnc_model.units import speed_from_m_s
 
 DEFAULT_LIFT = 1.0
-"""mm off the surface after a pass where the strategy gives none; customary"""
+"""Default lift off the surface after a pass, mm; customary."""
 
 ALONG = 1e-6
-"""sine between two directions that are one"""
+"""Greatest sine between two directions that count as equal."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PassLink:
-    """Unit vectors of the ways between passes."""
+    """Directions of the moves between passes, as unit vectors in u and v."""
 
     ref: Ref[Entity]
-    """where it is written"""
+    """Entity that defines the directions."""
     ahead: Spot = (-1.0, 0.0)
-    """sense of the first pass"""
+    """Direction of the first pass."""
     lift: Spot | None = None
-    """None: out and back, at 45°"""
+    """Lift direction; None for out and back at 45°."""
     lift_height: float = DEFAULT_LIFT
-    """Lift height, mm"""
+    """Lift height, mm."""
     back: Spot | None = None
-    """None with the step over: as short as the room allows, along the axes"""
+    """Return direction; None with a stepover for the shortest axis-parallel route."""
     stepover: Spot | None = None
     is_stepover_fed: bool = False
-    """the strategy gives a feed for the step over; else it is a rapid where there is room"""
+    """Whether the strategy gives a stepover feed; otherwise it is a rapid where clear."""
     findings: tuple[Finding, ...] = ()
 
 
 def allowance_of(job: ToolPathTask, ref: Ref[Entity], operation: MachiningOperation) -> float:
-    """Material that an operation leaves on the feature, mm."""
+    """Allowance that an operation leaves on the feature, mm."""
     allowance = getattr(operation, "allowance", None) or 0.0
     if not 0.0 <= allowance < 1e3:
-        message = f"an allowance of {allowance:g} mm: it must not be negative"
+        message = f"allowance {allowance:g} mm must be from 0 to 1000 mm"
         raise job.fault(message, ref, "allowance")
     return float(allowance)
 
 
 def operation_of(job: ToolPathTask) -> TurningMachiningOperation:
-    """The operation of a turning workingstep."""
+    """Operation of a turning workingstep."""
     operation = job.step.operation
     if not isinstance(operation, TurningMachiningOperation):
-        raise job.fault("is no operation of a lathe", job.step.operation_ref)
+        raise job.fault("is not a turning operation", job.step.operation_ref)
     return operation
 
 
 def strategy_of(job: ToolPathTask) -> TurningMachiningStrategy | None:
-    """Strategy of a turning operation, if it has one."""
+    """Strategy of a turning operation, or None."""
     reference = operation_of(job).its_machining_strategy
     return None if reference is None else job.program.get(reference)
 
 
 def strategy_fault(job: ToolPathTask, message: str, attribute: str) -> PathError:
-    """Why no path can be made with the strategy of an operation."""
+    """Error that the operation's strategy allows no path."""
     at = operation_of(job).its_machining_strategy or job.step.operation_ref
     return job.fault(message, at, attribute)
 
 
 def link_of(job: ToolPathTask, plane: HalfPlane) -> PassLink:
-    """The ways between passes, as far as they make sense.
+    """Read the moves between passes, ignoring contradictory directions.
 
     Raises
     ------
     PathError
-        When the height of the lift is negative.
+        If the lift height is negative.
     """
     ref = operation_of(job).its_machining_strategy
     if ref is None:
@@ -101,7 +101,7 @@ def link_of(job: ToolPathTask, plane: HalfPlane) -> PassLink:
     ahead = (1.0, 0.0) if feed is not None and feed[0] > abs(feed[1]) else (-1.0, 0.0)
     height = getattr(strategy, "lift_height", None)
     if height is not None and not 0.0 <= height < 1e4:
-        raise job.fault(f"{height:g} mm is no such length", ref, "lift_height")
+        raise job.fault(f"{height:g} mm is not a valid lift height", ref, "lift_height")
     faults = dict(_faults(job, strategy, written, ahead))
     good = {name: None if name in faults else at for name, at in written.items()}
     back, stepover = good["back_path_direction"], good["stepover_direction"]
@@ -125,7 +125,7 @@ DIRECTIONS = ("feed_direction", "lift_direction", "back_path_direction", "stepov
 def direction_in(
     job: ToolPathTask, plane: HalfPlane, ref: Ref[Direction] | None
 ) -> Spot | None:
-    """A direction of the file in a half plane, as a unit vector."""
+    """Direction of the file in a half plane, as a unit vector."""
     if ref is None:
         return None
     ratios = (*job.program.get(ref).direction_ratios, 0.0, 0.0, 0.0)[:3]
@@ -139,69 +139,76 @@ def direction_in(
 def _faults(
     job: ToolPathTask, strategy: Entity, written: dict[str, Spot | None], ahead: Spot
 ) -> Iterator[tuple[str, str]]:
-    """Attributes whose directions make no sense, with what is wrong and what is done."""
+    """Attributes with contradictory directions, each with the problem and its replacement."""
     for name, at in written.items():
         if at is None and getattr(strategy, name, None) is not None:
-            yield name, "no direction in the plane of the lathe: the customary one is taken"
+            yield name, "not in the lathe's x-z plane: the customary direction is used"
     feed, lift, back, stepover = (written[name] for name in DIRECTIONS)
     if feed is not None and not isinstance(strategy, ContourTurning):
         if abs(feed[1]) > abs(feed[0]):
             yield "feed_direction", "a face is cut across the spindle axis, not along it"
         elif abs(feed[1]) > ALONG:
-            yield "feed_direction", "oblique: the passes run along its greater part"
+            yield (
+                "feed_direction",
+                "oblique direction: the passes run along its larger component",
+            )
     if lift is not None and lift[1] <= ALONG:
-        text = "leads into the part" if lift[1] < -ALONG else "does not leave the surface"
-        yield "lift_direction", f"the lift {text}: the tool lifts out and back"
+        text = "points into the part" if lift[1] < -ALONG else "does not leave the surface"
+        yield "lift_direction", f"the lift {text}: the tool lifts out and back at 45°"
     if back is not None and back[0] * ahead[0] > -ALONG:
-        yield "back_path_direction", "does not lead back: the customary way is taken"
+        yield "back_path_direction", "does not point back: the customary return path is used"
     if stepover is not None and stepover[1] >= -ALONG:
-        text = "leads along the feed" if abs(stepover[1]) <= ALONG else "leads off the part"
-        yield "stepover_direction", f"the step over {text}: straight to the part is taken"
+        text = (
+            "points along the feed"
+            if abs(stepover[1]) <= ALONG
+            else "points away from the part"
+        )
+        yield "stepover_direction", f"the stepover {text}: the tool steps straight in"
 
 
 DEFAULT_OVERCUT = 2.0
-"""mm of feed through air before the cut where the strategy gives none; customary"""
+"""Default feed length through air before the cut, mm; customary."""
 
 SLIVER = 0.25
-"""part of a full pass below which the last one is no pass: all are made equal"""
+"""Fraction of a full pass below which the last pass is avoided by equal passes."""
 
 MOST_PASSES = 2000
 
 LEAST_TOTAL = 1e-6
-"""mm of material that is none"""
+"""Material thickness that counts as nothing to cut, mm."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TurningSetting:
-    """Settings of the passes of an operation."""
+    """Settings of the passes of a turning operation."""
 
     depths: tuple[float, ...]
-    """Depths, mm: of each pass, the last one for all that follow; none: all at once"""
+    """Depth of each pass, mm; the last value repeats; empty to cut everything at once."""
     overcut: float
-    """Overcut, mm"""
+    """Feed length through air before the cut, mm."""
     link: PassLink
     feeds: Feeds
     is_reversed: bool
-    """passes run towards +u"""
+    """Whether the passes run towards +u."""
     is_to_and_fro: bool
     is_along_contour: bool
     is_one_pass: bool
-    """the strategy allows no second one"""
+    """Whether the strategy allows only one pass."""
 
 
 def setting_of(job: ToolPathTask, plane: HalfPlane) -> TurningSetting:
-    """Numbers of the strategy of an operation, customary ones where it has none.
+    """Read the settings of an operation's strategy, with customary defaults.
 
     Raises
     ------
     PathError
-        When a depth, a length or a feed is not positive.
+        If a depth, a length or a feed is invalid.
     """
     strategy = strategy_of(job)
     overcut = getattr(strategy, "overcut_length", None)
     link = link_of(job, plane)
     if overcut is not None and not 0.0 <= overcut < 1e4:
-        raise strategy_fault(job, f"{overcut:g} mm is no such length", "overcut_length")
+        raise strategy_fault(job, f"{overcut:g} mm is not a valid length", "overcut_length")
     return TurningSetting(
         depths=depths_of(job),
         overcut=DEFAULT_OVERCUT if overcut is None else float(overcut),
@@ -215,14 +222,14 @@ def setting_of(job: ToolPathTask, plane: HalfPlane) -> TurningSetting:
 
 
 def depths_of(job: ToolPathTask) -> tuple[float, ...]:
-    """Depths of the passes as the strategy gives them."""
+    """Depths of the passes in the strategy, mm; empty for a single pass."""
     strategy = strategy_of(job)
     if strategy is not None and strategy.allow_multiple_passes is False:
         return ()
     depths = tuple(map(float, getattr(strategy, "cutting_depth", None) or ()))
     for depth in depths:
         if not isfinite(depth) or depth <= 0.0:
-            message = f"a depth of {depth:g} mm removes nothing: it must be positive"
+            message = f"cutting depth {depth:g} mm must be positive and finite"
             raise strategy_fault(job, message, "cutting_depth")
     return depths
 
@@ -233,25 +240,27 @@ def clearance_of(job: ToolPathTask) -> float:
     if plane is None:
         return DEFAULT_CLEARANCE
     if not 0.0 <= plane < 1e4:
-        message = f"{plane:g} mm above the feature: it must not be negative"
+        message = f"{plane:g} mm above the feature: the retract plane must not be negative"
         raise job.fault(message, job.step.operation_ref, "retract_plane")
     return max(float(plane), RAPID_CLEARANCE)
 
 
 def cutting_feed(job: ToolPathTask) -> Feed:
-    """The programmed feed, by the ratio of the strategy."""
+    """Programmed feed scaled by the ratio of the strategy."""
     ratio = getattr(strategy_of(job), "variable_feedrate", None)
     if ratio is None:
         return job.feed
     if not 0.0 < ratio < 100.0:
-        raise job.fault(f"{ratio:g} is no ratio of a feed", job.step.ref, "variable_feedrate")
+        raise job.fault(
+            f"{ratio:g} is not a valid feed ratio", job.step.ref, "variable_feedrate"
+        )
     return Feed(technology=job.step.technology_ref, ratio=float(ratio))
 
 
 def cumulative(total: float, depths: Sequence[float]) -> list[float]:
-    """Depths from the outside after each pass, the last one the total.
+    """Cumulative depths after each pass, the last being the total, mm.
 
-    Passes that would leave a sliver for the last one are made equal.
+    Passes are made equal where a thin sliver would be left for the last one.
 
     Examples
     --------
@@ -279,10 +288,10 @@ def cumulative(total: float, depths: Sequence[float]) -> list[float]:
 
 
 def _feeds(job: ToolPathTask, strategy: TurningMachiningStrategy | None) -> Feeds:
-    """Feeds of the passes and of the ways between them.
+    """Feeds of the passes and of the moves between them.
 
-    ISO 14649-12 does not say what ``variable_stepover_feed`` is a ratio for: here it scales
-    the feed of a step over where that one cuts, as ``variable_feedrate`` scales the passes.
+    ISO 14649-12 does not define what ``variable_stepover_feed`` is a ratio of: here it scales
+    the stepover feed where the stepover cuts, as ``variable_feedrate`` scales the passes.
     """
     cutting = cutting_feed(job)
     stepover = _feed(job, getattr(strategy, "stepover_feed", None), "stepover_feed")
@@ -290,7 +299,7 @@ def _feeds(job: ToolPathTask, strategy: TurningMachiningStrategy | None) -> Feed
     ratio = getattr(strategy, "variable_stepover_feed", None)
     if ratio is not None:
         if not 0.0 < ratio < 100.0:
-            message = f"{ratio:g} is no ratio of a feed"
+            message = f"{ratio:g} is not a valid feed ratio"
             raise strategy_fault(job, message, "variable_stepover_feed")
         entering = _scaled(entering, float(ratio))
     return Feeds(
@@ -302,7 +311,7 @@ def _feeds(job: ToolPathTask, strategy: TurningMachiningStrategy | None) -> Feed
 
 
 def _scaled(feed: Feed, ratio: float) -> Feed:
-    """A feed by a ratio, in whichever way it is given."""
+    """Feed multiplied by a ratio, in the form in which it is given."""
     if feed.velocity is not None:
         return replace(feed, velocity=feed.velocity * ratio)
     if feed.per_revolution is not None:
@@ -311,12 +320,12 @@ def _scaled(feed: Feed, ratio: float) -> Feed:
 
 
 def _feed(job: ToolPathTask, written: Typed | float | None, name: str) -> Feed | None:
-    """A feed of the strategy, if it gives one."""
+    """Feed given by the strategy, or None."""
     if written is None:
         return None
     value = written.value if isinstance(written, Typed) else written
     if not isinstance(value, (int, float)) or not 0.0 < value < 1e6:
-        raise strategy_fault(job, "a feed must be positive", name)
+        raise strategy_fault(job, "the feed must be positive", name)
     if isinstance(written, Typed) and "REV" in written.keyword.upper():
         return Feed(technology=job.step.technology_ref, per_revolution=float(value))
     return Feed(technology=job.step.technology_ref, velocity=speed_from_m_s(float(value)))

@@ -1,11 +1,11 @@
-"""Threading: passes of a profiled insert, bound to the spindle's angle.
+"""Threading: passes of a profiled insert, synchronised with the spindle angle.
 
-The programmed point is the tip of the thread's profile, in the middle of the insert. A
-right-hand thread is cut towards the chuck, a left-hand one away from it. Feeding in along a
-flank shifts each pass so that the last one lies where the thread shall be.
+The programmed point is the tip of the thread profile, in the middle of the insert. A
+right-hand thread is cut towards the chuck, a left-hand thread away from it. Flank infeed shifts
+each pass so that the last pass lies at the final thread position.
 
-What meets the stock is contact; the run-in, the run-out and whatever else lies in air is none.
-The parts of a run have one feed, so that a control makes one block of them.
+Moves that meet the stock are contact moves; run-in, run-out and other moves in air are not.
+All parts of a run have the same feed, so that a control makes one block of them.
 
 References
 ----------
@@ -44,24 +44,24 @@ from stepnc_model.toolpath.turning.setting import (
 from stepnc_model.units import rad_from_deg
 
 MOST_RETURN = 0.5
-"""of a pass that may go on the way out at an angle"""
+"""Greatest fraction of a pass that may be used for the angled pull-out."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ThreadPass:
-    """One pass of a thread, mm."""
+    """Geometry of one threading pass, mm."""
 
     start: float
-    """z where the tool gathers speed"""
+    """Position z where the run-in starts, mm."""
     end: float
     bottom: float
-    """radius of the tip"""
+    """Radius of the insert tip, mm."""
     clear: float
-    """radius of the way back"""
+    """Radius of the return move, mm."""
     angle: float | None
-    """degrees from the axis at which the tool leaves; None: straight out"""
+    """Pull-out angle from the axis, degrees; None for straight out."""
     has_relief: bool
-    """nothing stands where the tool leaves"""
+    """Whether the tool leaves where no material stands."""
 
 
 def cut_thread(
@@ -73,7 +73,7 @@ def cut_thread(
     pitch: float,
     kind: MoveType,
 ) -> None:
-    """Make the moves of a pass.
+    """Generate the moves of one threading pass.
 
     Parameters
     ----------
@@ -81,10 +81,10 @@ def cut_thread(
     course : PathBuilder
     one : ThreadPass
     stock : RadiusProfile
-        Radii over z before the thread.
+        Radius over z before the thread.
     pitch : float, mm
     kind : MoveType
-        Of the way to the pass.
+        Type of the rapid move to the pass.
     """
     bound = Feed(technology=job.step.technology_ref, per_revolution=pitch, is_synchronised=True)
     course.rapid((one.clear, 0.0, one.start), kind)
@@ -104,7 +104,7 @@ def cut_thread(
 
 
 def _feed(course: PathBuilder, stock: RadiusProfile, end: Spot, feed: Feed) -> None:
-    """Straight to z and radius, split where the tip enters or leaves the stock."""
+    """Feed straight to z and radius, split where the tip enters or leaves the stock."""
     line = ProfilePiece(start=(course.at[2], course.at[0]), end=end)
     for part, is_contact in split(line, stock):
         kind = MoveType.CONTACT if is_contact else MoveType.NO_CONTACT
@@ -113,28 +113,28 @@ def _feed(course: PathBuilder, stock: RadiusProfile, end: Spot, feed: Feed) -> N
 
 
 EXTERNAL_DEPTH = 17.0 / 24.0 * sqrt(3.0) / 2.0
-"""of the pitch, [1]_"""
+"""Thread depth per pitch of an external metric thread, [1]_."""
 
 RUN_IN = 2.0
-"""pitches in which the slide catches up with the spindle, customary"""
+"""Run-in length in pitches while the slide synchronises with the spindle, customary."""
 
 HALF_ANGLE_DEG = 30.0
-"""degrees, of the metric profile [1]_"""
+"""Half the profile angle of a metric thread, degrees, [1]_."""
 
 HALF_INSERT = 0.5
-"""of the pitch: the widest that the profile is on each side of its tip [1]_"""
+"""Greatest half width of the thread profile, in pitches, [1]_."""
 
 FEWEST_PASSES = 4
 PASSES_PER_MM = 4.0
-"""passes for each mm of pitch where the strategy gives no depths, customary"""
+"""Passes per mm of pitch where the strategy gives no depths, customary."""
 
 SAME_PITCH = 1e-6
-"""mm"""
+"""Tolerance within which two lengths are equal, mm."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TurnedThread:
-    """A thread to be cut; z of its start and end in the sense of cutting."""
+    """Thread to be cut; start and end are z in the direction of cutting, mm."""
 
     pitch: float
     depth: float
@@ -144,29 +144,29 @@ class TurnedThread:
 
     @property
     def towards(self) -> float:
-        """−1 towards the chuck."""
+        """Direction of cutting along z: −1 towards the chuck, +1 away from it."""
         return -1.0 if self.end < self.start else 1.0
 
 
 def threaded_feature(job: ToolPathTask, ref: Ref[Entity]) -> Ref[Entity]:
-    """The shape that a thread lies on; the feature itself where it is no thread."""
+    """Reference of the shape that carries a thread; the feature itself if not a thread."""
     feature = job.program.get(ref)
     if not isinstance(feature, Thread):
         return ref
     if not feature.applied_shape:
-        raise job.fault("a thread needs a shape to lie on", ref, "applied_shape")
+        raise job.fault("the thread does not name the shape it is cut on", ref, "applied_shape")
     return feature.applied_shape[0]
 
 
 def thread(
     job: ToolPathTask, course: PathBuilder, bar: TurningBlank, outline: FeatureOutline
 ) -> None:
-    """Make the path of a threading operation.
+    """Generate the path of a threading operation.
 
     Raises
     ------
     PathError
-        When no pitch is given, it is an inside thread, or the thread is too deep.
+        If no pitch is given, the thread is internal, or the thread is too deep.
     """
     strategy = _strategy(job)
     pitch = _pitch(job, course)
@@ -207,33 +207,33 @@ def _strategy(job: ToolPathTask) -> ThreadStrategy | None:
 
 
 def _pitch(job: ToolPathTask, course: PathBuilder) -> float:
-    """Pitch of the tool, else the feed per revolution of the technology."""
+    """Pitch of the tool or else the feed per revolution of the technology, mm."""
     tool = job.program.get(job.step.tool_ref)
     technology = job.program.get(job.step.technology_ref)
     fed = technology.feed_per_revolution if isinstance(technology, TurningTechnology) else None
     pitch = tool.threading_pitch if isinstance(tool, TurningThreadingTool) else None
     pitch = fed if pitch is None else pitch
     if pitch is None or not 0.0 < pitch < 1e3:
-        raise job.fault(f"a pitch of {pitch} mm: it must be positive", job.step.tool_ref)
+        raise job.fault(f"thread pitch {pitch} mm must be positive", job.step.tool_ref)
     if fed is not None and abs(fed - pitch) > SAME_PITCH:
-        text = f"a feed of {fed:g} mm per revolution, a pitch of {pitch:g} mm: the pitch counts"
+        text = f"feed {fed:g} mm/rev differs from the pitch {pitch:g} mm: pitch used"
         course.find(job.warning(text, job.step.technology_ref, "feed_per_revolution"))
     return float(pitch)
 
 
 def _helix(job: ToolPathTask, outline: FeatureOutline, pitch: float) -> TurnedThread:
-    """Position and depth of the thread."""
+    """Position, pitch and depth of the thread to be cut."""
     tool = job.program.get(job.step.tool_ref)
     feature = job.program.get(job.step.features[0])
     is_left = False
     if isinstance(tool, TurningThreadingTool):
         is_left = tool.thread_hand is ThreadHandType.LEFT
         if tool.its_thread_type is ThreadType.INTERNAL:
-            raise job.fault("an inside thread is not supported", job.step.tool_ref)
+            raise job.fault("internal threads are not supported", job.step.tool_ref)
     depth = EXTERNAL_DEPTH * pitch
     least, radius = outline.radii
     if radius - least > SAME_PITCH:
-        raise job.fault("a taper thread is not supported", outline.ref)
+        raise job.fault("taper threads are not supported", outline.ref)
     low, high = outline.low, outline.high
     if isinstance(feature, Thread):
         area = job.program.get(feature.partial_profile)
@@ -241,7 +241,7 @@ def _helix(job: ToolPathTask, outline: FeatureOutline, pitch: float) -> TurnedTh
         if isinstance(feature, DefinedThread) and feature.minor_diameter:
             depth = radius - 0.5 * feature.minor_diameter
     if not 0.0 < depth < radius:
-        message = f"a depth of {depth:.4g} mm at a radius of {radius:g} mm"
+        message = f"thread depth {depth:.4g} mm is not valid at a radius of {radius:g} mm"
         raise job.fault(message, job.step.features[0])
     start, end = (low, high) if is_left else (high, low)
     return TurnedThread(pitch=pitch, depth=depth, radius=radius, start=start, end=end)
@@ -254,7 +254,7 @@ def _run_out(
     helix: TurnedThread,
     strategy: ThreadStrategy | None,
 ) -> float:
-    """Length behind the thread: the overcut where a relief or the end of the bar has room."""
+    """Run-out behind the thread, mm: the overcut where a relief or the bar end gives room."""
     wanted = getattr(strategy, "overcut_length", None)
     wanted = helix.pitch if wanted is None else wanted
     beside = HALF_INSERT * helix.pitch
@@ -262,10 +262,10 @@ def _run_out(
     if length > 0.0:
         return length
     if not getattr(strategy, "path_return_angle", None):
-        text = "no relief behind the thread: the tool leaves at its end, in the material"
+        text = "no relief behind the thread: the tool pulls out in the material"
         course.warn(text, job.step.features[0])
     if length < 0.0:
-        text = f"the thread ends {-length:.3g} mm before the shoulder: the insert has no room"
+        text = f"the thread stops {-length:.3g} mm before the shoulder: the insert needs room"
         course.warn(text, job.step.features[0])
     return length
 
@@ -278,20 +278,20 @@ def _run_in(
     strategy: ThreadStrategy | None,
     outwards: float,
 ) -> float:
-    """Length before the thread, to gather speed; some passes start further out."""
+    """Run-in before the thread, mm; shifted passes may start further out."""
     wanted = max(RUN_IN * helix.pitch, getattr(strategy, "overcut_length", None) or 0.0)
     beside = HALF_INSERT * helix.pitch + outwards
     length = _room(bar, helix, helix.start, -helix.towards * wanted, beside)
     if length < RUN_IN * helix.pitch - SAME_PITCH:
-        text = f"material stands before the thread: a run-in of {max(length, 0.0):.3g} mm"
-        course.warn(f"{text}, not of {wanted:.3g} mm", job.step.features[0])
+        text = f"material in front of the thread: the run-in is {max(length, 0.0):.3g} mm"
+        course.warn(f"{text} instead of {wanted:.3g} mm", job.step.features[0])
     return length
 
 
 def _room(
     bar: TurningBlank, helix: TurnedThread, at: float, reach: float, beside: float
 ) -> float:
-    """Room of the tip beyond an end of the thread, mm, with clearance beside it.
+    """Clear length for the tip beyond an end of the thread, mm, with side clearance.
 
     Negative at a shoulder, where the insert must stop short.
     """
@@ -305,7 +305,7 @@ def _room(
 
 
 def _top(bar: TurningBlank, start: float, end: float) -> float:
-    """Greatest radius of the stock between two z, but for what stands right at them."""
+    """Greatest radius of the stock strictly between two z positions, mm."""
     low, high = min(start, end) + SAME_PITCH, max(start, end) - SAME_PITCH
     return bar.left.within(low, high).top(low, high)
 
@@ -313,13 +313,13 @@ def _top(bar: TurningBlank, start: float, end: float) -> float:
 def _depths(
     job: ToolPathTask, helix: TurnedThread, strategy: ThreadStrategy | None
 ) -> Iterator[float]:
-    """Depth of each pass from the crest, mm."""
+    """Depth of each threading pass from the crest, mm."""
     allowance = allowance_of(job, job.step.operation_ref, job.step.operation)
     depths = depths_of(job)
     full = sum(depths) if len(depths) > 1 else helix.depth
     total = full - allowance
     if total <= 0.0 or total >= helix.radius:
-        message = f"a depth of {full:.4g} mm less an allowance of {allowance:g} mm"
+        message = f"thread depth {full:.4g} mm minus allowance {allowance:g} mm is not valid"
         raise job.fault(message, job.step.operation_ref, "allowance")
     done = 0.0
     if isinstance(job.step.operation, ThreadingFinish):
@@ -335,7 +335,7 @@ def _depths(
 def _sums(
     total: float, depths: tuple[float, ...], strategy: ThreadStrategy | None, pitch: float
 ) -> list[float]:
-    """Depths as the list gives them, of equal area, or equal."""
+    """Cumulative pass depths: from the list, with equal chip area, or equal steps, mm."""
     if len(depths) > 1:
         return cumulative(total, depths)
     is_even = strategy is not None and (
@@ -350,13 +350,13 @@ def _sums(
 
 
 def _half_angle(job: ToolPathTask) -> float:
-    """Half the angle of the thread's profile, rad."""
+    """Half the angle of the thread profile, rad."""
     tool = job.program.get(job.step.tool_ref)
     included = None
     if isinstance(tool, TurningThreadingTool):
         included = job.program.get(tool.cutting_edge).tool_included_angle
     if included is not None and not 0.0 < included < 180.0:
-        message = f"an included angle of {included:g} degrees is no profile of a thread"
+        message = f"an included angle of {included:g} degrees is not a valid thread profile"
         raise job.fault(message, job.step.tool_ref, "tool_included_angle")
     return rad_from_deg(0.5 * included if included else HALF_ANGLE_DEG)
 
@@ -364,7 +364,7 @@ def _half_angle(job: ToolPathTask) -> float:
 def _shift(
     helix: TurnedThread, strategy: ThreadStrategy | None, depth: float, index: int
 ) -> float:
-    """Depth that is still to come, signed as the passes shift so that a flank stays."""
+    """Remaining depth, signed for the flank infeed so that passes keep to one flank, mm."""
     direction = strategy.threading_direction if strategy else ThreadingDirectionType.CENTER
     side = {
         ThreadingDirectionType.RIGHT: 1.0,
