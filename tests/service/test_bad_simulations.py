@@ -171,7 +171,7 @@ def test_cutting_with_a_standing_spindle_is_said(code: Path) -> None:
     code.write_text(START.replace("S3000 M3\n", "") + CUT + END, encoding="ascii")
     request = CodeRequest(code=code, tools=code.with_name("tools.toml"), stock=STOCK)
     run = simulate(*asked_simulation(code=request, machine="vmc15", material="c45"))
-    assert "warning: line 5: cuts while the spindle stands" in "\n".join(map(str, run.findings))
+    assert "warning: line 5: cut with a stopped spindle" in "\n".join(map(str, run.findings))
     assert run.whole.force.value == 0.0
 
 
@@ -266,7 +266,7 @@ def test_a_tool_table_that_cannot_be_used_is_refused(
         (
             [PARTS / "shaft.stpnc", "--machine", "vmc15"],
             "shaft.stpnc: workingstep 'ROUGH FACE': line 13: T1 ROUGHING TOOL, CARBIDE P25 "
-            "turns, and the machine is a mill",
+            "is a turning tool, but the machine is a mill",
         ),
         ([PARTS / "bracket.stpnc", "--machine", "lathe22"], "X = -39.5 mm is off the travel"),
         (
