@@ -38,8 +38,8 @@ class Response:
 
     Raises
     ------
-    If the delay is negative, or the overshoot does not satisfy 0 ≤ M < 1.
-        When the delay is negative or the overshoot not in 0 ≤ M < 1.
+    ValueError
+        If the delay is negative, or the overshoot does not satisfy 0 ≤ M < 1.
     """
 
     delay: float = USUAL_DELAY
