@@ -376,9 +376,7 @@ class _Collector:
             return dwell.seconds
         speed = float(self._speeds(np.array([self.at[0]]))[0])
         if dwell.revolutions is None or speed <= 0.0:
-            raise PostError(
-                f"'{self.path.id}': a dwell in revolutions with a stopped spindle"
-            )
+            raise PostError(f"'{self.path.id}': a dwell in revolutions with a stopped spindle")
         return dwell.revolutions / speed
 
     def _speeds(self, x: Floats) -> Floats:
