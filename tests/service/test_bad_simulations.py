@@ -136,8 +136,8 @@ def test_a_move_off_the_travel_leaves_what_came_before_it(
     assert stopped.value.code == BAD_INPUT
     *_, written, last = capsys.readouterr().err.splitlines()
     assert last == (
-        "error: slot.ngc: line 8: X = 2000 mm is outside the travel of the axis, -350 to 450 mm "
-        "in the program's coordinates"
+        "error: slot.ngc: line 8: X = 2000 mm is outside the travel of the axis, -350 to 450 "
+        "mm in the program's coordinates"
     )
     partial = code.with_name("run.partial.csv")
     rows = csv.read_csv(partial).num_rows
@@ -192,7 +192,10 @@ def test_cutting_with_a_standing_spindle_is_said(code: Path) -> None:
         ({"filter-s": "1e-300,1e-300"}, "filter times 1e-300 and 1e-300 s: 1e-06 to 100 s"),
         ({"filter-s": "1"}, "filter times '1': 2 numbers with commas between them"),
         ({"zero": "nan,0,0"}, "zero 'nan,0,0': 3 numbers with commas between them"),
-        ({"zero": "100,100,600"}, "Z = 5 mm is outside the travel of the axis, -600 to -100 mm"),
+        (
+            {"zero": "100,100,600"},
+            "Z = 5 mm is outside the travel of the axis, -600 to -100 mm",
+        ),
         ({"runout-um": "5"}, "--force tooth"),
         ({"runout-um": "-5", "force": "tooth"}, "runout -5 µm: it must be 0 to 500 µm"),
         ({"force": "x"}, "unknown force 'x'; known: mean, tooth"),
@@ -268,7 +271,10 @@ def test_a_tool_table_that_cannot_be_used_is_refused(
             "shaft.stpnc: workingstep 'ROUGH FACE': line 13: T1 ROUGHING TOOL, CARBIDE P25 "
             "is a turning tool, but the machine is a mill",
         ),
-        ([PARTS / "bracket.stpnc", "--machine", "lathe22"], "X = -39.5 mm is outside the travel"),
+        (
+            [PARTS / "bracket.stpnc", "--machine", "lathe22"],
+            "X = -39.5 mm is outside the travel",
+        ),
         (
             [PARTS / "bracket.stpnc", "--nc", "x.ngc", "--stock", STOCK],
             "tools and stock are those of the program",

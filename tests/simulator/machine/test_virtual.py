@@ -172,7 +172,7 @@ def test_tool_change_waits_for_the_spindle_and_the_same_tool_takes_no_time(
 
 
 def test_unknown_tool_names_the_line_and_what_is_known(mill: Machine) -> None:
-    with pytest.raises(UnknownTool, match=r"line 2: no tool T9 .*known: T1, T3") as caught:
+    with pytest.raises(UnknownTool, match=r"line 2: tool T9 .*known: T1, T3") as caught:
         run(mill, HOME, nc.ToolChange(number=9), tools={3: tool(3), 1: tool(1)})
     assert (caught.value.number, caught.value.line) == (9, 2)
 
