@@ -10,11 +10,11 @@ WORDS = (
     (CuttingMaterial.CARBIDE, ("carbide", "hartmetall", "metal duro")),
     (CuttingMaterial.HSS, ("hss", "high speed steel", "high-speed steel")),
 )
-"""how files name them"""
+"""Words by which files name each cutting material."""
 
 
 def edge_material(texts: Sequence[str]) -> CuttingMaterial | None:
-    """Material of the edge, from the words of a file; None: not stated."""
+    """Cutting material of the edge, from the words of a file; None if not stated."""
     words = " ".join(texts).lower()
     for material, names in WORDS:
         if any(name in words for name in names):
@@ -25,7 +25,7 @@ def edge_material(texts: Sequence[str]) -> CuttingMaterial | None:
 def correction_of(
     material: WorkMaterial, grade: ToolGrade | None, cutting_material: CuttingMaterial
 ) -> ForceCorrection:
-    """K_γ and K_v of an edge in a material; all 1 without a grade, or for a constant k_s."""
+    """Correction factors K_γ and K_v of an edge in a material; 1 if a value is unknown."""
     if grade is None:
         return ForceCorrection()
     reference, rake = material.kienzle.rake_angle, grade.rake_angle

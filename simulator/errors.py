@@ -4,18 +4,18 @@ from stepnc_model.errors import StepNcError
 
 
 class SimulationError(StepNcError):
-    """The virtual machine or its library cannot do what was asked."""
+    """Base class of errors of the virtual machine and its library."""
 
 
 class UnknownMachine(SimulationError):
-    """No machine has that name.
+    """No machine has the given name.
 
     Parameters
     ----------
     name : str
-        What was asked for.
+        Requested name.
     known : sequence of str
-        Names that exist, the nearest first.
+        Existing names, the most similar first.
     """
 
     def __init__(self, name: str, known: tuple[str, ...]) -> None:
@@ -25,16 +25,16 @@ class UnknownMachine(SimulationError):
 
 
 class MachineSilent(SimulationError):
-    """The line to the machine is broken.
+    """The connection to the machine is lost.
 
     Parameters
     ----------
     time : float
-        s of the run.
+        Time of the run, in s.
     """
 
     def __init__(self, time: float) -> None:
-        super().__init__(f"the machine does not answer since {time:.2f} s")
+        super().__init__(f"the machine has not answered since {time:.2f} s")
         self.time = time
 
 
@@ -45,7 +45,7 @@ class ProgramFault(SimulationError):
     ----------
     message : str
     line : int
-        Of the NC code or of the blocks made of the program, counted from 1.
+        Line of the NC code, or of the blocks generated from the program, counted from 1.
     """
 
     def __init__(self, message: str, line: int) -> None:
@@ -60,11 +60,11 @@ class OutOfTravel(SimulationError):
     ----------
     axis : str
     position : float, mm
-        In the program's coordinates.
+        Position in the program's coordinates.
     travel : (float, float), mm
-        Ends of the axis there.
+        Limits of the axis in the program's coordinates.
     line : int
-        Of the program.
+        Line of the program.
     """
 
     def __init__(
@@ -72,7 +72,7 @@ class OutOfTravel(SimulationError):
     ) -> None:
         low, high = travel
         super().__init__(
-            f"line {line}: {axis} = {position:g} mm is off the travel of the axis, "
+            f"line {line}: {axis} = {position:g} mm is outside the travel of the axis, "
             f"{low:g} to {high:g} mm in the program's coordinates"
         )
         self.axis = axis
@@ -81,53 +81,53 @@ class OutOfTravel(SimulationError):
 
 
 class UnknownTool(SimulationError):
-    """A tool that the program asks for is not in the table.
+    """A tool that the program calls is not in the tool table.
 
     Parameters
     ----------
     number : int
     known : str
-        Numbers that are.
+        Numbers of the tools in the table.
     line : int
-        Of the program.
+        Line of the program.
     """
 
     def __init__(self, number: int, known: str, line: int) -> None:
-        super().__init__(f"line {line}: no tool T{number} in the table; known: {known}")
+        super().__init__(f"line {line}: tool T{number} is not in the table; known: {known}")
         self.number = number
         self.line = line
 
 
 class UnknownMaterial(SimulationError):
-    """No material matches that name.
+    """No material matches the given name.
 
     Parameters
     ----------
     name : str
-        What was asked for.
+        Requested name.
     near : sequence of str
-        Names that come near, the nearest first.
+        Similar names, the most similar first.
     """
 
     def __init__(self, name: str, near: tuple[str, ...]) -> None:
-        super().__init__(f"unknown material '{name}'; near names: {', '.join(near)}")
+        super().__init__(f"unknown material '{name}'; similar names: {', '.join(near)}")
         self.name = name
         self.near = near
 
 
 class LibraryError(SimulationError):
-    """A machine, material or tool-grade file is unusable.
+    """A file of a machine, material or tool grade is not usable.
 
     Parameters
     ----------
     message : str
-        The value, the bound and the unit.
+        Value, bound and unit.
     path : str
-        The file.
+        Path of the file.
     key : str
-        The key in it, ``spindle.max_speed_rpm`` for example.
+        Key in the file, for example ``spindle.max_speed_rpm``.
     line : int
-        Line of the file, counted from 1; 0 when the key says where.
+        Line of the file, counted from 1; 0 if the key gives the place.
     """
 
     def __init__(self, message: str, *, path: str, key: str = "", line: int = 0) -> None:
@@ -148,13 +148,13 @@ class CalibrationError(SimulationError):
     Parameters
     ----------
     message : str
-        The value, the bound and the unit.
+        Value, bound and unit.
     path : str
-        The file, empty when there is none.
+        Path of the file; empty if there is none.
     line : int
-        Line of the file, counted from 1; 0 when there is none.
+        Line of the file, counted from 1; 0 if there is none.
     column : str
-        Name of the column, or empty.
+        Name of the column; empty if there is none.
     """
 
     def __init__(

@@ -1,8 +1,8 @@
-"""Machines, work materials and tool grades by name or from the user's own file.
+"""Machines, work materials and tool grades by name or from the user's own files.
 
-The files lie under ``simulator/data``, one per machine, material and kind of tool, with the
-unit in each key and a source in each table. A value that is missing, misspelt or out of range
-is a :class:`simulator.errors.LibraryError` that names file, key, value and bound.
+The files are in ``simulator/data``, one per machine, material and kind of tool, with the unit
+in each key and a source in each table. A value that is missing, misspelt or out of range raises
+a :class:`simulator.errors.LibraryError` that names file, key, value and bound.
 """
 
 from difflib import get_close_matches
@@ -25,7 +25,7 @@ from simulator.spec import (
 )
 
 DATA = Path(__file__).with_name("data")
-"""where the library's files lie"""
+"""Folder with the files of the library."""
 
 SOLID_TOOLS = frozenset({
     ToolKind.ENDMILL,
@@ -35,39 +35,39 @@ SOLID_TOOLS = frozenset({
     ToolKind.REAMER,
     ToolKind.TAP,
 })
-"""kinds of tool that are one piece with their edges; the others hold inserts"""
+"""Kinds of tools whose edges are part of a solid body; all others hold inserts."""
 
 
 def machine_names() -> tuple[str, ...]:
-    """Names of the machines that the library has."""
+    """Names of the machines in the library."""
     return _names("machines")
 
 
 def material_names() -> tuple[str, ...]:
-    """Names of the work materials that the library has."""
+    """Names of the work materials in the library."""
     return _names("materials")
 
 
 def material_path(name: str) -> Path:
-    """File of a material of the library."""
+    """Path of the file of a material in the library."""
     return DATA / "materials" / f"{name}.toml"
 
 
 def load_machine(name_or_path: str) -> Machine:
-    """A machine of the library, or the user's own.
+    """Load a machine from the library or from the user's own file.
 
     Parameters
     ----------
     name_or_path : str
-        ``vmc15``, or a file ``my.toml``, or a file ``my.xml`` in the form of
+        ``vmc15``, or a file ``my.toml``, or a file ``my.xml`` in the format of
         :mod:`simulator.machine_xml`.
 
     Raises
     ------
     UnknownMachine
-        The library has no machine of that name.
+        If the library has no machine of that name.
     LibraryError
-        The file cannot be read or a value in it is no good.
+        If the file cannot be read or a value in it is invalid.
 
     Examples
     --------
@@ -86,20 +86,20 @@ def load_machine(name_or_path: str) -> Machine:
 
 
 def load_material(name_or_path: str) -> WorkMaterial:
-    """A work material of the library, or the user's own file.
+    """Load a work material from the library or from the user's own file.
 
     Parameters
     ----------
     name_or_path : str
-        ``c45``, or a file ``my.toml``. Names of catalogues, standard numbers and what a
-        STEP-NC program says are for :func:`simulator.matching.match_material`.
+        ``c45``, or a file ``my.toml``. For catalogue names, standard numbers and texts of
+        STEP-NC programs use :func:`simulator.matching.match_material`.
 
     Raises
     ------
     UnknownMaterial
-        The library has no material of that name.
+        If the library has no material of that name.
     LibraryError
-        The file cannot be read or a value in it is no good.
+        If the file cannot be read or a value in it is invalid.
 
     Examples
     --------
@@ -117,10 +117,10 @@ def load_material(name_or_path: str) -> WorkMaterial:
 def find_window(
     material: WorkMaterial, tool_kind: ToolKind, cutting_material: CuttingMaterial
 ) -> CuttingWindow | None:
-    """Cutting-speed window of a tool in a material; ``None`` when the source gives none.
+    """Cutting-speed window of a tool in a material; ``None`` if the source gives none.
 
-    Carbide has two windows in most materials, of solid tools and of inserts. Where the source
-    gives only the other one, that one serves.
+    Carbide has two windows in most materials, for solid tools and for inserts. If the source
+    gives only one of them, it is used for both.
     """
     body = ToolConstruction.SOLID if tool_kind in SOLID_TOOLS else ToolConstruction.INDEXABLE
     windows = [
@@ -133,7 +133,7 @@ def find_window(
 def find_grade(
     tool_kind: ToolKind, cutting_material: CuttingMaterial, iso_group: str
 ) -> ToolGrade:
-    """Grade of a kind of tool for an ISO group, or else the one that serves every group.
+    """Grade of a kind of tool for an ISO group, or else the grade for all groups.
 
     Parameters
     ----------
@@ -145,7 +145,7 @@ def find_grade(
     Raises
     ------
     LibraryError
-        The library has no such grade: HSS in hardened steel, for example.
+        If the library has no such grade, for example HSS in hardened steel.
     """
     grades = [
         grade for grade in _grades(tool_kind) if grade.cutting_material is cutting_material
@@ -163,7 +163,7 @@ def find_grade(
 def grade_for(
     tool_kind: ToolKind, cutting_material: CuttingMaterial, material: WorkMaterial
 ) -> ToolGrade | None:
-    """Grade of a kind of tool for a material; None where there is none."""
+    """Grade of a kind of tool for a material; None if there is none."""
     if not material.iso_group:
         return None
     try:
@@ -174,26 +174,26 @@ def grade_for(
 
 @cache
 def _grades(kind: ToolKind) -> tuple[ToolGrade, ...]:
-    """Grades of one kind; kept, since every workingstep asks and the files do not change."""
+    """Grades of one kind of tool; cached, because they are needed for every workingstep."""
     return read_grades(_grade_path(kind), kind)
 
 
 def _grade_path(kind: ToolKind) -> Path:
-    """File of the grades of one kind of tool."""
+    """Path of the file with the grades of one kind of tool."""
     return DATA / "tools" / f"{kind}.toml"
 
 
 def _names(folder: str) -> tuple[str, ...]:
-    """Stems of the TOML files of a folder of the library."""
+    """Names of the TOML files, without suffix, in a folder of the library."""
     return tuple(sorted(path.stem for path in (DATA / folder).glob("*.toml")))
 
 
 def _is_path(name_or_path: str) -> bool:
-    """Whether the user means a file rather than a name."""
+    """Whether the user gave a path rather than a name."""
     return name_or_path.lower().endswith(".toml") or "/" in name_or_path or "\\" in name_or_path
 
 
 def _nearest_first(name: str, known: tuple[str, ...]) -> tuple[str, ...]:
-    """Known names, those that look like ``name`` first."""
+    """Known names, with those similar to ``name`` first."""
     near = get_close_matches(name, known, n=5, cutoff=0.4)
     return (*near, *(other for other in known if other not in near))

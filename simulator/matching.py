@@ -1,11 +1,11 @@
 """Match of the material of a STEP-NC program with the library.
 
 Programs name their material freely: a standard number, a grade of another country, a brand, or
-just "steel". Names are compared without blanks, hyphens, dots, accents and capitals. An exact
-name in any text beats every guess; a guess is said to be one, with its reason; what cannot
-even be guessed is an error that lists near names.
+just "steel". Names are compared without blanks, hyphens, dots, accents and case. An exact name
+in any text takes precedence over every guess. A guess is reported as such, with its reason; if
+no guess is possible, an error lists similar names.
 
-What a name may be guessed to mean is in ``simulator/data/material_guesses.toml``.
+The rules for guesses are in ``simulator/data/material_guesses.toml``.
 """
 
 import re
@@ -23,19 +23,19 @@ from simulator.spec import Certainty, MaterialMatch
 from simulator.toml_file import FileTable, quantity, read_toml, read_toml_head
 
 STANDARD_PREFIX = re.compile(r"(?:aisi|sae|ansi|din|jis|astm|uns|wnr|wnum|en)(?=.*\d)")
-"""standards that stand before a name and say nothing about the metal"""
+"""Names of standards that precede a material name and say nothing about the metal."""
 
 SEPARATORS = re.compile(r"[\s,;:/()\[\]_]+")
-"""what stands between the words of a text"""
+"""Separators between the words of a text."""
 
 GradeNumber = Annotated[float, quantity(1, 9_999)]
-"""numbers by which families of materials are ordered"""
+"""Range of the numbers by which families of materials are ordered."""
 
 NEAR_NAMES = 5
-"""names listed when a material is unknown"""
+"""Number of names listed if a material is unknown."""
 
 LONGEST_NAME = 40
-"""characters of a text that are compared when near names are sought"""
+"""Number of characters of a text that are compared when searching similar names."""
 
 
 class FamilyMember(FileTable, frozen=True, kw_only=True):
@@ -71,25 +71,25 @@ class GuessFile(FileTable, frozen=True, kw_only=True):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MaterialGuess:
-    """A material that a name may mean."""
+    """Guess of the material that a name may mean, with its reason."""
 
     material: str
     reason: str
 
 
 def match_material(texts: Sequence[str]) -> MaterialMatch:
-    """The material that a program's texts name.
+    """Find the material that a program's texts name.
 
     Parameters
     ----------
     texts : sequence of str
-        What the program says of its material, the most telling first: standard identifier,
-        material identifier, property names. Blank ones do not count.
+        What the program says about its material, the most specific first: standard
+        identifier, material identifier, property names. Blank texts are ignored.
 
     Raises
     ------
     UnknownMaterial
-        None of the texts can even be guessed.
+        If not even a guess is possible from the texts.
 
     Examples
     --------
@@ -101,7 +101,7 @@ def match_material(texts: Sequence[str]) -> MaterialMatch:
     names = _known_names()
     for candidate in _candidates(said):
         if (name := _exact(candidate, names)) is not None:
-            return _match(name, Certainty.EXACT, reason=f"'{candidate}' is a name of it")
+            return _match(name, Certainty.EXACT, reason=f"'{candidate}' is one of its names")
     if said:
         guesses = read_toml(DATA / "material_guesses.toml", GuessFile)
         guess = _by_family(said, guesses) or _by_kind(said, guesses)
@@ -111,13 +111,13 @@ def match_material(texts: Sequence[str]) -> MaterialMatch:
 
 
 def normalised(text: str) -> str:
-    """Letters and digits of a text, without accents and capitals."""
+    """Letters and digits of a text, without accents and in lower case."""
     plain = unicodedata.normalize("NFKD", text).casefold()
     return "".join(character for character in plain if character.isalnum())
 
 
 def _match(name: str, certainty: Certainty, *, reason: str) -> MaterialMatch:
-    """The material of a name with a sentence for the user."""
+    """Match with the material of a name, and a sentence for the user."""
     material = load_material(name)
     verb = "is read as" if certainty is Certainty.EXACT else "is guessed to be"
     return MaterialMatch(
@@ -128,7 +128,7 @@ def _match(name: str, certainty: Certainty, *, reason: str) -> MaterialMatch:
 
 
 def _known_names() -> dict[str, str]:
-    """Normalised name of every material → its file."""
+    """File of every material by each of its normalised names."""
     names: dict[str, str] = {}
     for file in material_names():
         head = read_toml_head(material_path(file), MaterialHead)
@@ -139,17 +139,17 @@ def _known_names() -> dict[str, str]:
 
 
 def _exact(text: str, names: Mapping[str, str]) -> str | None:
-    """File of the material that has just this name."""
+    """File of the material with exactly this name; None if there is none."""
     return names.get(normalised(text)) or names.get(_without_standard(text))
 
 
 def _without_standard(text: str) -> str:
-    """Normalised name without the name of the standard before it."""
+    """Normalised name without a preceding name of a standard."""
     return STANDARD_PREFIX.sub("", normalised(text), count=1)
 
 
 def _candidates(texts: tuple[str, ...]) -> Iterator[str]:
-    """Pieces of the texts that may be names, the largest first."""
+    """Parts of the texts that may be names, the longest first."""
     yield from texts
     for first, second in pairwise(texts):
         yield f"{first} {second}"
@@ -161,7 +161,7 @@ def _candidates(texts: tuple[str, ...]) -> Iterator[str]:
 
 
 def _by_family(texts: tuple[str, ...], guesses: GuessFile) -> MaterialGuess | None:
-    """The nearest number of the first family that a piece of the texts belongs to."""
+    """Guess by family: its material with the nearest number; None if no family matches."""
     for candidate in _candidates(texts):
         for family in guesses.family:
             found = re.fullmatch(family.pattern, normalised(candidate))
@@ -171,7 +171,7 @@ def _by_family(texts: tuple[str, ...], guesses: GuessFile) -> MaterialGuess | No
 
 
 def _nearest(candidate: str, family: MaterialFamily, *, number: int) -> MaterialGuess:
-    """The member of a family whose number is nearest."""
+    """Guess the material of a family whose number is nearest."""
     nearest = min(family.members, key=lambda row: abs(row.number - number))
     return MaterialGuess(
         material=nearest.material,
@@ -196,7 +196,7 @@ def _by_kind(texts: tuple[str, ...], guesses: GuessFile) -> MaterialGuess | None
 
 
 def _near(texts: tuple[str, ...], names: Mapping[str, str]) -> tuple[str, ...]:
-    """Files of the materials whose names look most like the texts; all when nothing is said."""
+    """Files of the materials with the most similar names; all if there are no texts."""
     near: dict[str, None] = {}
     for text in texts:
         start = normalised(text)[:LONGEST_NAME]

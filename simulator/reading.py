@@ -1,4 +1,4 @@
-"""Readings of a machine's sensors, one a tooth period, for the closed loop.
+"""Readings of a machine's sensors for the closed loop, one per tooth period.
 
 Units mm, s, N, W, rev/s.
 """
@@ -13,29 +13,29 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Reading:
-    """Sensor values of one tooth period, or of a stretch without chips to come."""
+    """Sensor values of one tooth period, or of a time span without feed override."""
 
     time: float
-    """Time, s, at its end"""
+    """Time at the end of the period, s."""
     period: float
-    """Period, s that it covers"""
+    """Duration of the period, s."""
     force: Floats
-    """(K,) N, tangential force of all teeth together (torque over radius), evenly spaced over
-    the period; NaN: a sample was lost; empty: nothing was sampled"""
+    """Tangential force of all teeth together (torque over radius), (K,), N, evenly spaced over
+    the period; NaN if a sample was lost; empty if nothing was sampled."""
     power: float
-    """Power, W of the main drive, mean over the period; NaN: lost"""
+    """Mean power of the main drive over the period, W; NaN if lost."""
     feed: float
-    """Feed, mm/s along the path, mean over the period"""
+    """Mean feed along the path over the period, mm/s."""
     override: float
-    """feed over programmed feed, as the axes really ran"""
+    """Actual feed of the axes over the programmed feed."""
     spindle_speed: float
-    """Spindle speed, rev/s, magnitude"""
+    """Magnitude of the spindle speed, rev/s."""
     teeth: int
     tooth: int
-    """which of the teeth the period belongs to, 0 to teeth − 1"""
+    """Index of the tooth to which the period belongs, 0 to teeth − 1."""
     progress: float
-    """Progress, s of the program at an override of 1, at the period's end"""
+    """Program time at an override of 1 at the end of the period, s."""
     workingstep: int
-    """which of the program's, counted from 1; 0: none"""
+    """Number of the workingstep in the program, counted from 1; 0 for none."""
     can_override: bool
-    """whether the feed override acts: not in rapid, in a dwell, at a tool change"""
+    """Whether the feed override acts: not in rapid, in a dwell or at a tool change."""

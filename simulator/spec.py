@@ -1,7 +1,7 @@
 """Machines, materials and tool grades as parameters without behaviour.
 
 Units: mm, s, N, W, rad, rev/s; torque N·mm; stress and specific force N/mm². ``None`` means
-that the source gives no value, and a limit without a value does not limit.
+that the source gives no value; a limit without a value is not applied.
 """
 
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from simulator.work_holding import Holding
 
 
 class MachineKind(StrEnum):
-    """Kind of machine by what turns: the tool or the workpiece."""
+    """Kind of machine, by whether the tool or the workpiece rotates."""
 
     MILL = "mill"
     LATHE = "lathe"
@@ -19,119 +19,120 @@ class MachineKind(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SpindlePoint:
-    """One point of the spindle's power and torque curve (continuous duty, S1)."""
+    """Point of the spindle's power and torque curve (continuous duty, S1)."""
 
     speed: float
-    """Speed, rev/s, positive"""
+    """Spindle speed, rev/s, positive."""
     power: float
-    """motor power available at that speed, W"""
+    """Available motor power at this speed, W."""
     torque: float | None = None
-    """torque available at the spindle nose, N·mm"""
+    """Available torque at the spindle nose, N·mm."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Spindle:
-    """Main drive.
+    """Main drive of a machine.
 
     Between two points of the curve power and torque are interpolated in logarithms, so that
-    constant torque and constant power are straight lines. Below the first point the torque
-    stays constant where the point has one (power in proportion to speed), else the power does;
-    above the last point the power stays constant. One point without torque: constant power.
+    constant torque and constant power are straight lines. Below the first point the torque is
+    constant if the point has one (power proportional to speed), otherwise the power is
+    constant; above the last point the power is constant. One point without torque means
+    constant power.
     """
 
     curve: tuple[SpindlePoint, ...]
-    """ascending in speed, at least one point"""
+    """Points of the curve, ascending in speed, at least one."""
     efficiency: float
-    """cutting power over motor power, 0 < η ≤ 1"""
+    """Cutting power over motor power, 0 < η ≤ 1."""
     min_speed: float | None
-    """Min speed, rev/s"""
+    """Lowest spindle speed, rev/s."""
     max_speed: float | None
-    """Max speed, rev/s"""
+    """Highest spindle speed, rev/s."""
     acceleration: float | None
-    """Acceleration, rev/s²"""
+    """Acceleration of the spindle, rev/s²."""
     inertia: float | None = None
-    """Inertia, kg·m², at the spindle; ``None``: ramps draw no power of their own"""
+    """Moment of inertia at the spindle, kg·m²; ``None``: ramps need no additional power."""
     idle_power: float = 0.0
-    """motor power in W, turning without cutting, independent of speed"""
+    """Motor power without cutting that is independent of speed, W."""
     idle_power_per_speed: float = 0.0
-    """Idle power per speed, W per rev/s: friction of constant torque"""
+    """Idle power proportional to speed, W per rev/s: friction with constant torque."""
     idle_power_per_speed_squared: float = 0.0
-    """Idle power per speed squared, W per (rev/s)²: viscous friction"""
+    """Idle power proportional to speed squared, W per (rev/s)²: viscous friction."""
     regeneration: float = 0.0
-    """share of the braking power that returns to the mains; 0: a braking resistor"""
+    """Share of the braking power returned to the mains; 0 for a braking resistor."""
     delay: float | None = None
-    """Delay, s, time constant with which the power follows the cut; ``None``: not known"""
+    """Time constant with which the power follows the cut, s; ``None``: unknown."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AxisDrive:
-    """Servomotor, gear, feed screw and guide of one linear axis.
+    """Drive of one linear axis: servomotor, gear, feed screw and guide.
 
-    The screw turns once per lead, the motor ``gear_ratio`` times as fast.
+    The screw turns once per lead; the motor turns ``gear_ratio`` times as fast.
     """
 
     lead: float
-    """Lead, mm per revolution of the screw"""
+    """Travel per revolution of the screw, mm."""
     table_mass: float
-    """Table mass, kg, all that the axis moves apart from the workpiece"""
+    """Mass moved by the axis without the workpiece, kg."""
     workpiece_mass: float = 0.0
-    """Workpiece mass, kg, 0 where the workpiece does not ride on the axis"""
+    """Mass of the workpiece, kg; 0 if the axis does not carry it."""
     screw_mass: float = 0.0
-    """Screw mass, kg"""
+    """Mass of the screw, kg."""
     screw_diameter: float = 0.0
-    """Screw diameter, mm"""
+    """Diameter of the screw, mm."""
     coupling_inertia: float = 0.0
-    """Coupling inertia, kg·m², on the motor's shaft"""
+    """Moment of inertia of the coupling at the motor shaft, kg·m²."""
     motor_inertia: float = 0.0
-    """Motor inertia, kg·m²"""
+    """Moment of inertia of the motor, kg·m²."""
     guide_friction: float = 0.0
-    """coefficient of the guide"""
+    """Coefficient of friction of the guide."""
     bearing_friction: float = 0.0
-    """coefficient of the screw's bearing, at the screw's diameter"""
+    """Coefficient of friction of the screw bearing at the screw diameter."""
     preload: float = 0.0
-    """Preload, N, in the bearing"""
+    """Preload of the bearing, N."""
     viscous: float = 0.0
-    """N·mm·s/rad, on the motor's shaft"""
+    """Viscous friction at the motor shaft, N·mm·s/rad."""
     gear_ratio: float = 1.0
-    """turns of the motor per turn of the screw"""
+    """Turns of the motor per turn of the screw."""
     efficiency: float = 1.0
-    """mechanical over electrical power of the motor, 0 < η ≤ 1"""
+    """Mechanical over electrical power of the motor, 0 < η ≤ 1."""
     regeneration: float = 0.0
-    """share of the braking power that returns to the mains; 0: a braking resistor"""
+    """Share of the braking power returned to the mains; 0 for a braking resistor."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Axis:
-    """One linear axis."""
+    """Linear axis of a machine."""
 
     name: str
-    """X, Y or Z"""
+    """Name of the axis: X, Y or Z."""
     travel: tuple[float, float]
-    """Travel, mm; an end that the source does not give is infinite"""
+    """Lower and upper end of travel, mm; infinite if the source does not give one."""
     rapid: float
-    """Rapid, mm/s"""
+    """Rapid speed, mm/s."""
     max_feed: float
-    """Max feed, mm/s"""
+    """Greatest feed, mm/s."""
     acceleration: float
-    """Acceleration, mm/s²"""
+    """Greatest acceleration, mm/s²."""
     jerk: float | None = None
-    """Jerk, mm/s³"""
+    """Greatest jerk, mm/s³."""
     drive: AxisDrive | None = None
-    """``None``: unknown; the axis draws no power of its own"""
+    """Drive of the axis; ``None``: unknown, the axis needs no power."""
 
 
 class ModeDirection(StrEnum):
-    """Axis of the machine along which a structure gives."""
+    """Axis of the machine along which a structure vibrates."""
 
     X = "x"
     Y = "y"
     Z = "z"
     XY = "xy"
-    """x and y alike: a round tool in a spindle, measured once"""
+    """Equal in x and y: a round tool in a spindle, measured once."""
 
 
 class VibratingPart(StrEnum):
-    """Part of the machine that was hit in the tap test."""
+    """Part of the machine that was excited in the tap test."""
 
     TOOL = "tool"
     WORKPIECE = "workpiece"
@@ -139,29 +140,29 @@ class VibratingPart(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class VibrationMode:
-    """One mode of a structure as a tap test shows it at the tool point or the workpiece.
+    """Mode of vibration measured by a tap test at the tool point or the workpiece.
 
-    A tool's mode holds for the tool in its holder in this spindle, at this overhang.
+    The mode of a tool is valid for this tool in its holder, in this spindle, at this overhang.
     """
 
     part: VibratingPart
     direction: ModeDirection
     natural_frequency: float
-    """Natural frequency, Hz"""
+    """Natural frequency, Hz."""
     damping_ratio: float
-    """ζ, share of the critical damping, 0 < ζ < 1"""
+    """Damping ratio ζ, share of the critical damping, 0 < ζ < 1."""
     stiffness: float
-    """modal stiffness k, N/mm"""
+    """Modal stiffness k, N/mm."""
     source: str
     tool: str = ""
-    """id of the tool as programs name it; empty: any tool of the diameter"""
+    """Id of the tool as named in programs; empty: any tool with the diameter."""
     tool_diameter: float | None = None
-    """Tool diameter, mm; ``None``: whatever the tool's diameter is"""
+    """Diameter of the tool, mm; ``None``: any diameter."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Machine:
-    """One machine tool."""
+    """Machine tool with its drives, limits and powers."""
 
     name: str
     title: str
@@ -169,52 +170,53 @@ class Machine:
     spindle: Spindle
     axes: tuple[Axis, ...]
     rapid: float | None
-    """Rapid, mm/s, of the slowest axis; ``None``: not limited"""
+    """Rapid speed of the slowest axis, mm/s; ``None``: unlimited."""
     max_feed: float | None
-    """Max feed, mm/s, the feed mechanism"""
+    """Greatest feed of the feed drive, mm/s."""
     max_cutting_force: float | None
-    """Max cutting force, N"""
+    """Greatest permitted cutting force, N."""
     max_axial_depth: float | None
-    """Max axial depth, mm, depth of cut that the machine permits"""
+    """Greatest depth of cut that the machine permits, mm."""
     block_time: float | None
-    """Block time, s, the control's processing time of one block"""
+    """Processing time of the control per block, s."""
     base_power: float
-    """Base power, W, whatever the machine does"""
+    """Constant power of the machine in any state, W."""
     coolant_power: float
-    """Coolant power, W"""
+    """Power of the coolant pump, W."""
     tool_change: float
-    """Tool change, s, chip to chip"""
+    """Chip-to-chip time of a tool change, s."""
     source: str
     remarks: tuple[str, ...] = ()
     modes: tuple[VibrationMode, ...] = ()
-    """measured ones; without them stability sets no bound"""
+    """Measured modes of vibration; without them stability is not limited."""
     holdings: tuple[Holding, ...] = ()
-    """how workpieces are held; without them nothing of it is bounded"""
+    """Work-holding devices; without them the holding force is not limited."""
     only_stated_limits: bool = False
-    """whether the limits that its source states are all there are, as those of a paper: no
-    safety factor, no stability, tolerance, helix, engagement or work-holding beside them"""
+    """Whether only the limits stated by the source apply, as for machines from papers: no
+    safety factor, stability, tolerance, helix, engagement or work-holding limits in
+    addition."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Kienzle:
-    """k_c = k_c1.1 · h^(−m_c)."""
+    """Constants of Kienzle's law, k_c = k_c1.1 · h^(−m_c)."""
 
     k_c11: float
-    """K c11, N/mm²"""
+    """Specific cutting force k_c1.1 at b = h = 1 mm, N/mm²."""
     m_c: float
-    """0 ≤ m_c < 1; 0 is the constant k_s of El-Hofy"""
+    """Exponent m_c, 0 ≤ m_c < 1; 0 for the constant k_s of El-Hofy."""
     rake_angle: float | None = None
-    """rad, γ₀ of the tool the values were measured with; ``None``: no rake correction"""
+    """Rake angle γ₀ of the tool used for measuring, rad; ``None``: no rake correction."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LinearEdge:
-    """F_t = K_tc·b·h + K_te·b and likewise radial and axial."""
+    """Constants of the linear-edge law, F_t = K_tc·b·h + K_te·b; likewise radial and axial."""
 
     k_tc: float
-    """K tc, N/mm²"""
+    """Tangential cutting coefficient K_tc, N/mm²."""
     k_te: float
-    """K te, N/mm"""
+    """Tangential edge coefficient K_te, N/mm."""
     k_rc: float = 0.0
     k_re: float = 0.0
     k_ac: float = 0.0
@@ -223,12 +225,12 @@ class LinearEdge:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Taylor:
-    """v_c · T^n = C."""
+    """Constants of Taylor's tool life law, v_c · T^n = C."""
 
     exponent: float
-    """n, dimensionless, 0 < n < 1"""
+    """Exponent n, dimensionless, 0 < n < 1."""
     constant: float
-    """C as a cutting speed in mm/s for a life of one minute"""
+    """Constant C: the cutting speed for a life of one minute, in mm/s."""
 
 
 class CuttingMaterial(StrEnum):
@@ -240,7 +242,7 @@ class CuttingMaterial(StrEnum):
 
 
 class ToolConstruction(StrEnum):
-    """Mounting of the cutting edge; the speeds of carbide differ with it."""
+    """Construction of a tool, solid or with inserts; cutting speeds of carbide depend on it."""
 
     SOLID = "solid"
     INDEXABLE = "indexable"
@@ -248,57 +250,57 @@ class ToolConstruction(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CuttingWindow:
-    """Permitted speeds and feeds of a cutting material in a work material."""
+    """Permitted cutting speeds of a cutting material in a work material, with tool life."""
 
     cutting_material: CuttingMaterial
     min_cutting_speed: float | None
-    """Min cutting speed, mm/s"""
+    """Lowest cutting speed, mm/s."""
     max_cutting_speed: float | None
-    """Max cutting speed, mm/s"""
+    """Highest cutting speed, mm/s."""
     taylor: Taylor | None
     tool_body: ToolConstruction | None = None
-    """``None``: the window serves both"""
+    """Construction for which the window is valid; ``None``: both."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WorkMaterial:
-    """One work material."""
+    """Work material with its cutting force constants and cutting-speed windows."""
 
     name: str
-    """file name in the library, ``c45``"""
+    """Name of the file in the library, ``c45``."""
     title: str
-    """what a catalogue calls it, ``AISI 1045``"""
+    """Name in catalogues, ``AISI 1045``."""
     iso_group: str
-    """P, M, K, N, S or H; empty when it has none"""
+    """ISO group P, M, K, N, S or H; empty if there is none."""
     equivalents: tuple[str, ...]
-    """other names and standard numbers"""
+    """Other names and standard numbers."""
     hardness_hb: float | None
     density: float | None
-    """g/cm³"""
+    """Density, g/cm³."""
     tensile_strength: float | None
-    """Tensile strength, N/mm²"""
+    """Tensile strength, N/mm²."""
     kienzle: Kienzle
     linear_edge: LinearEdge | None
     windows: tuple[CuttingWindow, ...]
     min_feed_per_tooth_ratio: float | None
-    """f_z over the cutter's diameter, end mills"""
+    """Least feed per tooth of end mills over the cutter diameter."""
     max_feed_per_tooth_ratio: float | None
     max_feed_per_tooth: float | None
-    """Max feed per tooth, mm, absolute, where the source gives one"""
+    """Greatest feed per tooth, mm, if the source gives an absolute value."""
     source: str
     remarks: tuple[str, ...] = ()
     feed_force: Kienzle | None = None
-    """(k_f1.1, m_f) of turning, m_f may exceed 1; ``None``: the usual share of F_c"""
+    """Constants (k_f1.1, m_f) in turning, m_f may exceed 1; ``None``: usual share of F_c."""
     back_force: Kienzle | None = None
-    """(k_p1.1, m_p) of turning, likewise"""
+    """Constants (k_p1.1, m_p) in turning; ``None``: usual share of F_c."""
     spread: float | None = None
-    """of k_c: σ of ln k_c is ln(1 + spread); ``None``: k_c is taken to be exact"""
+    """Relative spread of k_c: σ of ln k_c is ln(1 + spread); ``None``: k_c is exact."""
     youngs_modulus: float | None = None
-    """Youngs modulus, N/mm², of a bar that bends; ``None``: not known"""
+    """Young's modulus, N/mm², for the bending of bars; ``None``: unknown."""
 
 
 class ToolKind(StrEnum):
-    """Families of tools that share feed windows."""
+    """Kinds of tools that share feed windows."""
 
     ENDMILL = "endmill"
     FACEMILL = "facemill"
@@ -315,68 +317,68 @@ class ToolKind(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DrillPoint:
-    """Point of a tool that cuts on its end."""
+    """Point geometry of a tool that cuts with its end."""
 
     thrust_share: float
-    """thrust of the lips over their tangential force times sin κ"""
+    """Thrust of the lips over their tangential force times sin κ."""
     chisel_ratio: float
-    """c/D, length of the chisel edge over the diameter; 0: it has none"""
+    """Length of the chisel edge over the diameter, c/D; 0 without chisel edge."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FeedWindow:
-    """At which engagement the feeds per tooth of a milling cutter hold."""
+    """Engagement for which the feeds per tooth of a milling cutter are valid."""
 
     width_ratio: float
-    """greatest a_e/D for which they are meant"""
+    """Greatest a_e/D for which the feeds are valid."""
     slot_factor: float
-    """factor on them in a full slot"""
+    """Factor on the feeds in a full slot."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ToolGrade:
-    """Feed windows and strength of one kind of tool in one cutting material and ISO group.
+    """Feed windows and strength of a kind of tool for one cutting material and ISO group.
 
-    Feeds are per tooth for milling, per revolution for everything else.
+    Feeds are per tooth for milling, and per revolution for all other tools.
     """
 
     name: str
     tool_kind: ToolKind
     cutting_material: CuttingMaterial
     iso_group: str
-    """P, M, K, N, S, H; ``*`` for all"""
+    """ISO group P, M, K, N, S or H; ``*`` for all."""
     min_feed_ratio: float | None
-    """least feed per tooth (or revolution) over the tool's diameter"""
+    """Least feed per tooth (or revolution) over the tool diameter."""
     max_feed_ratio: float | None
     min_feed: float | None
-    """Min feed, mm, absolute"""
+    """Least feed per tooth (or revolution) as an absolute value, mm."""
     max_feed: float | None
-    """Max feed, mm, absolute"""
+    """Greatest feed per tooth (or revolution) as an absolute value, mm."""
     min_cutting_speed: float | None
-    """Min cutting speed, mm/s; overrides the material's window"""
+    """Lowest cutting speed, mm/s; takes precedence over the material's window."""
     max_cutting_speed: float | None
-    """Max cutting speed, mm/s"""
+    """Highest cutting speed, mm/s; takes precedence over the material's window."""
     max_depth_ratio: float | None
-    """greatest axial depth over the tool's diameter"""
+    """Greatest axial depth over the tool diameter."""
     max_depth: float | None
-    """Max depth, mm, absolute"""
+    """Greatest axial depth as an absolute value, mm."""
     min_chip_thickness: float
-    """Min chip thickness, mm, below which the edge rubs"""
+    """Chip thickness below which the edge rubs, mm."""
     youngs_modulus: float
-    """Youngs modulus, N/mm²"""
+    """Young's modulus of the tool, N/mm²."""
     bending_strength: float
-    """Bending strength, N/mm², permissible bending stress of the shank"""
+    """Permissible bending stress of the shank, N/mm²."""
     rake_angle: float | None
-    """Rake angle, rad"""
+    """Rake angle, rad."""
     source: str
     helix_angle: float = 0.0
-    """λ_s, rad; 0: straight edges"""
+    """Helix angle λ_s, rad; 0 for straight edges."""
     point: DrillPoint | None = None
-    """``None``: the source says nothing of it"""
+    """Point geometry; ``None`` if the source does not give it."""
     feed_window: FeedWindow | None = None
-    """``None``: feeds hold at any engagement"""
+    """Engagement for which feeds are valid; ``None``: any engagement."""
     parallel_land: float = 0.0
-    """b_s, mm of edge parallel to the face; 0: the corner makes the surface"""
+    """Length b_s of the edge parallel to the face, mm; 0: the corner generates the surface."""
 
 
 class Certainty(StrEnum):
@@ -388,9 +390,9 @@ class Certainty(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MaterialMatch:
-    """A material and how it was found."""
+    """Material found for a program, and how it was found."""
 
     material: WorkMaterial
     certainty: Certainty
     reason: str
-    """one sentence for the user: "'ST-50' read as E295 / St50-2 by its equivalent name" """
+    """Sentence for the user: "'ST-50' is read as E295 / St50-2: it is one of its names"."""

@@ -1,31 +1,31 @@
-"""The columns of a run as the outside reads them: names and units of the data items.
+"""Columns of a run as written to files: names and units of the data items.
 
-Names after the data items of Shin et al., "Developing a virtual machining model to generate
+Names follow the data items of Shin et al., "Developing a virtual machining model to generate
 MTConnect machine-monitoring data from STEP-NC", Int. J. Prod. Res. 54 (2016), Table 2, with the
-total as in Lechevalier et al. (2018), Table 2; units are those of MTConnect: MILLIMETER,
+total as in Lechevalier et al. (2018), Table 2. Units are those of MTConnect: MILLIMETER,
 MILLIMETER/SECOND, REVOLUTION/MINUTE, WATT, NEWTON.
 """
 
 from dataclasses import dataclass
 
 RPM = 60.0
-"""rpm in one rev/s"""
+"""Revolutions per minute in one revolution per second."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DataItem:
-    """One data item."""
+    """Data item: one column of a run, with its name, source and unit."""
 
     name: str
     source: str
-    """attribute of the samples"""
+    """Attribute of the samples from which the values are taken."""
     unit: str = ""
     scale: float = 1.0
-    """external units per internal unit"""
+    """External units per internal unit."""
     axis: int | None = None
-    """which column of an array of three"""
+    """Column index if the attribute is an array with three columns."""
     words: tuple[str, ...] | None = None
-    """what the numbers of an event mean, from 0"""
+    """Words for the integer values of an event, from 0 on."""
 
 
 def _axes(
@@ -81,4 +81,4 @@ COLUMNS = (
     DataItem(name="tool_number", source="tool"),
     DataItem(name="workingstep", source="workingstep"),
 )
-"""in the order of the file; the words of program and workingstep are those of the run"""
+"""All columns in the order of the file; words for program and workingstep come from the run."""

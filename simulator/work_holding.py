@@ -1,65 +1,65 @@
-"""Parameters of work-holding, without behaviour; units mm, N, kg, rev/s."""
+"""Parameters of work-holding devices, without behaviour; units mm, N, kg, rev/s."""
 
 from dataclasses import dataclass
 
 HOLDING_SAFETY = 1.5
-"""forces that a workpiece is held against over those of the cut, where nobody says: VDI 3106,
-at least. With the usual margin on k_c it is 1.9; Röhm, norm RN-1391, table 5, has 2"""
+"""Default safety factor on the cutting force for holding a workpiece: the minimum of VDI
+3106. With the usual margin on k_c it is 1.9; Röhm, norm RN-1391, table 5, uses 2."""
 
 CLAMPING_SAFETY = 1.5
-"""clamping force at rest over the least that is counted on; VDI 3106: at least"""
+"""Default safety factor on the clamping force at rest: the minimum of VDI 3106."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Chuck:
-    """A jaw chuck on the spindle of a lathe, as it grips a bar from outside in one setup.
+    """Jaw chuck of a lathe that grips a bar from outside in one setup.
 
-    What the program says of the grip (its bar and clamping positions) need not be said again.
+    Data of the grip that the program contains (bar and clamping positions) may be omitted.
     """
 
     clamping_force: float
-    """Clamping force, N, of all jaws together, at rest"""
+    """Total clamping force of all jaws at rest, N."""
     friction: float
-    """coefficient between jaws and bar"""
+    """Coefficient of friction between jaws and bar."""
     source: str
     setup: str = ""
-    """id of the setup it holds; empty: any"""
+    """Id of the setup in which it is used; empty: any."""
     jaws: int = 3
     grip_diameter: float | None = None
-    """Grip diameter, mm; ``None``: that of the bar"""
+    """Diameter of the grip, mm; ``None``: that of the bar."""
     grip_length: float | None = None
-    """mm; ``None``: from the clamping position that is farthest in front to the bar's end"""
+    """Length of the grip, mm; ``None``: from foremost clamping position to the bar's end."""
     jaw_face: float | None = None
-    """Jaw face, mm along z in the setup, where the jaws end; ``None``: as just said"""
+    """Position along z in the setup where the jaws end, mm; ``None``: as for grip_length."""
     jaw_mass: float = 0.0
-    """Jaw mass, kg, of one jaw, its base included"""
+    """Mass of one jaw including its base, kg."""
     jaw_radius: float = 0.0
-    """Jaw radius, mm, of the jaw's centre of gravity"""
+    """Radius of the centre of gravity of a jaw, mm."""
     lost_force: float = 0.0
-    """N that the chuck loses besides, or all that it loses where no mass is given …"""
+    """Clamping force lost at the speed ``lost_at``, besides that from the jaw mass, N."""
     lost_at: float = 0.0
-    """… at this speed, rev/s"""
+    """Spindle speed to which ``lost_force`` refers, rev/s."""
     safety_factor: float = HOLDING_SAFETY
-    """S_z, on the forces of the cut"""
+    """Safety factor S_z on the cutting force."""
     clamping_safety_factor: float = CLAMPING_SAFETY
-    """S_sp, on the clamping force at rest"""
+    """Safety factor S_sp on the clamping force at rest."""
     has_tailstock: bool | None = None
-    """whether a centre supports the front end of the bar; ``None``: as the program says"""
+    """Whether a tailstock supports the front end; ``None``: as stated in the program."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Clamp:
-    """A vice or clamps that hold a workpiece on a mill by friction in one setup."""
+    """Vice or clamps that hold a workpiece on a mill by friction in one setup."""
 
     holding_force: float
-    """Holding force, N, all forces normal to the faces that hold, together"""
+    """Total normal force on the holding faces, N."""
     friction: float
-    """coefficient between the workpiece and these faces"""
+    """Coefficient of friction between the workpiece and these faces."""
     source: str
     setup: str = ""
-    """id of the setup it holds; empty: any"""
+    """Id of the setup in which it is used; empty: any."""
     safety_factor: float = HOLDING_SAFETY
-    """on the forces of the cut"""
+    """Safety factor on the cutting force."""
 
 
 Holding = Chuck | Clamp

@@ -1,15 +1,14 @@
-"""A machine before and after: what it says of its own powers, and the machine as fitted.
+"""Machine parameters before and after calibration, and the delay of the main drive.
 
-An axis' fitted friction, viscous friction and mass are those seen from the mains; the drive
-that is written is equivalent to them, its friction all in the bearing's preload. The factor on
-the specific cutting force is no property of a machine and stays in the calibration.
-Units mm, s, N, W, kg·m².
+The fitted friction, viscous friction and mass of an axis are as seen from the mains; the
+resulting drive is equivalent to them, with all friction in the preload of its bearing. The
+factor on the specific cutting force is not a property of a machine and stays in the
+calibration.
 
-The delay of the main drive, from how late its measured power follows the model's.
-
-A first-order lag of the predicted power of the cut; the time constant is the one that leaves
-the least, its interval where what it leaves is no more than chance explains. Samples within a
-block count as one observation, as in :mod:`simulator.calibration.fit`. Units s, W.
+The delay of the main drive follows from how late its measured power follows the predicted power
+of the cut. It is modelled as a first-order lag; the time constant minimises the residual, and
+its interval contains all values whose residual is explained by chance. Samples within a block
+count as one observation, as in :mod:`simulator.calibration.fit`. Units mm, s, N, W, kg·m².
 """
 
 from collections.abc import Mapping, Sequence
@@ -35,42 +34,42 @@ from simulator.physics.axis import motor_speed, reflected_inertia, steady_torque
 from simulator.spec import Axis, AxisDrive, Machine
 
 LONGEST = 2.0
-"""s; no main drive is slower"""
+"""Upper limit of the time constant, s; no main drive is slower."""
 
 SHORTEST = 1e-3
-"""s"""
+"""Lower limit of the time constant, s."""
 
 CHANCE = 3.84
-"""95 % quantile of χ² with one degree of freedom"""
+"""95 % quantile of χ² with one degree of freedom."""
 
 GRID = 60
-"""time constants that are tried before the best is refined"""
+"""Number of time constants tried before the best is refined."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Delay:
-    """Time constant of the main drive, s."""
+    """Time constant of the main drive with its interval, s."""
 
     value: float
     low: float
     high: float
     reason: str = ""
-    """why it could not be identified; empty: it was"""
+    """Reason why the delay could not be identified; empty if it was."""
 
 
 def fitted_delay(
     runs: Sequence[RunFeatures], calibration: Calibration, *, efficiency: float
 ) -> Delay:
-    """Time constant of the main drive.
+    """Fit the time constant of the main drive.
 
     Parameters
     ----------
     runs : sequence of RunFeatures
-        With the power of the spindle, or the total.
+        Runs with the power of the spindle, or the total power.
     calibration : Calibration
-        Of the same runs.
+        Calibration from the same runs.
     efficiency : float
-        Of the spindle.
+        Efficiency of the spindle.
     """
     parts = [_pair(run, calibration, efficiency) for run in runs]
     pairs = [pair for pair in parts if pair is not None]
@@ -91,20 +90,20 @@ def fitted_delay(
     bounds = trials[max(best - 1, 0)], trials[min(best + 1, GRID - 1)]
     found = minimize_scalar(left, bounds=bounds, method="bounded")
     least = min(float(found.fun), float(misses[best]))
-    # Residuals within a block are not independent: so much more may be left by chance.
+    # Residuals within a block are dependent: this increase may be due to chance.
     bound = least * (1.0 + CHANCE / max(1, min(calibration.blocks, count)))
     inside = np.flatnonzero(misses <= bound)
     low, high = np.exp(trials[inside[[0, -1]]]) if len(inside) else np.exp(bounds)
     reason = ""
     if low <= SHORTEST * 1.01:
-        reason = "shorter than these samples can show"
+        reason = "shorter than the sampling interval can resolve"
     elif high >= LONGEST * 0.99:
-        reason = "no delay makes the model better"
+        reason = "no delay improves the model"
     return Delay(value=float(np.exp(found.x)), low=float(low), high=float(high), reason=reason)
 
 
 def lagged(power: Floats, step: float, delay: float) -> Floats:
-    """Power behind a first-order lag, (N,) samples a step in s apart; straight between them."""
+    """Power after a first-order lag, (N,), with samples a step in s apart, linear between."""
     ratio = step / delay
     decay = float(np.exp(-ratio))
     now = 1.0 - (1.0 - decay) / ratio
@@ -120,10 +119,10 @@ def lagged(power: Floats, step: float, delay: float) -> Floats:
 def _pair(
     run: RunFeatures, calibration: Calibration, efficiency: float
 ) -> tuple[Floats, Floats, float] | None:
-    """Measured power of the cut, the model's, and the time between samples.
+    """Measured power of the cut, its predicted power, and the time between samples.
 
-    As in :mod:`simulator.machine.disturbance`, only the cut shows late: the control knows of
-    the spindle's own speed in advance.
+    As in :mod:`simulator.machine.disturbance`, only the power of the cut is delayed: the
+    control knows the speed of the spindle in advance.
     """
     part = Component.SPINDLE if Component.SPINDLE in run.measured else Component.TOTAL
     if part not in run.measured:
@@ -136,23 +135,23 @@ def _pair(
     return run.measured[part] - idle, model - idle, float(np.median(run.duration))
 
 
-LEAD = 10.0  # mm per revolution, of a drive that was unknown
-BEARING_FRICTION = 0.01  # little, so that the feed force adds next to none
-LEAST_MASS = 0.1  # kg, a table without any is none
+LEAD = 10.0  # mm per revolution, assumed for an unknown drive
+BEARING_FRICTION = 0.01  # small, so that the feed force adds almost nothing
+LEAST_MASS = 0.1  # kg, because a table must have a mass
 FORCE, MASS = 500.0, 200.0
-"""N and kg that a prior may well be off, where it does not say more itself"""
-SLOW = 200.0  # mm/s at which viscous friction may well be as much as the other
-POWER, POWER_PER_SPEED = 200.0, 5.0  # W and W/(rev/s), likewise
-POWER_PER_SPEED_SQUARED = 0.05  # W/(rev/s)², likewise
-INERTIA = 0.01  # kg·m², likewise
+"""Typical uncertainty of a prior friction in N and mass in kg, unless the value is greater."""
+SLOW = 200.0  # mm/s at which viscous friction may be as large as constant friction
+POWER, POWER_PER_SPEED = 200.0, 5.0  # W and W/(rev/s), typical uncertainty of a prior
+POWER_PER_SPEED_SQUARED = 0.05  # W/(rev/s)², typical uncertainty of a prior
+INERTIA = 0.01  # kg·m², typical uncertainty of a prior
 CUTTING = 0.5
-"""catalogues differ by 20 to 70 % for the same steel"""
-CALIBRATED = "powers fitted to measured runs, see the head of this file"
+"""Typical uncertainty of the factor on k_c: catalogues differ by 20 to 70 % for one steel."""
+CALIBRATED = "powers fitted to measured runs, see the comments at the top of this file"
 _MM2_PER_M2 = 1e6
 
 
 def priors(machine: Machine) -> dict[Parameter, ParameterPrior]:
-    """Prior of each parameter from the machine's file."""
+    """Prior value of each parameter, from the machine's file."""
     spindle = machine.spindle
     known = {
         Parameter.BASE: _prior(machine.base_power, POWER),
@@ -176,12 +175,12 @@ def priors(machine: Machine) -> dict[Parameter, ParameterPrior]:
 
 
 def calibrated(machine: Machine, calibration: Calibration, delay: Delay) -> Machine:
-    """The machine with the parameters that were identified; the others stay.
+    """Machine with the identified parameters; all others are unchanged.
 
     Parameters
     ----------
     machine : Machine
-        Whose :func:`priors` the calibration began with.
+        Machine from whose :func:`priors` the calibration started.
     calibration : Calibration
     delay : Delay
     """
@@ -212,7 +211,7 @@ def calibrated(machine: Machine, calibration: Calibration, delay: Delay) -> Mach
 
 
 def notes(calibration: Calibration, delay: Delay) -> tuple[str, ...]:
-    """Lines that say what was found and what was not, for the head of a machine's file."""
+    """Lines that report each fitted parameter, for the head of a machine file."""
     late = f"delay of the main drive: {delay.value:.4g} s"
     span = f", 95 % interval {delay.low:.4g} to {delay.high:.4g} s"
     late = f"delay of the main drive not found: {delay.reason}" if delay.reason else late + span
@@ -220,12 +219,12 @@ def notes(calibration: Calibration, delay: Delay) -> tuple[str, ...]:
 
 
 def _prior(value: float, scale: float) -> ParameterPrior:
-    """A value that may be off by itself or by the scale."""
+    """Prior whose uncertainty is its value or a scale, whichever is greater."""
     return ParameterPrior(value=value, scale=max(value, scale))
 
 
 def _from_mains(drive: AxisDrive | None) -> tuple[float, float, float]:
-    """Friction N, viscous friction N·s/mm and mass kg of a drive, as seen from the mains."""
+    """Friction in N, viscous friction in N·s/mm and mass in kg, as seen from the mains."""
     if drive is None:
         return 0.0, 0.0, 0.0
     per_mm = motor_speed(drive, 1.0)
@@ -236,7 +235,7 @@ def _from_mains(drive: AxisDrive | None) -> tuple[float, float, float]:
 
 
 def _axis(axis: Axis, found: Mapping[Parameter, Estimate]) -> Axis:
-    """The axis with a drive that draws what was found; as it was if nothing was."""
+    """Axis with a drive equivalent to the fitted parameters; unchanged if there are none."""
     parameters = AXIS_PARAMETERS[AXES.index(axis.name)] if axis.name in AXES else ()
     if not any(parameter in found for parameter in parameters):
         return axis
@@ -260,7 +259,7 @@ def _axis(axis: Axis, found: Mapping[Parameter, Estimate]) -> Axis:
 
 
 def _note(each: Estimate) -> str:
-    """One line on a parameter."""
+    """Line that reports a parameter and its interval."""
     value = f"{each.value:.4g} {each.unit}".strip()
     span = f"{each.low:.4g} to {each.high:.4g} {each.unit}".strip()
     if each.is_identified:

@@ -1,20 +1,19 @@
-"""Regressors of the power of a machine, sample by sample, and the power that they give.
+"""Regressors of the power of a machine, sample by sample, and the resulting power.
 
-Every component's power is linear in the parameters, but never negative: braking energy is
-burnt. With ``n`` the spindle's speed, ``v`` and ``a`` an axis' speed and acceleration, ``P_c``
-the power at the edge for a factor of 1 on the specific cutting force and ``η`` the spindle's
-efficiency::
+The power of every component is linear in the parameters, but never negative: braking energy is
+dissipated. With ``n`` the spindle speed, ``v`` and ``a`` speed and acceleration of an axis,
+``P_c`` the cutting power at the edge for a factor of 1 on the specific cutting force and ``η``
+the efficiency of the spindle::
 
     spindle  P = P_0 + p_1·|n| + p_2·n² + (2π)²·J·n·ṅ/η + k·P_c/η
     axis     P = F_0·|v| + B·v² + m·a·v
     base     P = P_b                      coolant  P = P_k while it flows
     total    the sum
 
-as in :mod:`simulator.physics.spindle_motion` and :mod:`simulator.physics.axis`, the axis'
-parameters seen from the mains: friction ``F_0`` in N, ``B`` in N·s/mm, mass ``m`` in kg, each
-divided by the drive's efficiency. Units mm, s, N, W, rev/s, kg·m².
-
-Priors and estimates of a machine's parameters.
+as in :mod:`simulator.physics.spindle_motion` and :mod:`simulator.physics.axis`. Parameters of
+an axis are as seen from the mains: friction ``F_0`` in N, ``B`` in N·s/mm and mass ``m`` in kg,
+each divided by the efficiency of the drive. The module also defines priors and estimates of the
+parameters. Units mm, s, N, W, rev/s, kg·m².
 """
 
 from collections.abc import Mapping
@@ -32,7 +31,7 @@ _MM2_PER_M2 = 1e6
 
 
 class Parameter(StrEnum):
-    """Parameter that can be fitted."""
+    """Parameter of a machine that can be fitted."""
 
     BASE = "base power"
     COOLANT = "coolant power"
@@ -72,37 +71,37 @@ AXIS_PARAMETERS = (
     (Parameter.FRICTION_Z, Parameter.VISCOUS_Z, Parameter.MASS_Z),
 )
 PARTS: tuple[Component, ...] = tuple(part for part in Component if part is not Component.TOTAL)
-"""components that the total is the sum of"""
+"""Components whose sum is the total power."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class RunFeatures:
-    """N samples of one run, by what was commanded, measured or simulated."""
+    """Quantities of N samples of one run on which the power depends, with measured powers."""
 
     name: str
     duration: Floats
-    """Duration, (N,) s that each sample stands for"""
+    """Time represented by each sample, (N,), s."""
     spindle_speed: Floats
-    """Spindle speed, (N,) rev/s"""
+    """Spindle speed, (N,), rev/s."""
     spindle_acceleration: Floats
-    """Spindle acceleration, (N,) rev/s²"""
+    """Spindle acceleration, (N,), rev/s²."""
     velocity: Floats
-    """Velocity, (N, 3) mm/s"""
+    """Velocity of the axes, (N, 3), mm/s."""
     acceleration: Floats
-    """Acceleration, (N, 3) mm/s²"""
+    """Acceleration of the axes, (N, 3), mm/s²."""
     cutting_power: Floats
-    """Cutting power, (N,) W at the edge, for a factor of 1 on the specific cutting force"""
+    """Cutting power at the edge for a factor of 1 on the specific cutting force, (N,), W."""
     coolant: Floats
-    """Coolant, (N,) share of the coolant's power, 0 to 1"""
+    """Share of the full coolant power, (N,), 0 to 1."""
     measured: Mapping[Component, Floats]
-    """each (N,) W; empty when the run is only predicted"""
+    """Measured power of each component, each (N,), W; empty if the run is only predicted."""
 
     def __len__(self) -> int:
         return len(self.duration)
 
 
 Design = Mapping[Component, Floats]
-"""(N, P) for each component but the total: W per unit of each parameter"""
+"""Power per unit of each parameter, (N, P), for each component except the total, W."""
 
 
 def design(run: RunFeatures, *, efficiency: float) -> Design:
@@ -112,7 +111,7 @@ def design(run: RunFeatures, *, efficiency: float) -> Design:
     ----------
     run : RunFeatures
     efficiency : float
-        Of the spindle.
+        Efficiency of the spindle.
     """
     count = len(run)
     table = {part: np.zeros((count, len(PARAMETERS))) for part in PARTS}
@@ -141,61 +140,61 @@ def design(run: RunFeatures, *, efficiency: float) -> Design:
 
 
 def powers(table: Design, values: Floats) -> dict[Component, Floats]:
-    """Power of every component and their total for (P,) parameter values, each (N,) W."""
+    """Power of every component and their total for (P,) parameter values, each (N,), W."""
     watts = {part: np.maximum(0.0, table[part] @ values) for part in PARTS}
     return {**watts, Component.TOTAL: np.sum(list(watts.values()), axis=0)}
 
 
 def slopes(table: Design, values: Floats) -> dict[Component, Floats]:
-    """Change of every component's power and of their total with each parameter, (N, P)."""
+    """Derivative of every component's power and of their total by each parameter, (N, P)."""
     parts = {part: table[part] * (table[part] @ values > 0.0)[:, None] for part in PARTS}
     return {**parts, Component.TOTAL: np.sum(list(parts.values()), axis=0)}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ParameterPrior:
-    """Prior of a parameter."""
+    """Prior value of a parameter and its uncertainty."""
 
     value: float
     scale: float
-    """by how much it may well be off"""
+    """Typical uncertainty of the value."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Estimate:
-    """Estimate of a parameter after a fit."""
+    """Estimate of a parameter after a fit, with its 95 % interval."""
 
     parameter: Parameter
     value: float
     low: float
     high: float
-    """95 % interval; of one that is not identified, what the data allow"""
+    """Upper end of the 95 % interval; if not identified, of what the data permit."""
     reason: str = ""
-    """why it could not be identified and keeps its prior value; empty: it was"""
+    """Reason why the parameter was not identified and keeps its prior; empty if it was."""
 
     @property
     def is_identified(self) -> bool:
-        """Whether the data say more than was known before."""
+        """Whether the data give more information than the prior."""
         return not self.reason
 
     @property
     def unit(self) -> str:
-        """Of value and interval."""
+        """Unit of value and interval."""
         return UNITS[self.parameter]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Calibration:
-    """Fitted parameters."""
+    """Fitted parameters of a machine with the residual noise."""
 
     estimates: tuple[Estimate, ...]
-    """one of each parameter"""
+    """Estimates, one per parameter."""
     noise: Mapping[Component, float]
-    """Noise, W, standard deviation of what the fit leaves, by component"""
+    """Standard deviation of the residuals by component, W."""
     blocks: int
-    """of consecutive samples, each one observation"""
+    """Number of blocks of consecutive samples; each counts as one observation."""
 
     @property
     def values(self) -> Floats:
-        """(P,) values in the order of the parameters."""
+        """Values in the order of the parameters, (P,)."""
         return np.array([estimate.value for estimate in self.estimates])

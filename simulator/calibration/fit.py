@@ -1,19 +1,17 @@
-"""Power parameters of a machine fitted to measured runs, and how well the data know them.
+"""Power parameters of a machine fitted to measured runs, with 95 % intervals.
 
-The covariance is the sandwich of
-[1]_ over blocks of consecutive samples, because neighbours err alike, or over whole runs where
-there are enough of them and that gives more, because a machine is not the same every day;
-intervals are 95 % by Student's t.
+All measured powers of all runs form one vector. Parameters are fitted by robust least squares
+with soft L1 loss: a residual beyond three standard deviations counts by its size, not its
+square. Each component is weighted by its own noise, which the fit itself estimates.
 
-A parameter whose interval would be wider than what was known before is not identified: it stays
-at its prior value. Which others it cannot be told from is read off the correlations that the
-singular values of the scaled Jacobian leave.
+The covariance is the sandwich estimator of [1]_ over blocks of consecutive samples, because
+errors of neighbours are correlated; or over whole runs where there are enough of them and this
+gives wider intervals, because a machine varies from day to day. Intervals are 95 % by Student's
+t.
 
-All measured powers of all runs in one vector, and the parameters that meet them best.
-
-Robust least squares: soft L1, so that a residual beyond three standard deviations counts by its
-size and not by its square; each component by its own noise, which the fit itself tells. Units
-W, s.
+A parameter whose interval would be wider than its prior uncertainty is not identified: it keeps
+its prior value. The correlations from the singular values of the scaled Jacobian tell with
+which others it is confounded. Units W, s.
 
 References
 ----------
@@ -46,40 +44,40 @@ from simulator.motion.segments import Floats, Ints
 
 BLOCK_TIME = 10.0  # s of consecutive samples that count as one observation
 OUTLIER = 3.0
-"""standard deviations from which a residual counts by its size only"""
+"""Number of standard deviations from which a residual counts linearly."""
 BULK, BULK_WIDTH = 0.8, 1.2816
-"""share of residuals that tells the noise, and the standard deviations within which a normal
-distribution holds that share; the median would be that of a standing axis"""
+"""Share of residuals that determines the noise, and the number of standard deviations within
+which a normal distribution has that share; the median would reflect axes at rest."""
 ROUNDS = 3
-"""fits, each with the noise that the one before left"""
+"""Number of fits, each with the noise left by the previous one."""
 START = 0.1
-"""share of its scale from which a parameter starts that was 0 before"""
+"""Start value of a parameter with prior 0, as a share of its scale."""
 SHARE_OF_SPREAD = 5e-3
-"""noise below this share of a signal's spread is taken as this: models are never that good"""
+"""Least noise as a share of a signal's spread: no model is more accurate."""
 LEAST_NOISE = 1e-9  # W
 CLOSE = 1e-6
-"""the fit ends when nothing changes by this share"""
+"""Relative change below which the fit has converged."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class StackedPowers:
-    """All measured powers of all runs, one below the other."""
+    """All measured powers of all runs, stacked in one vector of M rows."""
 
     tables: tuple[Design, ...]
     parts: tuple[tuple[Component, ...], ...]
-    """measured, by run"""
+    """Measured components of each run."""
     watts: Floats
-    """Watts, (M,)"""
+    """Measured powers, (M,), W."""
     part: Ints
-    """Part, (M,) which component"""
+    """Index of the component, (M,)."""
     block: Ints
-    """Block, (M,) which block of consecutive samples"""
+    """Index of the block of consecutive samples, (M,)."""
     run: Ints
-    """Run, (M,) which run"""
+    """Index of the run, (M,)."""
 
 
 def stacked(runs: Sequence[RunFeatures], efficiency: float) -> StackedPowers:
-    """Measured powers below one another, in blocks of consecutive samples."""
+    """Stack all measured powers, divided into blocks of consecutive samples."""
     if not any(run.measured for run in runs):
         raise CalibrationError("no measured power in any run")
     whole = sum(float(run.duration.sum()) for run in runs)
@@ -105,7 +103,7 @@ def stacked(runs: Sequence[RunFeatures], efficiency: float) -> StackedPowers:
 
 
 def predicted(stack: StackedPowers, values: Floats) -> Floats:
-    """(M,) W of the stack's rows."""
+    """Predicted powers for the rows of the stack, (M,), W."""
     rows = [
         powers(table, values)[part]
         for table, parts in zip(stack.tables, stack.parts, strict=True)
@@ -115,7 +113,7 @@ def predicted(stack: StackedPowers, values: Floats) -> Floats:
 
 
 def jacobian(stack: StackedPowers, values: Floats) -> Floats:
-    """(M, P) W per unit of each parameter."""
+    """Derivatives of the predicted powers by each parameter, (M, P), W per unit."""
     rows = [
         slopes(table, values)[part]
         for table, parts in zip(stack.tables, stack.parts, strict=True)
@@ -127,12 +125,12 @@ def jacobian(stack: StackedPowers, values: Floats) -> Floats:
 def solved(
     stack: StackedPowers, free: Ints, *, prior: Floats, scale: Floats
 ) -> tuple[Floats, Floats]:
-    """Values of all parameters, those not free at their priors; noise of each row, (M,) W."""
+    """Fit the free parameters; return all values, and the noise of each row, (M,), W."""
     # An axis that stands draws the same power all the time.
     noise = np.maximum(_by_part(stack, stack.watts, np.std), LEAST_NOISE)
     floor = np.maximum(SHARE_OF_SPREAD * noise, LEAST_NOISE)
     values = prior.copy()
-    # From nothing no power could rise: it is cut off at 0, and so is its slope.
+    # Starting from zero, power would be cut off at 0, and its slope would vanish.
     values[free] = np.where(prior > 0.0, prior, START * scale)[free]
     for _ in range(ROUNDS):
         if len(free):
@@ -143,7 +141,7 @@ def solved(
 
 
 def _by_part(stack: StackedPowers, rows: Floats, number: Callable[[Floats], float]) -> Floats:
-    """(M,) a number of each component, on every row of it."""
+    """A statistic of each component's rows, repeated on all its rows, (M,)."""
     result = np.empty(len(rows))
     for part in np.unique(stack.part):
         here = stack.part == part
@@ -152,14 +150,14 @@ def _by_part(stack: StackedPowers, rows: Floats, number: Callable[[Floats], floa
 
 
 def _scatter(sizes: Floats) -> float:
-    """Standard deviation of what has these absolute values, but for a fifth of outliers."""
+    """Standard deviation from absolute values, ignoring the largest fifth as outliers."""
     return float(np.quantile(sizes, BULK)) / BULK_WIDTH
 
 
 def _least_squares(
     stack: StackedPowers, free: Ints, *, start: Floats, scale: Floats, noise: Floats
 ) -> Floats:
-    """Values of all parameters, the free ones fitted."""
+    """Values of all parameters after a least-squares fit of the free ones."""
 
     def whole(part: Floats) -> Floats:
         values = start.copy()
@@ -173,7 +171,7 @@ def _least_squares(
         bounds=(0.0, np.inf),
         loss="soft_l1",
         f_scale=OUTLIER,
-        # Inexact steps hardly move where parameters are nearly alike.
+        # Inexact steps make little progress where parameters are nearly collinear.
         tr_solver="exact",
         ftol=CLOSE,
         xtol=CLOSE,
@@ -184,17 +182,17 @@ def _least_squares(
 def scaled(
     stack: StackedPowers, free: Ints, *, values: Floats, scale: Floats, noise: Floats
 ) -> Floats:
-    """(M, F) Jacobian in units of the noise and of the scales."""
+    """Jacobian in units of the noise and of the scales, (M, F)."""
     return jacobian(stack, values)[:, free] * scale[free] / noise[:, None]
 
 
 CONFIDENCE = 0.95
 FEWEST_RUNS = 3
-"""from which the differences between runs are looked at"""
+"""Least number of runs for which differences between runs are considered."""
 NOTABLE = 0.5
-"""correlation from which a parameter is named"""
+"""Correlation from which a parameter is reported as confounded."""
 TINY = 1e-9
-"""of the greatest singular value; what is less is nothing"""
+"""Least singular value, as a share of the greatest, that is considered nonzero."""
 
 
 def fitted(
@@ -203,21 +201,21 @@ def fitted(
     *,
     efficiency: float,
 ) -> Calibration:
-    """Parameters that make the predicted powers meet the measured ones.
+    """Fit parameters such that predicted powers match the measured ones.
 
     Parameters
     ----------
     runs : sequence of RunFeatures
-        With measured powers.
+        Runs with measured powers.
     priors : mapping of ParameterPrior
-        One for each parameter.
+        Priors, one for each parameter.
     efficiency : float
-        Of the spindle; not fitted, since the idle power and it cannot be told apart.
+        Efficiency of the spindle; not fitted, as it cannot be separated from the idle power.
 
     Raises
     ------
     CalibrationError
-        No power was measured.
+        If no power was measured.
     """
     stack = stacked(runs, efficiency)
     prior = np.array([priors[name].value for name in PARAMETERS])
@@ -256,10 +254,10 @@ def fitted(
 def _half_widths(
     stack: StackedPowers, free: Ints, *, values: Floats, noise: Floats, scale: Floats
 ) -> tuple[Floats, Floats]:
-    """Half of each interval in units of the scales, (F,), and correlations, (F, F).
+    """Half-widths of the intervals over the scales, (F,), and correlations, (F, F).
 
-    The greatest of the sandwiches and of what independent noise alone would give: along a
-    direction that the data do not know, a sandwich is nothing over nothing.
+    The half-width is the greatest of the sandwich estimates and the one for independent noise:
+    in a direction without information in the data, a sandwich estimate is undetermined.
     """
     if not len(free):
         return np.empty(0), np.empty((0, 0))
@@ -282,12 +280,12 @@ def _half_widths(
 
 
 def _quantile(count: int) -> float:
-    """Student's t of so many independent pulls."""
+    """Quantile of Student's t for a number of independent observations."""
     return float(student.ppf(0.5 + 0.5 * CONFIDENCE, count - 1))
 
 
 def _estimate(index: int, *, value: float, half: float) -> Estimate:
-    """A parameter and its interval, of which none can be negative."""
+    """Estimate of a parameter; its interval excludes negative values."""
     return Estimate(
         parameter=PARAMETERS[index], value=value, low=max(0.0, value - half), high=value + half
     )
@@ -301,18 +299,18 @@ def _kept(
     half: float,
     why: str,
 ) -> Estimate:
-    """A parameter that keeps its prior value."""
+    """Estimate of a parameter that keeps its prior value."""
     found = _estimate(index, value=value, half=half)
     return replace(found, value=priors[PARAMETERS[index]].value, reason=why)
 
 
 def _confusion(free: Ints, correlation: Floats, worst: int) -> str:
-    """Why a parameter is not known, by its (F,) correlations with the others."""
+    """Reason why a parameter is not identified, from its (F,) correlations with the others."""
     others = [
         str(PARAMETERS[index])
         for row, index in enumerate(free)
         if row != worst and abs(correlation[row]) > NOTABLE
     ]
     if not others:
-        return "too small against the noise"
-    return f"cannot be told apart from {', '.join(others)}"
+        return "too small compared with the noise"
+    return f"cannot be distinguished from {', '.join(others)}"

@@ -1,4 +1,4 @@
-"""Error on what was not fitted: each run by the others, a single one's end by its start."""
+"""Prediction errors on data not used for fitting: other runs, or the end of a single run."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -18,12 +18,12 @@ from simulator.calibration.measured_run import Component
 from simulator.calibration.skill import Skill, compared, mean_power
 
 FITTED_SHARE = 0.7
-"""of a single run's samples; the rest is held out"""
+"""Share of a single run's samples used for fitting; the rest is held out."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HeldOut:
-    """Errors of a run, or of a part of one, that was not fitted."""
+    """Prediction errors of a run, or part of a run, that was not used for fitting."""
 
     name: str
     skills: Mapping[Component, Skill]
@@ -35,15 +35,15 @@ def held_out(
     *,
     efficiency: float,
 ) -> tuple[HeldOut, ...]:
-    """Errors of each run when the others are fitted, of a single one when its start is.
+    """Errors of each run predicted from the others; of a single run from its first part.
 
     Parameters
     ----------
     runs : sequence of RunFeatures
-        With measured powers.
+        Runs with measured powers.
     priors : mapping of ParameterPrior
     efficiency : float
-        Of the spindle.
+        Efficiency of the spindle.
     """
     if len(runs) == 1:
         cut = int(FITTED_SHARE * len(runs[0]))
@@ -64,7 +64,7 @@ def held_out(
 def skills(
     run: RunFeatures, others: Sequence[RunFeatures], calibration: Calibration, efficiency: float
 ) -> dict[Component, Skill]:
-    """Errors of each measured power of a run by a calibration that others gave."""
+    """Prediction errors of each measured power of a run, with a calibration from other runs."""
     values = calibration.values
     table = design(run, efficiency=efficiency)
     model = powers(table, values)
@@ -88,7 +88,7 @@ def skills(
 
 
 def _rows(run: RunFeatures, rows: slice) -> RunFeatures:
-    """Some of the samples of a run."""
+    """Select a range of the samples of a run."""
     return RunFeatures(
         name=run.name,
         duration=run.duration[rows],

@@ -1,13 +1,12 @@
-"""Modes from a measured frequency response: peaks picked, then all of them fitted together.
+"""Modes fitted to a measured frequency response: peaks picked, then fitted together.
 
-``Φ(ω) = Σ (ω_n²/k)/(ω_n² − ω² + 2iζ·ω_n·ω) + r_0 + r_1/ω²``; the residues r stand for modes
-above and below the measured range, and are left out of what is told. Units Hz, N/mm, mm/N.
+``Φ(ω) = Σ (ω_n²/k)/(ω_n² − ω² + 2iζ·ω_n·ω) + r_0 + r_1/ω²``; the residues r represent modes
+above and below the measured range, and are not reported. Units Hz, N/mm, mm/N.
 
-A measured frequency response: what a tap test shows at the tool point or the workpiece.
-
-The file is CSV with a column ``frequency_hz`` and the real and the imaginary part, the unit in
-their headings: receptance in m/N, mm/N or µm/N, or accelerance in m/s²/N. Headings are read
-without regard to case and signs between their words: ``Real (µm/N)`` is ``real_um_n``.
+The frequency response comes from a tap test at the tool point or the workpiece. The file is CSV
+with a column ``frequency_hz`` and the real and imaginary part, with the unit in their headings:
+receptance in m/N, mm/N or µm/N, or accelerance in m/s²/N. Case and punctuation in headings are
+ignored: ``Real (µm/N)`` is read as ``real_um_n``.
 
 References
 ----------
@@ -32,12 +31,12 @@ Complex = NDArray[np.complex128]
 
 FREQUENCY = "frequency_hz"
 MM_PER_N = {"m_n": 1e3, "mm_n": 1.0, "um_n": 1e-3}
-"""mm/N per unit of a receptance"""
+"""Receptance in mm/N per unit."""
 ACCELERANCE = "m_s2_n"
 UNITS = (*MM_PER_N, ACCELERANCE)
 MM_PER_M = 1e3
 HIGHEST = 100_000.0
-"""Hz; no tap excites more"""
+"""Highest plausible frequency, Hz; no tap excites more."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -46,25 +45,30 @@ class FrequencyResponse:
 
     name: str
     frequency: Floats
-    """Frequency, (N,) Hz, ascending, positive"""
+    """Frequency, (N,), Hz, ascending, positive."""
     receptance: Complex
-    """Receptance, (N,) mm/N"""
+    """Complex receptance, (N,), mm/N."""
 
 
 def read_response(path: Path) -> FrequencyResponse:
-    """Frequency response of a CSV file, checked.
+    """Read and check a frequency response from a CSV file.
 
-    A first line at 0 Hz is left out: it tells nothing of a mode.
+    A first row at 0 Hz is skipped: it contains no information on modes.
 
     Raises
     ------
     CalibrationError
-        A column is missing or holds no numbers, the frequency does not ascend, or all is zero.
+        If a column is missing or has non-numeric cells, the frequency does not ascend, or
+        all values are zero.
     """
     parts = [f"{part}_{unit}" for part in ("real", "imag") for unit in UNITS]
     columns, lines = read_columns(path, wanted=(FREQUENCY, *parts), spelt=spelt)
     if FREQUENCY not in columns:
-        raise CalibrationError("missing; frequency in Hz", path=str(path), column=FREQUENCY)
+        raise CalibrationError(
+            "column is missing; it must hold the frequency in Hz",
+            path=str(path),
+            column=FREQUENCY,
+        )
     unit = _unit(columns, path)
     frequency = columns[FREQUENCY]
     _check_frequency(frequency, lines=lines, path=path)
@@ -72,7 +76,7 @@ def read_response(path: Path) -> FrequencyResponse:
     frequency = frequency[rows]
     measured = columns[f"real_{unit}"][rows] + 1j * columns[f"imag_{unit}"][rows]
     if not np.abs(measured).any():
-        raise CalibrationError("zero throughout", path=str(path), column=f"real_{unit}")
+        raise CalibrationError("all values are zero", path=str(path), column=f"real_{unit}")
     factor = MM_PER_N.get(unit, 1.0) * np.ones(len(frequency))
     if unit == ACCELERANCE:
         factor = -MM_PER_M / (2.0 * np.pi * frequency) ** 2
@@ -81,7 +85,7 @@ def read_response(path: Path) -> FrequencyResponse:
 
 
 def spelt(heading: str) -> str:
-    """A heading as it is compared.
+    """Normalise a heading for comparison.
 
     Examples
     --------
@@ -95,26 +99,30 @@ def spelt(heading: str) -> str:
 
 
 def _unit(columns: dict[str, Floats], path: Path) -> str:
-    """Unit in which both parts are given."""
+    """Unit in which real and imaginary part are given."""
     given = [unit for unit in UNITS if f"real_{unit}" in columns]
     if not given:
         known = ", ".join(f"real_{unit}" for unit in UNITS)
-        raise CalibrationError(f"no real part; one of {known} is needed", path=str(path))
+        raise CalibrationError(
+            f"no column with the real part; one of {known} is needed", path=str(path)
+        )
     (unit, *others) = given
     if others:
-        message = f"beside {f'real_{others[0]}'}; one unit is enough"
+        message = f"given together with {f'real_{others[0]}'}; use one unit only"
         raise CalibrationError(message, path=str(path), column=f"real_{unit}")
     if f"imag_{unit}" not in columns:
-        raise CalibrationError("missing", path=str(path), column=f"imag_{unit}")
+        raise CalibrationError("column is missing", path=str(path), column=f"imag_{unit}")
     return unit
 
 
 def _check_frequency(frequency: Floats, *, lines: Ints, path: Path) -> None:
-    """Ascending, in a range that a tap excites."""
+    """Check that frequencies ascend within the range that a tap excites."""
     steps = np.diff(frequency)
     if (steps <= 0.0).any():
         row = int(np.argmax(steps <= 0.0)) + 1
-        message = f"{frequency[row]:g} Hz after {frequency[row - 1]:g} Hz; it must ascend"
+        message = (
+            f"{frequency[row]:g} Hz after {frequency[row - 1]:g} Hz; frequencies must ascend"
+        )
         line = int(lines[row])
         raise CalibrationError(message, path=str(path), line=line, column=FREQUENCY)
     if frequency[0] < 0.0 or frequency[-1] > HIGHEST:
@@ -125,58 +133,59 @@ def _check_frequency(frequency: Floats, *, lines: Ints, path: Path) -> None:
 
 
 LEAST_PEAK = 0.1
-"""of the highest peak of the imaginary part; what is lower is no mode unless it is asked for"""
+"""Least height of a peak of the imaginary part over the highest one; lower peaks are modes
+only if requested."""
 
 MOST_MODES = 8
 
 DAMPING = (1e-4, 0.5)
-"""range of ζ"""
+"""Permitted range of the damping ratio ζ."""
 
 USUAL_DAMPING = 0.03
-"""where the width of a peak tells none"""
+"""Damping ratio assumed if it cannot be found from the width of a peak."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FittedMode:
-    """One mode."""
+    """Mode of vibration fitted to a frequency response."""
 
     natural_frequency: float
-    """Natural frequency, Hz"""
+    """Natural frequency, Hz."""
     damping_ratio: float
-    """ζ"""
+    """Damping ratio ζ."""
     stiffness: float
-    """Stiffness, N/mm"""
+    """Modal stiffness, N/mm."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ModalFit:
-    """Modes of one response, and what they do not explain."""
+    """Modes fitted to one frequency response, and the remaining error."""
 
     modes: tuple[FittedMode, ...]
-    """ascending in frequency"""
+    """Fitted modes, ascending in frequency."""
     residual: float
-    """root mean square of what is left over that of the response, residues fitted with it"""
+    """Root mean square error over that of the response, including the residues."""
     unexplained: float
-    """the same for the modes alone, as stability will use them"""
+    """Root mean square error over that of the response for the modes alone, as in stability."""
 
 
 def fitted_modes(
     response: FrequencyResponse, *, count: int | None = None, path: str = ""
 ) -> ModalFit:
-    """Modes of a response.
+    """Fit modes to a frequency response.
 
     Parameters
     ----------
     response : FrequencyResponse
     count : int, optional
-        How many; by the peaks of the imaginary part when not given.
+        Number of modes; by default from the peaks of the imaginary part.
     path : str
-        For messages.
+        File name for messages.
 
     Raises
     ------
     CalibrationError
-        There are no peaks, or not so many, or they point the wrong way.
+        If there are no peaks, fewer than requested, or they have the wrong sign.
     """
     picked = _picked(response, count, path=path)
     starts = [_start(response, row) for row in picked]
@@ -199,22 +208,22 @@ def _picked(response: FrequencyResponse, count: int | None, *, path: str) -> lis
             "is its sign that of e^(+iωt), and the response that of the tapped point?"
         )
         raise CalibrationError(message, path=path)
-    # A mode is a few lines wide; what is narrower than the noise around it is none.
+    # A mode is a few lines wide; a peak narrower than the noise around it is not a mode.
     found, _ = find_peaks(give, prominence=0.5 * LEAST_PEAK * float(give.max()))
     ranked = [int(row) for row in found[np.argsort(-give[found], kind="stable")]]
     if count is None:
         least = LEAST_PEAK * float(give.max())
         ranked = [row for row in ranked if give[row] >= least][:MOST_MODES]
     if not ranked:
-        raise CalibrationError("no peak: the range holds no mode", path=path)
+        raise CalibrationError("no peak found: the range contains no mode", path=path)
     if count is not None and len(ranked) < count:
-        message = f"{len(ranked)} peaks, {count} modes are asked for"
+        message = f"{len(ranked)} peaks found, but {count} modes were requested"
         raise CalibrationError(message, path=path)
     return ranked[:count]
 
 
 def _start(response: FrequencyResponse, row: int) -> FittedMode:
-    """A mode by its peak: width at half of −Im is 2ζ·f, height 1/(2ζ·k)."""
+    """Initial mode from a peak: width at half of −Im is 2ζ·f, height 1/(2ζ·k)."""
     frequency, give = response.frequency, -response.receptance.imag
     half = 0.5 * give[row]
     low = row - int(np.argmax(give[row::-1] < half)) if (give[:row] < half).any() else row
@@ -232,7 +241,7 @@ def _start(response: FrequencyResponse, row: int) -> FittedMode:
 def _fit(
     response: FrequencyResponse, starts: list[FittedMode]
 ) -> tuple[list[FittedMode], tuple[float, float]]:
-    """Least squares of real and imaginary part, in logarithms of the modes' numbers."""
+    """Fit real and imaginary part by least squares over the logarithms of the parameters."""
     frequency = response.frequency
     scale = float(np.abs(response.receptance).max())
     middle = float(np.median(frequency))
@@ -272,7 +281,7 @@ def _fit(
 def _model(
     frequency: Floats, modes: list[FittedMode], residues: tuple[float, float]
 ) -> Complex:
-    """Receptance of the modes with their residues, mm/N."""
+    """Receptance of modes and residues, mm/N."""
     total = np.asarray(residues[0] + residues[1] / frequency**2, dtype=np.complex128)
     for mode in modes:
         ratio = frequency / mode.natural_frequency
@@ -283,6 +292,6 @@ def _model(
 
 
 def _share(response: FrequencyResponse, fitted: Complex) -> float:
-    """Root mean square of a miss over that of the response."""
+    """Root mean square error of a fit over that of the response."""
     left = np.abs(fitted - response.receptance)
     return float(np.sqrt(np.mean(left**2) / np.mean(np.abs(response.receptance) ** 2)))

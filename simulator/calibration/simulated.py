@@ -1,7 +1,7 @@
 """Features of a measured run from a simulation of its program.
 
-The simulation shows the motion, the spindle and the power at the edge by its own time; the
-measured clock lags behind it by a constant, the only thing that is aligned. Units mm, s, W.
+The simulation gives the motion, the spindle speed and the cutting power over its own time. The
+measured clock lags behind by a constant, which is the only alignment. Units mm, s, W.
 """
 
 import numpy as np
@@ -16,13 +16,13 @@ MOST_LAG = 5.0  # s
 
 
 def features(samples: Samples, run: MeasuredRun) -> RunFeatures:
-    """A measured run with the kinematics of a simulated one.
+    """Combine the powers of a measured run with the kinematics of a simulated one.
 
     Parameters
     ----------
     samples : Samples
-        Of the same program on the machine that is to be calibrated, with a factor of 1 on the
-        specific cutting force; dense enough to show accelerations, 100 Hz or more.
+        Simulation of the same program on the machine to be calibrated, with a factor of 1 on
+        the specific cutting force; dense enough for accelerations, 100 Hz or more.
     run : MeasuredRun
     """
     time = run.time - run.time[0] - lag(samples, run)
@@ -42,7 +42,7 @@ def features(samples: Samples, run: MeasuredRun) -> RunFeatures:
 
 
 def lag(samples: Samples, run: MeasuredRun) -> float:
-    """Constant lag of a measured run's clock behind a simulation's, s, by their powers."""
+    """Lag of a measured run's clock behind the simulation's, s, found from the powers."""
     time = run.time - run.time[0]
     known = {
         Component.X: samples.axis_power[:, 0],
@@ -62,10 +62,10 @@ def lag(samples: Samples, run: MeasuredRun) -> float:
 
 
 def _at(times: Floats, known: Floats, values: Floats) -> Floats:
-    """Values at other times; before and after the run those of its ends."""
+    """Values interpolated at other times; constant before and after the run."""
     return np.interp(times, known, values)
 
 
 def _columns(times: Floats, known: Floats, values: Floats) -> Floats:
-    """Columns of values at other times."""
+    """Columns of values interpolated at other times."""
     return np.stack([_at(times, known, column) for column in values.T], axis=1)

@@ -1,9 +1,9 @@
-"""Skill of a predicted run against a measured one, over a baseline without physics.
+"""Skill of predicting a measured run compared with a baseline without physics.
 
-The baseline is the mean power of the calibration runs times the time of the run that is to be
-predicted; it is given the measured time, so that it has every advantage. Skill is
-``1 − |error|/|baseline's error|``: 1 is perfect, 0 no better than the baseline, negative worse.
-A constant lag between both clocks is the only thing that is aligned. Units W, J, s.
+The baseline is the mean power of the calibration runs times the measured duration of the run to
+be predicted, so that it has every advantage. Skill is ``1 − |error|/|baseline's error|``: 1 is
+perfect, 0 no better than the baseline, negative worse. A constant lag between both clocks is
+the only alignment. Units W, J, s.
 """
 
 from collections.abc import Callable
@@ -13,68 +13,68 @@ import numpy as np
 
 from simulator.motion.segments import Floats
 
-LAG_STEP = 0.05  # s between the lags that are tried
+LAG_STEP = 0.05  # s between lags to be tried
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Skill:
-    """Errors of one power of one run, model and baseline side by side."""
+    """Errors of one component's power in a run, for the model and for the baseline."""
 
     measured_energy: float
-    """Measured energy, J"""
+    """Measured energy, J."""
     model_energy: float
-    """Model energy, J"""
+    """Energy predicted by the model, J."""
     baseline_energy: float
-    """Baseline energy, J"""
+    """Energy predicted by the baseline, J."""
     model_rmse: float
-    """Model rmse, W"""
+    """Root mean square error of the model's power, W."""
     baseline_rmse: float
-    """Baseline rmse, W"""
+    """Root mean square error of the baseline's power, W."""
     measured_net: float
-    """J, cutting energy: without base, idle, axes; of the measured run by subtraction"""
+    """Measured cutting energy, J: measured energy minus the idle energy of the model."""
     model_net: float
-    """Model net, J"""
+    """Cutting energy of the model, J."""
 
     @property
     def energy_error(self) -> float:
-        """Share of the measured energy, signed."""
+        """Signed relative error of the model's energy."""
         return relative_error(self.model_energy, self.measured_energy)
 
     @property
     def baseline_energy_error(self) -> float:
-        """Share of the measured energy, signed."""
+        """Signed relative error of the baseline's energy."""
         return relative_error(self.baseline_energy, self.measured_energy)
 
     @property
     def net_error(self) -> float:
-        """Share of the net cutting energy, signed; infinite where nothing was cut."""
+        """Signed relative error of the cutting energy; infinite if nothing was cut."""
         return relative_error(self.model_net, self.measured_net)
 
     @property
     def energy_skill(self) -> float:
-        """Over the baseline, by energy."""
+        """Skill of the model over the baseline by energy."""
         return skill(self.energy_error, self.baseline_energy_error)
 
     @property
     def power_skill(self) -> float:
-        """Over the baseline, by RMSE."""
+        """Skill of the model over the baseline by root mean square error of power."""
         return skill(self.model_rmse, self.baseline_rmse)
 
 
 def relative_error(found: float, measured: float) -> float:
-    """Signed share of what was measured; infinite where that is nothing."""
+    """Signed relative error; infinite if the measured value is 0."""
     return found / measured - 1.0 if measured else np.inf
 
 
 def skill(error: float, baseline: float) -> float:
-    """``1 − |error|/|baseline|``; minus infinity against a baseline without error."""
+    """Skill ``1 − |error|/|baseline|``; minus infinity if only the baseline has no error."""
     if baseline == 0.0:
         return 0.0 if error == 0.0 else -np.inf
     return 1.0 - abs(error) / abs(baseline)
 
 
 def mean_power(watts: list[Floats], durations: list[Floats]) -> float:
-    """Mean power of several runs, W: the baseline."""
+    """Mean power of several runs, W, used as the baseline."""
     energy = sum(float(watt @ time) for watt, time in zip(watts, durations, strict=True))
     return energy / sum(float(time.sum()) for time in durations)
 
@@ -88,18 +88,18 @@ def compared(
     idle: Floats,
     baseline: float,
 ) -> Skill:
-    """Errors of a run.
+    """Compare the measured and predicted power of a run.
 
     Parameters
     ----------
     measured, model : (N,) array, W
-        At the same samples.
+        Powers at the same samples.
     duration : (N,) array, s
-        That each sample stands for.
+        Time represented by each sample.
     model_energy : float, J
-        Of the whole predicted run, over the predicted time.
+        Energy of the whole predicted run, over the predicted time.
     idle : (N,) array, W
-        What the model says would flow at these samples if nothing were cut.
+        Predicted power at these samples without cutting.
     baseline : float, W
     """
     energy = float(measured @ duration)
@@ -118,7 +118,7 @@ def compared(
 def estimated_lag(
     time: Floats, measured: Floats, model: Callable[[Floats], Floats], *, most: float
 ) -> float:
-    """Constant lag of the measured clock behind the model's, s; levels do not matter.
+    """Constant lag of the measured clock behind the model's, s, regardless of power level.
 
     Parameters
     ----------
@@ -127,7 +127,7 @@ def estimated_lag(
     model : function of (N,) times in s
         Power in W.
     most : float, s
-        Lags from minus to plus this are tried.
+        Lags between minus and plus this value are tried.
     """
     steps = round(most / LAG_STEP)
     lags = LAG_STEP * np.arange(-steps, steps + 1)

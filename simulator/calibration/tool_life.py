@@ -1,8 +1,8 @@
-"""Taylor's constants from measured pairs of cutting speed and tool life.
+"""Taylor constants fitted to measured pairs of cutting speed and tool life.
 
 A straight line through the logarithms, ``ln T = (ln C − ln v_c)/n``, by least squares over
-ln T: the speed was set, the life scatters. Two pairs give the line, three or more its spread
-too. Units mm/s and s.
+ln T, because the speed is set and the life scatters. Two pairs give the line, three or more
+also its uncertainty. Units mm/s and s.
 
 References
 ----------
@@ -23,54 +23,54 @@ from stepnc_model.errors import StepNcError
 from stepnc_model.units import SECONDS_PER_MINUTE, m_min_from_speed
 
 CONFIDENCE = 0.95
-"""of the interval of the exponent"""
+"""Confidence level of the interval of the exponent."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LifePair:
-    """One edge that was cut until it was worn."""
+    """Cutting speed and life of one edge that was used until it was worn out."""
 
     cutting_speed: float
-    """Cutting speed, mm/s"""
+    """Cutting speed, mm/s."""
     life: float
-    """Life, s"""
+    """Tool life, s."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FittedTaylor:
-    """Taylor's law through measured pairs."""
+    """Taylor's law fitted to measured pairs."""
 
     taylor: Taylor
     low: float
-    """Low of the 95 % interval of n; 0: two pairs tell no interval"""
+    """Lower end of the 95 % interval of n; 0 if there are only two pairs."""
     high: float
-    """``inf``: the pairs do not tell that the life falls with the speed"""
+    """Upper end of the interval; ``inf`` if the pairs do not show a falling life."""
     scatter: float
-    """standard deviation of ln T about the line; 0 with two pairs"""
+    """Standard deviation of ln T about the line; 0 with two pairs."""
     slowest: float
-    """Slowest, mm/s, between this and the next the law was measured"""
+    """Slowest measured cutting speed, mm/s; the law is valid from there to ``fastest``."""
     fastest: float
     pairs: int
 
     @property
     def has_interval(self) -> bool:
-        """Whether there were more pairs than constants."""
+        """Whether there are more pairs than constants, so that an interval exists."""
         return self.pairs > 2
 
 
 def fitted_taylor(pairs: Sequence[LifePair]) -> FittedTaylor:
-    """Exponent and constant by least squares in logarithms, [2]_.
+    """Fit exponent and constant by least squares in logarithms, [2]_.
 
     Parameters
     ----------
     pairs : sequence of LifePair
-        Two or more, at two speeds at least.
+        Two or more pairs, with at least two different speeds.
 
     Raises
     ------
     StepNcError
-        There are too few pairs, one is not positive, all are at one speed, or the life does
-        not fall with the speed as a life does.
+        If there are too few pairs, a value is not positive, all speeds are equal, or the
+        tool life does not fall with the speed.
 
     Examples
     --------
@@ -90,7 +90,7 @@ def fitted_taylor(pairs: Sequence[LifePair]) -> FittedTaylor:
     spread = float(away @ away)
     slope = float(away @ life) / spread
     if slope >= 0.0:
-        raise StepNcError("tool life: it does not fall with the speed in these pairs")
+        raise StepNcError("tool life: it does not fall with the cutting speed in these pairs")
     exponent = -1.0 / slope
     if exponent >= 1.0:
         raise StepNcError(f"tool life: exponent {exponent:.3g} must be less than 1")
@@ -113,10 +113,10 @@ def fitted_taylor(pairs: Sequence[LifePair]) -> FittedTaylor:
 
 
 def _require_usable(pairs: Sequence[LifePair]) -> None:
-    """Refuse what no line goes through."""
+    """Raise an error if no line can be fitted to the pairs."""
     if len(pairs) < 2:
         raise StepNcError(
-            f"tool life: {len(pairs)} pair of cutting speed and life; 2 or more are needed"
+            f"tool life: {len(pairs)} pair of cutting speed and life; at least 2 are required"
         )
     for number, pair in enumerate(pairs, 1):
         speed, life = m_min_from_speed(pair.cutting_speed), pair.life / SECONDS_PER_MINUTE

@@ -1,1 +1,1 @@
-"""Kernels: inner loops in Python that run as machine code."""
+"""Kernels: inner loops written in Python that run as machine code."""

@@ -1,8 +1,8 @@
-"""Machine code of a kernel, made by numba.
+"""Compilation of kernels to machine code with numba.
 
-numba makes LLVM's intermediate code of a kernel and of all that it calls. There everything but
-the entry becomes private to it, is optimised again as a whole, so that numba's exceptions go,
-which kernels never raise, and becomes an object file for this processor.
+numba generates LLVM intermediate code of a kernel and of all functions that it calls. All
+functions but the entry then become private and are optimised again as a whole, which removes
+numba's exceptions (kernels never raise any). The result is an object file for this processor.
 """
 
 from collections.abc import Callable
@@ -20,19 +20,19 @@ from simulator.kernels.identity import is_kernel, names_of
 def object_code(
     function: Callable[..., object], arguments: tuple[object, ...], *, symbol: str
 ) -> bytes:
-    """Object file of a kernel for arguments of the types of these.
+    """Compile a kernel for given argument types and return its object file.
 
     Parameters
     ----------
     function : callable
     arguments : tuple
     symbol : str
-        What the kernel is called there.
+        Name of the kernel in the object file.
 
     Raises
     ------
     TypeError
-        When the kernel needs numba at run time, as one does that allocates.
+        If the kernel needs numba at run time, for example because it allocates memory.
     """
     compiled = _compiled(function, {})
     types = tuple(map(numba.typeof, arguments))
@@ -55,7 +55,7 @@ def object_code(
 
 
 def _compiled(function: Any, known: dict[object, Any]) -> Any:
-    """Numba's compiler of a kernel whose names of kernels mean their compilers."""
+    """Numba compiler of a kernel, in which all kernels it calls are replaced by compilers."""
     if function not in known:
         names = {
             name: _compiled(value, known) if is_kernel(value) else value
@@ -69,10 +69,10 @@ def _compiled(function: Any, known: dict[object, Any]) -> Any:
 
 
 def require_self_contained(module: Any, symbol: str) -> None:
-    """Refuse what calls other functions than those of C's mathematics."""
+    """Raise an error if a kernel calls functions other than those of the C maths library."""
     library = CDLL(None)
     for each in module.functions:
         if not each.is_declaration or each.name.startswith("llvm."):
             continue
         if each.name.startswith(("NRT_", "numba_", "Py")) or not hasattr(library, each.name):
-            raise TypeError(f"kernel {symbol} needs {each.name}")
+            raise TypeError(f"kernel {symbol} must not call {each.name}")

@@ -1,8 +1,8 @@
-"""Identity of a kernel's machine code: everything that it depends on, as one digest.
+"""Identity of a kernel's machine code: a digest of everything that it depends on.
 
-That is the bytecode of the kernel and of all kernels that it calls, with their constants; the
-types of the arguments; the versions of Python and of what compiles; and the processor. Files
-and line numbers do not count.
+That is: the bytecode of the kernel and of all kernels that it calls, with their constants; the
+types of the arguments; the versions of Python and of the compilers; and the processor. File
+names and line numbers are not included.
 """
 
 import sys
@@ -17,25 +17,25 @@ from simulator.kernels import link
 COMPILERS = ("numba", "llvmlite", "numpy")
 
 FORM = "1"
-"""of how machine code is made and called here; a change makes all of it anew"""
+"""Version of how machine code is built and called; changing it rebuilds all kernels."""
 
 
 def digest(function: Callable[..., object], types: object) -> str:
-    """Digest of a kernel for arguments of some types, 32 hexadecimal digits."""
+    """Digest of a kernel for given argument types, as 32 hexadecimal digits."""
     parts = [FORM, sys.implementation.cache_tag, sys.version, *map(version, COMPILERS)]
     parts += [*link.processor(), repr(types), *_parts(function, set())]
     return sha256("\0".join(map(str, parts)).encode()).hexdigest()[:32]
 
 
 def is_kernel(value: object) -> bool:
-    """Whether a kernel may call it."""
+    """Whether a value is a kernel, which other kernels may call."""
     return hasattr(value, "is_kernel")
 
 
 def names_of(function: Any) -> Iterator[tuple[str, object]]:
-    """Names of its module that a kernel uses, with their values, in the kernel's order.
+    """Global names that a kernel uses, with their values, in the order of its bytecode.
 
-    An attribute of the same name as something in the module counts as well.
+    An attribute with the same name as a global name is included, too.
     """
     for name in function.__code__.co_names:
         if name in function.__globals__:
@@ -43,7 +43,7 @@ def names_of(function: Any) -> Iterator[tuple[str, object]]:
 
 
 def _parts(function: Any, seen: set[object]) -> Iterator[str]:
-    """A kernel and what it calls, each once."""
+    """Parts of the identity of a kernel and of all kernels that it calls, each once."""
     if function in seen:
         return
     seen.add(function)

@@ -1,15 +1,15 @@
-"""Decorators of kernels, and the call of their machine code.
+"""Decorators for kernels, and the call of their machine code.
 
 A kernel is a Python function of numbers, arrays and tuples of them that numba can compile and
-that allocates nothing. An entry is a kernel that Python calls; it writes into its arrays and
-returns nothing. At its first call with arguments of new types an entry takes its machine code
-from a file (:mod:`simulator.kernels.store`), or has numba make it
-(:mod:`simulator.kernels.build`). Only then numba is imported, which takes longer than most work
-that kernels do. Calls release the global interpreter lock.
+that allocates no memory. An entry is a kernel that Python can call; it writes its results into
+its arrays and returns nothing. At the first call with new argument types an entry loads its
+machine code from a file (:mod:`simulator.kernels.store`), or numba compiles it
+(:mod:`simulator.kernels.build`). numba is imported only then, as this takes longer than most
+work done by kernels. Calls release the global interpreter lock.
 
-Machine code is called by numba's own convention: status returned, two pointers for the result
-and an error, then all numbers in order; an array is two references of its owners (none here),
-its size, the size of an item, its address, its shape and its strides.
+Machine code is called by numba's calling convention: the status is returned; the arguments are
+two pointers for the result and an error, then all numbers in order. An array is passed as two
+owner references (none here), its size, item size, address, shape and strides.
 """
 
 import logging
@@ -27,43 +27,43 @@ Parameters = ParamSpec("Parameters")
 Function = TypeVar("Function", bound=Callable[..., object])
 
 LOG = logging.getLogger(__name__)
-"""says why nothing happens, on stderr where nobody configures it"""
+"""Logger that explains a long wait; writes to stderr if logging is not configured."""
 
 NOTHING = create_string_buffer(64)
-"""where a kernel would write a result or an error"""
+"""Buffer to which a kernel would write a result or an error."""
 
 Number = int | float
 Code = Callable[..., int]
 
 
 def kernel(function: Function) -> Function:
-    """Mark a kernel that only kernels call; called from Python it runs as Python."""
+    """Mark a kernel that only kernels call; called from Python it runs as plain Python."""
     function.is_kernel = True  # type: ignore[attr-defined]
     return function
 
 
 class KernelEntry(Generic[Parameters]):
-    """A kernel that Python calls."""
+    """Kernel that can be called from Python and runs as machine code."""
 
     def __init__(self, function: Callable[Parameters, None]) -> None:
         self.function = function
-        """the same as plain Python"""
+        """The kernel as a plain Python function."""
         self._codes: dict[object, Code] = {}
-        """machine code by the types of the arguments"""
+        """Machine code by the types of the arguments."""
         update_wrapper(self, function)
 
     def __call__(self, *arguments: Parameters.args, **named: Parameters.kwargs) -> None:
-        """Run the machine code.
+        """Run the machine code, compiling it first if necessary.
 
         Raises
         ------
         TypeError
-            When arguments are named, or none that a kernel takes.
+            If arguments are passed by name, or have types that a kernel does not accept.
         MemoryError
-            When the kernel fails, which kernels have no other reason for.
+            If the kernel fails; kernels have no other cause of failure.
         """
         if named:
-            raise TypeError(f"{self.function.__name__}: arguments of a kernel have no names")
+            raise TypeError(f"{self.function.__name__}: pass kernel arguments by position")
         types = _type_of(arguments)
         if types not in self._codes:
             self._codes[types] = self._code(types, arguments)
@@ -71,11 +71,11 @@ class KernelEntry(Generic[Parameters]):
             raise MemoryError(f"kernel {self.function.__name__} failed")
 
     def _code(self, types: object, arguments: tuple[object, ...]) -> Code:
-        """Machine code of this kernel for arguments of some types."""
+        """Load or compile the machine code of this kernel for given argument types."""
         name, key = self.function.__name__, digest(self.function, types)
         found = store.load(name, key)
         if found is None:
-            LOG.warning("compiling %s for this machine, once: up to half a minute", name)
+            LOG.warning("compiling %s for this machine (once, up to half a minute)", name)
             from simulator.kernels.build import object_code  # noqa: PLC0415 (numba takes a second)
 
             found = object_code(self.function, arguments, symbol=f"{name}_{key}")
@@ -85,12 +85,12 @@ class KernelEntry(Generic[Parameters]):
 
 
 def entry(function: Callable[Parameters, None]) -> KernelEntry[Parameters]:
-    """Make a kernel one that Python calls."""
+    """Turn a kernel into an entry that Python can call."""
     return KernelEntry(function)
 
 
 def _type_of(value: object) -> object:
-    """Part of a value that machine code depends on."""
+    """Type information of a value on which machine code depends."""
     if isinstance(value, np.ndarray):
         return value.dtype.str, value.ndim, value.flags.c_contiguous, value.flags.writeable
     if isinstance(value, tuple):
@@ -101,7 +101,7 @@ def _type_of(value: object) -> object:
 
 
 def _numbers(values: tuple[object, ...]) -> Iterator[Number]:
-    """All numbers of some values in the order in which machine code takes them."""
+    """All numbers of some values in the order in which machine code expects them."""
     for value in values:
         if isinstance(value, np.ndarray):
             yield from (0, 0, value.size, value.itemsize, value.ctypes.data)
@@ -114,6 +114,6 @@ def _numbers(values: tuple[object, ...]) -> Iterator[Number]:
 
 
 def _ctypes(values: tuple[object, ...]) -> Iterator[type[c_int64 | c_double]]:
-    """Types of those numbers; addresses are integers."""
+    """C types of the numbers of some values; addresses are integers."""
     for number in _numbers(values):
         yield c_double if isinstance(number, float) else c_int64

@@ -1,4 +1,4 @@
-"""Machine code of object files in this process, linked by LLVM without numba."""
+"""Linking of machine code into this process by LLVM, without numba."""
 
 from functools import cache
 from typing import Any
@@ -7,7 +7,7 @@ import llvmlite.binding as llvm
 
 
 def address_of(code: bytes, symbol: str) -> int:
-    """Address of a function of an object file, which stays loaded."""
+    """Load an object file permanently and return the address of one of its functions."""
     engine = _engine()
     engine.add_object_file(llvm.ObjectFileRef.from_data(code))
     engine.finalize_object()
@@ -16,14 +16,14 @@ def address_of(code: bytes, symbol: str) -> int:
 
 @cache
 def processor() -> tuple[str, str, str]:
-    """Platform, name and features of the processor that machine code is made for."""
+    """Platform, name and features of the processor for which machine code is built."""
     features = llvm.get_host_cpu_features()
     return llvm.get_process_triple(), llvm.get_host_cpu_name(), features.flatten()
 
 
 @cache
 def target_machine() -> Any:
-    """Processor and version that machine code is made for."""
+    """LLVM target machine for this processor."""
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
     platform, name, features = processor()
@@ -34,5 +34,5 @@ def target_machine() -> Any:
 
 @cache
 def _engine() -> Any:
-    """LLVM's linker of this process; what it has loaded lives as long as it does."""
+    """LLVM's linker of this process; it keeps loaded code until the process ends."""
     return llvm.create_mcjit_compiler(llvm.parse_assembly(""), target_machine())

@@ -1,9 +1,9 @@
-"""Files of machine code: beside the sources, or in the user's cache where that is not allowed.
+"""Files of machine code, stored beside the sources or in the user's cache folder.
 
-A file is found by the digest of everything that its code depends on, so it is never stale; it
-begins with a digest of its content, so that a damaged one counts as none. Files appear at once
-or not at all, and processes that make the same one at the same time do not disturb each other.
-Where no file can be written, machine code is made anew in each process.
+A file is identified by the digest of everything that its code depends on, so it never becomes
+outdated. It begins with a digest of its content, so that a damaged file is ignored. Files are
+written atomically, and processes that write the same file at once do not disturb each other. If
+no file can be written, machine code is compiled again in each process.
 """
 
 import os
@@ -16,13 +16,13 @@ from tempfile import NamedTemporaryFile
 BESIDE = Path(__file__).parent / "__pycache__"
 
 KEPT = 8
-"""files of one kernel: for other arguments, processors and versions"""
+"""Number of files kept per kernel: for other arguments, processors and versions."""
 
 _DIGEST = 32  # bytes of SHA-256
 
 
 def load(name: str, key: str) -> bytes | None:
-    """Machine code of a kernel; None where there is none."""
+    """Load the machine code of a kernel; None if there is no intact file."""
     for folder in _folders():
         with suppress(OSError):
             content = (folder / f"{name}-{key}.o").read_bytes()
@@ -32,7 +32,7 @@ def load(name: str, key: str) -> bytes | None:
 
 
 def save(name: str, key: str, code: bytes) -> None:
-    """Keep machine code in the first folder that takes it."""
+    """Store machine code in the first folder that is writable."""
     for folder in _folders():
         with suppress(OSError):
             folder.mkdir(parents=True, exist_ok=True)
@@ -49,7 +49,7 @@ def _folders() -> Iterator[Path]:
 
 
 def _write(path: Path, content: bytes) -> None:
-    """Put a file in place as a whole."""
+    """Write a file atomically."""
     with NamedTemporaryFile(dir=path.parent, delete=False) as file:
         try:
             file.write(content)
@@ -62,7 +62,7 @@ def _write(path: Path, content: bytes) -> None:
 
 
 def _forget(folder: Path, name: str) -> None:
-    """Remove all but the latest files of a kernel."""
+    """Delete all but the latest files of a kernel."""
     files = sorted(folder.glob(f"{name}-*.o"), key=lambda path: path.stat().st_mtime)
     for path in files[:-KEPT]:
         path.unlink(missing_ok=True)

@@ -1,1 +1,1 @@
-"""The virtual machine: here lives state."""
+"""Virtual machine tool that runs programs and simulates its sensors; holds mutable state."""

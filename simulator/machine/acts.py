@@ -1,7 +1,7 @@
-"""Acts of the machine that a program asks for, one after another.
+"""Actions that a program requests from the machine, one after another.
 
-Between the neutral blocks of a program and the run of the machine: feeds are speeds in mm/s,
-cycles and threads are moves, and moves that follow each other without a pause are one stretch.
+They lie between the neutral blocks of a program and the run of the machine: feeds are speeds in
+mm/s, cycles and threads are moves, and consecutive moves without a pause form one stretch.
 """
 
 from dataclasses import dataclass, field
@@ -12,68 +12,68 @@ from stepnc_model.post.blocks import Coolant
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class MoveStretch:
-    """Moves from rest to rest."""
+    """Consecutive moves that begin and end at rest."""
 
     segments: Segments
     spindle_speed: Floats
-    """(N,) rev/s that the spindle has at the end of each segment; NaN: it keeps its speed"""
+    """Spindle speed at the end of each segment, (N,), rev/s; NaN: unchanged."""
     per_revolution: Floats
-    """Per revolution, (N,) mm of path in a revolution of the spindle; NaN: a feed by time"""
+    """Feed per revolution of the spindle, (N,), mm; NaN for a feed per time."""
     way: int = 0
-    """segments at the beginning that lead to the path of the workingstep"""
+    """Number of segments at the beginning that lead to the path of the workingstep."""
     back: int = 0
-    """segments at the end that lead away from it"""
+    """Number of segments at the end that lead away from the path of the workingstep."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SpindleTo:
-    """The spindle goes to a speed; moves may begin meanwhile."""
+    """Command to change the spindle speed; moves may begin meanwhile."""
 
     speed: float
-    """Speed, rev/s, positive clockwise (M3), 0: stop"""
+    """Spindle speed, rev/s, positive clockwise (M3); 0 stops the spindle."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SpindleReached:
-    """Wait until the spindle has its speed: the feed is held back until then."""
+    """Wait until the spindle reaches its speed; feed moves are held until then."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Wait:
-    """Dwell."""
+    """Dwell for a given time."""
 
     seconds: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ToolTo:
-    """Tool change."""
+    """Command to change the tool."""
 
     number: int
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CoolantTo:
-    """Coolant on or off."""
+    """Command to switch the coolant on or off."""
 
     coolant: Coolant = field(default_factory=Coolant)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WorkingstepTo:
-    """A workingstep begins."""
+    """Beginning of a workingstep."""
 
     id: str
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stop:
-    """The program stops until the operator starts it again; takes no time here."""
+    """Program stop until the operator restarts the program; takes no simulated time."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EndOfProgram:
-    """The program has ended."""
+    """End of the program."""
 
 
 Act = (
@@ -91,7 +91,7 @@ Act = (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProgramAct:
-    """An act and the line of the program from which it comes."""
+    """Action of the machine with the program line that requests it."""
 
     line: int
     act: Act

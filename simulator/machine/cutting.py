@@ -1,11 +1,11 @@
-"""Force and power of the cut where the tool is, for all processes alike.
+"""Cutting force and power at the tool position, in one form for all processes.
 
 ``P_c = k_c(h_m) · Q``: specific force times removal rate, exact for milling, drilling and
 turning, so that only the section of the cut and the ratio of the mean chip need to be known. A
-drill in the solid takes more by its chisel edge. The wear land of an edge adds a force of its
-own, which no chip changes, on the width of all teeth that are in the cut on average.
-Forces are means over a revolution; those of single teeth are in
-:mod:`simulator.machine.tooth_loads`. Units mm, s, N, W, rev/s.
+drill in solid material needs more because of its chisel edge. The wear land of an edge adds a
+force that is independent of the chip, on the mean engaged width of all teeth. Forces are means
+over a revolution; forces of single teeth are in :mod:`simulator.machine.tooth_loads`. Units mm,
+s, N, W, rev/s.
 
 References
 ----------
@@ -38,50 +38,50 @@ NMM_S_PER_WATT = 1000.0
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CuttingEdge:
-    """Cutting edge and the material that it cuts."""
+    """Cutting edge of a tool and the material that it cuts."""
 
     teeth: int
     kienzle: Kienzle
     factor: float = 1.0
-    """on k_c: rake, speed, and what calibration found"""
+    """Factor on k_c for rake angle, cutting speed and calibration."""
     flutes: CuttingEdges | None = None
-    """Flutes of a milling cutter; None: straight edges, upright"""
+    """Flutes of a milling cutter; None for straight edges without helix."""
     compliance: float = 0.0
-    """mm/N, of the tip of an end mill; 0: it does not bend"""
+    """Compliance of the tip of an end mill, mm/N; 0 for a rigid tool."""
     point: DrillPoint = LIPS_ONLY
-    """Point of a tool that cuts on its end"""
+    """Point geometry of a tool that cuts with its end."""
     feed_force: Kienzle | None = None
-    """(k_f1.1, m_f) of turning; None: the usual share of the cutting force"""
+    """Kienzle constants (k_f1.1, m_f) in turning; None: usual share of the cutting force."""
     back_force: Kienzle | None = None
-    """(k_p1.1, m_p) of turning"""
+    """Kienzle constants (k_p1.1, m_p) of the back force in turning; None: usual share."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class CuttingLoads:
-    """Loads of the cut at M times."""
+    """Cutting loads at M times."""
 
     removal_rate: Floats
-    """Removal rate, (M,) mm³/s"""
+    """Removal rate, (M,), mm³/s."""
     chip_thickness: Floats
-    """Chip thickness, (M,) mm, mean over the contact"""
+    """Mean chip thickness over the contact, (M,), mm."""
     power: Floats
-    """Power, (M,) W at the edge"""
+    """Cutting power at the edge, (M,), W."""
     force: Floats
-    """Force, (M,) N, tangential"""
+    """Tangential cutting force, (M,), N."""
     feed_force: Floats
-    """Feed force, (M,) N, against the feed"""
+    """Force against the feed, (M,), N."""
     back_force: Floats
-    """Back force, (M,) N, across the feed, from the surface"""
+    """Force across the feed, away from the surface, (M,), N."""
     thrust: Floats
-    """Thrust, (M,) N, along the axis, of a drill or of a mill that goes straight down"""
+    """Thrust along the axis of a drill or a plunging mill, (M,), N."""
     deflection: Floats
-    """(M,) mm that the tip gives way, normal to the wall that it makes, at most in a turn"""
+    """Greatest deflection of the tip in a revolution, normal to the wall cut, (M,), mm."""
     filled: Floats
-    """Filled, (M,) section over the greatest of its station"""
+    """Section over the greatest section of its station, (M,)."""
 
 
 def no_loads(count: int) -> CuttingLoads:
-    """Nothing is cut."""
+    """Zero loads for a number of times without cutting."""
     nothing = np.zeros(count)
     return CuttingLoads(
         removal_rate=nothing,
@@ -105,20 +105,20 @@ def cutting_loads(
     edge: CuttingEdge,
     beyond: Floats | float = 0.0,
 ) -> CuttingLoads:
-    """Loads of a sharp edge at M places of a path.
+    """Loads of a sharp edge at M points of a path.
 
     Parameters
     ----------
     stations : Stations
     rows : (M,) array of int
-        Which station holds.
+        Index of the station that applies.
     speed : (M,) array, mm/s
-        Along the path.
+        Speed along the path.
     spindle_speed : (M,) array, rev/s
-        Magnitude; a cut with a standing spindle has no model: its force is 0.
+        Magnitude; cutting with a stopped spindle is not modelled: the force is 0.
     edge : CuttingEdge
     beyond : (M,) array or float
-        Place beyond the middle of the stretch over its length, -1/2 to 1/2.
+        Distance from the middle of the stretch over its length, -1/2 to 1/2.
     """
     is_met = stations.section * stations.chip_ratio * stations.diameter > 0.0
     cuts: Bools = is_met[rows] & (speed > 0.0) & (spindle_speed > 0.0)
@@ -155,17 +155,17 @@ def worn_loads(
     edge: CuttingEdge,
     flank_wear: Floats,
 ) -> CuttingLoads:
-    """Loads of a sharp edge and of its wear land, :mod:`simulator.physics.flank`.
+    """Add the loads of the wear land to those of a sharp edge; :mod:`simulator.physics.flank`.
 
     Parameters
     ----------
     sharp : CuttingLoads
-        At M places.
+        Loads of the sharp edge at M points.
     stations : Stations
     rows : (M,) array of int
-        Which station holds.
+        Index of the station that applies.
     spindle_speed : (M,) array, rev/s
-        Magnitude.
+        Magnitude of the spindle speed.
     edge : CuttingEdge
     flank_wear : (M,) array, mm
     """
@@ -186,10 +186,11 @@ def worn_loads(
 
 
 def engaged_width(stations: Stations, teeth: int) -> Floats:
-    """Width of the edges in the cut, all teeth, mean of a revolution, at each station, mm.
+    """Mean width of engaged edges of all teeth over a revolution at each station, mm.
 
-    ``z · a_p · φ/2π`` of a mill, the lips of a drill, the depth of a turning tool; all counted
-    across the depth. ``z·A/(π·D)`` is it for a chip as thick as the feed, A the section.
+    The width is ``z · a_p · φ/2π`` for a mill, the lips of a drill, or the depth of a turning
+    tool, always measured across the depth. For a chip as thick as the feed it equals
+    ``z·A/(π·D)``, where A is the section.
     """
     is_milling = stations.kind == StationKind.MILLING
     met = stations.diameter > 0.0
@@ -201,9 +202,9 @@ def engaged_width(stations: Stations, teeth: int) -> Floats:
 
 
 def land_coefficients(stations: Stations) -> tuple[Floats, Floats]:
-    """Force of a wear land against and across the feed, at each station, N/mm².
+    """Force of a wear land against and across the feed at each station, N/mm².
 
-    Of what is square to a leaning edge of a mill ``sin κ`` is across the axis.
+    Of the force normal to an inclined edge of a mill, the share ``sin κ`` acts across the axis.
     """
     arc = arcs_of(stations.entry_angle, stations.exit_angle)
     kind, along = stations.kind, flank.CUTTING
@@ -219,10 +220,10 @@ def land_coefficients(stations: Stations) -> tuple[Floats, Floats]:
 
 
 def milling_shares(stations: Stations) -> tuple[Floats, Floats]:
-    """Force of a mill against and across the feed over the tangential one, at each station.
+    """Mill forces against and across the feed over the tangential force, at each station.
 
-    Means over a revolution of one tooth on its arc, [2]_; a radial force that is a share of the
-    tangential one.
+    Means over a revolution of one tooth on its arc, [2]_, with a radial force that is a
+    constant share of the tangential force.
     """
     arc = arcs_of(stations.entry_angle, stations.exit_angle)
     whole = np.where(arc.sine > 0.0, arc.sine, 1.0)
@@ -233,7 +234,7 @@ def milling_shares(stations: Stations) -> tuple[Floats, Floats]:
 
 
 def _edge_sine(stations: Stations) -> Floats:
-    """Sin κ of the edge of a mill at each station, from the mean chip."""
+    """Sine of the cutting edge angle κ of a mill at each station, from the mean chip."""
     arc = arcs_of(stations.entry_angle, stations.exit_angle)
     whole = np.where(arc.sine > 0.0, arc.sine, 1.0)
     sine: Floats = np.minimum(stations.chip_ratio * arc.contact / whole, 1.0)
@@ -277,8 +278,8 @@ def _thrust(stations: Stations, rows: Ints, force: Floats, *, edge: CuttingEdge)
 
 
 def _is_solid(stations: Stations, point: DrillPoint) -> Bools:
-    """Whether the chisel edge of a drill meets material: the hole before is not wider."""
-    # The middle of a lip and its width tell the diameters inside and outside.
+    """Whether the chisel edge of a drill meets material: any existing hole is narrower."""
+    # The middle of a lip and its width give the inner and outer diameter of the cut.
     inside = stations.diameter - stations.axial_depth
     outside = stations.diameter + stations.axial_depth
     is_drill = (stations.kind == StationKind.DRILLING) & (point.chisel_ratio > 0.0)

@@ -1,13 +1,8 @@
-"""A run as real sensors would show it: drives that lag and overshoot, noise, missing samples.
+"""Sensor model: lag and overshoot of drives, noise and missing samples.
 
-Positions, events and programmed values stay true. Same seed, same bytes, however the run is
-cut.
-
-Sensor model: noise, steps, missing samples. Same seed, same bytes.
-
-Each draw belongs to a seed, a column and the number of a sample, counted from the start of the
-run: it comes from a counter, not from what was drawn before, and is the same however a run is
-cut in chunks.
+Positions, events and programmed values stay exact. The same seed gives the same bytes, however
+the run is cut in chunks: each random number depends only on a seed, a column and the number of
+the sample, counted from the start of the run, because it comes from a counter-based generator.
 
 References
 ----------
@@ -29,10 +24,10 @@ from simulator.motion.segments import Bools, Floats
 from simulator.physics.domain import require_not_negative
 
 BLOCK = 1024
-"""samples drawn together; whole blocks keep the arithmetic the same at their ends"""
+"""Number of samples drawn together; whole blocks keep results bit-identical at their ends."""
 
-_WORDS = 2  # of 64 bits a sample
-_PER_COUNT = 4  # words that Philox makes of one count
+_WORDS = 2  # words of 64 bits per sample
+_PER_COUNT = 4  # words that Philox generates per count
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,21 +37,21 @@ class Noise:
     Raises
     ------
     ValueError
-        When a figure is negative, or the probability above 1.
+        If a value is negative, or the probability is above 1.
     """
 
     relative: float = 0.0
-    """standard deviation over the true value"""
+    """Standard deviation over the true value."""
     absolute: float = 0.0
-    """standard deviation in the sensor's unit, independent of the relative one"""
+    """Standard deviation in the unit of the sensor, independent of the relative noise."""
     feed_spread: float = 0.0
-    """greatest error over the true value in feed, all errors equally likely, [2]_: 0.1"""
+    """Greatest relative error in feed, uniformly distributed; 0.1 in [2]_."""
     rapid_spread: float = 0.0
-    """the same in rapid, [2]_: 0.05"""
+    """Greatest relative error in rapid, uniformly distributed; 0.05 in [2]_."""
     step: float = 0.0
-    """the sensor shows multiples of it; 0: any value"""
+    """Resolution of the sensor, in its unit; 0: unlimited."""
     missing: float = 0.0
-    """probability that a sample is missing, shown as NaN"""
+    """Probability that a sample is missing and reads NaN."""
 
     def __post_init__(self) -> None:
         for name in ("relative", "absolute", "feed_spread", "rapid_spread", "step"):
@@ -66,23 +61,24 @@ class Noise:
 
 
 FORCE = Noise(relative=0.03)
-"""what stays unexplained of measured turning forces: 3.3 %"""
+"""Noise of a force sensor: 3 % of the value, as the unexplained rest of measured turning
+forces is 3.3 %."""
 
 POWER = Noise(absolute=20.0)
-"""W; standing noise of a spindle's power on a small mill at 10 Hz"""
+"""Noise of a power meter, W: constant noise of the spindle power of a small mill at 10 Hz."""
 
 EQUAL = Noise(feed_spread=0.10, rapid_spread=0.05)
-"""[2]_"""
+"""Uniform noise of ±10 % in feed and ±5 % in rapid, [2]_."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SeededSensor:
-    """A sensor of one column in a seeded run."""
+    """Sensor of one sample column with its noise and random seed."""
 
     column: str
     noise: Noise
     seed: int = 0
-    """not negative"""
+    """Random seed, at least 0."""
 
     def __post_init__(self) -> None:
         if self.seed < 0:
@@ -90,14 +86,14 @@ class SeededSensor:
 
 
 def shown(sensor: SeededSensor, truth: Floats, *, first: int, is_rapid: Bools) -> Floats:
-    """Samples as a sensor shows them.
+    """Apply noise, resolution and gaps of a sensor to true values.
 
     Parameters
     ----------
     sensor : SeededSensor
     truth : (M,) array
     first : int
-        Number of the first sample in the run, from 0.
+        Number of the first sample in the run, counted from 0.
     is_rapid : (M,) array of bool
 
     Returns
@@ -108,10 +104,10 @@ def shown(sensor: SeededSensor, truth: Floats, *, first: int, is_rapid: Bools) -
     Raises
     ------
     ValueError
-        When the number of the first sample is negative.
+        If the number of the first sample is negative.
     """
     if first < 0:
-        raise ValueError(f"number of a sample {first} must be at least 0")
+        raise ValueError(f"sample number {first} must be at least 0")
     noise, count = sensor.noise, len(truth)
     value = truth.copy()
     if noise.relative > 0.0 or noise.absolute > 0.0:
@@ -128,23 +124,23 @@ def shown(sensor: SeededSensor, truth: Floats, *, first: int, is_rapid: Bools) -
 
 
 Key = NDArray[np.uint64]
-"""(2,) of a stream of draws"""
+"""Key of a stream of random numbers, (2,)."""
 
 
 def _key(sensor: SeededSensor, purpose: str) -> Key:
-    """Key of the draws of a sensor for one purpose."""
+    """Key of the random numbers of a sensor for one purpose."""
     name = f"{sensor.column} {purpose}".encode()
     words = np.random.SeedSequence([sensor.seed, *name]).generate_state(2, np.uint64)
     return np.asarray(words, dtype=np.uint64)
 
 
 def uniform(key: Key, first: int, count: int) -> Floats:
-    """(M,) draws between 0 and 1, of the samples from the first on."""
+    """Random numbers between 0 and 1 for consecutive samples, (M,)."""
     return _draws(key, first, count)[:, 0]
 
 
 def normal(key: Key, first: int, count: int) -> Floats:
-    """(M,) draws of mean 0 and deviation 1, by Box and Muller's transformation."""
+    """Normal random numbers of mean 0 and deviation 1, (M,), by the Box-Muller method."""
     skipped = first % BLOCK
     whole = -(-(skipped + count) // BLOCK) * BLOCK
     draws = _draws(key, first - skipped, whole)
@@ -155,11 +151,11 @@ def normal(key: Key, first: int, count: int) -> Floats:
 
 
 def _draws(key: Key, first: int, count: int) -> Floats:
-    """(M, 2) draws from 0 to below 1, of the samples from the first on."""
+    """Random numbers from 0 to below 1 for consecutive samples, (M, 2)."""
     skipped = first * _WORDS % _PER_COUNT
     source = np.random.Philox(key=key, counter=first * _WORDS // _PER_COUNT)
     words = source.random_raw(skipped + count * _WORDS)[skipped:]
-    # The upper 53 bits, as many as a float holds.
+    # The upper 53 bits, as many as a float can hold.
     return np.ldexp((words >> np.uint64(11)).astype(np.float64), -53).reshape(-1, _WORDS)
 
 
@@ -168,32 +164,32 @@ FORCES = ("cutting_force", "feed_force", "back_force")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Disturbance:
-    """Lag, noise and gaps between the truth and the samples."""
+    """Settings of the sensor model: lag, noise and gaps of the samples."""
 
     noise: NoiseKind = NoiseKind.NONE
     missing: float = 0.0
-    """probability that a sample of a power or force is missing"""
+    """Probability that a power or force sample is missing."""
     response: Response | None = None
-    """Response of the main drive to the cut; None: at once"""
+    """Response of the main drive to the cut; None for no delay."""
     seed: int = 0
 
     @property
     def is_none(self) -> bool:
-        """Whether samples are the truth."""
+        """Whether the samples remain undisturbed."""
         is_silent = self.noise is NoiseKind.NONE and self.missing == 0.0
         return is_silent and self.response is None
 
 
 @dataclass(kw_only=True)
 class Disturbed:
-    """Samples on their way through the sensors. Running state.
+    """Sensor model of a run, applied to successive samples; a mutable object.
 
     Parameters
     ----------
     disturbance : Disturbance
     rate : float, 1/s
     efficiency : float
-        Of the main drive, from the edge to the mains.
+        Efficiency of the main drive, from the mains to the edge.
     """
 
     disturbance: Disturbance
@@ -210,7 +206,7 @@ class Disturbed:
             self._followers = {name: Follower(response, 1.0 / self.rate) for name in columns}
 
     def shown(self, samples: Samples) -> Samples:
-        """The next samples as the sensors show them."""
+        """Apply the sensor model to the next samples."""
         if self.disturbance.is_none:
             return samples
         samples = self._followed(samples)
@@ -234,12 +230,12 @@ class Disturbed:
         return seen
 
     def _followed(self, samples: Samples) -> Samples:
-        """Power and forces of the cut as the drive answers them."""
+        """Apply the response of the drive to power and forces of the cut."""
         if not self._followers:
             return samples
         power = self._followers["cutting_power"].follow(samples.cutting_power)
         more = (power - samples.cutting_power) / self.efficiency
-        # A lag gives nothing back to the mains; what braking gave back stays.
+        # A lag feeds no power back to the mains; braking energy that was fed back stays.
         least = np.minimum(samples.spindle_power, 0.0)
         return replace(
             samples,
@@ -251,7 +247,7 @@ class Disturbed:
         )
 
     def _missing(self, is_rapid: Bools) -> Floats:
-        """NaN for each sample that is lost, else 0: a meter loses all its powers together."""
+        """NaN for each lost sample, else 0: a meter loses all its powers together."""
         noise = Noise(missing=self.disturbance.missing)
         sensor = SeededSensor(column="sample", noise=noise, seed=self.disturbance.seed)
         return shown(sensor, np.zeros(len(is_rapid)), first=self._first, is_rapid=is_rapid)
@@ -264,7 +260,7 @@ class Disturbed:
         return self._gone + shown(sensor, truth, first=self._first, is_rapid=is_rapid)
 
     def _noise(self, name: str) -> Noise:
-        """Noise of one column; what draws constant power is not measured by itself."""
+        """Noise of one column; constant powers are not measured separately."""
         kind = self.disturbance.noise
         if kind is NoiseKind.UNIFORM:
             return EQUAL

@@ -1,10 +1,10 @@
-"""From neutral blocks to acts of the machine: the virtual control reads a program.
+"""Translation of neutral program blocks to actions of the machine: the virtual control.
 
-Feeds per revolution become speeds along the path; where the spindle follows a constant surface
-speed, a move is split so that its speed changes by at most a few per cent from piece to piece.
-Cycles, threads and taps become moves. Memory is bounded: moves are handed on in stretches.
+Feeds per revolution become speeds along the path; at constant surface speed, a move is split so
+that the spindle speed changes by at most a few per cent from piece to piece. Cycles, threads
+and taps become moves. Memory is bounded because moves are passed on in stretches.
 
-The rows of a stretch are running state while it is collected.
+The rows of a stretch are mutable while it is collected.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -59,22 +59,22 @@ from stepnc_model.toolpath.path import radius as radius_of
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PieceSpeed:
-    """Speeds at which a piece is run."""
+    """Path and spindle speeds of one piece of a move."""
 
     speed: float
-    """Speed, mm/s along the path, while the spindle has its speed; infinite: rapid"""
+    """Speed along the path at the nominal spindle speed, mm/s; infinite for a rapid."""
     spindle: float = nan
-    """Spindle, rev/s at the end; NaN: it keeps its speed"""
+    """Spindle speed at the end of the piece, rev/s; NaN: unchanged."""
     per_revolution: float = nan
-    """Per revolution, mm; NaN: a feed by time"""
+    """Feed per revolution, mm; NaN for a feed per time."""
 
 
 Paces = Callable[[float, float], PieceSpeed]
-"""pace for x in the middle and at the end of a piece"""
+"""Function from x in the middle and at the end of a piece to its speeds."""
 
 
 class Rows:
-    """Lines and arcs that wait to become a stretch."""
+    """Collects lines and arcs until they form a stretch."""
 
     def __init__(self) -> None:
         self._points: list[tuple[Point, Point, Point]] = []
@@ -93,7 +93,7 @@ class Rows:
         line: int,
         is_way: bool = False,
     ) -> None:
-        """One line, rapid when its speed is infinite."""
+        """Add a line, which is a rapid if its speed is infinite."""
         leads = is_way and self._way == len(self._points)
         self._way += leads
         self._back = self._back + 1 if is_way and not leads else 0
@@ -102,7 +102,7 @@ class Rows:
     def arc(
         self, start: Point, block: Circular, *, pieces: int, paces: Paces, line: int
     ) -> None:
-        """One arc or helix in pieces."""
+        """Add an arc or helix divided into pieces."""
         first, second, normal = block.plane.axes
         size = radius(start, Arc(centre=block.centre, turn=block.turn, plane=block.plane))
         angle = atan2(start[second] - block.centre[second], start[first] - block.centre[first])
@@ -137,7 +137,7 @@ class Rows:
         self._numbers.append((turn, normal, line, *per_time))
 
     def taken(self) -> MoveStretch:
-        """The stretch; the rows are empty afterwards."""
+        """Return the collected moves as a stretch and clear the rows."""
         points = np.array(self._points)
         turn, normal, line, speed, spindle, per_revolution = np.array(self._numbers).T
         way, back = self._way, self._back
@@ -162,52 +162,52 @@ class Rows:
 
 
 Numbered = tuple[int, Block]
-"""line of the program and what it says"""
+"""Line number of the program and its block."""
 
 LONGEST = 20_000
-"""segments in one stretch; a longer one stops once, for the sake of memory"""
+"""Number of segments in a stretch after which it ends, with a stop, to limit memory."""
 
 PIECE = 0.02
-"""relative change of the radius within one piece at constant surface speed"""
+"""Relative change of the radius within one piece at constant surface speed."""
 
 MOST_TURNS = 100
-"""of one arc; more is a slip, and more than the stock's map takes"""
+"""Largest number of turns in one arc; more is a mistake and exceeds the stock map's limit."""
 
 MOST_PIECES = 400
-"""of one move; radii below e⁻⁸ of its greatest are not told apart"""
+"""Largest number of pieces in a move; radii below e⁻⁸ of its greatest are not resolved."""
 
 
 def interpret(blocks: Iterable[Numbered], machine: Machine) -> Iterator[ProgramAct]:
-    """Acts of a program.
+    """Translate the blocks of a program to actions of the machine.
 
     Parameters
     ----------
     blocks : iterable of (int, Block)
-        Lines, counted from 1, and what they say; read as they are needed.
+        Line numbers, counted from 1, and blocks; read as needed.
     machine : Machine
-        For the greatest speed of its spindle.
+        Gives the maximum spindle speed.
 
     Raises
     ------
     ProgramFault
-        With the line: at a feed that is not positive, a feed per revolution while the spindle
-        stands, a constant surface speed at the axis where nothing limits the spindle.
+        With the line: for a feed that is not positive, a feed per revolution with a stopped
+        spindle, or a constant surface speed at the axis without a spindle speed limit.
     """
     return _Interpreter(machine).steps(blocks)
 
 
 class _Interpreter:
-    """Running state: where the tool is and what the spindle was told."""
+    """Interpreter of blocks; keeps the tool position and the commanded spindle speed."""
 
     def __init__(self, machine: Machine) -> None:
         self.fastest = machine.spindle.max_speed or inf
         self.at: list[float] = [nan, nan, nan]
-        """unknown until the first move says it"""
+        """Tool position, mm; NaN until the first move sets it."""
         self.surface: SurfaceSpeed | None = None
         self.speed = 0.0
-        """rev/s that the spindle was told, signed"""
+        """Commanded spindle speed, rev/s, signed."""
         self.is_awaited = False
-        """whether the next feed waits for the spindle"""
+        """Whether the next feed move waits for the spindle."""
         self.rows = Rows()
         self.line = 0
         self._readers: dict[type, Callable[..., Iterator[Act]]] = {
@@ -231,7 +231,7 @@ class _Interpreter:
         }
 
     def steps(self, blocks: Iterable[Numbered]) -> Iterator[ProgramAct]:
-        """Acts, each with its line; moves are handed on when something else comes."""
+        """Actions with their lines; collected moves are passed on when another action comes."""
         for line, block in blocks:
             self.line = line
             yield from (ProgramAct(line=line, act=act) for act in self._read(block))
@@ -281,18 +281,18 @@ class _Interpreter:
         yield SpindleTo(speed=speed)
 
     def _speed_at(self, radius: float) -> float:
-        """Speed of the spindle while the tool is at a radius, rev/s."""
+        """Spindle speed while the tool is at a radius, rev/s."""
         if self.surface is None:
             return min(abs(self.speed), self.fastest)
         around = 2.0 * pi * abs(radius)
         speed = self.surface.speed / around if around > 0.0 else inf
         speed = min(speed, self._most(self.surface))
         if not isfinite(speed):
-            raise ProgramFault("surface speed at the axis without a greatest speed", self.line)
+            raise ProgramFault("surface speed at x = 0 needs a spindle speed limit", self.line)
         return speed
 
     def _most(self, surface: SurfaceSpeed) -> float:
-        """Greatest speed of a spindle that follows the radius, rev/s."""
+        """Greatest spindle speed at constant surface speed, rev/s."""
         return min(self.fastest, surface.limit or inf)
 
     def _cool(self, block: Coolant) -> Iterator[Act]:
@@ -315,17 +315,17 @@ class _Interpreter:
         for part in block.expansion:
             yield from self._read(part)
 
-    # Moves.
+    # Interpretation of moves.
 
     def _start(self, end: Point) -> Point:
-        """Start of a move; an unknown coordinate is that of its end."""
+        """Start of a move; unknown coordinates are taken from its end."""
         known = [e if isnan(a) else a for a, e in zip(self.at, end, strict=True)]
         return known[0], known[1], known[2]
 
     def _retract(self, block: Retract) -> Iterator[Act]:
         x, y, _ = self.at
         if isnan(x) or isnan(y):
-            # Along z only, from nobody knows where: the machine stands there already.
+            # Along z only, from an unknown position: assume the machine is there already.
             self.at[2] = block.z
             return
         yield from self._rapid(Rapid(end=(x, y, block.z), is_way=block.is_way))
@@ -356,7 +356,7 @@ class _Interpreter:
     def _circular(self, block: Circular) -> Iterator[Act]:
         turns = abs(block.turn) / (2.0 * pi)
         if turns > MOST_TURNS:
-            text = f"an arc of {turns:g} turns: {MOST_TURNS} at most"
+            text = f"an arc has {turns:g} turns; at most {MOST_TURNS} are allowed"
             raise ProgramFault(text, self.line)
         start = self._start(block.end)
         yield from self._cut_begins(start[0])
@@ -370,7 +370,7 @@ class _Interpreter:
         self.at = list(block.end)
 
     def _parts(self, one: float, other: float) -> list[float]:
-        """Shares of a line at which its pieces end, the spindle following the radius."""
+        """Shares of a line at which its pieces end, at constant surface speed."""
         if self.surface is None:
             return [1.0]
         if one * other < 0.0:
@@ -385,7 +385,7 @@ class _Interpreter:
             return [1.0]
         count = ceil(log(high / least) / PIECE)
         radii = [high * (least / high) ** (index / count) for index in range(count)]
-        # Below the least radius the greatest speed is wanted; a late spindle still ramps.
+        # Below the least radius the spindle keeps its limit; a late spindle may still ramp.
         inner = ceil((least - low) / (PIECE * least))
         radii += [least - (least - low) * index / inner for index in range(inner)] + [low]
         parts = [(high - radius) / (high - low) for radius in radii]
@@ -394,22 +394,22 @@ class _Interpreter:
         return parts[1:]
 
     def _arc_pieces(self, start: Point, block: Circular) -> int:
-        """Into how many pieces an arc is split because the spindle follows the radius."""
+        """Number of pieces into which an arc is split at constant surface speed."""
         if self.surface is None or block.plane is ArcPlane.YZ:
             return 1
         size = radius_of(start, Arc(centre=block.centre, turn=block.turn, plane=block.plane))
         way = size * abs(block.turn)
-        # The circle comes no nearer to the axis than that, and its arc perhaps not so near.
+        # Lower bound of the distance from the axis; the arc itself may stay farther away.
         nearest = max(abs(block.centre[0]) - size, self._least_radius(self.surface))
         fits = way < PIECE * nearest * MOST_PIECES
         return max(1, ceil(way / (PIECE * nearest))) if fits else MOST_PIECES
 
     def _least_radius(self, surface: SurfaceSpeed) -> float:
-        """Radius below which the spindle keeps its greatest speed, mm."""
+        """Radius below which the spindle stays at its greatest speed, mm."""
         return surface.speed / (2.0 * pi * self._most(surface))
 
     def _pace(self, rate: Rate, middle: float, end: float) -> PieceSpeed:
-        """Pace of a piece by the radius in its middle and at its end."""
+        """Speeds of a piece from the radii at its middle and at its end."""
         speed, last, per_revolution = rate.value, nan, nan
         if rate.mode is RateMode.PER_REVOLUTION:
             per_revolution = rate.value
@@ -417,13 +417,13 @@ class _Interpreter:
         if self.surface is not None:
             last = self.speed = _signed(self._speed_at(end), self.surface.sense)
         if not speed > 0.0:
-            reason = "the spindle stands" if rate.value > 0.0 else "it must be positive"
+            reason = "the spindle is stopped" if rate.value > 0.0 else "it must be positive"
             unit = "mm/rev" if rate.mode is RateMode.PER_REVOLUTION else "mm/s"
             raise ProgramFault(f"feed {rate.value:g} {unit}: {reason}", self.line)
         return PieceSpeed(speed=speed, spindle=last, per_revolution=per_revolution)
 
     def _cut_begins(self, radius: float) -> Iterator[Act]:
-        """The feed waits for the spindle."""
+        """Set the spindle speed for a feed move and wait for the spindle if necessary."""
         if self.surface is not None:
             yield from self._turn(_signed(self._speed_at(radius), self.surface.sense))
         if self.is_awaited:
@@ -440,7 +440,7 @@ class _Interpreter:
         yield from self._linear(Linear(end=block.end, rate=rate))
 
     def _tap(self, block: RigidTap) -> Iterator[Act]:
-        """Down, the spindle turns round, up."""
+        """Tap with a synchronised spindle: move down, reverse the spindle, move up."""
         self.surface = None
         rate = Rate(value=block.lead, mode=RateMode.PER_REVOLUTION)
         x, y, _ = block.start

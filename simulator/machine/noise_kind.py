@@ -1,4 +1,4 @@
-"""Kinds of noise of sensors."""
+"""Kinds of sensor noise."""
 
 from enum import StrEnum
 
@@ -8,6 +8,6 @@ class NoiseKind(StrEnum):
 
     NONE = "none"
     NORMAL = "normal"
-    """3 % of a force, 20 W of a power, normally distributed"""
+    """Normally distributed noise: 3 % of a force, 20 W of a power."""
     UNIFORM = "uniform"
-    """10 % in feed and 5 % in rapid, all errors alike: paper 003"""
+    """Uniformly distributed noise: 10 % in feed and 5 % in rapid, as in paper 003."""

@@ -1,11 +1,11 @@
-"""Samples of the virtual machine's sensors, and the stretches of time that they are taken from.
+"""Samples of the virtual machine's sensors, and the time spans from which they are taken.
 
-One row a sample. Units mm, s, N, W, rev/s; the names that the outside reads, and its units, are
-those of :mod:`simulator.timeline`.
+There is one row per sample. Units mm, s, N, W, rev/s; :mod:`simulator.timeline` defines the
+names and units used outside.
 
-An episode is a stretch of time in the machine's run in closed form: everything at any time in
-it. The tool, the coolant and the running workingstep do not change; the axes move along one
-stretch of path, or stand.
+An episode is a time span of the machine's run in closed form: all values are known at any time.
+During an episode the tool, the coolant and the workingstep do not change, and the axes move
+along one stretch of path or stand still.
 """
 
 from collections.abc import Sequence
@@ -46,7 +46,7 @@ class Execution(IntEnum):
     READY = 0
     ACTIVE = 1
     WAIT = 2
-    """dwell, tool change, waiting for the spindle"""
+    """Dwell, tool change, or waiting for the spindle."""
     PROGRAM_STOPPED = 3
     PROGRAM_COMPLETED = 4
 
@@ -60,108 +60,108 @@ class PathMode(IntEnum):
 
 
 class Condition(IntEnum):
-    """Health of the drives."""
+    """Condition of the drives, as MTConnect names it."""
 
     NORMAL = 0
     WARNING = 1
-    """above the continuous power or the permitted force"""
+    """Load above the continuous power or the permitted force."""
     FAULT = 2
-    """half as much again"""
+    """Load above 1.5 times the continuous power or the permitted force."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Samples:
-    """M samples, ascending in time."""
+    """M sensor samples in order of time."""
 
     time: Floats
-    """Time, (M,) s from the start of the program"""
+    """Time from the start of the program, (M,), s."""
     position: Floats
-    """Position, (M, 3) mm, of the tool in the program's coordinates"""
+    """Position of the tool in program coordinates, (M, 3), mm."""
     velocity: Floats
-    """Velocity, (M, 3) mm/s"""
+    """Velocity of the tool, (M, 3), mm/s."""
     feed_programmed: Floats
-    """Feed programmed, (M,) mm/s; 0 in rapid and at rest"""
+    """Programmed feed, (M,), mm/s; 0 in rapid and at rest."""
     spindle_programmed: Floats
-    """Spindle programmed, (M,) rev/s, signed: positive clockwise"""
+    """Programmed spindle speed, (M,), rev/s, positive clockwise."""
     spindle_speed: Floats
-    """Spindle speed, (M,) rev/s, signed"""
+    """Actual spindle speed, (M,), rev/s, positive clockwise."""
     axis_power: Floats
-    """Axis power, (M, 3) W"""
+    """Power of the axes X, Y and Z, (M, 3), W."""
     spindle_power: Floats
-    """Spindle power, (M,) W, cutting included"""
+    """Power of the spindle drive, including cutting, (M,), W."""
     coolant_power: Floats
-    """Coolant power, (M,) W"""
+    """Power of the coolant pump, (M,), W."""
     base_power: Floats
-    """Base power, (M,) W"""
+    """Base power of the machine, (M,), W."""
     cutting_power: Floats
-    """Cutting power, (M,) W at the edge"""
+    """Cutting power at the edge, (M,), W."""
     cutting_force: Floats
-    """Cutting force, (M,) N, tangential"""
+    """Tangential cutting force, (M,), N."""
     feed_force: Floats
-    """Feed force, (M,) N"""
+    """Force against the feed, (M,), N."""
     back_force: Floats
-    """Back force, (M,) N"""
+    """Force across the feed, away from the surface, (M,), N."""
     removal_rate: Floats
-    """Removal rate, (M,) mm³/s"""
+    """Removal rate, (M,), mm³/s."""
     chip_thickness: Floats
-    """Chip thickness, (M,) mm, mean"""
+    """Mean chip thickness, (M,), mm."""
     thrust: Floats
-    """Thrust, (M,) N, along the axis, of a drill or of a mill that goes straight down"""
+    """Thrust along the axis of a drill or a plunging mill, (M,), N."""
     deflection: Floats
-    """Deflection, (M,) mm that an end mill gives way while it makes a wall"""
+    """Deflection of an end mill while it generates a wall, (M,), mm."""
     axial_depth: Floats
-    """Axial depth, (M,) mm"""
+    """Axial depth of cut, (M,), mm."""
     radial_width: Floats
-    """Radial width, (M,) mm"""
+    """Radial width of cut, (M,), mm."""
     execution: Ints
-    """Execution, (M,) :class:`Execution`"""
+    """Execution state of the control, (M,), as :class:`Execution`."""
     path_mode: Ints
-    """Path mode, (M,) :class:`PathMode`"""
+    """Mode of the path, (M,), as :class:`PathMode`."""
     coolant: Ints
-    """Coolant, (M,) 0 off, 1 on"""
+    """Coolant state, (M,): 0 off, 1 on."""
     overload: Ints
-    """Overload, (M,) :class:`Condition` of the spindle drive"""
+    """Load condition of the spindle drive, (M,), as :class:`Condition`."""
     line: Ints
-    """Line, (M,) of the program"""
+    """Program line, (M,)."""
     tool: Ints
-    """Tool, (M,) number of the tool, 0: none"""
+    """Number of the tool, (M,); 0 for none."""
     workingstep: Ints
-    """Workingstep, (M,) which of the program's workingsteps runs, counted from 1; 0: none"""
+    """Number of the running workingstep, (M,), counted from 1; 0 for none."""
 
     def __len__(self) -> int:
         return len(self.time)
 
     @property
     def direction(self) -> Ints:
-        """(M, 3) :class:`TravelDirection` of the axes."""
+        """Direction of travel of the axes, (M, 3), as :class:`TravelDirection`."""
         return 1 + np.sign(self.velocity).astype(np.int64)
 
     @property
     def rotation(self) -> Ints:
-        """(M,) :class:`Rotation` of the spindle."""
+        """Direction of rotation of the spindle, (M,), as :class:`Rotation`."""
         return 1 + np.sign(self.spindle_speed).astype(np.int64)
 
     @property
     def program(self) -> Ints:
-        """(M,) which program runs: there is one."""
+        """Index of the running program, (M,); always 0, as there is only one."""
         return np.zeros(len(self), dtype=np.int64)
 
     @property
     def path_speed(self) -> Floats:
-        """(M,) mm/s along the path."""
+        """Speed along the path, (M,), mm/s."""
         speed: Floats = np.linalg.norm(self.velocity, axis=1)
         return speed
 
     @property
     def total_power(self) -> Floats:
-        """(M,) W, of all components."""
+        """Total power of all components, (M,), W."""
         x, y, z = self.axis_power.T
         total: Floats = x + y + z + self.spindle_power + self.coolant_power + self.base_power
         return total
 
 
 def joined(parts: Sequence[Samples]) -> Samples:
-    """Samples one after another."""
+    """Concatenate samples in time."""
     return Samples(**{
         field.name: np.concatenate([getattr(part, field.name) for part in parts])
         for field in fields(Samples)
@@ -169,12 +169,12 @@ def joined(parts: Sequence[Samples]) -> Samples:
 
 
 ARC_STEP = 0.2
-"""rad of an arc over which the power of its axes counts as smooth"""
+"""Angle of an arc, rad, over which the power of its axes counts as smooth."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EpisodeState:
-    """State that is constant during an episode."""
+    """State of the machine that is constant during an episode."""
 
     execution: Execution
     line: int
@@ -182,60 +182,60 @@ class EpisodeState:
     workingstep: int = 0
     coolant_on: bool = False
     spindle_programmed: float = 0.0
-    """Spindle programmed, rev/s, signed"""
+    """Programmed spindle speed, rev/s, positive clockwise."""
     is_way: bool = False
-    """at rest, before the first feed of the workingstep"""
+    """Whether the machine stands before the first feed move of the workingstep."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class EpisodeCourse:
-    """The way along a stretch, what it meets, and what cuts."""
+    """Motion along a stretch of path, with its engagement and cutting edge."""
 
     segments: Segments
     motion: Motion
     spindle_programmed: Floats
-    """Spindle programmed, (N,) rev/s at the end of each segment; NaN: what it is"""
+    """Programmed spindle speed at the end of each segment, (N,), rev/s; NaN: unchanged."""
     stations: Stations
     edge: CuttingEdge | None
-    """None: nothing is known of tool or stock, all is air"""
+    """Cutting edge; None if the tool or stock is unknown and nothing is cut."""
     wear: Wear
     teeth: ToothOptions | None = None
-    """None: forces are means over a revolution"""
+    """Options for forces of single teeth; None for mean forces over a revolution."""
     way: int = 0
-    """segments at the beginning that lead to the path of the workingstep"""
+    """Number of segments at the beginning that lead to the path of the workingstep."""
     back: int = 0
-    """segments at the end that lead away from it"""
+    """Number of segments at the end that lead away from the path of the workingstep."""
 
     @cached_property
     def passing(self) -> Passing:
-        """Times at which places of the path are passed."""
+        """Times at which points of the path are passed."""
         return Passing(segments=self.segments, motion=self.motion)
 
     @property
     def offsets(self) -> Floats:
-        """(N + 1,) mm of path before each segment."""
+        """Length of path before each segment, (N + 1,), mm."""
         return self.passing.offsets
 
     @cached_property
     def station_ends(self) -> Floats:
-        """(M,) mm of path at which each station ends."""
+        """Length of path up to the end of each station, (M,), mm."""
         return self.offsets[self.stations.segment] + self.stations.station
 
     @cached_property
     def walls(self) -> Floats:
-        """(2, M) of :func:`simulator.machine.tooth_loads.wall_forces`."""
+        """Wall forces, (2, M), of :func:`simulator.machine.tooth_loads.wall_forces`."""
         if self.edge is None:
             return np.zeros((2, len(self.stations)))
         return wall_forces(self.stations, self.edge)
 
     def stations_at(self, kinematics: Kinematics) -> Ints:
-        """Index of the station that applies at each of some times."""
+        """Index of the station that applies at each of the given times."""
         along = self.offsets[kinematics.segment] + kinematics.station
         rows = np.searchsorted(self.station_ends, along, side="left")
         return np.minimum(rows, len(self.stations) - 1)
 
     def beyond(self, kinematics: Kinematics, rows: Ints) -> Floats:
-        """Places in the stretches of stations: -1/2 at the beginning, 1/2 at the end."""
+        """Relative positions within stretches: -1/2 at the beginning, 1/2 at the end."""
         ends = self.stations.station[rows]
         lengths = self._stretches[rows]
         left = (ends - kinematics.station) / np.where(lengths > 0.0, lengths, 1.0)
@@ -244,17 +244,17 @@ class EpisodeCourse:
 
     @cached_property
     def _stretches(self) -> Floats:
-        """(M,) mm, of :func:`simulator.removal.stations.stretch_lengths`."""
+        """Lengths of :func:`simulator.removal.stations.stretch_lengths`, (M,), mm."""
         return stretch_lengths(self.stations)
 
     @cached_property
     def nodes(self) -> Floats:
-        """(K,) times between which all powers are smooth, as far as that is known."""
+        """Times between which all powers are smooth, as far as known, (K,), s."""
         places = np.sort(np.concatenate((self.station_ends, self._arc_places())))
         return np.unique(np.concatenate((self.motion.knots, self.passing.times(places))))
 
     def _arc_places(self) -> Floats:
-        """Mm of path at which the directions of arcs have changed noticeably."""
+        """Path lengths at which the direction of arcs has changed noticeably, mm."""
         turn = np.abs(self.segments.turn)
         count = np.ceil(turn / ARC_STEP).astype(np.int64)
         rows = np.repeat(np.arange(len(turn)), count)
@@ -263,18 +263,18 @@ class EpisodeCourse:
         return self.offsets[rows] + part * self.segments.length[rows]
 
     def worn(self, times: Floats) -> Floats:
-        """Flank wear in mm at times from the start of the stretch."""
+        """Flank wear at times from the start of the stretch, mm."""
         if not self.wear.grows:
             return np.full(len(times), self.wear.flank)
         return self.wear.flanks(np.interp(times, *self._cut_clock))
 
     @property
     def cutting_seconds(self) -> float:
-        """Time with chips, s."""
+        """Time during which chips are cut, s."""
         return float(self._cut_clock[1][-1])
 
     def entry_times(self, times: Floats) -> Floats:
-        """Start of the cut that runs at some times; all from the start of the stretch, s."""
+        """Start times of the cuts active at given times, s from the stretch's start."""
         ends, _ = self._cut_clock
         cuts = self.stations.section > 0.0
         begins = np.flatnonzero(cuts & ~np.concatenate(([False], cuts[:-1])))
@@ -283,7 +283,7 @@ class EpisodeCourse:
 
     @cached_property
     def _cut_clock(self) -> tuple[Floats, Floats]:
-        """(M + 1,) times at which stations end, and s with chips until then."""
+        """End times of stations and cutting time up to each, (M + 1,), s."""
         ends = np.concatenate(([0.0], self.passing.times(self.station_ends)))
         seconds = np.cumsum(np.diff(ends) * (self.stations.section > 0.0))
         return ends, np.concatenate(([0.0], seconds))
@@ -291,16 +291,16 @@ class EpisodeCourse:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Episode:
-    """The machine between two times."""
+    """State, motion and spindle speed of the machine between two times."""
 
     begin: float
-    """Begin, s"""
+    """Begin of the episode, s from the start of the program."""
     end: float
-    """End, s"""
+    """End of the episode, s from the start of the program."""
     state: EpisodeState
     spindle: SpindleCourse
-    """by time from the start of the program"""
+    """Spindle speed over time from the start of the program."""
     position: Floats
-    """Position, (3,) mm where the tool stands, or where the stretch begins"""
+    """Position at rest or at the start of the stretch, (3,), mm."""
     course: EpisodeCourse | None = None
-    """None: the axes stand"""
+    """Motion along a stretch; None while the axes stand still."""

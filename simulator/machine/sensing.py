@@ -1,8 +1,4 @@
-"""Exact sensor values at any times of an episode.
-
-Units mm, s, N, W, rev/s.
-
-Electrical power of the machine's components, as arrays over time.
+"""Exact sensor values at given times of an episode, including the power of all components.
 
 Units mm, s, N, W, rev/s.
 """
@@ -30,21 +26,21 @@ from simulator.removal.stations import StationKind
 from simulator.spec import Machine
 
 FAULT_SHARE = 1.5
-"""of the continuous power: what a drive gives for a minute at most, customary"""
+"""Load at which a drive faults, over its continuous power: customary limit for one minute."""
 
 
 def axes_power(
     machine: Machine, velocity: Floats, acceleration: Floats, *, feed_force: Floats
 ) -> Floats:
-    """Power of the axes X, Y and Z.
+    """Electrical power of the axes X, Y and Z.
 
     Parameters
     ----------
     machine : Machine
-        An axis without a known drive draws nothing of its own.
+        An axis without a known drive has no power.
     velocity, acceleration : (M, 3) array, mm/s and mm/s²
     feed_force : (M,) array, N
-        Against the path; each axis bears its share of the direction.
+        Force against the path; each axis takes its share by direction.
 
     Returns
     -------
@@ -69,14 +65,14 @@ def axes_power(
 def main_power(
     machine: Machine, speed: Floats, acceleration: Floats, *, cutting_power: Floats
 ) -> Floats:
-    """Power of the spindle drive, W, for speeds in rev/s and the power at the edge in W."""
+    """Power of the spindle drive, W, from speeds in rev/s and cutting power in W."""
     return np.asarray(
         spindle_power(machine.spindle, speed, acceleration, cutting_power=cutting_power)
     )
 
 
 def continuous_power(machine: Machine, speed: Floats) -> Floats:
-    """Power that the spindle drive gives continuously at speeds in rev/s, W."""
+    """Continuous power of the spindle drive at speeds in rev/s, W."""
     power = np.full(len(speed), np.inf)
     around = np.abs(speed)
     for part in curve_segments(machine.spindle):
@@ -86,10 +82,10 @@ def continuous_power(machine: Machine, speed: Floats) -> Floats:
 
 
 def overload(machine: Machine, cutting_power: Floats, speed: Floats, *, force: Floats) -> Ints:
-    """Condition of the spindle drive and the force on the machine.
+    """Load condition of the spindle drive, also considering the permitted force.
 
-    As the optimiser counts it: the power at the edge over the efficiency, which holds the
-    losses, against the continuous power. Ramps take a drive no longer than it bears.
+    As in the optimiser, cutting power over efficiency is compared with the continuous power.
+    Ramps of the spindle are ignored because they are short enough for the drive.
     """
     power = cutting_power / machine.spindle.efficiency
     share = power / continuous_power(machine, speed)
@@ -103,14 +99,14 @@ def overload(machine: Machine, cutting_power: Floats, speed: Floats, *, force: F
 
 
 ROUNDING = 1e-9
-"""share of a sampling interval by which a sample may miss the end of an episode"""
+"""Tolerance for a sample beyond the end of an episode, as a share of the interval."""
 
 MOST = 65_536
-"""samples made at once"""
+"""Largest number of samples computed at once."""
 
 
 class Sampler:
-    """Takes samples at a constant rate, the first at the start of the program. Running state.
+    """Takes samples at a constant rate from the start of the program; a mutable object.
 
     Parameters
     ----------
@@ -135,7 +131,7 @@ class Sampler:
 
 
 def sensed(episode: Episode, machine: Machine, times: Floats) -> Samples:
-    """Samples at (M,) times of an episode, s from the start of the program."""
+    """Samples at given times of an episode, (M,), s from the start of the program."""
     kinematics = _kinematics(episode, times)
     rows = None if episode.course is None else episode.course.stations_at(kinematics)
     state, spindle = episode.state, episode.spindle
@@ -169,7 +165,7 @@ def sensed(episode: Episode, machine: Machine, times: Floats) -> Samples:
         thrust=loads.thrust,
         deflection=loads.deflection,
         axial_depth=_along(episode, rows, "axial_depth", count),
-        # A section smeared over a window may ask for more width than the cutter has.
+        # A section averaged over a window may imply more width than the cutter has.
         radial_width=np.minimum(
             _along(episode, rows, "radial_width", count),
             _along(episode, rows, "diameter", count),
@@ -235,7 +231,7 @@ def _loads(
 
 
 def _cutting_feed(kinematics: Kinematics, kind: Ints) -> Floats:
-    """Feed at M times, mm/s: that of a tool that sinks is along its axis, also at a corner."""
+    """Feed at M times, mm/s; for a plunging tool the axial speed, also at a corner."""
     along = np.abs(kinematics.velocity[:, 2])
     path = np.linalg.norm(kinematics.velocity, axis=1)
     feed: Floats = np.where(kind == StationKind.DRILLING, along, path)
@@ -243,7 +239,7 @@ def _cutting_feed(kinematics: Kinematics, kind: Ints) -> Floats:
 
 
 def _pushing(episode: Episode, rows: Ints | None, loads: CuttingLoads) -> Floats:
-    """Force that is held against what the machine bears: of a drill its thrust, as planned."""
+    """Force to compare with the machine's limit: the thrust in drilling, else the force."""
     if episode.course is None or rows is None:
         return loads.force
     is_drilling = episode.course.stations.kind[rows] == StationKind.DRILLING
@@ -251,14 +247,14 @@ def _pushing(episode: Episode, rows: Ints | None, loads: CuttingLoads) -> Floats
 
 
 def _revolutions_since_entry(episode: Episode, course: EpisodeCourse, times: Floats) -> Floats:
-    """Revolutions of the spindle since the cut that runs at some times began."""
+    """Spindle revolutions since the start of the cut that is active at given times."""
     entry = episode.begin + course.entry_times(times - episode.begin)
     turned: Floats = episode.spindle.revolutions(times) - episode.spindle.revolutions(entry)
     return np.abs(turned)
 
 
 def _along(episode: Episode, rows: Ints | None, name: str, count: int) -> Floats:
-    """A column of the stations; 0 at rest."""
+    """Values of a column of the stations; 0 at rest."""
     if episode.course is None or rows is None:
         return np.zeros(count)
     column: Floats = getattr(episode.course.stations, name)
@@ -266,7 +262,7 @@ def _along(episode: Episode, rows: Ints | None, name: str, count: int) -> Floats
 
 
 def _wanted(episode: Episode, kinematics: Kinematics) -> Floats:
-    """Programmed speed of the spindle, by the segment where it follows the radius."""
+    """Programmed spindle speed, per segment at constant surface speed, rev/s."""
     held = np.full(len(kinematics.segment), episode.state.spindle_programmed)
     if episode.course is None:
         return held
@@ -277,7 +273,7 @@ def _wanted(episode: Episode, kinematics: Kinematics) -> Floats:
 def _programmed(
     episode: Episode, kinematics: Kinematics, count: int
 ) -> tuple[Floats, Ints, Ints]:
-    """Programmed feed, mode of the path, and line."""
+    """Programmed feed in mm/s, path mode, and program line."""
     if episode.course is None:
         still = np.full(count, int(PathMode.NONE))
         return np.zeros(count), still, np.full(count, episode.state.line)

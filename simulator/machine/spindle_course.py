@@ -1,6 +1,7 @@
-"""Speed of the spindle by time: ramps at its acceleration, and following of the radius.
+"""Spindle speed over time: ramps at constant acceleration, and constant surface speed.
 
-Piecewise linear in time, so that speed, acceleration and angle are closed form. rev/s, s.
+The speed is piecewise linear in time, so that speed, acceleration and angle have a closed form.
+Units rev/s, s.
 """
 
 from dataclasses import dataclass
@@ -13,14 +14,14 @@ from simulator.motion.segments import Floats
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class SpindleCourse:
-    """Speed at knots; straight between them, constant before the first and after the last."""
+    """Spindle speed over time: linear between knots, constant before and after them."""
 
     times: Floats
-    """Times, (K,) s, ascending"""
+    """Times of the knots, (K,), s, ascending."""
     speeds: Floats
-    """Speeds, (K,) rev/s, positive clockwise"""
+    """Spindle speeds at the knots, (K,), rev/s, positive clockwise."""
     turned: float = 0.0
-    """revolutions made until the first knot"""
+    """Number of revolutions up to the first knot."""
 
     @property
     def reached(self) -> float:
@@ -29,15 +30,15 @@ class SpindleCourse:
 
     @property
     def target(self) -> float:
-        """Last speed, rev/s."""
+        """Final spindle speed, rev/s."""
         return float(self.speeds[-1])
 
     def speed(self, times: Floats) -> Floats:
-        """Speed at times, rev/s."""
+        """Spindle speed at given times, rev/s."""
         return np.interp(times, self.times, self.speeds)
 
     def acceleration(self, times: Floats) -> Floats:
-        """Acceleration at times, rev/s²; that of the piece that begins at a knot."""
+        """Acceleration at given times, rev/s²; at a knot, that of the following piece."""
         if len(self.times) == 1:
             return np.zeros_like(times)
         spans = np.diff(self.times)
@@ -46,7 +47,7 @@ class SpindleCourse:
         return slopes[np.searchsorted(self.times, times, side="right")]
 
     def revolutions(self, times: Floats) -> Floats:
-        """Revolutions made until times."""
+        """Number of revolutions up to given times."""
         means = 0.5 * (self.speeds[1:] + self.speeds[:-1])
         made = np.concatenate(([0.0], np.cumsum(means * np.diff(self.times))))
         row = np.clip(np.searchsorted(self.times, times, side="right") - 1, 0, None)
@@ -56,24 +57,24 @@ class SpindleCourse:
 
 
 def standing(time: float, speed: float = 0.0) -> SpindleCourse:
-    """A spindle that keeps its speed."""
+    """Course of a spindle at constant speed."""
     return SpindleCourse(times=np.array([time]), speeds=np.array([speed]))
 
 
 def ramped(
     course: SpindleCourse, now: float, speed: float, *, acceleration: float | None
 ) -> SpindleCourse:
-    """The course from now on when the spindle goes to another speed at once.
+    """Course of a spindle that changes to another speed from now on.
 
     Parameters
     ----------
     course : SpindleCourse
-        Until now.
+        Course until now.
     now : float, s
     speed : float, rev/s
-        Signed.
+        Signed target speed.
     acceleration : float, rev/s², or None
-        None: without delay.
+        None for an immediate change.
     """
     here = np.array([now])
     current = float(course.speed(here)[0])
@@ -81,7 +82,7 @@ def ramped(
     span = abs(speed - current) / (acceleration or inf)
     times, speeds = [now, now + span], [current, speed]
     if current * speed < 0.0:
-        # Standing for a moment is a knot of its own: friction turns round there.
+        # The moment of standstill is a separate knot because friction reverses there.
         times.insert(1, now + span * current / (current - speed))
         speeds.insert(1, 0.0)
     return SpindleCourse(times=np.array(times), speeds=np.array(speeds), turned=turned)
@@ -90,19 +91,19 @@ def ramped(
 def following(
     course: SpindleCourse, begin: float, ends: Floats, *, wanted: Floats, acceleration: float
 ) -> SpindleCourse:
-    """The course when the spindle follows the radius, as fast as it can.
+    """Course of a spindle that follows the radius at constant surface speed, within limits.
 
     Parameters
     ----------
     course : SpindleCourse
-        Until now.
+        Course until now.
     begin : float, s
     ends : (N,) array, s
-        When each piece of the path ends.
+        End time of each piece of the path.
     wanted : (N,) array, rev/s
-        Speed at the end of each; NaN: as it is.
+        Target speed at the end of each piece; NaN: unchanged.
     acceleration : float, rev/s²
-        Infinite: without delay.
+        Infinite for an immediate change.
     """
     here = np.array([begin])
     times, speeds = [begin], [float(course.speed(here)[0])]

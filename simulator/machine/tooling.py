@@ -1,4 +1,4 @@
-"""Tools of a program as the virtual machine holds them: shape, edge and wear."""
+"""Tools of a program prepared for the virtual machine: shape, edge and wear."""
 
 from dataclasses import replace
 from math import isinf
@@ -28,28 +28,28 @@ def loaded_tool(
     *,
     factor: float = 1.0,
 ) -> LoadedTool:
-    """A tool of a program.
+    """Prepare a tool of a program for the virtual machine.
 
     Parameters
     ----------
     program : Program
     ref : reference
-        To the tool.
+        Reference to the tool.
     number : int
-        In the machine.
+        Number of the tool in the machine.
     material : WorkMaterial
-        Of the workpiece.
+        Material of the workpiece.
     factor : float
-        On k_c, from calibration.
+        Factor on k_c from calibration.
 
     Raises
     ------
     SchemaError
-        When the tool cannot be used.
+        If the tool cannot be used.
     """
     tool = tool_of(program, ref)
     kind = tool_kind(tool)
-    # Carbide where nothing is said, as in the optimiser.
+    # Carbide if no material is given, as in the optimiser.
     cutting_material = edge_material(tool.edge_material) or CuttingMaterial.CARBIDE
     shape = shape_of(program, ref)
     edge = _edge(kind, cutting_material, tool.teeth, shape=shape, material=material)
@@ -63,7 +63,7 @@ def loaded_tool(
 
 
 def table_tool(tool: TableTool, material: WorkMaterial, *, factor: float = 1.0) -> LoadedTool:
-    """A tool of a tool table."""
+    """Prepare a tool of a tool table for the virtual machine."""
     edge = _edge(
         tool.kind, tool.cutting_material, tool.teeth, shape=tool.shape, material=material
     )

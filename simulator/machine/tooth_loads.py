@@ -1,8 +1,8 @@
-"""Forces as a dynamometer would show them, of teeth and of a first chip; how the tool bends.
+"""Forces as a dynamometer would measure them: of single teeth and of the first chip.
 
-At each time the teeth of a milling cutter stand where the spindle has turned them, along their
-helix and with runout. In turning the chip grows in the first revolution. What is neither keeps
-its mean. Units mm, N, rad.
+At each time the teeth of a milling cutter are where the spindle has turned them, along their
+helix and with runout. In turning the chip grows during the first revolution. All other loads
+keep their mean. The module also computes the deflection of the tool. Units mm, N, rad.
 """
 
 from dataclasses import dataclass, replace
@@ -24,10 +24,10 @@ from simulator.physics.uneven_teeth import Runout, eccentric_runout
 from simulator.removal.stations import StationKind, Stations, single_arcs
 
 DIGITS = 3
-"""to which engagements are told apart: µm, mrad"""
+"""Number of decimals to which engagements are distinguished: µm, mrad."""
 
 LAND = ForceLaw(exponent=0.0, radial_share=flank.NORMAL / flank.CUTTING)
-"""of a wear land, which rubs along the edges in the cut whatever the chip"""
+"""Force law of a wear land, which rubs along the engaged edges whatever the chip."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,7 +35,7 @@ class ToothOptions:
     """Options for forces of single teeth."""
 
     eccentricity: float = 0.0
-    """Eccentricity, mm, of the cutter's axis off the spindle's"""
+    """Offset of the cutter's axis from the spindle axis, mm."""
 
 
 def tooth_loads(  # noqa: PLR0913 (places, times and state of the edge are apart)
@@ -53,10 +53,10 @@ def tooth_loads(  # noqa: PLR0913 (places, times and state of the edge are apart
     Parameters
     ----------
     mean : CuttingLoads
-        Means over a revolution at M times; power, removal rate and deflection stay.
+        Means over a revolution at M times; power, removal rate and deflection are kept.
     stations : Stations
     rows : (M,) array of int
-        Which station holds.
+        Index of the station that applies.
     turned : (M,) array
         Revolutions of the spindle.
     edge : CuttingEdge
@@ -88,11 +88,12 @@ def tooth_loads(  # noqa: PLR0913 (places, times and state of the edge are apart
 
 
 def wall_forces(stations: Stations, edge: CuttingEdge) -> Floats:
-    """(2, M) mm, normal force of each station while a wall is made: of a sharp edge, of a land.
+    """Normalised wall forces of each station, (2, M), mm: of a sharp edge and of a wear land.
 
-    Over ``K·k_c1.1·f_z^q`` and the share by which the section fills the engagement, and over
-    the force of a mm of land; see :func:`simulator.physics.tooth_forces.wall_force`. 0 for
-    what does not bend.
+    Each is the force normal to the wall while a tooth cuts it, divided by ``K·k_c1.1·f_z^q``
+    times the filled share of the section, or by the force of a wear land 1 mm wide; see
+    :func:`simulator.physics.tooth_forces.wall_force`. 0 for rigid tools and stations without an
+    arc.
     """
     found = np.zeros((2, len(stations)))
     at = np.flatnonzero(_has_arc(stations))
@@ -125,10 +126,10 @@ def bent(
         Means over a revolution at M times.
     stations : Stations
     rows : (M,) array of int
-        Which station holds.
+        Index of the station that applies.
     edge : CuttingEdge
     walls : array
-        Of :func:`wall_forces`.
+        Result of :func:`wall_forces`.
     flank_wear : (M,) array, mm
     """
     if edge.compliance == 0.0:
@@ -149,17 +150,17 @@ def entered_loads(
     since_entry: Floats,
     edge: CuttingEdge,
 ) -> CuttingLoads:
-    """Loads of turning with the chip that grows in the first revolution of a cut.
+    """Turning loads with the chip that grows in the first revolution of a cut.
 
     Parameters
     ----------
     mean : CuttingLoads
-        At M times.
+        Mean loads at M times.
     stations : Stations
     rows : (M,) array of int
-        Which station holds.
+        Index of the station that applies.
     since_entry : (M,) array
-        Revolutions since the insert met the work.
+        Revolutions since the insert entered the cut.
     edge : CuttingEdge
     """
     is_turning = stations.kind[rows] == StationKind.TURNING
@@ -197,16 +198,16 @@ def _law(edge: CuttingEdge) -> ForceLaw:
 
 
 def _land(edge: CuttingEdge, flank_wear: Floats) -> Floats:
-    """N in 1 mm of edge that rubs; the coefficient counts across the depth."""
+    """Force of the wear land per mm of axial depth, N/mm."""
     return flank.CUTTING * flank_wear * sin(_flutes(edge).cutting_edge_angle)
 
 
 def _scale(
     mean: CuttingLoads, stations: Stations, rows: Ints, edge: CuttingEdge, at: Ints
 ) -> tuple[Floats, Floats]:
-    """Feed per tooth in mm, and N of a sharp edge in 1 mm of the integrals, at some times.
+    """Feed per tooth in mm, and scale of the force integrals of a sharp edge in N/mm.
 
-    The section says how much of the engagement is filled.
+    The section tells how much of the engagement is filled.
     """
     station = rows[at]
     per_tooth = mean.chip_thickness[at] / stations.chip_ratio[station]

@@ -1,10 +1,10 @@
-"""Time, energy and peaks of a run by workingstep, whatever the sampling rate.
+"""Time, energy and peak loads of a run by workingstep, independent of the sampling rate.
 
-Powers are integrated by two Gauss points between the times at which they are not smooth: exact
-for straight moves, whose powers are quadratic in time; elsewhere as good as the stations are
-fine. Where braking begins to need power inside a ramp is not looked for: ramps of the spindle
-are cut finely instead. Peaks are looked for at both ends of each span too. Units s, J, W, N,
-mm³.
+Powers are integrated with two Gauss points between the times at which they are not smooth: this
+is exact for straight moves, whose powers are quadratic in time; elsewhere the accuracy depends
+on the spacing of the stations. The time within a ramp at which braking begins to need power is
+not located; ramps of the spindle are divided finely instead. Peaks are also searched at both
+ends of each span. Units s, J, W, N, mm³.
 """
 
 from dataclasses import dataclass, field, replace
@@ -18,29 +18,29 @@ from simulator.motion.segments import Floats
 from simulator.spec import Machine
 
 PLACES = np.array([1e-6, 0.5 - 0.5 / sqrt(3.0), 0.5 + 0.5 / sqrt(3.0), 1.0 - 1e-6])
-"""on 0 to 1: just inside the ends, and the abscissae of the two-point rule"""
+"""Sample points on 0 to 1: just inside the ends, and the abscissae of the two-point rule."""
 
 WEIGHTS = np.array([0.0, 0.5, 0.5, 0.0])
 
 RAMP_STEP = 0.05
-"""s of a ramp of the spindle between two times"""
+"""Longest time step within a ramp of the spindle, s."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Energy:
-    """Energy by component, J."""
+    """Electrical energy by component, J."""
 
     x_axis: float = 0.0
     y_axis: float = 0.0
     z_axis: float = 0.0
     spindle: float = 0.0
-    """cutting included"""
+    """Energy of the spindle drive, including cutting, J."""
     coolant: float = 0.0
     base: float = 0.0
 
     @property
     def total(self) -> float:
-        """Of all components."""
+        """Total energy of all components, J."""
         axes = self.x_axis + self.y_axis + self.z_axis
         return axes + self.spindle + self.coolant + self.base
 
@@ -57,15 +57,15 @@ class Energy:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Peak:
-    """Greatest value of something, and where."""
+    """Greatest value of a quantity, with its time and program line."""
 
     value: float = 0.0
     time: float = 0.0
-    """Time, s"""
+    """Time of the greatest value, s."""
     line: int = 0
 
     def or_greater(self, values: Floats, samples: Samples) -> "Peak":
-        """The greatest of this one and more values."""
+        """Return the greater of this peak and the peak of further samples."""
         at = int(values.argmax())
         if values[at] <= self.value:
             return self
@@ -76,49 +76,49 @@ class Peak:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Total:
-    """One workingstep, or what stands between them."""
+    """Time, energy and peak loads of one workingstep, or of the time between workingsteps."""
 
     duration: float = 0.0
-    """Duration, s"""
+    """Duration, s."""
     cutting_time: float = 0.0
-    """Cutting time, s with chips"""
+    """Time with chips, s."""
     rapid_time: float = 0.0
-    """Rapid time, s"""
+    """Time in rapid, s."""
     waiting_time: float = 0.0
-    """Waiting time, s at rest: pauses, tool changes, a spindle that has not its speed"""
+    """Time at rest, s: pauses, tool changes, waiting for the spindle."""
     way_time: float = 0.0
-    """s before the path begins and after it: tool change, spindle, the moves to it and home"""
+    """Time before and after the path, s: tool change, spindle start, approach and retract."""
     energy: Energy = field(default_factory=Energy)
     cutting_energy: float = 0.0
-    """Cutting energy, J at the edge"""
+    """Cutting energy at the edge, J."""
     volume: float = 0.0
-    """Volume, mm³ removed"""
+    """Removed volume, mm³."""
     power: Peak = field(default_factory=Peak)
-    """Power, W of the spindle drive"""
+    """Peak power of the spindle drive, W."""
     cutting_power: Peak = field(default_factory=Peak)
-    """Cutting power, W at the edge"""
+    """Peak cutting power at the edge, W."""
     drive_power: Peak = field(default_factory=Peak)
-    """W of the spindle drive while there are chips: of the cut and of the idle spindle, without
-    what a spindle that follows the radius takes to speed up"""
+    """Peak power of the spindle drive while cutting, W: cutting and idle power, without the
+    power that accelerates the spindle at constant surface speed."""
     force: Peak = field(default_factory=Peak)
-    """Force, N, tangential; of a mill without its plunges"""
+    """Peak tangential force, N; without the plunges of mills."""
     thrust: Peak = field(default_factory=Peak)
-    """Thrust, N, of drills and plunges"""
+    """Peak thrust of drills and plunges, N."""
     chip: Peak = field(default_factory=Peak)
-    """Chip, mm, mean thickness"""
+    """Peak mean chip thickness, mm."""
     deflection: Peak = field(default_factory=Peak)
-    """Deflection, mm, of an end mill while it makes a wall"""
+    """Peak deflection of an end mill while it generates a wall, mm."""
     overload_time: float = 0.0
-    """Overload time, s above the continuous power or the permitted force"""
+    """Time above the continuous power or the permitted force, s."""
 
     @property
     def air_time(self) -> float:
-        """Feed without chips, s."""
+        """Time in feed without chips, s."""
         known = self.cutting_time + self.rapid_time + self.waiting_time
         return max(self.duration - known, 0.0)
 
     def plus(self, other: "Total") -> "Total":
-        """Both together; the greater peaks."""
+        """Sum of two totals, with the greater of their peaks."""
         return Total(
             duration=self.duration + other.duration,
             cutting_time=self.cutting_time + other.cutting_time,
@@ -144,7 +144,7 @@ def _value(peak: Peak) -> float:
 
 
 def added(total: Total, episode: Episode, machine: Machine) -> Total:
-    """A total with one more episode."""
+    """Add an episode to a total."""
     nodes = _nodes(episode)
     spans = np.diff(nodes)
     total = replace(total, duration=total.duration + episode.end - episode.begin)
@@ -162,7 +162,7 @@ def added(total: Total, episode: Episode, machine: Machine) -> Total:
         coolant=float(weights @ samples.coolant_power),
         base=float(weights @ samples.base_power),
     )
-    # A rapid through material is no cut but a collision, and told as that.
+    # A rapid through material is not a cut but a collision, and reported as such.
     feeds = samples.path_mode != PathMode.RAPID
     is_loaded = samples.overload != Condition.NORMAL
     return replace(
@@ -189,7 +189,7 @@ def added(total: Total, episode: Episode, machine: Machine) -> Total:
 
 
 def _steady(samples: Samples, machine: Machine) -> Floats:
-    """Power of the spindle drive at a constant speed, W."""
+    """Power of the spindle drive at constant speed, W."""
     still = np.zeros(len(samples.time))
     power: Floats = main_power(
         machine, samples.spindle_speed, still, cutting_power=samples.cutting_power
@@ -198,7 +198,7 @@ def _steady(samples: Samples, machine: Machine) -> Floats:
 
 
 def _way(episode: Episode) -> float:
-    """Seconds of an episode before the path of its workingstep begins and after it ends."""
+    """Time of an episode before and after the path of its workingstep, s."""
     course = episode.course
     if course is None:
         return episode.end - episode.begin if episode.state.is_way else 0.0
@@ -209,7 +209,7 @@ def _way(episode: Episode) -> float:
 
 
 def _across(samples: Samples, episode: Episode) -> Floats:
-    """Cutting force, N, without that of a mill that goes straight down."""
+    """Cutting force without plunges of a mill, N."""
     course = episode.course
     if course is None or course.edge is None or course.edge.flutes is None:
         return samples.cutting_force
@@ -217,7 +217,7 @@ def _across(samples: Samples, episode: Episode) -> Floats:
 
 
 def _nodes(episode: Episode) -> Floats:
-    """Times at which some power is not smooth, ends included."""
+    """Times at which some power is not smooth, both ends included, s."""
     ends = np.array([episode.begin, episode.end])
     places = [ends, _ramps(episode.spindle.times)]
     if episode.course is not None:
@@ -227,7 +227,7 @@ def _nodes(episode: Episode) -> Floats:
 
 
 def _ramps(knots: Floats) -> Floats:
-    """Knots of the spindle's course, and times between them."""
+    """Knots of the spindle's course, with further times between them, s."""
     spans = np.diff(knots)
     count = np.maximum(np.ceil(spans / RAMP_STEP).astype(np.int64), 1)
     rows = np.repeat(np.arange(len(spans)), count)

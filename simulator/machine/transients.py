@@ -1,10 +1,11 @@
-"""Transients of drives and cuts over the steady state: delay, overshoot, first revolution.
+"""Transients of drives and cuts: delay, overshoot, first revolution.
 
-A drive answers its load late, as a first-order lag, or late and too far, as a second-order
-one. Both are made of one pole, so that one recursion serves: exact at the samples for a signal
-that is straight between them, and the same however the signal is cut in chunks. The pole of
-the second order is placed so that its mean delay is that of the first, 2ζ/ω = τ. The default
-figures are customary ones, without a source of their own: calibrate them. Units s, mm, rad.
+A drive responds to its load late, as a first-order lag, or late and with overshoot, as a
+second-order system. Both use one complex pole and the same recursion, which is exact at the
+samples for a signal that is linear between them, and independent of how the signal is cut in
+chunks. The pole of the second-order system is placed so that its mean delay equals that of the
+first-order lag, 2ζ/ω = τ. The default values are customary, without a published source:
+calibrate them. Units s, mm, rad.
 
 References
 ----------
@@ -23,12 +24,12 @@ from simulator.motion.segments import Floats
 from simulator.physics.domain import require_not_negative, require_positive
 
 USUAL_DELAY = 0.05
-"""s, main drive; 0.02 to 0.1 are met"""
+"""Usual delay of a main drive, s; typically 0.02 to 0.1."""
 
 USUAL_OVERSHOOT = 0.2
-"""of the step, at entry and exit"""
+"""Usual overshoot at entry and exit, as a share of the step."""
 
-_SHORT = 1e-4  # |pole · interval| below which differences lose their digits
+_SHORT = 1e-4  # |pole · interval| below which series replace differences
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,13 +39,13 @@ class Response:
     Raises
     ------
     ValueError
-        When the delay is negative or the overshoot not in 0 ≤ M < 1.
+        If the delay is negative, or the overshoot does not satisfy 0 ≤ M < 1.
     """
 
     delay: float = USUAL_DELAY
-    """τ, s; 0: at once"""
+    """Delay τ, s; 0 for an immediate response."""
     overshoot: float = USUAL_OVERSHOOT
-    """M of a step; 0: none, a first-order lag"""
+    """Overshoot M of a step; 0 for a first-order lag."""
 
     def __post_init__(self) -> None:
         require_not_negative(self.delay, "delay of a drive", "s")
@@ -53,7 +54,7 @@ class Response:
 
     @property
     def damping(self) -> float:
-        """ζ of the overshoot, [1]_; 1 without."""
+        """Damping ratio ζ for the overshoot, [1]_; 1 without overshoot."""
         if self.overshoot == 0.0:
             return 1.0
         decay = -log(self.overshoot)
@@ -61,7 +62,7 @@ class Response:
 
     @property
     def pole(self) -> complex:
-        """1/s, of the recursion, upper half plane."""
+        """Pole of the response in the upper half plane, 1/s."""
         if self.overshoot == 0.0:
             return complex(-1.0 / self.delay, 0.0)
         frequency = 2.0 * self.damping / self.delay
@@ -69,18 +70,18 @@ class Response:
 
 
 class Follower:
-    """A drive that follows its load; running state: where it is.
+    """Filter that applies a drive's response to its load; keeps state between calls.
 
     Parameters
     ----------
     response : Response
     interval : float, s
-        Between samples.
+        Time between samples.
 
     Raises
     ------
     ValueError
-        When the interval is not positive.
+        If the interval is not positive.
     """
 
     def __init__(self, response: Response, interval: float) -> None:
@@ -97,7 +98,7 @@ class Follower:
         self._weights = _weights(pole * interval, interval)
 
     def follow(self, load: Floats) -> Floats:
-        """Power that the drive shows; before the first sample it was at rest there.
+        """Apply the response to further samples; the drive starts at rest at the first sample.
 
         Parameters
         ----------
@@ -112,7 +113,7 @@ class Follower:
             return load.copy()
         if self._last is None:
             self._last = float(load[0])
-            # At rest a step leaves the state as it is.
+            # At rest a step leaves the state unchanged.
             self._held = -self._last / self._pole
         held = np.empty(len(load) + 1, np.complex128)
         held[0] = self._held
@@ -125,7 +126,7 @@ class Follower:
 def _follow(
     load: Floats, weights: NDArray[np.complex128], last: float, states: NDArray[np.complex128]
 ) -> None:
-    """Write the state after each sample; the first one and the load before are given."""
+    """Write the state after each sample, from the initial state and the previous load."""
     decay, before, now = weights[0], weights[1], weights[2]
     for row in range(len(load)):
         states[row + 1] = decay * states[row] + before * last + now * load[row]
@@ -133,7 +134,7 @@ def _follow(
 
 
 def _weights(step: complex, interval: float) -> tuple[complex, complex, complex]:
-    """Decay of the state, and weights of the load before and now, straight between."""
+    """Decay of the state, and weights of the previous and current load, linear between."""
     decay = e**step
     if abs(step) < _SHORT:
         whole, now = interval * (1.0 + 0.5 * step), interval * (0.5 + step / 6.0)
@@ -144,9 +145,9 @@ def _weights(step: complex, interval: float) -> tuple[complex, complex, complex]
 
 
 def entry_share(revolutions: Floats) -> Floats:
-    """Chip of a turning tool over its full one, so many revolutions after first contact.
+    """Chip thickness over its full value in turning, by revolutions since first contact.
 
-    In the first revolution nothing was cut before: the chip grows from 0 to the feed. How the
-    depth grows is in the stock's map.
+    In the first revolution no surface has been cut before: the chip grows from 0 to the feed.
+    The growth of the depth of cut follows from the stock's map.
     """
     return np.clip(revolutions, 0.0, 1.0)

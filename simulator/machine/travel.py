@@ -1,4 +1,4 @@
-"""Position of the program's zero on the machine, and moves beyond the travel of its axes.
+"""Position of the program zero on the machine, and checks of axis travel.
 
 Units mm.
 """
@@ -13,20 +13,20 @@ from simulator.spec import Machine, MachineKind
 from stepnc_model.program import Stock
 
 Zero = tuple[float, float, float]
-"""place of the program's zero on the axes X, Y, Z, mm"""
+"""Position of the program zero on the axes X, Y, Z, mm."""
 
 ROUNDING = 1e-6
-"""mm by which a position may miss the travel"""
+"""Distance by which a position may exceed the travel because of rounding, mm."""
 
 QUARTERS = np.arange(4) * 0.5 * pi
-"""rad, where an arc is farthest out"""
+"""Angles at which an arc is farthest out along an axis, rad."""
 
 
 def zero_of(machine: Machine, stock: Stock) -> Zero:
-    """Place of the program's zero that suits a stock.
+    """Choose a position of the program zero that suits a stock.
 
-    On a mill the stock lies in the middle of the travel; on a lathe the axis of the spindle is
-    zero, and the stock begins where the travel along it does.
+    On a mill the stock lies in the middle of the travel; on a lathe the spindle axis is zero,
+    and the stock begins where the travel along Z begins.
     """
     places = [0.0, 0.0, 0.0]
     for axis in machine.axes:
@@ -42,7 +42,7 @@ def zero_of(machine: Machine, stock: Stock) -> Zero:
 
 
 def require_travel(machine: Machine, segments: Segments, zero: Zero) -> None:
-    """Refuse a path that leaves the travel of an axis.
+    """Raise an error if a path leaves the travel of an axis.
 
     Raises
     ------
@@ -64,7 +64,7 @@ def require_travel(machine: Machine, segments: Segments, zero: Zero) -> None:
 
 
 def require_axes(machine: Machine, segments: Segments) -> None:
-    """Refuse a path along an axis that the machine has not.
+    """Raise an error if a path moves along an axis that the machine does not have.
 
     Raises
     ------
@@ -76,12 +76,12 @@ def require_axes(machine: Machine, segments: Segments) -> None:
         way = np.abs(segments.end[:, row] - segments.start[:, row])
         moves = np.flatnonzero((way > ROUNDING) & (name not in known))
         if len(moves):
-            message = f"moves along {name}, and '{machine.name}' has no such axis"
+            message = f"move along {name}, but machine '{machine.name}' has no such axis"
             raise ProgramFault(message, int(segments.block[moves[0]]))
 
 
 def _farthest(segments: Segments) -> tuple[Ints, Floats]:
-    """Rows of arcs and the stations where they are farthest out along an axis."""
+    """Rows of arcs, and the stations at which they are farthest out along an axis, mm."""
     rows = np.flatnonzero(segments.turn)
     arm, at = segments.start[rows] - segments.centre[rows], np.arange(len(rows))
     normal, turn = segments.normal[rows], segments.turn[rows]

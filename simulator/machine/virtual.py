@@ -1,15 +1,14 @@
-"""The virtual machine: acts in, episodes out. Its state lives here.
+"""Virtual machine: takes actions of a program and produces episodes; holds mutable state.
 
-Rapid moves may begin while the spindle speeds up; a feed waits until it has its speed. A
-stretch begins and ends at rest. Everything is decided by path and time alone: same program,
-same machine, same run. Units mm, s, rev/s.
+Rapid moves may begin while the spindle speeds up; a feed move waits until it has its speed. A
+stretch begins and ends at rest. The run depends only on path and time: the same program and
+machine give the same run.
 
-Findings on collisions with the stock.
+Feeds per revolution are kept even where the spindle cannot follow the radius fast enough: a
+lathe synchronises the feed with the encoder of its spindle, so that while the spindle ramps the
+axes follow its actual speed, and the chip stays as programmed.
 
-Feeds per revolution, kept by a spindle that cannot always follow the radius.
-
-A lathe locks such a feed to the encoder of its spindle: while the spindle ramps, the axes go
-as fast as it really turns, and the chip stays as programmed. Units mm, s, rev/s.
+The module also creates findings for collisions with the stock. Units mm, s, rev/s.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -48,29 +47,29 @@ from stepnc_model.errors import Finding, Severity
 from stepnc_model.units import rpm_from_rev_s
 
 MOST = 20
-"""findings of one kind; the rest is counted"""
+"""Largest number of findings of one kind; further ones are only counted."""
 
 LEAST_VOLUME = 1e-3
-"""mm³ by which a rapid may graze what is just cut: rounding of the map"""
+"""Volume that a rapid may remove without a finding, mm³: rounding of the map."""
 
 
 class ContactRecorder(Protocol):
-    """A stock that knows what met it."""
+    """Stock that records its collisions."""
 
     collisions: list[Collision]
-    """rapids through material"""
+    """Rapid moves through material."""
     holder_collisions: list[Collision]
     shank_collisions: list[Collision]
 
 
 def contacts(stock: ContactRecorder) -> list[Finding]:
-    """Findings for rapids through material, holders and shanks that met it."""
+    """Findings for rapid moves through material and for holder and shank collisions."""
     met = [hit for hit in stock.collisions if hit.volume > LEAST_VOLUME]
     told = [
-        (hit, f"a rapid cuts {hit.volume:.3g} mm³ of material, up to {_place(hit)}")
+        (hit, f"a rapid move cuts {hit.volume:.3g} mm³ of material near {_place(hit)}")
         for hit in met
     ]
-    findings = _first(told, "rapids through material")
+    findings = _first(told, "rapid moves through material")
     told = [
         (hit, f"the holder is {hit.depth:.3g} mm deep in the material at {_place(hit)}")
         for hit in stock.holder_collisions
@@ -79,7 +78,7 @@ def contacts(stock: ContactRecorder) -> list[Finding]:
     told = [
         (
             hit,
-            f"{hit.depth:.3g} mm of material above the cutting edge meet the shank at "
+            f"{hit.depth:.3g} mm of material above the cutting edge touches the shank at "
             f"{_place(hit)}",
         )
         for hit in stock.shank_collisions
@@ -104,18 +103,18 @@ def _first(told: list[tuple[Collision, str]], kind: str) -> list[Finding]:
 
 
 AGREED = 1e-3
-"""relative difference between the feed of a segment and what its mean spindle speed asks for"""
+"""Tolerated relative difference between a segment's feed and that from the spindle speed."""
 
 MOST_PLANS = 20
-"""of one stretch; a tenth of them is usual"""
+"""Largest number of plans for one stretch; a tenth is usual."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PacedStretch:
-    """A stretch as it is run."""
+    """Stretch with the feeds, motion and spindle speed at which it runs."""
 
     segments: Segments
-    """with the feeds at which they are planned"""
+    """Segments with the feeds from which the motion was planned."""
     motion: Motion
     spindle: SpindleCourse
 
@@ -128,23 +127,24 @@ def paced(
     begin: float,
     acceleration: float,
 ) -> PacedStretch:
-    """Motion and spindle that agree.
+    """Compute motion and spindle speed that agree with each other.
 
-    The motion says when each radius is reached, hence how far the spindle has come; its mean
-    speed in each segment says the feed, hence the motion. Each plan is closed form; they are
-    repeated until feeds and spindle agree within ``AGREED``. What happens later changes nothing
-    before it, so that the repetition ends as that of an integral equation does.
+    The motion determines when each radius is reached, and so the spindle speed; the mean
+    spindle speed in each segment determines the feed, and so the motion. Each plan has a closed
+    form; plans are repeated until feeds and spindle agree within ``AGREED``. The iteration
+    converges because later events do not affect earlier ones, as in a Volterra integral
+    equation.
 
     Parameters
     ----------
     stretch : MoveStretch
     plan : callable
-        Motion of segments, from rest to rest.
+        Function that plans the motion of segments, from rest to rest.
     spindle : SpindleCourse
-        Until the stretch begins.
+        Course until the stretch begins.
     begin : float, s
     acceleration : float, rev/s²
-        Of the spindle; infinite: without delay.
+        Acceleration of the spindle; infinite for immediate changes.
     """
     segments, before = stretch.segments, spindle
     for _ in range(MOST_PLANS):
@@ -166,7 +166,7 @@ def _followed(
     *,
     acceleration: float,
 ) -> SpindleCourse:
-    """The spindle, which follows the radius where it keeps a surface speed."""
+    """Spindle course that follows the radius where a constant surface speed is programmed."""
     wanted = stretch.spindle_speed
     if np.isnan(wanted).all():
         return spindle
@@ -174,7 +174,7 @@ def _followed(
 
 
 def _locked(stretch: MoveStretch, spindle: SpindleCourse, begin: float, ends: Floats) -> Floats:
-    """(N,) mm/s that the spindle's mean speed in each segment asks for; NaN: not locked."""
+    """Feeds that match the spindle's mean speed by segment, (N,), mm/s; NaN: not locked."""
     turned = np.diff(spindle.revolutions(begin + np.concatenate(([0.0], ends))))
     seconds = np.diff(ends, prepend=0.0)
     mean = np.divide(np.abs(turned), seconds, out=np.zeros(len(ends)), where=seconds > 0.0)
@@ -188,43 +188,43 @@ class StockMap(ContactRecorder, Protocol):
     """Map of the remaining stock."""
 
     def cut(self, segments: Segments, shape: Any, /, *, is_clockwise: bool) -> Stations:
-        """Take away what the tool sweeps; what it met. A mill's map knows cutters only."""
+        """Remove the swept material; return the engagement. A mill's map takes cutters only."""
         ...
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LoadedTool:
-    """A tool in the magazine."""
+    """Tool in the magazine of the machine."""
 
     number: int
     id: str
     shape: Shape | None
-    """None: threads; what they take is not modelled"""
+    """Shape of the tool; None for threading tools, whose cut is not modelled."""
     edge: CuttingEdge
     flank_wear: float = 0.0
-    """Flank wear, mm, when the program starts"""
+    """Flank wear when the program starts, mm."""
     taylor: Taylor | None = None
-    """how fast it wears; None: it stays as it is"""
+    """Taylor constants for the growth of wear; None: the wear stays constant."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MachineSetup:
-    """Machine as prepared for a program: tools, stock, zero."""
+    """Machine as prepared for a program: tools, stock and zero."""
 
     machine: Machine
     control: ControlModel
     tools: Mapping[int, LoadedTool] | None = None
-    """by number; None: no tool is known, and nothing is cut"""
+    """Tools by number; None: no tools are known, and nothing is cut."""
     stock: Callable[[str], StockMap | None] = lambda _: None
-    """what is clamped when a workingstep begins; None: nothing is known of it"""
+    """Function from a workingstep to its clamped stock; None if the stock is unknown."""
     teeth: ToothOptions | None = None
-    """None: forces are means over a revolution"""
+    """Options for forces of single teeth; None for mean forces over a revolution."""
     zero: Zero | None = None
-    """None: travel is not looked at"""
+    """Position of the program zero; None: travel is not checked."""
 
 
 class VirtualMachine:
-    """A machine that runs one program. Running state."""
+    """Virtual machine that runs one program; a mutable object."""
 
     def __init__(self, setup: MachineSetup) -> None:
         self.setup = setup
@@ -235,28 +235,28 @@ class VirtualMachine:
         self.spindle = standing(0.0)
         self.state = EpisodeState(execution=Execution.ACTIVE, line=0)
         self.workingsteps: list[str] = []
-        """ids in the order of their beginning; numbered from 1 in the episodes"""
+        """Ids of workingsteps in the order in which they begin; episodes number them from 1."""
         self.tool: LoadedTool | None = None
         self.findings: list[Finding] = []
         self._stock: StockMap | None = None
         self._stocks: list[StockMap] = []
         self._clamp("")
         self._has_fed = False
-        """in this workingstep"""
+        """Whether a feed move has occurred in this workingstep."""
         self._flank: dict[int, float] = {}
-        """mm of flank wear by the tool's number"""
+        """Flank wear by tool number, mm."""
         self._said: set[str] = set()
 
     def run(self, steps: Iterable[ProgramAct]) -> Iterator[Episode]:
-        """Episodes of a program, one after another without a gap.
+        """Run a program and yield its episodes, one after another without gaps.
 
-        The machine stands where the first move begins, wherever that is. The last episode
-        takes no time: the program has ended.
+        The machine starts at the beginning of the first move, wherever that is. The last
+        episode has no duration and marks the end of the program.
 
         Raises
         ------
         ProgramFault, UnknownTool, OutOfTravel
-            What this machine cannot run, with the line.
+            If this machine cannot run the program; with the line.
         """
         waiting: list[ProgramAct] = []
         for step in steps:
@@ -300,12 +300,12 @@ class VirtualMachine:
             case EndOfProgram():
                 self._turn(0.0)
                 self.state = replace(self.state, coolant_on=False)
-                # The spindle stops after the path, as it starts before it.
+                # Stopping the spindle counts as time after the path, like its start before it.
                 self._has_fed = False
                 yield from self._wait(self.spindle.reached - self.now)
 
     def _clamp(self, workingstep: str) -> None:
-        """The stock of a workingstep."""
+        """Select the stock of a workingstep."""
         self._stock = self.setup.stock(workingstep)
         if self._stock is not None and all(self._stock is not known for known in self._stocks):
             self._stocks.append(self._stock)
@@ -328,14 +328,14 @@ class VirtualMachine:
         most = self.machine.spindle.max_speed or inf
         if abs(speed) > most:
             wanted, taken = rpm_from_rev_s(abs(speed)), rpm_from_rev_s(most)
-            self._say(f"spindle {wanted:g} rpm exceeds {taken:g} rpm: {taken:g} rpm taken")
+            self._say(f"spindle speed {wanted:g} rpm exceeds {taken:g} rpm: {taken:g} rpm used")
             speed = copysign(most, speed)
         acceleration = self.machine.spindle.acceleration
         self.spindle = ramped(self.spindle, self.now, speed, acceleration=acceleration)
         self.state = replace(self.state, spindle_programmed=speed)
 
     def _change(self, number: int) -> Iterator[Episode]:
-        """Another tool, or none (T0); the one that is there takes no time."""
+        """Change the tool, or remove it (T0); takes no time if the tool is already loaded."""
         if number == self.state.tool:
             return
         tools = self.setup.tools
@@ -388,7 +388,7 @@ class VirtualMachine:
         return episode
 
     def _follow(self, stretch: MoveStretch, spindle: SpindleCourse) -> None:
-        """The spindle as it goes on, and what it was told last."""
+        """Store the spindle's course and its last programmed speed."""
         self.spindle, told = spindle, stretch.spindle_speed
         if not np.isnan(told).all():
             last = float(told[~np.isnan(told)][-1])
@@ -398,25 +398,28 @@ class VirtualMachine:
         first = int(segments.block[0])
         has_feed = not segments.is_rapid.all()
         if self.tool is None and self.setup.tools is not None and has_feed:
-            self._say("a feed without a tool: nothing is cut", first)
+            self._say("feed move without a tool: no material is removed", first)
         if self.tool is not None and self.tool.shape is None:
-            text = f"{self.tool.id}: the force of a thread is not modelled, nothing is cut"
+            text = f"{self.tool.id}: threading is not modelled: no material is removed"
             self._say(text, first)
         if self._stock is None or self.tool is None or self.tool.shape is None:
             return air(np.arange(len(segments)), segments.length)
         if isinstance(self.tool.shape, Insert) and self.machine.kind is MachineKind.MILL:
-            text = f"T{self.tool.number} {self.tool.id} turns, and the machine is a mill"
+            text = (
+                f"T{self.tool.number} {self.tool.id} is a turning tool, "
+                "but the machine is a mill"
+            )
             raise ProgramFault(text, first)
         is_clockwise = self.state.spindle_programmed >= 0.0
         stations = self._stock.cut(segments, self.tool.shape, is_clockwise=is_clockwise)
         cuts = np.flatnonzero(stations.section > 0.0)
         if len(cuts) and self.spindle.target == 0.0:
             line = int(segments.block[stations.segment[cuts[0]]])
-            self._say("cuts while the spindle stands: its force is not known", line)
+            self._say("cut with a stopped spindle: its force is not modelled", line)
         return stations
 
     def _wear(self, stretch: MoveStretch, segments: Segments, stations: Stations) -> Wear:
-        """Wear of the edge that begins a stretch, and how fast it grows there."""
+        """Wear of the edge at the beginning of a stretch, with its rate there."""
         if self.tool is None:
             return Wear()
         flank = self._flank.get(self.tool.number, self.tool.flank_wear)
@@ -427,17 +430,19 @@ class VirtualMachine:
         return wearing_along(flank, self.tool.taylor, segments, stations, spindle_speed=speed)
 
     def _worn(self, course: EpisodeCourse) -> None:
-        """Wear of the edge after a stretch."""
+        """Store the wear of the edge after a stretch."""
         if self.tool is None or not course.wear.grows:
             return
         flank = course.wear.after(course.cutting_seconds).flank
         self._flank[self.tool.number] = flank
         if flank > LIFE_CRITERION:
-            text = f"T{self.tool.number} {self.tool.id} is worn beyond {LIFE_CRITERION:g} mm"
+            text = (
+                f"T{self.tool.number} {self.tool.id}: flank wear exceeds {LIFE_CRITERION:g} mm"
+            )
             self._say(text, int(course.segments.block[-1]))
 
     def _say(self, text: str, line: int = 0) -> None:
-        """A warning, once."""
+        """Record a warning, unless it has been recorded before."""
         if text not in self._said:
             self._said.add(text)
             finding = Finding(

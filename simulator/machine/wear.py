@@ -1,7 +1,7 @@
-"""Wear of an edge while it cuts. What it does to the force: :mod:`simulator.physics.flank`.
+"""Wear of an edge while it cuts; its effect on forces is in :mod:`simulator.physics.flank`.
 
-Straight in cutting time, without the quicker wear of the first minute: an edge is taken as worn
-out, after the life that Taylor gives it, at a flank wear of 0.3 mm. Units s, mm.
+Wear grows linearly with cutting time, without the faster wear of the first minute: after its
+Taylor life an edge has a flank wear of 0.3 mm and counts as worn out. Units s, mm.
 
 References
 ----------
@@ -25,26 +25,26 @@ class Wear:
     """Flank wear of one edge."""
 
     flank: float = 0.0
-    """Flank, mm now"""
+    """Current flank wear, mm."""
     per_second: float = 0.0
-    """Per second, mm of flank wear in one second of cutting"""
+    """Growth of flank wear per second of cutting, mm/s."""
 
     @property
     def grows(self) -> bool:
-        """Whether cutting makes it larger."""
+        """Whether cutting increases the wear."""
         return self.per_second > 0.0
 
     def after(self, seconds: float) -> "Wear":
-        """The edge after some seconds of cutting."""
+        """Wear of the edge after some seconds of cutting."""
         return Wear(flank=self.flank + self.per_second * seconds, per_second=self.per_second)
 
     def flanks(self, seconds: Floats) -> Floats:
-        """Flank wear in mm after (M,) seconds of cutting."""
+        """Flank wear after given seconds of cutting, (M,), mm."""
         return np.asarray(self.flank + self.per_second * seconds)
 
 
 def wearing(flank: float, taylor: Taylor, cutting_speed: float) -> Wear:
-    """An edge that cuts at a speed in mm/s: so much of its life goes by in a second, [1]_."""
+    """Wear of an edge that cuts at a constant speed in mm/s, with its rate by [1]_."""
     per_second = LIFE_CRITERION * wear_rate(taylor, cutting_speed)
     return Wear(flank=flank, per_second=per_second)
 
@@ -57,19 +57,19 @@ def wearing_along(
     *,
     spindle_speed: Floats,
 ) -> Wear:
-    """An edge along a path: its rate is the mean over the time with chips at commanded feed.
+    """Wear of an edge along a path, with its mean rate over the cutting time at full feed.
 
     Parameters
     ----------
     flank : float, mm
-        When the path begins.
+        Flank wear when the path begins.
     taylor : Taylor
     segments : Segments
-        N of them.
+        N segments of the path.
     stations : Stations
-        What they meet.
+        Engagement along the segments.
     spindle_speed : (N,) array, rev/s
-        Magnitude; while the spindle stands nothing wears.
+        Magnitude of the spindle speed; nothing wears at 0.
     """
     row = stations.segment
     starts = np.cumsum(segments.length) - segments.length
@@ -79,7 +79,7 @@ def wearing_along(
     seconds = np.where(cuts, length / segments.speed[row], 0.0)
     if not seconds.sum() > 0.0:
         return Wear(flank=flank)
-    # In proportion to v_c^(1/n): one call of the law for all.
+    # The rate is proportional to v_c^(1/n): one evaluation of the law is enough.
     fastest = float(around[cuts].max())
     share = np.where(cuts, around / fastest, 0.0) ** (1.0 / taylor.exponent)
     mean = float(seconds @ share / seconds.sum())

@@ -1,1 +1,1 @@
-"""Motion of the axes: segments of a path, control models, and position by time."""
+"""Motion of the axes: segments of a path, control models, and position over time."""

@@ -1,21 +1,19 @@
-"""Control models by name, with customary numbers. Units mm, s.
+"""Models of how a control runs a path: exact stop, and junction deviation. Units mm, s.
 
-Exact stop: every block from rest to rest, as the papers on virtual machining model it.
+With exact stop every block begins and ends at rest, as in the papers on virtual machining. Its
+speed is a trapezoid, or a triangle if the block is too short to reach its speed. Pieces of one
+block that continues straight on are one move. A feed block without length takes the control's
+block time. References are in :mod:`simulator.motion.sweep`.
 
-A trapezoid of speed, or a triangle where the block is too short to reach its speed. Pieces of
-one block that goes straight on are one move. A feed block without length takes the control's
-block time. Units mm, s; references in :mod:`simulator.motion.sweep`.
+With junction deviation corners are passed at a speed instead of at rest. At a corner a circle
+touches both directions and passes the corner at the distance of the deviation e; the speed is
+that at which the circle needs the centripetal acceleration a: ``v² = a·e·S/(1−S)``, S =
+sin(θ/2), where θ is the angle between the two segments (π: straight on). The circle only
+determines the speed: the path keeps its corner, so that the speed along the path is continuous
+while the velocity of an axis jumps.
 
-Continuous path with junction deviation: corners are taken at a speed, not at rest.
-
-At a corner a circle touches both directions and passes the corner at the distance of the
-deviation e; the speed is that at which the circle needs the centripetal acceleration a:
-``v² = a·e·S/(1−S)``, S = sin(θ/2), θ the angle between the two segments (π: straight on). The
-circle sets the speed only: the path keeps its corner, so the speed along the path is
-continuous while the velocity of an axis jumps there, as the model has it.
-
-The control stops before, after and between rapids, and reads blocks ahead: one without length
-takes no time. Units mm, s.
+With junction deviation the control stops before, after and between rapids, and reads blocks
+ahead: a block without length takes no time. The module also selects control models by name.
 
 References
 ----------
@@ -44,15 +42,15 @@ from simulator.motion.sweep import Phases, swept
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExactStop:
-    """A control that waits at the end of each block until the axes stand."""
+    """Control that waits at the end of each block until the axes stand still."""
 
     def plan(self, segments: Segments, limits: AxisLimits) -> Phases:
-        """Motion along segments, from rest to rest.
+        """Plan the motion along segments, from rest to rest.
 
         Raises
         ------
         ValueError
-            When there is no segment, or a segment's speed has no bound at all.
+            If there is no segment, or a segment's speed is unlimited.
         """
         bounds = path_limits(segments, limits)
         is_pause = (block_lengths(segments) == 0.0) & ~segments.is_rapid
@@ -64,28 +62,28 @@ class ExactStop:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class JunctionDeviation:
-    """A control that looks ahead over the whole stretch.
+    """Control with look-ahead over the whole stretch and corner speeds by junction deviation.
 
     Raises
     ------
     ValueError
-        When the deviation is not positive.
+        If the deviation is not positive.
     """
 
     deviation: float
-    """Deviation, mm, e"""
+    """Junction deviation e, mm."""
 
     def __post_init__(self) -> None:
         if not 0.0 < self.deviation < np.inf:
             raise ValueError(f"junction deviation {self.deviation:g} mm must be positive")
 
     def plan(self, segments: Segments, limits: AxisLimits) -> Phases:
-        """Motion along segments, from rest to rest.
+        """Plan the motion along segments, from rest to rest.
 
         Raises
         ------
         ValueError
-            When there is no segment, or a segment's speed has no bound at all.
+            If there is no segment, or a segment's speed is unlimited.
         """
         bounds = path_limits(segments, limits)
         rows = np.flatnonzero(segments.length > 0.0)
@@ -101,15 +99,15 @@ def corner_squares(segments: Segments, acceleration: Floats, *, deviation: float
     Parameters
     ----------
     segments : Segments
-        N of them, each with a length.
+        N segments, each with a length.
     acceleration : (3,) array, mm/s²
-        Of the axes; a is what they reach along the change of velocity, [2]_.
+        Limits of the axes; a is what they reach along the change of velocity, [2]_.
     deviation : float, mm
 
     Returns
     -------
     (N−1,) array, mm²/s²
-        Infinite where the path goes straight on, 0 where it turns back.
+        Infinite where the path continues straight on, 0 where it reverses.
     """
     before, after = corners(segments)
     change = np.linalg.norm(after - before, axis=1)
@@ -124,20 +122,20 @@ def corner_squares(segments: Segments, acceleration: Floats, *, deviation: float
 
 
 DEVIATION = 0.01
-"""mm, default of grbl 1.1 ($11)"""
+"""Default junction deviation, mm, as in Grbl 1.1 ($11)."""
 
 
 def control_model(
     control: ControlModelName, limits: AxisLimits, *, deviation: float = DEVIATION
 ) -> ControlModel:
-    """The control model of a name, with times of the filter from the limits.
+    """Create the control model with a given name; filter times follow from the limits.
 
     Parameters
     ----------
     control : ControlModelName
     limits : AxisLimits
     deviation : float, mm
-        Of :attr:`ControlModelName.JUNCTION`.
+        Deviation for :attr:`ControlModelName.JUNCTION`.
 
     Returns
     -------
@@ -146,7 +144,7 @@ def control_model(
     Raises
     ------
     ValueError
-        When the deviation is not positive, or the limits give the filter no times.
+        If the deviation is not positive, or no filter times follow from the limits.
     """
     match control:
         case ControlModelName.EXACT_STOP:

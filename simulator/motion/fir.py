@@ -1,15 +1,14 @@
-"""Fixed-time filter: the path at commanded speed, each axis smoothed by two moving averages.
+"""Control with a fixed-time filter: each axis is smoothed by two moving averages.
 
-The usual form in commercial controls. Averages over T1 and T2 seconds (finite impulse response)
-bound acceleration and jerk: a change Δv of an axis' speed has an acceleration of at most
-``|Δv|/T1``. Corners are rounded by ``e = v·(T1/4 + T2²/(12·T1))·sin(φ/2)``, φ the angle by
-which the path turns, and arcs shrink. A run takes ``Σ L/v + T1 + T2``. Before, after and
-between rapids the control waits until the filter has run out. It reads blocks ahead: one
-without length takes no time. Units mm, s.
+This is common in commercial controls. The path runs at commanded speed, and averages over T1
+and T2 seconds (finite impulse response) limit acceleration and jerk: a change Δv of an axis'
+speed has an acceleration of at most ``|Δv|/T1``. Corners are rounded by ``e = v·(T1/4 +
+T2²/(12·T1))·sin(φ/2)``, where φ is the angle by which the path turns, and arcs shrink. A run
+takes ``Σ L/v + T1 + T2``. Before, after and between rapids the control waits until the filter
+has settled. It reads blocks ahead: a block without length takes no time. Computing a state
+takes time proportional to the number of pieces of path within one window.
 
-A state costs time in proportion to the pieces of path within one window.
-
-Motions one after another, each from rest to rest, as one. Units mm, s.
+The module also joins consecutive motions, each from rest to rest, into one. Units mm, s.
 """
 
 from collections.abc import Sequence
@@ -27,12 +26,12 @@ from simulator.motion.sweep import ends_of_all, swept
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Chain:
-    """Motions of consecutive rows of one stretch; a motion.
+    """Consecutive motions of one stretch, joined to a single motion.
 
     Raises
     ------
     ValueError
-        When there is no motion.
+        If there is no motion.
     """
 
     motions: Sequence[Motion]
@@ -43,33 +42,33 @@ class Chain:
 
     @cached_property
     def starts(self) -> Floats:
-        """(K + 1,) s at which motions begin, and the last one ends."""
+        """Start times of the motions, and the end of the last, (K + 1,), s."""
         durations = [motion.duration for motion in self.motions]
         return np.concatenate(([0.0], np.cumsum(durations)))
 
     @cached_property
     def first_rows(self) -> Ints:
-        """(K,) row with which each motion begins."""
+        """First segment row of each motion, (K,)."""
         counts = [len(motion.ends) for motion in self.motions]
         return np.concatenate(([0], np.cumsum(counts)[:-1])).astype(np.int64)
 
     @property
     def duration(self) -> float:
-        """Time of all, s."""
+        """Total duration of all motions, s."""
         return float(self.starts[-1])
 
     @cached_property
     def ends(self) -> Floats:
-        """(N,) s at which each segment ends."""
+        """End time of each segment, (N,), s."""
         return self._after_one_another([motion.ends for motion in self.motions])
 
     @cached_property
     def knots(self) -> Floats:
-        """(K,) times between which speeds are smooth, s."""
+        """Times between which speeds are smooth, (K,), s."""
         return np.unique(self._after_one_another([motion.knots for motion in self.motions]))
 
     def at(self, times: Floats) -> Kinematics:
-        """State at (M,) times in s, ascending, between 0 and the duration."""
+        """State of the axes at (M,) ascending times in s, between 0 and the duration."""
         which = np.searchsorted(self.starts[1:-1], times, side="right")
         bounds = np.searchsorted(which, np.arange(len(self.motions) + 1))
         parts = [
@@ -86,7 +85,7 @@ class Chain:
         )
 
     def _part(self, row: int, times: Floats) -> Kinematics:
-        """State at times that belong to one motion."""
+        """State of the axes at times that belong to one motion."""
         motion = self.motions[row]
         since = np.clip(times - self.starts[row], 0.0, motion.duration)
         at = motion.at(since)
@@ -100,20 +99,20 @@ class Chain:
 
     def _after_one_another(self, times: Sequence[Floats]) -> Floats:
         shifted = [start + each for start, each in zip(self.starts[:-1], times, strict=True)]
-        # Rounding of a sum must not pass what comes next.
+        # A rounding error of a sum must not exceed the next time.
         return np.minimum(np.maximum.accumulate(np.concatenate(shifted)), self.starts[-1])
 
 
 LEAST_CHANGE = 1e-3
-"""mm/s; a slower path is filtered as this one"""
+"""Least change of speed for which a filter is designed, mm/s."""
 
 SECOND_SHARE = 0.25
-"""T2 over T1 where no axis has a jerk; our choice"""
+"""Ratio of T2 to T1 if no axis has a jerk limit; an assumption."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FixedTimeFilter:
-    """A control that filters the commands of its axes.
+    """Control that filters the position commands of its axes with two moving averages.
 
     Raises
     ------
@@ -122,9 +121,9 @@ class FixedTimeFilter:
     """
 
     first: float
-    """First, s, T1: sets the acceleration"""
+    """Time T1 of the first average, s; determines the acceleration."""
     second: float
-    """Second, s, T2: sets the jerk"""
+    """Time T2 of the second average, s; determines the jerk."""
 
     def __post_init__(self) -> None:
         if not self.first >= self.second > 0.0:
@@ -132,21 +131,21 @@ class FixedTimeFilter:
 
     @property
     def window(self) -> float:
-        """T1 + T2, s: how long a standstill takes to pass through."""
+        """Length of the filter window T1 + T2, s."""
         return self.first + self.second
 
     def plan(self, segments: Segments, limits: AxisLimits) -> Motion:
-        """Motion along segments, from rest to rest.
+        """Plan the motion along segments, from rest to rest.
 
         Raises
         ------
         ValueError
-            When there is no segment, or a segment's speed has no bound at all.
+            If there is no segment, or a segment's speed is unlimited.
         """
         return self.plan_within(segments, path_limits(segments, limits))
 
     def plan_within(self, segments: Segments, bounds: PathLimits) -> Motion:
-        """The same with the limits along the path, which are those of the axes."""
+        """Plan the motion along segments with known limits along the path."""
         rows = np.flatnonzero(segments.length > 0.0)
         if not len(rows):
             return swept(segments, rows, limits=bounds, corner=np.empty(0))
@@ -163,33 +162,33 @@ class FixedTimeFilter:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Pieces:
-    """K lines, arcs and rests of the path before the filter, each at constant speed."""
+    """Path before the filter, as K lines, arcs and rests at constant speed."""
 
     segments: Segments
-    """all with length"""
+    """Segments of the path, all with a length."""
     speed: Floats
-    """Speed, mm/s, of each segment"""
+    """Speed of each segment, mm/s."""
     rests: Ints
-    """rows of segments before which the path rests, and their number"""
+    """Rows of segments before which the path rests, and the number of segments."""
     window: float
-    """Window, s of a rest"""
+    """Duration of a rest, s: the filter window."""
 
     @cached_property
     def time(self) -> Floats:
-        """(K+1,) s at which pieces begin and the last one ends."""
+        """Start times of the pieces, and the end of the last, (K+1,), s."""
         times = np.insert(self.segments.length / self.speed, self.rests, self.window)
         return np.append(0.0, np.cumsum(times)) - self.window
 
     @cached_property
     def columns(self) -> tuple[Floats, Floats, Floats, Floats, Floats]:
-        """Input of :func:`simulator.motion.moving_average.averaged`."""
+        """Pieces as arguments of :func:`simulator.motion.moving_average.averaged`."""
         segments, speed, rests = self.segments, self.speed, self.rests
         rows, zero = np.arange(len(segments)), np.zeros(len(segments))
         turning = segments.turn * speed / segments.length
         along = segments.direction(rows, zero) * speed[:, None]
         spin = np.where(turning[:, None] == 0.0, 0.0, along)
         spin[rows, segments.normal] = 0.0
-        # The change of direction per length, times v², is the cross part times the rate.
+        # The curvature times v², divided by the turning rate, gives the cross component.
         cross = segments.curvature(rows, zero) * (speed**2)[:, None]
         np.divide(cross, turning[:, None], out=cross, where=turning[:, None] != 0.0)
         moving = np.stack((along - spin, spin, cross), axis=1)
@@ -201,35 +200,35 @@ class Pieces:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FilteredMotion:
-    """N segments under a filter; a motion.
+    """Motion along N segments as smoothed by a fixed-time filter.
 
-    Segment and station are those of the path before the filter, half a window earlier.
+    Segment and station refer to the path before the filter, half a window earlier.
     """
 
     filter: FixedTimeFilter
     segments: Segments
     speed: Floats
-    """Speed, (N,) mm/s before the filter"""
+    """Speed of each segment before the filter, (N,), mm/s."""
     rows: Ints
-    """those that have length"""
+    """Rows of the segments that have a length."""
     pieces: Pieces
 
     @cached_property
     def _piece(self) -> Ints:
-        """Piece of each segment that has length."""
+        """Index of the piece for each segment that has a length."""
         order = np.arange(len(self.rows))
         return order + np.searchsorted(self.pieces.rests, order, "right")
 
     @cached_property
     def begin(self) -> Floats:
-        """(N,) s at which the path before the filter enters a segment that has length."""
+        """Times at which the unfiltered path enters each segment, (N,), s; 0 without length."""
         begin = np.zeros(len(self.segments))
         begin[self.rows] = self.pieces.time[self._piece]
         return begin
 
     @cached_property
     def ends(self) -> Floats:
-        """(N,) s at which each segment ends: half a window later, or a whole before a stop."""
+        """End time of each segment, (N,), s: half a window late, a whole one before stops."""
         window = self.filter.window
         delay = np.full(len(self.rows), 0.5 * window)
         delay[self.pieces.rests[1:] - 1] = window
@@ -238,14 +237,15 @@ class FilteredMotion:
 
     @property
     def duration(self) -> float:
-        """Time of the whole stretch, s: up to the end of the last rest."""
+        """Duration of the whole stretch, s, up to the end of the last rest."""
         return float(self.pieces.time[-2] + self.filter.window)
 
     @property
     def knots(self) -> Floats:
-        """(K,) times at which a corner enters or leaves one of the averages, s.
+        """Times between which speeds are smooth, (K,), s.
 
-        And those half a window later, when the station comes to the corner.
+        A corner enters or leaves one of the averages at each of them, or the station reaches
+        it.
         """
         first, second, window = self.filter.first, self.filter.second, self.filter.window
         delays = np.array([0.0, second, 0.5 * window, first, window])
@@ -253,7 +253,7 @@ class FilteredMotion:
         return np.unique(np.minimum(times, self.duration))
 
     def at(self, times: Floats) -> Kinematics:
-        """State at (M,) times in s between 0 and the duration."""
+        """State of the axes at (M,) times in s, between 0 and the duration."""
         window, pieces = self.filter.window, self.pieces
         before = np.maximum(times - window, pieces.time[0])
         piece = np.searchsorted(pieces.time[1:-1], before, side="right")
@@ -277,19 +277,20 @@ class FilteredMotion:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FilterWithinLimits:
-    """A control that takes for each run the shortest filter that the axes' limits allow.
+    """Control that uses for each run the shortest filter that the axis limits allow.
 
-    A run is what lies between two stops of the filter: feeds, or rapids. In a run of feeds the
-    speed may turn round at its greatest feed; rapids begin and end at rest.
+    A run is the part of the path between two stops of the filter: feed moves, or rapids. In a
+    run of feed moves the velocity may reverse at its greatest feed; rapids begin and end at
+    rest.
     """
 
     def plan(self, segments: Segments, limits: AxisLimits) -> Motion:
-        """Motion along segments, from rest to rest.
+        """Plan the motion along segments, from rest to rest.
 
         Raises
         ------
         ValueError
-            When there is no segment, a segment's speed has no bound at all, or no axis limits
+            If there is no segment, a segment's speed is unlimited, or no axis limits the
             acceleration.
         """
         bound = path_limits(segments, limits)
@@ -307,26 +308,26 @@ class FilterWithinLimits:
 
 
 def shortest_filter(limits: AxisLimits, change: Floats) -> FixedTimeFilter:
-    """The shortest filter within which no change of speed passes an axis' limits.
+    """Shortest filter with which a change of speed stays within the limits of each axis.
 
-    An axis that changes its speed by Δv needs ``T1 ≥ Δv/a`` and ``T1·T2 ≥ Δv/j``; both times
-    equal where the jerk decides, a quarter of T1 for T2 where no jerk is known.
+    An axis that changes its speed by Δv needs ``T1 ≥ Δv/a`` and ``T1·T2 ≥ Δv/j``. Both times
+    are equal if the jerk decides; T2 is a quarter of T1 if no jerk limit is known.
 
     Parameters
     ----------
     limits : AxisLimits
     change : (3,) array, mm/s
-        Δv of each axis.
+        Change Δv of the speed of each axis.
 
     Raises
     ------
     ValueError
-        When no axis limits its acceleration, or a change is not finite there.
+        If no axis limits its acceleration, or a change is not finite for such an axis.
     """
     known = np.isfinite(limits.acceleration)
     wanted = np.maximum(change[known], LEAST_CHANGE)
     if not known.any() or not np.isfinite(wanted).all():
-        raise ValueError("a filter needs axes with finite rapid, feed and acceleration")
+        raise ValueError("the filter needs axes with finite rapid, feed and acceleration")
     ramps = wanted / limits.acceleration[known]
     areas = wanted / limits.jerk[known]
     first = float(np.maximum(ramps, np.sqrt(areas)).max())

@@ -7,8 +7,8 @@ class ControlModelName(StrEnum):
     """Name of a control model."""
 
     EXACT_STOP = "exact-stop"
-    """each block from rest to rest"""
+    """Each block runs from rest to rest."""
     JUNCTION = "junction"
-    """continuous, corners at the speed of a junction deviation"""
+    """Continuous path; corner speeds follow from a junction deviation."""
     FIR = "fir"
-    """axis commands filtered over fixed times"""
+    """Axis commands filtered with fixed times."""

@@ -1,13 +1,13 @@
-"""Two moving averages over a path that is run at piecewise constant speed, in closed form.
+"""Two moving averages over a path with piecewise constant speed, in closed form.
 
-With p the path by time and P its double integral, averages over the T1 and then the T2 seconds
-before t give ``q(t) = [P(t) − P(t−T1) − P(t−T2) + P(t−T1−T2)]/(T1·T2)``; the velocity is the
-same of the first integral and the acceleration the same of p itself. Large numbers would
-cancel, so time and position count from where the path was at t−T1−T2, and the integrals walk
-from there over the pieces within the window. Units mm, s, rad.
+With p the path over time and P its double integral, averages over the T1 and then the T2
+seconds before t give ``q(t) = [P(t) − P(t−T1) − P(t−T2) + P(t−T1−T2)]/(T1·T2)``; the same
+expression of the first integral gives the velocity, and of p itself the acceleration. To avoid
+cancellation of large numbers, time and position are measured from the state at t−T1−T2, and the
+integrals are accumulated from there over the pieces within the window. Units mm, s, rad.
 
-The functions c_k are those of Stumpff: they integrate a turning velocity without division by
-its rate, so that flat arcs and lines lose no digits.
+The functions c_k are Stumpff functions: they integrate a turning velocity without division by
+its rate, so that flat arcs and lines stay accurate.
 """
 
 from math import cos, sin
@@ -18,20 +18,21 @@ from simulator.kernels.kernel import entry, kernel
 from simulator.motion.segments import Floats, Ints
 
 SERIES_BELOW = 0.5
-"""rad; below it the closed forms of c_3 and c_4 lose digits"""
+"""Angle, rad, below which the closed forms of c_3 and c_4 lose accuracy."""
 
 TERMS = 5
-"""of the series; the first one left out is below 10⁻¹⁵ of the sum"""
+"""Number of terms of the series; the first omitted term is below 10⁻¹⁵ of the sum."""
 
 STRAIGHT, SPIN, CROSS = 0, 1, 2
-"""rows of a velocity: the part that stays, the part that turns, and that a quarter turn on"""
+"""Rows of a velocity: constant part, turning part, and the latter advanced by a quarter
+turn."""
 
 WAY, ONCE, TWICE = 0, 1, 2
-"""rows of a state: position from the origin, its integral, the integral of that"""
+"""Rows of a state: position from the origin, its integral, and its double integral."""
 
 
 def states_at_ends(time: Floats, velocity: Floats, rate: Floats) -> Floats:
-    """Sum that each piece contributes once all of it is passed.
+    """Contribution of each complete piece to the integrals.
 
     Parameters
     ----------
@@ -50,7 +51,7 @@ def states_at_ends(time: Floats, velocity: Floats, rate: Floats) -> Floats:
 
 @entry
 def _find_ends(time: Floats, velocity: Floats, rate: Floats, ends: Floats) -> None:
-    """Write the states at the ends, which begin as zeros."""
+    """Kernel of :func:`states_at_ends`; writes the states into ``ends`` (initially zeros)."""
     for now in range(len(rate)):
         _advance(ends[now], velocity[now], rate[now], time[now + 1] - time[now], ends[now])
 
@@ -62,18 +63,18 @@ def averaged(
     first: float,
     second: float,
 ) -> Floats:
-    """State after both averages.
+    """Acceleration, velocity and position after both averages.
 
     Parameters
     ----------
     begin : (M,) array, s
-        T1 + T2 before the times asked for.
+        Requested times minus T1 + T2.
     piece : (M,) array of int
-        In which of K pieces these lie.
+        Index of the piece, of K, that contains each of these times.
     pieces : tuple of five arrays
-        (K+1,) s at which pieces begin and the last one ends; (K, 3) mm where they begin;
-        (K, 3, 3) mm/s velocity there, in rows as above; (K,) rad/s at which it turns; and
-        their states at the ends.
+        Start times of the pieces and end of the last, (K+1,), s; start positions, (K, 3), mm;
+        velocities at the start, (K, 3, 3), mm/s, in rows as above; turning rates, (K,), rad/s;
+        and states at the ends.
     first, second : float, s
         T1 ≥ T2 > 0.
 
@@ -96,7 +97,7 @@ def _average(
     room: Floats,
     result: Floats,
 ) -> None:
-    """The same, added to the last argument; room has (10, 3) numbers to work with."""
+    """Kernel of :func:`averaged`; adds to ``result``; ``room`` is a (10, 3) work space."""
     time, start, velocity, rate, ends = pieces
     first, second = times
     state, there, leg, origin = room[:3], room[3:6], room[6:9], room[9]
@@ -136,7 +137,7 @@ def _average(
 
 @kernel
 def _pass(state: Floats, ends: Floats, now: int, time: float) -> None:
-    """Integrals after a whole piece, in place."""
+    """Advance the integrals in place over a whole piece."""
     for axis in range(3):
         way, once = state[WAY, axis], state[ONCE, axis]
         state[TWICE, axis] += (once + 0.5 * way * time) * time + ends[now, TWICE, axis]
@@ -145,7 +146,7 @@ def _pass(state: Floats, ends: Floats, now: int, time: float) -> None:
 
 @kernel
 def _enter(velocity: Floats, now: int, angle: float, leg: Floats) -> None:
-    """Velocity on a piece after its turning part has turned by an angle."""
+    """Write the velocity on a piece after its turning part has turned by an angle."""
     cosine, sine = cos(angle), sin(angle)
     for axis in range(3):
         spin, cross = velocity[now, SPIN, axis], velocity[now, CROSS, axis]
@@ -156,7 +157,7 @@ def _enter(velocity: Floats, now: int, angle: float, leg: Floats) -> None:
 
 @kernel
 def _advance(state: Floats, leg: Floats, rate: float, time: float, there: Floats) -> None:
-    """State after a time on a leg, written to the last argument, which may be the first."""
+    """Write the state after a time on a leg to ``there``, which may be ``state`` itself."""
     angle = rate * time
     c_1, c_2, c_3, c_4 = _stumpff(angle)
     square, cube = time * time, time * time * time
@@ -177,7 +178,7 @@ def _advance(state: Floats, leg: Floats, rate: float, time: float, there: Floats
 
 @kernel
 def _stumpff(angle: float) -> tuple[float, float, float, float]:
-    """c_1 to c_4 of the squared angle: ``c_k = 1/k! − x²/(k+2)! + x⁴/(k+4)! − …``."""
+    """Functions c_1 to c_4 of the squared angle: ``c_k = 1/k! − x²/(k+2)! + x⁴/(k+4)! − …``."""
     square = angle * angle
     if square == 0.0:
         return 1.0, 1.0 / 2.0, 1.0 / 6.0, 1.0 / 24.0

@@ -1,10 +1,6 @@
-"""Times and speeds at which places along a path are passed: the motion by distance.
+"""Times and speeds at which points along a path are passed, for example on a tool path.
 
-Units mm, s.
-
-Speeds that the axes reach at places of a workingstep's tool path.
-
-Where a path turns, begins or ends they are slower than the feed. Units mm, s.
+Speeds are lower than the feed where a path turns, begins or ends. Units mm, s.
 """
 
 from dataclasses import dataclass
@@ -18,19 +14,19 @@ from simulator.motion.tool_path import ToolPathRun
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Passing:
-    """A stretch from rest to rest, and what is known of its way."""
+    """Stretch of path from rest to rest, with its motion over distance."""
 
     segments: Segments
     motion: Motion
 
     @cached_property
     def offsets(self) -> Floats:
-        """(N + 1,) mm of path before each segment."""
+        """Length of path before each segment, (N + 1,), mm."""
         return np.concatenate(([0.0], np.cumsum(self.segments.length)))
 
     @cached_property
     def clock(self) -> tuple[Floats, Floats]:
-        """Times from the start, s, and mm of path behind: fine enough to be joined straight."""
+        """Times in s and path lengths in mm, dense enough for linear interpolation."""
         knots = np.unique(np.concatenate((self.motion.knots, self.motion.ends)))
         parts = np.array([0.25, 0.5, 0.75, 1.0])
         inside = knots[:-1, None] + np.diff(knots)[:, None] * parts
@@ -40,13 +36,13 @@ class Passing:
         return times, np.maximum.accumulate(along)
 
     def times(self, places: Floats) -> Floats:
-        """Times at which places, ascending along the path in mm, are passed."""
+        """Times at which points, given by ascending path length in mm, are passed, s."""
         times, along = self.clock
         guess = np.interp(places, along, times)
         at = self.motion.at(guess)
         speed = np.linalg.norm(at.velocity, axis=1)
         left = places - self.offsets[at.segment] - at.station
-        # Within a phase the way is a parabola, s = v·t + a·t²/2; this form keeps its digits.
+        # Within a phase the way is a parabola, s = v·t + a·t²/2; this form stays accurate.
         moves = np.where(speed > 0.0, speed, 1.0)
         along_path = np.sum(at.acceleration * at.velocity, axis=1) / moves
         root = moves + np.sqrt(np.maximum(moves**2 + 2.0 * along_path * left, 0.0))
@@ -55,7 +51,7 @@ class Passing:
         return np.maximum.accumulate(np.clip(guess + step, times[row - 1], times[row]))
 
     def speeds(self, segment: Ints, station: Floats) -> Floats:
-        """(M,) mm/s along the path at places in mm along segments, ascending."""
+        """Speed along the path at ascending positions on segments, (M,), mm/s."""
         at = self.motion.at(self.times(self.offsets[segment] + station))
         return np.linalg.norm(at.velocity, axis=1)
 
@@ -68,7 +64,7 @@ def reached_speeds(
     segment: Ints,
     station: Floats,
 ) -> Floats:
-    """(M,) mm/s that the axes reach at places of a path, which are ascending.
+    """Speed along the path that the axes reach at ascending positions, (M,), mm/s.
 
     Parameters
     ----------
@@ -76,9 +72,9 @@ def reached_speeds(
     control : ControlModel
     limits : AxisLimits
     segment : (M,) array of int
-        Rows of the run.
+        Row of the segment in the run.
     station : (M,) array, mm
-        Along them.
+        Position along the segment.
     """
     speeds = np.zeros(len(segment))
     for leg in run.legs:

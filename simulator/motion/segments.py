@@ -1,9 +1,10 @@
-"""Lines and arcs of a path as arrays, and motion along them: position and speed by time.
+"""Lines and arcs of a path as arrays, and types for motion along them over time.
 
-One row a segment, each beginning where the one before it ends. Units mm, mm/s, rad.
+There is one row per segment; each segment begins where the previous one ends. Units mm, mm/s,
+rad.
 
-A control model plans one stretch of path that begins and ends at rest. What it returns is
-closed form in time: any sampling rate is exact.
+A control model plans one stretch of path that begins and ends at rest. The resulting motion has
+a closed form in time, so that it is exact at any sampling rate.
 """
 
 from collections.abc import Sequence
@@ -21,35 +22,35 @@ Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 FIRST, SECOND = (1, 2, 0), (2, 0, 1)
-"""axes that span the plane whose normal is axis 0, 1 or 2: YZ, ZX, XY"""
+"""Axes that span the plane whose normal is axis 0, 1 or 2: YZ, ZX, XY."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Segments:
-    """N lines and arcs, one after another.
+    """Path of N consecutive lines and arcs.
 
     Raises
     ------
     ValueError
-        When shapes differ or a number is not finite; a rapid's speed may be infinite.
+        If shapes differ or a number is not finite; a rapid's speed may be infinite.
     """
 
     start: Floats
-    """Start, (N, 3), mm"""
+    """Start points, (N, 3), mm."""
     end: Floats
-    """End, (N, 3), mm"""
+    """End points, (N, 3), mm."""
     speed: Floats
-    """Speed, (N,) commanded along the path, mm/s; infinite: as fast as the axes go"""
+    """Commanded speed along the path, (N,), mm/s; infinite: limited by the axes only."""
     is_rapid: Bools
-    """(N,)"""
+    """Whether the segment is a rapid, (N,)."""
     centre: Floats
-    """Centre, (N, 3), mm, of arcs; its coordinate along the normal means nothing"""
+    """Centre points of arcs, (N, 3), mm; the coordinate along the normal is ignored."""
     turn: Floats
-    """Turn, (N,) rad about the normal, positive counter-clockwise; 0: a line"""
+    """Angle of the arc about its normal, (N,), rad, counter-clockwise; 0 for a line."""
     normal: Ints
-    """Normal, (N,) axis of the plane's normal: 0, 1 or 2"""
+    """Axis normal to the plane of the arc, (N,): 0, 1 or 2."""
     block: Ints
-    """Block, (N,) number of the block from which a segment comes"""
+    """Number of the block to which a segment belongs, (N,)."""
 
     def __post_init__(self) -> None:
         count = len(self.turn)
@@ -74,14 +75,14 @@ class Segments:
         return len(self.turn)
 
     def __getitem__(self, rows: slice | Ints | Bools) -> "Segments":
-        """Some of the rows, which need no check again, with what is known of them."""
+        """Select rows without checking them again, together with cached properties."""
         part = object.__new__(Segments)
         vars(part).update((name, column[rows]) for name, column in vars(self).items())
         return part
 
     @cached_property
     def length(self) -> Floats:
-        """(N,) mm along the path."""
+        """Length along the path, (N,), mm."""
         rows = np.arange(len(self))
         straight = np.linalg.norm(self.end - self.start, axis=1)
         rise = (self.end - self.start)[rows, self.normal]
@@ -89,45 +90,45 @@ class Segments:
 
     @cached_property
     def radius(self) -> Floats:
-        """(N,) mm, of arcs; 0 for lines."""
+        """Radius of arcs, (N,), mm; 0 for lines."""
         first, second = self._plane(np.arange(len(self)))
         return np.where(self.turn == 0.0, 0.0, np.hypot(first, second))
 
     @cached_property
     def _along(self) -> Floats:
-        """(N, 3) way of each axis per length of path, of arcs on the mean; 0 without length."""
+        """Mean movement of each axis per length of path, (N, 3); 0 without length."""
         length = np.where(self.length > 0.0, self.length, 1.0)
         return (self.end - self.start) / length[:, None]
 
     @cached_property
     def _turn_rate(self) -> Floats:
-        """(N,) rad/mm; 0 for lines."""
+        """Rate of turning along the path, (N,), rad/mm; 0 for lines."""
         return np.divide(
             self.turn, self.length, out=np.zeros(len(self)), where=self.length > 0.0
         )
 
     @cached_property
     def _start_angle(self) -> Floats:
-        """(N,) rad, of the arm from the centre to the start."""
+        """Angle of the start point of arcs from the centre, (N,), rad."""
         first, second = self._plane(np.arange(len(self)))
         return np.arctan2(second, first)
 
     def _plane(self, rows: Ints) -> tuple[Floats, Floats]:
-        """Arm from centre to start in its plane."""
+        """Components of the vector from centre to start in the plane of each arc, mm."""
         arm = self.start[rows] - self.centre[rows]
         order = np.arange(len(rows))
         normal = self.normal[rows]
         return arm[order, _FIRST[normal]], arm[order, _SECOND[normal]]
 
     def position(self, rows: Ints, station: Floats) -> Floats:
-        """Position at a share of each segment.
+        """Position at a distance along each segment.
 
         Parameters
         ----------
         rows : (M,) array of int
-            Which segments.
+            Indices of segments.
         station : (M,) array, mm
-            Along each of them, from 0 to its length.
+            Distance along each segment, from 0 to its length.
 
         Returns
         -------
@@ -145,7 +146,7 @@ class Segments:
         return point
 
     def direction(self, rows: Ints, station: Floats) -> Floats:
-        """Unit vectors along the path; zero where a segment has no length.
+        """Unit vectors along the path; zero if a segment has no length.
 
         Returns
         -------
@@ -162,7 +163,7 @@ class Segments:
         return along
 
     def curvature(self, rows: Ints, station: Floats) -> Floats:
-        """Change of direction along the path, a vector towards the centre; 0 on lines.
+        """Curvature vector of the path, towards the centre; 0 on lines.
 
         Returns
         -------
@@ -179,11 +180,11 @@ class Segments:
         return bend
 
     def _bent(self, rows: Ints) -> Ints:
-        """Mask of the rows that are arcs."""
+        """Positions in ``rows`` of the segments that are arcs."""
         return np.flatnonzero(self.turn[rows])
 
     def _angle(self, rows: Ints, station: Floats) -> Floats:
-        """Angle of the arm from the centre of arcs, rad."""
+        """Angle of a point on arcs from the centre, rad."""
         return self._start_angle[rows] + station * self._turn_rate[rows]
 
 
@@ -192,7 +193,7 @@ _SECOND = np.array(SECOND)
 
 
 def lines(points: Sequence[Sequence[float] | Floats], *, speed: float = np.inf) -> Segments:
-    """Straight segments through points, rapid unless a speed in mm/s is given."""
+    """Create straight segments through points; rapids unless a speed in mm/s is given."""
     corners = np.asarray(points, dtype=np.float64).reshape(-1, 3)
     count = max(0, len(corners) - 1)
     return Segments(
@@ -216,19 +217,19 @@ def arc(
     rise: float = 0.0,
     speed: float = np.inf,
 ) -> Segments:
-    """One arc, or a helix when it rises along its normal (axis 0, 1 or 2).
+    """Create an arc, or a helix if it rises along its normal (axis 0, 1 or 2).
 
     Parameters
     ----------
     start, centre : sequence of 3 floats, mm
-        The centre's coordinate along the normal means nothing.
+        The coordinate of the centre along the normal is ignored.
     turn : float, rad
-        Positive counter-clockwise, more than 2π for several turns.
+        Positive counter-clockwise; more than 2π for several turns.
     normal : int
-        Axis of the plane's normal.
+        Axis normal to the plane.
     rise : float, mm
     speed : float, mm/s
-        Infinite: a rapid.
+        Infinite for a rapid.
     """
     first, second = FIRST[normal], SECOND[normal]
     end = np.array(start, dtype=np.float64)
@@ -245,7 +246,7 @@ def arc(
 
 
 def chained(parts: Sequence[Segments]) -> Segments:
-    """Segments of several parts one after another, each segment a block of its own."""
+    """Concatenate segments; each segment becomes a block of its own."""
     columns = {
         field.name: np.concatenate([getattr(part, field.name) for part in parts])
         for field in fields(Segments)
@@ -264,19 +265,19 @@ class AxisLimits:
     Raises
     ------
     ValueError
-        When a limit of an axis is not positive, or the block time is negative.
+        If a limit of an axis is not positive, or the block time is negative.
     """
 
     acceleration: Floats
-    """Acceleration, (3,) mm/s²"""
+    """Greatest acceleration of X, Y and Z, (3,), mm/s²."""
     rapid: Floats
-    """Rapid, (3,) mm/s"""
+    """Rapid speed of X, Y and Z, (3,), mm/s."""
     feed: Floats
-    """Feed, (3,) mm/s, greatest feed"""
+    """Greatest feed of X, Y and Z, (3,), mm/s."""
     block_time: float = 0.0
-    """Block time, s, the control's processing time of one block"""
+    """Processing time of the control per block, s."""
     jerk: Floats = field(default_factory=lambda: np.full(3, np.inf))
-    """Jerk, (3,) mm/s³"""
+    """Greatest jerk of X, Y and Z, (3,), mm/s³."""
 
     def __post_init__(self) -> None:
         for name in ("acceleration", "rapid", "feed", "jerk"):
@@ -292,45 +293,45 @@ class Kinematics:
     """State of the axes at M times."""
 
     position: Floats
-    """Position, (M, 3) mm"""
+    """Position, (M, 3), mm."""
     velocity: Floats
-    """Velocity, (M, 3) mm/s"""
+    """Velocity, (M, 3), mm/s."""
     acceleration: Floats
-    """Acceleration, (M, 3) mm/s²"""
+    """Acceleration, (M, 3), mm/s²."""
     segment: Ints
-    """Segment, (M,) row of the segment that runs"""
+    """Row of the current segment, (M,)."""
     station: Floats
-    """Station, (M,) mm along that segment"""
+    """Position along the current segment, (M,), mm."""
 
 
 class Motion(Protocol):
-    """A stretch of path by time, from rest to rest."""
+    """Motion along a stretch of path over time, from rest to rest."""
 
     @property
     def duration(self) -> float:
-        """Time of the whole stretch, s."""
+        """Duration of the whole stretch, s."""
         ...
 
     @property
     def ends(self) -> Floats:
-        """(N,) time at which each segment ends, s, ascending; the last is the duration."""
+        """End time of each segment, (N,), s, ascending; the last is the duration."""
         ...
 
     @property
     def knots(self) -> Floats:
-        """(K,) times from 0 to the duration between which speeds are smooth, s."""
+        """Times from 0 to the duration between which speeds are smooth, (K,), s."""
         ...
 
     def at(self, times: Floats) -> Kinematics:
-        """State at (M,) times in s, ascending, between 0 and the duration."""
+        """State of the axes at (M,) ascending times in s, between 0 and the duration."""
         ...
 
 
 class ControlModel(Protocol):
-    """Control model: makes the motion of a path."""
+    """Control model that plans the motion along a path."""
 
     def plan(self, segments: Segments, limits: AxisLimits) -> Motion:
-        """Motion along segments, from rest to rest."""
+        """Plan the motion along segments, from rest to rest."""
         ...
 
 

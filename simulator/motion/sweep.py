@@ -1,21 +1,19 @@
-"""Fastest motion along a path within its limits and the speeds that its corners allow.
+"""Fastest motion along a path within its limits and the permitted corner speeds.
 
-In b = v² an acceleration limit reads ``|Δb| ≤ 2·a·L``, so a sweep backward and one forward
-over the corners give the greatest b at each, [2]_, and each segment is a trapezoid or a
-triangle between the speeds at its ends, [1]_. Units mm, s.
+In b = v² an acceleration limit reads ``|Δb| ≤ 2·a·L``, so that a backward and a forward sweep
+over the corners give the greatest b at each, [2]_. The speed on each segment is a trapezoid or
+a triangle between the speeds at its ends, [1]_.
 
-Motion whose acceleration along the path is constant by phases.
-
-A segment has up to three: it speeds up, runs, slows down. Between the ends of a phase the
-station is a parabola in time, so position, velocity and acceleration are exact at any time.
-Units mm, s.
+A segment has up to three phases of constant acceleration along the path: speeding up, constant
+speed, slowing down. Within a phase the station is a parabola in time, so that position,
+velocity and acceleration are exact at any time. Units mm, s.
 
 References
 ----------
 .. [1] S.-J. Shin et al., "Developing a virtual machining model to generate MTConnect
    machine-monitoring data from STEP-NC", Int. J. Prod. Res., 2016, Appendix 1 (1)-(4),
    doi:10.1080/00207543.2015.1064182. Printed from rest to rest, without the triangle of moves
-   too short to reach their speed, and with v where the deceleration wants its own symbol.
+   too short to reach their speed, and with v where the deceleration needs its own symbol.
 .. [2] D. Verscheure et al., "Time-optimal path tracking for robots: a convex optimization
    approach", IEEE Trans. Autom. Control 54 (2009) 2318-2327: b = v² over the station.
 """
@@ -30,36 +28,36 @@ from simulator.motion.segments import Floats, Ints, Kinematics, Segments
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Phases:
-    """P phases, ascending in time; a motion."""
+    """Motion in P phases of constant acceleration along the path, ascending in time."""
 
     segments: Segments
     ends: Floats
-    """Ends, (N,) time at which each segment ends, s"""
+    """End time of each segment, (N,), s."""
     segment: Ints
-    """Segment, (P,) row of the segment"""
+    """Row of the segment, (P,)."""
     start: Floats
-    """Start, (P,) s"""
+    """Start time of the phase, (P,), s."""
     time: Floats
-    """Time, (P,) s"""
+    """Duration of the phase, (P,), s."""
     station: Floats
-    """Station, (P,) mm along the segment where the phase starts"""
+    """Position along the segment at the start of the phase, (P,), mm."""
     speed: Floats
-    """Speed, (P,) mm/s there"""
+    """Speed at the start of the phase, (P,), mm/s."""
     acceleration: Floats
-    """Acceleration, (P,) mm/s² along the path"""
+    """Acceleration along the path, (P,), mm/s²."""
 
     @property
     def duration(self) -> float:
-        """Time of the whole stretch, s."""
+        """Duration of the whole stretch, s."""
         return float(self.ends[-1])
 
     @property
     def knots(self) -> Floats:
-        """(P+1,) times at which phases begin and end, s."""
+        """Times at which phases begin and end, (P+1,), s."""
         return np.append(self.start, self.duration)
 
     def at(self, times: Floats) -> Kinematics:
-        """State at (M,) times in s between 0 and the duration."""
+        """State of the axes at (M,) times in s, between 0 and the duration."""
         phase = np.searchsorted(self.start[1:], times, side="right")
         passed = np.clip(times - self.start[phase], 0.0, self.time[phase])
         along = self.acceleration[phase]
@@ -81,20 +79,20 @@ class Phases:
 def swept(
     segments: Segments, rows: Ints, *, limits: PathLimits, corner: Floats, pause: float = 0.0
 ) -> Phases:
-    """Fastest motion from rest to rest.
+    """Compute the fastest motion from rest to rest.
 
     Parameters
     ----------
     segments : Segments
-        N of them.
+        N segments of the path.
     rows : (R,) array of int
-        Those that take time, ascending.
+        Rows of the segments that take time, ascending.
     limits : PathLimits
-        Of all N.
+        Limits on all N segments.
     corner : (R−1,) array, mm²/s²
-        Greatest squared speed between one of the rows and the next.
+        Greatest squared speed between one row and the next.
     pause : float, s
-        Time of a row without length.
+        Duration of a row without length.
 
     Returns
     -------
@@ -117,7 +115,7 @@ def swept(
     times = _threes((peak - entry) / acceleration, run, (peak - leave) / acceleration)
     clock = np.append(0.0, np.cumsum(times))
     kept = np.diff(clock) > 0.0
-    kept[1] |= not kept.any()  # a path without length stands
+    kept[1] |= not kept.any()  # a path without length has one phase at rest
     return Phases(
         segments=segments,
         ends=ends_of_all(len(segments), rows, clock[3::3]),
@@ -131,7 +129,7 @@ def swept(
 
 
 def _node_squares(corner: Floats, reach: Floats) -> Floats:
-    """(R+1,) greatest squared speeds from rest to rest, each within reach of its neighbours."""
+    """Greatest squared speeds at corners, (R+1,), that accelerations between them permit."""
     squares: list[float] = [0.0, *corner.tolist(), 0.0]
     steps: list[float] = reach.tolist()
     for row in range(len(steps) - 1, -1, -1):
@@ -142,11 +140,11 @@ def _node_squares(corner: Floats, reach: Floats) -> Floats:
 
 
 def _threes(first: Floats, second: Floats, third: Floats) -> Floats:
-    """Values of the three phases of each row, one after another."""
+    """Interleave the values of the three phases of each row."""
     return np.stack((first, second, third), axis=1).ravel()
 
 
 def ends_of_all(count: int, rows: Ints, ends: Floats) -> Floats:
-    """(N,) end of each segment; one that takes no time ends with the row before it."""
+    """End time of each segment, (N,); a segment without duration ends with the previous row."""
     known = np.append(0.0, ends)
     return known[np.searchsorted(rows, np.arange(count), side="right")]

@@ -1,10 +1,10 @@
-"""A workingstep's tool path as the axes run it: legs from rest to rest, and how long they take.
+"""Tool path of a workingstep as the axes run it: legs from rest to rest, and their duration.
 
-What a control would read is taken: moves that differ only in whether they touch material are
-one. A leg ends where the path waits: at a dwell, and where the spindle is told another speed,
-which the feed waits for. Where the spindle follows a constant surface speed, a move is split so
-that the speed changes by at most a few per cent from piece to piece. Tool changes and the way
-to the path are not part of it. Units mm, s, rev/s.
+The path is read as by a control: moves that differ only in whether they touch material are
+merged. A leg ends where the path waits: at a dwell, and where the spindle gets another speed,
+for which the feed waits. At constant surface speed a move is split so that the speed changes by
+at most a few per cent from piece to piece. Tool changes and the approach to the path are not
+included. Units mm, s, rev/s.
 """
 
 from collections.abc import Callable, Sequence
@@ -51,16 +51,16 @@ from stepnc_model.toolpath.path import (
 )
 
 PIECE = 0.02
-"""relative change of the radius within one piece at constant surface speed"""
+"""Relative change of the radius within one piece at constant surface speed."""
 
 MOST_PIECES = 400
 
 NEAREST = 0.02
-"""mm from the axis, within which no piece is told from the next"""
+"""Distance from the axis, mm, within which a path is not split further."""
 
 
 def in_pieces(segments: Segments, least: float) -> Segments:
-    """Segments split so that the speed changes by little from piece to piece.
+    """Split segments so that the spindle speed changes little from piece to piece.
 
     Parameters
     ----------
@@ -74,17 +74,17 @@ def in_pieces(segments: Segments, least: float) -> Segments:
 def behind(wanted: Floats, length: Floats, advance: Floats, *, ramp: float) -> Floats:
     """Mean speeds of a spindle that follows the radius as fast as it can.
 
-    A feed per revolution goes on with the spindle as it turns: within a piece of path of so
-    many revolutions it ramps towards the speed of the piece, and keeps it once it is reached.
-    On the way to the next feed it has caught up.
+    A feed per revolution is synchronised with the spindle: over a piece of path that takes some
+    number of revolutions, the spindle ramps towards the speed for this piece and then keeps it.
+    When the next feed move begins after a rapid, it has caught up.
 
     Parameters
     ----------
     wanted : (N,) array, rev/s
-        What the radius asks for; the first is met, as a feed waits for the spindle.
+        Speed required by the radius; the first is reached, as a feed waits for the spindle.
     length : (N,) array, mm
     advance : (N,) array, mm
-        Feeds per revolution; 0: none.
+        Feeds per revolution; 0 if there is none.
     ramp : float, rev/s²
     """
     mean, speed, is_late = wanted.copy(), 0.0, False
@@ -96,7 +96,7 @@ def behind(wanted: Floats, length: Floats, advance: Floats, *, ramp: float) -> F
         rise = ramp if goal > speed else -ramp
         until = abs(goal - speed) / ramp
         if turns >= 0.5 * (speed + goal) * until:
-            # One that is not late follows within the piece too.
+            # A spindle that was not late also follows the radius within the piece.
             catch_up = 0.5 * (speed + goal) * until
             seconds = until + (turns - catch_up) / goal if is_late else turns / goal
             speed, is_late = goal, False
@@ -109,9 +109,9 @@ def behind(wanted: Floats, length: Floats, advance: Floats, *, ramp: float) -> F
 
 
 def _pieces(segments: Segments, least: float) -> Ints:
-    """(N,) into how many pieces each is split because the spindle follows the radius.
+    """Number of pieces into which each segment is split at constant surface speed, (N,).
 
-    Within ``least``, mm, the spindle has its greatest speed.
+    Within the radius ``least``, mm, the spindle has its greatest speed.
     """
     one, other = np.abs(segments.start[:, 0]), np.abs(segments.end[:, 0])
     low = np.maximum(np.minimum(one, other), least)
@@ -122,7 +122,7 @@ def _pieces(segments: Segments, least: float) -> Ints:
 
 
 def _split(segments: Segments, pieces: Ints) -> Segments:
-    """Each segment in so many pieces of equal length."""
+    """Split each segment into a number of pieces of equal length."""
     rows = np.repeat(np.arange(len(segments)), pieces)
     number = np.arange(len(rows)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
     step = (segments.length / pieces)[rows]
@@ -137,7 +137,7 @@ def _split(segments: Segments, pieces: Ints) -> Segments:
 Spin = SpindleOn | SurfaceSpeed | SpindleOff
 
 LookUp = Callable[[Feed], ModalState]
-"""what holds while a move runs"""
+"""Function that returns the modal state which applies to a feed."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -146,70 +146,70 @@ class Leg:
 
     first: int
     last: int
-    """the row after the last one"""
+    """Row after the last row of the leg."""
     wait: float
-    """Wait, s"""
+    """Waiting time after the leg, s."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ToolPathRun:
-    """A tool path as the axes run it."""
+    """Tool path as the axes run it."""
 
     moves: tuple[Move, ...]
     segments: Segments
-    """Segments, (N) lines and arcs; block: the row among the moves"""
+    """N lines and arcs; ``block`` is the index of the move."""
     spindle: Floats
-    """Spindle, (N,) rev/s in the middle of each segment, without sign"""
+    """Magnitude of the spindle speed in the middle of each segment, (N,), rev/s."""
     is_clockwise: bool
-    """how the spindle turns at the first cut"""
+    """Whether the spindle turns clockwise at the first cut."""
     legs: tuple[Leg, ...]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SpeedRatios:
-    """Ratios of feed and speed to those programmed, by technology; and the plunge feed."""
+    """Ratios of feed and speed to the programmed ones for a technology; and the plunge feed."""
 
     technology: Ref[Entity]
     feed: float = 1.0
-    """Feed of the feed per tooth, or per revolution"""
+    """Ratio of the feed per tooth, or per revolution, to the programmed one."""
     speed: float = 1.0
-    """Speed of the spindle speed"""
+    """Ratio of the spindle speed to the programmed one."""
     plunge: float | None = None
-    """Plunge, mm per revolution on the way down into the material; None: as the path says"""
+    """Plunge feed per revolution on the way down into the material, mm; None: unchanged."""
 
 
 class _MoveRow(NamedTuple):
-    """One move with what holds."""
+    """Move with its start point and the modal state that applies."""
 
     start: Point
     move: Move
     found: ModalState | None
-    """None: rapid"""
+    """Modal state of a feed move; None for a rapid."""
 
 
 def run_of(path: ToolPath, look_up: LookUp, spindle: Spindle) -> ToolPathRun:
-    """Moves as the axes run them.
+    """Convert the moves of a tool path to segments and legs as the axes run them.
 
     Parameters
     ----------
     path : ToolPath
     look_up : callable
-        Conditions of a feed, as :func:`stepnc_model.post.modal_state.conditions` finds them.
+        Conditions of a feed, as from :func:`stepnc_model.post.modal_state.conditions`.
     spindle : Spindle
-        For its ramps and its greatest speed.
+        Gives the acceleration and the greatest speed.
 
     Raises
     ------
     PostError
-        When a cut has no feed, or has one per revolution while the spindle stands.
+        If a cut has no feed, or has a feed per revolution with a stopped spindle.
     SchemaError
-        When a technology or tool cannot be used.
+        If a technology or tool cannot be used.
     """
     return _Collector(path, look_up, spindle).run()
 
 
 def paced(look_up: LookUp, pace: SpeedRatios) -> LookUp:
-    """The same conditions with one technology run faster; feeds of a path's own stay."""
+    """Scale feed and speed of one technology; feeds that belong to the path are kept."""
 
     def faster(feed: Feed) -> ModalState:
         if feed.is_plunge and pace.plunge is not None:
@@ -223,7 +223,7 @@ def paced(look_up: LookUp, pace: SpeedRatios) -> LookUp:
         if rate is not None and feed.velocity is None:
             is_own = feed.per_revolution is not None
             factor = 1.0 if is_own else pace.feed
-            # A mill's feed per revolution was turned into one by time at the old speed.
+            # A mill's feed per revolution was converted to a feed per time at the old speed.
             if rate.mode is RateMode.PER_MINUTE:
                 factor *= pace.speed
             rate = replace(rate, value=rate.value * factor)
@@ -233,10 +233,10 @@ def paced(look_up: LookUp, pace: SpeedRatios) -> LookUp:
 
 
 def usual_motion(machine: Machine) -> tuple[ControlModel, AxisLimits]:
-    """Control model and axis limits by which times are told: FIR.
+    """Control model and axis limits used for estimating times: FIR filter.
 
-    A machine of whose axes nothing is known runs at commanded speed without ramps, its rapids
-    as fast as the machine says, or in no time.
+    If nothing is known of a machine's axes, it runs at commanded speed without ramps; its
+    rapids use the rapid speed of the machine, or take no time.
     """
     limits = axis_limits(machine)
     if np.isfinite(limits.acceleration).any():
@@ -249,7 +249,7 @@ _NO_TIME = 1e9  # mm/s
 
 
 def follows(run: ToolPathRun, technology: Ref[Entity]) -> Bools:
-    """(N,) which segments run as fast as the feed of a technology says."""
+    """Whether each segment runs at the feed given by a technology, (N,)."""
     feeds = [move.feed for move in run.moves]
     is_bound = [
         feed is not None
@@ -264,14 +264,14 @@ def follows(run: ToolPathRun, technology: Ref[Entity]) -> Bools:
 
 
 def plunges(run: ToolPathRun) -> Bools:
-    """(N,) which segments lead down into the material, at a feed of their own if need be."""
+    """Whether each segment plunges into the material, possibly at a feed of its own, (N,)."""
     is_plunge = [move.feed is not None and move.feed.is_plunge for move in run.moves]
     plunging: Bools = np.array(is_plunge, dtype=np.bool_)[run.segments.block]
     return plunging
 
 
 def duration(run: ToolPathRun, control: ControlModel, limits: AxisLimits) -> float:
-    """Time from the start of a path to its end, waits included, s."""
+    """Time from the start of a path to its end, including waits, s."""
     moving = sum(
         control.plan(run.segments[leg.first : leg.last], limits).duration
         for leg in run.legs
@@ -281,7 +281,7 @@ def duration(run: ToolPathRun, control: ControlModel, limits: AxisLimits) -> flo
 
 
 class _Collector:
-    """Running state: where the tool is and what the spindle does."""
+    """Converter of a tool path; keeps the position of the tool and the state of the spindle."""
 
     def __init__(self, path: ToolPath, look_up: LookUp, spindle: Spindle) -> None:
         self.path = path
@@ -290,23 +290,23 @@ class _Collector:
         self.fastest = spindle.max_speed or inf
         self.at = path.start
         self.feed: Feed | None = None
-        """of the last cut"""
+        """Feed of the last cut."""
         self.found: ModalState | None = None
-        """that hold at this feed"""
+        """Modal state for this feed."""
         self.speed: float | None = None
-        """rev/s that the spindle was told, signed; None: not yet, or it follows the radius"""
+        """Commanded spindle speed, rev/s, signed; None: not set, or constant surface speed."""
         self.asked: Spin | None = None
-        """what the technology asks for"""
+        """Spindle command of the current technology."""
         self.rows: list[_MoveRow] = []
         self.moves: list[Move] = []
         self.parts: list[tuple[Segments, Floats]] = []
         self.legs: list[Leg] = []
         self.is_clockwise: bool | None = None
         self.is_spindle_awaited = False
-        """whether the wait of the last leg is for the spindle"""
+        """Whether the wait of the last leg is for the spindle."""
 
     def run(self) -> ToolPathRun:
-        """The whole path; the spindle turns when it begins."""
+        """Convert the whole path; the spindle is already turning when it begins."""
         if self.path.technology_ref is not None:
             self._take(self.look_up(Feed(technology=self.path.technology_ref)))
         for step in unsplit(self.path.start, self.path.steps):
@@ -321,7 +321,7 @@ class _Collector:
                 case SpindleCommand():
                     self._turn(self.asked, step)
         if self.is_spindle_awaited and all(row.found is None for row in self.rows):
-            # Only a feed waits for the spindle, and none comes any more.
+            # Only a feed waits for the spindle, and no feed follows.
             self.legs[-1] = replace(self.legs[-1], wait=0.0)
         self._close(0.0)
         segments = [part for part, _ in self.parts]
@@ -338,7 +338,7 @@ class _Collector:
     def _move(self, move: Move) -> None:
         found = None
         if move.feed is not None:
-            # Most moves have the very feed of the one before.
+            # Most moves have the same feed object as the previous one.
             if move.feed is not self.feed or self.found is None:
                 self.feed, self.found = move.feed, self.look_up(move.feed)
             found = self.found
@@ -347,12 +347,12 @@ class _Collector:
         self.at = move.end
 
     def _take(self, found: ModalState) -> None:
-        """The spindle follows what a technology asks for."""
+        """Apply the spindle command of a technology."""
         if found.spindle is not None and found.spindle != self.asked:
             self._turn(found.spindle, SpindleCommand.START)
 
     def _turn(self, asked: Spin | None, command: SpindleCommand) -> None:
-        """Another speed: the feed waits for it, unless it only follows the radius."""
+        """Change the spindle speed and close the leg if the next feed must wait for it."""
         wanted = None if isinstance(asked, SurfaceSpeed) else self._signed(asked, command)
         wait = 0.0
         if wanted is not None and self.speed is not None:
@@ -363,7 +363,7 @@ class _Collector:
         self.asked, self.speed = asked, wanted
 
     def _signed(self, asked: Spin | None, command: SpindleCommand) -> float:
-        """rev/s after a command, positive clockwise."""
+        """Signed spindle speed after a command, rev/s, positive clockwise."""
         if not isinstance(asked, SpindleOn):
             return 0.0
         sign = {SpindleCommand.START: 1.0, SpindleCommand.REVERSE: -1.0}.get(command, 0.0)
@@ -376,13 +376,11 @@ class _Collector:
             return dwell.seconds
         speed = float(self._speeds(np.array([self.at[0]]))[0])
         if dwell.revolutions is None or speed <= 0.0:
-            raise PostError(
-                f"'{self.path.id}': a dwell in revolutions while the spindle stands"
-            )
+            raise PostError(f"'{self.path.id}': a dwell in revolutions with a stopped spindle")
         return dwell.revolutions / speed
 
     def _speeds(self, x: Floats) -> Floats:
-        """(N,) rev/s of the spindle where the radius is |x|."""
+        """Spindle speed where the radius is |x|, (N,), rev/s."""
         if not isinstance(self.asked, SurfaceSpeed):
             return np.full(len(x), abs(self.speed or 0.0))
         most = min(self.fastest, self.asked.limit or inf)
@@ -394,7 +392,7 @@ class _Collector:
         return speeds
 
     def _close(self, wait: float) -> None:
-        """One leg more, of what has come together."""
+        """Close a leg with the moves collected so far."""
         segments, spindle = self._timed()
         if self.is_clockwise is None and any(row.found is not None for row in self.rows):
             self.is_clockwise = self._turns_clockwise()
@@ -410,7 +408,7 @@ class _Collector:
         return (self.speed or 0.0) >= 0.0
 
     def _timed(self) -> tuple[Segments, Floats]:
-        """Segments of the waiting rows with their speeds, and speeds of the spindle."""
+        """Segments of the collected rows with their feeds, and spindle speeds."""
         segments = _segments(self.rows, first=len(self.moves))
         if isinstance(self.asked, SurfaceSpeed):
             least = self.asked.speed / (2.0 * pi * min(self.fastest, self.asked.limit or inf))
@@ -444,7 +442,7 @@ class _Collector:
 
 
 def _advance(found: Sequence[ModalState | None]) -> Floats:
-    """(N,) feeds per revolution, mm; 0 of rapids and of feeds by time."""
+    """Feeds per revolution, (N,), mm; 0 for rapids and for feeds per time."""
     rates = [None if each is None else each.rate for each in found]
     return np.array([
         rate.value if rate is not None and rate.mode is RateMode.PER_REVOLUTION else 0.0
@@ -453,7 +451,7 @@ def _advance(found: Sequence[ModalState | None]) -> Floats:
 
 
 def _segments(rows: Sequence[_MoveRow], *, first: int) -> Segments:
-    """Lines and arcs of moves, all of them as fast as the axes go."""
+    """Lines and arcs of moves, all at unlimited speed."""
     arcs = [row.move.arc for row in rows]
     centre = [arc.centre if arc else row.start for row, arc in zip(rows, arcs, strict=True)]
     normal = [arc.plane.axes[2] if arc else 2 for arc in arcs]

@@ -1,1 +1,1 @@
-"""Pure functions of the cut: engagement, force, power, surface, tool life, motion."""
+"""Pure functions of cutting physics: engagement, force, power, surface, tool life, motion."""

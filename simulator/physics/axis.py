@@ -1,8 +1,8 @@
 """Torque and power of a feed axis: servomotor, gear, feed screw, guide.
 
 Arithmetic only, so that speeds and forces may be floats or arrays. Units mm, s, N, N·mm, W,
-kg·m². The weight of a vertical axis is taken as balanced, and the power of a motor that holds
-an axis at rest is left out.
+kg·m². The weight of a vertical axis is assumed to be balanced, and the power of a motor that
+holds an axis at rest is neglected.
 
 References
 ----------
@@ -12,9 +12,9 @@ References
 .. [2] D. Lechevalier et al., "Simulating a virtual machining model in an agent-based model for
    advanced analytics", 2018, eq. (3) and Table 1.
 
-Corrected against both: the pitch is a lead per revolution; viscous torque stays at constant
-speed; friction helps to brake; braking power is not divided by the efficiency; the motor's
-inertia counts, and a gear divides the inertia behind it by the square of its ratio.
+Corrections to both: the pitch is a lead per revolution; viscous torque persists at constant
+speed; friction helps to brake; braking power is not divided by the efficiency; the inertia of
+the motor is included, and a gear divides the inertia behind it by the square of its ratio.
 """
 
 from math import pi
@@ -22,13 +22,13 @@ from math import pi
 from simulator.physics.drive import FloatOrArray, Value, electrical_power, positive_part
 from simulator.spec import AxisDrive
 
-GRAVITY = 9.81  # m/s², as the sources print it
+GRAVITY = 9.81  # m/s², as printed in the sources
 _MM_PER_M = 1000.0
 _NMM_S_PER_WATT = 1000.0
 
 
 def reflected_inertia(drive: AxisDrive) -> float:
-    """Inertia of everything that moves, at the motor's shaft.
+    """Inertia of all moving parts, reflected to the motor shaft.
 
     ``J_e = J_motor + J_coupling + (½·m_s·(d/2)² + m·(lead/2π)²)/r²``.
 
@@ -49,13 +49,13 @@ def reflected_inertia(drive: AxisDrive) -> float:
 
 
 def guide_torque(drive: AxisDrive, *, vertical_force: Value) -> Value:
-    """Torque at the screw by friction in the guide, ``T_gf = lead·μ·(m·g + F_z)/2π``, [1]_ (8).
+    """Torque at the screw from guide friction, ``T_gf = lead·μ·(m·g + F_z)/2π``, [1]_ (8).
 
     Parameters
     ----------
     drive : AxisDrive
     vertical_force : float or array, N
-        Positive when it presses the guide; one that lifts is left out.
+        Positive when it presses on the guide; a lifting force is ignored.
 
     Returns
     -------
@@ -85,7 +85,7 @@ def bearing_torque(drive: AxisDrive, *, feed_force: Value) -> Value:
 
 
 def feed_torque(drive: AxisDrive, *, feed_force: Value) -> Value:
-    """Torque at the screw by the feed force, ``T_f = lead·F_f/2π``, N·mm, [1]_ (8)."""
+    """Torque at the screw from the feed force, ``T_f = lead·F_f/2π``, N·mm, [1]_ (8)."""
     torque: Value = drive.lead * feed_force / (2.0 * pi)
     return torque
 
@@ -93,7 +93,7 @@ def feed_torque(drive: AxisDrive, *, feed_force: Value) -> Value:
 def steady_torque(
     drive: AxisDrive, *, feed_force: Value, vertical_force: FloatOrArray = 0.0
 ) -> Value:
-    """Torque at the motor's shaft that does not depend on speed.
+    """Torque at the motor shaft that does not depend on speed.
 
     ``T_s = (T_gf + T_lf + T_f)/r``, [1]_ (8).
 
@@ -101,9 +101,9 @@ def steady_torque(
     ----------
     drive : AxisDrive
     feed_force : float or array, N
-        Against the motion.
+        Force against the motion.
     vertical_force : float or array, N
-        Pressing the guide.
+        Force that presses on the guide.
 
     Returns
     -------
@@ -116,7 +116,7 @@ def steady_torque(
 
 
 def motor_speed(drive: AxisDrive, velocity: Value) -> Value:
-    """Angular speed of the motor, ``w = 2π·r·v/lead``, rad/s; likewise of an acceleration."""
+    """Angular motor speed, ``w = 2π·r·v/lead``, rad/s; also converts an acceleration."""
     speed: Value = 2.0 * pi * drive.gear_ratio / drive.lead * velocity
     return speed
 
@@ -129,7 +129,7 @@ def motor_torque(
     feed_force: FloatOrArray = 0.0,
     vertical_force: FloatOrArray = 0.0,
 ) -> Value:
-    """Torque of the motor in the direction of the motion, negative when it brakes.
+    """Torque of the motor in the direction of motion, negative when braking.
 
     ``T = J_e·ẇ + B·w + T_s`` while the speed grows and holds, ``−J_e·|ẇ| + B·w + T_s`` while it
     falls, [1]_ (9), (10) and [2]_ eq. (3) corrected.
@@ -142,7 +142,7 @@ def motor_torque(
     feed_force : float or array, N
         Positive against the motion.
     vertical_force : float or array, N
-        Positive when it presses the guide.
+        Positive when it presses on the guide.
 
     Returns
     -------
@@ -177,7 +177,7 @@ def axis_power(
     feed_force : float or array, N
         Positive against the motion.
     vertical_force : float or array, N
-        Positive when it presses the guide.
+        Positive when it presses on the guide.
 
     Returns
     -------
@@ -201,5 +201,5 @@ def axis_power(
 
 
 def _moved_mass(drive: AxisDrive) -> float:
-    """Table and workpiece, kg."""
+    """Mass of table and workpiece, kg."""
     return drive.table_mass + drive.workpiece_mass

@@ -1,8 +1,8 @@
-"""The force of a chip: Kienzle's law and its corrections.
+"""Force of a chip: Kienzle's law and its corrections.
 
-A chip of width b and thickness h pulls with ``F = K·k_c1.1·b·h^(1−m_c)``. Scalars in mm, N,
-N/mm² and rad. Without calibration ±20 % is the honest uncertainty: catalogues differ by that
-much on the same steel. What wear adds is in :mod:`simulator.physics.flank`.
+A chip of width b and thickness h causes the force ``F = K·k_c1.1·b·h^(1−m_c)``. Scalars in mm,
+N, N/mm² and rad. Without calibration the uncertainty is about ±20 %: catalogues differ by that
+much for the same steel. The effect of wear is in :mod:`simulator.physics.flank`.
 
 References
 ----------
@@ -20,20 +20,20 @@ from simulator.spec import CuttingMaterial, Kienzle
 from stepnc_model.units import deg_from_rad
 
 SPEED_FACTORS = {
-    CuttingMaterial.CARBIDE: 1.0,  # [2]; k_c1.1 of tables is measured with carbide
-    CuttingMaterial.HSS: 1.2,  # [2]; the slower edge meets the stronger work
-    CuttingMaterial.CERAMIC: 1.0,  # no figure in the sources: not corrected
+    CuttingMaterial.CARBIDE: 1.0,  # [2]; tabulated k_c1.1 is measured with carbide
+    CuttingMaterial.HSS: 1.2,  # [2]; at its lower speed the work material is stronger
+    CuttingMaterial.CERAMIC: 1.0,  # no value in the sources: not corrected
 }
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ForceCorrection:
-    """Factors on k_c for what the table was not measured with; all 1: as measured."""
+    """Correction factors on k_c for rake and speed; 1 for the conditions of measurement."""
 
     rake: float = 1.0
-    """K_γ"""
+    """Factor K_γ of the rake angle."""
     speed: float = 1.0
-    """K_v"""
+    """Factor K_v of the cutting speed."""
 
     def __post_init__(self) -> None:
         require_positive(self.rake, "rake factor", "")
@@ -41,22 +41,22 @@ class ForceCorrection:
 
     @property
     def factor(self) -> float:
-        """``K = K_γ · K_v``."""
+        """Combined correction factor ``K = K_γ · K_v``."""
         return self.rake * self.speed
 
 
 def rake_factor(rake_angle: float, reference_rake: float) -> float:
-    """Factor of the rake angle: one degree more, one per cent less force.
+    """Factor of the rake angle: one degree more reduces the force by one per cent.
 
     ``K_γ = 1 − (γ − γ₀)/100`` with the angles in **degrees**, [2]_; converted here from rad.
-    Used for differences up to about 20°.
+    Applicable to differences up to about 20°.
 
     Parameters
     ----------
     rake_angle : float, rad
-        γ of the tool in use.
+        Rake angle γ of the tool in use.
     reference_rake : float, rad
-        γ₀ of the tool with which k_c1.1 was measured.
+        Rake angle γ₀ of the tool with which k_c1.1 was measured.
 
     Returns
     -------
@@ -66,7 +66,7 @@ def rake_factor(rake_angle: float, reference_rake: float) -> float:
     Raises
     ------
     ValueError
-        If the difference is so large that no positive factor is left.
+        If the difference is so large that the factor is not positive.
 
     Examples
     --------
@@ -88,7 +88,7 @@ def specific_cutting_force(chip_thickness: float, *, k_c11: float, m_c: float) -
     """Specific cutting force of a chip of thickness h.
 
     ``k_c = k_c1.1 · h^(−m_c)`` with h in mm, [1]_. Tables are measured between about 0.05 and
-    1 mm; below, the rounding of the edge lets k_c rise faster.
+    1 mm; below, k_c rises faster because of the edge rounding.
 
     Parameters
     ----------
@@ -122,10 +122,11 @@ def specific_cutting_force(chip_thickness: float, *, k_c11: float, m_c: float) -
 
 
 def chip_stiffness(chip_thickness: float, *, k_c11: float, m_c: float) -> float:
-    """Force that a chip of 1 mm width gains for 1 mm of thickness: the slope of Kienzle's law.
+    """Slope of Kienzle's law: increase of the force per mm of width and mm of thickness.
 
-    ``dF/(b·dh) = (1 − m_c)·k_c1.1·h^(−m_c)``, by [1]_; below k_c by the share m_c. The slope,
-    and not k_c itself, answers to a wave on the surface, as K_tc does in the linear-edge law.
+    ``dF/(b·dh) = (1 − m_c)·k_c1.1·h^(−m_c)``, from [1]_; smaller than k_c by the share m_c.
+    This slope, not k_c itself, gives the response to surface waves, like K_tc in the
+    linear-edge law.
 
     Parameters
     ----------
@@ -140,7 +141,7 @@ def chip_stiffness(chip_thickness: float, *, k_c11: float, m_c: float) -> float:
     Raises
     ------
     ValueError
-        As :func:`specific_cutting_force`.
+        As for :func:`specific_cutting_force`.
 
     Examples
     --------
@@ -155,16 +156,16 @@ def chip_force(
 ) -> float:
     """Force of one chip by Kienzle's law.
 
-    ``F = K · k_c1.1 · b · h^(1−m_c)``, [1]_. With the table's own triple it serves the feed
-    and the back force as well.
+    ``F = K · k_c1.1 · b · h^(1−m_c)``, [1]_. With their own constants it also gives the feed
+    force and the back force.
 
     Parameters
     ----------
     kienzle : Kienzle
-        Of the force wanted.
+        Constants of the required force.
     chip_thickness, chip_width : float, mm
     factor : float
-        K of :class:`ForceCorrection`.
+        Factor K of :class:`ForceCorrection`.
 
     Returns
     -------
@@ -173,7 +174,7 @@ def chip_force(
     Raises
     ------
     ValueError
-        If any is not positive.
+        If an argument is not positive.
 
     Examples
     --------

@@ -1,10 +1,10 @@
-"""Torque and thrust of tools that cut on their end: drills, reamers, boring bars, sinks.
+"""Torque and thrust of tools that cut with their end: drills, reamers, boring bars, sinks.
 
-Each lip cuts a chip of thickness ``h = f/z·sin κ`` and width ``b = (D − d)/(2·sin κ)``, κ half
-the point angle, d the hole that was there. Between the lips a drill has a chisel edge of length
-c, which hardly cuts: it displaces. Its part in torque and thrust follows the factors that [1]_
-prints over c/D; a hole that was there before and is wider than the chisel edge leaves none of
-it. mm, N, N·mm and rad.
+Each lip cuts a chip of thickness ``h = f/z·sin κ`` and width ``b = (D − d)/(2·sin κ)``, where κ
+is half the point angle and d the diameter of the existing hole. Between the lips a drill has a
+chisel edge of length c, which displaces material rather than cutting it. Its contribution to
+torque and thrust follows the factors tabulated over c/D in [1]_; it vanishes if an existing
+hole is wider than the chisel edge. Units mm, N, N·mm and rad.
 
 References
 ----------
@@ -36,21 +36,21 @@ from stepnc_model.units import rad_from_deg
 CUSTOMARY_EDGE_ANGLE = rad_from_deg(59.0)  # half of the customary point angle of 118°
 
 LIPS_ONLY = DrillPoint(thrust_share=0.5 / sin(CUSTOMARY_EDGE_ANGLE), chisel_ratio=0.0)
-"""A tool of which no more is known. The share, 0.583, is that of [1]_ without chisel edge:
-``0.05·K_d·F_f·F_T`` is half of the lips' tangential force at a point angle of 118°"""
+"""Point geometry for tools of unknown type. The share, 0.583, follows from [1]_ without
+chisel edge: ``0.05·K_d·F_f·F_T`` is half of the lips' tangential force at a 118° point."""
 
 REFERENCE_FEED = 0.2
-"""mm, f₀: the feed at which K_d of [1]_ is told by k_c, the middle of its table 8"""
+"""Feed f₀ at which K_d of [1]_ is derived from k_c, mm: the middle of its table 8."""
 
 
 def edge_angle(kind: ToolKind, point_angle: float | None) -> float:
-    """κ of the lips of a tool that cuts on its end, rad: half its point angle.
+    """Lip angle κ of a tool that cuts with its end, rad: half its point angle.
 
     Parameters
     ----------
     kind : ToolKind
     point_angle : float, rad, or None
-        None: customary for a drill, and flat for a reamer or a counterbore.
+        None: customary value for a drill, flat for a reamer or a counterbore.
     """
     if point_angle:
         return 0.5 * point_angle
@@ -62,17 +62,17 @@ class ChiselFactors:
     """Factors of a chisel edge, [1]_ table 7."""
 
     torque: float
-    """A, on the torque of the lips"""
+    """Factor A on the torque of the lips."""
     thrust: float
-    """B, on the thrust of the lips"""
+    """Factor B on the thrust of the lips."""
     constant: float
-    """Constant, J, of a thrust that does not depend on the feed"""
+    """Factor J of the thrust that does not depend on the feed."""
 
 
 NO_CHISEL = ChiselFactors(torque=1.0, thrust=1.0, constant=0.0)
 
 CHISEL_RATIOS = (0.0, 0.03, 0.05, 0.08, 0.10, 0.13, 0.15, 0.18, 0.20, 0.25, 0.30, 0.35, 0.40)
-"""c/D of [1]_ table 7; 0.18: drills of standard design, 0.03: split points. 0 is added"""
+"""Ratios c/D of [1]_ table 7, with 0 added; 0.18 for standard drills, 0.03 for split points."""
 
 CHISEL_FACTORS = (
     NO_CHISEL,
@@ -89,7 +89,7 @@ CHISEL_FACTORS = (
     ChiselFactors(torque=1.310, thrust=1.575, constant=0.120),
     ChiselFactors(torque=1.395, thrust=1.620, constant=0.160),
 )
-"""A, B and J of [1]_ table 7"""
+"""Factors A, B and J of [1]_ table 7, one row for each of ``CHISEL_RATIOS``."""
 
 _CONSTANT_SCALE = 0.007 * 5.0 * REFERENCE_FEED**0.2  # see constant_thrust
 _CONSTANT_EXPONENT = 2.2
@@ -100,15 +100,15 @@ class DrillingCut:
     """Cut of a drill, reamer or boring bar."""
 
     feed_per_revolution: float
-    """f, mm"""
+    """Feed per revolution f, mm."""
     tool_diameter: float
-    """D, mm"""
+    """Diameter of the tool D, mm."""
     previous_diameter: float = 0.0
-    """d, mm; 0 in the solid"""
+    """Diameter of the existing hole d, mm; 0 in solid material."""
     teeth: int = 2
-    """lips z"""
+    """Number of lips z."""
     cutting_edge_angle: float = CUSTOMARY_EDGE_ANGLE
-    """κ, half the point angle, rad; π/2 for a boring bar"""
+    """Lip angle κ, half the point angle, rad; π/2 for a boring bar."""
     point: DrillPoint = LIPS_ONLY
 
     def __post_init__(self) -> None:
@@ -120,24 +120,24 @@ class DrillingCut:
 
     @property
     def chip_thickness(self) -> float:
-        """``h = f/z · sin κ`` in mm."""
+        """Chip thickness ``h = f/z · sin κ``, mm."""
         return self.feed_per_revolution / self.teeth * sin(self.cutting_edge_angle)
 
     @property
     def chisel(self) -> ChiselFactors:
-        """Of the point where its chisel edge meets material; else none."""
+        """Factors of the chisel edge if it meets material, otherwise of no chisel edge."""
         if self.previous_diameter > self.point.chisel_ratio * self.tool_diameter:
             return NO_CHISEL
         return chisel_factors(self.point.chisel_ratio)
 
 
 def chisel_factors(chisel_ratio: float) -> ChiselFactors:
-    """Factors of a chisel edge, straight between the rows of [1]_ table 7.
+    """Factors of a chisel edge, interpolated linearly in [1]_ table 7.
 
     Parameters
     ----------
     chisel_ratio : float
-        c/D, length of the chisel edge over the diameter, 0 to 0.4.
+        Length of the chisel edge over the diameter, c/D, 0 to 0.4.
 
     Returns
     -------
@@ -146,7 +146,7 @@ def chisel_factors(chisel_ratio: float) -> ChiselFactors:
     Raises
     ------
     ValueError
-        If the ratio is outside of the table.
+        If the ratio is outside the table.
 
     Examples
     --------
@@ -182,7 +182,7 @@ def drilling_specific_force(
     kienzle : Kienzle
     cut : DrillingCut
     factor : float
-        K of :class:`~simulator.physics.cutting.ForceCorrection`.
+        Factor K of :class:`~simulator.physics.cutting.ForceCorrection`.
 
     Returns
     -------
@@ -200,18 +200,18 @@ def drilling_specific_force(
 
 
 def drilling_torque(kienzle: Kienzle, cut: DrillingCut, *, factor: float = 1.0) -> float:
-    """Torque about the axis.
+    """Drilling torque about the axis.
 
     ``M_c = A · k_c · f · (D² − d²) / 8``: z chips of area ``b·h`` at the middle of their lips,
-    ``(D + d)/4`` from the axis, and the chisel edge. Times ``2π·n`` it is ``A·k_c·Q``, and for
-    d = 0 and A = 1 the power of [2]_.
+    ``(D + d)/4`` from the axis, plus the chisel edge. Multiplied by ``2π·n`` it gives
+    ``A·k_c·Q``, which for d = 0 and A = 1 is the power of [2]_.
 
     Parameters
     ----------
     kienzle : Kienzle
     cut : DrillingCut
     factor : float
-        K of :class:`~simulator.physics.cutting.ForceCorrection`.
+        Factor K of :class:`~simulator.physics.cutting.ForceCorrection`.
 
     Returns
     -------
@@ -234,16 +234,16 @@ def drilling_torque(kienzle: Kienzle, cut: DrillingCut, *, factor: float = 1.0) 
 
 
 def lip_thrust(kienzle: Kienzle, cut: DrillingCut, *, factor: float = 1.0) -> float:
-    """Part of the thrust that rises with the feed.
+    """Part of the thrust that increases with the feed.
 
-    ``s · B · k_c · f · (D − d)/2 · sin κ``, the form of [2]_ with the factors of [1]_.
+    ``s · B · k_c · f · (D − d)/2 · sin κ``, in the form of [2]_ with the factors of [1]_.
 
     Parameters
     ----------
     kienzle : Kienzle
     cut : DrillingCut
     factor : float
-        K of :class:`~simulator.physics.cutting.ForceCorrection`.
+        Factor K of :class:`~simulator.physics.cutting.ForceCorrection`.
 
     Returns
     -------
@@ -263,22 +263,23 @@ def lip_thrust(kienzle: Kienzle, cut: DrillingCut, *, factor: float = 1.0) -> fl
 def constant_thrust(
     kienzle: Kienzle, diameter: Value, *, lip_sine: Value, teeth: int, constant: float
 ) -> Value:
-    """Part of the thrust that the chisel edge takes whatever the feed.
+    """Part of the thrust caused by the chisel edge, independent of the feed.
 
-    ``0.007 · K_d · D² · J`` of [1]_, where ``K_d = 5·k_c·(f₀·D)^0.2``: so much makes its torque
-    ``0.000025·K_d·f^0.8·D^1.8`` N·m equal to ``k_c·f·D²/8`` at the feed f₀. Arithmetic only.
+    ``0.007 · K_d · D² · J`` of [1]_, where ``K_d = 5·k_c·(f₀·D)^0.2`` is chosen such that its
+    torque ``0.000025·K_d·f^0.8·D^1.8`` N·m equals ``k_c·f·D²/8`` at the feed f₀. Arithmetic
+    only.
 
     Parameters
     ----------
     kienzle : Kienzle
     diameter : float or array, mm
-        D, at most that of the tool while it enters.
+        Diameter D; while the tool enters, at most its own.
     lip_sine : float or array
-        sin κ.
+        Sine of the lip angle, sin κ.
     teeth : int
-        Lips.
+        Number of lips.
     constant : float
-        J of :class:`ChiselFactors`.
+        Factor J of :class:`ChiselFactors`.
 
     Returns
     -------
@@ -291,7 +292,7 @@ def constant_thrust(
 
 
 def chisel_thrust(kienzle: Kienzle, cut: DrillingCut, *, factor: float = 1.0) -> float:
-    """Part of the thrust that does not depend on the feed: :func:`constant_thrust` of a cut, N.
+    """Part of the thrust independent of the feed, N: :func:`constant_thrust` of a cut.
 
     Raises
     ------

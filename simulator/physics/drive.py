@@ -1,14 +1,14 @@
-"""From the mechanical to the electrical power of a drive, and numbers that may be arrays.
+"""Conversion of mechanical to electrical power of a drive, and a type for floats and arrays.
 
-Functions that take a :class:`FloatOrArray` consist of arithmetic alone and serve a float as
-well as an array of any library; several arrays broadcast. Power in W.
+Functions that take a :class:`FloatOrArray` use arithmetic only and accept a float as well as an
+array of any library; several arrays broadcast. Power in W.
 """
 
 from typing import Any, Protocol, TypeVar
 
 
 class FloatOrArray(Protocol):
-    """A float or an array of floats."""
+    """Float or array of floats."""
 
     def __abs__(self) -> Any: ...
     def __add__(self, other: Any, /) -> Any: ...
@@ -26,25 +26,25 @@ Value = TypeVar("Value", bound=FloatOrArray)
 
 
 def positive_part(value: Value) -> Value:
-    """``max(x, 0)`` of a float or of every element."""
+    """Positive part ``max(x, 0)`` of a float or of every element."""
     part: Value = 0.5 * (value + abs(value))
     return part
 
 
 def electrical_power(mechanical: Value, *, efficiency: float, regeneration: float) -> Value:
-    """Power that a motor draws from the mains.
+    """Electrical power that a motor draws from the mains.
 
-    ``P = P_mech/η`` when it drives; when it brakes, ``η_reg·P_mech``: a share returns, the rest
-    is burnt in a resistor. Dividing by η there too would return more than there is.
+    ``P = P_mech/η`` when driving; ``η_reg·P_mech`` when braking: a share is fed back, the rest
+    is dissipated in a resistor. Dividing by η in this case would return more than is available.
 
     Parameters
     ----------
     mechanical : float or array, W
-        At the motor's shaft, negative when braking.
+        Power at the motor shaft, negative when braking.
     efficiency : float
-        η, 0 < η ≤ 1.
+        Efficiency η, 0 < η ≤ 1.
     regeneration : float
-        η_reg, 0 ≤ η_reg ≤ 1.
+        Regenerated share η_reg, 0 ≤ η_reg ≤ 1.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""The edge that really cuts: effective diameter and angle of rounded tools, thinnest chip.
+"""Effective cutting edge angle of rounded tools.
 
 Ball and bull-nose end mills, round inserts and the nose of a turning tool touch the work with
 an arc. Scalars in mm and rad.
@@ -20,20 +20,21 @@ from simulator.physics.domain import (
 def effective_edge_angle(
     corner_radius: float, axial_depth: float, *, cutting_edge_angle: float = pi / 2.0
 ) -> float:
-    """Edge angle of the straight edge that cuts the same chip as a rounded one.
+    """Edge angle of the straight edge that cuts the same chip as a rounded edge.
 
-    ``sin κ = a_p / b``, b the engaged length of edge: an arc of the corner, then the straight
-    edge at κ_r. With it the chip is ``h = f · sin κ`` thick and b wide and keeps its area
-    ``f · a_p``. For a shallow cut it becomes the ``√(a_p / 2r)`` of round inserts, [1]_.
+    ``sin κ = a_p / b``, where b is the engaged length of edge: an arc of the corner, then the
+    straight edge at κ_r. With it the chip has the thickness ``h = f · sin κ``, the width b and
+    the area ``f · a_p``. For a shallow cut it becomes the ``√(a_p / 2r)`` of round inserts,
+    [1]_.
 
     Parameters
     ----------
     corner_radius : float, mm
-        Nose of a turning tool, corner of a bull-nose, D/2 of a ball; 0: none.
+        Nose radius of a turning tool, corner radius of a bull-nose, D/2 of a ball; 0: none.
     axial_depth : float, mm
         Depth of cut a_p.
     cutting_edge_angle : float, rad
-        κ_r of the straight edge.
+        Angle κ_r of the straight edge.
 
     Returns
     -------

@@ -1,9 +1,9 @@
 """Engagement of a milling cutter: angles and chip thickness.
 
-The angle φ of a tooth is counted in the direction of rotation from the normal to the feed, so
-that the chip is ``h = f_z · sin κ · sin φ`` thick: conventional (up) milling enters at φ = 0,
-climb (down) milling leaves at φ = π. Scalars in mm and rad. The path of a tooth is taken as a
-circle: good while ``f_z`` is small against the diameter.
+The angle φ of a tooth is measured in the direction of rotation from the normal of the feed, so
+that the chip has the thickness ``h = f_z · sin κ · sin φ``: conventional (up) milling enters at
+φ = 0, climb (down) milling exits at φ = π. Scalars in mm and rad. The path of a tooth is
+approximated by a circle, which is accurate while ``f_z`` is small compared with the diameter.
 
 References
 ----------
@@ -23,17 +23,17 @@ from simulator.physics.domain import (
     require_positive,
 )
 
-_ROUNDING = 1e-9  # share of the diameter by which a strip may reach beyond the cutter
+_ROUNDING = 1e-9  # share of the diameter by which a strip may extend beyond the cutter
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Engagement:
-    """Part of the circle in which a tooth cuts, 0 ≤ φ_st < φ_ex ≤ π."""
+    """Angular range in which a tooth cuts, 0 ≤ φ_st < φ_ex ≤ π."""
 
     entry_angle: float
-    """φ_st, rad"""
+    """Entry angle φ_st, rad."""
     exit_angle: float
-    """φ_ex, rad"""
+    """Exit angle φ_ex, rad."""
 
     def __post_init__(self) -> None:
         if not 0.0 <= self.entry_angle < self.exit_angle <= pi:
@@ -44,40 +44,40 @@ class Engagement:
 
     @property
     def contact_angle(self) -> float:
-        """φ_ex − φ_st in rad."""
+        """Contact angle φ_ex − φ_st, rad."""
         return self.exit_angle - self.entry_angle
 
     @property
     def cosine_difference(self) -> float:
-        """``C = cos φ_st − cos φ_ex``, 0 < C ≤ 2; equals ``2·a_e/D`` for every position.
+        """Cosine difference ``C = cos φ_st − cos φ_ex``, 0 < C ≤ 2; always equals ``2·a_e/D``.
 
-        Written as a product of sines, which loses no digits for a narrow cut.
+        Computed as a product of sines, which stays accurate for a narrow cut.
         """
         middle = 0.5 * (self.entry_angle + self.exit_angle)
         return 2.0 * sin(middle) * sin(0.5 * self.contact_angle)
 
     @property
     def greatest_sine(self) -> float:
-        """Greatest sin φ on the arc: 1 when it holds φ = π/2."""
+        """Greatest sin φ on the arc: 1 if it includes φ = π/2."""
         if self.entry_angle <= pi / 2.0 <= self.exit_angle:
             return 1.0
         return max(sin(self.entry_angle), sin(self.exit_angle))
 
 
 def full_immersion() -> Engagement:
-    """Full immersion, a slot: φ from 0 to π, C = 2."""
+    """Engagement of full immersion, as in a slot: φ from 0 to π, C = 2."""
     return Engagement(entry_angle=0.0, exit_angle=pi)
 
 
 def unidirectional(radial_width: float, tool_diameter: float) -> Engagement:
-    """One side of the cutter, climb (down) milling.
+    """Engagement of one side of the cutter in climb (down) milling.
 
     ``φ_ex = π``, ``φ_st = π − acos(1 − 2·a_e/D)``.
 
     Parameters
     ----------
     radial_width : float, mm
-        0 < a_e ≤ D.
+        Radial width 0 < a_e ≤ D.
     tool_diameter : float, mm
 
     Raises
@@ -95,14 +95,14 @@ def unidirectional(radial_width: float, tool_diameter: float) -> Engagement:
 
 
 def conventional(radial_width: float, tool_diameter: float) -> Engagement:
-    """One side of the cutter, conventional (up) milling.
+    """Engagement of one side of the cutter in conventional (up) milling.
 
     ``φ_st = 0``, ``φ_ex = acos(1 − 2·a_e/D)``.
 
     Parameters
     ----------
     radial_width : float, mm
-        0 < a_e ≤ D.
+        Radial width 0 < a_e ≤ D.
     tool_diameter : float, mm
 
     Raises
@@ -115,30 +115,30 @@ def conventional(radial_width: float, tool_diameter: float) -> Engagement:
 
 
 def _one_sided_angle(radial_width: float, tool_diameter: float) -> float:
-    """``acos(1 − 2x) = 2·asin(√x)``; the right side keeps its digits for a narrow cut."""
+    """Contact angle ``acos(1 − 2x) = 2·asin(√x)``, in the form accurate for narrow cuts."""
     require_positive(tool_diameter, "tool diameter", "mm")
     require_at_most(radial_width, tool_diameter, thing="radial width", unit="mm")
     return 2.0 * asin(sqrt(radial_width / tool_diameter))
 
 
 def bilateral(radial_width: float, tool_diameter: float, *, offset: float = 0.0) -> Engagement:
-    """The middle of the cutter, or a strip beside it.
+    """Engagement of the middle of the cutter, or of a strip beside it.
 
     ``cos φ_st = (2·e + a_e)/D``, ``cos φ_ex = (2·e − a_e)/D`` with e the distance from the
-    cutter's axis to the middle of the strip, positive to the side where teeth enter.
+    cutter's axis to the middle of the strip, positive towards the side where teeth enter.
 
     Parameters
     ----------
     radial_width : float, mm
-        0 < a_e ≤ D.
+        Radial width 0 < a_e ≤ D.
     tool_diameter : float, mm
     offset : float, mm
-        ``|e| ≤ (D − a_e)/2``.
+        Distance e, ``|e| ≤ (D − a_e)/2``.
 
     Raises
     ------
     ValueError
-        If the width is not positive or the strip reaches beyond the cutter.
+        If the width is not positive or the strip extends beyond the cutter.
 
     Examples
     --------
@@ -161,17 +161,17 @@ def bilateral(radial_width: float, tool_diameter: float, *, offset: float = 0.0)
 def mean_chip_thickness(
     feed_per_tooth: float, engagement: Engagement, *, cutting_edge_angle: float = pi / 2.0
 ) -> float:
-    """Chip thickness averaged over the angle of contact.
+    """Mean chip thickness over the contact angle, mm.
 
     ``h_m = f_z · sin κ · (cos φ_st − cos φ_ex) / (φ_ex − φ_st)``, [1]_ eq. (1) in radians; the
-    same number as [2]_.
+    same value as in [2]_.
 
     Parameters
     ----------
     feed_per_tooth : float, mm
     engagement : Engagement
     cutting_edge_angle : float, rad
-        κ_r, π/2 for an end mill.
+        Cutting edge angle κ_r, π/2 for an end mill.
 
     Returns
     -------
@@ -192,7 +192,7 @@ def mean_chip_thickness(
 
 
 def mean_chip_ratio(engagement: Engagement, *, cutting_edge_angle: float = pi / 2.0) -> float:
-    """``h_m / f_z``, at most 1; its inverse gives the feed for a wanted mean chip."""
+    """Ratio ``h_m / f_z``, at most 1; its inverse gives the feed for a required mean chip."""
     require_edge_angle(cutting_edge_angle)
     shape = engagement.cosine_difference / engagement.contact_angle
     return sin(cutting_edge_angle) * shape

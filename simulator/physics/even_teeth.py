@@ -1,6 +1,6 @@
-"""Sums over the equal teeth of a milling cutter while it turns, in closed form.
+"""Force integrals over the equal teeth of a rotating milling cutter, in closed form.
 
-A stretch of edge between two angles takes the differences there of three integrals over sin φ,
+A part of an edge between two angles contributes the differences of three integrals over sin φ,
 which are tabulated once for each exponent. Units mm, rad.
 """
 
@@ -16,23 +16,23 @@ from simulator.kernels.kernel import entry, kernel
 Floats = NDArray[np.float64]
 
 CELLS = 4096
-"""of a table from 0 to π; cubic between them"""
+"""Number of cells of a table from 0 to π; interpolation between them is cubic."""
 
 SHEAR, COSINE, SINE = 0, 1, 2
-"""∫sin^q φ dφ, and the same with cos φ and sin φ"""
+"""Indices of the integrals ∫sin^q φ dφ, and the same integrand times cos φ and sin φ."""
 
 
 class Bands(NamedTuple):
-    """Stretches of an edge by their height, as seen at M places; kernels take tuples."""
+    """Bands of an edge by height at M engagements; a tuple, as kernels require."""
 
     low: Floats
-    """Low, (M, B) rad, lag of the lower end behind the tip"""
+    """Lag angle of the lower end of each band behind the tip, (M, B), rad."""
     high: Floats
-    """High, (M, B) rad, of the upper one"""
+    """Lag angle of the upper end of each band behind the tip, (M, B), rad."""
     weight: Floats
-    """Weight, (M, B) mm, ∫sin^(q−1) κ dy"""
+    """Weight of each band, (M, B), mm: ∫sin^(q−1) κ dy."""
     radial: Floats
-    """Radial, (M, B) radial force in the plane over the tangential one"""
+    """Radial force in the plane over the tangential force, (M, B)."""
 
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(6)
@@ -46,23 +46,23 @@ def sums(
     teeth: int,
     exponent: float,
 ) -> Floats:
-    """Tangential force, force against the feed, and force towards φ = 0.
+    """Sum tangential force, force against the feed and force towards φ = 0 over equal teeth.
 
     Parameters
     ----------
     rotation : (M, K) array, rad
-        Angle φ of the tip of tooth 0 at M places.
+        Angle φ of the tip of tooth 0 at M engagements.
     arc : two (M,) arrays, rad
         Entry and exit angles.
     bands : Bands
     teeth : int
     exponent : float
-        q of force over chip.
+        Exponent q of the force law.
 
     Returns
     -------
     (3, M, K) array, mm
-        Over ``K·k_c1.1·f_z^q``.
+        Forces over ``K·k_c1.1·f_z^q``.
     """
     totals = np.zeros((3, *rotation.shape))
     columns = bands.low, bands.high, bands.weight, bands.radial
@@ -72,7 +72,7 @@ def sums(
 
 @cache
 def _table(exponent: float) -> Floats:
-    """(CELLS + 1, 2, 3) integrals from 0 on, and their slopes times the width of a cell."""
+    """Integrals from 0 on, and their slopes times the cell width, (CELLS + 1, 2, 3)."""
     step = pi / CELLS
     ends: Floats = step * np.arange(CELLS + 1, dtype=np.float64)
     nodes: Floats = ends[:-1, None] + 0.5 * step * (1.0 + _NODES)
@@ -98,7 +98,7 @@ def _add(
     table: Floats,
     totals: Floats,
 ) -> None:
-    """The same, added to the last argument."""
+    """Kernel of :func:`sums`; the forces are added to ``totals``."""
     begin, end = arc
     low, high, weight, radial = bands
     pitch = 2.0 * pi / teeth
@@ -106,7 +106,7 @@ def _add(
         for column in range(rotation.shape[1]):
             for tooth in range(teeth):
                 tip = (rotation[row, column] - tooth * pitch) % (2.0 * pi)
-                # The upper end of the edge may be turns behind its tip.
+                # The upper end of the edge may lag several turns behind its tip.
                 while tip - high[row, -1] < end[row]:
                     for band in range(low.shape[1]):
                         bottom = max(tip - high[row, band], begin[row])
@@ -129,7 +129,7 @@ def _between(table: Floats, which: int, bottom: float, top: float) -> float:
 
 @kernel
 def _until(table: Floats, which: int, angle: float) -> float:
-    """Integral from 0 to an angle; there is no chip below 0 or beyond π."""
+    """Integral from 0 to an angle; the chip is zero below 0 and beyond π."""
     place = min(max(angle, 0.0), pi) * (CELLS / pi)
     cell = min(int(place), CELLS - 1)
     on = place - cell

@@ -1,12 +1,12 @@
-"""Force on the wear land of an edge: what wear adds to the force of a sharp one.
+"""Force on the wear land of an edge: the additional force compared with a sharp edge.
 
-The land rubs on the fresh surface whatever the chip above it does, so that its force adds to
-that of the chip, ``ΔF = c·VB·b``, and does not multiply it: measured, 42 N at VB 0.3 mm and a
-depth of 0.25 mm at every feed. The width b is counted across the depth of cut, as it was in the
-measurement. Arithmetic only; mm, N, N/mm².
+The land rubs on the fresh surface independently of the chip, so that its force is added to that
+of the chip, ``ΔF = c·VB·b``, and not multiplied: measurements show 42 N at VB 0.3 mm and a
+depth of 0.25 mm at every feed. The width b is measured across the depth of cut, as in the
+measurements. Arithmetic only; mm, N, N/mm².
 
-Measured on turning of hardened H13 up to VB 0.3 mm, two series of force measurements. In other
-work materials the coefficients are not known: the pressure on the land may fall with hardness.
+Measured in turning hardened H13 up to VB 0.3 mm, in two series of force measurements. For other
+work materials the coefficients are unknown: the pressure on the land may fall with hardness.
 
 References
 ----------
@@ -21,16 +21,17 @@ from math import hypot
 from simulator.physics.drive import Value
 
 CUTTING = 490.0
-"""N/mm², c along the cutting speed; standard deviation 80 at VB 0.3 mm, and 617 ± 443 at 0.1"""
+"""Coefficient c along the cutting speed, N/mm²; standard deviation 80 at VB 0.3 mm; 617 ± 443
+at VB 0.1 mm."""
 
 FEED = 950.0
-"""N/mm², along the feed; 690 to 1210 by the spread of the share of a new edge"""
+"""Coefficient along the feed, N/mm²; 690 to 1210 given the spread for a new edge."""
 
 BACK = 1580.0
-"""N/mm², out of the work; 1110 to 2050 likewise"""
+"""Coefficient away from the work, N/mm²; 1110 to 2050 given the spread for a new edge."""
 
 NORMAL = hypot(FEED, BACK)
-"""N/mm², square to the edge: that of feed and back force together, for other processes"""
+"""Coefficient normal to the edge, N/mm²: resultant of FEED and BACK, for other processes."""
 
 
 def land_force(coefficient: float, flank_wear: Value, width: Value) -> Value:
@@ -41,9 +42,9 @@ def land_force(coefficient: float, flank_wear: Value, width: Value) -> Value:
     coefficient : float, N/mm²
         :data:`CUTTING`, :data:`FEED`, :data:`BACK` or :data:`NORMAL`.
     flank_wear : float or array, mm
-        VB.
+        Flank wear VB.
     width : float or array, mm
-        b, of all edges in the cut together.
+        Total engaged width b of all edges.
 
     Returns
     -------

@@ -1,7 +1,7 @@
-"""Edges of a milling cutter along its helix, and how their force follows from the chip.
+"""Geometry of the cutting edges of a milling cutter, and the law of their force.
 
-What :mod:`simulator.physics.tooth_forces` integrates along; apart from it, so that who only
-speaks of edges loads no arrays. Units mm, rad.
+:mod:`simulator.physics.tooth_forces` integrates along these edges; this module is separate so
+that importing it does not load numpy. Units mm, rad.
 """
 
 from dataclasses import dataclass
@@ -11,23 +11,24 @@ from simulator.physics.domain import require_edge_angle, require_positive, requi
 from simulator.physics.milling import RADIAL_SHARE
 
 WALL = 0.1
-"""rad from φ = 0 or π within which an arc of contact reaches the wall: 0.5 % of the radius"""
+"""Angle, rad, from φ = 0 or π within which a contact arc counts as reaching the wall; this is
+0.5 % of the radius."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CuttingEdges:
-    """Edges of a milling cutter: how many, how far they are twisted, how they end."""
+    """Cutting edges of a milling cutter: number, helix and corner shape."""
 
     teeth: int
-    """z"""
+    """Number of teeth z."""
     diameter: float
-    """D, mm"""
+    """Diameter D, mm."""
     helix_angle: float = 0.0
-    """λ_s, rad"""
+    """Helix angle λ_s, rad."""
     corner_radius: float = 0.0
-    """Corner radius, mm; half the diameter for a ball"""
+    """Corner radius, mm; half the diameter for a ball."""
     cutting_edge_angle: float = pi / 2.0
-    """κ_r of the flank, rad"""
+    """Cutting edge angle κ_r of the flank, rad."""
 
     def __post_init__(self) -> None:
         require_teeth(self.teeth)
@@ -43,15 +44,15 @@ class CuttingEdges:
 
     @property
     def lag(self) -> float:
-        """ψ of each mm of height, rad/mm."""
+        """Lag angle ψ of the edge per mm of height, rad/mm."""
         return 2.0 * tan(self.helix_angle) / self.diameter
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ForceLaw:
-    """Law of the force of an edge over its chip."""
+    """Law of the force of an edge as a function of its chip thickness."""
 
     exponent: float
-    """q = 1 − m_c"""
+    """Exponent q = 1 − m_c."""
     radial_share: float = RADIAL_SHARE
-    """F_r/F_t"""
+    """Radial over tangential force, F_r/F_t."""

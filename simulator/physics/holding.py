@@ -1,11 +1,11 @@
 """Holding capacity of a chuck, a vice or clamps by friction.
 
-The jaws of a chuck fly outwards, so its force falls with the square of the speed. What is left
-holds the bar against slipping (torque and axial force share the friction) and against tilting.
-Units mm, N, N·mm, rev/s, kg.
+Centrifugal force acts on the jaws of a chuck, so its clamping force falls with the square of
+the speed. The remaining force holds the bar against slipping (torque and axial force share the
+friction) and against tilting. Units mm, N, N·mm, rev/s, kg.
 
-Not modelled: a stop or a step of the jaws that takes axial force, grip from inside (where the
-speed adds force), bars that give way under the jaws, the weight of the bar.
+Not modelled: a stop or a step of the jaws that takes axial force, clamping from inside (where
+speed adds force), bars that yield under the jaws, the weight of the bar.
 
 References
 ----------
@@ -29,24 +29,25 @@ from simulator.work_holding import (
 )
 
 NEWTONS = 1e-3
-"""per kg·mm/s²"""
+"""Newtons per kg·mm/s²."""
 
 KERN = 1.0 / 6.0
-"""of the grip's length, on either side of its middle, [4]_"""
+"""Core of the grip on either side of its middle, as a share of the grip length, [4]_."""
 
 LEAST_LEFT = 0.1
-"""of the clamping force that is counted on at rest: no chuck turns faster. EN 1550 lets a chuck
-lose two thirds of its force, which at S_sp = 1.5 is all that is counted on"""
+"""Least share of the clamping force at rest that must remain: no chuck turns faster. EN 1550
+permits a chuck to lose two thirds of its force, which at S_sp = 1.5 is the whole counted
+force."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GripSize:
-    """Contact of the jaws with the bar."""
+    """Size of the contact between jaws and bar."""
 
     diameter: float
-    """Diameter, mm"""
+    """Diameter of the gripped bar, mm."""
     length: float
-    """Length, mm along the axis"""
+    """Length of the grip along the axis, mm."""
 
     def __post_init__(self) -> None:
         require_positive(self.diameter, "grip diameter", "mm")
@@ -54,10 +55,10 @@ class GripSize:
 
 
 def clamping_force(chuck: Chuck, speed: float) -> float:
-    """Force of all jaws together on the bar while it turns.
+    """Total force of all jaws on the bar at a spindle speed.
 
-    ``F_sp = F_sp0/S_sp − F_c`` with ``F_c = Σ m·r_s · (2π·n)²``, [1]_; a loss that the maker
-    gives at one speed goes with the square of the speed as well.
+    ``F_sp = F_sp0/S_sp − F_c`` with ``F_c = Σ m·r_s · (2π·n)²``, [1]_; a loss given by the
+    maker at one speed is also scaled with the square of the speed.
 
     Parameters
     ----------
@@ -67,7 +68,7 @@ def clamping_force(chuck: Chuck, speed: float) -> float:
     Returns
     -------
     float, N
-        0 from the speed on at which nothing is left.
+        0 from the speed at which no force remains.
 
     Examples
     --------
@@ -85,14 +86,14 @@ def clamping_force(chuck: Chuck, speed: float) -> float:
 
 
 def loss(chuck: Chuck) -> float:
-    """Clamping force that a chuck loses over the square of its speed, N per (rev/s)²."""
+    """Clamping force that a chuck loses, over the square of its speed, N per (rev/s)²."""
     of_jaws = NEWTONS * chuck.jaws * chuck.jaw_mass * chuck.jaw_radius * (2.0 * pi) ** 2
     told = chuck.lost_force / chuck.lost_at**2 if chuck.lost_at > 0.0 else 0.0
     return of_jaws + told
 
 
 def permitted_speed(chuck: Chuck, held: float = 0.0) -> float:
-    """Speed up to which a chuck holds a force.
+    """Speed up to which a chuck maintains a required clamping force.
 
     ``n = √((F_sp0/S_sp − F_spz·S_z)/Σ M_c)/2π``, [1]_.
 
@@ -100,12 +101,12 @@ def permitted_speed(chuck: Chuck, held: float = 0.0) -> float:
     ----------
     chuck : Chuck
     held : float, N
-        F_spz, what the cut asks of the clamping force; 0: up to where nothing is left.
+        Clamping force F_spz that the cut requires; 0: up to the loss of all force.
 
     Returns
     -------
     float, rev/s
-        0 where it does not hold so much at rest, infinite where the speed takes nothing off.
+        0 if the force is too low at rest, infinite if the force does not depend on speed.
     """
     rest = chuck.clamping_force / chuck.clamping_safety_factor - held * chuck.safety_factor
     if rest <= 0.0:
@@ -115,30 +116,30 @@ def permitted_speed(chuck: Chuck, held: float = 0.0) -> float:
 
 
 def usable_speed(chuck: Chuck) -> float:
-    """Speed at which a chuck has :data:`LEAST_LEFT` of its force left, rev/s."""
+    """Speed at which a chuck has the share :data:`LEAST_LEFT` of its force left, rev/s."""
     return sqrt(1.0 - LEAST_LEFT) * permitted_speed(chuck)
 
 
 def greatest_torque(chuck: Chuck, grip: GripSize, speed: float) -> float:
-    """Torque that slips in the jaws: ``M = µ·F_sp·d/(2·S_z)``, N·mm, [3]_."""
+    """Torque at which a bar slips in the jaws: ``M = µ·F_sp·d/(2·S_z)``, N·mm, [3]_."""
     return 0.5 * chuck.friction * grip.diameter * _counted(chuck, speed)
 
 
 def slipping_torque(torque: float, axial_force: float, grip: GripSize) -> float:
-    """Torque and axial force as one torque that slips in the jaws alike, N·mm.
+    """Equivalent torque of a torque and an axial force for slipping in the jaws, N·mm.
 
-    Both are held by the same friction, so ``√(M² + (F_a·d/2)²)``, [3]_.
+    The same friction holds both, so it is ``√(M² + (F_a·d/2)²)``, [3]_.
     """
     return hypot(torque, 0.5 * grip.diameter * axial_force)
 
 
 def greatest_moment(chuck: Chuck, grip: GripSize, speed: float) -> float:
-    """Moment across the axis that tilts a bar out of the jaws, N·mm.
+    """Moment across the axis at which a bar tilts out of the jaws, N·mm.
 
-    Friction along the axis of one jaw, about the others, ``µ·F_sp/z · a`` with a = 0.75·d of
-    three jaws, [2]_; and the forces of the jaws, which shift by a sixth of the grip's length
-    before it begins to gape, [4]_: ``F_sp/z · l/6 · Σ|cos|`` in the direction of tilting that
-    has least of it.
+    It has two parts: axial friction of one jaw about the others, ``µ·F_sp/z · a`` with a =
+    0.75·d for three jaws, [2]_; and the jaw forces, which shift by a sixth of the grip length
+    before the contact opens, [4]_: ``F_sp/z · l/6 · Σ|cos|`` in the least favourable direction
+    of tilting.
     """
     force = _counted(chuck, speed) / chuck.jaws
     friction = chuck.friction * grip.diameter * _arm(chuck.jaws)
@@ -151,7 +152,7 @@ def _counted(chuck: Chuck, speed: float) -> float:
 
 
 def _arm(jaws: int) -> float:
-    """Distance of one jaw from the line of those that it tilts about, over the diameter."""
+    """Distance of one jaw from the tilting axis through the others, over the diameter."""
     return 1.0 if jaws % 2 == 0 else 0.5 * (1.0 + cos(pi / jaws))
 
 
@@ -161,5 +162,5 @@ def _jaws_across(jaws: int) -> float:
 
 
 def holding_force(clamp: Clamp) -> float:
-    """Force of the cut that a vice or clamps hold by friction: ``µ·F/S``, N."""
+    """Cutting force that a vice or clamps can hold by friction: ``µ·F/S``, N."""
     return clamp.friction * clamp.holding_force / clamp.safety_factor

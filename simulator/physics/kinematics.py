@@ -1,7 +1,7 @@
-"""Speeds, feeds and removal rates of a cut, from its geometry alone.
+"""Speeds, feeds and removal rates of a cut from its geometry.
 
-All arguments and results are scalars in mm, s and rev/s, so that the 1000 and the 60 of the
-handbook forms disappear.
+All arguments and results are scalars in mm, s and rev/s, so the factors 1000 and 60 of handbook
+formulas are not needed.
 
 References
 ----------
@@ -20,14 +20,14 @@ from simulator.physics.domain import (
 
 
 def cutting_speed(diameter: float, spindle_speed: float) -> float:
-    """Speed of the edge on the diameter that turns.
+    """Cutting speed at a rotating diameter.
 
     ``v_c = π · D · n``, [1]_ eq. (3).
 
     Parameters
     ----------
     diameter : float, mm
-        Of the tool in milling and drilling, of the workpiece in turning.
+        Diameter of the tool in milling and drilling, of the workpiece in turning.
     spindle_speed : float, rev/s
 
     Returns
@@ -37,7 +37,7 @@ def cutting_speed(diameter: float, spindle_speed: float) -> float:
     Raises
     ------
     ValueError
-        If either is not positive.
+        If an argument is not positive.
 
     Examples
     --------
@@ -52,7 +52,7 @@ def cutting_speed(diameter: float, spindle_speed: float) -> float:
 
 
 def spindle_speed(diameter: float, cutting_speed: float) -> float:
-    """Spindle speed that gives the cutting speed, the inverse of :func:`cutting_speed`.
+    """Spindle speed for a given cutting speed, the inverse of :func:`cutting_speed`.
 
     ``n = v_c / (π · D)``, [1]_ eq. (3).
 
@@ -68,7 +68,7 @@ def spindle_speed(diameter: float, cutting_speed: float) -> float:
     Raises
     ------
     ValueError
-        If either is not positive.
+        If an argument is not positive.
 
     Examples
     --------
@@ -85,8 +85,8 @@ def spindle_speed(diameter: float, cutting_speed: float) -> float:
 def feed(feed_per_tooth: float, spindle_speed: float, *, teeth: int = 1) -> float:
     """Feed speed of the tool against the workpiece.
 
-    ``v_f = f_z · z · n``, [1]_ eq. (2), whose "mm/r" must read mm per tooth. One tooth: the
-    feed per revolution of turning and drilling.
+    ``v_f = f_z · z · n``, [1]_ eq. (2), whose "mm/r" must read mm per tooth. With one tooth,
+    the feed per tooth is the feed per revolution of turning and drilling.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ def feed(feed_per_tooth: float, spindle_speed: float, *, teeth: int = 1) -> floa
     Raises
     ------
     ValueError
-        If any is not positive.
+        If an argument is not positive.
 
     Examples
     --------
@@ -117,7 +117,7 @@ def feed(feed_per_tooth: float, spindle_speed: float, *, teeth: int = 1) -> floa
 
 
 def feed_per_tooth(feed: float, spindle_speed: float, *, teeth: int = 1) -> float:
-    """Feed per tooth, the inverse of :func:`feed`; one tooth: feed per revolution.
+    """Feed per tooth, the inverse of :func:`feed`; with one tooth, the feed per revolution.
 
     ``f_z = v_f / (z · n)``, [1]_ eq. (2).
 
@@ -134,7 +134,7 @@ def feed_per_tooth(feed: float, spindle_speed: float, *, teeth: int = 1) -> floa
     Raises
     ------
     ValueError
-        If any is not positive.
+        If an argument is not positive.
 
     Examples
     --------
@@ -150,7 +150,7 @@ def feed_per_tooth(feed: float, spindle_speed: float, *, teeth: int = 1) -> floa
 
 
 def milling_removal_rate(feed: float, *, axial_depth: float, radial_width: float) -> float:
-    """Volume that a milling cutter removes in one second.
+    """Volume that a milling cutter removes per second.
 
     ``Q = a_p · a_e · v_f``, [3]_.
 
@@ -166,7 +166,7 @@ def milling_removal_rate(feed: float, *, axial_depth: float, radial_width: float
     Raises
     ------
     ValueError
-        If any is not positive.
+        If an argument is not positive.
 
     Examples
     --------

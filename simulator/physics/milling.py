@@ -1,7 +1,7 @@
 """Forces of a milling cutter as means over a revolution.
 
-Forces within it, along the helix, are in :mod:`simulator.physics.tooth_forces`. Scalars in mm,
-N and rad.
+Forces within a revolution, along the helix, are in :mod:`simulator.physics.tooth_forces`.
+Scalars in mm, N and rad.
 
 References
 ----------
@@ -25,23 +25,23 @@ from simulator.physics.engagement import (
 from simulator.spec import Kienzle
 
 RADIAL_SHARE = 0.3
-"""F_r/F_t where only k_c is known: the median of K_rc/K_tc of the seven measurements on
-aluminium in [2]_, which lie between 0.16 and 0.60"""
+"""Ratio F_r/F_t if only k_c is known: median of K_rc/K_tc of seven measurements on aluminium
+in [2]_, which lie between 0.16 and 0.60."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MillingCut:
-    """Cut of one milling cutter."""
+    """Cut of a milling cutter."""
 
     feed_per_tooth: float
-    """f_z, mm"""
+    """Feed per tooth f_z, mm."""
     teeth: int
-    """z"""
+    """Number of teeth z."""
     axial_depth: float
-    """a_p, mm"""
+    """Axial depth of cut a_p, mm."""
     engagement: Engagement
     cutting_edge_angle: float = pi / 2.0
-    """κ_r, rad"""
+    """Cutting edge angle κ_r, rad."""
 
     def __post_init__(self) -> None:
         require_positive(self.feed_per_tooth, "feed per tooth", "mm")
@@ -51,7 +51,7 @@ class MillingCut:
 
     @property
     def mean_chip_thickness(self) -> float:
-        """h_m in mm, [1]_ eq. (1)."""
+        """Mean chip thickness h_m, mm, [1]_ eq. (1)."""
         return mean_chip_thickness(
             self.feed_per_tooth, self.engagement, cutting_edge_angle=self.cutting_edge_angle
         )
@@ -65,7 +65,7 @@ def mean_specific_force(kienzle: Kienzle, cut: MillingCut, *, factor: float = 1.
     kienzle : Kienzle
     cut : MillingCut
     factor : float
-        K of :class:`~simulator.physics.cutting.ForceCorrection`.
+        Factor K of :class:`~simulator.physics.cutting.ForceCorrection`.
 
     Returns
     -------
@@ -93,7 +93,7 @@ def mean_force(kienzle: Kienzle, cut: MillingCut, *, factor: float = 1.0) -> flo
     kienzle : Kienzle
     cut : MillingCut
     factor : float
-        K of :class:`~simulator.physics.cutting.ForceCorrection`.
+        Factor K of :class:`~simulator.physics.cutting.ForceCorrection`.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Power that a cut takes. What the spindle gives is in :mod:`.spindle`.
+"""Power that a cut needs; the power that a spindle provides is in :mod:`.spindle`.
 
 Scalars in N, mm/s and W.
 
@@ -19,14 +19,14 @@ _NMM_S_PER_WATT = 1000.0  # 1 W = 1000 N·mm/s
 
 
 def cutting_power(force: float, cutting_speed: float) -> float:
-    """Power that a tangential force takes at a cutting speed.
+    """Power of a tangential force at a cutting speed.
 
-    ``P_c = F_c · v_c / 1000``, [1]_ eq. (5); the 1000 turns N·mm/s into W.
+    ``P_c = F_c · v_c / 1000``, [1]_ eq. (5); the 1000 converts N·mm/s to W.
 
     Parameters
     ----------
     force : float, N
-        Component along the cutting speed; in milling the mean over a revolution.
+        Force along the cutting speed; in milling its mean over a revolution.
     cutting_speed : float, mm/s
 
     Returns
@@ -51,7 +51,7 @@ def cutting_power(force: float, cutting_speed: float) -> float:
 
 
 def motor_power(cutting_power: float, efficiency: float) -> float:
-    """Motor power that a cutting power asks for.
+    """Motor power that a cutting power requires.
 
     ``P = P_c / η``, [1]_ eq. (6).
 
@@ -59,7 +59,7 @@ def motor_power(cutting_power: float, efficiency: float) -> float:
     ----------
     cutting_power : float, W
     efficiency : float
-        η, 0 < η ≤ 1.
+        Efficiency η, 0 < η ≤ 1.
 
     Returns
     -------

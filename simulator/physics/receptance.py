@@ -1,6 +1,6 @@
-"""Receptance of a structure by frequency, from the modes of a tap test.
+"""Receptance of a structure over frequency, from the modes of a tap test.
 
-Units mm, N, rad/s; natural frequencies in Hz, as they are measured.
+Units mm, N, rad/s; natural frequencies in Hz, as measured.
 
 References
 ----------
@@ -20,7 +20,7 @@ Floats = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 SAMPLES = 240
-"""chatter frequencies on either side of a mode"""
+"""Number of sampled chatter frequencies on either side of a mode."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,7 +36,7 @@ class ModalStructure:
 
 
 def receptance(modes: Sequence[VibrationMode], frequency: Floats) -> Complex:
-    """Deflection under a force of 1 N by frequency, the sum over the modes.
+    """Receptance over frequency: deflection per force, summed over the modes.
 
     ``Φ = Σ (ω_n²/k) / (ω_n² − ω² + 2iζ·ω_n·ω)``, [1]_.
 
@@ -58,7 +58,7 @@ def receptance(modes: Sequence[VibrationMode], frequency: Floats) -> Complex:
 
 
 def chatter_frequencies(modes: Sequence[VibrationMode]) -> Floats:
-    """Frequencies at which chatter is looked for: dense about each mode, wide beyond them.
+    """Frequencies at which chatter is searched: dense around each mode, sparse elsewhere.
 
     Parameters
     ----------

@@ -1,8 +1,8 @@
-"""Bending of a bar between chuck and tool, with or without a centre at its free end.
+"""Bending of a bar between chuck and tool, with or without a tailstock centre.
 
-An Euler-Bernoulli beam of round sections, built in at the jaws. The chuck, the spindle and the
-centre are taken as rigid, so that a real bar bends more; shear is left out: it counts where
-the bar is shorter than three diameters, and there it hardly bends. Units mm, N.
+An Euler-Bernoulli beam of round sections, clamped at the jaws. The chuck, the spindle and the
+centre are assumed to be rigid, so that a real bar bends more. Shear is neglected: it matters
+only for bars shorter than three diameters, which hardly bend. Units mm, N.
 
 References
 ----------
@@ -19,20 +19,20 @@ from simulator.physics.domain import require_positive
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BarSection:
-    """A stretch of a bar with one diameter."""
+    """Section of a bar with constant diameters."""
 
     start: float
-    """Start, mm from the jaws"""
+    """Distance of its start from the jaws, mm."""
     end: float
-    """End, mm from the jaws, not before the start"""
+    """Distance of its end from the jaws, mm, not less than the start."""
     outer: float
-    """Outer, mm, diameter"""
+    """Outer diameter, mm."""
     inner: float = 0.0
-    """Inner, mm, diameter of the bore"""
+    """Diameter of the bore, mm."""
 
     @property
     def second_moment(self) -> float:
-        """``I = π·(D⁴ − d⁴)/64``, mm⁴."""
+        """Second moment of area ``I = π·(D⁴ − d⁴)/64``, mm⁴."""
         return pi / 64.0 * (self.outer**4 - self.inner**4)
 
 
@@ -43,20 +43,20 @@ def compliance(
     youngs_modulus: float,
     centre: float | None = None,
 ) -> float:
-    """Deflection of a bar under a force of 1 N across it, where the force acts.
+    """Compliance of a bar across its axis, at the point where the force acts.
 
-    With ``f(a, b)`` the deflection at a of the cantilever under a unit force at b it is
-    ``f(a, a)``, and ``f(a, a) − f(a, L)²/f(L, L)`` with a centre at L, [1]_.
+    Let ``f(a, b)`` be the deflection at a of the cantilever under a unit force at b. The
+    compliance is ``f(a, a)``, or ``f(a, a) − f(a, L)²/f(L, L)`` with a centre at L, [1]_.
 
     Parameters
     ----------
     sections : sequence of BarSection
-        From the jaws on, without gaps.
+        Sections from the jaws on, without gaps.
     at : float, mm
-        From the jaws.
+        Distance of the force from the jaws.
     youngs_modulus : float, N/mm²
     centre : float or None, mm
-        Of a tailstock from the jaws, not before the force; None: there is none.
+        Distance of a tailstock centre from the jaws, not less than ``at``; None: no centre.
 
     Returns
     -------
@@ -65,7 +65,7 @@ def compliance(
     Raises
     ------
     ValueError
-        If the bar has nothing left somewhere before the force, or Young's modulus is not
+        If the bar has no material somewhere before the force, or Young's modulus is not
         positive.
 
     Examples
@@ -84,7 +84,7 @@ def compliance(
 
 
 def _integral(sections: Sequence[BarSection], at: float, force: float) -> float:
-    """``∫ (a − s)·(b − s)/I ds`` from the jaws to the nearer of both, 1/mm."""
+    """Integral ``∫ (a − s)·(b − s)/I ds`` from the jaws to the nearer of both, 1/mm."""
     end = min(at, force)
     total = 0.0
     for part in sections:

@@ -1,6 +1,6 @@
 """Power and torque curve of a spindle as monomials of the speed.
 
-Scalars in W, N·mm and rev/s. Monomials, because what chooses the feed works in logarithms.
+Scalars in W, N·mm and rev/s. Monomials are used because the feed optimiser works in logarithms.
 """
 
 from dataclasses import dataclass, replace
@@ -10,45 +10,45 @@ from math import inf, log, pow
 from simulator.physics.domain import require_positive
 from simulator.spec import Spindle, SpindlePoint
 
-_STEEPEST = 50.0  # exponent beyond which coefficients at 1 rev/s leave the range of floats
+_STEEPEST = 50.0  # exponent beyond which coefficients at 1 rev/s exceed the range of floats
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CurveSegment:
-    """One stretch of a spindle's curve: ``P = c·n^γ`` and, where known, ``M = d·n^δ``."""
+    """Segment of a spindle's curve: ``P = c·n^γ`` and, where known, ``M = d·n^δ``."""
 
     min_speed: float
-    """Min speed, rev/s, 0 when the curve has no lower end"""
+    """Lowest speed, rev/s; 0 if the curve has no lower end."""
     max_speed: float
-    """Max speed, rev/s, ``inf`` when it has no upper end"""
+    """Highest speed, rev/s; ``inf`` if the curve has no upper end."""
     power_coefficient: float
-    """c: motor power in W at 1 rev/s"""
+    """Coefficient c: motor power at 1 rev/s, W."""
     power_exponent: float
-    """γ: 0 constant power, 1 constant torque"""
+    """Exponent γ: 0 for constant power, 1 for constant torque."""
     torque_coefficient: float | None
-    """d: torque in N·mm at 1 rev/s; ``None``: the source gives none"""
+    """Coefficient d: torque at 1 rev/s, N·mm; ``None`` if the source gives no torque."""
     torque_exponent: float
-    """δ"""
+    """Exponent δ of the torque."""
 
     def power(self, spindle_speed: float) -> float:
-        """Motor power at a speed, W."""
+        """Motor power at a spindle speed, W."""
         return self.power_coefficient * pow(spindle_speed, self.power_exponent)
 
     def torque(self, spindle_speed: float) -> float | None:
-        """Torque at a speed, N·mm."""
+        """Torque at a spindle speed, N·mm."""
         if self.torque_coefficient is None:
             return None
         return self.torque_coefficient * pow(spindle_speed, self.torque_exponent)
 
 
 def curve_segments(spindle: Spindle) -> tuple[CurveSegment, ...]:
-    """The spindle's curve as monomials, one for each stretch, ascending in speed.
+    """Convert a spindle's curve to monomials, one per segment, ascending in speed.
 
-    Below the first point the torque stays constant where it is known (power in proportion to
-    speed), else the power does; between two points both are straight in logarithms; above the
-    last the power stays constant and the torque falls as ``1/n``. Torque is known between two
-    points when both have it. The stretches reach from the spindle's least to its greatest
-    speed, or from 0 and to infinity.
+    Below the first point the torque is constant where it is known (power proportional to
+    speed), otherwise the power is constant. Between two points both are linear in logarithms.
+    Above the last point the power is constant and the torque falls as ``1/n``. Torque is known
+    between two points if both have it. The segments cover the range from the spindle's lowest
+    to its highest speed, or from 0 and to infinity.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def curve_segments(spindle: Spindle) -> tuple[CurveSegment, ...]:
     ------
     ValueError
         If the curve is empty, does not ascend, has a value that is not positive, or jumps: a
-        gear change is a short stretch, not a step (5 % of power need 0.1 % of speed).
+        gear change must be a short segment, not a step (5 % of power need 0.1 % of speed).
 
     Examples
     --------
@@ -89,8 +89,8 @@ def curve_segments(spindle: Spindle) -> tuple[CurveSegment, ...]:
 def available_power(spindle: Spindle, spindle_speed: float) -> float:
     """Motor power that the spindle gives continuously at a speed.
 
-    Interpolated as :func:`curve_segments` says, and beyond the speeds that the spindle
-    reaches: those are a limit of their own.
+    Interpolated as in :func:`curve_segments`, also beyond the speed range of the spindle, which
+    is a separate limit.
 
     Parameters
     ----------
@@ -110,13 +110,13 @@ def available_power(spindle: Spindle, spindle_speed: float) -> float:
 
 
 def _stretch_at(spindle: Spindle, spindle_speed: float) -> CurveSegment:
-    """Stretch of the unlimited curve that holds a speed."""
+    """Segment of the unlimited curve that contains a speed."""
     require_positive(spindle_speed, "spindle speed", "rev/s")
     return next(part for part in _stretches(spindle) if spindle_speed <= part.max_speed)
 
 
 def _stretches(spindle: Spindle) -> tuple[CurveSegment, ...]:
-    """The curve from 0 to infinity."""
+    """Segments of the curve from 0 to infinity."""
     _require_usable(spindle.curve)
     first, last = spindle.curve[0], spindle.curve[-1]
     between = (_between(low, high) for low, high in pairwise(spindle.curve))
@@ -124,7 +124,7 @@ def _stretches(spindle: Spindle) -> tuple[CurveSegment, ...]:
 
 
 def _require_usable(curve: tuple[SpindlePoint, ...]) -> None:
-    """Refuse an empty curve, one that does not ascend, and values that are not positive."""
+    """Raise an error unless a curve has points, ascends and has positive values."""
     if not curve:
         raise ValueError("spindle curve has 0 points and must have at least 1")
     for point in curve:
@@ -141,7 +141,7 @@ def _require_usable(curve: tuple[SpindlePoint, ...]) -> None:
 
 
 def _below(point: SpindlePoint) -> CurveSegment:
-    """Constant torque, or constant power where no torque is known."""
+    """Segment below the first point: constant torque, or power if torque is unknown."""
     if point.torque is None:
         return CurveSegment(
             min_speed=0.0,
@@ -162,7 +162,7 @@ def _below(point: SpindlePoint) -> CurveSegment:
 
 
 def _between(low: SpindlePoint, high: SpindlePoint) -> CurveSegment:
-    """Straight in logarithms."""
+    """Segment between two points, linear in logarithms."""
     power_exponent = _exponent(low, high, high.power / low.power)
     torque_exponent = 0.0
     torque_coefficient = None
@@ -192,7 +192,7 @@ def _exponent(low: SpindlePoint, high: SpindlePoint, ratio: float) -> float:
 
 
 def _above(point: SpindlePoint) -> CurveSegment:
-    """Constant power."""
+    """Segment above the last point, with constant power."""
     known = point.torque is not None
     return CurveSegment(
         min_speed=point.speed,
@@ -205,7 +205,7 @@ def _above(point: SpindlePoint) -> CurveSegment:
 
 
 def _clipped(part: CurveSegment, least: float, greatest: float) -> CurveSegment:
-    """The part of a stretch between two speeds; empty (ends crossed) when it lies outside."""
+    """Part of a segment between two speeds; its ends are crossed if it lies outside."""
     return replace(
         part, min_speed=max(part.min_speed, least), max_speed=min(part.max_speed, greatest)
     )

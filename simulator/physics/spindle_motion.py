@@ -1,7 +1,7 @@
-"""Torque and power of a spindle that speeds up, turns, cuts and stops.
+"""Torque and power of a spindle that accelerates, rotates, cuts and stops.
 
-Arithmetic only in what a run asks for at every sample, so that speeds may be floats or arrays.
-Units rev/s, rev/s², N·mm, W, kg·m². Signs of speeds are those of the sense of rotation.
+Functions evaluated at every sample use arithmetic only, so that speeds may be floats or arrays.
+Units rev/s, rev/s², N·mm, W, kg·m². The sign of a speed is its direction of rotation.
 
 References
 ----------
@@ -11,9 +11,9 @@ References
 .. [2] D. Lechevalier et al., "Simulating a virtual machining model in an agent-based model for
    advanced analytics", 2018, eq. (4) and Table 1.
 
-Corrected: [1]_ has the acceleration in rev/s² with ``T = J·2πα``, [2]_ in rad/s² with the same
-torque (here always rev/s²); cutting power is force times speed without a 2π; braking power is
-not divided by the efficiency; the oil film follows Petroff in the speed's own unit.
+Corrections: [1]_ has the acceleration in rev/s² with ``T = J·2πα``, [2]_ in rad/s² with the
+same torque (here always rev/s²); cutting power is force times speed without 2π; braking power
+is not divided by the efficiency; the oil film follows Petroff in the speed's own unit.
 """
 
 from math import pi
@@ -42,7 +42,7 @@ def acceleration_torque(inertia: float, acceleration: Value) -> Value:
 
 
 def idle_power(spindle: Spindle, speed: Value) -> Value:
-    """Motor power of a spindle that turns without cutting; 0 at rest.
+    """Motor power of a spindle that rotates without cutting; 0 at rest.
 
     ``P = P_0 + p_1·|n| + p_2·n²``: electronics and fans, constant torque, viscous friction.
 
@@ -81,17 +81,17 @@ def spindle_power(
 ) -> Value:
     """Power that the main drive draws from the mains.
 
-    ``P = (J·2πα + T_run)·2πn/η + P_c/η`` while that is positive, ``η_reg`` times the power at
-    the shaft else, [1]_ (16) corrected.
+    ``P = (J·2πα + T_run)·2πn/η + P_c/η`` while this is positive, otherwise ``η_reg`` times the
+    power at the shaft, [1]_ (16) corrected.
 
     Parameters
     ----------
     spindle : Spindle
-        An unknown inertia counts as none.
+        An unknown inertia counts as 0.
     speed, acceleration : float or array, rev/s and rev/s²
-        Signed: a spindle brakes when they differ in sign.
+        Signed: a spindle brakes if the two differ in sign.
     cutting_power : float or array, W
-        At the tool, P_c.
+        Power at the tool, P_c.
 
     Returns
     -------

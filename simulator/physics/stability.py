@@ -1,13 +1,14 @@
-"""Regenerative chatter: the depth beyond which a cut excites a mode of the structure.
+"""Regenerative chatter in milling: stable depth of cut from the modes of the structure.
 
-Milling by the zero-order solution of [1]_: only the mean of the directional coefficients over
-a tooth period is kept, which makes the border of stability a closed form of the chatter
-frequency. That holds while the cut is nearly continuous; below a radial width of a tenth of
-the diameter the neglected harmonics open further lobes (period doubling, [2]_). Flank and wave
-are taken not to touch: at low speed they do, and damp.
+Uses the zero-order solution of [1]_: only the mean of the directional coefficients over a tooth
+period is kept, which gives the stability border in closed form over the chatter frequency. This
+is accurate while the cut is nearly continuous; below a radial width of a tenth of the diameter
+the neglected harmonics add further lobes (period doubling, [2]_). Contact between flank and
+wave, which adds damping at low speed, is neglected.
 
-Feed along x, the angle φ of a tooth as in :mod:`simulator.physics.engagement`; the structure
-gives in the plane of the cut, rigid along the spindle. Units mm, s, N, rad, rev/s.
+The feed is along x, and the angle φ of a tooth is defined as in
+:mod:`simulator.physics.engagement`. The structure is flexible in the plane of the cut and rigid
+along the spindle. Units mm, s, N, rad, rev/s.
 
 References
 ----------
@@ -42,32 +43,33 @@ from simulator.physics.receptance import (
 from simulator.spec import VibrationMode
 
 LEAST_IMMERSION = 0.1
-"""a_e/D below which zero order is not used: [2]_ shows its error for small immersions"""
+"""Least a_e/D for which zero order is used; [2]_ shows its error for small immersions."""
 
 DAMPED_WAVELENGTH = 0.5
-"""mm of a wave on the surface, below which the flank damps: at an amplitude of 14 µm its slope
-is that of a clearance of 10°, [3]_; conservative, for waves grow until they lose the chip"""
+"""Wavelength on the surface, mm, below which the flank damps: at an amplitude of 14 µm its
+slope equals a clearance angle of 10°, [3]_; conservative, as waves grow until the chip is
+lost."""
 
 MOST_LOBES = 150
-"""lobes counted from the fastest; below the slowest of them the least depth holds"""
+"""Number of lobes, counted from the fastest; at lower speeds the least depth applies."""
 
 MOST_DEPTH = 1e4
-"""mm, stands for a depth that no mode limits"""
+"""Depth, mm, that stands for a depth not limited by any mode."""
 
 FEED_ANGLES = 12
-"""directions of feed that are tried between 0 and π"""
+"""Number of feed directions tried between 0 and π."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DynamicCut:
-    """Dynamic milling cut: the response to a wave on the surface."""
+    """Milling cut as needed for its dynamic response to a wave on the surface."""
 
     engagement: Engagement
     teeth: int
     stiffness: float
-    """K_t, N/mm²: tangential force that a depth of 1 mm gains for 1 mm of chip"""
+    """Cutting stiffness K_t: tangential force per mm of depth and mm of chip, N/mm²."""
     radial_ratio: float
-    """K_r, radial over tangential force"""
+    """Ratio K_r of radial to tangential force."""
 
     def __post_init__(self) -> None:
         require_teeth(self.teeth)
@@ -77,14 +79,14 @@ class DynamicCut:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Border:
-    """The border of stability by chatter frequency; NaN where there is none."""
+    """Stability border over the chatter frequency; NaN where there is none."""
 
     frequency: Floats
-    """Frequency, (N,) ω_c in rad/s, ascending"""
+    """Chatter frequency ω_c, (N,), rad/s, ascending."""
     depth: Floats
-    """Depth, (N,) mm"""
+    """Limit of the depth of cut, (N,), mm."""
     phase: Floats
-    """Phase, (N,) ε in rad between two waves, 0 to 2π"""
+    """Phase ε between two successive waves, (N,), rad, 0 to 2π."""
 
 
 def directional_coefficients(engagement: Engagement, radial_ratio: float) -> Floats:
@@ -98,7 +100,7 @@ def directional_coefficients(engagement: Engagement, radial_ratio: float) -> Flo
     ----------
     engagement : Engagement
     radial_ratio : float
-        K_r.
+        Ratio K_r.
 
     Returns
     -------
@@ -106,7 +108,7 @@ def directional_coefficients(engagement: Engagement, radial_ratio: float) -> Flo
 
     Examples
     --------
-    A slot: only the radial force acts along its own deflection.
+    In a slot only the radial force acts along its own deflection.
 
     >>> from simulator.physics.engagement import full_immersion
     >>> (directional_coefficients(full_immersion(), 0.3) / pi).round(6) + 0.0
@@ -128,7 +130,7 @@ def directional_coefficients(engagement: Engagement, radial_ratio: float) -> Flo
 def borders(
     cut: DynamicCut, structure: ModalStructure, *, feed_angle: float = 0.0
 ) -> tuple[Border, Border]:
-    """Border of stability for each of the two eigenvalues, by chatter frequency.
+    """Stability border for each of the two eigenvalues, over the chatter frequency.
 
     ``a_lim = −2π·Λ_R/(z·K_t)·(1 + (Λ_I/Λ_R)²)`` with Λ from
     ``det(I + Λ·[α][Φ(iω_c)]) = 0``, and ``ε = π − 2·atan(Λ_I/Λ_R)``, [1]_.
@@ -139,7 +141,7 @@ def borders(
     structure : ModalStructure
         Modes along x and y of the machine.
     feed_angle : float, rad
-        From x of the machine to the feed.
+        Angle from x of the machine to the feed.
 
     Returns
     -------
@@ -148,7 +150,7 @@ def borders(
     frequency = chatter_frequencies((*structure.x, *structure.y))
     along, across = (receptance(modes, frequency) for modes in (structure.x, structure.y))
     c, s = cos(feed_angle), sin(feed_angle)
-    # Symmetric receptance seen from the feed: R·diag(Φ_x, Φ_y)·Rᵀ.
+    # Symmetric receptance in feed coordinates: R·diag(Φ_x, Φ_y)·Rᵀ.
     xx = c * c * along + s * s * across
     yy = s * s * along + c * c * across
     xy = c * s * (across - along)
@@ -161,7 +163,7 @@ def borders(
 
 
 def least_stable_depth(cut: DynamicCut, structure: ModalStructure) -> float:
-    """Depth that is stable at any spindle speed and in any direction of feed, mm."""
+    """Depth of cut that is stable at any spindle speed and in any feed direction, mm."""
     least = min(
         float(np.nanmin(border.depth, initial=MOST_DEPTH))
         for angle in _feed_angles(structure)
@@ -173,10 +175,10 @@ def least_stable_depth(cut: DynamicCut, structure: ModalStructure) -> float:
 def stable_depths(
     cut: DynamicCut, structure: ModalStructure, speeds: Floats, *, tolerance: float = 0.0
 ) -> Floats:
-    """Greatest stable depth at each spindle speed: the least of all lobes, [1]_.
+    """Greatest stable depth at each spindle speed: the minimum over all lobes, [1]_.
 
-    A lobe k has ``n = ω_c / (z·(ε + 2kπ))``. All lobes are drawn onto the given speeds, where
-    the least depth counts, in the worst direction of feed.
+    Lobe k is ``n = ω_c / (z·(ε + 2kπ))``. All lobes are evaluated at the given speeds; the
+    least depth counts, in the worst feed direction.
 
     Parameters
     ----------
@@ -185,13 +187,13 @@ def stable_depths(
     speeds : (N,) array, rev/s
         Ascending, positive.
     tolerance : float
-        Share by which the natural frequencies may be off: scaling all of them scales the
-        speeds of the lobes, so the least depth within this share of a speed counts.
+        Relative uncertainty of the natural frequencies: scaling all of them scales the speeds
+        of the lobes, so the least depth within this share of a speed counts.
 
     Returns
     -------
     (N,) array, mm
-        :data:`MOST_DEPTH` where no lobe limits.
+        :data:`MOST_DEPTH` where no lobe is a limit.
 
     Examples
     --------
@@ -230,16 +232,16 @@ def lobes(
     step: float,
     tolerance: float,
 ) -> tuple[tuple[float, ...], tuple[float, ...]]:
-    """Speeds at equal ratios within a range, and the stable depth at each, as plain numbers.
+    """Geometrically spaced speeds in a range, and the stable depth at each, as plain numbers.
 
     Parameters
     ----------
     cut : DynamicCut
     structure : ModalStructure
     between : (float, float), rev/s
-        Least and greatest speed; they may be equal.
+        Lowest and highest speed; they may be equal.
     step : float
-        Share between two speeds.
+        Relative distance between neighbouring speeds.
     tolerance : float
         As in :func:`stable_depths`.
 
@@ -261,16 +263,16 @@ def lobes(
 
 
 def damped_speed(modes: Sequence[VibrationMode], diameter: float) -> float:
-    """Spindle speed below which the flank damps every mode, rev/s.
+    """Spindle speed below which contact of the flank damps every mode, rev/s.
 
-    The wave on the surface is ``v_c/f`` long; below :data:`DAMPED_WAVELENGTH` the flank meets
-    its slope, [3]_. The slowest mode decides: the others are damped before it.
+    The wavelength on the surface is ``v_c/f``; below :data:`DAMPED_WAVELENGTH` the flank meets
+    the slope of the wave, [3]_. The slowest mode decides: all others are damped before it.
 
     Parameters
     ----------
     modes : sequence of VibrationMode
     diameter : float, mm
-        At which the cutting speed is taken.
+        Diameter at which the cutting speed is taken.
 
     Raises
     ------
@@ -283,7 +285,7 @@ def damped_speed(modes: Sequence[VibrationMode], diameter: float) -> float:
 
 
 def _continuous(one: Complex, other: Complex) -> tuple[Complex, Complex]:
-    """The two eigenvalues followed along the frequency: the root's branch may change."""
+    """Order two eigenvalues continuously over frequency: the branch of the root may change."""
     stays = np.abs(np.diff(one)) + np.abs(np.diff(other))
     crosses = np.abs(one[1:] - other[:-1]) + np.abs(other[1:] - one[:-1])
     swapped = np.concatenate([[False], np.cumsum(crosses < stays) % 2 == 1])
@@ -291,7 +293,7 @@ def _continuous(one: Complex, other: Complex) -> tuple[Complex, Complex]:
 
 
 def _border(cut: DynamicCut, frequency: Floats, eigenvalue: Complex) -> Border:
-    """Border of one eigenvalue μ of [α][Φ]; ``Λ = −1/μ``."""
+    """Stability border of one eigenvalue μ of [α][Φ]; ``Λ = −1/μ``."""
     with np.errstate(divide="ignore", invalid="ignore"):
         root = -1.0 / eigenvalue
         ratio = root.imag / root.real
@@ -305,7 +307,7 @@ def _border(cut: DynamicCut, frequency: Floats, eigenvalue: Complex) -> Border:
 
 
 def _feed_angles(structure: ModalStructure) -> tuple[float, ...]:
-    """Directions of feed to be tried: one where the structure gives alike in all."""
+    """Feed directions to be tried; a single one if the structure is the same along x and y."""
     alike = [(m.natural_frequency, m.damping_ratio, m.stiffness) for m in structure.x] == [
         (m.natural_frequency, m.damping_ratio, m.stiffness) for m in structure.y
     ]
@@ -313,13 +315,13 @@ def _feed_angles(structure: ModalStructure) -> tuple[float, ...]:
 
 
 def _slowest_lobe(modes: Sequence[VibrationMode], teeth: int) -> float:
-    """Speed below which lobes beyond the counted ones begin, rev/s."""
+    """Speed below which lobes beyond ``MOST_LOBES`` begin, rev/s."""
     fastest = max(mode.natural_frequency for mode in modes)
     return fastest / (teeth * MOST_LOBES)
 
 
 def _draw(drawn: Floats, speeds: Floats, border: Border, *, teeth: int) -> None:
-    """Lower the depths to all lobes of a border, straight between chatter frequencies."""
+    """Lower the depths to all lobes of a border, linear between chatter frequencies."""
     slowest = float(speeds[0]) * teeth
     count = min(MOST_LOBES, ceil(float(border.frequency[-1]) / (2.0 * pi * slowest)) + 1)
     turns = 2.0 * pi * np.arange(count)[:, None]

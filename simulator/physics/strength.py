@@ -1,8 +1,8 @@
 """Strength of a slender tool: deflection and bending stress of a clamped shank.
 
-The tool is a beam clamped where it leaves the holder, with the force across its tip; that is on
-the safe side by the share in which the force lies above the tip. Holder and spindle are taken
-as rigid, which is not: their give often equals the tool's. Scalars in mm, N and N/mm².
+The tool is a beam clamped at the holder, with the force across its tip; this is conservative
+because the force acts slightly above the tip. Holder and spindle are assumed to be rigid,
+although their compliance often equals the tool's. Scalars in mm, N and N/mm².
 
 References
 ----------
@@ -21,25 +21,25 @@ from simulator.physics.domain import (
 )
 
 STICK_OUT = 3.0
-"""least overhang over diameter of an end mill, customary; ISO 14649 names no overhang"""
+"""Least overhang over diameter of an end mill, customary; ISO 14649 defines no overhang."""
 
-FLUTED_RATIO = 0.8  # equivalent diameter of the fluted part over the diameter, [1]; customary
+FLUTED_RATIO = 0.8  # equivalent over nominal diameter of the fluted part, [1]; customary
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cantilever:
-    """A tool as a beam of two parts: flutes at the tip, shank at the holder."""
+    """Tool as a beam of two parts: flutes at the tip, shank at the holder."""
 
     overhang: float
-    """L, mm from holder to tip"""
+    """Overhang L from holder to tip, mm."""
     flute_length: float
-    """Flute length, mm from the tip, at most the overhang; 0: a plain bar"""
+    """Length of the flutes from the tip, mm, at most the overhang; 0 for a plain bar."""
     flute_diameter: float
-    """equivalent diameter of the fluted part, mm; see :func:`equivalent_diameter`"""
+    """Equivalent diameter of the fluted part, mm; see :func:`equivalent_diameter`."""
     shank_diameter: float
-    """Shank diameter, mm"""
+    """Diameter of the shank, mm."""
     youngs_modulus: float
-    """E, N/mm²"""
+    """Young's modulus E, N/mm²."""
 
     def __post_init__(self) -> None:
         require_positive(self.overhang, "overhang", "mm")
@@ -57,7 +57,7 @@ class Cantilever:
     def compliance(self) -> float:
         """Deflection of the tip under 1 N, mm/N.
 
-        ``(L_f³/I_f + (L³ − L_f³)/I_s) / 3E``; one diameter throughout gives ``L³/(3·E·I)``.
+        ``(L_f³/I_f + (L³ − L_f³)/I_s) / 3E``; with a single diameter this is ``L³/(3·E·I)``.
         """
         flutes = self.flute_length**3 / second_moment(self.flute_diameter)
         rest = self.overhang**3 - self.flute_length**3
@@ -66,7 +66,7 @@ class Cantilever:
     def stress(self, force: float) -> float:
         """Greatest bending stress under a force across the tip, N/mm².
 
-        At the holder, or where the flutes end if it is greater there: both by
+        Either at the holder or where the flutes end, whichever is greater; both from
         :func:`bending_stress`.
         """
         at_holder = bending_stress(force, overhang=self.overhang, diameter=self._root_diameter)
@@ -79,7 +79,7 @@ class Cantilever:
 
     @property
     def _root_diameter(self) -> float:
-        """Diameter at the holder: the flutes' when they reach it."""
+        """Diameter at the holder: that of the flutes if they reach it."""
         fluted = self.flute_length == self.overhang
         return self.flute_diameter if fluted else self.shank_diameter
 
@@ -87,7 +87,7 @@ class Cantilever:
 def end_mill(
     tool_diameter: float, *, cutting_edge_length: float | None, youngs_modulus: float
 ) -> Cantilever:
-    """Shank of an end mill that stands out three diameters, or its edge if that is longer.
+    """Cantilever of an end mill with an overhang of 3 D, or its edge length if longer.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ def end_mill(
     Raises
     ------
     ValueError
-        If a number is not positive.
+        If an argument is not positive.
     """
     overhang = max(STICK_OUT * tool_diameter, cutting_edge_length or 0.0)
     return _plain(overhang, equivalent_diameter(tool_diameter), youngs_modulus)
@@ -113,7 +113,7 @@ def equivalent_diameter(tool_diameter: float, *, ratio: float = FLUTED_RATIO) ->
     ----------
     tool_diameter : float, mm
     ratio : float
-        0 < ratio ≤ 1.
+        Ratio of the diameters, 0 < ratio ≤ 1.
 
     Returns
     -------
@@ -159,10 +159,10 @@ def deflection(
     Parameters
     ----------
     force : float, N
-        Across the axis.
+        Force across the axis.
     overhang : float, mm
     diameter : float, mm
-        The equivalent one for a fluted tool.
+        Equivalent diameter for a fluted tool.
     youngs_modulus : float, N/mm²
 
     Returns
@@ -172,7 +172,7 @@ def deflection(
     Raises
     ------
     ValueError
-        If the force is negative or another value not positive.
+        If the force is negative or another value is not positive.
 
     Examples
     --------
@@ -188,7 +188,7 @@ def deflection(
 
 
 def _plain(overhang: float, diameter: float, youngs_modulus: float) -> Cantilever:
-    """Bar of one diameter."""
+    """Cantilever of a bar with one diameter."""
     return Cantilever(
         overhang=overhang,
         flute_length=0.0,
@@ -213,7 +213,7 @@ def bending_stress(force: float, *, overhang: float, diameter: float) -> float:
     Raises
     ------
     ValueError
-        If the force is negative or a length not positive.
+        If the force is negative or a length is not positive.
 
     Examples
     --------

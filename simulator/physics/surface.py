@@ -1,8 +1,9 @@
-"""Roughness that the shape and feed of a tool leave.
+"""Surface roughness caused by the shape and feed of a tool.
 
-The ideal surface is what the edge draws; a real one is rougher by wear, vibration and built-up
-edge, for which an empirical floor is added: ``R_a = c·f² + floor``. Scalars, all in **mm**:
-print gives Ra and Rz in µm with the feed in mm, hence its factor of 1000, which is absent here.
+The ideal surface is the envelope of the edge; a real one is rougher because of wear, vibration
+and built-up edge, for which an empirical floor is added: ``R_a = c·f² + floor``. Scalars, all
+in **mm**: handbooks give Ra and Rz in µm with the feed in mm, hence their factor of 1000, which
+is absent here.
 
 References
 ----------
@@ -16,15 +17,16 @@ from math import sqrt
 
 from simulator.physics.domain import require_positive
 
-RA_FLOOR = 0.2e-3  # mm; customary least Ra of careful turning and milling, no measurement
-RZ_PER_RA = 4.0  # rule of thumb for turned and milled profiles; the ideal one has 9·√3/4 = 3.9
+RA_FLOOR = 0.2e-3  # mm; customary least Ra of careful turning and milling, not measured
+RZ_PER_RA = 4.0  # rule of thumb for turned and milled profiles; ideally 9·√3/4 = 3.9
 
 
 def corner_coefficient(corner_radius: float) -> float:
-    """Ideal R_a of a round corner over the square of the feed.
+    """Ideal R_a of a rounded corner over the square of the feed.
 
     ``R_a/f² = 1 / (18·√3·r)``, [1]_ eq. (10) corrected: the mean deviation of a parabola, which
-    is what the corner draws while f is small against 2·r. Its depth is 1.6 % low at f = r/2.
+    approximates the corner while f is small compared with 2·r. Its depth is 1.6 % low at f =
+    r/2.
 
     Parameters
     ----------
@@ -51,10 +53,10 @@ def corner_coefficient(corner_radius: float) -> float:
 
 
 def wall_coefficient(tool_diameter: float) -> float:
-    """Ideal R_a of a wall cut with the side of a mill, over the square of the feed per tooth.
+    """Ideal R_a of a wall cut with the flank of a mill, over the square of the feed per tooth.
 
-    ``R_z = f_z² / (4·D)``, circles one feed apart, over R_z/R_a. With runout of the cutter the
-    feed per revolution takes the place of the feed per tooth.
+    ``R_z = f_z² / (4·D)``, from circles one feed apart, divided by R_z/R_a. If the cutter has
+    runout, use the feed per revolution instead of the feed per tooth.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
-"""Life of an edge, and its wear until then.
+"""Life of a cutting edge, and its wear up to the end of life.
 
-Scalars in mm, s and mm/s. Taylor's constant keeps the meaning of print, the speed for a life of
-one **minute**, and is turned into seconds here.
+Scalars in mm, s and mm/s. Taylor's constant keeps its usual meaning, the speed for a life of
+one **minute**; the functions convert to seconds.
 
 References
 ----------
@@ -19,10 +19,10 @@ LIFE_CRITERION = 0.3  # mm, VB_B, [2]
 
 
 def tool_life(taylor: Taylor, cutting_speed: float) -> float:
-    """Cutting time until an edge is worn.
+    """Cutting time until an edge is worn out.
 
-    ``T = (C / v_c)^(1/n)`` minutes, [1]_, given in seconds. Valid for the feed and depth at
-    which n and C were measured, and for speeds near theirs.
+    ``T = (C / v_c)^(1/n)`` minutes, [1]_, converted to seconds. Valid for the feed and depth at
+    which n and C were measured, and for similar speeds.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def tool_life(taylor: Taylor, cutting_speed: float) -> float:
 
 
 def speed_for_life(taylor: Taylor, life: float) -> float:
-    """Cutting speed at which an edge lasts so long, the inverse of :func:`tool_life`.
+    """Cutting speed for a given tool life, the inverse of :func:`tool_life`.
 
     ``v_c = C / T^n`` with T in minutes, [1]_.
 
@@ -82,18 +82,18 @@ def speed_for_life(taylor: Taylor, life: float) -> float:
 
 
 def wear_rate(taylor: Taylor, cutting_speed: float) -> float:
-    """Tool lives used up in one second of cutting: ``1/T = (v_c / C)^(1/n) / 60``, 1/s.
+    """Tool lives used up per second of cutting: ``1/T = (v_c / C)^(1/n) / 60``, 1/s.
 
     Raises
     ------
     ValueError
-        As :func:`tool_life`.
+        As for :func:`tool_life`.
     """
     return 1.0 / tool_life(taylor, cutting_speed)
 
 
 def _require_usable(taylor: Taylor) -> None:
-    """Refuse an exponent outside (0, 1) and a constant that is not positive."""
+    """Raise an error unless the exponent is in (0, 1) and the constant is positive."""
     if not 0.0 < taylor.exponent < 1.0:
         raise ValueError(
             f"Taylor exponent {taylor.exponent:g} must be greater than 0 and less than 1"

@@ -1,13 +1,14 @@
-"""Forces of every tooth of a milling cutter while it turns, along its helix, with runout.
+"""Forces of every tooth of a rotating milling cutter, along its helix, with runout.
 
-A tooth at the angle φ takes a chip ``h = f_z·sin φ·sin κ``; the edge at the height y over the
-tip lags behind the tip by ``ψ = 2·y·tan λ/D``, [1]_. All forces of a Kienzle law are in
-proportion to ``K·k_c1.1·f_z^q``, q = 1 − m_c: what is computed here is the rest, in
-mm^(2−q)·mm^(q−1) = mm, for M places at once. Angles as in :mod:`simulator.physics.engagement`;
-the path of a tooth is taken as a circle. Rounded ends are cut in bands of height. Units mm, N,
-rad.
+A tooth at the angle φ cuts a chip ``h = f_z·sin φ·sin κ``; the edge at the height y above the
+tip lags behind the tip by ``ψ = 2·y·tan λ/D``, [1]_. All forces of a Kienzle law are
+proportional to ``K·k_c1.1·f_z^q``, q = 1 − m_c; this module computes the remaining factor, in
+mm^(2−q)·mm^(q−1) = mm, for M engagements at once. Angles are defined as in
+:mod:`simulator.physics.engagement`; the path of a tooth is approximated by a circle. Rounded
+ends are divided into bands by height. Units mm, N, rad.
 
-A tooth pushes the tool by F_t against its own motion and by F_r towards the axis, which gives
+A tooth pushes the tool with F_t against the tooth's motion and with F_r towards the axis. The
+results are
 
 - the feed force ``F_t·cos φ + F_r·sin φ``, positive against the feed, and
 - the normal force ``F_t·sin φ − F_r·cos φ``, positive towards φ = 0: to the left of the feed
@@ -37,31 +38,31 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 CORNER_BANDS = 6
-"""bands of a rounded end"""
+"""Number of bands of a rounded end."""
 
 STEPS = 8
-"""between rotations at which an end of an edge enters or leaves; twice that about the best"""
+"""Number of steps between rotations at which an edge enters or exits; doubled at the peak."""
 
 ROUGH_STEPS = 2
-"""the same for a rough look: the rotations themselves and the middles between them"""
+"""Number of steps for a rough search: the rotations themselves and their midpoints."""
 
 STRAIGHT = 1e-7
-"""rad, the least lag of a band: a straight edge is one of almost no helix"""
+"""Least lag of a band, rad: a straight edge is treated as one with almost no helix."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Places:
-    """M engagements of a cutter."""
+    """M engagements of a milling cutter."""
 
     entry_angle: Floats
-    """Entry angle, (M,) φ_st, rad"""
+    """Entry angle φ_st, (M,), rad."""
     exit_angle: Floats
-    """Exit angle, (M,) φ_ex, rad"""
+    """Exit angle φ_ex, (M,), rad."""
     axial_depth: Floats
-    """Axial depth, (M,) a_p, mm"""
+    """Axial depth of cut a_p, (M,), mm."""
 
     def rows(self, rows: Ints) -> "Places":
-        """Some of them."""
+        """Select some of the engagements."""
         return Places(
             entry_angle=self.entry_angle[rows],
             exit_angle=self.exit_angle[rows],
@@ -71,40 +72,40 @@ class Places:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ArcIntegrals:
-    """Integrals over M arcs of contact, which mean forces are made of."""
+    """Integrals over M contact arcs, from which mean forces follow."""
 
     contact: Floats
-    """Contact, (M,) ∫dφ, rad"""
+    """Contact angle ∫dφ, (M,), rad."""
     sine: Floats
-    """Sine, (M,) ∫sin φ dφ = C"""
+    """Integral ∫sin φ dφ = C, (M,)."""
     cosine: Floats
-    """Cosine, (M,) ∫cos φ dφ"""
+    """Integral ∫cos φ dφ, (M,)."""
     sine_squared: Floats
-    """Sine squared, (M,) ∫sin² φ dφ"""
+    """Integral ∫sin² φ dφ, (M,)."""
     sine_cosine: Floats
-    """Sine cosine, (M,) ∫sin φ·cos φ dφ"""
+    """Integral ∫sin φ·cos φ dφ, (M,)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Forces:
-    """Sums over all teeth at K rotations of M places, over ``K·k_c1.1·f_z^q``."""
+    """Forces of all teeth at K rotations of M engagements, over ``K·k_c1.1·f_z^q``."""
 
     tangential: Floats
-    """Tangential, (M, K) mm"""
+    """Tangential force, (M, K), mm."""
     feed: Floats
-    """Feed, (M, K) mm, against the feed"""
+    """Force against the feed, (M, K), mm."""
     normal: Floats
-    """Normal, (M, K) mm, towards φ = 0"""
+    """Force towards φ = 0, (M, K), mm."""
 
     @property
     def resultant(self) -> Floats:
-        """(M, K) mm, across the axis."""
+        """Resultant force across the axis, (M, K), mm."""
         across: Floats = np.hypot(self.feed, self.normal)
         return across
 
 
 def one_place(entry_angle: float, exit_angle: float, *, axial_depth: float) -> Places:
-    """A single engagement, rad and mm."""
+    """Create a single engagement from angles in rad and a depth in mm."""
     return Places(
         entry_angle=np.array([entry_angle]),
         exit_angle=np.array([exit_angle]),
@@ -113,8 +114,8 @@ def one_place(entry_angle: float, exit_angle: float, *, axial_depth: float) -> P
 
 
 def arcs_of(entry_angle: Floats, exit_angle: Floats) -> ArcIntegrals:
-    """Integrals over arcs of contact in closed form, (M,) angles in rad."""
-    # Products keep their digits on a narrow arc, where differences of sines lose them.
+    """Integrals over contact arcs in closed form, for angles (M,) in rad."""
+    # Products stay accurate on a narrow arc, where differences of sines lose digits.
     contact, both = exit_angle - entry_angle, entry_angle + exit_angle
     half = np.sin(0.5 * contact)
     return ArcIntegrals(
@@ -134,10 +135,10 @@ def forces(
     rotation: Floats,
     runout: Runout | None = None,
 ) -> Forces:
-    """Forces while the cutter turns.
+    """Forces of a rotating cutter at given rotations.
 
-    Equal teeth are summed in closed form. With runout the edges in the cut are integrated by
-    Gauss: exact but for the root of sin φ at the ends of the arc and corners of the chip.
+    Equal teeth are summed in closed form. With runout the engaged edges are integrated by Gauss
+    quadrature: exact but for the root of sin φ at the ends of the arc and corners of the chip.
 
     Parameters
     ----------
@@ -145,7 +146,7 @@ def forces(
     places : Places
     law : ForceLaw
     rotation : (M, K) array, rad
-        Angle φ of the tip of tooth 0; tooth j follows ``j·2π/z`` behind.
+        Angle φ of the tip of tooth 0; tooth j follows at ``j·2π/z`` behind.
     runout : Runout in mm, optional
 
     Returns
@@ -155,7 +156,7 @@ def forces(
     Raises
     ------
     ValueError
-        If there is not one offset for each tooth.
+        If the number of offsets differs from the number of teeth.
 
     Examples
     --------
@@ -185,11 +186,12 @@ def forces(
 def peak_resultant(
     edges: CuttingEdges, places: Places, law: ForceLaw, *, is_rough: bool = False
 ) -> Floats:
-    """Greatest force across the axis within a revolution, (M,) mm over ``K·k_c1.1·f_z^q``.
+    """Greatest force across the axis within a revolution, (M,), mm, over ``K·k_c1.1·f_z^q``.
 
-    Between the rotations at which an end of an edge enters or leaves the arc the force is
-    smooth: it is looked for at those, between them, and finer about the best. Roughly: at those
-    and in the middles between them only, never above and seldom a quarter below.
+    The force is smooth between the rotations at which an end of an edge enters or exits the
+    arc: it is sampled at these, between them, and more finely around the maximum. The rough
+    search samples only these rotations and their midpoints; it is never too high and seldom 25
+    % too low.
     """
     corners = np.sort(np.mod(_corners(edges, places), edges.pitch), axis=1)
     corners = np.concatenate((corners, corners[:, :1] + edges.pitch), axis=1)
@@ -203,11 +205,11 @@ def peak_resultant(
 def wall_force(
     edges: CuttingEdges, places: Places, law: ForceLaw, *, is_rough: bool = False
 ) -> Floats:
-    """Greatest force normal to a wall while an edge makes it, (M,) mm over ``K·k_c1.1·f_z^q``.
+    """Greatest force normal to a wall while an edge cuts it, (M,), mm, over ``K·k_c1.1·f_z^q``.
 
-    The edge at the height y makes the wall at the moment when it passes φ = 0 or π, [1]_: what
-    the tool gives way then stays in the part. 0 where the arc reaches no wall. Roughly: as
-    :func:`peak_resultant`.
+    The edge at the height y generates the wall at the moment when it passes φ = 0 or π, [1]_:
+    the deflection at this moment remains in the part. 0 where the arc reaches no wall. The
+    rough search is that of :func:`peak_resultant`.
     """
     greatest = np.zeros(len(places.axial_depth))
     for angle, is_wall in (
@@ -224,7 +226,7 @@ def wall_force(
 def _at_wall(
     edges: CuttingEdges, places: Places, law: ForceLaw, angle: float, *, is_rough: bool
 ) -> Floats:
-    """Greatest normal force while one edge passes an angle from its lower end to its upper."""
+    """Greatest normal force while one edge passes an angle from its lower to its upper end."""
     span = np.minimum(edges.lag * places.axial_depth, edges.pitch)[:, None]
     inner = np.minimum(np.mod(_corners(edges, places) - angle, edges.pitch), span)
     corners = np.sort(np.concatenate((np.zeros_like(span), inner, span), axis=1), axis=1)
@@ -238,14 +240,14 @@ def _at_wall(
 
 
 def _corners(edges: CuttingEdges, places: Places) -> Floats:
-    """(M, 4) rotations at which the ends of an edge enter and leave the arc."""
+    """Rotations at which the ends of an edge enter and exit the arc, (M, 4), rad."""
     lag = np.maximum(edges.lag * places.axial_depth, STRAIGHT)
     entry, exit_ = places.entry_angle, places.exit_angle
     return np.stack((entry, entry + lag, exit_, exit_ + lag), axis=1)
 
 
 def _greatest(of: Callable[[Floats], Floats], corners: Floats, *, is_rough: bool) -> Floats:
-    """(M,) greatest value of what is smooth between ascending corners."""
+    """Greatest value of a function that is smooth between ascending corners, (M,)."""
     steps = ROUGH_STEPS if is_rough else STEPS
     step = np.arange(steps) / steps
     inner = corners[:, :-1, None] + np.diff(corners, axis=1)[:, :, None] * step
@@ -264,11 +266,11 @@ def _greatest(of: Callable[[Floats], Floats], corners: Floats, *, is_rough: bool
 
 
 def _bands(edges: CuttingEdges, depth: Floats, law: ForceLaw) -> Bands:
-    """Bands of the edges down to which each place reaches, rounded end first."""
+    """Bands of the edges within the depth of each engagement, rounded end first."""
     corner = np.minimum(depth, edges.corner_radius)
     heights, weights, sines = [np.zeros_like(depth)], [], []
     if edges.corner_radius > 0.0:
-        # By the angle of the edge, so that bands are finest where it is flattest.
+        # Spaced by the angle of the edge, so that bands are finest where it is flattest.
         steepest = np.arccos(1.0 - corner / edges.corner_radius)
         for band in range(CORNER_BANDS):
             ends = steepest * band / CORNER_BANDS, steepest * (band + 1) / CORNER_BANDS
@@ -283,6 +285,6 @@ def _bands(edges: CuttingEdges, depth: Floats, law: ForceLaw) -> Bands:
     lag = edges.lag * np.stack(heights, axis=1)
     low = np.ascontiguousarray(lag[:, :-1])
     high = np.maximum(lag[:, 1:], low + STRAIGHT)
-    # The radial force acts in the plane by the slope of the edge.
+    # The component of the radial force in the plane depends on the slope of the edge.
     radial = law.radial_share * np.stack(sines, axis=1)
     return Bands(low=low, high=high, weight=np.stack(weights, axis=1), radial=radial)

@@ -1,8 +1,8 @@
 """Mean force in the period of each tooth of a milling cutter with unequal teeth.
 
-What a dynamometer shows from the entry of one tooth to that of the next, quick enough for each
-revolution of a run: arcs by points instead of the integrals along each edge of
-:mod:`simulator.physics.tooth_forces`, which holds the model. Units mm, rad.
+This is what a dynamometer shows from the entry of one tooth to that of the next. It is fast
+enough for each revolution of a run: arcs are sampled at points instead of integrating along
+each edge as in :mod:`simulator.physics.tooth_forces`, which defines the model. Units mm, rad.
 """
 
 from dataclasses import dataclass
@@ -15,32 +15,32 @@ Floats = NDArray[np.float64]
 Singles = NDArray[np.float32]
 
 POINTS = 16
-"""on an arc of contact"""
+"""Number of points on a contact arc."""
 
-_LAGS = 3.0  # time constants after which hardly anything is to come
+_LAGS = 3.0  # number of time constants after which the response has decayed
 
 LOST = -1e6
-"""mm, offset of a tooth that has broken: it meets nothing"""
+"""Offset of a broken tooth, mm, so low that it cuts nothing."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Arcs:
-    """Arcs of contact at N times."""
+    """Contact arcs at N times."""
 
     entry_angle: Floats | Singles
-    """Entry angle, (N,) φ_st, rad"""
+    """Entry angle φ_st, (N,), rad."""
     exit_angle: Floats | Singles
-    """Exit angle, (N,) φ_ex, rad; not above the entry: no arc is known"""
+    """Exit angle φ_ex, (N,), rad; not above the entry angle if the arc is unknown."""
     lag: Floats | Singles
-    """Lag, (N,) rad by which the upper end of the edges in the cut is behind their tips"""
+    """Lag of the upper end of the engaged edges behind their tips, (N,), rad."""
 
     @property
     def are_known(self) -> bool:
-        """Whether there is an arc at every time."""
+        """Whether the arc is known at every time."""
         return bool((self.exit_angle > self.entry_angle).all())
 
     def rows(self, rows: NDArray[np.int64]) -> "Arcs":
-        """Those at some of the times."""
+        """Select the arcs at some of the times."""
         return Arcs(
             entry_angle=np.asarray(self.entry_angle[rows], dtype=np.float64),
             exit_angle=np.asarray(self.exit_angle[rows], dtype=np.float64),
@@ -50,42 +50,42 @@ class Arcs:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Periods:
-    """A revolution's tooth periods, prepared for many guesses of the offsets."""
+    """Tooth periods of a revolution, prepared for evaluating many sets of offsets."""
 
     feed_per_tooth: Floats
-    """(z,) f_z, mm"""
+    """Feed per tooth f_z, (z,), mm."""
     exponent: float
-    """q = 1 − m_c of force over chip"""
+    """Exponent q = 1 − m_c of the force law."""
     sine: Floats
-    """(z, P) sin φ at the points of the arc in each period"""
+    """Values of sin φ at the points of the arc in each period, (z, P)."""
     weight: Floats
-    """(z, K, P) share of a period in which the k-th tooth before is at a point"""
+    """Share of a period in which the k-th previous tooth is at a point, (z, K, P)."""
     cutting: NDArray[np.int64]
-    """(z, K) which tooth that is"""
+    """Number of the k-th previous tooth in each period, (z, K)."""
 
 
 def periods(
     arcs: Arcs, *, feed_per_tooth: Floats, exponent: float, delay: float = 0.0
 ) -> Periods:
-    """Prepare the periods of a revolution.
+    """Prepare the tooth periods of a revolution.
 
     Parameters
     ----------
     arcs : Arcs
-        (z,), one for the period of each tooth, by number.
+        Arcs of length z, one for the period of each tooth, by tooth number.
     feed_per_tooth : (z,) array, mm
-        Above 0.
+        Greater than 0.
     exponent : float
-        q, above 0 and at most 1.
+        Exponent q, above 0 and at most 1.
     delay : float, rad
-        That the cutter turns in the time constant of the dynamometer.
+        Rotation of the cutter within the time constant of the dynamometer.
     """
     teeth = len(arcs.entry_angle)
     pitch = 2.0 * pi / teeth
     contact = (arcs.exit_angle - arcs.entry_angle)[:, None]
     passed = contact * ((np.arange(POINTS) + 0.5) / POINTS)
-    # A straight edge is one whose ends are a point apart, so that no point is lost or doubled;
-    # what it is too long by lies half before and half behind.
+    # The ends of a straight edge are placed one point apart, so that no point is lost or
+    # doubled; the excess length lies half before and half behind.
     lag = np.maximum(arcs.lag[:, None], contact / POINTS)
     low = passed + 0.5 * (arcs.lag[:, None] - lag)
     reach = float((contact + lag).max()) + _LAGS * delay
@@ -104,9 +104,10 @@ def periods(
 
 
 def _passed(angle: Floats, lag: Floats, delay: float) -> Floats:
-    """Share of an edge that lags that was shown until its tip is at an angle past a point.
+    """Share of a lagging edge already measured when its tip is at an angle past a point.
 
-    Distribution of the sum of an even delay, along the edge, and of an exponential one.
+    This is the distribution of the sum of a uniform delay, along the edge, and an exponential
+    one.
     """
     on, beyond = angle.clip(min=0.0), (angle - lag).clip(min=0.0)
     share: Floats = (on - beyond) / lag
@@ -116,25 +117,25 @@ def _passed(angle: Floats, lag: Floats, delay: float) -> Floats:
 
 
 def tooth_means(at: Periods, offsets: Floats) -> Floats:
-    """Mean force in the period of each tooth over that of equal teeth.
+    """Mean force in the period of each tooth, over that of equal teeth.
 
     ``h_j = max(0, min over k = 1…z of k·f_z·sin φ + ρ_j − ρ_{j−k})``, as
-    :func:`simulator.physics.tooth_forces.forces` has it.
+    :func:`simulator.physics.tooth_forces.forces` does.
 
     Parameters
     ----------
     at : Periods
     offsets : (M, z) array, mm
-        Guesses of the radius of each tooth over the nominal one; ``LOST``: broken.
+        Assumed radius of each tooth minus the nominal radius; ``LOST`` if broken.
 
     Returns
     -------
     (M, z) array
-        Period j: while tooth j is the last that has entered.
+        Period j is the time in which tooth j is the last that has entered.
 
     Examples
     --------
-    Four teeth in a thin arc, so that each is alone in its period, and one of them lost:
+    Four teeth on a short arc, so that each is alone in its period; one tooth is lost:
 
     >>> thin = Arcs(entry_angle=np.full(4, 3.0), exit_angle=np.full(4, 3.1), lag=np.zeros(4))
     >>> four = periods(thin, feed_per_tooth=np.full(4, 0.1), exponent=1.0)

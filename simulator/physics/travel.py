@@ -1,4 +1,4 @@
-"""Approach, overrun and point length: the way of a tool beyond the length that it machines.
+"""Approach, overrun and drill point length: travel of a tool beyond the machined length.
 
 Scalars in mm.
 
@@ -14,10 +14,10 @@ from simulator.physics.domain import require_at_most, require_positive
 
 
 def centred_approach(tool_diameter: float, radial_width: float) -> float:
-    """Way from first contact to full width when the cutter runs over the middle of the face.
+    """Travel from first contact to full width when the cutter is centred on the face.
 
     ``A = D/2 − ½·√(D² − a_e²)``, [2]_: full immersion and centred bilateral face milling. The
-    same way past the end takes the full width off; :func:`centred_overrun` clears the face.
+    same distance past the end completes the full width; clearing the face takes more.
 
     Parameters
     ----------
@@ -45,12 +45,12 @@ def centred_approach(tool_diameter: float, radial_width: float) -> float:
 
 
 def one_sided_approach(tool_diameter: float, radial_width: float) -> float:
-    """Way from first contact to the full width when one side of the cutter is engaged.
+    """Travel from first contact to full width when one side of the cutter is engaged.
 
     ``A = √(a_e · (D − a_e))`` up to half the diameter, [2]_: peripheral milling and
-    unidirectional face milling. Beyond it the foremost point of the cutter is engaged and the
-    way is ``D/2`` (the square root would fall again, to nothing for a slot). The same way past
-    the end clears the workpiece.
+    unidirectional face milling. For greater widths the foremost point of the cutter is engaged
+    and the distance is ``D/2`` (the square root would fall again, to 0 for a slot). The same
+    distance past the end clears the workpiece.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def one_sided_approach(tool_diameter: float, radial_width: float) -> float:
 
 
 def drill_point_length(tool_diameter: float, point_angle: float) -> float:
-    """Height of a drill's point: what a through hole needs beyond its depth.
+    """Height of a drill's point: the travel that a through hole needs beyond its depth.
 
     ``l = D / (2 · tan(σ/2))``.
 

@@ -1,7 +1,7 @@
 """Chip and forces of a single-point tool: turning, boring, facing, grooving.
 
 The straight edge cuts a chip of thickness ``h = f·sin κ`` and width ``b = a_p/sin κ``. For a
-depth within the nose radius take κ from :func:`simulator.physics.edge.effective_edge_angle`.
+depth within the nose radius use κ from :func:`simulator.physics.edge.effective_edge_angle`.
 Scalars in mm, N and rad.
 
 References
@@ -26,14 +26,14 @@ from simulator.physics.drive import FloatOrArray, Value, positive_part
 from simulator.spec import Kienzle
 
 FEED_SHARE = 0.45
-"""F_f/F_c where no source gives a pair: median of the seven of [3]_ at 0.2 mm of chip; between
-0.27 and 0.80 from 0.1 to 0.4 mm"""
+"""Usual F_f/F_c if no source gives constants: median of the seven of [3]_ at 0.2 mm of chip;
+range 0.27 to 0.80 from 0.1 to 0.4 mm."""
 
 BACK_SHARE = 0.25
-"""F_p/F_c likewise; between 0.16 and 0.36. Within the nose of the tool it is far more"""
+"""Usual F_p/F_c if no source gives constants; range 0.16 to 0.36, far more within the nose."""
 
 THINNEST = 0.05
-"""mm, chip below which a share stays: no pair was measured there"""
+"""Chip thickness, mm, below which force shares stay constant: not measured there."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,11 +41,11 @@ class TurningCut:
     """Cut of a single-point tool."""
 
     feed_per_revolution: float
-    """f, mm"""
+    """Feed per revolution f, mm."""
     depth: float
-    """a_p, mm; the width of the tool in grooving"""
+    """Depth of cut a_p, mm; the width of the tool in grooving."""
     cutting_edge_angle: float = pi / 2.0
-    """κ_r, rad"""
+    """Cutting edge angle κ_r, rad."""
 
     def __post_init__(self) -> None:
         require_positive(self.feed_per_revolution, "feed per revolution", "mm")
@@ -54,29 +54,29 @@ class TurningCut:
 
     @property
     def chip_thickness(self) -> float:
-        """``h = f · sin κ`` in mm."""
+        """Chip thickness ``h = f · sin κ``, mm."""
         return self.feed_per_revolution * sin(self.cutting_edge_angle)
 
     @property
     def chip_width(self) -> float:
-        """``b = a_p / sin κ`` in mm."""
+        """Chip width ``b = a_p / sin κ``, mm."""
         return self.depth / sin(self.cutting_edge_angle)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TurningForces(Generic[Value]):
-    """The three components of the force on the tool, N."""
+    """Three components of the force on a turning tool, N."""
 
     cutting: Value
-    """F_c, along the cutting speed"""
+    """Cutting force F_c along the cutting speed, N."""
     feed: Value
-    """F_f, against the feed"""
+    """Feed force F_f against the feed, N."""
     back: Value
-    """F_p, passive, out of the work"""
+    """Back (passive) force F_p away from the work, N."""
 
 
 def cutting_force(kienzle: Kienzle, cut: TurningCut, *, factor: float = 1.0) -> float:
-    """Force along the cutting speed.
+    """Cutting force of a single-point tool along the cutting speed.
 
     ``F_c = K · k_c1.1 · b · h^(1−m_c)``, [1]_.
 
@@ -85,7 +85,7 @@ def cutting_force(kienzle: Kienzle, cut: TurningCut, *, factor: float = 1.0) -> 
     kienzle : Kienzle
     cut : TurningCut
     factor : float
-        K of :class:`~simulator.physics.cutting.ForceCorrection`.
+        Factor K of :class:`~simulator.physics.cutting.ForceCorrection`.
 
     Returns
     -------
@@ -113,7 +113,7 @@ def cutting_force(kienzle: Kienzle, cut: TurningCut, *, factor: float = 1.0) -> 
 
 
 def side_force(pair: Kienzle | None, cutting: Kienzle, *, usual_share: float) -> Kienzle:
-    """Pair of the feed or the back force; where no source gives one, a share of the cutting."""
+    """Constants of the feed or back force; if unknown, a usual share of the cutting force."""
     if pair is not None:
         return pair
     return Kienzle(k_c11=usual_share * cutting.k_c11, m_c=cutting.m_c)
@@ -127,9 +127,9 @@ def force_share(pair: Kienzle, cutting: Kienzle, chip_thickness: Value) -> Value
     Parameters
     ----------
     pair : Kienzle
-        (k_i1.1, m_i).
+        Constants (k_i1.1, m_i).
     cutting : Kienzle
-        (k_c1.1, m_c).
+        Constants (k_c1.1, m_c).
     chip_thickness : float or array, mm
         Positive.
 
@@ -157,20 +157,20 @@ def turning_forces(
     feed: Kienzle | None,
     back: Kienzle | None,
 ) -> TurningForces[Value]:
-    """All three components of the force of a sharp edge.
+    """All three force components of a sharp edge in turning.
 
-    ``F_i = K · k_i1.1 · b · h^(1−m_i)``, [2]_ eq. (8) with the chip's width. What changes the
-    cutting force (rake, speed, harder work) changes the other two in proportion.
+    ``F_i = K · k_i1.1 · b · h^(1−m_i)``, [2]_ eq. (8) with the chip width. Influences on the
+    cutting force (rake, speed, harder work) change the other two in proportion.
 
     Parameters
     ----------
     cutting_force : float or array, N
-        F_c, of :func:`cutting_force` or along a path.
+        Force F_c, from :func:`cutting_force` or along a path.
     chip_thickness : float or array, mm
     cutting : Kienzle
-        (k_c1.1, m_c).
+        Constants (k_c1.1, m_c).
     feed, back : Kienzle or None
-        (k_f1.1, m_f) and (k_p1.1, m_p); None: the usual shares.
+        Constants (k_f1.1, m_f) and (k_p1.1, m_p); None: the usual shares.
 
     Returns
     -------

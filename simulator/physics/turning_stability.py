@@ -1,7 +1,8 @@
 """Regenerative chatter in turning: the depth of cut that is stable at any speed.
 
-A turned bar turns slowly against the modes of its machine, so its lobes lie so close that only
-their floor counts. The nose of the insert is left out. Units mm, N, rad.
+The speed of a turned bar is low compared with the modes of the machine, so its lobes lie so
+close together that only their minimum counts. The nose of the insert is neglected. Units mm, N,
+rad.
 
 References
 ----------
@@ -28,28 +29,28 @@ def orthogonal_limit(
 ) -> float:
     """Depth of cut in turning that is stable at any speed.
 
-    ``b_lim = −1/(2·K_f·min Re G)`` with ``G = cos²κ·G_x + sin²κ·G_z`` along the chip's
-    thickness, [1]_; for one mode ``2·k·ζ·(1 + ζ)/K_f``. The depth is ``a_p = b·sin κ``.
-    Forces across the chip's thickness are left out (no mode coupling).
+    ``b_lim = −1/(2·K_f·min Re G)`` with ``G = cos²κ·G_x + sin²κ·G_z`` along the chip thickness,
+    [1]_; for one mode ``2·k·ζ·(1 + ζ)/K_f``. The depth is ``a_p = b·sin κ``. Forces across the
+    chip thickness are neglected (no mode coupling).
 
     Parameters
     ----------
     radial, axial : sequence of VibrationMode
-        Across and along the axis of the workpiece, of tool or workpiece.
+        Modes of tool or workpiece across and along the axis of the workpiece.
     stiffness : float, N/mm²
-        K_f: force along the chip's thickness that a width of 1 mm gains for 1 mm of chip.
+        Stiffness K_f: force along the chip thickness per mm of width and mm of chip.
     cutting_edge_angle : float, rad
-        κ; π/2 feeds along the axis into the chip's thickness.
+        Angle κ; at π/2 the feed along the axis is in the direction of the chip thickness.
 
     Returns
     -------
     float, mm
-        :data:`MOST_DEPTH` where nothing gives in that direction.
+        :data:`MOST_DEPTH` if the structure is rigid in that direction.
 
     Raises
     ------
     ValueError
-        If the stiffness is not positive or the edge angle outside (0, π).
+        If the stiffness is not positive or the edge angle is outside (0, π).
     """
     require_positive(stiffness, "cutting stiffness", "N/mm²")
     require_edge_angle(cutting_edge_angle)

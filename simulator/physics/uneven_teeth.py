@@ -1,4 +1,4 @@
-"""Sums over the unequal teeth of a milling cutter while it turns.
+"""Force integrals over the unequal teeth of a rotating milling cutter.
 
 Units mm, rad.
 """
@@ -21,23 +21,23 @@ _NODES, _WEIGHTS = 0.5 * (_NODES + 1.0), 0.5 * _WEIGHTS
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Runout:
-    """Unequal teeth."""
+    """Runout of a milling cutter: unequal radii of its teeth."""
 
     offsets: Floats
-    """(z,) mm, ρ: radius of each tooth over the nominal one"""
+    """Offset ρ of each tooth: its radius minus the nominal radius, (z,), mm."""
     feed_per_tooth: Floats
-    """Feed per tooth, (M,) f_z, mm"""
+    """Feed per tooth f_z, (M,), mm."""
 
 
 def eccentric_runout(eccentricity: float, teeth: int) -> Floats:
-    """Radius of each tooth over the nominal one when a cutter's axis is off the spindle's.
+    """Offset of each tooth when the cutter axis is eccentric to the spindle axis.
 
-    ``ρ_j = ρ·cos(2π·j/z)``, tooth 0 the highest.
+    ``ρ_j = ρ·cos(2π·j/z)``, with tooth 0 the highest.
 
     Parameters
     ----------
     eccentricity : float, mm
-        ρ; 0.005 to 0.01 mm as a rule.
+        Eccentricity ρ; usually 0.005 to 0.01 mm.
     teeth : int
 
     Returns
@@ -47,7 +47,7 @@ def eccentric_runout(eccentricity: float, teeth: int) -> Floats:
     Raises
     ------
     ValueError
-        When the eccentricity is negative or there is no tooth.
+        If the eccentricity is negative or there is no tooth.
     """
     if not eccentricity >= 0.0:
         raise ValueError(f"eccentricity {eccentricity:g} mm must not be negative")
@@ -63,7 +63,7 @@ def sums(
     *,
     exponent: float,
 ) -> Floats:
-    """The same as :func:`simulator.physics.even_teeth.sums`, with runout."""
+    """Like :func:`simulator.physics.even_teeth.sums`, but for unequal teeth."""
     teeth = len(runout.offsets)
     turns = ceil((pi + float(bands.high.max(initial=0.0))) / (2.0 * pi))
     tooth = np.repeat(np.arange(teeth), turns)
@@ -95,10 +95,10 @@ def sums(
 
 
 def _uneven(sine: Floats, runout: Runout, *, row: Ints, tooth: Ints) -> Floats:
-    """Chips of N stretches of edge over f_z on the surface that the teeth before them left.
+    """Chip thickness over f_z of N edge segments, given the surface left by previous teeth.
 
     ``h_j = max(0, min over k = 1…z of k·f_z·sin φ + ρ_j − ρ_{j−k})``: a low tooth cuts less or
-    nothing, and the next one cuts what it left, so that the chips of a revolution always add
+    nothing, and the next tooth cuts the remainder, so that the chips of a revolution always add
     up to ``z·f_z·sin φ``.
     """
     offsets = runout.offsets

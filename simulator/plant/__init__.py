@@ -1,1 +1,1 @@
-"""The machine of the closed loop: what the controller sees, and what it may not know."""
+"""Machine of the closed loop: what the controller sees, and what it may not know."""

@@ -1,8 +1,9 @@
-"""The virtual machine as the loop meets it: sensors to read, an override to set.
+"""Virtual machine for closed-loop control: sensors to read and a feed override to set.
 
-It walks the cells of a :class:`NominalCourse`, one tooth period a reading, with the feed that
-follows the override late, and with forces that follow from that feed and from what is hidden.
-It fits the sockets of :mod:`controller.ports` without knowing them. Units mm, s, N, W, rev/s.
+It walks through the cells of a :class:`NominalCourse`, one tooth period per reading. The feed
+follows the override with a lag, and the forces follow from this feed and from hidden
+influences. It satisfies the protocols of :mod:`controller.ports` without importing them. Units
+mm, s, N, W, rev/s.
 """
 
 from bisect import bisect_right
@@ -20,66 +21,66 @@ from simulator.plant.hidden import HiddenChange, HiddenQuantity, HiddenTruth
 from simulator.reading import Reading
 
 LONGEST = 0.25
-"""s of one reading in which no tooth passes: the loop must stay awake"""
+"""Longest reading without a tooth passing, s, so that the loop keeps running."""
 
 SLOWEST = 0.1
-"""rev/s, below which a spindle counts as standing"""
+"""Spindle speed below which the spindle counts as stopped, rev/s."""
 
 NMM_S_PER_WATT = 1000.0
 
 _STEPS = (np.arange(SAMPLES) + 1.0) / SAMPLES
-_FINE = 100.0  # runout over feed and angles are rounded to so many parts for the patterns
+_FINE = 100.0  # reciprocal resolution to which patterns round angles and runout over feed
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrueState:
-    """True state of the last period."""
+    """True state of the machine in the last period."""
 
     force: float = 0.0
-    """Force, N, tangential, mean"""
+    """Mean tangential force, N."""
     peak: float = 0.0
-    """Peak, N, greatest"""
+    """Greatest tangential force, N."""
     power: float = 0.0
-    """Power, W of the main drive"""
+    """Power of the main drive, W."""
     removal_rate: float = 0.0
-    """Removal rate, mm³/s"""
+    """Removal rate, mm³/s."""
     axial_depth: float = 0.0
-    """Axial depth, mm"""
+    """Axial depth of cut, mm."""
     flank_wear: float = 0.0
-    """Flank wear, mm"""
+    """Flank wear, mm."""
     cell: int = 0
-    """Cell of the course"""
+    """Index of the cell in the course."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Instrumentation:
-    """Instruments and the seed of their noise."""
+    """Instruments, drive efficiency and seed of the noise."""
 
     dynamometer: Instrument = DYNAMOMETER
     power_meter: Instrument = POWER_METER
     efficiency: float = 1.0
-    """Efficiency of the main drive"""
+    """Efficiency of the main drive."""
     seed: int = 0
 
 
 @dataclass(kw_only=True)
 class _Now:
-    """Position of the machine in its course. Running state."""
+    """Current state of the machine in its course; a mutable object."""
 
     time: float = 0.0
     progress: float = 0.0
     cell: int = 0
     turned: int = 0
-    """tooth periods since the cutter was put in"""
+    """Number of tooth periods since the start of the run."""
     override: float = 1.0
-    """that the axes run"""
+    """Override that the axes actually follow."""
     commanded: float = 1.0
     tool: int = 0
-    """that cuts, or cut last"""
+    """Number of the tool that is cutting, or that cut last."""
     flank_wear: dict[int, float] = field(default_factory=dict)
-    """Flank wear, mm, by the tool's number"""
+    """Flank wear by tool number, mm."""
     broken: dict[int, int] = field(default_factory=dict)
-    """tooth, by the tool's number"""
+    """Index of the broken tooth by tool number."""
     silent_until: float = -inf
     is_cut_off: bool = False
     factors: dict[HiddenQuantity, float] = field(
@@ -88,7 +89,7 @@ class _Now:
 
 
 class ControlledMachine:
-    """Virtual machine with a feed override. Running state.
+    """Virtual machine with a feed override; a mutable object.
 
     Parameters
     ----------
@@ -107,7 +108,7 @@ class ControlledMachine:
         forces, powers = np.random.default_rng(bench.seed).spawn(2)
         self._forces = Acquisition(bench.dynamometer, forces)
         self._powers = Acquisition(bench.power_meter, powers)
-        # What breaks before anything cuts is of the first tool.
+        # A tooth that breaks before the first cut belongs to the first tool.
         self._now = _Now(tool=int(course.tool[course.can_override.argmax()]))
         self._changes = sorted(hidden.changes, key=lambda change: change.time)
         self._ends: list[float] = course.until.tolist()
@@ -119,21 +120,21 @@ class ControlledMachine:
 
     @property
     def commanded(self) -> float:
-        """Override that was set last."""
+        """Last commanded override."""
         return self._now.commanded
 
     @property
     def share(self) -> float:
-        """Of the program that is behind, 0 to 1."""
+        """Completed share of the program, 0 to 1."""
         return self._now.progress / self.course.duration
 
     @property
     def factors(self) -> Mapping[HiddenQuantity, float]:
-        """On depth and hardness, now."""
+        """Current hidden factors on depth and hardness."""
         return self._now.factors
 
     def set(self, override: float, /) -> None:
-        """Feed over programmed feed from now on; 0 holds the feed."""
+        """Set the feed over the programmed feed; 0 holds the feed."""
         if not 0.0 <= override < inf:
             raise ValueError(f"override {override:g} must be at least 0 and finite")
         self._now.commanded = override
@@ -143,12 +144,12 @@ class ControlledMachine:
         self._changes = sorted((*self._changes, change), key=lambda each: each.time)
 
     def read(self) -> Reading | None:
-        """Run one tooth period, or through what cannot be overridden; None at the end.
+        """Run one tooth period, or a wait without feed; return None at the end of the program.
 
         Raises
         ------
         MachineSilent
-            When the line to it is broken.
+            If the connection to the machine is broken.
         """
         now, course = self._now, self.course
         if now.cell >= len(course):
@@ -173,7 +174,7 @@ class ControlledMachine:
                 self._now.factors[change.what] = change.value
 
     def _wait(self) -> Reading:
-        """Rapid, dwell, tool change: at their own pace, to the next change or feed."""
+        """Run a rapid, dwell or tool change at its own pace, up to the next change or feed."""
         now, course = self._now, self.course
         cell, step = now.cell, int(course.workingstep[now.cell])
         beyond = cell
@@ -195,7 +196,7 @@ class ControlledMachine:
         return self._reading(cell, period, still, feed=feed, tooth=0, override=now.override)
 
     def _feed(self) -> Reading:
-        """One tooth period at the override, or less when the feed ends."""
+        """Run one tooth period at the override, or less if the feed ends."""
         now, course, cell = self._now, self.course, self._now.cell
         now.tool = int(course.tool[cell])
         teeth, speed = int(course.teeth[cell]), float(course.spindle_speed[cell])
@@ -240,15 +241,15 @@ class ControlledMachine:
 
     @property
     def _flank_wear(self) -> float:
-        """Of the tool that cuts, mm."""
+        """Flank wear of the tool that is cutting, mm."""
         return self._now.flank_wear.get(self._now.tool, self.hidden.flank_wear)
 
     def _left(self, seconds: float) -> float:
-        """Share of the way to a commanded override that is left after some seconds."""
+        """Remaining share of the difference to a commanded override after some seconds."""
         return exp(-seconds / self.hidden.servo_lag)
 
     def _ways(self, period: float) -> Floats:
-        """Program time after each sample of a period, s; the override follows its command."""
+        """Program time after each sample of a period, s; the override lags its command."""
         now, lag = self._now, self.hidden.servo_lag
         gone = 1.0 - np.exp(-period * _STEPS / lag)
         ways: Floats = (
@@ -257,7 +258,7 @@ class ControlledMachine:
         return ways
 
     def _feed_end(self, cell: int, end: float) -> float:
-        """End of the feed that runs, at most as far as asked."""
+        """Program time at which the current feed ends, at most the given time, s."""
         course, step = self.course, self.course.workingstep[cell]
         while cell < len(course) and course.can_override[cell]:
             if course.workingstep[cell] != step:
@@ -268,12 +269,12 @@ class ControlledMachine:
         return self._ends[cell - 1]
 
     def _mean_force(self, rows: Ints, overrides: Floats) -> Floats:
-        """Mean of a revolution at each sample, N."""
+        """Mean force over a revolution at each sample, N."""
         now, hidden, course = self._now, self.hidden, self.course
         factor = hidden.force_factor * now.factors[HiddenQuantity.HARDNESS]
         exponent = float(course.exponent[now.cell])
         chips: Floats = factor * course.force[rows] * overrides**exponent
-        # The wear land rubs whatever the chip does.
+        # The force on the wear land is independent of the chip.
         land = self._flank_wear * course.land_force[rows]
         return now.factors[HiddenQuantity.DEPTH] * (chips + land)
 
@@ -295,7 +296,7 @@ class ControlledMachine:
         )
 
     def _go_on(self, end: float, period: float) -> None:
-        """Advance to a place in the program."""
+        """Advance to a point in the program."""
         now = self._now
         now.time += period
         now.progress = end
@@ -333,14 +334,14 @@ class ControlledMachine:
 
 
 def _steps(ways: Floats) -> Floats:
-    """Ways between the samples, as numpy's ``diff`` with a zero before, quicker."""
+    """Differences between samples, like numpy's ``diff`` with a zero prepended, but faster."""
     steps = ways.copy()
     steps[1:] -= ways[:-1]
     return steps
 
 
 def _part(ways: Floats, way: float) -> float:
-    """Share of a period in which a way is made that is shorter than the period's."""
+    """Share of a period after which a given part of its program time has passed."""
     known = np.concatenate(([0.0], ways))
     return float(np.interp(way, known, np.arange(len(known)))) / len(ways)
 

@@ -1,16 +1,15 @@
 """Course of a program at an override of 1, cell by cell, for the closed loop.
 
-A control scales the time of a whole path by the override, and so does this: the axes follow
-the planned motion faster or slower, and a cell is passed in its time over the override.
-Accelerations then grow with its square, as they do in real controls; between 0 and 1.2 no
-limit is passed by much. Within a cell all is constant; cells end with stretches, so that the
-whole time is exact. Units mm, s, N, W, rad, rev/s.
+A control scales the time of a whole path by the override, and so does this model: the axes
+follow the planned motion faster or slower, and a cell takes its time divided by the override.
+Accelerations grow with the square of the override, as in real controls; between 0 and 1.2 no
+limit is exceeded by much. Values are constant within a cell; cells end with stretches, so that
+the total time is exact.
 
-Force over a revolution of the cutter, relative to its mean.
-
-The teeth of :mod:`simulator.physics.tooth_forces` on one arc of contact, along their helix,
-with runout or with a tooth that has broken. Times the mean force of a revolution, which is that
-of the power, it is what a dynamometer shows. Units mm, rad.
+The module also computes the force over a revolution of the cutter relative to its mean: the
+teeth of :mod:`simulator.physics.tooth_forces` on one contact arc, along their helix, with
+runout or with a broken tooth. Multiplied by the mean force of a revolution, which follows from
+the power, this is what a dynamometer shows. Units mm, s, N, W, rad, rev/s.
 """
 
 from collections.abc import Iterable, Iterator
@@ -36,34 +35,34 @@ from simulator.removal.stations import StationKind
 from simulator.spec import Machine
 
 SAMPLES = 8
-"""of a tooth period"""
+"""Number of force samples per tooth period."""
 
 PLACES = 32
-"""places that make one sample: narrow arcs must not fall between two of them"""
+"""Number of rotations averaged for one sample, so that narrow arcs are not missed."""
 
 SUNKEN = 10.0
-"""feeds per tooth by which a broken tooth lies below the others: it meets nothing"""
+"""Distance of a broken tooth below the others, in feeds per tooth, so that it cuts nothing."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EngagedTeeth:
-    """Teeth on their arc."""
+    """Teeth of a cutter on one contact arc."""
 
     count: int
     entry_angle: float
     exit_angle: float
     exponent: float
-    """of force over chip thickness"""
+    """Exponent of force over chip thickness."""
     lag: float = 0.0
-    """Lag, rad by which the upper end of the edge in the cut is behind its tip"""
+    """Lag of the upper end of the engaged edge behind its tip, rad."""
     runout: float = 0.0
-    """eccentricity over feed per tooth"""
+    """Eccentricity over feed per tooth."""
     broken: int | None = None
 
 
 @lru_cache(maxsize=4096)
 def pattern(teeth: EngagedTeeth) -> Floats:
-    """Force in each tooth period of a revolution over the mean force of whole teeth.
+    """Force in each tooth period of a revolution, over the mean force of unbroken teeth.
 
     Parameters
     ----------
@@ -72,8 +71,8 @@ def pattern(teeth: EngagedTeeth) -> Floats:
     Returns
     -------
     (z, K) array
-        Row j: while tooth j is the last that has entered. The mean is 1; with a broken tooth
-        it is less, as two chips in one take less force than two.
+        Row j: the period in which tooth j is the last that has entered. The mean is 1; with a
+        broken tooth it is less, because one double chip needs less force than two.
     """
     if not teeth.exit_angle > teeth.entry_angle:
         return np.ones((teeth.count, SAMPLES))
@@ -95,9 +94,9 @@ def pattern(teeth: EngagedTeeth) -> Floats:
 def peak_over_mean(teeth: EngagedTeeth) -> float:
     """Greatest force across the axis in a revolution, over the mean tangential force.
 
-    1 where no arc is known; less where teeth pull against each other. The mean is that of the
-    power, with k_c at the mean chip, as the optimiser has it: ``z·φ/2π · (C/φ)^q`` over the
-    force of one tooth at its thickest chip. Teeth without runout.
+    The value is 1 if the arc is unknown, and less if teeth pull against each other. The mean
+    follows from the power, with k_c at the mean chip, as in the optimiser: ``z·φ/2π · (C/φ)^q``
+    over the force of one tooth at its thickest chip. Runout is neglected.
     """
     if not teeth.exit_angle > teeth.entry_angle:
         return 1.0
@@ -107,7 +106,7 @@ def peak_over_mean(teeth: EngagedTeeth) -> float:
 
 @lru_cache(maxsize=4096)
 def wall_over_mean(teeth: EngagedTeeth) -> float:
-    """Force normal to the wall while an edge makes it, over that mean; 0 without a wall."""
+    """Force normal to the wall as it is cut, over the mean tangential force; 0 if no wall."""
     if not teeth.exit_angle > teeth.entry_angle:
         return 0.0
     found = wall_force(_edges(teeth), _place(teeth), ForceLaw(exponent=teeth.exponent))
@@ -121,7 +120,7 @@ def _mean(teeth: EngagedTeeth) -> float:
 
 
 def _edges(teeth: EngagedTeeth) -> CuttingEdges:
-    """Edges of a cutter of radius 1, which lag as they do over a depth of 1."""
+    """Edges of a cutter of radius 1 with the given lag over a depth of 1."""
     return CuttingEdges(teeth=teeth.count, diameter=2.0, helix_angle=atan(teeth.lag))
 
 
@@ -130,7 +129,7 @@ def _place(teeth: EngagedTeeth) -> Places:
 
 
 def _force(teeth: EngagedTeeth, runout: Floats) -> Floats:
-    """Sum over the teeth through a revolution that begins where tooth 0 enters."""
+    """Sum of tangential forces through a revolution that begins where tooth 0 enters."""
     pitch = 2.0 * pi / teeth.count
     each = SAMPLES * PLACES
     middle = (np.arange(teeth.count * each) + 0.5) / each
@@ -146,65 +145,65 @@ def _force(teeth: EngagedTeeth, runout: Floats) -> Floats:
 
 
 INTERVAL = 0.01
-"""s, a cell at most: a revolution at 6000 rpm"""
+"""Longest duration of a cell, s: a revolution at 6000 rpm."""
 
 MOST = 65_536
-"""cells made at once"""
+"""Largest number of cells computed at once."""
 
 Singles = NDArray[np.float32]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class NominalCourse:
-    """N cells, ascending in time; bulk columns in single precision for the sake of memory."""
+    """Course of N cells, ascending in time; bulk columns in single precision to save memory."""
 
     until: Floats
-    """Until, (N,) s from the start of the program at which each cell ends"""
+    """End time of each cell from the start of the program, (N,), s."""
     can_override: Bools
-    """(N,) whether the feed override acts: not in rapid nor at rest"""
+    """Whether the feed override acts, (N,): not in rapid nor at rest."""
     position: Singles
-    """Position, (N, 3) mm, of the tool in the middle"""
+    """Position of the tool in the middle of the cell, (N, 3), mm."""
     feed: Singles
-    """Feed, (N,) mm/s along the path"""
+    """Feed along the path, (N,), mm/s."""
     programmed: Singles
-    """Programmed, (N,) mm/s; 0 where nothing is programmed"""
+    """Programmed feed, (N,), mm/s; 0 if none is programmed."""
     force: Singles
-    """Force, (N,) N, tangential, mean of a revolution"""
+    """Mean tangential force over a revolution, (N,), N."""
     land_force: Singles
-    """Land force, (N,) N per mm of flank wear, tangential, mean; no feed changes it"""
+    """Mean tangential force per mm of flank wear, (N,), N/mm; independent of the feed."""
     exponent: Singles
-    """Exponent, (N,) p of force over feed, 1 − m_c"""
+    """Exponent p of force over feed, 1 − m_c, (N,)."""
     removal_rate: Singles
-    """Removal rate, (N,) mm³/s"""
+    """Removal rate, (N,), mm³/s."""
     axial_depth: Singles
-    """Axial depth, (N,) mm"""
+    """Axial depth of cut, (N,), mm."""
     idle_power: Singles
-    """Idle power, (N,) W of the main drive without the cut"""
+    """Power of the main drive without the cut, (N,), W."""
     spindle_speed: Singles
-    """Spindle speed, (N,) rev/s, magnitude"""
+    """Magnitude of the spindle speed, (N,), rev/s."""
     diameter: Singles
-    """Diameter, (N,) mm at which the cutting speed drives the force; 0 in air"""
+    """Diameter for cutting speed and force, (N,), mm; 0 in air."""
     entry_angle: Singles
-    """Entry angle, (N,) rad; both 0 where no arc is known"""
+    """Entry angle, (N,), rad; entry and exit are 0 if the arc is unknown."""
     exit_angle: Singles
-    """Exit angle, (N,) rad"""
+    """Exit angle, (N,), rad."""
     peak: Singles
-    """Peak, (N,) greatest force across the axis over the mean force; 1 where no arc is known"""
+    """Greatest force across the axis over the mean force, (N,); 1 if the arc is unknown."""
     wall: Singles
-    """(N,) force normal to the wall that an edge makes, over the mean; 0 without a wall"""
+    """Force normal to the wall being cut over the mean force, (N,); 0 without a wall."""
     lag: Singles
-    """Lag, (N,) rad by which the upper end of the edges in the cut is behind their tips"""
+    """Lag of the upper end of the engaged edges behind their tips, (N,), rad."""
     teeth: Ints
-    """Teeth, (N,)"""
+    """Number of teeth, (N,)."""
     tool: Ints
-    """Tool, (N,) number of the tool"""
+    """Number of the tool, (N,)."""
     workingstep: Ints
-    """Workingstep, (N,) counted from 1; 0: none"""
+    """Number of the workingstep, (N,), counted from 1; 0 for none."""
 
     def __post_init__(self) -> None:
         count = len(self.until)
         if count == 0 or not (np.diff(self.until, prepend=0.0) > 0.0).all():
-            raise ValueError("cells must be at least one and ascend in time")
+            raise ValueError("a course needs at least one cell, and cells must ascend in time")
         for field in fields(self):
             if len(getattr(self, field.name)) != count:
                 raise ValueError(f"{field.name} must have {count} rows")
@@ -214,32 +213,32 @@ class NominalCourse:
 
     @property
     def arcs(self) -> Arcs:
-        """(N,) arcs of contact."""
+        """Contact arcs of the cells, (N,)."""
         return Arcs(entry_angle=self.entry_angle, exit_angle=self.exit_angle, lag=self.lag)
 
     @property
     def duration(self) -> float:
-        """Of the program at an override of 1, s."""
+        """Duration of the program at an override of 1, s."""
         return float(self.until[-1])
 
 
 def course_of(episodes: Iterable[Episode], machine: Machine) -> NominalCourse:
-    """Cells of a run.
+    """Divide a run into cells.
 
     Parameters
     ----------
     episodes : iterable of Episode
-        As the virtual machine makes them, forces as means of a revolution.
+        Episodes of the virtual machine, with forces as means over a revolution.
     machine : Machine
 
     Raises
     ------
     ValueError
-        When nothing in it takes time.
+        If nothing in the run takes time.
     """
     parts = [part for episode in episodes for part in _cells(episode, machine)]
     if not parts:
-        raise ValueError("there is nothing that takes time")
+        raise ValueError("the program contains nothing that takes time")
     names = [field.name for field in fields(NominalCourse)]
     return NominalCourse(**{
         name: np.concatenate([getattr(part, name) for part in parts]) for name in names
@@ -247,7 +246,7 @@ def course_of(episodes: Iterable[Episode], machine: Machine) -> NominalCourse:
 
 
 def _cells(episode: Episode, machine: Machine) -> Iterator[NominalCourse]:
-    """Cells of one episode; one of no length has none."""
+    """Cells of one episode; none if it has no duration."""
     whole = episode.end - episode.begin
     if not whole > 0.0:
         return
@@ -308,10 +307,11 @@ def _part(
 def _ratios(
     samples: Samples, entry: Floats, exit_: Floats, *, lag: Floats, edge: CuttingEdge | None
 ) -> tuple[Floats, Floats]:
-    """Greatest force and force at the wall over the mean; told apart are 0.01 rad.
+    """Greatest force and wall force over the mean force, with arcs rounded to 0.01 rad.
 
-    At most what the teeth in the cut take when each has its thickest chip: where the map knows
-    a section but hardly an arc, as on the way down, the arc alone would tell far too much.
+    Limited to the force of all engaged teeth at their thickest chip: where the map knows a
+    section but hardly an arc, as in a plunge, the ratio from the arc alone would be far too
+    large.
     """
     peak, wall = np.ones(len(entry)), np.zeros(len(entry))
     cuts = np.flatnonzero((samples.cutting_force > 0.0) & (exit_ > entry))

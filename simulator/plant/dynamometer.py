@@ -1,8 +1,8 @@
-"""A dynamometer and a power meter as they are: late, noisy, drifting, in steps, with gaps.
+"""Models of a real dynamometer and power meter: lag, noise, drift, resolution and gaps.
 
-Running state. The order of what is done to the truth is that of the instrument: its own lag,
-drift, noise, then the steps of the converter; samples get lost on the way at the end. Units
-s, N, W.
+Errors are applied in the order in which they arise in the instrument: its own lag, drift,
+noise, then the resolution of the converter; samples are lost last. The instruments keep state
+between calls. Units s, N, W.
 """
 
 from dataclasses import dataclass
@@ -16,26 +16,26 @@ from simulator.physics.domain import require_not_negative
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Instrument:
-    """Errors of an instrument; typical figures, not those of one product.
+    """Errors of an instrument; typical values, not those of a specific product.
 
     Raises
     ------
     ValueError
-        When a number is beyond its bounds.
+        If a value is out of range.
     """
 
     noise: float = 0.0
-    """standard deviation as a share of the reading"""
+    """Standard deviation as a share of the reading."""
     floor: float = 0.0
-    """Floor, N or W, standard deviation at zero"""
+    """Standard deviation at zero, N or W."""
     drift: float = 0.0
-    """N/s or W/s of the zero"""
+    """Drift of the zero, N/s or W/s."""
     step: float = 0.0
-    """Step, N or W, of the converter; 0: none"""
+    """Resolution of the converter, N or W; 0: unlimited."""
     lag: float = 0.0
-    """Lag, s, time constant"""
+    """Time constant of the lag, s."""
     missing: float = 0.0
-    """probability that a sample is lost"""
+    """Probability that a sample is lost."""
 
     def __post_init__(self) -> None:
         for name in ("noise", "floor", "step", "lag"):
@@ -45,24 +45,24 @@ class Instrument:
 
 
 DYNAMOMETER = Instrument(noise=0.03, floor=1.0, drift=0.02, step=0.25, lag=0.0005)
-"""3 % of noise and a drift of 1 N in 50 s"""
+"""Typical dynamometer: 3 % noise and a drift of 1 N in 50 s."""
 
 POWER_METER = Instrument(noise=0.0, floor=20.0, drift=0.0, step=1.0, lag=0.05)
-"""20 W of noise, as slow as a main drive"""
+"""Typical power meter: 20 W of noise, as slow as a main drive."""
 
 
 DRAWN = 4096
-"""random numbers of a kind that are drawn at once"""
+"""Number of random numbers of each kind drawn at once."""
 
 
 class Acquisition:
-    """One instrument at work. Running state.
+    """Measuring channel with the errors of one instrument; keeps state between calls.
 
     Parameters
     ----------
     instrument : Instrument
     random : Generator
-        Its own: what one instrument draws does not change another's.
+        Separate generator per instrument, so that instruments do not affect each other.
     """
 
     def __init__(self, instrument: Instrument, random: np.random.Generator) -> None:
@@ -73,17 +73,17 @@ class Acquisition:
         self._drawn = np.empty((3, 0))
 
     def shown(self, truth: Floats, *, time: float, interval: float, is_lost: bool) -> Floats:
-        """Samples as they arrive.
+        """Apply the errors of the instrument to true values.
 
         Parameters
         ----------
         truth : (K,) array, N or W
         time : float, s
-            Of the last sample.
+            Time of the last sample.
         interval : float, s
-            Between samples.
+            Time between samples.
         is_lost : bool
-            Whether none of them arrives.
+            Whether all of these samples are lost.
 
         Returns
         -------
@@ -91,7 +91,7 @@ class Acquisition:
         """
         by, count = self.instrument, len(truth)
         values: Floats = self._late(truth, interval) if by.lag > 0.0 else truth
-        # Drawn even when lost: later samples do not depend on what arrived.
+        # Drawn even if lost, so that later samples do not depend on what arrived.
         relative, absolute, luck = self._draws(count)
         values = values * (1.0 + by.noise * relative) + (by.floor * absolute + by.drift * time)
         if by.step > 0.0:
@@ -103,7 +103,7 @@ class Acquisition:
         return values
 
     def _draws(self, count: int) -> Floats:
-        """(3, K) random numbers: two normal, one uniform; drawn many at once, for speed."""
+        """Random numbers, (3, K): two rows normal, one uniform; drawn in bulk for speed."""
         if self._drawn.shape[1] < count:
             more = max(DRAWN, count)
             normal = self._random.standard_normal((2, more))
@@ -113,7 +113,7 @@ class Acquisition:
         return now
 
     def _late(self, truth: Floats, interval: float) -> Floats:
-        """First-order lag; the truth holds between samples."""
+        """First-order lag of a truth that is constant between samples."""
         step = self._step
         if step.interval != interval or len(step.kept) != len(truth):
             step = self._step = _LagStep(interval, len(truth), self.instrument.lag)
@@ -123,7 +123,7 @@ class Acquisition:
 
 
 class _LagStep:
-    """Coefficients of K samples of a first-order lag over one interval."""
+    """Coefficients of a first-order lag for K samples at one interval."""
 
     def __init__(self, interval: float, count: int, lag: float) -> None:
         self.interval = interval
@@ -131,6 +131,6 @@ class _LagStep:
         rows = np.arange(count)
         age = rows[:, None] - rows
         self.weights = np.where(age >= 0, (1.0 - decay) * decay ** np.maximum(age, 0), 0.0)
-        """(K, K) of each sample of the truth"""
+        """Weight of each true sample, (K, K)."""
         self.kept = decay ** (rows + 1.0)
-        """(K,) of what was held before"""
+        """Weight of the previously held value, (K,)."""

@@ -1,4 +1,4 @@
-"""Behaviour of the machine of the closed loop that its controller may not know.
+"""Hidden behaviour of the machine in the closed loop, unknown to the controller.
 
 Units mm, s.
 """
@@ -10,52 +10,52 @@ from simulator.physics.domain import require_not_negative, require_positive
 
 
 class HiddenQuantity(StrEnum):
-    """Quantity that may change while the program runs."""
+    """Hidden quantity that may change while the program runs."""
 
     DEPTH = "depth"
-    """factor on the axial depth"""
+    """Factor on the axial depth."""
     HARDNESS = "hardness"
-    """factor on k_c"""
+    """Factor on k_c."""
     TOOTH = "tooth"
-    """number of the tooth that breaks, of the tool that cuts"""
+    """Number of the tooth that breaks, on the tool that is cutting."""
     SILENCE = "silence"
-    """s during which no sample arrives"""
+    """Duration, in s, during which no sample arrives."""
     LINE = "line"
-    """any number: from then on the machine does not answer"""
+    """Loss of the connection: the machine stops answering; the value is ignored."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HiddenChange:
-    """One change while the program runs."""
+    """Change of a hidden quantity while the program runs."""
 
     time: float
-    """Time, s of the run at which it happens"""
+    """Time of the run at which the change happens, s."""
     what: HiddenQuantity
     value: float
-    """as :class:`HiddenQuantity` says; a factor replaces the one before it"""
+    """Value as described in :class:`HiddenQuantity`; a factor replaces the previous one."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class HiddenTruth:
-    """The truth behind the plan.
+    """Hidden true behaviour of the machine and its tools.
 
     Raises
     ------
     ValueError
-        When a number is beyond its bounds.
+        If a value is out of range.
     """
 
     force_factor: float = 1.0
-    """on k_c, from the start"""
+    """Factor on k_c from the start."""
     wear_rate: float = 0.0
-    """Wear rate, mm of flank wear in a second of cutting, each tool for itself"""
+    """Growth of flank wear per second of cutting, for each tool separately, mm/s."""
     flank_wear: float = 0.0
-    """Flank wear, mm, of each tool when the program starts"""
+    """Flank wear of each tool when the program starts, mm."""
     eccentricity: float = 0.0
-    """Eccentricity, mm, of the cutter's axis off the spindle's"""
+    """Offset of the cutter's axis from the spindle axis, mm."""
     servo_lag: float = 0.06
-    """s, time constant with which the feed follows the override: three revolutions at 3000
-    rpm; customary, calibrate it"""
+    """Time constant with which the feed follows the override, s: three revolutions at 3000 rpm;
+    customary, to be calibrated."""
     changes: tuple[HiddenChange, ...] = ()
 
     def __post_init__(self) -> None:

@@ -1,1 +1,1 @@
-"""Material removal: stock as height maps, and the engagement of the tool along a path."""
+"""Material removal: stock as height maps, and engagement of the tool along its path."""

@@ -1,10 +1,11 @@
-"""Exact arcs of contact: the front half of the tool's circle minus what earlier moves swept.
+"""Exact contact arcs: the front half of the tool's circle minus what earlier moves cleared.
 
-At one height a level move of any cutter sweeps a stadium or the sector of a ring with round
-ends, and a flat cutter does so on a slope too, with the part of its path that lies below that
-height. Each cuts a few intervals out of the circle; their union is free, the rest is contact.
-Angles φ count from the normal to the feed in the direction of rotation, as in
-``simulator.physics.engagement``: 0 ≤ φ ≤ π is the front half. Units mm and rad.
+At a given height, a level line of any cutter clears a stadium shape, and a level arc clears a
+ring sector with round ends. The same holds for a flat cutter on a slope, for the part of its
+path that lies below that height. Each cleared shape cuts a few intervals out of the circle;
+their union is free, the rest is contact. Angles φ are measured from the normal of the feed in
+the direction of rotation, as in ``simulator.physics.engagement``: 0 ≤ φ ≤ π is the front half.
+Units mm and rad.
 """
 
 from math import atan2, cos, hypot, pi, sin, sqrt
@@ -19,42 +20,43 @@ from simulator.removal.tip_move import LEVEL, TipMove, arc_distance, way_between
 from simulator.removal.zmap import HeightGrid
 
 TOUCH = 1e-10
-"""mm within which two outlines are the same: a tool does not free its own front"""
+"""Distance, mm, within which two outlines count as the same, so that a tool does not clear
+its own front."""
 
 NARROW = 1e-6
-"""rad; what is narrower is rounding"""
+"""Width of an interval, rad, below which it is treated as rounding error."""
 
 MOST_INTERVALS = 256
 RECORD = 20
-"""columns of a remembered move: its row, and the profile of its tool"""
+"""Number of columns of a remembered move: its row, then the profile of its tool."""
 
 
 class ToolCircle(NamedTuple):
-    """Section of the tool at one height, and where it goes."""
+    """Circular section of the tool at one height, with its feed direction and rotation."""
 
     x: float
     y: float
     radius: float
     ahead_x: float
     ahead_y: float
-    """unit vector of the feed in the plane"""
+    """Y component of the unit vector of the feed in the XY plane."""
     side: float
-    """1: the spindle turns clockwise, seen from above; −1: counter-clockwise"""
+    """Rotation of the spindle seen from above: 1 clockwise, −1 counter-clockwise."""
 
 
 class Intervals(NamedTuple):
-    """Room for the work on one circle."""
+    """Working buffers for the free and contact intervals of one circle."""
 
     cuts: Floats
-    """Cuts, (16,) rad, where one outline crosses the circle"""
+    """Angles at which an outline crosses the circle, (16,), rad."""
     free: Floats
-    """Free, (MOST_INTERVALS, 2) rad"""
+    """Intervals cleared by earlier moves, (MOST_INTERVALS, 2), rad."""
     contact: Floats
-    """Contact, (MOST_INTERVALS, 2) rad"""
+    """Intervals in contact with the stock, (MOST_INTERVALS, 2), rad."""
 
 
 def intervals() -> Intervals:
-    """Room for the work on one circle."""
+    """Allocate the interval buffers for one circle."""
     return Intervals(np.empty(16), np.empty((MOST_INTERVALS, 2)), np.empty((MOST_INTERVALS, 2)))
 
 
@@ -62,12 +64,12 @@ def intervals() -> Intervals:
 def free_by_move(
     room: Intervals, count: int, circle: ToolCircle, record: Floats, level: float
 ) -> int:
-    """Add what an earlier move freed at a height.
+    """Add the intervals of the circle that an earlier move cleared at a height.
 
     Parameters
     ----------
     room : Intervals
-        Its free intervals are added to.
+        Buffers; the cleared intervals are added to ``free``.
     count : int
         Number of free intervals so far.
     circle : ToolCircle
@@ -104,7 +106,7 @@ def free_by_move(
 def _cleared(
     record: Floats, profile: CutterProfile, level: float
 ) -> tuple[float, float, float]:
-    """Part of a move that lies below a height, and the radius it clears there."""
+    """Part of a move that lies below a height, and the radius that it clears there, mm."""
     low, high = min(record[2], record[5]), max(record[2], record[5])
     if low > level + TOUCH:
         return 0.0, 0.0, 0.0
@@ -114,7 +116,7 @@ def _cleared(
         return 0.0, 1.0, radius_at(profile, max(level - low, 0.0))
     if bends_out or not is_upright(profile):
         return 0.0, 0.0, 0.0
-    # A corner clears a little more than this: of what it is nearly through, at most its radius.
+    # The corner clears slightly more: up to its radius where it has nearly passed through.
     if level >= high:
         return 0.0, 1.0, radius_at(profile, level - high)
     if level >= low + profile.corner:
@@ -129,7 +131,7 @@ def _cleared(
 
 @kernel
 def hole_radius(record: Floats, x: float, y: float, level: float) -> float:
-    """Radius at a height of the hole that an earlier move sank at (x, y), mm; else 0."""
+    """Radius at a height of the hole that an earlier move made at (x, y), mm; 0 if none."""
     away = hypot(record[0] - x, record[1] - y) + hypot(record[3] - x, record[4] - y)
     if away > TOUCH or record[11] != 0.0:
         return 0.0
@@ -141,7 +143,7 @@ def hole_radius(record: Floats, x: float, y: float, level: float) -> float:
 
 @kernel
 def _front(circle: ToolCircle, x: float, y: float) -> float:
-    """φ of a direction; negative behind."""
+    """Angle φ of a direction on the front half of the circle, rad; −1 for the rear half."""
     onward = x * circle.ahead_x + y * circle.ahead_y
     if onward <= 0.0:
         return -1.0
@@ -150,7 +152,7 @@ def _front(circle: ToolCircle, x: float, y: float) -> float:
 
 @kernel
 def _line_cuts(cuts: Floats, circle: ToolCircle, way: TipMove, radius: float) -> int:
-    """Intersections of the outline of a stadium with the front half."""
+    """Find where the outline of a stadium crosses the front half of the circle."""
     along_x, along_y = way.end_x - way.x, way.end_y - way.y
     length = hypot(along_x, along_y)
     if length < TOUCH:
@@ -174,7 +176,7 @@ def _line_cuts(cuts: Floats, circle: ToolCircle, way: TipMove, radius: float) ->
 
 @kernel
 def _arc_cuts(cuts: Floats, circle: ToolCircle, way: TipMove, radius: float) -> int:
-    """Intersections of the outline of the sector of a ring with the front half."""
+    """Find where the outline of a ring sector crosses the front half of the circle."""
     centre = (way.centre_x, way.centre_y)
     count = _disc_cuts(cuts, 0, circle, centre, way.radius + radius)
     count = _disc_cuts(cuts, count, circle, centre, abs(way.radius - radius))
@@ -186,7 +188,7 @@ def _arc_cuts(cuts: Floats, circle: ToolCircle, way: TipMove, radius: float) -> 
 def _disc_cuts(
     cuts: Floats, count: int, circle: ToolCircle, centre: tuple[float, float], radius: float
 ) -> int:
-    """Intersections of another circle with the front half."""
+    """Find where another circle crosses the front half of the tool's circle."""
     x, y = centre[0] - circle.x, centre[1] - circle.y
     away = hypot(x, y)
     if away < TOUCH:
@@ -204,7 +206,7 @@ def _disc_cuts(
 
 @kernel
 def _cut(cuts: Floats, count: int, angle: float) -> int:
-    """Keep a crossing of the front half, in order."""
+    """Insert a crossing of the front half into the sorted list; return the new count."""
     if not 0.0 < angle < pi or count == len(cuts):
         return count
     place = count
@@ -219,7 +221,7 @@ def _cut(cuts: Floats, count: int, angle: float) -> int:
 def _add_inside(
     room: Intervals, count: int, cuts: int, circle: ToolCircle, way: TipMove, radius: float
 ) -> int:
-    """Add the intervals between crossings whose middles lie within a sweep."""
+    """Add the intervals between crossings whose middle points lie within the swept area."""
     low = 0.0
     for index in range(cuts + 1):
         high = room.cuts[index] if index < cuts else pi
@@ -237,7 +239,7 @@ def _add_inside(
 
 @kernel
 def _way_distance(way: TipMove, x: float, y: float) -> float:
-    """Distance of a point from a line or an arc in the plane."""
+    """Distance in the plane between a point and a line or an arc, mm."""
     if way.turn != 0.0:
         return arc_distance(way, x - way.centre_x, y - way.centre_y)
     along_x, along_y = way.end_x - way.x, way.end_y - way.y
@@ -251,7 +253,7 @@ def _way_distance(way: TipMove, x: float, y: float) -> float:
 
 @kernel
 def add_free(room: Intervals, count: int, low: float, high: float) -> int:
-    """Add an interval, or widen the last one; past the room it is left out."""
+    """Add a free interval or extend the last one; ignored when the buffer is full."""
     if count > 0 and room.free[count - 1, 0] <= low <= room.free[count - 1, 1]:
         room.free[count - 1, 1] = max(room.free[count - 1, 1], high)
         return count
@@ -263,7 +265,7 @@ def add_free(room: Intervals, count: int, low: float, high: float) -> int:
 
 @kernel
 def free_by_outline(room: Intervals, count: int, circle: ToolCircle, grid: HeightGrid) -> int:
-    """Add what lies beside the raw stock."""
+    """Add the intervals of the circle that lie outside the raw stock; return their count."""
     width = grid.heights.shape[0] * grid.dx
     depth = grid.heights.shape[1] * grid.dy
     cuts = 0
@@ -297,7 +299,7 @@ def free_by_outline(room: Intervals, count: int, circle: ToolCircle, grid: Heigh
 
 @kernel
 def is_beside(grid: HeightGrid, x: float, y: float) -> bool:
-    """Whether a place lies beside the raw stock."""
+    """Whether a point lies outside the outline of the raw stock."""
     across = (x - grid.x) / (grid.heights.shape[0] * grid.dx)
     along = (y - grid.y) / (grid.heights.shape[1] * grid.dy)
     if not (0.0 <= across <= 1.0 and 0.0 <= along <= 1.0):
@@ -311,7 +313,7 @@ def is_beside(grid: HeightGrid, x: float, y: float) -> bool:
 
 @kernel
 def contact_arcs(room: Intervals, count: int) -> int:
-    """Remove the free intervals from the front half; returns the number of contact arcs."""
+    """Subtract the free intervals from the front half; return the number of contact arcs."""
     free, contact = room.free, room.contact
     for index in range(1, count):
         low, high, place = free[index, 0], free[index, 1], index

@@ -1,12 +1,12 @@
-"""Cutting of a height map by a rotating cutter: how low it reaches over each cell.
+"""Cutting of a height map by a rotating cutter: the lowest height reached over each cell.
 
-Over a cell at the distance u along a line and v beside it the tool reaches down to the least of
-``z(s) + f(√((u − s)² + v²))``, f the profile. f is convex and never falls, so this is convex in
-s: level lines take the nearest point, flat and ball tools have a closed form on any slope;
-bull-nose, cone and taper are bisected, to 1e-8 mm in height. On level arcs the nearest point
-decides as well, and a flat tool on a helix has a closed form. What remains (arcs out of XY;
-ball, bull-nose, cone and taper on a helix) runs on chords that leave the arc by at most
-``CHORD_SHARE`` of a cell. Units mm and rad.
+Over a cell at the distance u along a line and v beside it, the tool reaches down to the minimum
+of ``z(s) + f(√((u − s)² + v²))``, where f is the profile. f is convex and never falls, so this
+is convex in s. Level lines use the nearest point; flat and ball tools have a closed form on any
+slope; bull-nose, cone and taper are found by bisection, to 1e-8 mm in height. On level arcs the
+nearest point decides as well, and a flat tool on a helix has a closed form. All other cases
+(arcs out of XY; ball, bull-nose, cone and taper on a helix) are cut along chords that deviate
+from the arc by at most ``CHORD_SHARE`` of a cell. Units mm and rad.
 """
 
 from math import ceil, floor, hypot, inf, sqrt
@@ -28,18 +28,18 @@ from simulator.removal.tip_move import (
 from simulator.removal.zmap import HeightGrid
 
 CHORD_SHARE = 0.01
-"""of a cell: by how much chords may leave an arc that has no closed form"""
+"""Greatest deviation of chords from an arc without a closed form, as a share of a cell."""
 
 MEASURE = -1
-"""number of a move that only measures and cuts nothing"""
+"""Move number that requests measuring only: no cell is cut."""
 
 _NUDGE = 1e-7
-"""mm by which cells are looked at beside their middles, so that of the two walls of a slot that
-run through middles of cells only one takes its cells"""
+"""Offset, mm, at which cells are sampled beside their middles, so that of the two walls of a
+slot that run through cell middles only one removes its cells."""
 
 _PLACE = 1e-4
-"""mm to which the place that touches is found; the height there errs by its square over the
-corner's radius"""
+"""Tolerance, mm, of the position of the contact point found by bisection; the error of the
+height is its square over the corner radius."""
 
 
 @kernel
@@ -60,11 +60,12 @@ def carve_part(
     profile : CutterProfile
     row : (13,) array
     span : (float, float)
-        Shares of the row's length.
+        Begin and end of the part, as shares of the row's length.
     number : int
-        Under which the cells remember who cut them.
+        Number of the move, stored in the cells that it cuts.
     goes_on : bool
-        The tool has just cut where the part begins, so that its first place need no look.
+        Whether the tool has just cut where the part begins, so that its first position
+        needs no check.
 
     Returns
     -------
@@ -72,7 +73,7 @@ def carve_part(
     deepest : float, mm
         Greatest height that a cell loses.
     x, y : float, mm
-        The cell that loses most.
+        Position of the cell that loses most.
     """
     way = way_between(row, span[0], span[1])
     if row[11] == 0.0:
@@ -100,7 +101,7 @@ def carve_part(
 
 @kernel
 def _range(low: float, high: float, origin: float, size: float, count: int) -> tuple[int, int]:
-    """First cell and the one after the last whose middles lie between two coordinates."""
+    """Range of the cells whose middles lie between two coordinates: first, last + 1."""
     if low > high:
         return 0, 0
     first = ceil((low - origin - _NUDGE) / size - 0.5)
@@ -109,28 +110,28 @@ def _range(low: float, high: float, origin: float, size: float, count: int) -> t
 
 
 class _Line(NamedTuple):
-    """A line as the cells see it."""
+    """A straight move prepared for cutting cells: direction, length and slope."""
 
     way: TipMove
     along_x: float
     along_y: float
-    """unit vector in the plane"""
+    """Y component of the unit vector of the move in the XY plane."""
     length: float
-    """Length, mm in the plane"""
+    """Length of the move in the XY plane, mm."""
     slope: float
     low: float
-    """Low, mm, height of the lower end"""
+    """Height of the lower end of the move, mm."""
     fresh: float
-    """Fresh, mm along the line behind which its start settles all"""
+    """Distance along the line, mm, behind which the earlier cut at the start is final."""
     skips_start: bool
-    """nothing under the tool at the start is left to cut"""
+    """Whether nothing under the tool at the start is left to cut."""
 
 
 @kernel
 def _line(
     grid: HeightGrid, profile: CutterProfile, way: TipMove, number: int, goes_on: bool
 ) -> tuple[float, float, float, float]:
-    """Cut along a line of any direction."""
+    """Cut the cells along a straight move of any direction."""
     line = _lined(profile, way, goes_on)
     heights = grid.heights
     volume, deepest, found_x, found_y = 0.0, 0.0, way.x, way.y
@@ -164,7 +165,7 @@ def _line(
 
 @kernel
 def _lined(profile: CutterProfile, way: TipMove, goes_on: bool) -> _Line:
-    """A way as a line."""
+    """Prepare a straight move for cutting: direction, slope and start of uncut cells."""
     length = hypot(way.end_x - way.x, way.end_y - way.y)
     climb = way.end_z - way.z
     low = min(way.z, way.end_z)
@@ -179,13 +180,13 @@ def _lined(profile: CutterProfile, way: TipMove, goes_on: bool) -> _Line:
 
 @kernel
 def _over(line: _Line, profile: CutterProfile, x: float, y: float, height: float) -> float:
-    """Least height of the tool over a cell; infinite where it does not reach so low."""
+    """Lowest height that the tool reaches over a cell, mm; infinite if not below its top."""
     if line.slope == 0.0 and is_plain(profile):
         return line.low
     x, y = x - line.way.x, y - line.way.y
     u = x * line.along_x + y * line.along_y
     v = y * line.along_x - x * line.along_y
-    # The nearest place of the path at its lowest height: no tool reaches lower.
+    # The nearest point of the path at its lowest height gives a lower bound for any tool.
     beyond = u - min(max(u, 0.0), line.length)
     square = beyond * beyond + v * v
     if square > profile.radius**2:
@@ -198,10 +199,10 @@ def _over(line: _Line, profile: CutterProfile, x: float, y: float, height: float
 
 @kernel
 def _fresh(profile: CutterProfile, slope: float) -> float:
-    """First cell along a line that its start does not settle.
+    """Distance along a line from which its cells may still need cutting, mm.
 
-    A level or climbing tool settles all behind its axis; a ball that runs down touches behind
-    its axis no farther than where its surface is as steep as the line.
+    A level or climbing tool has finished everything behind its axis; a descending ball touches
+    behind its axis no farther than where its surface is as steep as the line.
     """
     if slope >= 0.0:
         return 0.0
@@ -212,7 +213,7 @@ def _fresh(profile: CutterProfile, slope: float) -> float:
 
 @kernel
 def _outline(line: _Line, reach: float, x: float) -> tuple[float, float]:
-    """From where to where a column of cells runs through the sweep of a line."""
+    """Lowest and highest y at which a column of cells crosses the sweep of a line, mm."""
     way, low, high = line.way, inf, -inf
     for end_x, end_y in ((way.x, way.y), (way.end_x, way.end_y)):
         square = reach * reach - (x - end_x) ** 2
@@ -235,22 +236,22 @@ def _outline(line: _Line, reach: float, x: float) -> tuple[float, float]:
 
 @kernel
 def lowest(profile: CutterProfile, u: float, v: float, length: float, slope: float) -> float:
-    """Least height of the tool over a cell, above the start of a sloping line.
+    """Lowest height of the tool over a cell, relative to the start of a sloping line.
 
     Parameters
     ----------
     profile : CutterProfile
     u, v : float, mm
-        Where the cell is along the line and beside it, in the plane.
+        Position of the cell along the line and beside it, in the plane.
     length : float, mm
-        Of the line in the plane.
+        Length of the line in the plane.
     slope : float
         Rise of the line per mm in the plane, not 0.
 
     Returns
     -------
     float, mm
-        Infinite beside the line's sweep.
+        Infinite outside the sweep of the line.
     """
     square = profile.radius**2 - v * v
     if square < 0.0:
@@ -271,9 +272,9 @@ def lowest(profile: CutterProfile, u: float, v: float, length: float, slope: flo
 def _bisected(
     profile: CutterProfile, u: float, v: float, slope: float, span: tuple[float, float]
 ) -> float:
-    """Least value of a convex function by the sign of its derivative.
+    """Lowest height over a cell by bisection on the sign of the derivative, mm.
 
-    Under the flat of a tool that climbs or runs down nothing touches, so the search begins
+    Nothing touches under the flat end of a tool that climbs or descends, so the search begins
     where the flat ends.
     """
     low, high = span
@@ -299,7 +300,7 @@ def _bisected(
 def _arc(
     grid: HeightGrid, profile: CutterProfile, way: TipMove, number: int
 ) -> tuple[float, float, float, float]:
-    """Cut along an arc of at most half a turn in XY: level, or a helix of a flat tool."""
+    """Cut along an arc in XY of at most half a turn: level, or a helix of a flat tool."""
     floor_z = min(way.z, way.end_z)
     if floor_z >= grid.top:
         return 0.0, 0.0, way.x, way.y

@@ -1,22 +1,22 @@
-"""Collisions with the stock. Units mm."""
+"""Record of a collision with the stock. Units mm."""
 
 from dataclasses import dataclass
 
 MOST = 10_000
-"""of one kind that a stock remembers"""
+"""Largest number of collisions of one kind that a stock records."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Collision:
-    """A rapid through material, a holder or shank in it, or a tool that stood in it."""
+    """Rapid move through material, holder or shank in material, or tool standing in it."""
 
     block: int
-    """from which the move comes"""
+    """Number of the program block that contains the move."""
     position: tuple[float, float, float]
-    """Position, mm, where"""
+    """Position of the collision, mm."""
     segment: int = 0
-    """row in its stretch"""
+    """Row of the move in its list of segments."""
     depth: float = 0.0
-    """Depth, mm, deepest; 0: not told"""
+    """Greatest depth of the collision, mm; 0 if not known."""
     volume: float = 0.0
-    """Volume, mm³ removed; 0: not told"""
+    """Volume removed by the collision, mm³; 0 if not known."""

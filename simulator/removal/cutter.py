@@ -1,7 +1,7 @@
-"""Shape of a cutting tool: the body that its edges sweep, its holder, and a turning insert.
+"""Shape of a cutting tool: the body swept by its edges, its holder, and a turning insert.
 
-Units mm and rad. A rotating tool is a profile of revolution: a flat or rounded bottom, a
-conical or straight flank; the tip is at height 0.
+Units mm and rad. A rotating tool is a profile of revolution with a flat or rounded bottom and a
+conical or straight flank; its tip is at height 0.
 """
 
 from dataclasses import dataclass
@@ -18,65 +18,65 @@ from stepnc_model.units import rad_from_deg
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Holder:
-    """Cylinder above the tool that must stay out of the stock."""
+    """Cylindrical tool holder above the tool, which must stay out of the stock."""
 
     diameter: float
-    """Diameter, mm"""
+    """Diameter of the holder, mm."""
     overhang: float
-    """Overhang, mm from the tip of the tool to the holder"""
+    """Distance from the tip of the tool to the holder, mm."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cutter:
-    """Rotating tool: end mill, face mill, ball, bull nose, taper, drill."""
+    """Shape of a rotating tool: end mill, face mill, ball, bull nose, taper or drill."""
 
     diameter: float
-    """Diameter, mm, of the cylinder, or of the cone where it begins"""
+    """Diameter of the cylinder, or of the cone at its lower end, mm."""
     corner_radius: float = 0.0
-    """Corner radius, mm; half the diameter for a ball"""
+    """Corner radius, mm; half the diameter for a ball."""
     taper_angle: float = 0.0
-    """Taper angle, rad, of the flank against the axis, positive when the tool grows upward"""
+    """Angle between the flank and the axis, rad, positive when the tool widens upward."""
     point_angle: float = pi
-    """Point angle, rad, included angle of a conical point; π: flat"""
+    """Included angle of a conical point, rad; π for a flat end."""
     teeth: int = 2
     edge_length: float = inf
-    """Edge length, mm of cutting edge from the tip up; above it the shank is smooth"""
+    """Length of the cutting edge from the tip up, mm; above it the shank is smooth."""
     cutting_edge_angle: float = pi / 2.0
-    """Cutting edge angle, rad, κ_r of the flank"""
+    """Cutting edge angle κ_r of the flank, rad."""
     is_drill: bool = False
-    """cuts with its end only, along its axis"""
+    """Whether the tool cuts with its end only, along its axis."""
     holder: Holder | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Insert:
-    """Turning or grooving insert.
+    """Shape of a turning or grooving insert.
 
-    Its path is that of the imaginary sharp corner, as :mod:`stepnc_model.toolpath.turning`
-    programs it: of a right-hand insert the corner towards the axis and the chuck, of a
-    left-hand one that towards the axis and away from the chuck, of a neutral one the point of
-    the nose nearest to the axis, of a grooving blade its corner at the chuck. A boring insert
-    (``is_inside``) points away from the axis.
+    The programmed path is that of the imaginary sharp corner, as in
+    :mod:`stepnc_model.toolpath.turning`: for a right-hand insert the corner towards the axis
+    and the chuck; for a left-hand insert the corner towards the axis and away from the chuck;
+    for a neutral insert the point of the nose nearest to the axis; for a grooving blade its
+    corner at the chuck. A boring insert (``is_inside``) points away from the axis.
 
     Raises
     ------
     ValueError
-        When a length or an angle is out of its range.
+        If a length or an angle is out of its range.
     """
 
     nose_radius: float = 0.0
-    """Nose radius, mm; of both corners of a blade"""
+    """Nose radius, mm; for a grooving blade, radius of both corners."""
     cutting_edge_angle: float = pi / 2.0
-    """Cutting edge angle, rad, κ_r of the major edge, from the feed along the axis"""
+    """Cutting edge angle κ_r of the major edge, rad, measured from the feed along the axis."""
     trailing_angle: float = rad_from_deg(5.0)
-    """rad, κ_r' of the minor edge from the turned surface; 5° are left by κ_r = 95° and the
-    80° of the commonest insert, form C of ISO 1832"""
+    """Angle κ_r' between the minor edge and the turned surface, rad; 5° remain for κ_r = 95°
+    and the 80° of the most common insert, form C of ISO 1832."""
     width: float | None = None
-    """Width, mm of a grooving blade, whose sides are upright; None: a turning insert"""
+    """Width of a grooving blade with upright sides, mm; None for a turning insert."""
     hand: HandOfToolType = HandOfToolType.RIGHT
-    """right: fed towards the chuck"""
+    """Hand of the insert; a right-hand insert feeds towards the chuck."""
     is_inside: bool = False
-    """bores: material lies outside"""
+    """Whether the insert bores, so that the material lies outside."""
 
     def __post_init__(self) -> None:
         require_not_negative(self.nose_radius, "nose radius", "mm")
@@ -95,12 +95,12 @@ class Insert:
 
     @property
     def flat(self) -> float:
-        """End of a blade between the centres of its corners, mm; 0 for a turning insert."""
+        """Length of a blade's end between the centres of its corners, mm; 0 if not a blade."""
         return 0.0 if self.width is None else self.width - 2.0 * self.nose_radius
 
     @property
     def centre(self) -> tuple[float, float]:
-        """Centre of the nose, or of a blade's corner at the chuck, from its tip: x, z in mm."""
+        """Centre of the nose, or of a blade's corner at the chuck, from the tip: x, z, mm."""
         x = -self.nose_radius if self.is_inside else self.nose_radius
         if self.width is not None or self.hand is HandOfToolType.RIGHT:
             return x, self.nose_radius
@@ -108,7 +108,7 @@ class Insert:
 
     @property
     def edge_angles(self) -> tuple[float, float]:
-        """Of the edge at the chuck and of the other one, each from the axis, rad."""
+        """Angles of the edge at the chuck and of the other edge, each from the axis, rad."""
         if self.width is not None:
             return pi / 2.0, pi / 2.0
         if self.hand is HandOfToolType.RIGHT:

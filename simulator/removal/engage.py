@@ -1,10 +1,10 @@
 """Milling and drilling of one stock: removal and engagement along a program, move by move.
 
-The section of a flat cutter on level moves comes from exact arcs wherever every arc is known
-exactly; its volume then agrees with the map's to what the map's cells can tell. Everywhere else
-the section comes from the volume that the map loses, over windows of at least ten cells,
-because less is noise, and is shared among the stations in proportion to what the rim sees.
-Units mm and rad.
+On level moves of a flat cutter the section comes from exact arcs wherever every arc is known
+exactly; its volume then agrees with the map to within the resolution of the cells. Everywhere
+else the section comes from the volume that the map loses, over windows of at least ten cells,
+because shorter windows are noisy, and is shared among the stations in proportion to the section
+seen at the rim. Units mm and rad.
 """
 
 from math import inf, pi, sin
@@ -64,28 +64,28 @@ from simulator.removal.zmap import ZMap, cell_size, zmap_of
 from stepnc_model.program import Stock
 
 WINDOW = 10.0
-"""cells of path over which the map's volume is a measure"""
+"""Number of cells of path over which the volume lost by the map is a reliable measure."""
 
 STEP_SHARE = 0.25
-"""of the tool's radius: the longest stretch between two stations"""
+"""Longest stretch between two stations, as a share of the tool radius."""
 
 LEAST_SHARE = 0.05
-"""of the tool's radius: the shortest one"""
+"""Shortest stretch between two stations, as a share of the tool radius."""
 
-_CHUNK = 16_384  # rows that are marched in one go
+_CHUNK = 16_384  # rows that are marched in one call
 _LINES = 4 * ROOM_FOR_ROW
 
 
 class MillingStock:
-    """A stock that is cut away: running state.
+    """Stock that milling and drilling cut away; a mutable object.
 
     Parameters
     ----------
     stock : Stock
     cell : float, mm
-        Size of the map's cells; chosen from the stock and the smallest tool unless given.
+        Size of the map's cells; by default chosen from the stock and the smallest tool.
     smallest_diameter : float, mm
-        Of the tools to come.
+        Smallest diameter of the tools that will be used.
     """
 
     def __init__(
@@ -94,17 +94,17 @@ class MillingStock:
         size = cell_size(stock, smallest_diameter=smallest_diameter) if cell is None else cell
         self.map: ZMap = zmap_of(stock, cell=size)
         self.volume = 0.0
-        """mm³ removed so far, by the map"""
+        """Volume removed so far according to the map, mm³."""
         self.collisions: list[Collision] = []
-        """rapid moves that removed material"""
+        """Rapid moves that removed material."""
         self.holder_collisions: list[Collision] = []
-        """where the holder would have met material, its depth there"""
+        """Places where the holder would hit material, with the depth of the holder there."""
         self.shank_collisions: list[Collision] = []
-        """material above the cutting edge, its height over the edge's end"""
+        """Material above the cutting edge, with its height over the end of the edge."""
         self._past = past()
 
     def cut(self, segments: Segments, cutter: Cutter, *, is_clockwise: bool = True) -> Stations:
-        """Cut along segments, in order, and tell what the tool met.
+        """Cut along segments, in order, and return the engagement of the tool.
 
         Parameters
         ----------
@@ -112,12 +112,12 @@ class MillingStock:
             Path of the tip of the tool.
         cutter : Cutter
         is_clockwise : bool
-            How the spindle turns, seen from above.
+            Direction of rotation of the spindle, seen from above.
 
         Returns
         -------
         Stations
-            At least one row a segment.
+            At least one row per segment.
 
         Raises
         ------
@@ -126,7 +126,7 @@ class MillingStock:
         """
         turns = np.abs(segments.turn).max(initial=0.0) / (2.0 * pi)
         if turns > MOST_TURNS:
-            raise ValueError(f"an arc of {turns:g} turns must have at most {MOST_TURNS:g}")
+            raise ValueError(f"an arc has {turns:g} turns; the limit is {MOST_TURNS:g}")
         grid = self.map.grid
         profile = profile_of(cutter, reach=grid.top - grid.bottom)
         flank = sin(cutter.cutting_edge_angle)
@@ -143,7 +143,7 @@ class MillingStock:
     def tried(
         self, segments: Segments, cutter: Cutter, *, is_clockwise: bool = True
     ) -> tuple[Stations, PathTrial]:
-        """As :meth:`cut`, but on trial: the stock stays, and what it would become is told."""
+        """Cut like :meth:`cut` but keep the stock; also return the resulting change."""
         radius = profile_of(cutter, reach=self.map.grid.top - self.map.grid.bottom).radius
         where = box_of(self.map.grid, segments, radius), moves_of(self._past, segments)
         before, volume = patch_of(self.map.grid, self._past, *where), self.volume
@@ -163,13 +163,13 @@ class MillingStock:
         return int(self._past.next[0])
 
     def take(self, patch: StockPatch) -> None:
-        """Become what a trial made of this very stock."""
+        """Apply the result of a trial cut of this stock."""
         put_back(patch, self.map.grid, self._past)
 
     def _chunk(
         self, segments: Segments, tool: RimTool, how: MarchSettings, first: int
     ) -> list[Floats]:
-        """March along some rows."""
+        """Cut along a chunk of rows and return the lines written for its stations."""
         task = RemovalTask(self.map.grid, self._past, tool, how, desk_for(tool))
         rows, lengths = rows_of(segments), segments.length
         out = np.empty((_LINES, COLUMNS))
@@ -185,7 +185,7 @@ class MillingStock:
         return parts
 
     def _note(self, segments: Segments, found: Floats, first: int) -> None:
-        """Keep the collisions of some rows."""
+        """Record the collisions found in a chunk of rows."""
         rapids = np.flatnonzero((found[:, VOLUME] > 0.0) & segments.is_rapid)
         for row in rapids[: MOST - len(self.collisions)]:
             spot = tuple(found[row, [SPOT_X, SPOT_Y, SPOT_Z]].tolist())
@@ -213,7 +213,7 @@ class MillingStock:
 
 
 def _how(cutter: Cutter, profile: CutterProfile, cell: float) -> MarchSettings:
-    """Settings for marching a cutter over cells of a size."""
+    """Settings for marching a cutter over a map with a given cell size."""
     holder = cutter.holder
     return MarchSettings(
         step=STEP_SHARE * profile.radius,
@@ -229,7 +229,7 @@ def _how(cutter: Cutter, profile: CutterProfile, cell: float) -> MarchSettings:
 
 
 def _windowed(lines: Floats, window: float) -> None:
-    """Share the map's volume anew over windows of neighbouring stretches."""
+    """Redistribute the volume lost by the map over windows of neighbouring stretches."""
     is_shared = (lines[:, KIND] == StationKind.MILLING) & (lines[:, EXACT] == 0.0)
     rows = np.flatnonzero(is_shared)
     if not len(rows):
@@ -248,12 +248,12 @@ def _windowed(lines: Floats, window: float) -> None:
 
 
 def _stations(lines: Floats, cutter: Cutter) -> Stations:
-    """Stations of the march's lines."""
+    """Convert the lines written by the march to stations."""
     axial, section = lines[:, AXIAL].copy(), lines[:, SECTION]
     diameter = lines[:, DIAMETER].copy()
     kind = lines[:, KIND].astype(np.int64)
     if cutter.is_drill and cutter.point_angle == pi:
-        # A reamer cuts a ring that cells cannot show: its section tells the hole before it.
+        # A reamer cuts a ring thinner than a cell: its section gives the old hole's diameter.
         rows = np.flatnonzero((kind == StationKind.DRILLING) & (section > 0.0))
         bored = np.sqrt(np.maximum(cutter.diameter**2 - 4.0 * section[rows] / pi, 0.0))
         axial[rows] = 0.5 * (cutter.diameter - bored)

@@ -1,25 +1,21 @@
-"""Stock on a lathe as radii over the spindle axis; what turning, grooving and drilling take.
+"""Stock on a lathe as radii along the spindle axis, cut by turning, grooving and drilling.
 
-The bar is a map: over each cell along z an outer radius and the radius of a bore. An insert
-lowers the one or widens the other in closed form (:mod:`simulator.removal.lathe_carve`); a
+The bar is a map: each cell along z holds an outer radius and the radius of a bore. An insert
+lowers the former or widens the latter in closed form (:mod:`simulator.removal.lathe_carve`); a
 drill on the axis widens the bore. The radius is known in the middle of each cell: smooth
-surfaces are right to the square of the cell, a wall across the axis to half a cell.
+surfaces are accurate to the square of the cell, a wall across the axis to half a cell.
 
-Not modelled: what overhangs (an edge beyond 90° counts as upright, a groove in a face goes
-through to the front), the cusps that the feed leaves and threads (all that is cut is a body of
-revolution), the ends of the edges and the shank, a part that is cut off (it stays in the map),
-tools beside the axis. A box counts as the cylinder around it: no contact is missed, and the
-volume is too large until it is round.
+An edge leads when the tool moves towards its outer side. Of two leading edges, the one that
+faces the feed most is taken; the flat end of a blade counts as a third edge. The nose is
+included in the effective angle of :mod:`simulator.physics.edge`.
 
-Units mm and rad. x is the radius, z the spindle axis, away from the chuck.
+Not modelled: overhangs (an edge beyond 90° counts as upright, a groove in a face goes through
+to the front), the cusps left by the feed, threads (the workpiece stays a body of revolution),
+the ends of the edges and the shank, a part that is cut off (it stays in the map), and tools
+beside the axis. A box counts as the cylinder around it: no contact is missed, and the volume
+is too large until the part is round.
 
-Edge of a turning insert that cuts in a direction, and its chip.
-
-An edge leads when the tool moves towards its outside; of two that lead the one that leads most
-is taken, and of a blade its flat end is a third. The nose is in the effective angle of
-:mod:`simulator.physics.edge`. mm and rad.
-
-Units mm and rad.
+Units mm and rad. x is the radius; z is the spindle axis, pointing away from the chuck.
 """
 
 from collections.abc import Callable
@@ -41,14 +37,15 @@ from stepnc_model.program import Stock
 from stepnc_model.units import rad_from_deg
 
 LEAST_ANGLE = rad_from_deg(5.0)
-"""an edge nearer to the feed than this wipes: the chip would be thin and wide without end"""
+"""Smallest angle, rad, between edge and feed; below it the edge rubs and the chip would be
+infinitely thin and wide."""
 
 LEAST_DEPTH = 1e-6
-"""mm; shallower cuts take the chip of this one"""
+"""Smallest depth of cut, mm; shallower cuts use the chip thickness of this depth."""
 
 
 def edge_angles(insert: Insert, direction: Floats) -> Floats:
-    """Angle κ_r between the leading edge and the feed.
+    """Angle κ_r between the leading edge and the feed, rad.
 
     Parameters
     ----------
@@ -64,7 +61,7 @@ def edge_angles(insert: Insert, direction: Floats) -> Floats:
     mirror = -1.0 if insert.is_inside else 1.0
     z, x = direction[:, 2], mirror * direction[:, 0]
     back, front = insert.edge_angles
-    # Edges as unit vectors away from the nose, and their outsides.
+    # Edges as unit vectors away from the nose, and their outward normals.
     edges = [(-cos(back), sin(back)), (cos(front), sin(front))]
     outsides = [(-sin(back), -cos(back)), (sin(front), -cos(front))]
     if insert.width is not None:
@@ -78,15 +75,15 @@ def edge_angles(insert: Insert, direction: Floats) -> Floats:
 
 
 def chip_ratios(insert: Insert, depth: Floats, angle: Floats) -> Floats:
-    """Chip thickness over feed, ``h/f = sin κ`` of the edge that really cuts.
+    """Chip thickness over feed, ``h/f = sin κ``, of the edge that is actually cutting.
 
     Parameters
     ----------
     insert : Insert
     depth : (M,) array, mm
-        a_p.
+        Depth of cut a_p.
     angle : (M,) array, rad
-        κ_r of the leading edge.
+        Angle κ_r of the leading edge.
 
     Returns
     -------
@@ -105,30 +102,30 @@ def chip_ratios(insert: Insert, depth: Floats, angle: Floats) -> Floats:
 
 
 ZX_NORMAL = 1
-"""axis across the half plane of the lathe"""
+"""Index of the axis normal to the ZX plane of the lathe."""
 
 UPRIGHT = 0.5 * pi - 1e-9
-"""rad; steeper edges overhang and count as upright"""
+"""Edge angle, rad, from which an edge counts as upright; steeper edges would overhang."""
 
 
 def body_of(insert: Insert) -> InsertOutline:
-    """Curve of an insert."""
+    """Outline of an insert for the cutting kernels."""
     back, front = (_edge(insert.nose_radius, angle) for angle in insert.edge_angles)
     return InsertOutline(insert.nose_radius, insert.flat, *back, *front)
 
 
 def _edge(nose: float, angle: float) -> tuple[float, float]:
-    """Slope of an edge, and where it leaves the nose; upright from 90° on."""
+    """Slope of an edge, and the distance from the centre at which it leaves the nose, mm."""
     return (inf, nose) if angle >= UPRIGHT else (tan(angle), nose * sin(angle))
 
 
 def ways_of(segments: Segments, windows: Windows, insert: Insert) -> Floats:
-    """Ways of the centre of the nose, one a stretch; mirrored for a bore.
+    """Paths of the centre of the nose, one per stretch; mirrored for a bore.
 
     Parameters
     ----------
     segments : Segments
-        Of the programmed point.
+        Path of the programmed point.
     windows : Windows
     insert : Insert
 
@@ -140,7 +137,7 @@ def ways_of(segments: Segments, windows: Windows, insert: Insert) -> Floats:
     Raises
     ------
     SimulationError
-        When an arc lies in another plane than ZX.
+        If an arc does not lie in the ZX plane.
     """
     _require_plane(segments)
     rows = windows.segment
@@ -168,7 +165,7 @@ def ways_of(segments: Segments, windows: Windows, insert: Insert) -> Floats:
 
 
 def _require_plane(segments: Segments) -> None:
-    """Arcs must lie in the half plane."""
+    """Require that all arcs lie in the ZX plane."""
     wrong = np.flatnonzero((segments.turn != 0.0) & (segments.normal != ZX_NORMAL))
     if len(wrong):
         block = segments.block[wrong[0]]
@@ -176,38 +173,38 @@ def _require_plane(segments: Segments) -> None:
 
 
 DEFAULT_CELL = 0.01
-"""mm; longer bars than MOST_CELLS of it have longer cells"""
+"""Default length of a cell, mm; longer for bars of more than MOST_CELLS such cells."""
 
 MOST_CELLS = 1_000_000
 
 ON_AXIS = 1e-3
-"""mm of radius at which a drill still stands on the axis"""
+"""Greatest distance, mm, between a drill and the axis at which it counts as centred."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class BarRadii:
-    """Radii of a bar."""
+    """Outer and inner radii of a bar over the cells."""
 
     outer: Floats
-    """Outer, (C,) mm"""
+    """Outer radius over each cell, (C,), mm."""
     inner: Floats
-    """Inner, (C,) mm"""
+    """Radius of the bore over each cell, (C,), mm."""
 
 
 class TurningStock:
-    """A bar that turns; running state: what is left of it.
+    """Remaining shape of a turned bar; a mutable object.
 
     Parameters
     ----------
     stock : Stock
-        A bar, or a box, about the axis x = y = 0.
+        Bar or box about the axis x = y = 0.
     cell : float, mm
-        Length along the axis; None: 0.01 mm, and at most a million cells.
+        Length of a cell along the axis; None: 0.01 mm, with at most a million cells.
 
     Raises
     ------
     ValueError
-        When the stock has no length or radius, or there would be more than a million cells.
+        If the stock has no length or radius, or would need more than a million cells.
     """
 
     def __init__(self, stock: Stock, cell: float | None = None) -> None:
@@ -225,14 +222,14 @@ class TurningStock:
             )
         self._grid = AxialGrid(float(stock.low[2]), length / count)
         self.outer: Floats = np.full(count, float(radius))
-        """(C,) mm, radius of the outside over each cell"""
+        """Outer radius over each cell, (C,), mm."""
         self.inner: Floats = np.zeros(count)
-        """(C,) mm, radius of the bore; where it is that of the outside nothing is left"""
+        """Radius of the bore over each cell, (C,), mm; empty where it equals ``outer``."""
         self.collisions: list[Collision] = []
-        """rapids that met material, and tools that stood in it, in order"""
+        """Rapid moves that hit material, and tools that stood in material, in order."""
         self.holder_collisions: list[Collision] = []
         self.shank_collisions: list[Collision] = []
-        """empty: neither is modelled on a lathe"""
+        """Always empty: holder and shank collisions are not modelled on a lathe."""
 
     @property
     def cell(self) -> float:
@@ -241,7 +238,7 @@ class TurningStock:
 
     @property
     def z(self) -> Floats:
-        """(C,) middles of the cells, mm."""
+        """Middles of the cells along the axis, (C,), mm."""
         middles: Floats = np.arange(len(self.outer), dtype=np.float64) + 0.5
         return self._grid.start + middles * self.cell
 
@@ -253,29 +250,29 @@ class TurningStock:
     def cut(
         self, segments: Segments, shape: Cutter | Insert, *, is_clockwise: bool = True
     ) -> Stations:
-        """Turn, face, groove or bore with an insert, drill on the axis with a rotating tool.
+        """Turn, face, groove or bore with an insert, or drill on the axis with a rotating tool.
 
         Parameters
         ----------
         segments : Segments
-            Of the programmed point of the insert, or of the tip of the tool.
+            Path of the programmed point of the insert, or of the tip of the tool.
         shape : Insert or Cutter
         is_clockwise : bool
-            Sense of the spindle; the cut is the same in both.
+            Direction of rotation of the spindle; the cut is the same in both.
 
         Returns
         -------
         Stations
-            ``section = π · diameter · axial_depth``. Of an insert ``axial_depth`` is a_p
-            across the feed, ``chip_ratio`` sin κ of the edge that really cuts, and
-            ``radial_width`` the width of the chip, a_p/sin κ. Of a drill they are those of
-            one lip, and the depth half of the diameter less that of the hole.
+            ``section = π · diameter · axial_depth``. For an insert, ``axial_depth`` is a_p
+            across the feed, ``chip_ratio`` is sin κ of the edge that is actually cutting, and
+            ``radial_width`` is the width of the chip, a_p/sin κ. For a drill, they describe one
+            lip, and the depth is half the difference between its diameter and the hole's.
 
         Raises
         ------
         SimulationError
-            When an arc of an insert lies in another plane than ZX, or a rotating tool meets
-            the bar beside its axis.
+            If an arc of an insert does not lie in the ZX plane, or a rotating tool hits the
+            bar beside its axis.
         """
         windows = windows_of(segments, self.cell)
         if isinstance(shape, Insert):
@@ -289,7 +286,7 @@ class TurningStock:
     def tried(
         self, segments: Segments, shape: Cutter | Insert, *, is_clockwise: bool = True
     ) -> tuple[Stations, BarRadii]:
-        """As :meth:`cut`, but on trial: the bar stays, and what it would become is told."""
+        """Cut like :meth:`cut` but keep the bar; also return the resulting radii."""
         before, count = (
             BarRadii(outer=self.outer.copy(), inner=self.inner.copy()),
             len(self.collisions),
@@ -301,11 +298,11 @@ class TurningStock:
         return stations, after
 
     def take(self, bar: BarRadii) -> None:
-        """Become what a trial made of this very bar."""
+        """Apply the result of a trial cut of this bar."""
         self.outer[:], self.inner[:] = bar.outer, bar.inner
 
     def _turned(self, segments: Segments, windows: Windows, insert: Insert) -> Removed:
-        """Remove the cut of an insert."""
+        """Remove the material that an insert cuts."""
         body, ways = body_of(insert), ways_of(segments, windows, insert)
         if insert.is_inside:
             taken = self._in_bore(lambda s, bed: carve(s, bed, self._grid, body, ways))
@@ -314,7 +311,7 @@ class TurningStock:
         return self._counted(segments, windows, taken)
 
     def _drilled(self, segments: Segments, windows: Windows, cutter: Cutter) -> Removed:
-        """Remove the cut of a rotating tool on the axis."""
+        """Remove the material that a rotating tool on the axis cuts."""
         self._require_axis(segments, cutter)
         start = segments.position(windows.segment, windows.start)
         end = segments.position(windows.segment, windows.end)
@@ -329,7 +326,7 @@ class TurningStock:
     def _in_bore(
         self, cut: Callable[[Floats, Floats], tuple[Floats, Floats]]
     ) -> tuple[Floats, Floats]:
-        """Cut in the mirror: a bore widens as its negative radius falls."""
+        """Cut the mirrored bar, in which a bore widens as its negative radius falls."""
         surface = -self.inner
         taken = cut(surface, -self.outer)
         self.inner[:] = -surface
@@ -338,7 +335,7 @@ class TurningStock:
     def _counted(
         self, segments: Segments, windows: Windows, taken: tuple[Floats, Floats]
     ) -> Removed:
-        """Removed stretches, equal ones together; what no cut removes is noted instead."""
+        """Group the removed amounts by stretch; record removal by rapids as collisions."""
         area, volume = taken
         is_wrong = segments.is_rapid[windows.segment]
         is_wrong[:1] = True
@@ -358,7 +355,7 @@ class TurningStock:
         return grouped(Removed(windows=rest, area=area[1:], volume=volume[1:]), self.cell)
 
     def _require_axis(self, segments: Segments, cutter: Cutter) -> None:
-        """Beside the axis there must be air: such holes are no bodies of revolution."""
+        """Require that a rotating tool beside the axis stays out of the bar."""
         beside = np.maximum(np.abs(segments.start[:, 0]), np.abs(segments.end[:, 0])) > ON_AXIS
         inward = np.minimum(segments.start[:, 0], segments.end[:, 0]) - 0.5 * cutter.diameter
         deep = np.minimum(segments.start[:, 2], segments.end[:, 2])
@@ -373,14 +370,14 @@ class TurningStock:
 
 
 def _around(stock: Stock) -> float:
-    """Radius of the cylinder around a box."""
+    """Radius of the cylinder that encloses a box, mm."""
     x = max(abs(stock.low[0]), abs(stock.high[0]))
     y = max(abs(stock.low[1]), abs(stock.high[1]))
     return hypot(x, y)
 
 
 def _ratios(segments: Segments, removed: Removed, insert: Insert) -> Floats:
-    """Chip thickness over feed by stretch."""
+    """Chip thickness over feed of each stretch."""
     windows = removed.windows
     middle = 0.5 * (windows.start + windows.end)
     angle = edge_angles(insert, segments.direction(windows.segment, middle))
@@ -388,12 +385,12 @@ def _ratios(segments: Segments, removed: Removed, insert: Insert) -> Floats:
 
 
 def _per_length(amount: Floats, length: Floats) -> Floats:
-    """Amount per mm of path; 0 where there is no path."""
+    """Amount per mm of path; 0 where the path has no length."""
     return np.divide(amount, length, out=np.zeros(len(length)), where=length > 0.0)
 
 
 def _stations(removed: Removed, kind: StationKind, chip_ratio: Floats) -> Stations:
-    """Stations of what was removed; air where nothing was."""
+    """Stations of the removed amounts; air where nothing was removed."""
     windows = removed.windows
     section = _per_length(removed.volume, windows.length)
     is_cut = section > 0.0

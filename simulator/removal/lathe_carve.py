@@ -1,15 +1,15 @@
-"""Cutting of a bar by a turning insert: how low it reaches over each cell, in closed form.
+"""Cutting of a bar by a turning insert: the lowest height over each cell, in closed form.
 
-The insert is the region above a convex curve: the arc of its nose (of a blade: two corners and
-the flat between them), and on each side a straight edge that rises at its angle and has no
-end. Moved along a line or an arc it reaches, over a place z, down to the least of
-``x(s) + g(z − z(s))``: g the curve, (z, x)(s) the centre of the nose. On a line this is convex
-in s, and its least value lies where the slope of g is that of the path, or at an end. On an
-arc every stationary point is looked at: the two ends, the nose on the circles of radius R ± r,
-the flat, and either edge where it touches the path. No height is reached that some position
-of the insert does not reach, and none is missed.
+The insert is the region above a convex curve: the arc of its nose (for a blade, two corners and
+the flat between them), and on each side a straight edge that rises at its angle without end.
+Moved along a line or an arc, it reaches over a place z down to the minimum of
+``x(s) + g(z − z(s))``, where g is the curve and (z, x)(s) the nose centre. On a line this
+is convex in s, and the minimum lies where the slope of g equals that of the path, or at an end.
+On an arc every stationary point is checked: the two ends, the nose on the circles of radius
+R ± r, the flat, and either edge where it touches the path. The result is the exact lower
+envelope of all positions of the insert.
 
-A bore is the same in a mirror: heights are negative radii. Units mm and rad.
+A bore is cut as its mirror image: heights are negative radii. Units mm and rad.
 """
 
 from math import acos, atan2, ceil, cos, floor, inf, pi, sin, sqrt
@@ -21,40 +21,41 @@ from simulator.kernels.kernel import entry, kernel
 from simulator.motion.segments import Floats
 
 LEAST = 1e-9
-"""mm; what is thinner is rounding, and stays"""
+"""Thickness, mm, below which material counts as rounding error and is not cut."""
 
 BLOCK = 64
-"""cells of which the greatest height is kept: edges pass quickly over what they do not touch"""
+"""Number of cells per block whose greatest height is stored, so that blocks which an edge
+does not touch are skipped quickly."""
 
 
 class InsertOutline(NamedTuple):
-    """Curve of an insert about the centre of its nose; upright edges have infinite slope."""
+    """Outline of an insert about the centre of its nose; upright edges have infinite slope."""
 
     nose: float
-    """Nose, mm, radius"""
+    """Nose radius, mm."""
     flat: float
-    """Flat, mm between the centres of the corners of a blade"""
+    """Distance between the centres of the corners of a blade, mm."""
     back_slope: float
-    """Back slope of the edge towards −z"""
+    """Slope of the edge towards −z."""
     back_foot: float
-    """Back foot, mm before the centre where it leaves the nose"""
+    """Distance before the centre at which the edge towards −z leaves the nose, mm."""
     front_slope: float
-    """Front slope of the edge towards +z"""
+    """Slope of the edge towards +z."""
     front_foot: float
-    """Front foot, mm behind the centre of the other corner"""
+    """Distance behind the other corner's centre where the edge towards +z begins, mm."""
 
 
 class AxialGrid(NamedTuple):
-    """Cells along the axis, looked at in their middles."""
+    """Cells along the axis, sampled in their middles."""
 
     start: float
-    """z where the first cell begins, mm"""
+    """Position z at which the first cell begins, mm."""
     cell: float
-    """Cell, mm"""
+    """Length of a cell, mm."""
 
 
 class NosePath(NamedTuple):
-    """A line or an arc of the centre of the nose, mm and rad."""
+    """Line or arc along which the centre of the nose moves, mm and rad."""
 
     start_z: float
     start_x: float
@@ -63,20 +64,20 @@ class NosePath(NamedTuple):
     centre_z: float
     centre_x: float
     radius: float
-    """0: a line"""
+    """Radius of the arc, mm; 0 for a line."""
     low: float
-    """lesser of the two angles at which an arc begins and ends"""
+    """Smaller of the angles at the start and the end of the arc, rad."""
     span: float
-    """angle between them"""
+    """Angle between the start and the end of the arc, rad."""
 
 
 class RemovedAmounts(NamedTuple):
-    """Area and volume that each of M ways removes."""
+    """Area and volume that each of M paths removes."""
 
     areas: Floats
-    """Areas, (M,) mm²"""
+    """Area removed by each path in the ZX half plane, (M,), mm²."""
     volumes: Floats
-    """Volumes, (M,) mm³"""
+    """Volume removed by each path, (M,), mm³."""
 
 
 def carve(
@@ -89,7 +90,7 @@ def carve(
     surface : (C,) array, mm
         Heights over the cells; lowered in place.
     bed : (C,) array, mm
-        Below it there is nothing.
+        Heights below which there is no material.
     grid : AxialGrid
     body : InsertOutline
     ways : (M, 9) array
@@ -98,9 +99,9 @@ def carve(
     Returns
     -------
     (M,) array, mm²
-        Area that each way removes in the half plane.
+        Area that each path removes in the half plane.
     (M,) array, mm³
-        Volume that it removes.
+        Volume that each path removes.
     """
     areas, volumes = np.zeros(len(ways)), np.zeros(len(ways))
     tops = np.empty(ceil(len(surface) / BLOCK))
@@ -117,7 +118,7 @@ def _carve(
     tops: Floats,
     taken: RemovedAmounts,
 ) -> None:
-    """The same, added to the last argument; tops has room for one number a block."""
+    """Kernel of :func:`carve`; ``tops`` holds the greatest height of each block."""
     (surface, bed), areas, volumes = bar, taken.areas, taken.volumes
     for block in range(len(tops)):
         tops[block] = _top(surface, block)
@@ -136,7 +137,7 @@ def _carve(
         for block in range(first // BLOCK, last // BLOCK + 1):
             begin, end = max(first, block * BLOCK), min(last, block * BLOCK + BLOCK - 1)
             nearest = min(max(0.5 * (low + high), _middle(grid, begin)), _middle(grid, end))
-            # Beside the path the edges only rise: nothing here is lower than the nearest cell.
+            # Beside the path the edges only rise, so the nearest cell has the lowest height.
             is_beside = nearest < low or nearest > high
             if is_beside and _height(body, way, nearest) >= tops[block]:
                 continue
@@ -158,18 +159,18 @@ def bore(
     Parameters
     ----------
     surface, bed : (C,) array, mm
-        As of :func:`carve`, of a bore: negative radii.
+        As in :func:`carve`, for a bore: negative radii.
     grid : AxialGrid
     profile : (3,) array
         Radius in mm, cotangent of half the point angle, corner radius in mm.
     tips : (M,) array, mm
-        Least z of the tip in each stretch.
+        Lowest z of the tip in each stretch.
 
     Returns
     -------
     (M,) array, mm²
     (M,) array, mm³
-        As of :func:`carve`.
+        As in :func:`carve`.
     """
     areas, volumes = np.zeros(len(tips)), np.zeros(len(tips))
     _bore(surface, bed, grid, profile, tips, RemovedAmounts(areas, volumes))
@@ -185,7 +186,7 @@ def _bore(
     tips: Floats,
     taken: RemovedAmounts,
 ) -> None:
-    """The same, added to the last argument."""
+    """Kernel of :func:`bore`; the removed amounts are added to ``taken``."""
     areas, volumes = taken.areas, taken.volumes
     for row in range(len(tips)):
         for index in range(_cell(grid, tips[row], len(surface)), len(surface)):
@@ -202,7 +203,7 @@ def _bore(
 
 @kernel
 def _radius(profile: Floats, above: float) -> float:
-    """Radius of a rotating tool at a height above its tip."""
+    """Radius of a rotating tool at a height above its tip, mm."""
     radius, cotangent, corner = profile[0], profile[1], profile[2]
     if cotangent > 0.0:
         return min(radius, above / cotangent)
@@ -213,7 +214,7 @@ def _radius(profile: Floats, above: float) -> float:
 
 @kernel
 def _top(surface: Floats, block: int) -> float:
-    """Greatest height of a block."""
+    """Greatest height of the surface within a block, mm."""
     top = -inf
     for index in range(block * BLOCK, min((block + 1) * BLOCK, len(surface))):
         top = max(top, surface[index])
@@ -222,25 +223,25 @@ def _top(surface: Floats, block: int) -> float:
 
 @kernel
 def _middle(grid: AxialGrid, index: int) -> float:
-    """Middle of a cell."""
+    """Position of the middle of a cell, mm."""
     return grid.start + (index + 0.5) * grid.cell
 
 
 @kernel
 def _cell(grid: AxialGrid, z: float, count: int) -> int:
-    """Cell at z, or the nearest one."""
+    """Index of the cell at z, or of the nearest cell."""
     return int(min(max(floor((z - grid.start) / grid.cell), 0.0), count - 1.0))
 
 
 @kernel
 def _reach(height: float, slope: float) -> float:
-    """Distance along an edge until it has risen by a height."""
+    """Distance along the axis over which an edge rises by a height, mm."""
     return height / slope if slope > 0.0 else inf
 
 
 @kernel
 def _extent(way: NosePath) -> tuple[float, float, float]:
-    """Least and greatest z and least x of a way."""
+    """Lowest and highest z and lowest x of a path, mm."""
     low, high = min(way.start_z, way.end_z), max(way.start_z, way.end_z)
     least = min(way.start_x, way.end_x)
     if way.radius > 0.0:
@@ -255,13 +256,13 @@ def _extent(way: NosePath) -> tuple[float, float, float]:
 
 @kernel
 def _is_passed(way: NosePath, angle: float) -> bool:
-    """Whether an arc has a point at an angle."""
+    """Whether an arc contains an angle."""
     return bool((angle - way.low) % (2.0 * pi) <= way.span)
 
 
 @kernel
 def _height(body: InsertOutline, way: NosePath, z: float) -> float:
-    """Least height that the insert reaches over a place."""
+    """Lowest height that the insert reaches over a place, mm."""
     if way.radius > 0.0:
         return _height_of_arc(body, way, z)
     return _height_of_line(body, way, z)
@@ -269,7 +270,7 @@ def _height(body: InsertOutline, way: NosePath, z: float) -> float:
 
 @kernel
 def _curve(body: InsertOutline, t: float) -> float:
-    """Height of the insert's curve over the centre of its nose; t along the axis from there."""
+    """Height of the insert's outline at an axial distance t from the centre of its nose, mm."""
     if t < -body.back_foot - LEAST:
         foot = -sqrt(max(0.0, body.nose**2 - body.back_foot**2))
         return foot + (-body.back_foot - t) * body.back_slope
@@ -283,12 +284,12 @@ def _curve(body: InsertOutline, t: float) -> float:
 
 @kernel
 def _height_of_line(body: InsertOutline, way: NosePath, z: float) -> float:
-    """Least height over a place of a line."""
+    """Lowest height that the insert reaches over a place along a line, mm."""
     run, rise = way.end_z - way.start_z, way.end_x - way.start_x
     if run == 0.0:
         return min(way.start_x, way.end_x) + _curve(body, z - way.start_z)
     slope = rise / run
-    # Steeper than an edge: the least height lies at an end.
+    # If the path is steeper than an edge, the lowest height lies at an end.
     if -slope >= body.back_slope:
         touch = -inf
     elif slope >= body.front_slope:
@@ -307,7 +308,7 @@ def _height_of_line(body: InsertOutline, way: NosePath, z: float) -> float:
 
 @kernel
 def _height_of_arc(body: InsertOutline, way: NosePath, z: float) -> float:
-    """Least height over a place of an arc: of all stationary points and both ends."""
+    """Lowest height over a place along an arc: over all stationary points and both ends, mm."""
     least = min(
         way.start_x + _curve(body, z - way.start_z), way.end_x + _curve(body, z - way.end_z)
     )
@@ -326,7 +327,7 @@ def _height_of_arc(body: InsertOutline, way: NosePath, z: float) -> float:
 
 @kernel
 def _at(body: InsertOutline, way: NosePath, angle: float, z: float) -> float:
-    """Height over a place with the nose at an angle of an arc; none beside the arc."""
+    """Height over a place with the nose at an angle of an arc, mm; infinite off the arc."""
     if not _is_passed(way, angle):
         return inf
     x = way.centre_x + way.radius * sin(angle)

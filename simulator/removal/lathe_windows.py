@@ -1,9 +1,9 @@
-"""Stretches of a path over which the removal on a lathe is counted, and stations made of them.
+"""Stretches of a path over which removal on a lathe is measured.
 
-The map knows whole cells only: counted over less than some tens of them, a wall that moves
-along the axis comes in jumps. So a stretch spans at least :data:`WINDOW` cells, on a line a
-whole number of them, and what short segments remove is spread over their neighbours. Volumes
-are never lost by this: section times length adds up to what left the map. Units mm.
+The map resolves whole cells only: measured over fewer than tens of cells, a wall that moves
+along the axis advances in jumps. So a stretch spans at least :data:`WINDOW` cells, on a line a
+whole number of them, and what short segments remove is spread over their neighbours. The total
+volume is preserved: section times length adds up to what left the map. Units mm.
 """
 
 from dataclasses import dataclass
@@ -14,46 +14,46 @@ from simulator.kernels.kernel import entry, kernel
 from simulator.motion.segments import Floats, Ints, Segments
 
 WINDOW = 50
-"""cells along the path of the shortest stretch; jumps of a cell stay below 2 %"""
+"""Length of the shortest stretch, in cells; keeps jumps of one cell below 2 %."""
 
 ALIKE = 0.01
-"""relative difference of section or depth below which stretches become one"""
+"""Relative difference of section or depth below which stretches are merged."""
 
 _ROUNDING = 1e-6  # share of a stretch
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Windows:
-    """M stretches, each of one segment, in order."""
+    """M stretches of a path, in order, each within one segment."""
 
     segment: Ints
-    """Segment, (M,)"""
+    """Index of the segment of each stretch, (M,)."""
     start: Floats
-    """Start, (M,) mm along the segment"""
+    """Start of each stretch along its segment, (M,), mm."""
     end: Floats
-    """End, (M,) mm"""
+    """End of each stretch along its segment, (M,), mm."""
 
     @property
     def length(self) -> Floats:
-        """(M,) mm."""
+        """Length of each stretch, (M,), mm."""
         return self.end - self.start
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Removed:
-    """Removed material, by stretch."""
+    """Material removed over each stretch."""
 
     windows: Windows
     area: Floats
-    """Area, (M,) mm², in the half plane"""
+    """Area removed in the ZX half plane, (M,), mm²."""
     volume: Floats
-    """Volume, (M,) mm³"""
+    """Removed volume, (M,), mm³."""
 
 
 def windows_of(segments: Segments, cell: float) -> Windows:
-    """Cut segments in stretches; a rapid is one.
+    """Divide segments into stretches; a rapid is a single stretch.
 
-    Before them comes one without length: where the tool stands.
+    The first stretch has no length and stands for the initial position of the tool.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def windows_of(segments: Segments, cell: float) -> Windows:
 
 
 def grouped(removed: Removed, cell: float) -> Removed:
-    """Stretches that remove alike as one; lengths too short to count become as their group.
+    """Merge stretches with similar removal; short stretches take the mean of their group.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ def grouped(removed: Removed, cell: float) -> Removed:
     Returns
     -------
     Removed
-        At least one stretch a segment, the last one up to its end.
+        At least one stretch per segment, the last one ending at the segment's end.
     """
     windows, length = removed.windows, removed.windows.length
     if len(length) == 0:
@@ -125,12 +125,12 @@ def grouped(removed: Removed, cell: float) -> Removed:
 def _number_groups(
     area: Floats, volume: Floats, length: Floats, least: float, group: Ints
 ) -> None:
-    """Write the number of the group of each stretch, from 0 up; group begins as zeros."""
+    """Write the group number of each stretch, from 0 up, into ``group`` (initially zeros)."""
     total, depth, section = length[0], area[0], volume[0]
     for row in range(1, len(area)):
         is_air = volume[row] == 0.0
-        # All of a group is in the cut, or all in air; it grows until it is long enough to
-        # count in, and from there as long as what follows is like it.
+        # A group is entirely in the cut or entirely in air; it grows until it is long enough
+        # to measure, and after that as long as the following stretches are similar.
         is_same = is_air == (section == 0.0)
         if is_same and not is_air and min(total, length[row]) >= least:
             per_total, per_row = 1.0 / total, 1.0 / length[row]
@@ -151,5 +151,5 @@ def _number_groups(
 
 @kernel
 def _alike(one: float, other: float) -> bool:
-    """Whether two values are one within the tolerance."""
+    """Whether two values are equal within the tolerance ``ALIKE``."""
     return bool(abs(one - other) <= ALIKE * abs(one))

@@ -1,4 +1,4 @@
-"""The march of a tool along its path: look at the rim at each station, then cut.
+"""March of a tool along its path: look at the rim at each station, then cut.
 
 Lines are taken whole and arcs by quarter turns. Stations lie closer where the engagement
 changes. Units mm and rad.
@@ -21,32 +21,32 @@ from simulator.removal.tip_move import copy, place, raised
 from simulator.removal.trial import DEEPEST, RemovalTask
 
 STEEP = 0.1
-"""horizontal share of a move below which the tool sinks rather than mills"""
+"""Horizontal share of a move below which the tool plunges rather than mills."""
 
 CHANGE_OF_ANGLE = 0.15
-"""rad of contact by which two stations may differ"""
+"""Largest difference in contact angle between two neighbouring stations, rad."""
 
 CHANGE_OF_SECTION = 0.15
-"""share of the greater by which the sections of two stations may differ"""
+"""Largest relative difference in section between two neighbouring stations."""
 
 POINTED = 0.4
-"""of the step, for tools whose point goes on growing"""
+"""Stretch length over the normal step for pointed tools, whose section keeps growing."""
 
 MOST_STRETCHES = 4000
-"""of a row; longer rows have longer stretches"""
+"""Largest number of stretches in a row; longer rows have longer stretches."""
 
 THINNEST = 0.05
-"""mm of a skin that a sinking tool meets; a thinner one counts over so much"""
+"""Thickness, mm, assigned to a thinner skin of material that a plunging tool meets."""
 
 MOST_TURNS = 100.0
-"""of one arc"""
+"""Largest number of turns in one arc."""
 
 INSET = 2e-5
-"""mm from the ends of a part at which they are looked at: on a corner the tool's own circle
-bounds what it has cut, and nobody can say on which side it lies"""
+"""Distance, mm, from the ends of a part at which engagement is sampled: exactly on a corner
+the tool's own circle bounds what it has cut, and the side is undefined."""
 
 ROOM_FOR_ROW = 5 * MOST_STRETCHES
-"""stations kept free before a row begins"""
+"""Number of stations that must be free before a row begins."""
 
 (
     ROW,
@@ -63,12 +63,12 @@ ROOM_FOR_ROW = 5 * MOST_STRETCHES
     LENGTH,
     GROWTH,
 ) = range(13)
-"""columns of what the march writes; EXACT: the section comes from exact arcs"""
+"""Columns of the lines written by the march; EXACT: the section comes from exact arcs."""
 
 COLUMNS = 13
 
 VOLUME, DEPTH, SPOT_X, SPOT_Y, SPOT_Z, SHANK, HOLDER, HOLDER_X, HOLDER_Y = range(9)
-"""columns of what the march finds on each row"""
+"""Columns of the findings recorded for each row."""
 
 FINDINGS = 9
 
@@ -80,10 +80,10 @@ _AIR, _MILLING, _DRILLING = (
 
 
 Segment = tuple[Floats, float, int]
-"""row, length and index of a segment"""
+"""Row, length in mm and index of a segment."""
 
 Span = tuple[float, float]
-"""shares of its length"""
+"""Begin and end of a part of a segment, as shares of its length."""
 
 
 @entry
@@ -96,14 +96,14 @@ def march(
     ----------
     task : RemovalTask
     rows : (N, 13) array
-        Of :func:`rows_of`.
+        Rows from :func:`rows_of`.
     lengths : (N,) array, mm
     out : (L, COLUMNS) array
-        Written from its beginning; L at least ``ROOM_FOR_ROW``.
+        Lines written, from the first one on; L at least ``ROOM_FOR_ROW``.
     found : (N, FINDINGS) array
-        Added to.
+        Findings, accumulated in place.
     reached : (2,) array of int
-        Row to begin with; becomes the next row, and the number of stations written.
+        Index of the first row; updated to the next row and the number of stations written.
     """
     count, row = int(np.int64(0)), reached[0]
     while row < len(rows) and count + ROOM_FOR_ROW <= len(out):
@@ -114,7 +114,7 @@ def march(
 
 @kernel
 def _row(task: RemovalTask, segment: Segment, out: Floats, count: int, found: Floats) -> int:
-    """Cut one row; gives the number of stations so far."""
+    """Cut one row and return the number of stations so far."""
     row, length, index = segment
     if length <= 0.0:
         return _air(out, count, index, 0.0, 0.0)
@@ -129,7 +129,7 @@ def _row(task: RemovalTask, segment: Segment, out: Floats, count: int, found: Fl
 
 @kernel
 def _air(out: Floats, count: int, index: int, station: float, length: float) -> int:
-    """Write a stretch of air, or lengthen the one before."""
+    """Write a stretch of air, or lengthen the previous one; return the number of stations."""
     if count > 0 and out[count - 1, ROW] == index and out[count - 1, KIND] == _AIR:
         out[count - 1, STATION] = station
         out[count - 1, LENGTH] += length
@@ -144,7 +144,7 @@ def _air(out: Floats, count: int, index: int, station: float, length: float) -> 
 
 @kernel
 def _sink(task: RemovalTask, segment: Segment, out: Floats, count: int, found: Floats) -> int:
-    """Cut a plunge by stretches, or what a tool meets on its way up."""
+    """Cut a plunge by stretches, or what a retracting tool meets; return the station count."""
     row, length, index = segment
     grid = task.grid
     if min(row[2], row[5]) >= grid.top:
@@ -158,7 +158,7 @@ def _sink(task: RemovalTask, segment: Segment, out: Floats, count: int, found: F
         span = (stretch / stretches, (stretch + 1) / stretches)
         x, y, z = place(row, span[1])
         inner, outer = lip(grid, profile, x, y, z)
-        # Where a point left through the bottom, the axis tells no more how wide its tool is.
+        # Where a point broke through the bottom, its height on the axis is useless.
         middle = place(row, 0.5 * (span[0] + span[1]))
         bored = max(bored, hole(grid, task.past, middle))
         if abs(inner - bored) <= LIP_ERROR * profile.radius + max(grid.dx, grid.dy):
@@ -168,7 +168,7 @@ def _sink(task: RemovalTask, segment: Segment, out: Floats, count: int, found: F
         if volume <= 0.0:
             count = _air(out, count, index, span[1] * length, long)
             continue
-        # A mill meets a skin over its own thickness: material ends a stretch, or begins it.
+        # A mill meets a skin over its thickness: the material lies at one end of a stretch.
         met = long if task.how.tip_sine < 1.0 else max(depth, THINNEST)
         met = met if met < long - INSET else long
         before = 0.0 if z < grid.bottom else long - met
@@ -184,10 +184,10 @@ def _sink(task: RemovalTask, segment: Segment, out: Floats, count: int, found: F
         if is_plain(profile):
             ring = pi * (profile.radius**2 - bored**2)
             if abs(ring - line[SECTION]) <= pi * profile.radius * max(grid.dx, grid.dy):
-                # A ring thinner than a cell: what drilled the hole tells it, not the map.
+                # A ring thinner than a cell: the drilled hole's diameter is more exact.
                 inner, outer, line[SECTION] = bored, profile.radius, ring
         elif task.how.tip_sine < 1.0:
-            # A point goes on growing: at the end of the stretch it cuts more than on average.
+            # A point keeps growing: at the end of the stretch it cuts more than on average.
             more = pi * (outer**2 - inner**2) - line[SECTION]
             line[GROWTH] = 2.0 * min(max(more, 0.0), line[SECTION])
         line[AXIAL] = outer - inner
@@ -204,7 +204,7 @@ def _sink(task: RemovalTask, segment: Segment, out: Floats, count: int, found: F
 def _mill(
     task: RemovalTask, segment: Segment, span: Span, out: Floats, count: int, found: Floats
 ) -> int:
-    """Look along a part, cut it, and share its volume among the stretches."""
+    """Sample the engagement along a part, cut it, and share its volume among stretches."""
     row, length, index = segment
     begin = count
     if min(row[2], row[5]) - abs(row[9]) * (row[12] != 2.0) >= task.grid.top:
@@ -217,16 +217,16 @@ def _mill(
 
 @kernel
 def _leave(past: RecentOutlines) -> None:
-    """Forget where the tool cut last."""
+    """Forget the position at which the tool cut last."""
     past.last[0] = np.nan
 
 
 @kernel
 def _stations(task: RemovalTask, segment: Segment, span: Span, out: Floats, count: int) -> int:
-    """Write a line for each stretch of a part: the fuller of its ends, and the mean section.
+    """Write a line per stretch of a part, with its mean section and fuller end's engagement.
 
-    A stretch waits in the stack with what was seen at its end; where that differs too much
-    from what was seen at its beginning, its middle goes on top.
+    The end of a stretch waits on a stack with the engagement found there; where it differs too
+    much from that at the beginning, the middle of the stretch is pushed on top.
     """
     row, length, index = segment
     whole = (span[1] - span[0]) * length
@@ -268,7 +268,7 @@ def _stations(task: RemovalTask, segment: Segment, span: Span, out: Floats, coun
 
 @kernel
 def _look(task: RemovalTask, row: Floats, part: float, into: Floats) -> None:
-    """Engagement at a share of a row."""
+    """Determine the engagement at a share of a row and write it to ``into``."""
     x, y, z = place(row, part)
     if row[11] == 0.0:
         ahead_x, ahead_y, climb = row[3] - row[0], row[4] - row[1], row[5] - row[2]
@@ -276,7 +276,7 @@ def _look(task: RemovalTask, row: Floats, part: float, into: Floats) -> None:
         ahead_x, ahead_y = -(y - row[7]) * row[11], (x - row[6]) * row[11]
         climb = row[5] - row[2]
     else:
-        # A difference this small errs by less than its square, and serves both planes.
+        # The error of this small difference is of second order, and it serves both planes.
         one, other = place(row, part - 1e-5), place(row, part + 1e-5)
         ahead_x, ahead_y, climb = other[0] - one[0], other[1] - one[1], other[2] - one[2]
     flat = max(hypot(ahead_x, ahead_y), 1e-12)
@@ -286,7 +286,10 @@ def _look(task: RemovalTask, row: Floats, part: float, into: Floats) -> None:
 
 @kernel
 def _differs(task: RemovalTask, left: Floats, right: Floats, long: float) -> bool:
-    """Whether there should be a station between two; what the map says is noise when near."""
+    """Whether two stations differ so much that another is needed between them.
+
+    Sections that come from the map are compared only over long stretches: they are noisy.
+    """
     if left[7] * right[7] == 0.0:
         return (left[AREA] == 0.0) != (right[AREA] == 0.0) and long > 2.0 * task.how.coarse
     if long <= 2.0 * task.how.least:
@@ -298,11 +301,11 @@ def _differs(task: RemovalTask, left: Floats, right: Floats, long: float) -> boo
 
 @kernel
 def _cut(task: RemovalTask, row: Floats, span: Span, found: Floats) -> tuple[float, float]:
-    """Cut a part of a row and keep account; gives volume and greatest depth."""
+    """Cut a part of a row and record the findings; return volume and greatest depth."""
     grid, past = task.grid, task.past
     start, end = place(row, span[0]), place(row, span[1])
     low = min(start[2], end[2]) - abs(row[9]) * (row[12] != 2.0)
-    # A raised tool is a tool on a raised row.
+    # A raised tool is equivalent to the tool on a raised row.
     if low + task.how.shank < grid.top:
         lost = carve_part(
             grid,
@@ -348,7 +351,7 @@ def _cut(task: RemovalTask, row: Floats, span: Span, found: Floats) -> tuple[flo
 
 @kernel
 def _with_end(out: Floats, begin: int, count: int, volume: float) -> None:
-    """Add what the end of a flat tool cuts on its way down, alike all along."""
+    """Add the volume that the end of a descending flat tool cuts, spread evenly."""
     rest, length = volume, 0.0
     for index in range(begin, count):
         rest -= out[index, SECTION] * out[index, LENGTH]
@@ -361,7 +364,7 @@ def _with_end(out: Floats, begin: int, count: int, volume: float) -> None:
 
 @kernel
 def _shared(task: RemovalTask, out: Floats, begin: int, count: int, volume: float) -> int:
-    """Sections that are not exact hold what is left of the volume; air where there is none."""
+    """Distribute the remaining volume over inexact sections; mark empty stretches as air."""
     unknown = False
     for index in range(begin, count):
         unknown = unknown or out[index, EXACT] == 0.0
@@ -386,7 +389,7 @@ def _shared(task: RemovalTask, out: Floats, begin: int, count: int, volume: floa
             kept = _air(out, kept, int(line[ROW]), line[STATION], line[LENGTH])
             continue
         if line[CONTACT] == 0.0:
-            # What cuts only behind its axis, as a ball does that runs down, has no arc ahead.
+            # A tool that cuts only behind its axis, such as a descending ball, has no arc.
             line[AXIAL] = line[SECTION] / (2.0 * task.tool.profile.radius)
             line[EXIT], line[CONTACT] = pi, pi
             line[CHIP] = 2.0 / pi * task.how.tip_sine

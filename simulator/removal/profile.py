@@ -1,9 +1,10 @@
 """Body of revolution that a rotating cutter sweeps, as a few numbers for the kernels.
 
-Height over the tip against the distance from the axis, convex and never falling: a flat or a
-conical point, an arc of the corner radius, a conical or cylindrical flank. The arc ends where
-it touches the flank, so that a ball with a tapered neck stays a ball at its tip. Above the
-edge the shank is a cylinder as wide as the edge is there. Units mm.
+The profile is the height above the tip as a function of the distance from the axis. It is
+convex and never falls: a flat or a conical point, an arc of the corner radius, and a conical or
+cylindrical flank. The arc ends where it touches the flank, so that a ball with a tapered neck
+stays a ball at its tip. Above the edge the shank is a cylinder as wide as the edge is there.
+Units mm.
 """
 
 from math import cos, inf, pi, sin, sqrt, tan
@@ -13,44 +14,45 @@ from simulator.kernels.kernel import kernel
 from simulator.removal.cutter import Cutter
 
 SMALL_CORNER = 0.25
-"""of the radius; the section of what is rounder depends on how its end is sliced"""
+"""Largest corner radius over tool radius for which outlines count as exact; with rounder ends
+the section depends on how the end is sliced."""
 
-_STRAIGHT = 1e-9  # rad; a smaller taper is none
+_STRAIGHT = 1e-9  # rad; a smaller taper counts as zero
 
 
 class CutterProfile(NamedTuple):
-    """Profile of revolution."""
+    """Profile of revolution of a rotating tool."""
 
     slope: float
-    """rise per mm of the point; 0: flat"""
+    """Rise of the point per mm of radius; 0 for a flat end."""
     flat: float
-    """Flat, mm from the axis to where the point or flat ends and the corner begins"""
+    """Distance from the axis to where the point or flat ends and the corner begins, mm."""
     corner: float
-    """Corner, mm, radius of the corner"""
+    """Corner radius, mm."""
     tangent: float
-    """Tangent, mm from the axis to where the corner ends and the flank begins"""
+    """Distance from the axis to where the corner ends and the flank begins, mm."""
     shoulder: float
-    """Shoulder, mm over the tip, there"""
+    """Height above the tip at which the corner ends and the flank begins, mm."""
     flank: float
-    """rise per mm of the flank; 0: a cylinder, which has no width"""
+    """Rise of the flank per mm of radius; 0 for a cylinder, whose flank is vertical."""
     radius: float
-    """Radius, mm, greatest"""
+    """Greatest radius, mm."""
 
 
 def profile_of(cutter: Cutter, *, reach: float) -> CutterProfile:
-    """Profile of a cutter.
+    """Profile of revolution of a cutter.
 
     Parameters
     ----------
     cutter : Cutter
     reach : float, mm
-        Height over the tip up to which a tapered flank without an end is followed.
+        Height above the tip up to which a tapered flank of unlimited length is followed.
 
     Raises
     ------
     ValueError
         If the diameter is not positive, the corner does not fit, or the tool is wider at its
-        tip than above, which no height map can show.
+        tip than above, which a height map cannot represent.
     """
     radius, corner = 0.5 * cutter.diameter, cutter.corner_radius
     if not 0.0 < radius < inf:
@@ -82,20 +84,20 @@ def cylinder(radius: float) -> CutterProfile:
 
 @kernel
 def is_plain(profile: CutterProfile) -> bool:
-    """Whether the tool is a cylinder with a flat end."""
+    """Whether the tool is a cylinder with a flat end and sharp corners."""
     return profile.slope == 0.0 and profile.flat == profile.radius
 
 
 @kernel
 def is_upright(profile: CutterProfile) -> bool:
-    """Whether the tool is a cylinder with a flat end, or one whose corner is small."""
+    """Whether the tool is a cylinder with a flat end and sharp or slightly rounded corners."""
     has_small_corner = profile.corner <= SMALL_CORNER * profile.radius
     return profile.slope == 0.0 and profile.flank == 0.0 and has_small_corner
 
 
 @kernel
 def rise(profile: CutterProfile, distance: float) -> float:
-    """Height over the tip at a distance from the axis, mm."""
+    """Height of the profile above the tip at a distance from the axis, mm."""
     if distance <= profile.flat:
         return profile.slope * distance
     if distance <= profile.tangent:
@@ -106,7 +108,7 @@ def rise(profile: CutterProfile, distance: float) -> float:
 
 @kernel
 def steepness(profile: CutterProfile, distance: float) -> float:
-    """Derivative of :func:`rise`."""
+    """Slope of the profile at a distance from the axis: the derivative of :func:`rise`."""
     if distance <= profile.flat:
         return profile.slope
     if distance <= profile.tangent:
@@ -117,7 +119,7 @@ def steepness(profile: CutterProfile, distance: float) -> float:
 
 @kernel
 def radius_at(profile: CutterProfile, height: float) -> float:
-    """Distance from the axis to the surface at a height over the tip, mm."""
+    """Distance from the axis to the surface at a height above the tip, mm."""
     if profile.slope > 0.0:
         return min(height / profile.slope, profile.radius)
     if height < profile.shoulder:

@@ -1,14 +1,15 @@
-"""Contact of a cutter with the stock: its rim against the height map, in slices.
+"""Contact of a cutter with the stock: its rim against the height map, in horizontal slices.
 
-At each slice a ring of samples one cell outside the rim says what is solid, because nearer to
-the rim the cells of the tool's own last step read as air. A sample that reads as free knows
-who freed it: where that was a move with an exact outline, the move's outline decides and the
-map only named it; where it was not (a rounded tool on a slope, a move long forgotten), the
-sample itself decides, to about a cell. So the map is the index of the exact arcs.
+For each slice, a ring of samples one cell outside the rim tells what is solid; closer to the
+rim, cells cut by the tool's own last step would read as air. Each free sample names the move
+that cleared it. If that move has an exact outline, the outline decides and the map serves only
+as an index; otherwise (a rounded tool on a slope, a move no longer remembered) the sample
+itself decides, to within about a cell.
 
-Slices of flat cutters lie between the heights that the ring meets; those of rounded ones
-divide the depth. Mean chip over feed per tooth is ``∫∫ sin φ dφ dz / ∫∫ dφ dl``, l along the
-edge, which is ``sin κ·(cos φ_st − cos φ_ex)/(φ_ex − φ_st)`` for one arc. Units mm and rad.
+Slices of flat cutters lie between the heights found on the ring; those of rounded cutters
+divide the depth. Mean chip thickness over feed per tooth is ``∫∫ sin φ dφ dz / ∫∫ dφ dl`` with
+l along the edge, which is ``sin κ·(cos φ_st − cos φ_ex)/(φ_ex − φ_st)`` for one arc. Units mm
+and rad.
 """
 
 from math import acos, asin, pi, sin, sqrt
@@ -46,45 +47,47 @@ from simulator.removal.zmap import OUTSIDE, HeightGrid
 FLANK_SLICES = 4
 
 FORGETTING = 32_768
-"""moves whose outline is remembered"""
+"""Number of recent moves whose outlines are remembered."""
 
 SLIVERS = 0.05
-"""of the section, that may lie above its depth: slivers left on a wall do not make it deep"""
+"""Share of the section that may lie above the axial depth, so that slivers left on a wall do
+not increase the depth."""
 
 TRACE = 1e-3
-"""rad of contact below which there is none"""
+"""Contact angle, rad, below which contact is neglected."""
 
 INSIDE_SAMPLES = 8
-"""of each contact arc"""
+"""Number of samples inside the rim for each contact arc."""
 
 RECENT = 3
-"""last moves, whose outlines count whether the map names them or not"""
+"""Number of the last moves whose outlines are always used, even if no cell names them."""
 
 
 class RecentOutlines(NamedTuple):
-    """Outlines of the last moves that cut."""
+    """Outlines of the last moves that cut; a ring buffer."""
 
     records: Floats
-    """Records, (FORGETTING, RECORD)"""
+    """Row and tool profile of each remembered move, (FORGETTING, RECORD)."""
     next: Ints
-    """Next, (1,) number of the next move"""
+    """Number of the next move, (1,)."""
     last: Floats
-    """Last, (3,) mm, where the tool cut last; NaN: elsewhere"""
+    """Position at which the tool cut last, (3,), mm; NaN after a jump."""
 
 
 AREA, DEPTH, ENTRY, EXIT, CONTACT, CHIP, DIAMETER, EXACT = range(8)
-"""columns of an engagement: section in mm², greatest depth, angles, mean chip over feed per
-tooth, greatest diameter that cuts; EXACT: 1 where all outlines were, on a level move of an
-upright tool; FLANK where such a one goes down, whose end cuts too; else 0"""
+"""Columns of an engagement: section in mm², greatest depth in mm, angles in rad, mean chip
+thickness over feed per tooth, greatest cutting diameter in mm, and EXACT: 1 if all outlines are
+exact on a level move of an upright tool, FLANK if such a tool descends and its end cuts too,
+else 0."""
 
 FLANK = 0.5
-"""of EXACT: the section tells what the side of the tool cuts, and not its end"""
+"""Value of EXACT for a section that includes the flank of the tool but not its end."""
 
 ENGAGEMENT = 8
 
 
 def past() -> RecentOutlines:
-    """No moves yet."""
+    """Create an empty memory of move outlines."""
     return RecentOutlines(
         np.zeros((FORGETTING, RECORD)), np.zeros(1, dtype=np.int64), np.full(3, np.nan)
     )
@@ -99,7 +102,7 @@ def look(
     pose: Pose,
     into: Floats,
 ) -> None:
-    """Engagement of a tool at a place, before it cuts there.
+    """Determine the engagement of a tool at a position, before it cuts there.
 
     Parameters
     ----------
@@ -109,7 +112,7 @@ def look(
     work : RimBuffers
     pose : Pose
     into : (ENGAGEMENT,) array
-        Where the engagement is written.
+        Receives the engagement.
     """
     into[:] = 0.0
     into[EXACT] = 1.0
@@ -166,7 +169,7 @@ def look(
 
 @kernel
 def _exactness(is_known: bool, climb: float) -> float:
-    """Exactness of the section, by the outlines and the slope of the path."""
+    """Exactness of the section, from the outlines and the slope of the path."""
     if not is_known or climb > LEVEL:
         return 0.0
     return FLANK if climb < -LEVEL else 1.0
@@ -176,9 +179,10 @@ def _exactness(is_known: bool, climb: float) -> float:
 def _slices(
     grid: HeightGrid, work: RimBuffers, tool: RimTool, pose: Pose, base: float, upright: bool
 ) -> int:
-    """Slices of a rounded tool: up to the highest place that it touches ahead.
+    """Divide a rounded tool into slices up to the highest point it touches ahead.
 
-    Above the corner of an upright one they lie between the heights that its ring meets.
+    Above the corner of an upright tool, slices lie between the heights found on its ring.
+    Returns the number of slices.
     """
     profile = tool.profile
     top = _top(grid, work, tool, pose, base)
@@ -187,7 +191,7 @@ def _slices(
     shoulder = min(max(pose.z + profile.shoulder, base), top)
     above = 0
     if upright and top > shoulder + LEAST:
-        # The last ring that was read is the widest.
+        # The ring that was read last is the widest.
         above = levels(work, shoulder)
         for index in range(above, 0, -1):
             work.bounds[index + CORNER_SLICES] = work.bounds[index]
@@ -201,7 +205,7 @@ def _slices(
 
 @kernel
 def _divided(work: RimBuffers, count: int, low: float, high: float, parts: int) -> int:
-    """Number of slices after some more have been added that divide a height."""
+    """Add slices that divide a height range evenly; return the number of slices."""
     work.bounds[count] = low
     if high <= low + LEAST:
         return count
@@ -212,7 +216,7 @@ def _divided(work: RimBuffers, count: int, low: float, high: float, parts: int) 
 
 @kernel
 def _top(grid: HeightGrid, work: RimBuffers, tool: RimTool, pose: Pose, base: float) -> float:
-    """Highest place that a rounded tool touches ahead."""
+    """Greatest height at which a rounded tool touches material ahead, mm."""
     profile, gap = tool.profile, max(grid.dx, grid.dy)
     samples = len(work.heights)
     step, top = pi / samples, base
@@ -225,7 +229,7 @@ def _top(grid: HeightGrid, work: RimBuffers, tool: RimTool, pose: Pose, base: fl
             height = work.heights[index]
             if height <= top:
                 continue
-            # What is lower than the tool there may go on to where the tool comes as low.
+            # Material lower than the tool there may extend inward to where the tool is as low.
             nearer = radius_at(profile, height - pose.z) + gap
             if height > reach or (
                 cell_at(grid, circle, nearer, (index + 0.5) * step)[0] > height - LEAST
@@ -236,7 +240,7 @@ def _top(grid: HeightGrid, work: RimBuffers, tool: RimTool, pose: Pose, base: fl
 
 @kernel
 def _recent(before: RecentOutlines, work: RimBuffers, circle: ToolCircle, level: float) -> int:
-    """Candidates from the last moves; number of intervals that they freed."""
+    """Register the last moves as candidates; return the number of intervals they cleared."""
     latest, free = before.next[0], int(np.int64(0))
     for index in range(min(latest, RECENT)):
         number = max(latest - RECENT, 0) + index
@@ -255,7 +259,7 @@ def _slice(
     level: float,
     is_above: bool,
 ) -> tuple[int, bool]:
-    """Contact arcs of one slice, above the lowest or not; whether all outlines were exact."""
+    """Find the contact arcs of one slice: their number, and whether all outlines were exact."""
     latest = before.next[0]
     samples = len(work.heights)
     step = pi / samples
@@ -305,9 +309,9 @@ def _named_inside(
     level: float,
     free: int,
 ) -> int:
-    """Add what moves freed that no sample outside the rim names; number of free intervals.
+    """Add intervals cleared by moves that only cells inside the rim name; return their count.
 
-    What only the arc of a corner freed, in an earlier pass, may be narrower than a cell.
+    A strip cleared by the arc of a corner in an earlier pass may be narrower than a cell.
     """
     inside = circle.radius - 0.5 * max(grid.dx, grid.dy)
     latest, last = before.next[0], -1
@@ -326,7 +330,7 @@ def _named_inside(
 
 @kernel
 def _runs(work: RimBuffers, level: float) -> int:
-    """Distance in samples of each free one from a solid one; returns the number of solids."""
+    """Write each sample's distance to the nearest solid one; return the number of solids."""
     solid, heights = work.solid, work.heights
     away, count, last = NEAR + 1, 0, len(heights) - 1
     for index in range(last + 1):
@@ -342,7 +346,7 @@ def _runs(work: RimBuffers, level: float) -> int:
 def _leading(
     work: RimBuffers, count: int, profile: CutterProfile, height: float, climb: float
 ) -> int:
-    """Contact arcs without what a climbing tool leaves behind: ``n·v ≤ 0`` on its surface."""
+    """Keep the parts of contact arcs on the leading side of a climbing tool, ``n·v > 0``."""
     radius = radius_at(profile, height)
     if profile.slope > 0.0 and radius < profile.radius:
         tangent = profile.slope
@@ -367,7 +371,7 @@ def _leading(
 
 @kernel
 def _edge(profile: CutterProfile, low: float, high: float, sine: float) -> float:
-    """Length of the edge between two heights over the tip."""
+    """Length of the cutting edge between two heights above the tip, mm."""
     if profile.slope > 0.0:
         return (high - low) * sqrt(1.0 + 1.0 / profile.slope**2)
     corner = 0.0
@@ -385,7 +389,7 @@ def _edge(profile: CutterProfile, low: float, high: float, sine: float) -> float
 
 @kernel
 def _hull(total: Intervals, gaps: int, into: Floats) -> None:
-    """Entry, exit and sum of arcs, from the gaps between them."""
+    """Compute entry angle, exit angle and total contact from the gaps between arcs."""
     into[EXIT], into[CONTACT] = pi, pi
     for index in range(gaps):
         begin, end = total.contact[index, 0], total.contact[index, 1]

@@ -1,4 +1,4 @@
-"""A ring of samples of the height map around the front of a cutter, and the room to work on it.
+"""Ring of samples of the height map around the front of a cutter, with its work buffers.
 
 Units mm and rad.
 """
@@ -20,70 +20,70 @@ from simulator.removal.tip_move import LEAST
 from simulator.removal.zmap import OUTSIDE, HeightGrid
 
 SAMPLES = 128
-"""of the front half of a ring"""
+"""Number of samples on the front half of a ring."""
 
 ROUND_SAMPLES = 48
-"""of each ring of a rounded tool"""
+"""Number of samples on each ring of a rounded tool."""
 
 MOST_LEVELS = 8
-"""heights that a flat cutter tells apart"""
+"""Largest number of different stock heights that a flat cutter distinguishes."""
 
 CORNER_SLICES = 6
-"""of a rounded end"""
+"""Number of slices of a rounded end."""
 
 BLURRED_SLICES = 8
-"""that divide its depth where there are more, as on a ramp"""
+"""Number of even slices used where there are more heights than MOST_LEVELS, as on a ramp."""
 
 NEAR = 8
-"""samples from a solid one within which a free one asks for the outline that freed it"""
+"""Distance from a solid sample, in samples, within which exact outlines are used."""
 
 MOST_CANDIDATES = 96
 
 
 class RimBuffers(NamedTuple):
-    """Room for the work of one station."""
+    """Working buffers for the engagement at one station."""
 
     arcs: Intervals
     total: Intervals
     heights: Floats
-    """Heights, (S,) mm, of the ring"""
+    """Stock height at each sample of the ring, (S,), mm."""
     owner: Ints
-    """Owner, (S,)"""
+    """Number of the move that last cut each sample of the ring, (S,)."""
     solid: Ints
-    """Solid, (S,) samples from there to the next that is solid"""
+    """Distance from each sample to the nearest solid sample, in samples, (S,)."""
     bounds: Floats
-    """Bounds, (MOST_LEVELS + CORNER_SLICES + 3,) mm between slices"""
+    """Heights that separate the slices, (MOST_LEVELS + CORNER_SLICES + 3,), mm."""
     areas: Floats
-    """Areas, mm², of each slice"""
+    """Section of each slice, mm²."""
     candidates: Ints
-    """Candidates, (MOST_CANDIDATES,)"""
+    """Numbers of the moves whose outlines have been used, (MOST_CANDIDATES,)."""
 
 
 class RimTool(NamedTuple):
-    """A cutter as the rim sees it."""
+    """Cutter data needed to determine the contact at the rim."""
 
     profile: CutterProfile
     sine: float
-    """sin κ of the flank"""
+    """Sine of the cutting edge angle κ of the flank."""
     side: float
-    """1: turns clockwise"""
+    """Direction of rotation: 1 clockwise, −1 counter-clockwise."""
 
 
 class Pose(NamedTuple):
-    """Position and direction of the tip."""
+    """Position of the tip and direction of its feed."""
 
     x: float
     y: float
     z: float
     ahead_x: float
     ahead_y: float
-    """unit vector of the feed in the plane"""
+    """Y component of the unit vector of the feed in the XY plane."""
     climb: float
-    """rise per mm in the plane"""
+    """Rise of the path per mm in the XY plane."""
 
 
 def room_for(samples: int) -> RimBuffers:
-    """Room for the work of one station."""
+    """Allocate the working buffers for the engagement at one station."""
     return RimBuffers(
         intervals(),
         intervals(),
@@ -98,13 +98,13 @@ def room_for(samples: int) -> RimBuffers:
 
 @kernel
 def circle_of(pose: Pose, radius: float, side: float) -> ToolCircle:
-    """Section of the tool."""
+    """Circular section of the tool at a pose with a given radius."""
     return ToolCircle(pose.x, pose.y, radius, pose.ahead_x, pose.ahead_y, side)
 
 
 @kernel
 def read_ring(grid: HeightGrid, work: RimBuffers, circle: ToolCircle, gap: float) -> None:
-    """Heights and owners on the front half of a ring outside a circle."""
+    """Read heights and owners on the front half of a ring around a circle."""
     samples = len(work.heights)
     radius = circle.radius + gap
     step = pi / samples
@@ -132,7 +132,7 @@ def read_ring(grid: HeightGrid, work: RimBuffers, circle: ToolCircle, gap: float
 def cell_at(
     grid: HeightGrid, circle: ToolCircle, radius: float, angle: float
 ) -> tuple[float, int]:
-    """Height and owner of the map at an angle φ and a distance from the axis."""
+    """Height and owner of the cell at an angle φ and a distance from the tool axis."""
     across, onward = circle.side * radius * cos(angle), radius * sin(angle)
     x = circle.x + onward * circle.ahead_x - across * circle.ahead_y
     y = circle.y + onward * circle.ahead_y + across * circle.ahead_x
@@ -144,7 +144,10 @@ def cell_at(
 
 @kernel
 def levels(work: RimBuffers, base: float) -> int:
-    """Slices of a flat cutter: between the heights that its ring meets, or even ones."""
+    """Divide a flat cutter into slices at the heights found on its ring, or evenly.
+
+    Returns the number of slices.
+    """
     bounds = work.bounds
     bounds[0] = base
     count, top = 0, base

@@ -1,4 +1,4 @@
-"""Plunge cut of a tool at a place: the contact of its lips, and the hole before.
+"""Plunge cut of a tool at a point: the contact of its lips, and the existing hole.
 
 Units mm and rad.
 """
@@ -14,14 +14,14 @@ from simulator.removal.zmap import HeightGrid
 
 LIP_RINGS = 16
 LIP_ERROR = 1.0 / LIP_RINGS
-"""of the radius, by which the inner end of a lip may be wrong"""
+"""Possible error of the inner end of a lip, as a share of the tool radius."""
 
 
 @kernel
 def lip(
     grid: HeightGrid, profile: CutterProfile, x: float, y: float, z: float
 ) -> tuple[float, float]:
-    """Inner and outer radius of what a tool that sinks down to a place cuts there, mm."""
+    """Inner and outer radius of the contact of a tool that plunges to a point, mm."""
     rings, spokes = LIP_RINGS, 16
     inner, outer = profile.radius, 0.0
     wide = profile.radius / rings
@@ -36,7 +36,7 @@ def lip(
                 inner = min(inner, ring * wide)
                 outer = max(outer, profile.radius if ring == rings - 1 else radius)
             elif before > 0.0:
-                # The edge is straight, and so is the stock: they cross between the rings.
+                # Edge and stock surface are straight here: they cross between the rings.
                 outer = max(outer, radius - wide * over / (over - before))
             before = over
     return inner, outer
@@ -44,7 +44,7 @@ def lip(
 
 @kernel
 def _stock_at(grid: HeightGrid, x: float, y: float) -> float:
-    """Height of the stock at a place, mm; beside the map that of its bottom."""
+    """Height of the stock at a point, mm; the bottom of the stock outside the map."""
     columns, rows = grid.heights.shape
     column, row = floor((x - grid.x) / grid.dx), floor((y - grid.y) / grid.dy)
     if 0 <= column < columns and 0 <= row < rows:
@@ -54,7 +54,7 @@ def _stock_at(grid: HeightGrid, x: float, y: float) -> float:
 
 @kernel
 def hole(grid: HeightGrid, before: RecentOutlines, axis: tuple[float, float, float]) -> float:
-    """Radius at a height of the hole that the last move down an axis sank, mm; 0: none did."""
+    """Radius at a height of the hole made by the last move down an axis, mm; 0 if none."""
     x, y, level = axis[0], axis[1], max(axis[2], grid.bottom)
     columns, rows = grid.heights.shape
     column, row = floor((x - grid.x) / grid.dx), floor((y - grid.y) / grid.dy)

@@ -1,8 +1,8 @@
-"""Stations of a path: one row each, whatever the process.
+"""Stations along a path: one row each, for every machining process.
 
 ``section`` is the volume removed per length of path, so that the removal rate is section times
-the speed along the path, and ``chip_ratio`` is the mean chip thickness over the feed per tooth:
-with the two, force and power need not know whether the cut is milling, drilling or turning.
+the speed along the path. ``chip_ratio`` is the mean chip thickness over the feed per tooth.
+From the two, force and power follow in the same way for milling, drilling and turning.
 """
 
 from dataclasses import dataclass, fields
@@ -14,19 +14,20 @@ import numpy as np
 from simulator.motion.segments import Floats, Ints
 
 WALL = 0.1
-"""rad from φ = 0 or π within which an arc of contact reaches the wall: 0.5 % of the radius"""
+"""Angle, rad, from φ = 0 or π within which a contact arc counts as reaching the wall; this is
+0.5 % of the radius."""
 
 SINGLE = 0.02
-"""of the section, within which an arc is the only one"""
+"""Relative difference of the section below which an arc counts as the only one."""
 
 THICKEST = 2.3311
-"""rad, length of the arc at a wall whose mean chip is greatest: tan(β/2) = β"""
+"""Length, rad, of the arc at a wall with the greatest mean chip: tan(β/2) = β."""
 
 HALVINGS = 32
 
 
 class StationKind(IntEnum):
-    """Process at a station."""
+    """Machining process at a station."""
 
     AIR = 0
     MILLING = 1
@@ -36,38 +37,40 @@ class StationKind(IntEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Stations:
-    """M stations, ascending along the path; each holds for the stretch before it.
+    """Process and engagement at M stations, ascending along the path.
 
-    The first station of a segment holds from the segment's start, each other one from the
-    station before it; the last lies on the segment's end. Segments that remove nothing have
-    one row of kind AIR at their end.
+    Each station describes the stretch before it. The first station of a segment describes the
+    stretch from the segment's start, each other one the stretch from the previous station; the
+    last lies on the segment's end. Segments that remove nothing have one row of kind AIR at
+    their end.
     """
 
     segment: Ints
-    """Segment, (M,) row of the segment"""
+    """Index of the segment on which the station lies, (M,)."""
     station: Floats
-    """Station, (M,) mm along that segment: the end of the stretch"""
+    """Position of the station along its segment, (M,), mm: the end of the stretch."""
     kind: Ints
-    """Kind, (M,) :class:`StationKind`"""
+    """Process at the station, (M,), as :class:`StationKind`."""
     section: Floats
-    """Section, (M,) mm², volume removed per mm of path"""
+    """Volume removed per mm of path, (M,), mm²."""
     growth: Floats
-    """(M,) mm² by which the section grows from the beginning of the stretch to its end"""
+    """Increase of the section from the beginning to the end of the stretch, (M,), mm²."""
     axial_depth: Floats
-    """Axial depth, (M,) mm, a_p; in turning the depth of cut; 0 in air"""
+    """Axial depth of cut a_p, (M,), mm; in turning the depth of cut; 0 in air."""
     radial_width: Floats
-    """(M,) mm, a_e: section over axial depth in milling; of a lip or an insert elsewhere"""
+    """Radial width of cut a_e, (M,), mm: section over axial depth in milling; in drilling and
+    turning the width cut by a lip or an insert."""
     entry_angle: Floats
-    """Entry angle, (M,) rad, φ_st of the arc that holds all contact; milling only"""
+    """Entry angle φ_st of the arc that includes all contact, (M,), rad; milling only."""
     exit_angle: Floats
-    """Exit angle, (M,) rad, φ_ex"""
+    """Exit angle φ_ex of the arc that includes all contact, (M,), rad; milling only."""
     contact_angle: Floats
-    """(M,) rad of contact, all arcs together; φ_ex − φ_st when there is one arc"""
+    """Total contact angle of all arcs, (M,), rad; φ_ex − φ_st for a single arc."""
     chip_ratio: Floats
-    """Chip ratio, (M,) mean chip thickness over feed per tooth"""
+    """Mean chip thickness over feed per tooth, (M,)."""
     diameter: Floats
-    """(M,) mm at which the cutting speed drives the force: of the cutter where it cuts, of
-    the middle of a lip, of the workpiece in the middle of the cut"""
+    """Diameter for cutting speed and force, (M,), mm: of the cutter where it cuts, of the
+    middle of a drill lip, or of the workpiece in the middle of the turning cut."""
 
     def __post_init__(self) -> None:
         count = len(self.segment)
@@ -77,7 +80,7 @@ class Stations:
 
     @property
     def peak_section(self) -> Floats:
-        """(M,) mm², greatest section of each stretch: what angles, depth and chip belong to."""
+        """Greatest section in each stretch, (M,), mm²; angles, depth and chip refer to it."""
         peak: Floats = self.section + 0.5 * np.abs(self.growth)
         return peak
 
@@ -86,7 +89,7 @@ class Stations:
 
 
 def stretch_lengths(stations: Stations) -> Floats:
-    """(M,) mm, the stretch for which each station holds."""
+    """Length of the stretch described by each station, (M,), mm."""
     before = stations.station.copy()
     before[1:] = stations.station[:-1]
     before[:1] = 0.0
@@ -101,9 +104,9 @@ def air(segments: Ints, length: Floats) -> Stations:
     Parameters
     ----------
     segments : (M,) array of int
-        Their rows.
+        Indices of the segments.
     length : (M,) array, mm
-        Their lengths.
+        Lengths of the segments.
     """
     nothing = np.zeros(len(segments))
     return Stations(
@@ -124,25 +127,26 @@ def air(segments: Ints, length: Floats) -> Stations:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class SingleArcs:
-    """One arc of contact for each station, with the section and the mean chip that were met."""
+    """Single contact arc per station, equivalent in section and mean chip thickness."""
 
     entry_angle: Floats
-    """Entry angle, (M,) rad"""
+    """Entry angle, (M,), rad."""
     exit_angle: Floats
-    """Exit angle, (M,) rad; the entry angle in air"""
+    """Exit angle, (M,), rad; equal to the entry angle in air."""
     depth: Floats
-    """Depth, (M,) mm, at most the axial depth"""
+    """Depth of the arc, (M,), mm, at most the axial depth of cut."""
     fill: Floats
-    """Fill, (M,) section over that of arc and depth, 1 where both are met; 0 in air"""
+    """Section over that swept by arc and depth, (M,); 1 if both are matched, 0 in air."""
 
 
 def single_arcs(stations: Stations) -> SingleArcs:
-    """One arc for each station that mills.
+    """Replace the contact of each milling station by one equivalent arc.
 
-    The arc of a station holds all contact, also slivers of a floor or of a wall high above. Of
-    what was seen in several arcs the mean chip tells how long one of them would be: at the wall
-    that it reaches, else about the middle. The section then tells its depth. All is that of the
-    place of the stretch where the section is greatest.
+    The arc stored in a station spans all contact, including slivers of a floor or of a wall
+    high above. Where the contact has several arcs, the mean chip gives the length of one
+    equivalent arc: at the wall that the contact reaches, otherwise about its middle. Its depth
+    follows from the section. All values refer to the point of the stretch with the greatest
+    section.
     """
     entry, exit_ = stations.entry_angle.copy(), stations.exit_angle.copy()
     section = stations.peak_section
@@ -171,11 +175,11 @@ def single_arcs(stations: Stations) -> SingleArcs:
 def _of_mean_chip(
     entry: Floats, exit_: Floats, ratio: Floats, *, least: Floats
 ) -> tuple[Floats, Floats]:
-    """Arcs within others whose mean chip over the feed per tooth is given, or these others.
+    """Shorten arcs until they have a given mean chip ratio; keep arcs that cannot match it.
 
     The mean chip of an arc at a wall grows with its length up to 2.33 rad; that of an arc about
-    a middle falls. No arc has a smaller ``cos φ_st − cos φ_ex`` than the least: with it the
-    section takes the whole depth.
+    a middle falls. ``cos φ_st − cos φ_ex`` of a shortened arc is at least ``least``, at which
+    the section takes the whole depth.
     """
     whole = exit_ - entry
     is_down, is_up = exit_ >= pi - WALL, entry <= WALL

@@ -1,4 +1,4 @@
-"""A line, or an arc or helix in XY, as kernels walk along it. Units mm and rad."""
+"""Tool-tip move along a line, or an arc or helix in XY, for kernels. Units mm and rad."""
 
 from math import acos, atan2, cos, hypot, inf, pi, sin
 from typing import NamedTuple
@@ -7,14 +7,14 @@ from simulator.kernels.kernel import kernel
 from simulator.motion.segments import Floats
 
 LEAST = 1e-9
-"""mm; what is thinner is rounding, and stays"""
+"""Thickness, mm, below which material counts as rounding error and is not cut."""
 
 LEVEL = 1e-9
-"""mm of rise over a move that still is level"""
+"""Largest rise, mm, of a move that still counts as level."""
 
 
 class TipMove(NamedTuple):
-    """A line, or an arc or helix in the XY plane, of the tip of the tool."""
+    """Line, or arc or helix in the XY plane, along which the tip of the tool moves."""
 
     x: float
     y: float
@@ -26,14 +26,14 @@ class TipMove(NamedTuple):
     centre_y: float
     radius: float
     angle: float
-    """Angle of the arm from the centre to the start"""
+    """Angle of the radius from the centre to the start point, rad."""
     turn: float
-    """0: a line"""
+    """Signed angle of the arc, rad; 0 for a line."""
 
 
 @kernel
 def place(row: Floats, part: float) -> tuple[float, float, float]:
-    """Point of a row of :func:`rows_of` at a share of its length."""
+    """Point on a row of :func:`rows_of` at a share of its length, mm."""
     x = row[0] + part * (row[3] - row[0])
     y = row[1] + part * (row[4] - row[1])
     z = row[2] + part * (row[5] - row[2])
@@ -50,7 +50,7 @@ def place(row: Floats, part: float) -> tuple[float, float, float]:
 
 @kernel
 def way_between(row: Floats, begin: float, end: float) -> TipMove:
-    """Part of a row between two shares of its length, a chord when it bends out of XY."""
+    """Part of a row between two shares of its length; a chord if the arc is not in XY."""
     x, y, z = place(row, begin)
     end_x, end_y, end_z = place(row, end)
     if row[11] == 0.0 or row[12] != 2.0:
@@ -61,7 +61,7 @@ def way_between(row: Floats, begin: float, end: float) -> TipMove:
 
 @kernel
 def bounds(way: TipMove, reach: float) -> tuple[float, float, float, float]:
-    """Box around the sweep of an arc."""
+    """Bounding box in XY of the sweep of an arc: low x, high x, low y, high y, mm."""
     low_x, high_x = min(way.x, way.end_x), max(way.x, way.end_x)
     low_y, high_y = min(way.y, way.end_y), max(way.y, way.end_y)
     for quarter in range(4):
@@ -76,7 +76,7 @@ def bounds(way: TipMove, reach: float) -> tuple[float, float, float, float]:
 
 @kernel
 def arc_distance(way: TipMove, x: float, y: float) -> float:
-    """Distance of a point, seen from the centre, from an arc of at most half a turn."""
+    """Distance of a point, relative to the centre, from an arc of at most half a turn, mm."""
     start_x, start_y = way.x - way.centre_x, way.y - way.centre_y
     end_x, end_y = way.end_x - way.centre_x, way.end_y - way.centre_y
     sign = 1.0 if way.turn > 0.0 else -1.0
@@ -89,7 +89,7 @@ def arc_distance(way: TipMove, x: float, y: float) -> float:
 
 @kernel
 def helix_height(way: TipMove, x: float, y: float, reach: float) -> float:
-    """Least height over a point of a flat tool on a helix of at most half a turn."""
+    """Lowest height over a point of a flat tool on a helix of at most half a turn, mm."""
     sign = 1.0 if way.turn > 0.0 else -1.0
     whole = abs(way.turn)
     away = hypot(x, y)
@@ -110,14 +110,14 @@ def helix_height(way: TipMove, x: float, y: float, reach: float) -> float:
 
 @kernel
 def copy(source: Floats, into: Floats, first: int) -> None:
-    """Copy numbers to a place in other numbers."""
+    """Copy an array into another one, beginning at a position."""
     for index in range(len(source)):
         into[first + index] = source[index]
 
 
 @kernel
 def raised(row: Floats, lift: float, into: Floats) -> Floats:
-    """A row farther up."""
+    """Copy of a row shifted upward by a lift in mm."""
     copy(row, into, 0)
     into[2] += lift
     into[5] += lift

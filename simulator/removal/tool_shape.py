@@ -1,4 +1,4 @@
-"""Shape of a program's tool, as the removal of material needs it. Units mm, rad."""
+"""Shape of a program's tool for the simulation of material removal. Units mm and rad."""
 
 from math import inf, pi
 
@@ -20,11 +20,12 @@ from stepnc_model.tool import Tool, tool_of
 from stepnc_model.units import rad_from_deg
 
 HOLDER_SHARE = 2.0
-"""diameter of a holder over that of its tool, where nothing is said: a collet chuck"""
+"""Diameter of a holder over that of its tool if the program gives none, as for a collet
+chuck."""
 
 
 STEEPEST_DEG = 80.0
-"""degrees between the flank of a tapered tool and its axis"""
+"""Largest angle between the flank of a tapered tool and its axis, degrees."""
 
 KINDS = {
     "FACEMILL": ToolKind.FACEMILL,
@@ -49,24 +50,24 @@ KINDS = {
 }
 
 ENDS = {ToolKind.DRILL, ToolKind.CENTER_DRILL, ToolKind.REAMER, ToolKind.COUNTERSINK}
-"""kinds that cut with their end only"""
+"""Kinds of tools that cut with their end only."""
 
 THREADS = {ToolKind.TAP, ToolKind.THREADING}
-"""what they cut is no part of a stock's map"""
+"""Kinds of tools that cut threads, which the map of a stock cannot represent."""
 
 
 def tool_kind(tool: Tool) -> ToolKind:
-    """Family of a tool by its EXPRESS name; all that are not named are end mills."""
+    """Kind of a tool from its EXPRESS name; an end mill if the name is not listed."""
     return KINDS.get(tool.keyword, ToolKind.ENDMILL)
 
 
 def shape_of(program: Program, ref: Ref[Entity]) -> Cutter | Insert | None:
-    """Shape of a tool; None where it cuts no chips that a stock's map shows: threads, knurls.
+    """Shape of a tool; None if the map cannot represent its cut (threads, knurls).
 
     Raises
     ------
     SchemaError
-        When the tool cannot be used.
+        If the tool cannot be used.
     """
     tool, entity = tool_of(program, ref), program.get(ref)
     if tool_kind(tool) in THREADS or isinstance(entity, KnurlingTool):
@@ -125,13 +126,13 @@ def _taper(program: Program, entity: Entity) -> float:
     body = program.get(entity.its_tool_body)
     angle = body.taper_angle if isinstance(body, TaperedEndmill) else None
     if angle is not None and not 0.0 <= angle <= STEEPEST_DEG:
-        message = f"a taper of {angle:g}°: 0 to {STEEPEST_DEG:g}°"
+        message = f"taper angle {angle:g}° is out of range; allowed: 0 to {STEEPEST_DEG:g}°"
         raise program.error(message, entity.its_tool_body, "taper_angle")
     return rad_from_deg(angle) if angle else 0.0
 
 
 def _holder(tool: Tool, entity: Entity) -> Holder | None:
-    """A collet chuck at the tool's assembly length; None where no length is given."""
+    """Collet chuck at the tool's assembly length; None if no length is given."""
     length = entity.overall_assembly_length if isinstance(entity, CuttingTool) else None
     if not length:
         return None

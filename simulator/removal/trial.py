@@ -1,10 +1,8 @@
-"""Changes of a stock by one path, which can be undone and done again.
+"""Trial cuts: changes of a stock by one path, which can be undone and redone.
 
-A path touches the cells under its box only, and writes the outlines of its own moves. Units mm.
-
-Arguments of a march of a tool through its stock, as kernels take them.
-
-Units mm and rad.
+A path touches only the cells under its bounding box and writes only the outlines of its own
+moves. The module also defines the arguments of the march of a tool through its stock, as
+kernels take them. Units mm and rad.
 """
 
 from dataclasses import dataclass
@@ -21,47 +19,47 @@ from simulator.removal.ring import ROUND_SAMPLES, SAMPLES, RimBuffers, RimTool, 
 from simulator.removal.zmap import HeightGrid
 
 DEEPEST = 12
-"""halvings of a stretch"""
+"""Largest number of times that a stretch is halved."""
 
 
 class MarchSettings(NamedTuple):
-    """Settings of a march."""
+    """Settings for the march of a tool through its stock."""
 
     step: float
-    """Step, mm, longest stretch between two stations"""
+    """Longest stretch between two stations, mm."""
     least: float
-    """Least, mm, shortest stretch"""
+    """Shortest stretch between two stations, mm."""
     shank: float
-    """Shank, mm above the tip where the cutting edge ends; infinite: never"""
+    """Height above the tip where the cutting edge ends, mm; infinite if it does not end."""
     coarse: float
-    """Coarse, mm over which the map's own rim tells more than noise"""
+    """Length of path over which the section read from the map exceeds its noise, mm."""
     shape: Floats
-    """Shape, (7,) numbers of the tool's profile"""
+    """Numbers of the tool's profile, (7,)."""
     neck: CutterProfile
-    """Neck of the shank above the edge"""
+    """Profile of the shank above the cutting edge."""
     holder: CutterProfile
     overhang: float
-    """Overhang, mm above the tip where the holder begins; infinite: there is none"""
+    """Height above the tip where the holder begins, mm; infinite without a holder."""
     tip_sine: float
-    """sine of half the point angle"""
+    """Sine of half the point angle."""
 
 
 class RowBuffers(NamedTuple):
-    """Room for the work along a part of a row."""
+    """Working buffers for a part of a row."""
 
     rim: RimBuffers
     parts: Floats
-    """Parts, (DEEPEST,) shares of the row, of stretches that wait"""
+    """Ends of the waiting stretches, (DEEPEST,), as shares of the row."""
     seen: Floats
-    """Seen, (DEEPEST, ENGAGEMENT) engagement there"""
+    """Engagement at the ends of the waiting stretches, (DEEPEST, ENGAGEMENT)."""
     left: Floats
-    """Left, (ENGAGEMENT,) engagement where the stretch begins"""
+    """Engagement at the beginning of the stretch, (ENGAGEMENT,)."""
     raised: Floats
-    """Raised, (13,) row of the shank or the holder"""
+    """Row shifted up to the shank or the holder, (13,)."""
 
 
 class RemovalTask(NamedTuple):
-    """Arguments of a march: stock, tool, path, buffers."""
+    """Arguments of a march: stock, earlier moves, tool, settings and buffers."""
 
     grid: HeightGrid
     past: RecentOutlines
@@ -71,7 +69,7 @@ class RemovalTask(NamedTuple):
 
 
 def desk_for(tool: RimTool) -> RowBuffers:
-    """Room for the work of a tool."""
+    """Allocate the working buffers for a tool."""
     samples = SAMPLES if is_upright(tool.profile) else ROUND_SAMPLES
     return RowBuffers(
         room_for(samples),
@@ -83,7 +81,10 @@ def desk_for(tool: RimTool) -> RowBuffers:
 
 
 def rows_of(segments: Segments) -> Floats:
-    """(N, 13) start, end, centre, radius, angle of the first arm, turn, normal."""
+    """Rows of segments for kernels, (N, 13).
+
+    Columns: start, end, centre, radius, angle of the start point from the centre, turn, normal.
+    """
     rows = np.arange(len(segments))
     first = (segments.normal + 1) % 3
     second = (segments.normal + 2) % 3
@@ -97,42 +98,42 @@ def rows_of(segments: Segments) -> Floats:
 _ROUNDING = 1e-9  # rad
 
 Box = tuple[slice, slice]
-"""columns and rows of a map"""
+"""Ranges of columns and rows of a height map."""
 
 MARGIN = 2
-"""cells beside the sweep of a tool that its rim may look at"""
+"""Number of cells beside the sweep of a tool that its rim may sample."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class StockPatch:
-    """State of a stock where a path may have touched it."""
+    """Saved state of the part of a stock that a path may change."""
 
     box: Box
     heights: Floats
     owner: NDArray[np.int32]
     moves: Ints
-    """rows of the outlines that the path may write"""
+    """Indices of the outlines that the path may write."""
     records: Floats
-    """those outlines"""
+    """Saved outlines at these indices."""
     next: int
-    """number of the next move"""
+    """Number of the next move."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PathTrial:
-    """Stock within the box of a path, before and after it."""
+    """State of the stock within the box of a path, before and after the path."""
 
     before: StockPatch
     after: StockPatch
 
     @property
     def box(self) -> Box:
-        """Cells that the path may have touched or looked at."""
+        """Cells that the path may have changed or sampled."""
         return self.before.box
 
 
 def patch_of(grid: HeightGrid, past: RecentOutlines, box: Box, moves: Ints) -> StockPatch:
-    """Keep what is in a box, and some outlines."""
+    """Save the state of the stock in a box, and some outlines."""
     return StockPatch(
         box=box,
         heights=grid.heights[box].copy(),
@@ -144,7 +145,7 @@ def patch_of(grid: HeightGrid, past: RecentOutlines, box: Box, moves: Ints) -> S
 
 
 def put_back(patch: StockPatch, grid: HeightGrid, past: RecentOutlines) -> None:
-    """Make a stock in a box what it was when the patch was made."""
+    """Restore the state of a stock that a patch has saved."""
     grid.heights[patch.box] = patch.heights
     grid.owner[patch.box] = patch.owner
     past.records[patch.moves] = patch.records
@@ -152,7 +153,7 @@ def put_back(patch: StockPatch, grid: HeightGrid, past: RecentOutlines) -> None:
 
 
 def box_of(grid: HeightGrid, segments: Segments, radius: float) -> Box:
-    """Cells that a tool of a radius may touch or look at along segments."""
+    """Cells that a tool with a given radius may touch or sample along segments."""
     reach = radius + MARGIN * max(grid.dx, grid.dy)
     low, high = _extents(segments)
     is_deep = low[:, 2] < grid.top
@@ -171,7 +172,10 @@ def box_of(grid: HeightGrid, segments: Segments, radius: float) -> Box:
 
 
 def _extents(segments: Segments) -> tuple[Floats, Floats]:
-    """(N, 3) least and greatest coordinates of each segment; arcs out of XY by their circle."""
+    """Lowest and highest coordinates of each segment, (N, 3), mm.
+
+    Arcs outside the XY plane are bounded by their full circle.
+    """
     low = np.minimum(segments.start, segments.end)
     high = np.maximum(segments.start, segments.end)
     rows = np.flatnonzero((segments.turn != 0.0) & (segments.normal != 2))
@@ -194,7 +198,7 @@ def _extents(segments: Segments) -> tuple[Floats, Floats]:
 
 
 def moves_of(past: RecentOutlines, segments: Segments) -> Ints:
-    """Rows of the outlines that a path may write: one a line, one a quarter turn."""
+    """Indices of the outlines that a path may write: one per line, one per quarter turn."""
     parts = np.maximum(1.0, np.ceil(np.abs(segments.turn) / (0.5 * pi)))
     count = min(int(parts.sum()), len(past.records))
     return (past.next[0] + np.arange(count)) % len(past.records)
@@ -206,7 +210,7 @@ def do_overlap(one: Box, other: Box) -> bool:
 
 
 def is_remembered_alike(trial: PathTrial, later: int) -> bool:
-    """Whether a path finds the same outlines remembered when it comes some moves later."""
+    """Whether a path would find the same remembered outlines if it ran some moves later."""
     made = trial.after.next - trial.before.next
     ages = trial.before.next - trial.before.owner[trial.before.owner >= 0]
     is_young = ages + max(later, 0) + made <= FORGETTING
@@ -215,16 +219,16 @@ def is_remembered_alike(trial: PathTrial, later: int) -> bool:
 
 
 def renumbered(trial: PathTrial, number: int, known: dict[int, int]) -> StockPatch:
-    """Changes of a path when its first move has another number.
+    """Result of a trial when the first move of its path gets another number.
 
     Parameters
     ----------
     trial : PathTrial
     number : int
-        Of its first move.
+        New number of its first move.
     known : dict
-        New numbers of first moves by the old ones: of this trial, and of earlier ones whose
-        moves it may have met.
+        New numbers of first moves by their old ones: for this trial, and for earlier trials
+        whose moves it may have met.
     """
     after, made = trial.after, trial.after.next - trial.before.next
     moves = after.moves[:made]

@@ -1,7 +1,7 @@
 """Stock as a map of heights over the XY plane, with the move that last lowered each cell.
 
-A cell stands for the material above the bottom up to one height, so that nothing can be cut
-from below. Cells are rectangles that fit the stock exactly and are square but for that. Units
+A cell stands for solid material from the bottom up to one height, so that nothing can be cut
+from below. Cells are rectangles that fit the stock exactly and are as square as possible. Units
 mm.
 """
 
@@ -16,43 +16,43 @@ from simulator.motion.segments import Floats
 from stepnc_model.program import Stock
 
 MOST_CELLS = 4_000_000
-"""of a map without a given cell size"""
+"""Largest number of cells in a map whose cell size is not given."""
 
 USUAL_CELLS = 1_000_000
-"""of a map when its tools do not ask for finer cells"""
+"""Usual number of cells in a map, unless its tools require finer cells."""
 
 CELLS_PER_TOOL = 20.0
-"""least number of cells over a tool's diameter"""
+"""Least number of cells across the diameter of a tool."""
 
 UNCUT = -1
 OUTSIDE = -2
-"""owner of a cell that was never cut; of one beside the stock"""
+"""Owner of a cell outside the stock; UNCUT marks a cell that was never cut."""
 
 
 class HeightGrid(NamedTuple):
-    """Heights and what the kernels must know of them."""
+    """Height map of a stock in the form that kernels take."""
 
     heights: Floats
-    """Heights, (X, Y) mm, changed by the kernels"""
+    """Heights of the stock, (X, Y), mm; changed by the kernels."""
     owner: NDArray[np.int32]
-    """Owner, (X, Y) number of the move that last lowered a cell"""
+    """Number of the move that last lowered each cell, (X, Y)."""
     x: float
     y: float
-    """Y, mm, corner of the first cell"""
+    """Y coordinate of the corner of the first cell, mm."""
     dx: float
     dy: float
-    """Dy, mm, size of a cell"""
+    """Size of a cell in y, mm."""
     bottom: float
-    """Bottom, mm"""
+    """Height of the bottom of the stock, mm."""
     top: float
-    """Top, mm, of the raw stock"""
+    """Height of the top of the raw stock, mm."""
     radius: float
-    """Radius, mm, of a bar about the middle of the map; 0: a box"""
+    """Radius of a bar about the middle of the map, mm; 0 for a box."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ZMap:
-    """Heights of a stock; its arrays change as material is cut away."""
+    """Height map of a stock; its arrays change as material is cut away."""
 
     grid: HeightGrid
 
@@ -63,20 +63,20 @@ class ZMap:
 
     @property
     def volume(self) -> float:
-        """Remaining volume, mm³."""
+        """Remaining volume of the stock, mm³."""
         grid = self.grid
         return float((grid.heights - grid.bottom).sum() * grid.dx * grid.dy)
 
 
 def cell_size(stock: Stock, *, smallest_diameter: float = np.inf) -> float:
-    """Cell that suits a stock and its smallest tool, mm, in at most 4 million cells."""
+    """Choose a cell size for a stock and its smallest tool, mm; at most 4 million cells."""
     area = (stock.high[0] - stock.low[0]) * (stock.high[1] - stock.low[1])
     wanted = min(sqrt(area / USUAL_CELLS), smallest_diameter / CELLS_PER_TOOL)
     return max(wanted, sqrt(area / MOST_CELLS))
 
 
 def zmap_of(stock: Stock, *, cell: float) -> ZMap:
-    """Map of a raw part: a box, or an upright bar.
+    """Create the height map of a raw part: a box, or an upright bar.
 
     Raises
     ------

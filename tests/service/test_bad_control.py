@@ -88,7 +88,10 @@ def refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Refused:
         ([SLOT, "--disturb", "depth:nan@1s"], "'nan' is no number"),
         ([SLOT, "--deviation-mm", "nan"], "deviation nan mm"),
         ([SLOT, "--stock", "1,2,3"], "are for NC code: name it with --nc"),
-        ([PARTS / "shaft.stpnc", "--machine", "vmc15"], "turns, and the machine is a mill"),
+        (
+            [PARTS / "shaft.stpnc", "--machine", "vmc15"],
+            "is a turning tool, but the machine is a mill",
+        ),
         ([PARTS / "paper002.stpnc", "--machine", "paper002"], "nothing of its axes"),
     ],
 )

@@ -262,7 +262,7 @@ def test_numbers_of_another_unit_profile_are_refused_and_the_profile_named(
         (("--profile", "mine"), "unknown profile 'mine'; known: optimisation, standard"),
         (("--free", "width"), "unknown free 'width'; known: feed, depth, speed"),
         (("--free", "feed,,depth"), "unknown free ''"),
-        (("--material", "unobtanium"), "unknown material 'unobtanium'; near names: "),
+        (("--material", "unobtanium"), "unknown material 'unobtanium'; similar names: "),
         (("--material", "nowhere.toml"), "nowhere.toml"),
         (("--machine", "vmc51"), "unknown machine 'vmc51'; known: vmc15"),
         (("--machine", "nowhere.toml"), "nowhere.toml: cannot be read: No such file"),
@@ -312,7 +312,7 @@ def test_a_material_that_nobody_knows_is_refused_with_near_names(
         "MATERIAL('unobtanium','mithril'",
     )
     part.write_text(unknown, encoding="ascii")
-    assert "unknown material 'unobtanium / mithril'; near names: " in refused().error
+    assert "unknown material 'unobtanium / mithril'; similar names: " in refused().error
 
 
 @pytest.mark.parametrize(

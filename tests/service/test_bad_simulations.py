@@ -113,7 +113,7 @@ def refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Refused:
         (START + "G4 P-1\n", "line 6: word P-1: must not be negative"),
         (START + "G4 P999999999\n", "line 6: 1e+09 s of machining: 1e+07 s at most"),
         (START.replace("S3000", "S-1"), "line 3: word S-1: must not be negative"),
-        (START.replace("T1 M6", "T9 M6"), "line 2: no tool T9 in the table; known: T1"),
+        (START.replace("T1 M6", "T9 M6"), "line 2: tool T9 is not in the table; known: T1"),
         (START.replace("T1 M6", "T0 M6"), "line 2: word T0: must be a whole number above 0"),
         (START.replace("S3000 M3", "G95") + "G1 X9 F.1\n", "line 6: feed 0.1 mm/rev: the sp"),
         ("G20\n", "line 1: word G20: not known on this mill"),
@@ -136,8 +136,8 @@ def test_a_move_off_the_travel_leaves_what_came_before_it(
     assert stopped.value.code == BAD_INPUT
     *_, written, last = capsys.readouterr().err.splitlines()
     assert last == (
-        "error: slot.ngc: line 8: X = 2000 mm is off the travel of the axis, -350 to 450 mm "
-        "in the program's coordinates"
+        "error: slot.ngc: line 8: X = 2000 mm is outside the travel of the axis, -350 to 450 "
+        "mm in the program's coordinates"
     )
     partial = code.with_name("run.partial.csv")
     rows = csv.read_csv(partial).num_rows
@@ -171,7 +171,7 @@ def test_cutting_with_a_standing_spindle_is_said(code: Path) -> None:
     code.write_text(START.replace("S3000 M3\n", "") + CUT + END, encoding="ascii")
     request = CodeRequest(code=code, tools=code.with_name("tools.toml"), stock=STOCK)
     run = simulate(*asked_simulation(code=request, machine="vmc15", material="c45"))
-    assert "warning: line 5: cuts while the spindle stands" in "\n".join(map(str, run.findings))
+    assert "warning: line 5: cut with a stopped spindle" in "\n".join(map(str, run.findings))
     assert run.whole.force.value == 0.0
 
 
@@ -192,7 +192,10 @@ def test_cutting_with_a_standing_spindle_is_said(code: Path) -> None:
         ({"filter-s": "1e-300,1e-300"}, "filter times 1e-300 and 1e-300 s: 1e-06 to 100 s"),
         ({"filter-s": "1"}, "filter times '1': 2 numbers with commas between them"),
         ({"zero": "nan,0,0"}, "zero 'nan,0,0': 3 numbers with commas between them"),
-        ({"zero": "100,100,600"}, "Z = 5 mm is off the travel of the axis, -600 to -100 mm"),
+        (
+            {"zero": "100,100,600"},
+            "Z = 5 mm is outside the travel of the axis, -600 to -100 mm",
+        ),
         ({"runout-um": "5"}, "--force tooth"),
         ({"runout-um": "-5", "force": "tooth"}, "runout -5 µm: it must be 0 to 500 µm"),
         ({"force": "x"}, "unknown force 'x'; known: mean, tooth"),
@@ -204,7 +207,7 @@ def test_cutting_with_a_standing_spindle_is_said(code: Path) -> None:
         ({"machine": ""}, "name a machine with --machine"),
         ({"machine": "paper002"}, "'paper002' says nothing of its axes X, Y, Z: it cannot be"),
         ({"machine": "lathe22"}, "line 4: word Y10: nothing in this block uses it"),
-        ({"material": "x"}, "unknown material 'x'; near names:"),
+        ({"material": "x"}, "unknown material 'x'; similar names:"),
         ({"material": ""}, "a tool table without a material: name one with --material"),
         ({"stock": "text"}, "stock 'text': 3 or 6 numbers with commas between them"),
         ({"stock": "1,2,3,4"}, "stock '1,2,3,4': 3 or 6 numbers"),
@@ -266,9 +269,12 @@ def test_a_tool_table_that_cannot_be_used_is_refused(
         (
             [PARTS / "shaft.stpnc", "--machine", "vmc15"],
             "shaft.stpnc: workingstep 'ROUGH FACE': line 13: T1 ROUGHING TOOL, CARBIDE P25 "
-            "turns, and the machine is a mill",
+            "is a turning tool, but the machine is a mill",
         ),
-        ([PARTS / "bracket.stpnc", "--machine", "lathe22"], "X = -39.5 mm is off the travel"),
+        (
+            [PARTS / "bracket.stpnc", "--machine", "lathe22"],
+            "X = -39.5 mm is outside the travel",
+        ),
         (
             [PARTS / "bracket.stpnc", "--nc", "x.ngc", "--stock", STOCK],
             "tools and stock are those of the program",

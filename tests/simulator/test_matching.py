@@ -82,11 +82,11 @@ def test_an_exact_name_beats_every_guess_before_it(texts: list[str]) -> None:
 
 def test_the_reason_names_what_was_read_and_what_it_was_taken_for() -> None:
     assert match_material(["ST-50"]).reason == (
-        "the material is read as E295 / St50-2: 'ST-50' is a name of it"
+        "the material is read as E295 / St50-2: 'ST-50' is one of its names"
     )
     assert match_material(["SAE 1015"]).reason == (
-        "the material is guessed to be AISI 1018: 'SAE 1015' is not in the library; of the "
-        "family SAE carbon steel this one is the nearest"
+        "the material is guessed to be AISI 1018: 'SAE 1015' is not in the library; the "
+        "nearest of the family SAE carbon steel is used"
     )
 
 

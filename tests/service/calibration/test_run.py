@@ -219,19 +219,19 @@ def scaled(factor: float) -> Callable[[str], str]:
 
 
 REFUSED: dict[str, tuple[Callable[[Rows], Rows], str]] = {
-    "header only": (lambda rows: rows[:1], "0 whole samples, at least 10 are needed"),
-    "empty": (lambda _: [], "0 whole samples, at least 10 are needed"),
+    "header only": (lambda rows: rows[:1], "0 complete samples; at least 10 are required"),
+    "empty": (lambda _: [], "0 complete samples; at least 10 are required"),
     "no number": (
         lambda rows: changed(rows, lambda _: "nan", column=2, only=40),
-        "line 41: electric_wattage: 'nan' is no number",
+        "line 41: electric_wattage: 'nan' is not a number",
     ),
     "infinite": (
         lambda rows: changed(rows, lambda _: "1e999", column=1, only=40),
-        "line 41: c_axis_wattage: '1e999' is no number",
+        "line 41: c_axis_wattage: '1e999' is not a number",
     ),
     "word": (
         lambda rows: changed(rows, lambda _: "n/a", column=0, only=7),
-        "line 8: time_s: 'n/a' is no number",
+        "line 8: time_s: 'n/a' is not a number",
     ),
     "reversed": (lambda rows: [rows[0], *rows[:0:-1]], "line 3: time_s: "),
     "twice": (
@@ -240,23 +240,26 @@ REFUSED: dict[str, tuple[Callable[[Rows], Rows], str]] = {
     ),
     "kW": (
         lambda rows: changed(rows, scaled(1e-3), column=2),
-        "W, expected 30 to 1e+06 W: another unit, kW?",
+        "W, expected 30 to 1e+06 W; is the power in another unit, such as kW?",
     ),
     "another unit of time": (
         lambda rows: changed(rows, scaled(1e6), column=0),
-        "time_s: a sample every 50000 s, expected 1e-05 to 60 s: another unit?",
+        "time_s: sampling interval 50000 s, expected 1e-05 to 60 s; is the time in another",
     ),
     "constant": (
         lambda rows: changed(
             changed(rows, lambda _: "900", column=1), lambda _: "2000", column=2
         ),
-        "c_axis_wattage: constant at 900 W like every power",
+        "c_axis_wattage: constant at 900 W, like all powers",
     ),
     "ragged": (
         lambda rows: [*rows[:50], rows[50][:-1], *rows[51:]],
-        "line 51: 2 values under 3 headings",
+        "line 51: 2 values in a table with 3 columns",
     ),
-    "no time": (lambda rows: [row[1:] for row in rows], "time_s: missing; time in s"),
+    "no time": (
+        lambda rows: [row[1:] for row in rows],
+        "time_s: column is missing; it must hold the time in s",
+    ),
     "no power": (
         lambda rows: [row[:1] for row in rows],
         "no power in W; one of x_axis_wattage",
@@ -283,11 +286,14 @@ def test_a_run_that_cannot_be_is_refused_in_one_line(
 @pytest.mark.parametrize(
     ("data", "words"),
     [
-        (bytes(range(256)), "no text in UTF-8"),
-        (b"time_s,electric_wattage\n" + b"\0" * 300, "line 2: 1 values under 2 headings"),
+        (bytes(range(256)), "not a UTF-8 text file"),
+        (
+            b"time_s,electric_wattage\n" + b"\0" * 300,
+            "line 2: 1 values in a table with 2 columns",
+        ),
         (b"time_s|electric_wattage\n0|900\n", "time_s: missing"),
         (b"time_s;electric_wattage\n0;900\n0,1;900\n0.1;901\n", "line 4: time_s: 0.1 s after"),
-        (b'time_s,electric_wattage\n"1,2\n', "line 2: 1 values under 2 headings"),
+        (b'time_s,electric_wattage\n"1,2\n', "line 2: 1 values in a table with 2 columns"),
         (b"time_s,electric_wattage\n" + b"1" * 200_000 + b",3\n", "field larger than field"),
     ],
 )
@@ -309,7 +315,7 @@ def test_files_that_are_none_are_refused(command: Command, tmp_path: Path) -> No
     assert command(tmp_path) == (BAD_INPUT, "", f"error: {tmp_path}: Is a directory\n")
     code, _, told = command("a\0b.csv")
     assert code == BAD_INPUT
-    assert "no file name" in told
+    assert "invalid file name" in told
 
 
 @pytest.mark.parametrize(
@@ -347,7 +353,7 @@ def test_a_run_of_something_else_gaps_and_constants_are_said(
     wire = json.loads(out)
     said = [finding["message"] for finding in wire["findings"]]
     assert said[0].startswith("gap of 1.05 s, above 0.15 s")
-    assert said[1] == "constant at 2000 W, left out"
+    assert said[1] == "constant at 2000 W; ignored"
     assert re.match(r"measured 9\.9 s, simulated 30\.6 s: more than 5% apart", said[2])
     (held,) = wire["held_out"]
     assert held["power"] == "c_axis_wattage"

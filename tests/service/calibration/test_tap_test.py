@@ -87,7 +87,7 @@ def test_a_workpiece_belongs_to_no_tool(response: Path) -> None:
         ({"direction": "w"}, "unknown direction 'w'; known: x, y, z, xy"),
         ({"tool_diameter_mm": -1.0}, "tool diameter: -1 mm is below 0.01 mm"),
         ({"modes": 0}, "0 modes: at least 1"),
-        ({"modes": 4}, "1 peaks, 4 modes are asked for"),
+        ({"modes": 4}, "1 peaks found, but 4 modes were requested"),
         ({"machine": "vmc15"}, "name a file with -o"),
         ({"output": Path("mine.toml")}, "name the machine with --machine"),
     ],

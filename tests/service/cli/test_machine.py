@@ -73,7 +73,9 @@ def test_coordinates_may_be_negative(code: Path, capsys: pytest.CaptureFixture[s
     words = ["--nc", code, "--machine", "vmc15", "--tools", code.with_name("tools.toml")]
     words += ["--material", "c45", "--stock", "-10,-10,-5,50,10,0", "--zero", "-.5e3,250,450"]
     assert run(*words, "--json") == BAD_INPUT
-    assert "X = -20 mm is off the travel of the axis, 500 to 1300" in capsys.readouterr().err
+    assert (
+        "X = -20 mm is outside the travel of the axis, 500 to 1300" in capsys.readouterr().err
+    )
     assert run(*words[:-2], "--json") == OK
     assert json.loads(capsys.readouterr().out)["total"]["volume_mm3"] == pytest.approx(
         60.0 * 10.0 * 2.0, rel=1e-4

@@ -149,7 +149,7 @@ def test_a_machine_that_is_lost_is_told_and_left_with_the_safe_override(
     assert run.is_stopped
     assert run.time == pytest.approx(8.0, abs=0.3)
     assert run.events[-1].kind is EventKind.LOST
-    assert "lost: the machine does not answer since 8." in told[-1]
+    assert "lost: the machine has not answered since 8." in told[-1]
     assert sum(1 for _ in session.cycles()) > 0
     assert session.machine.commanded == 0.5
 

@@ -71,7 +71,7 @@ def test_a_delay_that_the_samples_show_is_found(delay: float) -> None:
 
 def test_a_delay_shorter_than_the_samples_is_named() -> None:
     found = fitted_delay([run(10.0, 1e-4)], CALIBRATION, efficiency=1.0)
-    assert found.reason == "shorter than these samples can show"
+    assert found.reason == "shorter than the sampling interval can resolve"
 
 
 def test_the_total_serves_too() -> None:

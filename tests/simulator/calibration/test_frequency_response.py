@@ -55,15 +55,27 @@ def test_an_accelerance_is_divided_by_minus_omega_squared(tmp_path: Path) -> Non
 @pytest.mark.parametrize(
     ("heading", "rows", "message"),
     [
-        ("f,real_mm_n,imag_mm_n", ROWS, "frequency_hz: missing; frequency in Hz"),
-        ("frequency_hz,a,b", ROWS, "no real part; one of real_m_n, real_mm_n, real_um_n, "),
-        ("frequency_hz,real_mm_n,imag_m_n", ROWS, "imag_mm_n: missing"),
-        ("frequency_hz,real_mm_n,real_m_n", ROWS, "beside real_mm_n; one unit is enough"),
-        ("frequency_hz,real_mm_n,imag_mm_n", ROWS[:5], "5 whole samples, at least 10"),
+        (
+            "f,real_mm_n,imag_mm_n",
+            ROWS,
+            "frequency_hz: column is missing; it must hold the frequency in Hz",
+        ),
+        (
+            "frequency_hz,a,b",
+            ROWS,
+            "no column with the real part; one of real_m_n, real_mm_n, real_um_n, ",
+        ),
+        ("frequency_hz,real_mm_n,imag_m_n", ROWS, "imag_mm_n: column is missing"),
+        (
+            "frequency_hz,real_mm_n,real_m_n",
+            ROWS,
+            "given together with real_mm_n; use one unit only",
+        ),
+        ("frequency_hz,real_mm_n,imag_mm_n", ROWS[:5], "5 complete samples; at least 10"),
         (
             "frequency_hz,real_mm_n,imag_mm_n",
             [*ROWS, (300.0, 1.0, 1.0)],
-            "line 14: frequency_hz: 300 Hz after 1100 Hz; it must ascend",
+            "line 14: frequency_hz: 300 Hz after 1100 Hz; frequencies must ascend",
         ),
         (
             "frequency_hz,real_mm_n,imag_mm_n",
@@ -78,7 +90,7 @@ def test_an_accelerance_is_divided_by_minus_omega_squared(tmp_path: Path) -> Non
         (
             "frequency_hz,real_mm_n,imag_mm_n",
             [(row[0], 0.0, 0.0) for row in ROWS],
-            "real_mm_n: zero throughout",
+            "real_mm_n: all values are zero",
         ),
     ],
 )
@@ -95,5 +107,5 @@ def test_a_bad_file_is_told_with_line_and_column(
 def test_a_cell_that_is_no_number_is_told_with_its_line(tmp_path: Path) -> None:
     path = write(tmp_path / "tap.csv", "frequency_hz,real_mm_n,imag_mm_n", ROWS)
     path.write_text(path.read_text().replace("300.0,4.0", "300.0,four"))
-    with pytest.raises(CalibrationError, match=r"line 5: real_mm_n: 'four' is no number"):
+    with pytest.raises(CalibrationError, match=r"line 5: real_mm_n: 'four' is not a number"):
         read_response(path)

@@ -136,7 +136,7 @@ def test_row_of_another_length_is_refused(tmp_path: Path) -> None:
 
 
 def test_too_few_samples_are_refused(tmp_path: Path) -> None:
-    assert "9 whole samples" in str(refused(tmp_path, rows(9)))
+    assert "9 complete samples" in str(refused(tmp_path, rows(9)))
 
 
 @pytest.mark.parametrize("missing", ["time_s", "power"])
@@ -177,5 +177,5 @@ def test_a_long_run_is_thinned_and_says_so() -> None:
     assert found.time[1] == pytest.approx(0.04)
     assert found.power[Component.TOTAL][:3].tolist() == [0.0, 4.0, 8.0]
     assert found.durations.sum() == pytest.approx(10.0)
-    assert "each 4th" in found.findings[-1].message
+    assert "one in 4" in found.findings[-1].message
     assert thinned(run, most=1000) is run

@@ -69,7 +69,7 @@ def test_any_two_modes_that_stand_apart_come_back(
 
 def test_as_many_modes_as_asked_for() -> None:
     assert len(fitted_modes(response(TWO), count=1).modes) == 1
-    with pytest.raises(CalibrationError, match="2 peaks, 3 modes are asked for"):
+    with pytest.raises(CalibrationError, match="2 peaks found, but 3 modes were requested"):
         fitted_modes(response(TWO), count=3)
 
 

@@ -246,7 +246,7 @@ def test_blocks_are_read_as_they_are_needed(mill: Machine) -> None:
     [
         (
             [HOME, nc.Linear(end=(1.0, 0.0, 0.0), rate=PER_REVOLUTION)],
-            r"line 2: feed 0.2 mm/rev: the spindle stands",
+            r"line 2: feed 0.2 mm/rev: the spindle is stopped",
         ),
         (
             [HOME, nc.Linear(end=(1.0, 0.0, 0.0), rate=nc.Rate(value=0.0))],
@@ -254,7 +254,7 @@ def test_blocks_are_read_as_they_are_needed(mill: Machine) -> None:
         ),
         (
             [HOME, nc.ThreadingMove(end=(1.0, 0.0, 50.0), lead=1.0)],
-            r"line 2: feed 1 mm/rev: the spindle stands",
+            r"line 2: feed 1 mm/rev: the spindle is stopped",
         ),
     ],
 )

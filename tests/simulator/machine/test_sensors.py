@@ -101,5 +101,5 @@ def test_figures_out_of_range_are_refused() -> None:
         Noise(missing=1.5)
     with pytest.raises(ValueError, match="seed -1"):
         SeededSensor(column="p", noise=POWER, seed=-1)
-    with pytest.raises(ValueError, match="number of a sample -1"):
+    with pytest.raises(ValueError, match="sample number -1"):
         shown(SeededSensor(column="p", noise=POWER), np.zeros(1), first=-1, is_rapid=FEED[:1])

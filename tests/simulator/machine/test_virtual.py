@@ -172,7 +172,7 @@ def test_tool_change_waits_for_the_spindle_and_the_same_tool_takes_no_time(
 
 
 def test_unknown_tool_names_the_line_and_what_is_known(mill: Machine) -> None:
-    with pytest.raises(UnknownTool, match=r"line 2: no tool T9 .*known: T1, T3") as caught:
+    with pytest.raises(UnknownTool, match=r"line 2: tool T9 .*known: T1, T3") as caught:
         run(mill, HOME, nc.ToolChange(number=9), tools={3: tool(3), 1: tool(1)})
     assert (caught.value.number, caught.value.line) == (9, 2)
 
@@ -183,7 +183,7 @@ def test_tool_zero_empties_the_spindle_and_a_feed_without_a_tool_is_said(
     empty = nc.ToolChange(number=0)
     blocks = (empty, nc.ToolChange(number=1), empty, HOME, DOWN, ON, CUT)
     found = run(mill, *blocks, tools={1: tool(1)}, stock=even_stock())
-    assert found.messages == ["a feed without a tool: nothing is cut"]
+    assert found.messages == ["feed move without a tool: no material is removed"]
     assert [finding.line for finding in found.virtual.findings] == [7]
     samples = found.at(mill, 1.0, 4.0, found.time - 2.0)
     assert samples.tool.tolist() == [0, 1, 0]
@@ -219,7 +219,7 @@ def test_turning_tool_on_a_mill(mill: Machine, even_stock: Stocks) -> None:
 def test_spindle_faster_than_the_machine_is_clamped_and_said_once(mill: Machine) -> None:
     fast = nc.SpindleOn(speed=500.0)
     found = run(mill, HOME, fast, DOWN, CUT, OFF, fast, nc.Pause(seconds=8.0))
-    assert found.messages == ["spindle 30000 rpm exceeds 12000 rpm: 12000 rpm taken"]
+    assert found.messages == ["spindle speed 30000 rpm exceeds 12000 rpm: 12000 rpm used"]
     assert [finding.line for finding in found.virtual.findings] == [2]
     cut = next(e for e in found.episodes if e.course is not None and e.state.line == 5)
     assert cut.begin == pytest.approx(200.0 / 50.0)
@@ -250,7 +250,7 @@ def test_force_of_a_cut(mill: Machine, even_stock: Stocks) -> None:
 
 def test_cutting_with_a_standing_spindle_is_said(mill: Machine, even_stock: Stocks) -> None:
     found = cutting(mill, even_stock, HOME, DOWN, CUT, CUT, loaded=tool(1))
-    assert found.messages == ["cuts while the spindle stands: its force is not known"]
+    assert found.messages == ["cut with a stopped spindle: its force is not modelled"]
     assert [finding.line for finding in found.virtual.findings] == [4]
     samples = found.at(mill, found.time - 2.0)
     assert samples.cutting_power.tolist() == samples.cutting_force.tolist() == [0.0]
@@ -258,7 +258,7 @@ def test_cutting_with_a_standing_spindle_is_said(mill: Machine, even_stock: Stoc
 
 def test_threads_cut_nothing_and_say_so(mill: Machine, even_stock: Stocks) -> None:
     found = cutting(mill, even_stock, ON, HOME, DOWN, CUT, loaded=tool(1, None))
-    assert found.messages == ["TOOL 1: the force of a thread is not modelled, nothing is cut"]
+    assert found.messages == ["TOOL 1: threading is not modelled: no material is removed"]
     assert found.at(mill, found.time - 2.0).cutting_power.tolist() == [0.0]
 
 
@@ -308,7 +308,7 @@ def test_wear_grows_with_cutting_time_and_raises_the_force(
 def test_worn_tool_is_said(mill: Machine, even_stock: Stocks) -> None:
     taylor = Taylor(exponent=0.5, constant=pi * 10.0 * 50.0 / 5.0)
     found = cutting(mill, even_stock, ON, HOME, DOWN, CUT, loaded=tool(1, taylor=taylor))
-    assert found.messages == ["T1 TOOL 1 is worn beyond 0.3 mm"]
+    assert found.messages == ["T1 TOOL 1: flank wear exceeds 0.3 mm"]
 
 
 def test_spindle_follows_the_radius_and_its_programmed_speed_too(lathe: Machine) -> None:
@@ -359,5 +359,5 @@ def test_what_met_the_stock_is_told_at_the_end(mill: Machine) -> None:
         tools={1: tool(1, shape)},
         stock=box,
     )
-    assert any("a rapid cuts" in text for text in found.messages)
+    assert any("a rapid move cuts" in text for text in found.messages)
     assert any("the holder is 4 mm deep" in text for text in found.messages)

@@ -209,7 +209,7 @@ def test_a_cut_without_feed_is_refused(found: ModalState) -> None:
 
 
 def test_revolutions_of_a_standing_spindle_are_refused() -> None:
-    with pytest.raises(PostError, match="while the spindle stands"):
+    with pytest.raises(PostError, match="with a stopped spindle"):
         run(SpindleCommand.STOP, Dwell(revolutions=2.0))
 
 
