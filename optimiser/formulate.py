@@ -76,7 +76,7 @@ class OptimisationTask:
         for tool, factor in self.force_factors.items():
             if not (isfinite(factor) and factor > 0.0):
                 raise ValueError(
-                    f"tool '{tool}': the factor on k_c must be finite and above 0, not {factor:g}"
+                    f"tool '{tool}': k_c factor must be finite and above 0, not {factor:g}"
                 )
         require_quantile(self.safety)
         # Read-only copies, so that later changes by the caller cannot change the task.
