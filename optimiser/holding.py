@@ -103,12 +103,12 @@ def chuck_limits(
         return min(_fastest(cut, speed), usable_speed(chuck))
 
     size = grip.size
-    origin = f"with a grip of {size.length:.4g} mm on Ø{size.diameter:.4g} mm"
+    origin = f"{size.length:.4g} mm grip length on Ø{size.diameter:.4g} mm"
     if slow == fast:
         origin += f" at {rpm_from_rev_s(_fastest(cut, slow)):.0f} rpm"
     if _fastest(cut, fast) > usable_speed(chuck):
         usable = rpm_from_rev_s(usable_speed(chuck))
-        origin += f"; it holds less than {LEAST_LEFT:.0%} above {usable:.0f} rpm"
+        origin += f"; the chuck holds less than {LEAST_LEFT:.0%} above {usable:.0f} rpm"
 
     def limit(name: LimitName, load: Monomial, holds: Callable[[float], float]) -> Limit:
         bound, exponent = powers_of_speed(lambda speed: holds(at_speed(speed)), slow, fast)
