@@ -221,7 +221,7 @@ def _sweep(
     depth = getattr(operation, "axial_cutting_depth", None)
     if depth is not None and depth < LEAST_DEPTH:
         raise program.error(
-            f"depth {depth:g} mm; it must be at least {LEAST_DEPTH:g} mm",
+            f"depth {depth:g} mm: it must be at least {LEAST_DEPTH:g} mm",
             step.operation_ref,
             "axial_cutting_depth",
         )

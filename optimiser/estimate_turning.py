@@ -156,7 +156,7 @@ def _depths(
         findings = (program.finding(Severity.WARNING, text, step.operation_ref),)
     if written and written[0] < LEAST_DEPTH:
         raise program.error(
-            f"depth {written[0]:g} mm; it must be at least {LEAST_DEPTH:g} mm",
+            f"depth {written[0]:g} mm: it must be at least {LEAST_DEPTH:g} mm",
             operation.its_machining_strategy or step.operation_ref,
             "cutting_depth",
         )

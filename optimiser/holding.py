@@ -103,7 +103,7 @@ def chuck_limits(
         return min(_fastest(cut, speed), usable_speed(chuck))
 
     size = grip.size
-    origin = f"{size.length:.4g} mm grip length on Ø{size.diameter:.4g} mm"
+    origin = f"{size.length:.4g} mm of grip on Ø{size.diameter:.4g} mm"
     if slow == fast:
         origin += f" at {rpm_from_rev_s(_fastest(cut, slow)):.0f} rpm"
     if _fastest(cut, fast) > usable_speed(chuck):

@@ -24,7 +24,7 @@ def require_quantile(quantile: float) -> None:
     """
     if not LEAST_QUANTILE <= quantile <= GREATEST_QUANTILE:
         raise ValueError(
-            f"safety {quantile:g}; it must be {LEAST_QUANTILE:g} to {GREATEST_QUANTILE:g}"
+            f"safety {quantile:g}: it must be {LEAST_QUANTILE:g} to {GREATEST_QUANTILE:g}"
         )
 
 
