@@ -125,5 +125,5 @@ def test_a_correction_that_nobody_learned_is_damage(
 ) -> None:
     with open_store(str(tmp_path / "store.db")) as store:
         store.propose(replace(proposal, **wrong))  # type: ignore[arg-type]
-        with pytest.raises(StoreDamaged, match="was not proposed by a review"):
+        with pytest.raises(StoreDamaged, match="has values out of range"):
             store.corrections()
