@@ -126,7 +126,7 @@ class BackupExists(KnowledgeError):
     """The backup file already exists and is not overwritten."""
 
     def __init__(self, place: str) -> None:
-        super().__init__("already exists; choose another file name", place=place)
+        super().__init__("already exists; name another file", place=place)
 
 
 class BackupDiffers(KnowledgeError):

@@ -100,4 +100,4 @@ def require_openable(place: StoreLocation, *, is_new_allowed: bool) -> None:
     if not os.path.isdir(os.path.dirname(path) or "."):
         raise StoreUnavailable(shown, reason="the folder does not exist; create it first")
     if not is_new_allowed:
-        raise StoreUnavailable(shown, reason="the file does not exist; check the name")
+        raise StoreUnavailable(shown, reason="there is no such file; check the name")

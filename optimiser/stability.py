@@ -190,7 +190,10 @@ def _why_thin(cut: Cut) -> str:
     immersion = 0.5 * cut.engagement.cosine_difference
     if immersion >= LEAST_IMMERSION:
         return ""
-    return f"a_e/D {immersion:.2g} is below {LEAST_IMMERSION:g}: no zero-order model"
+    return (
+        f"a_e/D {immersion:.2g} is below {LEAST_IMMERSION:g}, where the zero-order model "
+        "is not used"
+    )
 
 
 def _cutting_stiffness(cut: Cut, at: CuttingConditions) -> tuple[float, float]:

@@ -116,7 +116,7 @@ def test_number_that_is_none_is_refused(outcome: ProcessOutcome, value: float) -
 
 def test_impossible_ratio_is_refused(outcome: ProcessOutcome) -> None:
     strange = replace(outcome, feed=EvaluatedQuantity(predicted=1e-300, measured=1e300))
-    with pytest.raises(ValueError, match="feed: no measurement"):
+    with pytest.raises(ValueError, match="feed: implausible deviation"):
         outcome_row(strange)
 
 

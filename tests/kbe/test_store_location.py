@@ -84,7 +84,7 @@ def test_password_is_never_repeated_even_when_it_is_not_escaped(password: str) -
 
 def test_folder_must_exist(tmp_path: Path) -> None:
     place = parsed_place(str(tmp_path / "missing" / "kbe.db"))
-    with pytest.raises(StoreUnavailable, match="the folder does not exist; make it"):
+    with pytest.raises(StoreUnavailable, match="the folder does not exist; create it"):
         require_openable(place, is_new_allowed=True)
 
 

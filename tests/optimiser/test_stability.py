@@ -198,7 +198,8 @@ def test_thin_cuts_are_not_judged_by_zero_order() -> None:
         assert stability_limits(thin, at) == ()
         found = known(thin, at)
         assert found.basis is Basis.NOT_USED
-        assert found.reason == "a_e/D 0.092 is below 0.1: no zero-order model"
+        reason = "a_e/D 0.092 is below 0.1, where the zero-order model is not used"
+        assert found.reason == reason
 
 
 def test_below_a_short_wave_the_flank_damps_and_nothing_bounds() -> None:
