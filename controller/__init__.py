@@ -1,1 +1,1 @@
-"""Control of the feed override by the measured force."""
+"""Closed-loop control of the feed override by the measured cutting force."""

@@ -1,14 +1,14 @@
-"""A broken tooth, told from runout by what each tooth of a revolution takes.
+"""Detection of a broken tooth from the share of each tooth in the force of a revolution.
 
-A broken tooth takes nothing, and the next one takes its chip as well, [1]_. Runout moves chip
+A broken tooth takes no chip, and the next one takes its chip as well, [1]_. Runout moves chip
 from one tooth to another too, but as constant offsets of their radii do: these are learnt from
 the first revolution on (:mod:`controller.offsets`), and hold for every feed and engagement. A
-tooth is broken when two revolutions in a row are far likelier without it than with all teeth,
-be their offsets the learnt ones or new ones. Thresholds on forces depend on the immersion,
-[2]_; these likelihoods do not. Units mm, N, rev/s.
+tooth counts as broken when two revolutions in a row are far likelier without it than with all
+teeth, whether their offsets are the learnt ones or new ones. Thresholds on forces depend on the
+immersion, [2]_; these likelihoods do not. Units: mm, N, rev/s.
 
-It takes two teeth at least, and a cut whose arc of contact the program knows. A tooth that
-runout keeps out of the work can break unseen.
+The detector needs at least two teeth, and a cut whose arc of contact the program knows. A tooth
+that runout keeps out of the work can break unnoticed.
 
 References
 ----------
@@ -39,72 +39,76 @@ from controller.signal import Revolution
 from controller.tooth_shares import ToothShares, force_ratio, shares_of
 
 EVIDENCE = 10.0
-"""of ln(likelihood) by which two revolutions must speak for a lost tooth"""
+"""Gain of ln(likelihood) that two revolutions together need to indicate a lost tooth."""
 
 EACH = 2.0
-"""the same of each of the two: one odd revolution is not enough"""
+"""Gain of ln(likelihood) that each of the two revolutions needs; one alone is not enough."""
 
 TRUST = 2.0
-"""the same against teeth that have all moved, for each revolution that confirmed the offsets:
-a cutter of which nothing was learnt may have as much runout as it seems to"""
+"""Extra ln(likelihood) against a shift of all teeth, per revolution confirming the offsets.
+
+A cutter about which nothing was learnt may have as much runout as it seems to have.
+"""
 
 SETTLED = 10
-"""such revolutions that count at most"""
+"""Greatest number of confirming revolutions that count."""
 
 FIT = 6.0
-"""misfit for each tooth up to which a revolution is explained"""
+"""Misfit per tooth up to which a revolution counts as explained."""
 
 UNFIT = 18.0
-"""misfit for each tooth above which it speaks for nothing that is known"""
+"""Misfit per tooth above which a revolution fits no known hypothesis."""
 
 ENOUGH = 20
-"""revolutions after which offsets are left as they are while revolutions fit them"""
+"""Number of revolutions after which fitting revolutions no longer change the offsets."""
 
 EXPECTED = 0.5
-"""misfit for each tooth that is no reason to change them"""
+"""Misfit per tooth that gives no reason to change the offsets."""
 
 DOUBTFUL = 30.0
-"""misfit for each tooth to offsets that are not quite right, up to which it may be lost"""
+"""Misfit per tooth without a tooth, up to which that tooth may be lost."""
 
 NOTABLE = 2.0
-"""misfit for each tooth above which a revolution is looked at again"""
+"""Misfit per tooth above which a revolution is examined further."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _Turn:
-    """A revolution, and what was known before it."""
+    """Tooth shares of one revolution, with the offsets known before it."""
 
     shares: ToothShares
     before: Offsets
     misfit: float
-    """with all teeth"""
+    """Misfit with all teeth intact."""
     without: Floats
-    """(z,) without each of them, offsets as they were"""
+    """Misfits without each of the teeth, with the offsets as they were, (z,)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Breakage:
-    """State of the breakage detector of a tool. A new one for a new tool."""
+    """State of the breakage detector of one tool; create a new one for a new tool."""
 
     offsets: Offsets | None = None
-    """None: nothing was learnt yet"""
+    """Estimated offsets of the teeth; None before anything was learnt."""
     turns: tuple[_Turn, ...] = ()
-    """the last revolutions without a pause, up to three: the oldest may be the one in which a
-    tooth broke, and speaks for neither side"""
+    """Up to three last revolutions without a pause.
+
+    The oldest may be the one in which a tooth broke, and supports neither hypothesis.
+    """
     ratio: float = 0.0
-    """force of the revolution before over the expected one; 0: there was none"""
+    """Measured over expected force of the last revolution; 0 if there was none."""
     broken: int | None = None
-    """tooth that is broken, 0 to z − 1; stays"""
+    """Number of the broken tooth, 0 to z − 1, kept once detected; None: all intact."""
     reason: str = ""
-    """what speaks for it, in words"""
+    """Evidence for the broken tooth, in words."""
 
     @property
     def is_broken(self) -> bool:
-        """Whether a tooth is broken."""
+        """Whether a broken tooth was detected."""
         return self.broken is not None
 
     def paused(self) -> "Breakage":
-        """The same out of the cut: the offsets stay."""
+        """Detector state outside the cut: the offsets stay, recent revolutions are dropped."""
         return replace(self, turns=(), ratio=0.0)
 
 
@@ -123,9 +127,9 @@ def inspected(
     ----------
     breakage : Breakage
     revolution : Revolution
-        With chips: what noise alone shows has no pattern to learn.
+        A revolution in the cut; noise alone has no pattern to learn.
     expected : Expected, optional
-        What equal teeth would take; None: not known.
+        Forces that equal teeth would take; None: not known.
     exponent : float
         p = 1 − m_c of force over chip, 0 < p ≤ 1.
 
@@ -149,7 +153,7 @@ def inspected(
 
 
 def _seen(breakage: Breakage, shares: ToothShares, ratio: float) -> Breakage:
-    """With one more revolution, whose teeth are taken for whole."""
+    """Add one more revolution, assuming that all teeth are intact."""
     before = breakage.offsets or unknown(len(shares.taken))
     every = misfits(before, shares)
     offsets, misfit = before, float(every[0])
@@ -161,7 +165,7 @@ def _seen(breakage: Breakage, shares: ToothShares, ratio: float) -> Breakage:
 
 
 def _verdict(breakage: Breakage) -> Breakage:
-    """With the tooth that the last revolutions tell of, or with new offsets."""
+    """Decide whether a tooth is lost, or the offsets have changed."""
     turns, teeth = breakage.turns, len(breakage.turns[-1].shares.taken)
     if len(turns) < 2 or sum(turn.misfit for turn in turns[-2:]) < NOTABLE * teeth:
         return breakage
@@ -177,7 +181,7 @@ def _verdict(breakage: Breakage) -> Breakage:
 
 
 def _suspects(turns: Sequence[_Turn], known: Offsets) -> list[int]:
-    """Teeth whose loss each of two revolutions alone speaks for."""
+    """Teeth whose loss is supported by each of two revolutions on its own."""
     suspects = list(range(len(known.mean)))
     for turn in reversed(turns):
         if known.confirmed >= SETTLED:
@@ -192,31 +196,31 @@ def _suspects(turns: Sequence[_Turn], known: Offsets) -> list[int]:
 
 
 def _is_lost(tooth: int, known: Offsets, last: Sequence[ToothShares]) -> bool:
-    """Whether two revolutions together speak for a lost tooth."""
+    """Whether two revolutions together indicate that a tooth is lost."""
     without = _judged_all(known, last, lost=tooth)
     whole, other = _judged_all(known, last), _judged_all(unknown(len(known.mean)), last)
     most = max(each.misfit for each in without) / len(known.mean)
     if most > UNFIT:
         return False
-    # What is badly explained, as in a corner, must beat any other explanation.
+    # A poorly explained revolution, as in a corner, must beat every other explanation.
     trust = TRUST * min(known.confirmed, SETTLED) if most <= FIT else 0.0
     return _sum(without) - max(_sum(whole), _sum(other) - trust) >= EVIDENCE
 
 
 def _reason(turn: _Turn, known: Offsets) -> str:
-    """Tooth period of the last revolution that is farthest from that of whole teeth."""
+    """Text on the tooth period of the last revolution that differs most from intact teeth."""
     whole = turn.shares.of(known.mean[None])[0]
     at = int(np.abs(turn.shares.taken - whole).argmax())
     return (
-        f"{turn.shares.taken[at]:.2f} of the mean force while tooth {at + 1} was the last to "
-        f"enter, {whole[at]:.2f} with whole teeth"
+        f"{turn.shares.taken[at]:.2f} of the mean force in the period of tooth {at + 1}, "
+        f"{whole[at]:.2f} with intact teeth"
     )
 
 
 def _judged_all(
     offsets: Offsets, shares: Sequence[ToothShares], *, lost: int | None = None
 ) -> list[Judged]:
-    """Revolutions one after another, each with what those before it taught."""
+    """Judge revolutions in order, each with the offsets learnt from those before it."""
     found = []
     for each in shares:
         found.append(judged(offsets, each, lost=lost))

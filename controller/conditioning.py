@@ -1,8 +1,8 @@
-"""Conditioning: what the sensors show becomes a force, what the operator wants a set point.
+"""Signal conditioning: from sensor readings to cutting force, and a rate-limited set point.
 
-The first two stages of [1]_, Fig. 5. A dynamometer drifts, so its zero is taken again and again
-while nothing is cut; where there is none, the power of the spindle tells the force; a set point
-that jumps is fed to the loop at a limited rate. Units mm, s, N, W, rev/s.
+The first two stages of [1]_, Fig. 5. A dynamometer drifts, so its zero is measured again while
+nothing is cut; without a dynamometer, the spindle power gives the force; a set point that jumps
+is passed to the loop at a limited rate. Units: mm, s, N, W, rev/s.
 
 References
 ----------
@@ -19,32 +19,35 @@ from controller.ports import Reading
 from simulator.physics.domain import require_at_most, require_positive
 
 MEMORY = 10.0
-"""s after which what was learnt of a zero counts 1/e: noise averages out, drift does not"""
+"""Time after which a learnt zero is weighted 1/e, s: noise averages out, drift does not."""
 
 SAME_SPEED = 0.01
-"""of the spindle speed: within it, the idle power is taken for the same"""
+"""Relative change of the spindle speed within which the idle power counts as unchanged."""
 
 RISE = 0.1
-"""greatest rise of ln(set point) in a revolution: the double takes seven, which is about what
-the loop needs to settle, so that the error never grows large"""
+"""Greatest rise of ln(set point) per revolution.
+
+Doubling takes seven revolutions, about what the loop needs to settle, so that the error never
+grows large.
+"""
 
 _NMM_S_PER_WATT = 1000.0  # 1 W = 1000 N·mm/s
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Tare:
-    """Reading of an instrument while nothing is cut."""
+    """Zero of an instrument: its reading while nothing is cut."""
 
     offset: float = 0.0
-    """N or W"""
+    """Zero reading, N or W."""
     seconds: float = 0.0
-    """that it rests on, older ones counting less; 0: nothing was learnt yet"""
+    """Weighted time over which the zero was learnt, s; 0 before anything was learnt."""
     time: float = 0.0
-    """s, when it was learnt last"""
+    """Time when the zero was last learnt, s."""
 
     @property
     def is_known(self) -> bool:
-        """Whether a value has been learnt."""
+        """Whether a zero has been learnt."""
         return self.seconds > 0.0
 
 
@@ -53,27 +56,27 @@ class IdlePower:
     """Power of the main drive while nothing is cut, at one spindle speed."""
 
     spindle_speed: float = 0.0
-    """rev/s"""
+    """Spindle speed at which the idle power holds, rev/s."""
     tare: Tare = field(default_factory=Tare)
-    """W"""
+    """Learnt idle power, W."""
 
 
 def tared(tare: Tare, reading: Reading, *, has_chips: bool | None = None) -> Tare:
-    """The zero of a dynamometer after one more reading.
+    """Update the zero of a dynamometer with one more reading.
 
-    Mean of the samples without chips, each counting ``exp(−age/MEMORY)``; lost samples count
-    nothing. Drift during a long cut goes unseen until the next stretch without chips, which
-    then weighs more than all before the cut.
+    The zero is the mean of the samples without chips, each weighted ``exp(−age/MEMORY)``; lost
+    samples do not count. Drift during a long cut is not seen until the next stretch without
+    chips, which then outweighs everything before the cut.
 
     Parameters
     ----------
     tare : Tare
     reading : Reading
-        As the sensor shows it, nothing subtracted.
+        Raw sensor reading, with nothing subtracted.
     has_chips : bool, optional
-        What the caller knows. Unknown: there are none while the override does not act. Where
-        the program itself inhibits the override in a cut (threads, taps), the caller must say
-        ``True``.
+        Whether chips are being cut, if the caller knows. Unknown: no chips while the override
+        does not act. Where the program itself inhibits the override in a cut (threads, taps),
+        the caller must pass ``True``.
     """
     if _cuts(reading, has_chips) or not len(reading.force):
         return tare
@@ -85,15 +88,15 @@ def tared(tare: Tare, reading: Reading, *, has_chips: bool | None = None) -> Tar
 
 
 def without_offset(reading: Reading, tare: Tare) -> Reading:
-    """The reading less the zero of the dynamometer."""
+    """Subtract the zero of the dynamometer from a reading."""
     return replace(reading, force=reading.force - tare.offset)
 
 
 def idled(idle: IdlePower, reading: Reading, *, has_chips: bool | None = None) -> IdlePower:
-    """The idle power after one more reading; learnt anew when the spindle speed changes.
+    """Update the idle power with one more reading; learnt anew when the spindle speed changes.
 
-    Power while the spindle runs up is not idle power. Readings that tell the speed as it is
-    take care of that; those that tell the commanded one spoil the first part of a stretch.
+    Power while the spindle accelerates is not idle power. Readings with the actual speed avoid
+    this error; readings with the commanded speed spoil the first part of a stretch.
 
     Parameters
     ----------
@@ -114,11 +117,11 @@ def idled(idle: IdlePower, reading: Reading, *, has_chips: bool | None = None) -
 def force_from_power(
     reading: Reading, idle: IdlePower, *, tool_diameter: float, efficiency: float
 ) -> Reading:
-    """The reading with one force sample, told by the power of the main drive.
+    """Derive one force sample from the power of the main drive.
 
     ``F = 1000 · (P − P_idle) · η / (π · D · n)``, [1]_ eq. (5) solved for the force; the 1000
-    turns W into N·mm/s. It is the mean tangential force over the period and knows nothing of
-    single teeth, since a main drive is slower than they are. Noise is left unbiased, so that
+    converts W into N·mm/s. It is the mean tangential force over the period and does not resolve
+    single teeth, since a main drive is slower than they are. Noise is not rectified, so that
     without chips it is as often negative as positive.
 
     Parameters
@@ -126,7 +129,7 @@ def force_from_power(
     reading : Reading
     idle : IdlePower
     tool_diameter : float, mm
-        In turning that of the work.
+        In turning, the diameter of the work.
     efficiency : float
         η of the spindle, above 0, at most 1.
 
@@ -152,19 +155,19 @@ def force_from_power(
 
 
 def conditioned(set_point: float, wanted: float, *, rise: float = RISE) -> float:
-    """Set point of the next revolution on the way to what is wanted.
+    """Set point of the next revolution, moved towards the wanted one at a limited rate.
 
-    ``min(wanted, set_point · e^rise)``: up at a limited rate in logarithms, where the plant of
-    the loop is linear; down at once, since less is wanted for a reason that cannot wait.
+    ``min(wanted, set_point · e^rise)``: it rises at a limited rate in logarithms, where the
+    plant of the loop is linear, and falls at once, since a lower set point is always urgent.
 
     Parameters
     ----------
     set_point : float, N
-        Of this revolution; 0: there was none, and the wanted one holds at once.
+        Of this revolution; 0: there was none, and the wanted one applies at once.
     wanted : float, N
         Above 0.
     rise : float
-        Of ln(set point) in a revolution, above 0.
+        Rise of ln(set point) per revolution, above 0.
 
     Returns
     -------
@@ -184,12 +187,12 @@ def conditioned(set_point: float, wanted: float, *, rise: float = RISE) -> float
 
 
 def _cuts(reading: Reading, has_chips: bool | None) -> bool:
-    """Whether there may be chips."""
+    """Whether chips may be being cut."""
     return reading.can_override if has_chips is None else has_chips
 
 
 def _learnt(tare: Tare, value: float, *, seconds: float, time: float) -> Tare:
-    """A zero after some more seconds; a clock that was set back forgets nothing."""
+    """Update a zero with some more seconds; setting the clock back forgets nothing."""
     if not seconds > 0.0:
         return tare
     kept = tare.seconds * exp(-max(0.0, time - tare.time) / MEMORY)

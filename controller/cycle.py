@@ -1,7 +1,7 @@
-"""One cycle of the loop: what was read, what was commanded, and why. Units N.
+"""Result of one control cycle: reading, commanded override and its reason. Units: N.
 
-Forces are equivalent ones, as the loop acts upon them (:mod:`controller.equivalent`); over the
-weight they are those that really were.
+Forces are the equivalent forces that the loop controls (:mod:`controller.equivalent`); divided
+by the weight they are the real ones.
 """
 
 from dataclasses import dataclass
@@ -14,25 +14,25 @@ from simulator.reading import Reading
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class LoopCycle:
-    """Results of one control cycle."""
+    """Reading, override, set point and events of one control cycle."""
 
     reading: Reading
-    """as it was acted upon"""
+    """Conditioned reading that the loop acted upon."""
     allowed: AllowedOverride
-    """the override that was commanded, and what held it"""
+    """Commanded override and the reason that limited it."""
     set_point: float
-    """N; infinite: none"""
+    """Set point of the force, N; infinite without one."""
     revolution: Revolution | None
-    """that was completed in it"""
+    """Spindle revolution completed in this cycle, if any."""
     expected: float
-    """N at the override that was run, with the catalogue's k_c; 0: no revolution or no cut"""
+    """Expected force at the override that was run with catalogue k_c, N; 0: no cut."""
     ratio: float | None
-    """ln(measured / expected force); None: not to be compared"""
+    """ln(measured / expected force); None when not comparable."""
     weight: float = 1.0
-    """equivalent over real force"""
+    """Equivalent force over real force."""
     events: tuple[LoopEvent, ...]
 
     @property
     def bound(self) -> float:
-        """Real force that uses the whole bound here; infinite: none."""
+        """Real force that uses the whole bound at this place, N; infinite without a bound."""
         return self.set_point / self.weight

@@ -1,11 +1,11 @@
-"""Forces at different places of a path, made comparable.
+"""Equivalent forces, comparable at different places of a path.
 
-What breaks a tool is the greatest force of a revolution, what spoils a wall is the force
-normal to it while an edge makes it, what the motor gives is the mean. Over the mean, the others
-are the greater the narrower the arc of contact is; so one and the same mean force uses its
-bound up in a finishing cut and is far from it in a slot. The loop acts upon *equivalent*
-forces: the mean force at the plan's hardest place that uses the same share of its bound. Set
-point, thresholds and breakage force then hold for the whole workingstep.
+The greatest force of a revolution breaks a tool, the force normal to a wall while an edge forms
+it spoils the wall, and the mean force loads the motor. Relative to the mean, the other two grow
+as the arc of contact gets narrower; so the same mean force may use up its bound in a finishing
+cut and be far from it in a slot. The loop controls *equivalent* forces: the mean force at the
+plan's hardest place that uses the same share of its bound. Set point, thresholds and breakage
+force then hold for the whole workingstep.
 """
 
 from collections.abc import Sequence
@@ -19,16 +19,16 @@ from simulator.reading import Floats, Reading
 
 
 def equivalent(plain: Preview, steps: Sequence[LoopStep], settings: LoopSettings) -> Preview:
-    """A preview of equivalent forces.
+    """Convert a preview to equivalent forces.
 
     Parameters
     ----------
     plain : Preview
-        Forces as they are.
+        Preview of real forces.
     steps : sequence of LoopStep
-        By the number of the workingstep, from 1.
+        In the order of the workingstep numbers, from 1.
     settings : LoopSettings
-        With a set point of the user's own forces count as they are.
+        With a set point given by the user, the forces stay real forces.
     """
     if plain.peak is None or plain.workingstep is None or settings.set_point is not None:
         return plain
@@ -45,5 +45,5 @@ def equivalent(plain: Preview, steps: Sequence[LoopStep], settings: LoopSettings
 
 
 def weighed(reading: Reading, weight: float) -> Reading:
-    """A reading with equivalent forces."""
+    """Convert the force of a reading to the equivalent force."""
     return reading if weight == 1.0 else replace(reading, force=reading.force * weight)

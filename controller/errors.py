@@ -1,11 +1,11 @@
-"""The controller's branch of the error tree (:mod:`stepnc_model.errors`)."""
+"""Errors of the controller; the tree is drawn in :mod:`stepnc_model.errors`."""
 
 from stepnc_model.errors import StepNcError
 
 
 class ControlError(StepNcError):
-    """The loop cannot do its work."""
+    """The control loop cannot continue."""
 
 
 class MachineLost(ControlError):
-    """The machine does not answer any more."""
+    """The machine no longer responds."""

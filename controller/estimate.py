@@ -1,8 +1,8 @@
 """Estimate of the ratio of measured to expected cutting force.
 
-Their ratio is what the knowledge base learns k_c from. Statistics are of its logarithm, because
-the ratio is a product of factors, each as likely to be a tenth too high as a tenth too low.
-What it tells of the tool's wear is in :mod:`controller.tool_life`. Units N.
+The knowledge base learns k_c from this ratio. Statistics are of its logarithm, because the
+ratio is a product of factors, each as likely to be a tenth too high as a tenth too low. What
+the ratio indicates about tool wear is in :mod:`controller.tool_life`. Units: N.
 
 References
 ----------
@@ -17,30 +17,32 @@ from controller.signal import Revolution
 from stepnc_model.outcome import ForceRatio
 
 STEADY = 0.1
-"""greatest change of ln(expected force) from one revolution to the next: while depth or feed
-change, expected and measured force are not of the same moment"""
+"""Greatest change of ln(expected force) between revolutions that are compared.
+
+While depth or feed change, expected and measured force do not refer to the same moment.
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RatioEstimate:
-    """Running statistics of ln(measured / expected)."""
+    """Running mean and deviation of ln(measured / expected force)."""
 
     log_mean: float = 0.0
     square_sum: float = 0.0
-    """of the distances from the mean"""
+    """Sum of squared distances from the mean."""
     readings: int = 0
-    """revolutions that were counted"""
+    """Number of revolutions counted."""
 
     @property
     def log_deviation(self) -> float:
-        """Standard deviation of one reading; 0 before there are two."""
+        """Standard deviation of a single reading; 0 with fewer than two readings."""
         return sqrt(self.square_sum / (self.readings - 1)) if self.readings > 1 else 0.0
 
 
 def log_ratio(
     revolution: Revolution, expected: float, *, expected_before: float
 ) -> float | None:
-    """ln(measured / expected) of a revolution, or None when it is left out.
+    """Return ln(measured / expected force) of a revolution, or None when it is left out.
 
     Left out are revolutions with less than half of their samples, with a mean force that is
     not above 0, out of the cut, and those in which the expected force is not within ``STEADY``
@@ -52,7 +54,7 @@ def log_ratio(
     expected : float, N
         Mean force at the feed that was run, ``g · u^p``, with the catalogue's k_c; 0: no cut.
     expected_before : float, N
-        Of the revolution before; 0: there was none.
+        Expected force of the previous revolution; 0: there was none.
     """
     if not (expected > 0.0 and expected_before > 0.0 and revolution.is_covered):
         return None
@@ -62,7 +64,7 @@ def log_ratio(
 
 
 def counted(estimate: RatioEstimate, ratio: float) -> RatioEstimate:
-    """The statistics with one more ln(measured / expected), [1]_."""
+    """Update the statistics with one more ln(measured / expected), [1]_."""
     readings = estimate.readings + 1
     away = ratio - estimate.log_mean
     mean = estimate.log_mean + away / readings
@@ -74,10 +76,10 @@ def counted(estimate: RatioEstimate, ratio: float) -> RatioEstimate:
 
 
 def force_ratio(estimate: RatioEstimate) -> ForceRatio | None:
-    """Ratio of a workingstep, as its outcome reports it; None before there are two readings.
+    """Force ratio of a workingstep for its outcome record; None with fewer than two readings.
 
-    Revolutions in a row err alike, so that the mean is known less well than the deviation over
-    the root of their number.
+    Consecutive revolutions have similar errors, so the uncertainty of the mean is larger than
+    the deviation over the root of their number.
     """
     if estimate.readings < 2:
         return None

@@ -1,21 +1,23 @@
-"""The guard between any law and the machine: what a law wants is only a wish.
+"""Safety guard between the control law and the machine, which limits the requested override.
 
-It promises that the mean force of a tooth period stays below the breakage force, whatever the
-law does, when
+It guarantees that the mean force of a tooth period stays below the breakage force, whatever the
+law requests, provided that
 
-- where the cutter enters the work at an override of 1, the tooth that takes most stays below
-  the breakage force over the sudden ratio: the planner's promise, with what the work hides. The
-  air before must last until the feed has come down to 1; otherwise it must hold at the ceiling;
-- at a given feed the force rises no more than by the sudden ratio from one revolution to the
+- where the cutter enters the work at an override of 1, the most loaded tooth stays below the
+  breakage force over the sudden ratio: this is what the planner ensures, plus what the work
+  conceals. The air before must last until the feed has come down to 1; otherwise this must
+  hold at the ceiling;
+- at a given feed the force rises by no more than the sudden ratio from one revolution to the
   next ones, once within the time in which the feed follows;
 - the sensors show the force within a fraction of a tooth period, or are known to be silent. The
-  power of a main drive does not: it comes late.
+  power of a main drive does not meet this: it is delayed.
 
 The threshold is the breakage force over the sudden ratio, or 1.5 times the set point where that
-is less. The override is held so low that the force measured now would stay below it, and the
-feed is held within one tooth period when a tooth passes it. Against the set point, a tooth
-counts as what it takes more than usual (:mod:`controller.overload`), against the breakage
-force as what it takes. Where the program inhibits the override there is no promise. Units s, N.
+is less. The override is kept so low that the force measured now would stay below it, and the
+feed is held within one tooth period when a tooth exceeds it. Against the set point, a tooth
+counts with its excess over its usual share (:mod:`controller.overload`), against the breakage
+force with its full force. Where the program inhibits the override there is no guarantee. Units:
+s, N.
 """
 
 from dataclasses import dataclass
@@ -25,30 +27,32 @@ from math import inf, isfinite
 from controller.reference import Reference
 
 OVERLOAD_RATIO = 1.5
-"""of the set point, at which the feed is held"""
+"""Ratio of force to set point at which the feed is held."""
 
 SUDDEN_RATIO = 2.0
-"""by which the force may rise at once at the same feed: the depth of a second pass"""
+"""Greatest sudden rise of the force at the same feed: the depth of a second pass."""
 
 MARGIN = 0.95
-"""of the threshold that the override is held to: noise of the measured force"""
+"""Share of the threshold up to which the override is raised, leaving room for noise."""
 
 RESUMED = 0.8
-"""of the set point, aimed at after a hold"""
+"""Share of the set point that is targeted after a feed hold."""
 
 AIMED = 0.8
-"""of the breakage force over the sudden ratio, that a set point is at most: a law that keeps it
-must not meet the threshold by noise"""
+"""Greatest set point as a share of the breakage force over the sudden ratio.
+
+A law that keeps the set point must not reach the threshold through noise.
+"""
 
 LEAST_RESUMED = 0.02
-"""override after a hold: a force far beyond all is a fault, and the feed must not crawl"""
+"""Least override after a feed hold, so that a false force reading does not stall the feed."""
 
 NOTICED = 1e-3
-"""of the threshold, below which a force bounds no override"""
+"""Share of the threshold below which a force does not limit the override."""
 
 
 class OverrideReason(StrEnum):
-    """Why the law does not have its way."""
+    """Reason why the guard limited or replaced the override of the law."""
 
     NOTHING = "nothing"
     BAND = "override band"
@@ -63,25 +67,26 @@ class OverrideReason(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OverrideBand:
-    """Within which the override may move.
+    """Band in which the override may move, with the timeouts and limits of the guard.
 
     Raises
     ------
     ValueError
-        When it is empty or its numbers are beyond their bounds.
+        When the band is empty or a value is out of range.
     """
 
     floor: float = 0.2
     ceiling: float = 1.2
     rise: float = 0.25
-    """greatest rise in one revolution, as a share; falling is free: it is the safe side"""
+    """Greatest relative rise of the override per revolution; falling is not limited."""
     safe: float = 0.5
-    """override without force readings"""
+    """Override without force readings."""
     sensor_timeout: float = 0.5
-    """s without a reading after which it holds"""
+    """Time without a reading after which the safe override applies, s."""
     overload_ratio: float = OVERLOAD_RATIO
     holds: int = 3
-    """holds of the feed in quick succession after which the program is stopped"""
+    """Number of feed holds in quick succession that the loop allows; one more stops the
+    program."""
 
     def __post_init__(self) -> None:
         if not 0.0 < self.floor <= min(self.ceiling, 1.0) <= self.ceiling < inf:
@@ -99,42 +104,44 @@ class OverrideBand:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WorkingstepBounds:
-    """Bounds of the workingstep that runs."""
+    """Force and override bounds of the running workingstep."""
 
     set_point: float
-    """N; infinite: nothing bounds the force"""
+    """Set point of the force, N; infinite if nothing limits the force."""
     breakage: float
-    """N"""
+    """Breakage force of the tool, N."""
     floor: float
     ceiling: float
     exponent: float
-    """p of force over feed"""
+    """Exponent p of force over feed."""
     settled: float = 0.0
-    """N, greatest set point that the force had the time to follow: one that falls at once makes
-    no overload of a force that was none"""
+    """Greatest set point that the force had time to follow, N.
+
+    A set point that falls at once must not turn an acceptable force into an overload.
+    """
     cap: float = inf
-    """override that a hold has taught, :func:`taught`"""
+    """Upper limit of the override learnt from a feed hold, :func:`taught`."""
 
     @property
     def strength(self) -> float:
-        """N that a tooth may take, so that a sudden rise does not break the tool."""
+        """Force of a tooth, N, from which a sudden rise still does not break the tool."""
         return self.breakage / SUDDEN_RATIO
 
     def threshold(self, band: OverrideBand) -> float:
-        """N at which the feed is held."""
+        """Force of a tooth at which the feed is held, N."""
         overload = band.overload_ratio * max(self.set_point, self.settled)
         return min(overload, self.strength)
 
     def load(self, band: OverrideBand, *, level: float, force: float) -> float:
-        """Load of a tooth period as the threshold counts it, N.
+        """Load of a tooth period as compared with the threshold, N.
 
         Parameters
         ----------
         band : OverrideBand
         level : float, N
-            Its force as if all teeth were alike, to be compared with the set point.
+            Force as if all teeth were alike, compared with the set point.
         force : float, N
-            As measured, to be compared with what the tool bears.
+            Measured force, compared with the strength of the tool.
         """
         if self.strength == inf:
             return level
@@ -143,14 +150,14 @@ class WorkingstepBounds:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AllowedOverride:
-    """The override that goes to the machine, and what held it."""
+    """Override that is sent to the machine, and the reason if it was limited."""
 
     override: float
     holding: OverrideReason = OverrideReason.NOTHING
 
 
 def aimed(set_point: float, reference: Reference) -> float:
-    """The set point, N; less where the tool would not bear a sudden rise from it."""
+    """Set point reduced, if necessary, so that the tool withstands a sudden rise, N."""
     return min(set_point, AIMED * reference.breakage / SUDDEN_RATIO)
 
 
@@ -163,16 +170,16 @@ def allowed(
     actual: float,
     force: float,
 ) -> AllowedOverride:
-    """Override that the guard allows a law, in a revolution with chips.
+    """Limit the override requested by a law, in a revolution with chips.
 
     Parameters
     ----------
     wanted : float
-        Any number; what is none counts as the floor.
+        Requested override; NaN or infinity counts as the floor.
     band : OverrideBand
     keep : WorkingstepBounds
     last : float
-        Override that was commanded last.
+        Last commanded override.
     actual : float
         Override that the axes ran in the last revolution.
     force : float, N
@@ -193,12 +200,12 @@ def allowed(
 
 
 def in_air(keep: WorkingstepBounds, *, last: float) -> AllowedOverride:
-    """The override without chips: the last, at most the programmed feed."""
+    """Override without chips: the last one, but at most the programmed feed."""
     return AllowedOverride(override=min(max(last, keep.floor), keep.ceiling, 1.0))
 
 
 def after_hold(keep: WorkingstepBounds, *, override: float, force: float) -> float:
-    """Override to go on with after a force, N, has held the feed."""
+    """Override at which to resume after a force, N, has held the feed."""
     share = (RESUMED * keep.set_point / force) ** (1.0 / keep.exponent)
     return float(min(max(override * share, LEAST_RESUMED), keep.ceiling, 1.0))
 
@@ -206,10 +213,10 @@ def after_hold(keep: WorkingstepBounds, *, override: float, force: float) -> flo
 def taught(
     band: OverrideBand, keep: WorkingstepBounds, *, override: float, force: float
 ) -> float:
-    """Override at which the force, N, that has held the feed would have been let through.
+    """Override at which the force, N, that held the feed would not have done so.
 
-    What was met once may be met again in the same workingstep: without it, a program whose
-    depth changes over and over would be held each time, and stopped in the end.
+    The same load may occur again in the workingstep: without this limit, a program with
+    alternating depths would be held each time and finally stopped.
     """
     threshold = MARGIN * keep.threshold(band)
     believed = min(force, SUDDEN_RATIO * keep.threshold(band))

@@ -1,9 +1,8 @@
 """Interface of control laws: functions of a state and a situation.
 
 Cutting force over feed is a power law, ``F = K·g·u^p`` with the override u, the expected
-force g at u = 1, a factor K that nobody knows, and p = 1 − m_c: in logarithms a linear,
-time-invariant plant of gain p behind the lag of the feed drives. Laws work there, once a
-revolution.
+force g at u = 1, an unknown factor K, and p = 1 − m_c: in logarithms a linear, time-invariant
+plant of gain p behind the lag of the feed drives. Laws work in logarithms, once a revolution.
 
 References
 ----------
@@ -19,48 +18,51 @@ S = TypeVar("S")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Situation:
-    """Input of a law's decision: one revolution of the spindle."""
+    """Input of a control law for one revolution of the spindle."""
 
     force: float
-    """N, mean of the last revolution, above 0"""
+    """Mean force of the last revolution, N, above 0."""
     set_point: float
-    """N, above 0"""
+    """Set point of the force, N, above 0."""
     override: float
-    """that was commanded last"""
+    """Last commanded override."""
     actual: float
-    """override that the axes ran in the last revolution"""
+    """Override that the axes ran in the last revolution."""
     floor: float
-    """least override that the guard lets through"""
+    """Least override that the guard allows."""
     ceiling: float
-    """greatest override that the guard lets through"""
+    """Greatest override that the guard allows."""
     expected: float = 0.0
-    """N, g of the last revolution: expected at override 1; 0: not known"""
+    """Force g expected in the last revolution at override 1, N; 0: not known."""
     ahead: tuple[float, ...] = ()
-    """N, g of each of the next revolutions, the greatest within one revolution before and
-    after; empty: nothing is known ahead"""
+    """Force g expected in each of the next revolutions, N; empty: not known.
+
+    Each value is the greatest within one revolution before and after.
+    """
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Plant:
-    """Process model that a law is tuned for."""
+    """Process model for which a law is tuned."""
 
     exponent: float = 0.8
-    """p = 1 − m_c, of force over feed"""
+    """Exponent p = 1 − m_c of force over feed."""
     lag: float = 3.0
-    """of the feed drives, revolutions"""
+    """Lag of the feed drives, revolutions."""
 
 
 class ControlLaw(Protocol[S]):
-    """A control law. The object holds what was tuned; all that changes is in the state."""
+    """Control law; the object holds the tuning, and everything that changes is in the state."""
 
     def begin(self, override: float) -> S:
-        """State with which a cut begins that runs at this override."""
+        """Initial state for a cut that begins at a given override."""
         ...
 
     def decide(self, state: S, at: Situation) -> tuple[S, float]:
-        """The next state, and the override that the law wants, within floor and ceiling.
+        """Return the next state and the override requested, within floor and ceiling.
 
-        Called once a revolution while there are chips. A law that wants more than it gets
-        must not wind up: what counts is ``at.override``, which the guard let through.
+        Called once a revolution while there are chips. A law that requests more than it gets
+        must not wind up: the override that was applied is ``at.override``, as limited by the
+        guard.
         """
         ...

@@ -1,8 +1,8 @@
-"""One control cycle after another: sensor, signal, state, override.
+"""Control loop: repeats sensor, signal processing, state transition and override.
 
-A cycle is a tooth period: within it an overload is noticed; each revolution the law decides
-(:mod:`controller.loop_state`). The loop knows only its sockets, :mod:`controller.ports`; what
-is plugged in may be virtual. Running state. Units mm, s, N, W, rev/s.
+A cycle is a tooth period: within it an overload is noticed; once a revolution the law decides
+(:mod:`controller.loop_state`). The loop knows only its interfaces, :mod:`controller.ports`; the
+machine behind them may be virtual. Mutable state. Units: mm, s, N, W, rev/s.
 """
 
 from collections.abc import Sequence
@@ -23,24 +23,27 @@ from controller.source import Source
 from simulator.reading import Reading
 
 IMPLAUSIBLE = 5.0
-"""times the force of chips that a force may be below zero: no cut pulls, the zero is wrong"""
+"""Multiple of the chip force by which a force may be below zero before it is rejected.
+
+No cut pulls that much, so the zero of the instrument must be wrong.
+"""
 
 
 class Loop:
-    """A control loop on one machine. Running state.
+    """Control loop of the feed override on one machine (mutable state).
 
     Parameters
     ----------
     sensor : Sensor
     override : Override
     source : Source
-        Force by dynamometer or by power.
+        Force from a dynamometer or from spindle power.
     law : callable
-        A law tuned for a process.
+        Returns a law tuned for a process.
     steps : sequence of LoopStep
-        The program's workingsteps in the order of their beginning.
+        The program's workingsteps in the order in which they begin.
     preview : Preview
-        What the program expects; the law is told when the settings have a look-ahead.
+        Force that the program expects; the law uses it when the settings have a look-ahead.
     settings : LoopSettings
     """
 
@@ -62,18 +65,18 @@ class Loop:
         self._orders: list[Order] = []
 
     def order(self, order: Order) -> None:
-        """Something that the operator wants, from the next cycle on."""
+        """Queue an order of the operator, which takes effect from the next cycle on."""
         self._orders.append(order)
 
     def cycle(self) -> LoopCycle | None:
-        """Wait for a reading, and act upon it; None: the program has ended.
+        """Wait for a reading and act on it; None when the program has ended.
 
-        Whatever goes wrong in it, the safe override is commanded before it is raised.
+        On any error, the safe override is commanded before the error is raised.
 
         Raises
         ------
         MachineLost
-            When the machine does not answer any more.
+            When the machine no longer responds.
         """
         try:
             raw = self._sensor.read()
@@ -83,7 +86,7 @@ class Loop:
             raise
 
     def _answered(self, raw: Reading) -> LoopCycle:
-        """Process one reading."""
+        """Process one reading: condition it, update the state, and command the override."""
         is_new = raw.time > self.state.time
         state = self.state._replace(time=raw.time, events=())
         if raw.workingstep != state.workingstep:
@@ -91,24 +94,24 @@ class Loop:
         while self._orders:
             order = self._orders.pop(0)
             state = obeyed(state, order, plain=self._plain, steps=self._steps)
-        # Program time that a revolution takes at the override that is run.
+        # Program time that one revolution takes at the present override.
         way = raw.period * raw.teeth * max(raw.override, LEAST_WAY)
         preview, least = state.preview, -IMPLAUSIBLE * state.settings.chips
         weight = preview.weight_between(raw.progress - way, raw.progress)
         is_air = preview.is_air(raw.progress, revolution=way)
         conditioned = self._source.conditioned(raw, state.step.diameter, is_air=is_air)
         reading = weighed(conditioned, weight)
-        # One that comes again tells nothing.
+        # A repeated reading carries no new information.
         revolution = self._collector.add(reading) if is_new else None
         if revolution is not None and revolution.force < least:
             revolution = None
         force = overload.mean(reading.force) if is_new else nan
         expected, ratio = 0.0, None
         if revolution is not None:
-            # What the catalogue's k_c gives at the override that was run.
+            # Force by the catalogue's k_c at the override that was run.
             mean = preview.mean(revolution.progress_before, revolution.progress)
             expected = float(mean * max(revolution.override, 0.0) ** state.step.exponent)
-            # Hardly a chip tells nothing of k_c.
+            # A force near zero gives no information on k_c.
             known = expected if expected > weight * state.settings.chips else 0.0
             ratio = log_ratio(revolution, known, expected_before=state.expected)
             state = state._replace(expected=known)

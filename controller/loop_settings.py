@@ -1,4 +1,7 @@
-"""Settings of the loop, as a whole and for each workingstep. Units mm, s, N."""
+"""Settings of the control loop, for the whole run and for each workingstep.
+
+Units: mm, s, N.
+"""
 
 from dataclasses import dataclass, field
 from math import inf
@@ -11,27 +14,27 @@ from controller.reference import Reference
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LoopSettings:
-    """Settings of the loop.
+    """Settings of the control loop for the whole run.
 
     Raises
     ------
     ValueError
-        When a number is beyond its bounds.
+        When a number is out of range.
     """
 
     criterion: Criterion = Criterion.TC
     is_on: bool = True
     power_factor: float = 1.0
-    """of the motor's power"""
+    """Share of the motor's power that may be used."""
     set_point: float | None = None
-    """N, instead of the plan's bound"""
+    """Set point of the force in place of the plan's bound, N; None: by the plan."""
     band: OverrideBand = field(default_factory=OverrideBand)
     look_ahead: int = LOOK_AHEAD
-    """revolutions; 0: the law is told nothing of what the program knows"""
+    """Look-ahead of the law, revolutions; 0: no preview."""
     servo_lag: float = 0.06
-    """s, as the loop takes it: the machine's own may differ"""
+    """Lag of the feed drives assumed by the loop, s; the machine's own may differ."""
     chips: float = 10.0
-    """N, mean of a revolution above which there are chips: some times its noise"""
+    """Revolution mean force above which there are chips, N: a multiple of its noise."""
 
     def __post_init__(self) -> None:
         for thing, value in (
@@ -48,7 +51,7 @@ class LoopSettings:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LoopStep:
-    """One workingstep as the loop needs it.
+    """Data of one workingstep that the control loop needs.
 
     Raises
     ------
@@ -58,11 +61,11 @@ class LoopStep:
 
     reference: Reference
     exponent: float = 0.8
-    """p of force over feed"""
+    """Exponent p of force over feed."""
     tool: str = ""
-    """its id"""
+    """Id of the tool."""
     diameter: float = 0.0
-    """mm at which the cutting speed drives the force; 0: not known"""
+    """Diameter at which the cutting speed drives the force, mm; 0: not known."""
 
     def __post_init__(self) -> None:
         if not 0.0 < self.exponent < inf:
@@ -72,4 +75,4 @@ class LoopStep:
 AROUND = LoopStep(
     reference=Reference(workingstep="", inhibition="it belongs to no workingstep")
 )
-"""what stands before the first workingstep"""
+"""Placeholder for everything outside the workingsteps."""

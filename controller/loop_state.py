@@ -1,6 +1,6 @@
-"""State of the control loop, and its transitions.
+"""State machine of the control loop.
 
-The phase tells what sets the override::
+The phase determines the override::
 
                           overload
               ┌─────────────────────────> HELD ──────────────┐
@@ -14,15 +14,15 @@ The phase tells what sets the override::
            OFF  v                                            │
              INHIBITED       all but OFF: a broken tooth ────┘
 
-- FOLLOWING: the law's wish, as far as the guard allows it; in the air the last one, up to 1.
+- FOLLOWING: the law's request, as far as the guard allows it; in air the last one, up to 1.
 - HELD: 0, until each tooth is below the set point or the axes stand.
-- BLIND: at most the safe override, until a revolution tells a force.
-- OFF and INHIBITED: 1. The switch and the lock of a workingstep count from the next complete
-  revolution or the next workingstep on, and before BLIND; a hold goes on to its end.
-- STOPPED: 0, for good.
+- BLIND: at most the safe override, until a revolution has a valid force.
+- OFF and INHIBITED: 1. The switch and the lock of a workingstep take effect from the next
+  complete revolution or the next workingstep, and before BLIND; a hold continues to its end.
+- STOPPED: 0, permanently.
 
-All functions are pure: a state and what was read make the next state. States are tuples and
-not dataclasses, as one is made several times in a tooth period. Units mm, s, N, rev/s.
+All functions are pure: a state and a reading give the next state. States are tuples and not
+dataclasses, as one is made several times in a tooth period. Units: mm, s, N, rev/s.
 """
 
 from collections.abc import Callable, Sequence
@@ -52,27 +52,30 @@ from controller.signal import Revolution
 from simulator.reading import Reading
 
 STANDING = 0.02
-"""override below which the axes count as standing"""
+"""Override below which the axes count as standing."""
 
 FORGIVING = 1.0 / 100.0
-"""of a hold forgotten in a revolution: holds in quick succession are a fault"""
+"""Share of a feed hold that is forgotten per revolution: only holds in quick succession
+count."""
 
 BELOW = 500
-"""revolutions in a row in which the guard goes below the band, until it stops the program"""
+"""Consecutive revolutions with an override below the band after which the program stops."""
 
 REVOLUTIONS = 2.0
-"""that may pass besides the time that is allowed, until one tells a force: the first is mostly
-begun in its middle"""
+"""Revolutions, besides the timeout, that may pass without a force.
+
+The first revolution is mostly incomplete.
+"""
 
 LEAST_WAY = 0.1
-"""override at least with which the way of the next revolutions is reckoned"""
+"""Least override used to compute the program time of the next revolutions."""
 
 LawFor = Callable[[Plant], ControlLaw[Any]]
-"""a law tuned for a process"""
+"""Function that returns a control law tuned for a process."""
 
 
 class Phase(Enum):
-    """What sets the override; the value is the reason that is told with it."""
+    """Phase of the loop, which determines the override; its value is the reported reason."""
 
     FOLLOWING = OverrideReason.NOTHING
     HELD = OverrideReason.OVERLOAD
@@ -84,56 +87,59 @@ class Phase(Enum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FeedHold:
-    """The overload that the phase HELD waits out."""
+    """Overload that caused a feed hold, while the phase is HELD."""
 
     override: float
-    """that the axes ran when the force was greatest"""
+    """Override that the axes ran when the force was greatest."""
     force: float
-    """N, greatest since"""
+    """Greatest force since the hold began, N."""
     calm: int = 0
-    """tooth periods in a row with a force below the set point: with runout, one says little"""
+    """Consecutive tooth periods with a force below the set point; with runout, one is not
+    enough."""
 
 
 class LoopState(NamedTuple):
-    """State of the loop after a reading."""
+    """State of the control loop after a reading."""
 
     settings: LoopSettings
     preview: Preview
-    """in equivalent forces"""
+    """Preview of the cut ahead, in equivalent forces."""
     keep: WorkingstepBounds
     phase: Phase = Phase.FOLLOWING
     allowed: AllowedOverride = AllowedOverride(override=1.0)
-    """that was commanded last"""
+    """Last commanded override, with its reason."""
     time: float = -inf
-    """s, of the last reading"""
+    """Time of the last reading, s."""
     workingstep: int = 0
-    """its number"""
+    """Number of the running workingstep."""
     step: LoopStep = AROUND
     hold: FeedHold | None = None
-    """while HELD"""
+    """Feed hold in progress, while HELD."""
     holds: float = 0.0
-    """in this workingstep, old ones less and less"""
+    """Feed holds in this workingstep, with decaying weights."""
     below: int = 0
-    """revolutions in a row below the floor of the band"""
+    """Consecutive revolutions with an override below the floor of the band."""
     without_sample: float = 0.0
-    """s at feed since the last sample"""
+    """Time at feed since the last sample, s."""
     without_force: float = 0.0
-    """s at feed since the last revolution with a force: too few samples, teeth left out and
-    readings that come again with their old time make none"""
+    """Time at feed since the last revolution with a valid force, s.
+
+    Too few samples, skipped teeth and repeated readings with an old time give no valid force.
+    """
     has_chips: bool = False
-    """whether the last revolution had"""
+    """Whether the last revolution had chips."""
     law: tuple[ControlLaw[Any], Any] | None = None
-    """tuned for the cut that goes on, and its state; None: no cut is followed"""
+    """Law tuned for the present cut, with its state; None outside a controlled cut."""
     override_before: float = 1.0
-    """before the last decision"""
+    """Override before the last decision."""
     greatest: float = 0.0
-    """N, load of a tooth since then"""
+    """Greatest load of a tooth since the last decision, N."""
     expected: float = 0.0
-    """N, of the last revolution; 0: there was no cut"""
+    """Expected force of the last revolution, N; 0: there was no cut."""
     shares: overload.UsualShares = overload.fresh(1)
     monitor: Monitor = Monitor()
     events: tuple[LoopEvent, ...] = ()
-    """that this reading has caused"""
+    """Events that this reading has caused."""
 
     @property
     def override(self) -> float:
@@ -147,25 +153,25 @@ class LoopState(NamedTuple):
 
     @property
     def safe(self) -> float:
-        """The override when nothing is known: what it is, at most the safe one."""
+        """Override to use when the force is unknown: the present one, at most the safe one."""
         if self.step.reference.inhibition or not self.settings.is_on:
             return self.override
         return min(self.override, self.settings.band.safe)
 
     def is_blind(self, spindle_speed: float) -> bool:
-        """Whether the time without a force is too long; a standing spindle misses none."""
+        """Whether there has been no force for too long; a standing spindle does not count."""
         most = self.settings.band.sensor_timeout
         turning = REVOLUTIONS / spindle_speed if spindle_speed > 0.0 else inf
         return self.without_sample > most or self.without_force > most + turning
 
 
 def initial(settings: LoopSettings, preview: Preview) -> LoopState:
-    """State before the first reading."""
+    """Return the state before the first reading."""
     return LoopState(settings=settings, preview=preview, keep=bounded(settings, AROUND))
 
 
 def begun(state: LoopState, reading: Reading, steps: Sequence[LoopStep]) -> LoopState:
-    """In another workingstep. A hold goes on: the axes may still be slowing down."""
+    """Enter another workingstep; a feed hold continues while the axes slow down."""
     at, settings = reading.workingstep - 1, state.settings
     step = steps[at] if 0 <= at < len(steps) else AROUND
     state = state._replace(
@@ -190,7 +196,7 @@ def begun(state: LoopState, reading: Reading, steps: Sequence[LoopStep]) -> Loop
 
 
 def _opened(state: LoopState) -> LoopState:
-    """With the override with which a workingstep begins."""
+    """Set the phase and override with which a workingstep begins."""
     if not state.settings.is_on:
         return _into(state, Phase.OFF, 1.0)
     if state.step.reference.inhibition:
@@ -204,14 +210,14 @@ def _opened(state: LoopState) -> LoopState:
 def obeyed(
     state: LoopState, order: Order, *, plain: Preview, steps: Sequence[LoopStep]
 ) -> LoopState:
-    """After an order of the operator; the next decision is by it.
+    """Apply an order of the operator, which the next decision follows.
 
     Parameters
     ----------
     state : LoopState
     order : Order
     plain : Preview
-        Forces as they are.
+        Preview of real forces.
     steps : sequence of LoopStep
     """
     settings, preview = state.settings, state.preview
@@ -225,7 +231,7 @@ def obeyed(
             text = f"motor power {100.0 * factor:.4g} %"
         case _:
             settings = replace(settings, is_on=order.is_on)
-            text = "ON" if order.is_on else "OFF: the program's own feed"
+            text = "ON" if order.is_on else "OFF: the programmed feed runs"
     state = state._replace(settings=settings, preview=preview, law=None)
     return _told(_bounded(state, cap=state.keep.cap), EventKind.ORDER, text)
 
@@ -239,7 +245,7 @@ def answered(
     force: float,
     law_for: LawFor,
 ) -> LoopState:
-    """After a reading: the phase that follows, and the override that it sets.
+    """Process a reading: return the state with the next phase and override.
 
     Parameters
     ----------
@@ -247,7 +253,7 @@ def answered(
     reading : Reading
         In equivalent forces.
     revolution : Revolution, optional
-        That it completes.
+        Revolution that the reading completes.
     ratio : float, optional
         ln(measured / expected) of the revolution.
     force : float, N
@@ -264,7 +270,7 @@ def answered(
         return state
     hold = state.hold
     if hold is not None:
-        # The tooth after a broken one takes two chips: the hold may be its doing.
+        # After a broken tooth the next one takes two chips, which may have caused the hold.
         if revolution is not None and revolution.is_covered:
             state = _watched(state, revolution, ratio)
         return state if state.is_stopped else _waited(state, hold, reading, load)
@@ -279,7 +285,7 @@ def answered(
 
 
 def _out_of_cut(state: LoopState) -> LoopState:
-    """The cut is over: what the law remembers of it does not hold in the next one."""
+    """Leave the cut: the memory of the law does not apply to the next one."""
     if not state.has_chips:
         return state
     return state._replace(law=None, has_chips=False, monitor=state.monitor.out_of_cut())
@@ -288,7 +294,7 @@ def _out_of_cut(state: LoopState) -> LoopState:
 def _listened(
     state: LoopState, reading: Reading, revolution: Revolution | None, force: float
 ) -> LoopState:
-    """With the time since a force was told."""
+    """Update the time since the last valid force."""
     if revolution is not None and revolution.is_covered:
         return state._replace(without_sample=0.0, without_force=0.0)
     return state._replace(
@@ -298,11 +304,11 @@ def _listened(
 
 
 def _loaded(state: LoopState, reading: Reading, force: float) -> tuple[LoopState, float]:
-    """With the load of a tooth period, N, as the threshold counts it; NaN: not known."""
+    """Update the load of a tooth period, N, as compared with the threshold; NaN: not known."""
     shares = state.shares
     if len(shares.usual) != reading.teeth:
         shares = overload.fresh(reading.teeth)
-    # Noise in the air and the way into the work tell nothing of runout.
+    # Noise in air and the entry into the work do not show runout.
     see = overload.seen if state.has_chips else overload.noted
     shares = see(shares, reading.tooth, force)
     level = overload.level(shares, reading.tooth, force)
@@ -311,9 +317,9 @@ def _loaded(state: LoopState, reading: Reading, force: float) -> tuple[LoopState
 
 
 def _held(state: LoopState, reading: Reading, load: float) -> LoopState:
-    """Hold the feed after an overload; once too often, for good."""
+    """Hold the feed after an overload, or stop the program after too many holds."""
     bound = state.keep.threshold(state.settings.band)
-    text = f"force {load:.4g} N of a tooth exceeds {bound:.4g} N: feed held"
+    text = f"tooth force {load:.4g} N exceeds {bound:.4g} N: feed held"
     hold, holds = FeedHold(override=reading.override, force=load), state.holds + 1
     held = _into(state._replace(hold=hold, holds=holds, law=None), Phase.HELD, 0.0)
     held = _told(held, EventKind.HOLD, text)
@@ -323,7 +329,7 @@ def _held(state: LoopState, reading: Reading, load: float) -> LoopState:
 
 
 def _waited(state: LoopState, hold: FeedHold, reading: Reading, load: float) -> LoopState:
-    """Held on, or resumed below the override that has led to the hold."""
+    """Keep holding the feed, or resume below the override that led to the hold."""
     if load > hold.force:
         hold = replace(hold, override=reading.override, force=load)
     calm = hold.calm + 1 if load < state.keep.set_point else 0
@@ -349,7 +355,7 @@ def _decided(
     is_blind: bool,
     law_for: LawFor,
 ) -> LoopState:
-    """After a revolution, or after too long without one that says a force."""
+    """Decide after a revolution, or after too long a time without a valid force."""
     if not state.settings.is_on:
         return _into(state, Phase.OFF, 1.0)
     had_chips = state.has_chips
@@ -365,13 +371,13 @@ def _decided(
         return _lowered(state, revolution)
     if state.has_chips:
         return _followed(state, revolution, law_for, is_entry=not had_chips)
-    # The last revolution of a cut, half in the air, must not raise its override.
+    # The last revolution of a cut is partly in air and must not raise the override.
     last = min(state.override, state.override_before) if had_chips else state.override
     return _into(state, Phase.FOLLOWING, in_air(state.keep, last=last).override)
 
 
 def _watched(state: LoopState, revolution: Revolution, ratio: float | None) -> LoopState:
-    """With what the monitor sees in a revolution; while the feed is held, teeth alone."""
+    """Update the monitor with a revolution; during a hold only the teeth are checked."""
     if not revolution.force > state.settings.chips:
         return _out_of_cut(state)
     monitor, preview = state.monitor, state.preview
@@ -380,7 +386,7 @@ def _watched(state: LoopState, revolution: Revolution, ratio: float | None) -> L
     if state.phase is Phase.HELD:
         monitor = monitor.teeth_seen(revolution, state.keep, expected=teeth)
     else:
-        # Where a ratio is known, so is the expected force.
+        # If the ratio is known, the expected force is known too.
         land = 0.0 if ratio is None else preview.mean_land(begin, end) / state.expected
         monitor = monitor.seen(
             revolution, state.keep, ratio=ratio, land_share=land, expected=teeth
@@ -391,16 +397,16 @@ def _watched(state: LoopState, revolution: Revolution, ratio: float | None) -> L
 
 
 def _blinded(state: LoopState) -> LoopState:
-    """The safe override, until forces are read again."""
+    """Apply the safe override until forces are read again."""
     if state.phase is not Phase.BLIND:
         safe = 100.0 * state.settings.band.safe
-        text = f"no force for {state.without_force:.2g} s: override {safe:.4g} % at most"
+        text = f"no force for {state.without_force:.2g} s: override limited to {safe:.4g} %"
         state = _told(state, EventKind.SILENCE, text)
     return _into(state._replace(law=None), Phase.BLIND, state.safe)
 
 
 def _lowered(state: LoopState, revolution: Revolution) -> LoopState:
-    """The last override, or less where the few samples that arrived ask for it."""
+    """Keep the last override, or reduce it if the few samples that arrived require it."""
     got = allowed(
         state.override,
         state.settings.band,
@@ -417,7 +423,7 @@ def _lowered(state: LoopState, revolution: Revolution) -> LoopState:
 def _followed(
     state: LoopState, revolution: Revolution, law_for: LawFor, *, is_entry: bool
 ) -> LoopState:
-    """As the law wishes and the guard allows, in a revolution with chips."""
+    """Apply the override requested by the law, as far as the guard allows it."""
     wanted, law, last, keep = 1.0, state.law, state.override, state.keep
     if isfinite(keep.set_point):
         tuned, memory = law or _tuned(state, revolution, law_for)
@@ -437,7 +443,7 @@ def _followed(
     below = state.below + 1 if got.override < keep.floor else 0
     if below > BELOW:
         percent = 100.0 * keep.floor
-        text = f"the tool is in danger even at {percent:.3g} % of the programmed feed"
+        text = f"the force is too high even at {percent:.3g} % of the programmed feed"
         return _stopped(state, text)
     return state._replace(law=law, below=below, phase=Phase.FOLLOWING, allowed=got)
 
@@ -445,8 +451,8 @@ def _followed(
 def _tuned(
     state: LoopState, revolution: Revolution, law_for: LawFor
 ) -> tuple[ControlLaw[Any], Any]:
-    """The law for the cut that begins, and its state."""
-    # Rounded, so that equal cuts find their law again.
+    """Tune the law for the cut that begins, and return it with its initial state."""
+    # Rounded, so that equal cuts reuse a cached law.
     lag = round(max(state.settings.servo_lag * revolution.spindle_speed, 0.1), 1)
     exponent = state.keep.exponent
     law = law_for(Plant(exponent=round(exponent, 2) or exponent, lag=lag))
@@ -454,7 +460,7 @@ def _tuned(
 
 
 def _situation(state: LoopState, revolution: Revolution) -> Situation:
-    """What the law may know."""
+    """Situation that the law is given."""
     keep, preview, look_ahead = state.keep, state.preview, state.settings.look_ahead
     way = revolution.period * max(revolution.override, LEAST_WAY)
     begin, end = revolution.progress_before, revolution.progress
@@ -471,7 +477,7 @@ def _situation(state: LoopState, revolution: Revolution) -> Situation:
 
 
 def _bounded(state: LoopState, *, cap: float) -> LoopState:
-    """With bounds after the settings."""
+    """Update the bounds from the settings."""
     keep = bounded(
         state.settings,
         state.step,
@@ -483,12 +489,12 @@ def _bounded(state: LoopState, *, cap: float) -> LoopState:
 
 
 def _stopped(state: LoopState, why: str) -> LoopState:
-    """Stop the program for good."""
+    """Stop the program permanently."""
     return _told(_into(state, Phase.STOPPED, 0.0), EventKind.STOP, why)
 
 
 def _into(state: LoopState, phase: Phase, override: float) -> LoopState:
-    """In a phase, with its override."""
+    """Set the phase and its override."""
     allowed_ = AllowedOverride(override=override, holding=phase.value)
     return state._replace(phase=phase, allowed=allowed_)
 

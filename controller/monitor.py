@@ -1,4 +1,6 @@
-"""Monitor of the run: warnings, broken teeth, wear, jumps in hardness.
+"""Process monitor of a run: force warnings, broken teeth, tool wear, changes of the work.
+
+A state and its update by revolutions with chips. Units: N, s.
 
 A state, and what revolutions with chips make of it. Units N, s.
 """
@@ -17,24 +19,29 @@ from controller.threshold import AlarmLevel, ThresholdWatch, reason, watched
 from controller.tool_life import ToolLife, compared_anew, lived, new_tool
 
 STEADY = 0.02
-"""greatest change of the override in a revolution that counts as steady, as a share"""
+"""Greatest relative change of the override per revolution that counts as steady."""
 
 CALM = 5.0
-"""s for which the level must have been lower until it is said: a force that flickers about a
-threshold must not flood who reads; what is worse is said at once"""
+"""Time for which the level must be lower before this is reported, s.
+
+A force that fluctuates about a threshold must not flood the operator; a higher level is
+reported at once.
+"""
 
 PAUSE = 10.0
-"""s between two changes of the work that are told"""
+"""Least time between two reported changes of the work, s."""
 
 NOTABLE = 0.1
-"""change of ln F that is told; less is what the expected force errs by in corners"""
+"""Least change of ln F that is reported; the expected force errs by less in corners."""
 
 REACH = 20
-"""revolutions at the floor of the override with a force above the set point, after which that
-is said: more than any drive needs to slow down"""
+"""Revolutions at the floor of the override with a force above the set point before a report.
+
+It is more than any drive needs to slow down.
+"""
 
 ABOVE = 1.05
-"""times the set point, and times the floor: what is nearer is at it"""
+"""Factor on the set point and on the floor within which they count as reached."""
 
 _KINDS = {
     AlarmLevel.SAFE: EventKind.SAFE,
@@ -45,31 +52,31 @@ _RANKS = {level: rank for rank, level in enumerate(_KINDS)}
 
 
 class Monitor(NamedTuple):
-    """What the revolutions so far have taught."""
+    """State of the process monitor, learnt from the revolutions so far."""
 
     tool: str = ""
-    """its id"""
+    """Id of the tool in the spindle."""
     lives: Mapping[str, ToolLife] = MappingProxyType({})
-    """by the tool's id"""
+    """Wear estimates by tool id."""
     worn: frozenset[str] = frozenset()
-    """tools of which it was told"""
+    """Tools whose wear was reported."""
     breakage: Breakage = Breakage()
     watch: ThresholdWatch = ThresholdWatch()
     override: float = 1.0
-    """of the last revolution"""
+    """Override of the last revolution."""
     level: AlarmLevel = AlarmLevel.SAFE
-    """that was told last"""
+    """Level that was reported last."""
     since: float = -inf
-    """s, when the level was last as high as was told"""
+    """Time when the level was last as high as reported, s."""
     changed: float = -inf
-    """s, when a change of the work was told"""
+    """Time when a change of the work was last reported, s."""
     at_floor: int = 0
-    """revolutions; negative: it was told"""
+    """Revolutions at the floor of the override; negative once reported."""
     events: tuple[LoopEvent, ...] = ()
-    """of the last revolution"""
+    """Events of the last revolution."""
 
     def begun(self, tool: str) -> "Monitor":
-        """In a new workingstep: its errors may differ from those of the last one."""
+        """Enter a new workingstep, whose force errors may differ from those of the last one."""
         life = self.lives.get(tool)
         begun = new_tool() if life is None else compared_anew(life)
         return self._replace(
@@ -81,7 +88,7 @@ class Monitor(NamedTuple):
         )
 
     def out_of_cut(self) -> "Monitor":
-        """Without chips. The ways out and in look alike, and each like a broken tooth."""
+        """Leave the cut; entries and exits resemble a broken tooth and are not compared."""
         return self._replace(watch=ThresholdWatch(), breakage=self.breakage.paused())
 
     def seen(
@@ -93,19 +100,19 @@ class Monitor(NamedTuple):
         land_share: float = 0.0,
         expected: Expected | None = None,
     ) -> "Monitor":
-        """After one more revolution with chips.
+        """Update the monitor with one more revolution with chips.
 
         Parameters
         ----------
         revolution : Revolution
         keep : WorkingstepBounds
-            What holds in the workingstep.
+            Bounds of the workingstep.
         ratio : float, optional
-            ln(measured / expected); None: not to be compared.
+            ln(measured / expected); None: not comparable.
         land_share : float, 1/mm
-            What 1 mm of flank wear adds to measured over expected; 0: not known.
+            Increase of measured over expected force by 1 mm of flank wear; 0: not known.
         expected : Expected, optional
-            What equal teeth would take in it; None: teeth are not compared.
+            Forces that equal teeth would take in it; None: teeth are not compared.
         """
         monitor = self._replace(events=())
         if keep.set_point < inf:
@@ -116,7 +123,7 @@ class Monitor(NamedTuple):
     def teeth_seen(
         self, revolution: Revolution, keep: WorkingstepBounds, *, expected: Expected | None
     ) -> "Monitor":
-        """After a revolution while the feed is held: that the force is too great was told."""
+        """Check the teeth in a revolution while the feed is held, without force warnings."""
         return _inspected(self._replace(events=()), revolution, expected, keep.exponent)
 
 
@@ -126,7 +133,7 @@ def _told(monitor: Monitor, kind: EventKind, time: float, text: str) -> Monitor:
 
 
 def _warned(monitor: Monitor, revolution: Revolution, set_point: float) -> Monitor:
-    """A higher level at once, a lower one when it has lasted."""
+    """Report a higher alarm level at once, a lower one when it has lasted."""
     before, force, now = monitor.watch, revolution.force, revolution.time
     is_steady = abs(revolution.override - monitor.override) <= STEADY * monitor.override
     watch = watched(before, revolution, set_point=set_point, is_steady=is_steady)
@@ -141,7 +148,7 @@ def _warned(monitor: Monitor, revolution: Revolution, set_point: float) -> Monit
 
 
 def _reached(monitor: Monitor, revolution: Revolution, keep: WorkingstepBounds) -> Monitor:
-    """Once in a workingstep: the force stays above its set point whatever the override."""
+    """Report, once per workingstep, that the set point cannot be reached within the band."""
     is_above = revolution.force > ABOVE * keep.set_point
     is_at_floor = revolution.override <= ABOVE * keep.floor
     if monitor.at_floor < 0 or not (is_above and is_at_floor):
@@ -159,7 +166,7 @@ def _reached(monitor: Monitor, revolution: Revolution, keep: WorkingstepBounds) 
 def _inspected(
     monitor: Monitor, revolution: Revolution, expected: Expected | None, exponent: float
 ) -> Monitor:
-    """A tooth that has broken."""
+    """Check for a broken tooth and report it."""
     before = monitor.breakage
     breakage = inspected(before, revolution, expected, exponent=exponent)
     monitor = monitor._replace(breakage=breakage, override=revolution.override)
@@ -172,7 +179,7 @@ def _inspected(
 def _lived(
     monitor: Monitor, revolution: Revolution, ratio: float, land_share: float
 ) -> Monitor:
-    """A sudden change of the work, or the end of a tool's life."""
+    """Update the wear estimate; report a sudden change of the work, or a worn tool."""
     tool, now = monitor.tool, revolution.time
     before = monitor.lives.get(tool) or new_tool()
     life = lived(before, ratio, land_share=land_share)
@@ -180,11 +187,11 @@ def _lived(
     is_new = len(life.changes) > len(before.changes)
     if is_new and now - monitor.changed > PAUSE and abs(life.changes[-1]) > NOTABLE:
         percent = 100.0 * expm1(life.changes[-1])
-        way = "harder or deeper" if percent > 0.0 else "softer or shallower"
-        text = f"force {percent:+.0f} % against what is expected: {way}"
+        way = "harder or deeper cut" if percent > 0.0 else "softer or shallower cut"
+        text = f"force {percent:+.0f} % relative to the expected force: {way}"
         monitor = _told(monitor._replace(changed=now), EventKind.HARDNESS, now, text)
     if life.is_worn_out and tool not in monitor.worn:
-        text = f"tool '{tool}': flank wear {life.flank_wear:.2f} mm by the force"
+        text = f"tool '{tool}': flank wear {life.flank_wear:.2f} mm, estimated from the force"
         monitor = monitor._replace(worn=monitor.worn | {tool})
         monitor = _told(monitor, EventKind.WEAR, now, text)
     return monitor

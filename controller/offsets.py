@@ -1,10 +1,10 @@
-"""Offsets of the teeth of a cutter, estimated from what each of them takes of a revolution.
+"""Radial offsets of the teeth of a cutter, estimated from the shares of the teeth in the force.
 
-Runout makes the radius of each tooth larger or smaller by an offset in mm that no feed and no
-engagement changes; what a tooth takes for it depends on both. The offsets are estimated by an
-iterated extended Kalman filter, [1]_, on the physics of :mod:`simulator.physics.tooth_means`;
-how likely a revolution is tells what it speaks for: whole teeth, or one that is lost. Units
-mm, N, rad.
+Runout makes the radius of each tooth larger or smaller by an offset in mm that does not depend
+on feed or engagement; the resulting share of the tooth depends on both. The offsets are
+estimated by an iterated extended Kalman filter, [1]_, on the physics of
+:mod:`simulator.physics.tooth_means`; the likelihood of a revolution shows which hypothesis it
+supports: intact teeth, or a lost one. Units: mm, N, rad.
 
 References
 ----------
@@ -22,71 +22,74 @@ from controller.tooth_shares import ToothShares
 from simulator.physics.tooth_means import LOST
 
 ECCENTRICITY = 0.02
-"""mm, standard deviation of each component of the eccentricity before anything is learnt;
-0.005 to 0.01 is usual, 0.03 happens"""
+"""Initial standard deviation of each component of the eccentricity, mm.
+
+0.005 to 0.01 is usual, 0.03 happens.
+"""
 
 SINGLE = 0.003
-"""mm, standard deviation of a tooth's own offset before anything is learnt"""
+"""Initial standard deviation of the individual offset of a tooth, mm."""
 
 WANDER = 2e-4
-"""mm, standard deviation of what an offset changes in a revolution, since edges wear"""
+"""Standard deviation of the change of an offset per revolution by edge wear, mm."""
 
 OUTLIER = 4.0
-"""misfit for each tooth above which a revolution teaches nothing"""
+"""Misfit per tooth above which a revolution does not update the offsets."""
 
 SCALE = 0.05
-"""of a chip's thickness, standard deviation: arcs of contact are not exactly as planned, above
-all thin ones"""
+"""Relative standard deviation of the chip thickness.
+
+Arcs of contact are not exactly as planned, thin ones above all.
+"""
 
 PLAIN = 1.5
-"""misfit for each tooth up to which a revolution is as expected; above it, other beginnings of
-the search are tried"""
+"""Misfit per tooth up to which a revolution is as expected; above it, the search restarts."""
 
-_STEP = 1e-4  # mm, of the differences that make a derivative
-_NEAR = 5e-4  # mm between two iterations that are as good as one
+_STEP = 1e-4  # step for numerical derivatives, mm
+_NEAR = 5e-4  # change between iterations at which they have converged, mm
 _ITERATIONS = 8
 _ANGLES = 8
-_RADII = (0.01, 0.025)  # mm
+_RADII = (0.01, 0.025)  # eccentricities tried as starting points, mm
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Offsets:
-    """Estimate of the offsets of the teeth: a normal distribution."""
+    """Estimated offsets of the teeth, as a normal distribution."""
 
     mean: Floats
-    """(z,) mm"""
+    """Mean offsets, (z,), mm."""
     covariance: Floats
-    """(z, z) mm²"""
+    """Covariance of the offsets, (z, z), mm²."""
     confirmed: int = 0
-    """revolutions that were as expected; half of them for each that taught something else"""
+    """Number of revolutions that confirmed the offsets; halved by each contrary one."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Judged:
-    """A revolution by one hypothesis."""
+    """Likelihood and misfit of a revolution under one hypothesis."""
 
     log_likelihood: float
-    """but for a constant"""
+    """Logarithm of the likelihood, up to a constant."""
     misfit: float
-    """square of the distance between seen and expected, in standard deviations"""
+    """Squared distance between measured and expected shares, in standard deviations."""
     offsets: Offsets
-    """with what the revolution teaches"""
+    """Offsets updated by the revolution."""
 
 
 def unknown(teeth: int) -> Offsets:
-    """A cutter of which nothing was learnt: an eccentricity, and a little of each tooth."""
+    """Prior for a new cutter: an eccentricity, plus a small offset of each tooth."""
     turned = 2.0 * pi / teeth * np.arange(teeth)
     eccentric = ECCENTRICITY**2 * np.cos(turned[:, None] - turned)
     return Offsets(mean=np.zeros(teeth), covariance=eccentric + SINGLE**2 * np.eye(teeth))
 
 
 def misfits(offsets: Offsets, shares: ToothShares) -> Floats:
-    """Misfit of a revolution to the offsets as they are, with all teeth and without each.
+    """Misfits of a revolution to the known offsets, with all teeth and without each tooth.
 
     Returns
     -------
     (z + 1,) array
-        First with all teeth.
+        The first entry is with all teeth.
     """
     teeth = len(offsets.mean)
     guesses = np.tile(offsets.mean, (teeth + 1, 1))
@@ -95,21 +98,21 @@ def misfits(offsets: Offsets, shares: ToothShares) -> Floats:
 
 
 def judged(offsets: Offsets, shares: ToothShares, *, lost: int | None = None) -> Judged:
-    """Likelihood of a revolution under a hypothesis.
+    """Likelihood of a revolution under the hypothesis of a lost tooth, or of none.
 
     Parameters
     ----------
     offsets : Offsets
     shares : ToothShares
     lost : int, optional
-        Tooth that takes no chip.
+        Number of the tooth that takes no chip; None: all teeth cut.
     """
     teeth = len(offsets.mean)
     covariance = offsets.covariance + WANDER**2 * np.eye(teeth)
     known = replace(offsets, covariance=covariance)
     found = _fitted(known, shares, lost, start=offsets.mean)
     if found.misfit > PLAIN * teeth:
-        # Teeth that are out of the work there show no way back into it.
+        # From offsets that keep teeth out of the work, the gradient search cannot return.
         again = _fitted(known, shares, lost, start=_start(known, shares, lost))
         found = min(found, again, key=lambda each: each.misfit)
     near = found.offsets.mean
@@ -120,14 +123,14 @@ def judged(offsets: Offsets, shares: ToothShares, *, lost: int | None = None) ->
 
 
 def _scaled(shares: ToothShares, offsets: Floats, lost: int | None = None) -> ToothShares:
-    """With the errors of chips that are all thicker or thinner: offsets count less or more."""
+    """Add the error of a common change of chip thickness to the noise of the shares."""
     pair = shares.of(_without(np.vstack((offsets, (1.0 + SCALE) * offsets)), lost))
     error = pair[1] - pair[0]
     return replace(shares, noise=shares.noise + np.outer(error, error))
 
 
 def _start(known: Offsets, shares: ToothShares, lost: int | None) -> Floats:
-    """Likeliest of some eccentricities beside what is known."""
+    """Best of some eccentricities as a starting point for the search."""
     teeth = len(known.mean)
     angles = 2.0 * pi * np.arange(_ANGLES) / _ANGLES
     eccentric = np.cos(angles[:, None] - 2.0 * pi / teeth * np.arange(teeth))
@@ -139,7 +142,7 @@ def _start(known: Offsets, shares: ToothShares, lost: int | None) -> Floats:
 
 
 def _fitted(known: Offsets, shares: ToothShares, lost: int | None, *, start: Floats) -> Judged:
-    """Gauss-Newton, [1]_; a step that makes the fit worse is halved."""
+    """Fit the offsets by Gauss-Newton, [1]_; a step that makes the fit worse is halved."""
     at, covariance = start, known.covariance
     precision, certainty = np.linalg.inv(shares.noise), np.linalg.inv(covariance)
     best, least = start, inf
@@ -172,13 +175,13 @@ def _fitted(known: Offsets, shares: ToothShares, lost: int | None, *, start: Flo
 
 
 def _square(rows: Floats, covariance: Floats) -> Floats:
-    """(M,) squares of (M, z) rows in standard deviations."""
+    """Squared lengths of (M, z) rows in standard deviations, (M,)."""
     squares: Floats = (rows @ np.linalg.inv(covariance) * rows).sum(axis=1)
     return squares
 
 
 def _without(offsets: Floats, lost: int | None) -> Floats:
-    """(M, z) guesses without a tooth."""
+    """Mark a tooth as lost in (M, z) guesses of the offsets."""
     if lost is None:
         return offsets
     without = offsets.copy()

@@ -17,33 +17,33 @@ class Criterion(StrEnum):
     """Criterion by which the override is chosen."""
 
     TC = "TC"
-    """time-critical: as fast as the force bound and the chip load allow"""
+    """Time-critical: as fast as the force bound and the chip load allow."""
     QC = "QC"
-    """quality-critical: the programmed chip load, less only where the force demands it"""
+    """Quality-critical: the programmed chip load, less only where the force demands it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SwitchTo:
-    """ON or OFF: whether the loop acts; OFF, the program runs at its own feed."""
+    """Order to switch the control on or off; when off, the programmed feed runs."""
 
     is_on: bool
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CriterionTo:
-    """TC or QC."""
+    """Order to change the criterion to TC or QC."""
 
     criterion: Criterion
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MotorPowerTo:
-    """A share of the motor's power; 1: all that the machine has.
+    """Order to limit the motor to a share of its power; 1 is the full power.
 
     Raises
     ------
     ValueError
-        When it is not positive and finite.
+        When the share is not positive and finite.
     """
 
     factor: float
@@ -57,7 +57,7 @@ Order = SwitchTo | CriterionTo | MotorPowerTo
 
 
 class EventKind(StrEnum):
-    """Kind of event."""
+    """Kind of event reported by the control loop."""
 
     WORKINGSTEP = "workingstep"
     ORDER = "order"
@@ -78,10 +78,10 @@ class EventKind(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LoopEvent:
-    """One thing that happened."""
+    """Event reported by the control loop."""
 
     time: float
-    """s"""
+    """Time of the event, s."""
     kind: EventKind
     text: str
-    """a sentence with numbers and units"""
+    """Sentence with numbers and units."""

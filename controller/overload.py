@@ -1,8 +1,8 @@
-"""The force of each tooth period over what that tooth usually takes of a revolution.
+"""Overload detection per tooth, relative to the usual share of each tooth.
 
 With runout some teeth take more than others in every revolution; an overload is more than a
-tooth usually takes. Its usual share is learnt slowly, so that a tooth that breaks is not.
-Units N.
+tooth usually takes. The usual share is learnt slowly, so that the load of a breaking tooth is
+not learnt. Units: N.
 """
 
 from dataclasses import dataclass
@@ -14,31 +14,36 @@ from controller.ports import Floats
 from controller.signal import COVERED
 
 LEARNING = 0.05
-"""of a share's way to what a revolution shows"""
+"""Share of the deviation by which a usual share moves per revolution."""
 
 STEADY = 0.1
-"""greatest change of ln(mean force) from the revolution before: where the cutter enters, leaves
-or meets another depth, teeth differ for another reason than runout"""
+"""Greatest change of ln(mean force) between revolutions from which shares are learnt.
+
+Where the cutter enters, leaves or meets another depth, teeth differ for reasons other than
+runout.
+"""
 
 SETTLED = 2
-"""steady revolutions in a row from which shares are learnt: a cut of a single revolution may
-show the same mean twice, half of it each time"""
+"""Consecutive steady revolutions from which shares are learnt.
+
+A cut of a single revolution may show the same mean twice, half of it each time.
+"""
 
 LEAST, MOST = 0.4, 2.5
-"""of a share: beyond it is no runout"""
+"""Range of the usual share; values beyond it are not due to runout."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class UsualShares:
-    """Share of each tooth in the mean force of a revolution."""
+    """Usual share of each tooth in the mean force of a revolution."""
 
     usual: tuple[float, ...]
     seen: tuple[float, ...]
-    """N, last mean of each tooth"""
+    """Last mean force of each tooth, N."""
     mean: float = 0.0
-    """N, of the last whole revolution; 0: not known"""
+    """Mean force of the last whole revolution, N; 0: not known."""
     steady: int = 0
-    """revolutions in a row that were as the one before"""
+    """Consecutive revolutions with nearly the same mean force."""
 
 
 def mean(force: Floats) -> float:
@@ -51,25 +56,25 @@ def mean(force: Floats) -> float:
     lost = np.isnan(force)
     if np.count_nonzero(lost) > (1.0 - COVERED) * len(force):
         return nan
-    # On a line between their neighbours: a tooth's force rises and falls within its period.
+    # Interpolated between neighbours: a tooth's force rises and falls within its period.
     at = np.arange(len(force))
     return float(np.interp(at, at[~lost], force[~lost]).mean())
 
 
 def fresh(teeth: int) -> UsualShares:
-    """A cutter of which nothing is known: all teeth alike."""
+    """Initial shares of a new cutter: all teeth alike."""
     return UsualShares(usual=(1.0,) * teeth, seen=(0.0,) * teeth)
 
 
 def noted(shares: UsualShares, tooth: int, force: float) -> UsualShares:
-    """One tooth period more, of which nothing is to be learnt: air, and the way into the work.
+    """Record a tooth period without learning shares: in air, or at the entry into the work.
 
     Parameters
     ----------
     shares : UsualShares
     tooth : int
     force : float, N
-        Mean of the period; NaN: lost, the tooth's last one stays.
+        Mean of the period; NaN: lost, the tooth's previous value stays.
     """
     if isnan(force):
         return shares
@@ -78,14 +83,14 @@ def noted(shares: UsualShares, tooth: int, force: float) -> UsualShares:
 
 
 def seen(shares: UsualShares, tooth: int, force: float) -> UsualShares:
-    """One tooth period in the cut more; the last of a steady revolution teaches the shares.
+    """Record a tooth period in the cut; the end of a steady revolution updates the shares.
 
     Parameters
     ----------
     shares : UsualShares
     tooth : int
     force : float, N
-        Mean of the period; NaN: lost, the tooth's last one stays.
+        Mean of the period; NaN: lost, the tooth's previous value stays.
     """
     shares = noted(shares, tooth, force)
     last = shares.seen
@@ -104,8 +109,8 @@ def seen(shares: UsualShares, tooth: int, force: float) -> UsualShares:
 
 
 def level(shares: UsualShares, tooth: int, force: float) -> float:
-    """Force of a tooth period, less what runout gives the tooth, N.
+    """Force of a tooth period with the effect of runout removed, N.
 
-    Teeth that take little count as they are: they would turn small forces into overloads.
+    Shares below 1 are not corrected, because this would turn small forces into overloads.
     """
     return force / max(shares.usual[tooth], 1.0)

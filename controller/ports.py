@@ -1,4 +1,6 @@
-"""The sockets of the loop: whatever fits them is a machine, the virtual one or a real one.
+"""Interfaces of the loop to a machine, virtual or real.
+
+Units: mm, s, N, W, rev/s.
 
 Units mm, s, N, W, rev/s.
 """
@@ -11,22 +13,22 @@ __all__ = ["Floats", "Override", "Reading", "Sensor"]
 
 
 class Sensor(Protocol):
-    """Source of readings."""
+    """Source of sensor readings."""
 
     def read(self) -> Reading | None:
-        """The next reading, waiting for it; None: the program has ended.
+        """Wait for the next reading and return it; None when the program has ended.
 
         Raises
         ------
         MachineLost
-            When no reading will come any more.
+            When no more readings will come.
         """
         ...
 
 
 class Override(Protocol):
-    """The feed override of the machine."""
+    """Feed override of the machine."""
 
     def set(self, override: float, /) -> None:
-        """Feed over programmed feed from now on; 0 holds the feed."""
+        """Set the ratio of feed to programmed feed from now on; 0 holds the feed."""
         ...

@@ -1,6 +1,6 @@
-"""Summary of a run under control, workingstep by workingstep.
+"""Summary of a controlled run, per workingstep.
 
-Running state. Units mm, s, N.
+Mutable state. Units: mm, s, N.
 """
 
 from dataclasses import dataclass, field
@@ -13,82 +13,83 @@ from controller.signal import Revolution
 
 @dataclass(kw_only=True)
 class RunRecord:
-    """One workingstep, or what stands before them. Running state."""
+    """Summary of one workingstep, or of the time before the first (mutable state)."""
 
     workingstep: int
     time: float = 0.0
-    """s"""
+    """Total time, s."""
     cutting_time: float = 0.0
-    """s with chips"""
+    """Time with chips, s."""
     way: float = 0.0
-    """mm of path with chips"""
+    """Length of path with chips, mm."""
     peak: float = 0.0
-    """N, where it came nearest to its bound, for some revolutions; without one the greatest"""
+    """Force of some revolutions that came nearest to its bound, N; without a bound the
+    greatest."""
     impulse: float = 0.0
-    """N·s with chips"""
+    """Integral of the force with chips, N·s."""
     excess: float = 0.0
-    """N·s above the bound"""
+    """Integral of the force above the bound, N·s."""
     over_time: float = 0.0
-    """s above the bound by more than a twentieth"""
+    """Time with a force above the bound by more than a twentieth, s."""
     overrides: float = 0.0
-    """s of the program that were cut"""
+    """Integral of the override with chips: program time that was cut, s."""
     least: float = inf
     greatest: float = 0.0
-    """override with chips"""
+    """Greatest override with chips."""
     share: float = 0.0
-    """force over its bound, a moving mean"""
+    """Moving mean of the force over its bound."""
     most: float = 0.0
-    """greatest such share"""
+    """Greatest moving mean of the force over its bound."""
     set_point: float = inf
-    """N, bound of that revolution"""
+    """Bound of the revolution with the greatest share, N."""
     revolutions: int = 0
-    """with chips"""
+    """Number of revolutions with chips."""
     lost: int = 0
-    """of them without a force"""
+    """Number of revolutions without a valid force."""
     ratio: RatioEstimate = field(default_factory=RatioEstimate)
 
     @property
     def feed(self) -> float:
-        """Mean with chips, mm/s; 0 without."""
+        """Mean feed with chips, mm/s; 0 without chips."""
         return self.way / self.cutting_time if self.cutting_time else 0.0
 
     @property
     def force(self) -> float:
-        """Mean with chips, N; 0 without."""
+        """Mean force with chips, N; 0 without chips."""
         return self.impulse / self.cutting_time if self.cutting_time else 0.0
 
     @property
     def override(self) -> float:
-        """Mean with chips; 1 without."""
+        """Mean override with chips; 1 without chips."""
         return self.overrides / self.cutting_time if self.cutting_time else 1.0
 
 
 LASTING = 0.2
-"""weight of a revolution in the moving mean: one that enters a cut, or noise, breaks nothing"""
+"""Weight of a revolution in the moving mean, so that noise or one entry does not dominate."""
 
 FREE = 1e9
-"""N, in place of no bound"""
+"""Force used in place of an infinite bound, N."""
 
 EXCESS_RATIO = 1.05
-"""times the set point, from which a force counts as over it: its noise is not"""
+"""Factor on the set point above which a force counts as over it, to allow for noise."""
 
 
 class Recorder:
-    """Gathers the cycles of a run. Running state.
+    """Recorder that gathers the cycles of a run into summaries (mutable state).
 
     Parameters
     ----------
     chips : float, N
-        Mean of a revolution above which there are chips.
+        Revolution mean force above which there are chips.
     """
 
     def __init__(self, chips: float) -> None:
         self.records: dict[int, RunRecord] = {}
-        """by the workingstep's number, in the order of their beginning"""
+        """Summaries by workingstep number, in the order in which they began."""
         self._chips = chips
 
     def add(self, cycle: LoopCycle) -> None:
-        """One more cycle."""
+        """Add one control cycle to the summary of its workingstep."""
         number = cycle.reading.workingstep
         record = self.records.get(number)
         if record is None:
@@ -114,7 +115,7 @@ class Recorder:
             max(record.greatest, override),
         )
         record.impulse += force * period
-        # Shares of their bounds; where nothing bounds the force, the forces themselves.
+        # Shares of the bounds; where nothing limits the force, the forces themselves.
         record.share += LASTING * (force / min(bound, FREE) - record.share)
         if record.share > record.most:
             record.most, record.set_point = record.share, bound

@@ -1,7 +1,7 @@
-"""Force bound and override band of a workingstep, from the plan.
+"""Force bound and override band of a workingstep, derived from the plan.
 
-Every limit that rises with the force is brought to the cutting force at which it is reached;
-every limit on the feed to the override at which it is reached. Units N, mm, rad.
+Every limit that rises with the force is converted to the cutting force at which it is reached;
+every limit on the feed to the override at which it is reached. Units: N, mm, rad.
 """
 
 from collections.abc import Iterator
@@ -32,25 +32,28 @@ FEED_LIMITS = frozenset({
 })
 
 RUPTURE_RATIO = 2.0
-"""of what breaks a shank over the bending stress that is permitted: transverse rupture
-strengths of cemented carbides begin at about 2000 N/mm² (tests after ISO 3327)"""
+"""Breaking stress of a shank over its permitted bending stress.
+
+Transverse rupture strengths of cemented carbides begin at about 2000 N/mm² (tests after ISO
+3327).
+"""
 
 BREAKAGE_RATIO = 3.0
-"""of the set point, where the strength of the tool is not known; customary"""
+"""Breakage force over the set point where the strength of the tool is unknown (customary)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ForceBound:
-    """A limit as the cutting force that reaches it."""
+    """Limit expressed as the cutting force that reaches it."""
 
     name: LimitName
     words: str
     force: float
-    """N, mean of a revolution, where the plan cuts hardest"""
+    """Revolution mean force at the plan's hardest place, N."""
     peak: float = 0.0
-    """N, greatest across the axis, for what breaks the tool; 0: the mean or the wall counts"""
+    """Greatest force across the axis, for tool breakage, N; 0: mean or wall force counts."""
     wall: float = 0.0
-    """N, normal to the wall, for what bends the tool; 0: the mean or the peak counts"""
+    """Force normal to the wall, for tool deflection, N; 0: mean or peak force counts."""
 
     @property
     def is_mean(self) -> bool:
@@ -60,7 +63,7 @@ class ForceBound:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reference:
-    """Reference of the loop in one workingstep.
+    """Force bounds and override band of one workingstep for the loop.
 
     Raises
     ------
@@ -70,15 +73,15 @@ class Reference:
 
     workingstep: str
     bounds: tuple[ForceBound, ...] = ()
-    """least first; none: nothing bounds the force"""
+    """Force bounds, the least first; empty if nothing limits the force."""
     floor: float = 0.0
-    """override below which the edge rubs"""
+    """Override below which the edge rubs."""
     ceiling: float = inf
-    """override that chip load, feed mechanism and roughness allow"""
+    """Override that chip load, feed mechanism and roughness allow."""
     breakage: float = inf
-    """N that the tool bears"""
+    """Force that the tool withstands, N."""
     inhibition: str = ""
-    """why the feed is locked; empty: the loop may change it"""
+    """Reason why the feed is locked; empty if the loop may change it."""
 
     def __post_init__(self) -> None:
         if not (self.ceiling > 0.0 and self.breakage > 0.0 and self.floor >= 0.0):
@@ -88,24 +91,24 @@ class Reference:
             )
 
     def bound(self, *, power_factor: float = 1.0) -> ForceBound | None:
-        """The least force bound while the motor gives a factor of its power."""
+        """Least force bound when the motor may use a share of its power."""
         return min(self._scaled(power_factor), key=lambda each: each.force, default=None)
 
     def weights(
         self, peak: Floats, *, wall: Floats | None = None, power_factor: float = 1.0
     ) -> Floats:
-        """Factor on a mean force at other places than the plan's hardest.
+        """Factors that convert mean forces at other places to the plan's hardest place.
 
         ``w = F_bound · max(1/F_mean, ρ/F_peak, σ/F_wall)``, the F the least bounds on the mean,
-        the greatest force and that at the wall, ρ and σ these over the mean there: forces that
-        use the same share of their bounds count alike.
+        the greatest force and the wall force, ρ and σ the latter two over the mean at that
+        place: forces that use the same share of their bounds count alike.
 
         Parameters
         ----------
         peak : (N,) array
-            ρ.
+            ρ, greatest force across the axis over the mean force.
         wall : (N,) array, optional
-            σ; none is made where it is not given.
+            σ, wall force over the mean force; omitted: no wall is cut.
         power_factor : float
         """
         least = self.bound(power_factor=power_factor)
@@ -122,7 +125,7 @@ class Reference:
         return weights
 
     def scaled(self, factor: float) -> "Reference":
-        """The same in forces that are a factor greater."""
+        """Copy with all forces multiplied by a factor."""
         bounds = tuple(
             replace(
                 each,
@@ -141,12 +144,12 @@ class Reference:
 
 
 def reference_of(advice: Advice) -> Reference:
-    """Reference of a workingstep around the feed that the program gives it.
+    """Derive the reference of a workingstep around its programmed feed.
 
     Parameters
     ----------
     advice : Advice
-        Of any plan of the program: the state as programmed counts.
+        From any plan of the program; its state as programmed is used.
     """
     name, state = advice.workingstep.id, advice.before
     inhibition = advice.programmed.inhibition
@@ -174,8 +177,8 @@ def reference_of(advice: Advice) -> Reference:
 def _ceiling(state: EvaluatedSetting, rubbing: float) -> float:
     """Override that all limits on the feed allow.
 
-    A roughness that no feed attains, or none at which the edge still cuts, bounds nothing: the
-    plan says so, and feeds that only rub make it worse.
+    A roughness that no feed attains, or none at which the edge still cuts, is ignored: the plan
+    reports it, and feeds that only rub make it worse.
     """
     ceiling = min(_overrides(state, BoundSide.AT_MOST), default=inf)
     ceiling = ceiling if ceiling > rubbing else max(rubbing, 1.0)
@@ -183,10 +186,10 @@ def _ceiling(state: EvaluatedSetting, rubbing: float) -> float:
 
 
 def _plunge_overrides(state: EvaluatedSetting) -> Iterator[float]:
-    """Overrides that the ways down allow; one override holds for them and for the passes.
+    """Overrides that the ways down allow; one override applies to them and to the passes.
 
-    Forces down a ramp are bounded as those of a pass are, so that the loop keeps them; the
-    thrust of what is drilled is not.
+    Forces on a ramp are limited like those of a pass, so that the loop controls them; the
+    thrust of a straight plunge is not.
     """
     at = state.setting
     for load in state.plunge_loads:
@@ -196,14 +199,14 @@ def _plunge_overrides(state: EvaluatedSetting) -> Iterator[float]:
 
 
 def _force_bounds(cut: Cut, state: EvaluatedSetting) -> Iterator[ForceBound]:
-    """Loads that rise with the force, at the force that makes them reach their bounds."""
+    """Force bounds of the loads that rise with the cutting force."""
     shares = _shares(cut, state)
     for load in state.loads:
         rises = load.value - _constant(load, state)
         if load.limit.name in FORCE_LIMITS and rises > 0.0:
             own = state.cutting_force * shares.get(_part(load), 1.0)
             force = own * (load.bound - _constant(load, state)) / rises
-            if force <= 0.0:  # Its chisel edge alone is too much: no force keeps the bound.
+            if force <= 0.0:  # The chisel edge alone exceeds the bound: no force keeps it.
                 continue
             ratio = _over_mean(cut, load, state.setting.depth)
             is_wall = load.limit.name is LimitName.TOOL_DEFLECTION
@@ -217,9 +220,9 @@ def _force_bounds(cut: Cut, state: EvaluatedSetting) -> Iterator[ForceBound]:
 
 
 def _over_mean(cut: Cut, load: LimitLoad, depth: float) -> float:
-    """Loads of the tool over the mean force, in the part of the cut that is loaded.
+    """Ratio of a tool load to the mean force, in the loaded part of the cut.
 
-    0 for what the mean loads.
+    0 for loads that depend on the mean force.
     """
     name, floor = load.limit.name, cut.floor
     is_floor = floor is not None and not load.limit.load.knows_depth
@@ -238,16 +241,17 @@ def _over_mean(cut: Cut, load: LimitLoad, depth: float) -> float:
 
 
 def _constant(load: LimitLoad, state: EvaluatedSetting) -> float:
-    """Part of a load that is there whatever the feed: of a thrust, that of the chisel edge."""
+    """Part of a load that does not depend on the feed, such as the chisel-edge thrust."""
     by, at = load.limit.load, state.setting
     return float(by.offset * by.depth_factor(at.depth) * at.speed**by.speed_exponent)
 
 
 def _shares(cut: Cut, state: EvaluatedSetting) -> dict[tuple[str, float], float]:
-    """Force of each part of the cut over that of the hardest, by their torques.
+    """Force of each part of the cut over that of the hardest part, from their torques.
 
     Walls, the floor that is swept with them and a plunge take different forces with the same
-    cutter; the state tells the greatest of them. A plunge's acts at the middle of its lips.
+    cutter; the state gives the greatest of them. The force of a plunge acts at the middle of
+    its lips.
     """
     forces: dict[tuple[str, float], float] = {}
     for load in state.loads:
@@ -261,7 +265,7 @@ def _shares(cut: Cut, state: EvaluatedSetting) -> dict[tuple[str, float], float]
 
 
 def _part(load: LimitLoad) -> tuple[str, float]:
-    """Key of a part of a cut: its label, and how its depth is known."""
+    """Key of a part of a cut: its label, and whether its load depends on the depth."""
     label = load.limit.label.removeprefix(load.limit.name.words)
     return label, float(load.limit.load.knows_depth)
 

@@ -1,6 +1,6 @@
-"""Set point of a workingstep, and the override band around it.
+"""Set point of the cutting force in a workingstep, and the override band around it.
 
-Units N.
+Units: N.
 """
 
 from math import exp, inf
@@ -12,12 +12,15 @@ from controller.orders import Criterion
 from controller.reference import Reference
 
 EASING = 1.0 / 200.0
-"""share by which the override that a hold has taught is eased in a revolution: cuts that come
-again within a second or two hold the feed now and then, and those that are over cost little"""
+"""Relative rise per revolution of the override limit learnt from a feed hold.
+
+Cuts that recur within a second or two occasionally hold the feed; cuts that are over cost
+little.
+"""
 
 
 def wanted(settings: LoopSettings, reference: Reference) -> float:
-    """Force that was asked for, or that the plan allows, N; infinite: nothing bounds it."""
+    """Requested force, or force that the plan allows, N; infinite if nothing limits it."""
     if settings.set_point is not None:
         return settings.set_point
     bound = reference.bound(power_factor=settings.power_factor)
@@ -39,15 +42,15 @@ def bounded(
     settings : LoopSettings
     step : LoopStep
     set_point : float, N
-        Infinite: there is none yet, or nothing bounds the force.
+        Infinite: there is none yet, or nothing limits the force.
     settled : float, N
-        Greatest set point that the force had the time to follow.
+        Greatest set point that the force had time to follow.
     cap : float
-        Override that a hold has taught, :func:`controller.guard.taught`.
+        Override limit learnt from a feed hold, :func:`controller.guard.taught`.
     """
     band, reference = settings.band, step.reference
     most = min(cap, 1.0 if settings.criterion is Criterion.QC else inf)
-    # What is programmed may pass the plan's limits by far: the band's floor is kept.
+    # The programmed feed may exceed the plan's limits by far: the band's floor is kept.
     ceiling = max(min(band.ceiling, reference.ceiling, most), band.floor)
     return WorkingstepBounds(
         set_point=set_point,
@@ -63,11 +66,12 @@ def bounded(
 def approached(
     keep: WorkingstepBounds, settings: LoopSettings, step: LoopStep
 ) -> WorkingstepBounds:
-    """The bounds of the next revolution.
+    """Bounds of the next revolution.
 
-    A set point that falls holds at once for the law, but the force needs its time: what is an
-    overload falls as slowly as a set point rises, :data:`controller.conditioning.RISE`. What a
-    hold has taught is eased little by little: the cut that was too hard may be over.
+    A falling set point applies at once to the law, but the force needs time to follow: the
+    overload limit falls as slowly as a set point rises, :data:`controller.conditioning.RISE`.
+    The override limit learnt from a feed hold is eased little by little, as the cut that was
+    too hard may be over.
     """
     goal = aimed(wanted(settings, step.reference), step.reference)
     cap, before = keep.cap * (1.0 + EASING), keep.set_point
@@ -81,15 +85,15 @@ def approached(
 
 
 def introduction(settings: LoopSettings, reference: Reference) -> str:
-    """Bound on the force in a workingstep, as a sentence."""
+    """Sentence on the force bound of a workingstep."""
     bound = reference.bound(power_factor=settings.power_factor)
-    words = "nothing bounds the force"
+    words = "nothing limits the force"
     if settings.set_point is not None:
-        words = f"force bound {settings.set_point:.4g} N as asked for"
+        words = f"force bound {settings.set_point:.4g} N as requested"
     elif bound is not None:
         words = f"force bound {bound.force:.4g} N by {bound.words}, where the plan cuts hardest"
     asked = wanted(settings, reference)
     least = aimed(asked, reference)
     if least < 0.999 * asked:
-        words += f"; {least:.4g} N, for the tool to bear a sudden rise"
+        words += f"; reduced to {least:.4g} N so that the tool withstands a sudden rise"
     return f"{reference.workingstep}: {words}"

@@ -1,7 +1,7 @@
-"""Signal processing: readings of single tooth periods become revolutions of the spindle.
+"""Signal processing: readings of single tooth periods become spindle revolutions.
 
-The third stage of [1]_, Fig. 5: what the control laws, the warning and the estimates live on.
-Units mm, s, N, W, rev/s.
+The third stage of [1]_, Fig. 5; control laws, warnings and estimates use its result. Units: mm,
+s, N, W, rev/s.
 
 References
 ----------
@@ -19,13 +19,13 @@ from controller.ports import Floats, Reading
 from controller.spectrum import UNKNOWN, Spectrum, spectrum
 
 COVERED = 0.5
-"""share of samples from which a revolution has a mean force"""
+"""Share of samples from which a revolution has a valid mean force."""
 
 SAME_SPEED = 0.01
-"""of the spindle speed: a load slows a spindle by less, another speed is farther away"""
+"""Relative change of spindle speed that load may cause; a larger one is another speed."""
 
 NOT_A_TOOTH = 0.5
-"""of a tooth period by which a reading may be longer or shorter, or begin late"""
+"""Share of a tooth period by which a reading may be too long, too short or late."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -33,45 +33,46 @@ class Revolution:
     """Sensor values of one revolution of the spindle."""
 
     time: float
-    """s, at its end"""
+    """Time at the end of the revolution, s."""
     period: float
-    """s that it covers"""
+    """Duration of the revolution, s."""
     force: float
-    """N, mean; every tooth counts the same. NaN: less than half of the samples arrived"""
+    """Mean force, every tooth weighted equally, N; NaN: less than half of the samples
+    arrived."""
     peak: float
-    """N, greatest of the samples that arrived; NaN: none did"""
+    """Greatest of the samples that arrived, N; NaN: none did."""
     tooth_peaks: Floats
-    """(z,) N, greatest while each tooth was the last to enter, by number; NaN: all were lost"""
+    """Greatest force in the period of each tooth, by tooth number, (z,), N; NaN: all lost."""
     tooth_means: Floats
-    """(z,) N, the means to the peaks"""
+    """Mean force in the period of each tooth, (z,), N."""
     tooth_feeds: Floats
-    """(z,) mm/s, means to the peaks"""
+    """Mean feed in the period of each tooth, (z,), mm/s."""
     tooth_overrides: Floats
-    """(z,) that the axes ran, means to the peaks"""
+    """Mean override that the axes ran in the period of each tooth, (z,)."""
     samples: int
-    """in a tooth period; 1: single teeth are not told apart"""
+    """Number of samples per tooth period; 1: single teeth are not resolved."""
     first: int
-    """tooth whose period came first"""
+    """Number of the tooth whose period came first."""
     coverage: float
-    """share of samples that were not lost"""
+    """Share of samples that were not lost."""
     power: float
-    """W of the main drive, mean; NaN: all were lost"""
+    """Mean power of the main drive, W; NaN: all samples lost."""
     feed: float
-    """mm/s, mean"""
+    """Mean feed, mm/s."""
     override: float
-    """that the axes ran, mean"""
+    """Mean override that the axes ran."""
     spindle_speed: float
-    """rev/s"""
+    """Spindle speed, rev/s."""
     progress: float
-    """s of the program at an override of 1, at its end"""
+    """Program time at an override of 1 at the end of the revolution, s."""
     progress_before: float
-    """the same at its begin"""
+    """Program time at an override of 1 at the beginning of the revolution, s."""
     workingstep: int
-    """counted from 1; 0: none"""
+    """Number of the workingstep, counted from 1; 0: none."""
     tooth_passing: float
-    """N, amplitude; NaN: not known"""
+    """Amplitude at the tooth passing frequency, N; NaN: not known."""
     once_per_revolution: float
-    """N, amplitude; NaN: not known"""
+    """Amplitude at the spindle frequency, N; NaN: not known."""
 
     @property
     def teeth(self) -> int:
@@ -80,17 +81,17 @@ class Revolution:
 
     @property
     def is_covered(self) -> bool:
-        """Whether enough samples arrived for a mean."""
+        """Whether enough samples arrived for a valid mean."""
         return self.coverage >= COVERED
 
 
 class Collector:
-    """Gathers readings until the last tooth of a revolution. Running state.
+    """Collector of readings into complete revolutions (mutable state).
 
-    It begins a revolution with whichever tooth comes, and begins anew when spindle speed,
-    number of teeth or workingstep change, when a tooth or a time is left out, and after a
-    reading that is no tooth period: the override does not act, the spindle stands, or the
-    reading is far too long or too short.
+    It begins a revolution with any tooth, and restarts when spindle speed, number of teeth or
+    workingstep change, when a tooth or some time is skipped, and after a reading that is not a
+    tooth period: the override does not act, the spindle stands, or the reading is far too long
+    or too short.
     """
 
     __slots__ = ("_before", "_last", "_readings")
@@ -101,7 +102,7 @@ class Collector:
         self._before = 0.0
 
     def add(self, reading: Reading) -> Revolution | None:
-        """Take one more reading, conditioned; the revolution, if this completes one."""
+        """Add a conditioned reading; return the revolution if it completes one."""
         if not _is_tooth(reading):
             self._readings.clear()
             self._last = None
@@ -121,14 +122,14 @@ class Collector:
 
 
 def revolution(readings: Sequence[Reading], *, progress_before: float) -> Revolution:
-    """The revolution that readings of consecutive teeth make.
+    """Combine readings of consecutive teeth into one revolution.
 
     Parameters
     ----------
     readings : sequence of Reading
         One of each tooth, in the order of time.
     progress_before : float, s
-        Of the program at an override of 1, when the first began.
+        Program time at an override of 1, when the first began.
     """
     last, shown = readings[-1], _shown(readings)
     powers = [each.power for each in readings if not isnan(each.power)]
@@ -166,7 +167,7 @@ def _is_tooth(reading: Reading) -> bool:
 
 
 def _follows(last: Reading, reading: Reading) -> bool:
-    """Whether nothing changed, and no tooth and no time were left out."""
+    """Whether a reading directly continues the last one, without change or gap."""
     late = reading.time - reading.period - last.time
     return (
         reading.teeth == last.teeth
@@ -179,7 +180,7 @@ def _follows(last: Reading, reading: Reading) -> bool:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _Shown:
-    """Revolution made of samples, with teeth in the order of time."""
+    """Forces of one revolution from its samples, with the teeth in the order of time."""
 
     force: float
     peak: float
@@ -190,11 +191,11 @@ class _Shown:
 
 
 def _shown(readings: Sequence[Reading]) -> _Shown:
-    """Forces of a revolution, the quick way when nothing is missing."""
+    """Forces of a revolution; fast when no sample is missing."""
     teeth, count = len(readings), len(readings[0].force)
     samples = np.concatenate([each.force for each in readings])
     is_even = count > 0 and all(len(each.force) == count for each in readings)
-    # One lost sample makes the sum NaN.
+    # A single lost sample makes the sum NaN.
     if not is_even or isnan(np.add.reduce(samples)):
         return _partly_shown(readings, samples)
     grid = samples.reshape(teeth, count)
@@ -210,7 +211,7 @@ def _shown(readings: Sequence[Reading]) -> _Shown:
 
 
 def _partly_shown(readings: Sequence[Reading], samples: Floats) -> _Shown:
-    """Forces of a revolution of which samples were lost, or that has unlike tooth periods."""
+    """Forces of a revolution with lost samples or unequal tooth periods."""
     means, peaks, shares = np.array([_seen(each.force) for each in readings]).T
     coverage = float(shares.mean())
     known = means[~np.isnan(means)]
@@ -220,7 +221,7 @@ def _partly_shown(readings: Sequence[Reading], samples: Floats) -> _Shown:
         filled = _filled(samples)
         lines = spectrum(filled, len(readings))
         if len(counts) == 1:
-            # What is lost is not like what is there: a tooth enters, and leaves.
+            # Lost samples differ from the others, as a tooth enters and leaves.
             force = float(filled.mean())
     return _Shown(
         force=force,
@@ -233,7 +234,7 @@ def _partly_shown(readings: Sequence[Reading], samples: Floats) -> _Shown:
 
 
 def _seen(samples: Floats) -> tuple[float, float, float]:
-    """Mean, peak and share of what was not lost of one tooth."""
+    """Mean, peak and share of the samples of one tooth that were not lost."""
     seen = samples[~np.isnan(samples)]
     if not len(seen):
         return nan, nan, 0.0
@@ -241,7 +242,7 @@ def _seen(samples: Floats) -> tuple[float, float, float]:
 
 
 def _filled(samples: Floats) -> Floats:
-    """Samples with lost ones on a line between their neighbours, round the revolution."""
+    """Fill lost samples by interpolation between neighbours, cyclic over the revolution."""
     at = np.arange(len(samples))
     lost = np.isnan(samples)
     filled: Floats = np.interp(at, at[~lost], samples[~lost], period=len(samples))
@@ -249,7 +250,7 @@ def _filled(samples: Floats) -> Floats:
 
 
 def _by_number(values: Floats, first: int) -> Floats:
-    """Values in the order of time, from the first tooth on, in the order of the teeth."""
+    """Reorder values from the order of time to the order of tooth numbers."""
     if first == 0:
         return values
     cut = len(values) - first

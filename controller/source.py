@@ -1,6 +1,6 @@
-"""Sources of the force: a dynamometer, or the power of the main drive, which is cheap.
+"""Force sources: a dynamometer, or the power of the main drive, which costs less.
 
-Running state: the zero of the instrument. Units mm, N, W.
+Mutable state: the zero of the instrument. Units: mm, N, W.
 """
 
 from dataclasses import replace
@@ -19,19 +19,19 @@ from simulator.reading import Reading
 
 
 class Source(Protocol):
-    """Converter from readings to forces."""
+    """Converter from raw readings to readings with the cutting force."""
 
     def conditioned(
         self, reading: Reading, diameter: float, *, is_air: bool = False
     ) -> Reading:
-        """The reading with the force that is to be acted upon.
+        """Return the reading with the force that the loop acts on.
 
         Parameters
         ----------
         reading : Reading
-            As the sensors show it.
+            Raw sensor reading.
         diameter : float, mm
-            Of the tool that is in the spindle; 0: not known.
+            Diameter of the tool in the spindle; 0: not known.
         is_air : bool
             Whether the program expects no chips here, nor near.
         """
@@ -39,7 +39,7 @@ class Source(Protocol):
 
 
 class Dynamometer:
-    """Force as measured, less the drift of its zero. Running state.
+    """Dynamometer: the measured force less the drift of its zero (mutable state).
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ class Dynamometer:
     def conditioned(
         self, reading: Reading, _diameter: float, *, is_air: bool = False
     ) -> Reading:
-        """See :class:`Source`."""
+        """Return the reading less the dynamometer's zero; see :class:`Source`."""
         less = without_offset(reading, self._tare)
         is_still = is_air and not (self._tare.is_known and _mean(less) > self._chips)
         self._tare = tared(self._tare, reading, has_chips=False if is_still else None)
@@ -62,14 +62,14 @@ class Dynamometer:
 
 
 class DrivePower:
-    """Force by the power of the main drive over its idle power. Running state.
+    """Force from the power of the main drive above its idle power (mutable state).
 
     Parameters
     ----------
     efficiency : float
-        Of the main drive.
+        Efficiency of the main drive.
     chips : float, N
-        As of the :class:`Dynamometer`.
+        As for the :class:`Dynamometer`.
     """
 
     def __init__(self, efficiency: float, chips: float) -> None:
@@ -79,7 +79,7 @@ class DrivePower:
     def conditioned(
         self, reading: Reading, diameter: float, *, is_air: bool = False
     ) -> Reading:
-        """See :class:`Source`; without a known diameter there is no force."""
+        """Return the reading with the force from power; none if the diameter is not known."""
         told = replace(reading, force=reading.force[:0])
         if diameter > 0.0:
             told = force_from_power(
@@ -91,5 +91,5 @@ class DrivePower:
 
 
 def _mean(reading: Reading) -> float:
-    """Mean of the samples, N; NaN when one of them is lost, or none was taken."""
+    """Mean of the samples, N; NaN if a sample is lost or none was taken."""
     return float(reading.force.mean()) if len(reading.force) else nan

@@ -1,8 +1,8 @@
-"""Two lines of the spectrum of a revolution: the passing of teeth, and once per revolution.
+"""Amplitudes of the force at the tooth passing frequency and at the spindle frequency.
 
-The first tells of the cut being interrupted, the second of teeth that are not alike: runout, a
-worn or a broken one. One bin of the discrete Fourier transform each, as dot products: the
-revolution is the window, so neither leaks into the other. Units N.
+The first shows the interrupted cut, the second shows unequal teeth: runout, a worn or a broken
+one. Each is one bin of the discrete Fourier transform, computed as a dot product: the
+revolution is the window, so neither leaks into the other. Units: N.
 
 References
 ----------
@@ -21,22 +21,22 @@ from controller.ports import Floats
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Spectrum:
-    """Amplitudes of a revolution; NaN: there are too few samples to tell."""
+    """Force amplitudes of a revolution; NaN if there are too few samples."""
 
     tooth_passing: float
-    """N, at z times the spindle frequency"""
+    """Amplitude at z times the spindle frequency, N."""
     once_per_revolution: float
-    """N, at the spindle frequency"""
+    """Amplitude at the spindle frequency, N."""
 
 
 UNKNOWN = Spectrum(tooth_passing=nan, once_per_revolution=nan)
 
 
 def spectrum(samples: Floats, teeth: int) -> Spectrum:
-    """Amplitudes at tooth passing and at once per revolution.
+    """Compute the amplitudes at the tooth passing frequency and at the spindle frequency.
 
     ``A_k = 2/N · |Σ x_j · e^(−2πi·k·j/N)|`` at k = z and k = 1, below half the sampling
-    frequency only: there and above, other lines are folded into it.
+    frequency only: at and above it, aliasing adds other lines.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ def spectrum(samples: Floats, teeth: int) -> Spectrum:
 
 @lru_cache(maxsize=64)
 def _lines(count: int, teeth: int) -> Floats:
-    """(4, N) cosine and sine at k = 1 and at k = z, times 2/N."""
+    """Cosine and sine vectors at k = 1 and at k = z, times 2/N, (4, N)."""
     turn = 2.0 * pi / count * np.arange(count)
     lines: Floats = np.array([
         np.cos(turn),

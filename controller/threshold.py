@@ -1,9 +1,9 @@
-"""Moving thresholds of the cutting force, and the warning that the paper's stage three gives.
+"""Adaptive warning thresholds of the cutting force.
 
-What a steady cut takes is learnt as mean and variance of ln F, each revolution counting less
-the older it is. A force far above it is a warning even while it is below the set point; above
-the set point by a margin it is over, learnt or not: the "safe limit" and "over limit" of [1]_.
-Units N.
+The usual force of a steady cut is learnt as mean and variance of ln F, with exponentially
+decaying weights. A force far above it is a warning even while it is below the set point; a
+force above the set point by a margin is over it, learnt or not: the "safe limit" and "over
+limit" of [1]_. Units: N.
 
 References
 ----------
@@ -22,38 +22,41 @@ from simulator.physics.domain import require_positive
 
 
 class AlarmLevel(StrEnum):
-    """Level of the force relative to its bound."""
+    """Alarm level of the force relative to its bound."""
 
     SAFE = "safe"
     WARNING = "warning"
-    """far above what this cut took until now, and not far below the set point"""
+    """Force far above its usual value in this cut, and not far below the set point."""
     OVER = "over"
-    """above the set point by a margin"""
+    """Force above the set point by a margin."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Thresholds:
-    """Settings of the warning thresholds.
+    """Settings of the force warning thresholds.
 
     Raises
     ------
     ValueError
-        If a number is not positive, or a mean is to be learnt from one revolution.
+        If a number is not positive, or the learning period is shorter than two revolutions.
     """
 
     deviations: float = 5.0
-    """k, standard deviations of ln F above its mean; with the learning below, white noise
-    warns once in some ten thousand revolutions, and only above the share of the set point"""
+    """Standard deviations k of ln F above its mean that cause a warning.
+
+    With the learning below, white noise warns once in some ten thousand revolutions, and only
+    above the share of the set point.
+    """
     share: float = 0.8
-    """of the set point: below it, nothing is warned of"""
+    """Share of the set point below which there is no warning."""
     margin: float = 0.2
-    """by which the force is over the set point, as a share of it"""
+    """Share of the set point by which a force must exceed it to count as over it."""
     memory: int = 50
-    """revolutions after which one counts 1/e"""
+    """Number of revolutions after which a revolution is weighted 1/e."""
     learning: int = 20
-    """revolutions until the mean is trusted"""
+    """Number of revolutions until the learnt mean is used."""
     least_deviation: float = 0.02
-    """of ln F: a force without noise is no reason to warn of every trifle"""
+    """Least standard deviation of ln F, so that a noise-free force does not cause warnings."""
 
     def __post_init__(self) -> None:
         for name in ("deviations", "share", "margin", "least_deviation"):
@@ -67,19 +70,19 @@ USUAL = Thresholds()
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ThresholdWatch:
-    """Learnt threshold and the level. A new one learns anew."""
+    """Learnt force threshold and the present alarm level; a new object learns anew."""
 
     level: AlarmLevel = AlarmLevel.SAFE
     log_mean: float = 0.0
-    """of ln(F / 1 N)"""
+    """Mean of ln(F / 1 N)."""
     log_variance: float = 0.0
     revolutions: int = 0
-    """that were learnt from"""
+    """Number of revolutions learnt from."""
     workingstep: int = 0
-    """that they belong to"""
+    """Number of the workingstep to which they belong."""
 
     def threshold(self, by: Thresholds = USUAL) -> float | None:
-        """Force in N above which it is out of the ordinary; None: not learnt yet."""
+        """Force above which it is unusual, N; None before it is learnt."""
         if self.revolutions < by.learning:
             return None
         return exp(self.log_mean + _reach(self, by))
@@ -93,23 +96,22 @@ def watched(
     is_steady: bool = True,
     by: Thresholds = USUAL,
 ) -> ThresholdWatch:
-    """The watch after one more revolution.
+    """Update the force watch with one more revolution.
 
-    Another workingstep is learnt anew; for any other change that is known of, entry into the
-    work above all, pass a new ``ThresholdWatch()``. A revolution that is out of the ordinary
-    counts as if it lay at the threshold: what stays is learnt in the end, what passes teaches
-    little.
+    Another workingstep is learnt anew; for any other known change, above all entry into the
+    work, pass a new ``ThresholdWatch()``. An unusual revolution counts as if it were at the
+    threshold: a lasting change is learnt in the end, a passing one has little effect.
 
     Parameters
     ----------
     watch : ThresholdWatch
     revolution : Revolution
-        Without a mean force, or with none above 0, it changes nothing.
+        Without a mean force above 0 it changes nothing.
     set_point : float, N
         Above 0.
     is_steady : bool
-        Whether depth and feed are those of the revolutions before. While they are not, nothing
-        is learnt and only the set point counts.
+        Whether depth and feed are those of the previous revolutions. If not, nothing is learnt
+        and only the set point counts.
     by : Thresholds
 
     Raises
@@ -138,12 +140,12 @@ def reason(
     set_point: float,
     by: Thresholds = USUAL,
 ) -> str:
-    """Reason of a force's level, with its numbers: the words of every warning.
+    """Sentence on the alarm level of a force, with its numbers, as used in warnings.
 
     Parameters
     ----------
     watch : ThresholdWatch
-        Before the revolution of that force.
+        State before the revolution of that force.
     level : AlarmLevel
     force : float, N
     set_point : float, N
@@ -152,7 +154,7 @@ def reason(
     Examples
     --------
     >>> reason(ThresholdWatch(), AlarmLevel.OVER, 492.0, set_point=400.0)
-    'force 1.23 times the set point of 400 N: 492 N, from 1.2 times on'
+    'force 1.23 times the set point of 400 N: 492 N, limit 1.2 times'
     """
     threshold = watch.threshold(by)
     if level is AlarmLevel.WARNING and threshold is not None:
@@ -160,12 +162,12 @@ def reason(
         count = min(watch.revolutions, by.memory)
         return (
             f"force {force / mean:.3g} times the mean of the last {count} revolutions: "
-            f"{force:.4g} N, from {threshold / mean:.3g} times on"
+            f"{force:.4g} N, limit {threshold / mean:.3g} times"
         )
     if level is AlarmLevel.OVER:
         return (
             f"force {force / set_point:.3g} times the set point of {set_point:.4g} N: "
-            f"{force:.4g} N, from {1.0 + by.margin:.3g} times on"
+            f"{force:.4g} N, limit {1.0 + by.margin:.3g} times"
         )
     return f"force {force:.4g} N, {force / set_point:.3g} times the set point"
 
@@ -173,7 +175,7 @@ def reason(
 def _level(
     watch: ThresholdWatch, force: float, *, set_point: float, by: Thresholds
 ) -> AlarmLevel:
-    """Level of a force in a steady cut, before it is learnt."""
+    """Alarm level of a force in a steady cut, before the force is learnt."""
     if force > (1.0 + by.margin) * set_point:
         return AlarmLevel.OVER
     threshold = watch.threshold(by)
@@ -183,7 +185,7 @@ def _level(
 
 
 def _learnt(watch: ThresholdWatch, value: float, by: Thresholds) -> ThresholdWatch:
-    """Mean and variance with one more value, [2]_; the plain ones until the memory is full."""
+    """Update mean and variance with one more value, [2]_; plain until memory is full."""
     count = watch.revolutions + 1
     away = value - watch.log_mean if watch.revolutions else 0.0
     if watch.revolutions >= by.learning:
@@ -199,5 +201,5 @@ def _learnt(watch: ThresholdWatch, value: float, by: Thresholds) -> ThresholdWat
 
 
 def _reach(watch: ThresholdWatch, by: Thresholds) -> float:
-    """Of the threshold above the mean, in ln F."""
+    """Distance of the threshold above the mean, in ln F."""
     return by.deviations * max(sqrt(watch.log_variance), by.least_deviation)

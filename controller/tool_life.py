@@ -1,18 +1,18 @@
-"""Flank wear, told by the force; and changes of the work, told from wear.
+"""Flank wear and sudden changes of the work, estimated from the force ratio.
 
 Wear raises the force slowly, harder work at once. A slowly moving mean follows the ratio of
-measured to expected force, and two cumulative sums look for a change that is too quick for it.
-Wear is what that mean has gained since the tool was new, over what a millimetre of wear adds
-to the ratio: the wear land takes a force of its own beside that of the chip, so that this is
-more for thin chips (:mod:`simulator.physics.flank`). After a sudden change what it is compared
-with is learnt anew, and the wear goes on from where it was. Units mm of flank wear,
-dimensionless ratios.
+measured to expected force, and two cumulative sums detect changes that are too quick for it.
+Wear is the increase of that mean since the tool was new, divided by the increase per millimetre
+of wear: the wear land takes a force of its own beside that of the chip, so that this is larger
+for thin chips (:mod:`simulator.physics.flank`). After a sudden change the reference is learnt
+anew, and the wear continues from its previous value. Units: mm of flank wear, dimensionless
+ratios.
 
-A change of less than ``WearMonitorSettings.allowance`` is not seen and counts as wear: 4 % of
-force are 0.02 mm where a chip of 0.1 mm is cut in steel. Wear that is quicker than the
+A change of less than ``WearMonitorSettings.allowance`` is not detected and counts as wear: 4 %
+of force are 0.02 mm where a chip of 0.1 mm is cut in steel. Wear that is quicker than the
 allowance over the memory (0.04 in 200 revolutions) is taken for a change. So is an error of the
-expected force that lasts some revolutions: noise may be large, but it must not be of one sign
-for long.
+expected force that lasts some revolutions: noise may be large, but it must not keep the same
+sign for long.
 
 References
 ----------
@@ -27,12 +27,12 @@ from simulator.physics.domain import require_not_negative, require_positive
 from simulator.physics.tool_life import LIFE_CRITERION
 
 _DECISION = 10.0  # standard deviations
-_LEAST_SHARP = 0.05  # of the force, that a chip takes however worn the tool began
+_LEAST_SHARP = 0.05  # least share of the chip in the force, however worn the tool was at first
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WearMonitorSettings:
-    """Settings for telling wear from a change of the work, in ln(ratio) and revolutions.
+    """Settings that separate wear from changes of the work, in ln(ratio) and revolutions.
 
     Raises
     ------
@@ -41,14 +41,16 @@ class WearMonitorSettings:
     """
 
     memory: int = 200
-    """revolutions after which one counts 1/e"""
+    """Number of revolutions after which a revolution is weighted 1/e."""
     learning: int = 50
-    """revolutions that make the mean with which wear is compared"""
+    """Number of revolutions that form the reference mean for wear."""
     allowance: float = 0.04
-    """by which the ratio may be off without adding up; one standard deviation at least"""
+    """Deviation of the ratio that does not add to the sums; at least one standard deviation."""
     decision: float = 0.4
-    """sum from which it is a change, ten standard deviations at least: 10 % of force are one
-    after 8 revolutions, 30 % after 2"""
+    """Sum from which a change is detected; at least ten standard deviations.
+
+    10 % more force is detected after 8 revolutions, 30 % after 2.
+    """
 
     def __post_init__(self) -> None:
         for name in ("memory", "learning", "allowance", "decision"):
@@ -60,63 +62,64 @@ USUAL = WearMonitorSettings()
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CumulativeSum:
-    """A one-sided cumulative sum, [1]_."""
+    """One-sided cumulative sum (CUSUM), [1]_."""
 
     total: float = 0.0
     revolutions: int = 0
-    """since it was 0"""
+    """Number of revolutions since the sum was 0."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ToolLife:
-    """Estimated wear of a tool. A new one for a new tool: :func:`new_tool`."""
+    """Estimated wear of a tool; create a new one with :func:`new_tool`."""
 
     log_ratio: float = 0.0
-    """slowly moving mean of ln(measured / expected)"""
+    """Slowly moving mean of ln(measured / expected)."""
     log_sharp: float = 0.0
-    """what it would be with a sharp tool"""
+    """Estimate of that mean for a sharp tool."""
     land_share: float = 0.0
-    """slowly moving mean of what 1 mm of flank wear adds to the ratio, 1/mm; 0: not known"""
+    """Slowly moving mean of the increase of the ratio per mm of flank wear, 1/mm; 0: not
+    known."""
     log_variance: float = 0.0
-    """of single ones about the mean"""
+    """Variance of single revolutions about the mean."""
     begun: float = 0.0
-    """mm of flank wear when comparing began"""
+    """Flank wear when the comparison began, mm."""
     readings: int = 0
-    """revolutions since then"""
+    """Number of revolutions since the comparison began."""
     above: CumulativeSum = CumulativeSum()
     below: CumulativeSum = CumulativeSum()
     changes: tuple[float, ...] = ()
-    """sudden changes of ln(ratio) so far, as first seen"""
+    """Sudden changes of ln(ratio) so far, as first detected."""
 
     @property
     def ratio(self) -> float:
-        """Measured over expected force, slowly moving; 1 before anything was measured."""
+        """Slowly moving ratio of measured to expected force; 1 before any measurement."""
         return exp(self.log_ratio)
 
     @property
     def flank_wear(self) -> float:
-        """VB in mm: what the ratio has gained over what a millimetre adds to it."""
+        """Flank wear VB, mm: increase of the ratio over its increase per millimetre."""
         if self.readings == 0 or self.land_share <= 0.0:
             return self.begun
         return max(0.0, (exp(self.log_ratio) - exp(self.log_sharp)) / self.land_share)
 
     @property
     def is_worn_out(self) -> bool:
-        """Whether the end of the tool's life is reached, [2]_."""
+        """Whether the flank wear has reached the end of tool life, [2]_."""
         return self.flank_wear >= LIFE_CRITERION
 
 
 def new_tool(flank: float = 0.0) -> ToolLife:
-    """A tool of which nothing was measured yet, with its flank wear in mm when it begins."""
+    """Create the state of a tool without measurements, with its initial flank wear in mm."""
     require_not_negative(flank, "flank wear", "mm")
     return ToolLife(begun=flank)
 
 
 def compared_anew(life: ToolLife) -> ToolLife:
-    """The tool in other work: the wear stays, the ratio is learnt anew.
+    """Restart the comparison for other work: the wear stays, the ratio is learnt anew.
 
-    For a change that is known of, such as another material or a kind of cut for which the
-    expected force errs otherwise.
+    For known changes, such as another material or a cut for which the error of the expected
+    force differs.
     """
     return ToolLife(
         log_ratio=life.log_ratio,
@@ -130,7 +133,7 @@ def compared_anew(life: ToolLife) -> ToolLife:
 def lived(
     life: ToolLife, ratio: float, *, land_share: float, by: WearMonitorSettings = USUAL
 ) -> ToolLife:
-    """The tool after one more revolution.
+    """Update the wear estimate of the tool with one more revolution.
 
     Parameters
     ----------
@@ -138,7 +141,7 @@ def lived(
     ratio : float
         ln(measured / expected) of :func:`controller.estimate.log_ratio`.
     land_share : float, 1/mm
-        What 1 mm of flank wear adds to the ratio; 0: not known, and then no wear is told.
+        Increase of the ratio by 1 mm of flank wear; 0: not known, and no wear is estimated.
     by : WearMonitorSettings
     """
     readings = life.readings + 1
@@ -168,13 +171,13 @@ def lived(
 
 
 def _sharp(life: ToolLife) -> float:
-    """Ln of the ratio without the wear with which comparing began."""
+    """Logarithm of the ratio without the wear present when the comparison began."""
     share = life.land_share * life.begun * exp(-life.log_ratio)
     return life.log_ratio + log(max(1.0 - share, _LEAST_SHARP))
 
 
 def _summed(drift: CumulativeSum, step: float) -> CumulativeSum:
-    """The sum with one more step; it never is below 0."""
+    """Add one step to a cumulative sum, which never falls below 0."""
     total = drift.total + step
     return (
         CumulativeSum(total=total, revolutions=drift.revolutions + 1)
@@ -186,8 +189,8 @@ def _summed(drift: CumulativeSum, step: float) -> CumulativeSum:
 def _changed(
     life: ToolLife, change: float, drift: CumulativeSum, by: WearMonitorSettings
 ) -> ToolLife:
-    """The tool in work that takes about e^change times the force, its wear as it was before."""
-    # The mean has followed the change a little while it added up.
+    """Restart after a sudden change of the force by e^change; the wear stays as before it."""
+    # The mean has partly followed the change before it was detected.
     followed = change * drift.revolutions / by.memory
     before = replace(life, log_ratio=life.log_ratio - followed, changes=(*life.changes, change))
     return compared_anew(before)

@@ -1,6 +1,6 @@
-"""Share of each tooth in the force of a revolution, and its error.
+"""Share of each tooth in the force of a revolution, with its uncertainty.
 
-Shares know neither depth nor k_c: both act on all teeth alike. Units mm, s, N, rad, rev/s.
+Shares do not depend on depth or k_c, which act on all teeth alike. Units: mm, s, N, rad, rev/s.
 """
 
 from dataclasses import dataclass
@@ -14,63 +14,68 @@ from controller.signal import Revolution
 from simulator.physics.tooth_means import Periods, periods, tooth_means
 
 READING = 0.011
-"""of the mean force, and of a tooth's own: standard deviations by which dynamometer and model
-err in the mean of a tooth period"""
+"""Relative standard deviations of a tooth period's mean by dynamometer and model.
+
+They apply to the mean force of the revolution and to the tooth's own force.
+"""
 
 FLOOR = 0.5
-"""N, standard deviation of that mean whatever the force"""
+"""Standard deviation of the mean of a tooth period at any force, N."""
 
 MISSED = 4.0
-"""standard deviation of a share, times the share of samples that were lost: in a tooth period,
-samples differ much"""
+"""Standard deviation of a share per share of lost samples; samples vary within a period."""
 
 JITTER = 0.5
-"""of the change of the expected force from one tooth period to the next: what is expected errs
-by so much where depth or width change"""
+"""Error of the expected force over its change to the next tooth period.
+
+It covers places where depth or width change.
+"""
 
 DRIFT = 0.02
-"""least standard deviation of what the force changes within a revolution, as a share; at least
-what it changed since the one before"""
+"""Least relative standard deviation of the force change within a revolution.
+
+It is at least the change since the previous revolution.
+"""
 
 ENTRY = 0.2
-"""the same in a revolution without another before it"""
+"""Relative standard deviation of the force change without a previous revolution."""
 
 EARLY = 0.05
-"""of a tooth period, standard deviation of where teeth enter"""
+"""Standard deviation of the entry of teeth, in tooth periods."""
 
 LAG = 0.0005
-"""s by which a dynamometer is late, as the loop takes it: its own may differ"""
+"""Delay of the dynamometer assumed by the loop, s; the real one may differ."""
 
 LEAST_CHIP = 0.005
-"""mm of feed per tooth below which edges rub, and nothing is judged"""
+"""Feed per tooth below which edges rub and nothing is judged, mm."""
 
-_LEAST = 1e-9  # N, so that no force at all divides
+_LEAST = 1e-9  # N, avoids division by zero
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ToothShares:
-    """Shares of the teeth in a revolution."""
+    """Measured shares of the teeth in the force of a revolution."""
 
     taken: Floats
-    """(z,) mean force in the period of each tooth over the mean of all"""
+    """Mean force in the period of each tooth over the mean of all, (z,)."""
     noise: Floats
-    """(z, z) covariance of their errors"""
+    """Covariance of the errors of the shares, (z, z)."""
     expected: Floats
-    """(z,) N that equal teeth would take"""
+    """Force that equal teeth would take, (z,), N."""
     periods: Periods
 
     def of(self, offsets: Floats) -> Floats:
-        """(M, z) shares that (M, z) guesses of the offsets of the teeth in mm give."""
+        """Shares that (M, z) guesses of the tooth offsets, mm, would give, (M, z)."""
         force = self.expected * tooth_means(self.periods, offsets)
         shares: Floats = force / np.maximum(force.mean(axis=1, keepdims=True), _LEAST)
         return shares
 
 
 def force_ratio(revolution: Revolution, expected: Expected | None) -> float | None:
-    """Force of a revolution over the expected one; None: its teeth are not to be compared.
+    """Measured over expected force of a revolution; None if its teeth cannot be compared.
 
-    Not compared is a revolution in which a tooth, the feed or the arc of contact is missing,
-    and one with a single sample for each tooth: by the power of a drive, which is slower.
+    A revolution is not compared if a tooth, the feed or the arc of contact is missing, or if
+    there is a single sample per tooth, as from the power of a drive, which is too slow.
     """
     if expected is None or revolution.samples < 2 or not revolution.force > 0.0:
         return None
@@ -87,22 +92,22 @@ def force_ratio(revolution: Revolution, expected: Expected | None) -> float | No
 def shares_of(
     revolution: Revolution, expected: Expected, *, exponent: float, change: float | None
 ) -> ToothShares:
-    """Shares of the teeth in a revolution.
+    """Compute the shares of the teeth in the force of a revolution.
 
     Parameters
     ----------
     revolution : Revolution
     expected : Expected
-        What equal teeth would take.
+        Forces that equal teeth would take.
     exponent : float
         p of force over chip.
     change : float, optional
-        Of ln(force over the expected one) since the revolution before; None: there was none.
+        Change of ln(measured / expected force) since the previous revolution; None: none
     """
     teeth, means = revolution.teeth, revolution.tooth_means
     taken: Floats = means / means.mean()
     per_tooth = revolution.tooth_feeds / (teeth * revolution.spindle_speed)
-    # The mean of samples that are taken at the ends of their intervals is early by half of one.
+    # The mean of samples taken at the ends of their intervals is early by half an interval.
     delay = max(LAG - 0.5 * revolution.period / (teeth * revolution.samples), 0.0)
     drift = ENTRY if change is None else max(DRIFT, abs(change))
     return ToothShares(
@@ -121,13 +126,13 @@ def shares_of(
 def _noise(
     revolution: Revolution, expected: Expected, taken: Floats, *, drift: float
 ) -> Floats:
-    """(z, z) covariance of what shares err by."""
+    """Covariance of the errors of the shares, (z, z)."""
     teeth = revolution.teeth
     order = (np.arange(teeth) - revolution.first) % teeth
     near = JITTER * expected.change / expected.force.mean()
     even = FLOOR / revolution.tooth_means.mean(), MISSED * (1.0 - revolution.coverage)
     own = READING**2 * (1.0 + taken**2) + even[0] ** 2 + even[1] ** 2
-    # What one tooth takes more than expected moves the mean, and with it the shares of all.
+    # An excess of one tooth shifts the mean, and with it the shares of all teeth.
     jitter = np.diag(near) - np.outer(taken, near) / teeth
     grown = drift * taken * ((order + 0.5) / teeth - 0.5)
     moved = EARLY * (np.roll(taken, 1) - taken)

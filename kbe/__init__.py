@@ -1,1 +1,1 @@
-"""Knowledge base: outcomes of runs, evaluation tables, corrections."""
+"""Knowledge base: outcomes of runs, evaluation tables, and learned corrections of k_c."""

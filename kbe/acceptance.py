@@ -1,4 +1,4 @@
-"""Conditions on which a proposed correction is accepted without a person, and objections."""
+"""Rules for the automatic acceptance of a proposed correction."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -9,18 +9,18 @@ from stepnc_model.outcome import LearnedCorrection
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AcceptanceBounds:
-    """Conditions on which a proposal is accepted automatically."""
+    """Conditions on which a proposed correction is accepted automatically."""
 
     least_confidence: float = 0.8
     fewest_outcomes: int = 3
     greatest_change: float = 0.25
-    """Greatest change of the factor, up or down, from the one that was accepted last"""
+    """Greatest relative change of the factor, up or down, from the last accepted one."""
     least_factor: float = 0.5
     greatest_factor: float = 2.0
 
 
 class ObjectionGround(StrEnum):
-    """Subject of an objection."""
+    """Property of a proposal that an objection concerns."""
 
     CONFIDENCE = "confidence"
     OUTCOMES = "outcomes"
@@ -30,11 +30,11 @@ class ObjectionGround(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Objection:
-    """A bound that a proposal does not keep."""
+    """Violated condition that keeps a proposal from automatic acceptance."""
 
     ground: ObjectionGround
     message: str
-    """with value and bound"""
+    """Sentence with the value and its bound."""
 
     def __str__(self) -> str:
         return self.message
@@ -46,23 +46,25 @@ def objections(
     *,
     bounds: AcceptanceBounds | None = None,
 ) -> tuple[Objection, ...]:
-    """Why a proposal must not be accepted by itself; empty: it may.
+    """Reasons why a proposal must not be accepted automatically; empty if it may.
 
     Parameters
     ----------
     proposed : LearnedCorrection
     accepted : LearnedCorrection or None
-        The one in force; None: none was accepted yet, and only the range bounds the change
+        Correction in force; None: none was accepted yet, and only the range limits the change
         from the catalogue.
     bounds : AcceptanceBounds, optional
 
     Raises
     ------
     ValueError
-        The two are of different contexts.
+        If the two are of different contexts.
     """
     if accepted is not None and accepted.context != proposed.context:
-        raise ValueError(f"{accepted.context} is not {proposed.context}")
+        raise ValueError(
+            f"{accepted.context} is not the context of the proposal, {proposed.context}"
+        )
     keep = bounds or AcceptanceBounds()
     factor = exp(proposed.log_centre)
     grounds = {
@@ -87,7 +89,7 @@ def objections(
 
 
 def _leap(factor: float, accepted: float, greatest: float) -> str:
-    """Whether the factor changes too much; the same up as down, so in logarithms."""
+    """Text on a factor that changes too much, compared in logarithms; empty if it does not."""
     if abs(log(factor / accepted)) <= log(1.0 + greatest):
         return ""
     share = f"{100.0 * greatest:g} %"

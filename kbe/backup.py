@@ -1,8 +1,8 @@
-"""Backups: one file of SQLite, whichever database it is made from and goes to.
+"""Backup and restore of a knowledge base, as a single SQLite file for any database.
 
-A backup appears whole under its name or not at all, and never in place of another file. A
-restore fills an empty store in one transaction; before it is kept, every row is compared with
-the backup's.
+A backup file appears complete under its name or not at all, and never replaces another file. A
+restore fills an empty store in one transaction; before it is committed, every row is compared
+with the backup.
 """
 
 import hashlib
@@ -35,7 +35,7 @@ from kbe.store_location import StoreLocation, parsed_place, require_openable
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Content:
-    """Content of a store: numbers of rows, and one fingerprint of all of them."""
+    """Row counts of a store, with a fingerprint of all rows."""
 
     outcomes: int
     corrections: int
@@ -44,17 +44,17 @@ class Content:
 
     @property
     def rows(self) -> int:
-        """All of them."""
+        """Total number of rows."""
         return self.outcomes + self.corrections + self.decisions
 
 
 def backup(store: Store, path: str) -> Content:
-    """Copy a store to a new file, while others go on writing to the store.
+    """Copy a store to a new file while others continue to write to it.
 
     Raises
     ------
     BackupExists
-        When there is a file of this name already.
+        When a file of this name already exists.
     KnowledgeError
         When the store cannot be read, or the file cannot be written.
     """
@@ -68,16 +68,16 @@ def backup(store: Store, path: str) -> Content:
 
 
 def restore(path: str, url_or_path: str) -> Content:
-    """Fill an empty store from a backup; nothing is done when it has been already.
+    """Fill an empty store from a backup; do nothing if it holds the same rows already.
 
     Raises
     ------
     StoreNotEmpty
-        When the store holds anything else.
+        When the store holds other rows.
     StoreDamaged
-        When the backup is not whole.
+        When the backup is damaged.
     KnowledgeError
-        When either cannot be opened, or the store cannot be written.
+        When the backup or the store cannot be opened, or the store cannot be written.
     """
     with _readable(path) as source, open_store(url_or_path) as target:
         with (
@@ -95,28 +95,28 @@ def restore(path: str, url_or_path: str) -> Content:
 
 
 def content(store: Store) -> Content:
-    """Content of a store at one moment."""
+    """Count and fingerprint the rows of a store in a consistent snapshot."""
     with snapshot(store.engine, store.place) as connection:
         return _content(connection)
 
 
 def _file(path: str) -> StoreLocation:
-    """The file of a backup."""
+    """Location of a backup file."""
     place = parsed_place(path)
     if not place.file:
-        raise StoreUnavailable(place.shown, reason="a backup is a file; name one")
+        raise StoreUnavailable(place.shown, reason="a backup must be a file; give a file name")
     return place
 
 
 def _moved(place: StoreLocation, file: str) -> StoreLocation:
-    """Another file that stands in for a place, and is called like it."""
+    """Location of a temporary file that is shown to users under the name of another place."""
     url = URL.create("sqlite+pysqlite", database=file)
     return StoreLocation(url=url, shown=place.shown, file=file)
 
 
 @contextmanager
 def _new_file(place: StoreLocation) -> Iterator[StoreLocation]:
-    """A place beside, that takes the name when all went well and nobody else took it."""
+    """Write to a temporary place beside the target, and rename it on success."""
     folder, name = os.path.split(os.path.abspath(place.file))
     if os.path.lexists(place.file):
         raise BackupExists(place.shown)
@@ -132,20 +132,20 @@ def _new_file(place: StoreLocation) -> Iterator[StoreLocation]:
 
 
 def _take_name(fresh: str, place: StoreLocation) -> None:
-    """Give a file its name, unless another has it."""
+    """Give a finished file its final name, unless that name is taken."""
     try:
         os.link(fresh, place.file)
     except FileExistsError as error:
         raise BackupExists(place.shown) from error
     except OSError:
-        # File systems of memory sticks know no second names.
+        # Some file systems, as of memory sticks, do not support hard links.
         if os.path.lexists(place.file):
             raise BackupExists(place.shown) from None
         os.rename(fresh, place.file)
 
 
 def _sync(path: str) -> None:
-    """Wait until a file or folder is on the disk."""
+    """Wait until a file or folder has been written to disk."""
     handle = os.open(path, os.O_RDONLY)
     try:
         os.fsync(handle)
@@ -154,7 +154,7 @@ def _sync(path: str) -> None:
 
 
 def _copied(store: Store, fresh: StoreLocation) -> Content:
-    """Copy a store to a file and read the copy to its last page."""
+    """Copy a store to a file, and read the copy back completely."""
     if store.place.file:
         _copy_pages(store.place.file, fresh)
         _require_one_file(fresh)
@@ -173,7 +173,7 @@ def _copied(store: Store, fresh: StoreLocation) -> Content:
 
 
 def _copy_pages(file: str, fresh: StoreLocation) -> None:
-    """Copy a file of SQLite as it is at one moment; those who write to it need not wait."""
+    """Copy an SQLite file as it is at one moment, without blocking its writers."""
     address = f"file:{quote(os.path.abspath(file))}?mode=ro"
     with (
         closing(sqlite3.connect(address, uri=True)) as source,
@@ -183,14 +183,14 @@ def _copy_pages(file: str, fresh: StoreLocation) -> None:
 
 
 def _require_one_file(fresh: StoreLocation) -> None:
-    """Put what is in the log beside it into the file itself, and keep no log any more."""
+    """Merge the write-ahead log into the database file, and keep no log."""
     with closing(sqlite3.connect(fresh.file)) as connection:
         connection.execute("PRAGMA journal_mode = DELETE")
 
 
 @contextmanager
 def _readable(path: str) -> Iterator[Store]:
-    """A backup as a store: a copy, because an older one has to be upgraded to be read."""
+    """Open a temporary copy of a backup as a store, because an old one must be upgraded."""
     place = _file(path)
     require_openable(place, is_new_allowed=False)
     with translated(place), tempfile.TemporaryDirectory(prefix="stepnc-restore-") as folder:
@@ -202,14 +202,14 @@ def _readable(path: str) -> Iterator[Store]:
 
 
 def _keep_others_out(connection: Connection) -> None:
-    """Lock the store between the check that it is empty and the last row."""
+    """Lock the store from the check that it is empty until the last row is written."""
     if connection.dialect.name == "postgresql":
         names = ", ".join(table.name for table in TABLES)
         connection.execute(text(f"LOCK TABLE {names} IN SHARE ROW EXCLUSIVE MODE"))
 
 
 def _copy_rows(source: Connection, target: Connection) -> None:
-    """Copy all rows under the same ids."""
+    """Copy all rows with their ids."""
     for table in TABLES:
         rows = [each.name for each in table.columns]
         for part in _rows(source, table).partitions():
@@ -219,7 +219,7 @@ def _copy_rows(source: Connection, target: Connection) -> None:
 
 
 def _count_on(connection: Connection, table: Table) -> None:
-    """Set PostgreSQL's sequences behind the ids of the restored rows."""
+    """Advance PostgreSQL's sequences beyond the ids of the restored rows."""
     last = connection.execute(select(func.max(table.c.id))).scalar_one()
     if last is not None:
         sequence = func.pg_get_serial_sequence(table.name, "id")
@@ -227,19 +227,19 @@ def _count_on(connection: Connection, table: Table) -> None:
 
 
 def _require_same(connection: Connection, wanted: Content, place: StoreLocation) -> None:
-    """Refuse a copy that is not what it was made from."""
+    """Raise an error if a copy differs from its source."""
     if _content(connection) != wanted:
         raise BackupDiffers(place.shown)
 
 
 def _rows(connection: Connection, table: Table) -> "CursorResult[Any]":
-    """All rows in order, a part at a time."""
+    """Read all rows of a table in order, in batches."""
     query = select(table).order_by(table.c.id).execution_options(yield_per=AT_ONCE)
     return connection.execute(query)
 
 
 def _content(connection: Connection) -> Content:
-    """Count all rows and put all of them into one hash, in order."""
+    """Count all rows and hash them in order."""
     hasher = hashlib.sha256()
     counts = []
     for table in TABLES:

@@ -1,33 +1,33 @@
-"""Use of the force bound: how the measured force compares with it."""
+"""Comparison of the measured force with the force bound of the plan."""
 
 from dataclasses import dataclass, replace
 
 from stepnc_model.outcome import ProcessOutcome
 
 PASSED = 1.05
-"""of the bound; what is above has violated it"""
+"""Share of the bound above which the force has violated it."""
 UNUSED = 0.80
-"""of the bound; what is below has wasted it, where the plan meant to use it"""
+"""Share of the bound below which it is wasted, if the plan intended to use it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoundUse:
-    """Outcomes of a group against their force bounds."""
+    """Counts of outcomes that violated, wasted or overplanned their force bounds."""
 
     known: int = 0
-    """outcomes with a bound and a measured force"""
+    """Number of outcomes with a bound and a measured force."""
     violated: int = 0
     wasted: int = 0
     overplanned: int = 0
-    """in which the plan itself expected to pass the bound"""
+    """Number of outcomes in which the plan itself expected to exceed the bound."""
     highest: float | None = None
-    """greatest measured force over its bound"""
+    """Greatest ratio of measured force to bound."""
     time_to_win: float = 0.0
-    """Time to win, s, of all wasted outcomes together"""
+    """Time that could be saved in all wasted outcomes together, s."""
 
 
 def used(sum_before: BoundUse, outcome: ProcessOutcome) -> BoundUse:
-    """The same with one more outcome."""
+    """Add one more outcome to the counts."""
     share = share_of(outcome)
     if share is None:
         return sum_before
@@ -44,7 +44,7 @@ def used(sum_before: BoundUse, outcome: ProcessOutcome) -> BoundUse:
 
 
 def share_of(outcome: ProcessOutcome) -> float | None:
-    """Measured force over its bound; None: one of them is not known."""
+    """Measured force over its bound; None if either is not known."""
     measured, bound = outcome.force.measured, outcome.force_bound
     if measured is None or bound is None or not bound > 0.0 or not measured >= 0.0:
         return None
@@ -52,10 +52,10 @@ def share_of(outcome: ProcessOutcome) -> float | None:
 
 
 def is_wasted(outcome: ProcessOutcome) -> bool:
-    """Whether force was left unused that the plan intended to use.
+    """Whether the force stayed below a bound that the plan intended to use.
 
-    A plan that itself stays far below its bound is held back by something else (power, chip
-    load, roughness), which is no waste.
+    A plan that itself stays far below its bound is limited by something else (power, chip load,
+    roughness), which is not waste.
     """
     share = share_of(outcome)
     if share is None or outcome.force_bound is None or share >= UNUSED:
@@ -71,10 +71,10 @@ def is_overplanned(outcome: ProcessOutcome) -> bool:
 
 
 def time_to_win(outcome: ProcessOutcome) -> float:
-    """Seconds that full use of the bound would save, about.
+    """Approximate time that full use of the bound would save, s.
 
-    ``t·(1 − F/F_bound)``: force in proportion to feed, all of the time with chips. Force rises
-    less than the feed, which would save more; time in air, less.
+    ``t·(1 − F/F_bound)``: it assumes force proportional to feed and chips all the time. Force
+    rises less than the feed, which would save more; time in air, less.
     """
     share, seconds = share_of(outcome), outcome.time.measured
     if share is None or seconds is None:

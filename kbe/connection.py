@@ -1,8 +1,8 @@
-"""Connections and transactions, the same for SQLite and PostgreSQL.
+"""Database connections and transactions, the same for SQLite and PostgreSQL.
 
-SQLite writes ahead (WAL), so that readers never wait, and syncs at each commit: what was
-accepted survives a power cut. A transaction that will write says so at its beginning, so that
-two writers wait for each other instead of failing in the middle.
+SQLite uses a write-ahead log (WAL), so that readers never wait, and syncs at each commit, so
+that committed data survives a power cut. A transaction that will write takes its lock at the
+beginning, so that two writers wait for each other instead of failing in the middle.
 """
 
 import sqlite3
@@ -17,23 +17,23 @@ from kbe.faults import translated
 from kbe.store_location import StoreLocation
 
 PATIENCE = 30.0
-"""s that a writer waits for others"""
+"""Time that a writer waits for others, s."""
 
 CONNECT_TIMEOUT = 10
-"""s until a server must have answered"""
+"""Timeout for connecting to a server, s."""
 
 PRAGMAS = (
     "PRAGMA synchronous = FULL",
     "PRAGMA foreign_keys = ON",
-    # Finds damaged pages when they are read, rather than when they have done harm.
+    # Detects damaged pages when they are read, before they do harm.
     "PRAGMA cell_size_check = ON",
-    # KiB; the indexes of a million outcomes do not fit into the 2 MiB that are usual.
+    # In KiB; the indexes of a million outcomes do not fit into the default 2 MiB.
     "PRAGMA cache_size = -65536",
 )
 
 
 def connected(place: StoreLocation, *, patience: float = PATIENCE) -> Engine:
-    """The engine of a place; nothing is opened yet.
+    """Create the database engine of a place; no connection is opened yet.
 
     Raises
     ------
@@ -54,27 +54,27 @@ def connected(place: StoreLocation, *, patience: float = PATIENCE) -> Engine:
 
 
 def _prepare(connection: sqlite3.Connection, _record: object) -> None:
-    """Settings of one SQLite connection."""
-    # Python's module would begin transactions by itself, too late and not before DDL.
+    """Configure a new SQLite connection."""
+    # Python's module would begin transactions itself, too late and not before DDL.
     connection.isolation_level = None
     for pragma in PRAGMAS:
         connection.execute(pragma)
 
 
 def _begin(connection: Connection) -> None:
-    """Begin a transaction; one that will write takes its lock at once."""
+    """Begin a transaction; a writing one takes its lock at once."""
     will_write = connection.get_execution_options().get("will_write", False)
     connection.exec_driver_sql("BEGIN IMMEDIATE" if will_write else "BEGIN")
 
 
 @contextmanager
 def reading(engine: Engine, place: StoreLocation) -> Iterator[Connection]:
-    """A transaction that reads.
+    """Open a read transaction.
 
     Raises
     ------
     StoreDamaged
-        When a row holds what no noun can have; others as the database reports.
+        When a row holds invalid values; other errors as the database reports.
     """
     try:
         with translated(place), engine.connect() as connection:
@@ -85,7 +85,7 @@ def reading(engine: Engine, place: StoreLocation) -> Iterator[Connection]:
 
 @contextmanager
 def snapshot(engine: Engine, place: StoreLocation) -> Iterator[Connection]:
-    """A transaction that sees one moment throughout, whatever others write."""
+    """Open a read transaction that sees one consistent state, whatever others write."""
     with reading(engine, place) as connection:
         if not place.file:
             connection.execution_options(isolation_level="REPEATABLE READ")
@@ -94,7 +94,7 @@ def snapshot(engine: Engine, place: StoreLocation) -> Iterator[Connection]:
 
 @contextmanager
 def writing(engine: Engine, place: StoreLocation) -> Iterator[Connection]:
-    """A transaction that writes: all of it, or nothing when an error leaves it."""
+    """Open a write transaction, which is committed at the end or rolled back on an error."""
     with (
         translated(place),
         engine.execution_options(will_write=True).connect() as connection,

@@ -1,20 +1,21 @@
-"""Corrections of the specific cutting force, learned from the forces that machines reported.
+"""Learning of corrections of the specific cutting force from measured forces.
 
-Each outcome tells ``ln(measured / expected)`` against the catalogue's k_c, whatever correction
-its plan used. So corrections do not compound: one replaces the other, and when the material
-stays the same, outcomes after an acceptance say what those before it said.
+Each outcome gives ``ln(measured / expected)`` relative to the catalogue's k_c, whatever
+correction its plan used. So corrections do not compound: one replaces the other, and while the
+material stays the same, outcomes after an acceptance agree with those before it.
 
 The model, for each context: ``y = ln factor + run + reading``. What changes from run to run
 (edge, batch, clamping) has an unknown scatter σ; ln factor and σ follow the conjugate law of
 :mod:`kbe.regression`.
 
-- *Readings.* Revolutions of one cut err alike. They are taken as a first-order autoregression
-  and n of them are worth ``n·(1 − ρ)/(1 + ρ)``, [1]_, not less than 1. The mean then has an own
-  variance s², and its weight is ``σ² / (σ² + s²)``, with the σ believed before the run.
+- *Readings.* Revolutions of one cut have correlated errors. They are modelled as a first-order
+  autoregression, so n of them are worth ``n·(1 − ρ)/(1 + ρ)``, [1]_, not less than 1. The mean
+  then has its own variance s², and its weight is ``σ² / (σ² + s²)``, with the σ estimated
+  before the run.
 - *Workingsteps.* Those of one run share edge and batch, so n of them count 1/n each: a run is
-  worth one observation, however many workingsteps it has, and what differs between them widens
+  worth one observation, however many workingsteps it has, and differences between them widen
   the scatter, because the next plan needs a factor that holds for each.
-- *Forgetting.* Between runs, what was learned fades towards the prior by a half-life.
+- *Forgetting.* Between runs, what was learned fades towards the prior with a half-life.
 
 References
 ----------
@@ -43,11 +44,11 @@ from kbe.student import StudentT
 from stepnc_model.outcome import Context, ForceRatio, LearnedCorrection, ProcessOutcome
 
 NEAR = 0.1
-"""of the factor: a correction's confidence is that the factor lies no farther off"""
+"""Relative half-width of the interval whose probability is a correction's confidence."""
 SECONDS_PER_DAY = 86_400.0
 
 ONE = np.ones(1)
-"""row of the design: a factor is a constant in logarithms"""
+"""Row of the design matrix: a factor is a constant in logarithms."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,14 +56,14 @@ class FactorPrior:
     """Prior belief about a factor before the first run."""
 
     deviation: float = 0.2
-    """of ln factor about 0: catalogue forces are ±20 % until calibrated (README)"""
+    """Standard deviation of ln factor about 0: catalogue forces are ±20 % until calibrated."""
     scatter: float = 0.05
-    """of ln factor from run to run; a guess, hence few degrees"""
+    """Standard deviation of ln factor from run to run; a guess, hence few degrees."""
     degrees: float = 4.0
-    """of freedom: how many runs the guess of the scatter is worth"""
+    """Degrees of freedom: how many runs the guess of the scatter is worth."""
 
     def belief(self) -> NormalInverseGamma:
-        """The same as a law of (ln factor, σ²)."""
+        """Prior as a distribution of (ln factor, σ²)."""
         return NormalInverseGamma(
             mean=np.zeros(1),
             precision=np.full((1, 1), (self.scatter / self.deviation) ** 2),
@@ -73,13 +74,13 @@ class FactorPrior:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Forgetting:
-    """After how much half of what was learned is forgotten; ``inf``: never."""
+    """Half-lives of what was learned, in runs and in days; ``inf``: never forgotten."""
 
     runs: float = 10.0
     days: float = 180.0
 
     def share(self, *, runs: float, days: float) -> float:
-        """Share of knowledge kept after some runs and days; time never runs back."""
+        """Share of knowledge kept after some runs and days; negative times count as 0."""
         return float(0.5 ** (runs / self.runs + max(days, 0.0) / self.days))
 
 
@@ -88,17 +89,17 @@ NEVER = Forgetting(runs=inf, days=inf)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Admission:
-    """Admission of outcomes to learning, and the weight of their readings."""
+    """Conditions for outcomes to be learned from, and the correlation of their readings."""
 
     fewest_readings: int = 20
     wildest: float = 5.0
-    """factor from which, up or down, a ratio is a mistake: wrong tool, wrong units"""
+    """Factor, up or down, from which a ratio is a mistake: wrong tool, wrong units."""
     correlation: float = 0.9
-    """ρ of neighbouring revolutions; a guess on the safe side"""
+    """Correlation ρ of neighbouring revolutions; a guess on the safe side."""
 
 
 class ExclusionReason(StrEnum):
-    """Why an outcome was left out."""
+    """Reason why an outcome is excluded from learning."""
 
     NO_RATIO = "no force ratio"
     NOT_FINITE = "force ratio is no number"
@@ -108,7 +109,7 @@ class ExclusionReason(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Learning:
-    """Settings of the learning."""
+    """Settings of the learning: prior, forgetting and admission."""
 
     prior: FactorPrior = field(default_factory=FactorPrior)
     forgetting: Forgetting = field(default_factory=Forgetting)
@@ -117,41 +118,41 @@ class Learning:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LearningReport:
-    """Data that a correction rests on."""
+    """Amount of data behind a correction, and what was excluded."""
 
     runs: int
     used: int
-    """outcomes"""
+    """Number of outcomes used."""
     left_out: Mapping[ExclusionReason, int]
     effective_runs: float
-    """what the runs are worth after forgetting"""
+    """Equivalent number of runs after forgetting."""
     scatter: float
-    """of ln factor from run to run"""
+    """Standard deviation of ln factor from run to run."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LearnedFactor:
-    """Result of the learning for one context."""
+    """Correction learned for one context, with its data."""
 
     context: Context
     correction: LearnedCorrection | None
-    """a proposal; None: no outcome could be used"""
+    """Proposed correction; None if no outcome could be used."""
     mean: StudentT
-    """of ln factor, over many runs; narrower than the correction, which is for one run"""
+    """Distribution of the mean ln factor over many runs, narrower than for a single run."""
     report: LearningReport
 
 
 def learned(
     outcomes: Iterable[ProcessOutcome], *, at: datetime, learning: Learning | None = None
 ) -> tuple[LearnedFactor, ...]:
-    """Corrections that outcomes propose, one for each context, in the order of their names.
+    """Learn one correction for each context from outcomes, ordered by context.
 
     Parameters
     ----------
     outcomes : iterable of ProcessOutcome
-        In any order; those of one run have its id.
+        In any order; outcomes of one run share its id.
     at : datetime
-        Now, with zone: knowledge has faded since the last run.
+        Present time, with zone; knowledge fades since the last run.
     learning : Learning, optional
         Prior, forgetting and admission.
     """
@@ -164,7 +165,7 @@ def learned(
 
 
 def refusal(ratio: ForceRatio | None, admission: Admission) -> ExclusionReason | None:
-    """Why nothing is learned from a ratio; None: it is used."""
+    """Reason why a ratio is not learned from; None if it is used."""
     if ratio is None:
         return ExclusionReason.NO_RATIO
     if not (isfinite(ratio.log_mean) and isfinite(ratio.log_deviation)):
@@ -177,7 +178,7 @@ def refusal(ratio: ForceRatio | None, admission: Admission) -> ExclusionReason |
 
 
 def own_variance(ratio: ForceRatio, admission: Admission) -> float:
-    """Variance s² of a ratio's mean, of correlated readings, [1]_."""
+    """Variance s² of the mean of correlated readings, [1]_."""
     rho = admission.correlation
     independent = max(1.0, ratio.readings * (1.0 - rho) / (1.0 + rho))
     return ratio.log_deviation**2 / independent
@@ -186,7 +187,7 @@ def own_variance(ratio: ForceRatio, admission: Admission) -> float:
 def _learned(
     outcomes: Sequence[ProcessOutcome], *, at: datetime, learning: Learning
 ) -> LearnedFactor:
-    """Learn a factor from the outcomes of one context."""
+    """Learn a correction from the outcomes of one context."""
     left_out: Counter[ExclusionReason] = Counter()
     runs: dict[str, list[ForceRatio]] = defaultdict(list)
     began: dict[str, datetime] = {}
@@ -215,14 +216,14 @@ def _learned(
 
 
 def _in_time(outcome: ProcessOutcome) -> tuple[datetime, str, str]:
-    """Order of outcomes; ids settle ties."""
+    """Sort key of outcomes: time, with ids for ties."""
     return outcome.recorded_at, outcome.run, outcome.workingstep
 
 
 def _belief(
     runs: Sequence[Sequence[ForceRatio]], *, times: Sequence[datetime], learning: Learning
 ) -> NormalInverseGamma:
-    """Run after run; ``times`` has the beginning of each, and now."""
+    """Update the belief run by run; ``times`` has the beginning of each, and now."""
     prior = belief = learning.prior.belief()
     for index, run in enumerate(runs):
         belief = updated(belief, _observations(run, belief.scatter, learning.admission))
@@ -236,7 +237,7 @@ def _belief(
 def _observations(
     run: Sequence[ForceRatio], scatter: float, admission: Admission
 ) -> Observations:
-    """The workingsteps of one run, together worth one observation."""
+    """Observations of the workingsteps of one run, together worth one."""
     own = np.array([own_variance(each, admission) for each in run])
     return Observations(
         design=np.ones((len(run), 1)),
@@ -249,7 +250,7 @@ def _observations(
 def _correction(
     belief: NormalInverseGamma, context: Context, *, outcomes: int, at: datetime
 ) -> LearnedCorrection:
-    """The proposal: the next run's true factor, hence without the error of readings."""
+    """Proposed correction: the next run's true factor, without reading error."""
     coming = predicted(belief, ONE)
     low, high = coming.centre + log(1.0 - NEAR), coming.centre + log(1.0 + NEAR)
     return LearnedCorrection(

@@ -1,19 +1,19 @@
-"""The knowledge base's branch of the error tree (:mod:`stepnc_model.errors`).
+"""Errors of the knowledge base, a branch of the error tree (:mod:`stepnc_model.errors`).
 
 ::
 
     KnowledgeError(place)
-    ├── StoreDamaged(reason)            what is stored cannot be read any more
-    ├── StoreUnavailable(reason)        it cannot be opened or reached
-    │   └── DriverMissing               the program for this database is not installed
-    ├── StoreReadOnly                   it may be read, not written
-    ├── StoreBusy                       others write for too long
-    ├── StoreFull                       the disk has no room
-    ├── StoreTooNew(found, known)       a newer program made it
-    ├── StoreNotEmpty(rows)             a backup goes into an empty store only
+    ├── StoreDamaged(reason)            stored data can no longer be read
+    ├── StoreUnavailable(reason)        the store cannot be opened or reached
+    │   └── DriverMissing               the database driver is not installed
+    ├── StoreReadOnly                   the store may be read, but not written
+    ├── StoreBusy                       other programs lock the store for too long
+    ├── StoreFull                       the disk is full
+    ├── StoreTooNew(found, known)       a newer program made the store
+    ├── StoreNotEmpty(rows)             a backup can only be restored into an empty store
     ├── BackupExists                    a backup is never overwritten
-    ├── BackupDiffers                   a copy is not what it was made from
-    └── UnknownCorrection(id)
+    ├── BackupDiffers                   a copy differs from its source
+    └── UnknownCorrection(id)           no correction has this id
 
 ``place`` is a file, or the address of a server without its password.
 """
@@ -22,7 +22,7 @@ from stepnc_model.errors import StepNcError
 
 
 class KnowledgeError(StepNcError):
-    """The knowledge base cannot do what it was asked.
+    """Base class of the errors of the knowledge base.
 
     Parameters
     ----------
@@ -38,11 +38,11 @@ class KnowledgeError(StepNcError):
 
 
 class StoreDamaged(KnowledgeError):
-    """Stored data that can no longer be read."""
+    """Stored data can no longer be read."""
 
     def __init__(self, place: str, *, reason: str) -> None:
         super().__init__(
-            f"damaged, or no knowledge base ({reason}); nothing in it was changed. Keep it, "
+            f"damaged, or not a knowledge base ({reason}); it was not changed. Keep it, "
             "and restore a backup under another name: stepnc kbe restore FILE",
             place=place,
         )
@@ -50,7 +50,7 @@ class StoreDamaged(KnowledgeError):
 
 
 class StoreUnavailable(KnowledgeError):
-    """The store cannot be opened or reached; the reason says what to do."""
+    """The store cannot be opened or reached; the reason states what to do."""
 
     def __init__(self, place: str, *, reason: str) -> None:
         super().__init__(reason, place=place)
@@ -58,7 +58,7 @@ class StoreUnavailable(KnowledgeError):
 
 
 class DriverMissing(StoreUnavailable):
-    """PostgreSQL needs a package that is not installed."""
+    """The package that PostgreSQL needs is not installed."""
 
     def __init__(self, place: str) -> None:
         reason = (
@@ -68,7 +68,7 @@ class DriverMissing(StoreUnavailable):
 
 
 class StoreReadOnly(KnowledgeError):
-    """The store may be read, not written."""
+    """The store may be read, but not written."""
 
     def __init__(self, place: str) -> None:
         super().__init__(
@@ -79,26 +79,26 @@ class StoreReadOnly(KnowledgeError):
 
 
 class StoreBusy(KnowledgeError):
-    """Others write for too long."""
+    """Other programs lock the store for too long."""
 
     def __init__(self, place: str) -> None:
         super().__init__(
-            "is locked by another program; end what writes there, then try again", place=place
+            "is locked by another program; stop that program, then try again", place=place
         )
 
 
 class StoreFull(KnowledgeError):
-    """The disk has no room."""
+    """The disk is full."""
 
     def __init__(self, place: str) -> None:
         super().__init__(
-            "the disk is full; what was accepted before is safe. Make room, then try again",
+            "the disk is full; data stored before is safe. Free some space, then try again",
             place=place,
         )
 
 
 class StoreTooNew(KnowledgeError):
-    """A newer program made the store."""
+    """The store was made by a newer program version."""
 
     def __init__(self, place: str, *, found: str, known: str) -> None:
         super().__init__(
@@ -111,11 +111,11 @@ class StoreTooNew(KnowledgeError):
 
 
 class StoreNotEmpty(KnowledgeError):
-    """A backup goes into an empty store only."""
+    """The store already holds rows, so that a backup cannot be restored into it."""
 
     def __init__(self, place: str, *, rows: int) -> None:
         super().__init__(
-            f"holds {rows} rows that are not those of the backup; "
+            f"holds {rows} rows that differ from the backup; "
             "restore into a new file or an empty database",
             place=place,
         )
@@ -123,25 +123,25 @@ class StoreNotEmpty(KnowledgeError):
 
 
 class BackupExists(KnowledgeError):
-    """A backup is never overwritten."""
+    """The backup file already exists and is not overwritten."""
 
     def __init__(self, place: str) -> None:
-        super().__init__("exists already; name another file", place=place)
+        super().__init__("already exists; name another file", place=place)
 
 
 class BackupDiffers(KnowledgeError):
-    """A copy is not what it was made from."""
+    """A copy differs from its source."""
 
     def __init__(self, place: str) -> None:
         super().__init__(
-            "the copy differs from what was copied and was thrown away; "
+            "the copy differs from the original and was discarded; "
             "check memory and disk, then try again",
             place=place,
         )
 
 
 class UnknownCorrection(KnowledgeError):
-    """No correction has this id."""
+    """No correction has the given id."""
 
     def __init__(self, place: str, *, id: int) -> None:
         super().__init__(

@@ -1,12 +1,12 @@
-"""The evaluation table of [1]_ (Table 1): what machining of each feature showed.
+"""Evaluation table of [1]_ (Table 1): results of machining, feature by feature.
 
-A row is a feature of a machine and a material, with its roughing and its finishing side. Sides
-are kept by tool; a roughing and a finishing tool that met at the same feature in the same run
-share a row, so a side that met two of the other kind stands in two rows, and one that met none
-stands alone.
+A row is a feature on a machine in a material, with its roughing and its finishing side. Sides
+are kept by tool; a roughing and a finishing tool used on the same feature in the same run share
+a row. So a side that was paired with two of the other kind is in two rows, and an unpaired side
+has a row of its own.
 
-Outcomes are read once. What is kept is bounded for each side (moments, and samples for the
-quantiles), not by the number of outcomes.
+Outcomes are read once. The memory needed is bounded for each side (moments, and samples for the
+quantiles), whatever the number of outcomes.
 
 References
 ----------
@@ -26,16 +26,16 @@ from stepnc_model.outcome import FeatureFacts, ProcessOutcome
 
 
 class Grouping(StrEnum):
-    """Subject of a row."""
+    """Grouping of outcomes into the rows of the table."""
 
     FEATURE = "feature"
-    """each feature of each program"""
+    """One row for each feature of each program."""
     KIND = "kind"
-    """all features of a kind, of all programs"""
+    """One row for all features of a kind, of all programs."""
 
 
 class RowFilter(StrEnum):
-    """Filter of rows: those with at least one such side."""
+    """Filter of rows that have at least one side with a property."""
 
     ALL = "all"
     VIOLATED = "violated"
@@ -46,82 +46,82 @@ class RowFilter(StrEnum):
 
 
 class SortKey(StrEnum):
-    """Order of the rows; ties in the order of machine, feature, material and tools."""
+    """Order of the rows; ties are sorted by machine, feature, material and tools."""
 
     NAME = "name"
     GRADE = "grade"
-    """worst first"""
+    """Worst grade first."""
     RUNS = "runs"
-    """most first"""
+    """Most runs first."""
     LATEST = "latest"
-    """newest first"""
+    """Newest outcome first."""
     FORCE = "force"
-    """greatest mean deviation first, up or down; so for the others"""
+    """Greatest mean deviation first, up or down; likewise for time, feed and roughness."""
     TIME = "time"
     FEED = "feed"
     ROUGHNESS = "roughness"
     TIME_TO_WIN = "time to win"
-    """most first"""
+    """Greatest possible saving of time first."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GroupKey:
-    """Common attributes of the outcomes of a row; order by machine, feature, material."""
+    """Common attributes of the outcomes of a row."""
 
     machine: str
     program: str
-    """empty when features are grouped by kind"""
+    """Name of the program; empty when features are grouped by kind."""
     feature: str
-    """id, or kind"""
+    """Id of the feature, or its kind."""
     material: str
 
     @property
     def names(self) -> tuple[str, str, str, str]:
-        """By what rows are ordered."""
+        """Attributes by which rows are sorted."""
         return self.machine, self.program, self.feature, self.material
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EvaluationRow:
-    """One row of the table; at least one side."""
+    """Row of the evaluation table, with at least one side."""
 
     key: GroupKey
     kind: str
-    """EXPRESS name of the feature"""
+    """EXPRESS name of the feature."""
     length: float | None
-    """L, mm; None: not known, or not the same in all outcomes"""
+    """Length L of the feature, mm; None: not known, or not the same in all outcomes."""
     width: float | None
-    """X, mm"""
+    """Width X of the feature, mm."""
     total_depth: float | None
-    """a_t, mm"""
+    """Total depth a_t, mm."""
     roughing: Side | None
     finishing: Side | None
 
     @property
     def sides(self) -> tuple[Side, ...]:
-        """Those that it has."""
+        """Sides that the row has."""
         return tuple(side for side in (self.roughing, self.finishing) if side is not None)
 
     @property
     def grade(self) -> EvaluationGrade:
-        """The worse of its sides'."""
+        """Worst grade of the sides."""
         return min((side.grade for side in self.sides), key=list(EvaluationGrade).index)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _SideKey:
-    """Key of a side of a group."""
+    """Key of a side within a group: finishing or roughing, and the tool."""
 
     is_finishing: bool
     tool: str
 
 
 _Pair = tuple[_SideKey | None, _SideKey | None]
-"""roughing and finishing side of one row"""
+"""Roughing and finishing side of one row."""
 
 
 class _Group:
-    """Running state: the sides of one group, and which met."""
+    """Sides of one group, and which of them were used together (mutable state)."""
 
     def __init__(self, feature: FeatureFacts) -> None:
         self._feature = feature
@@ -129,10 +129,10 @@ class _Group:
         self._pairs: set[_Pair] = set()
         self._run: str | None = None
         self._met: dict[str, set[_SideKey]] = {}
-        """sides seen at each feature in this run"""
+        """Sides seen at each feature in the current run."""
 
     def add(self, outcome: ProcessOutcome) -> None:
-        """One more outcome."""
+        """Add one more outcome."""
         self._feature = _common(self._feature, outcome.feature)
         key = _SideKey(is_finishing=outcome.is_finishing, tool=outcome.context.tool)
         self._sides.setdefault(key, SideTally(outcome.context)).add(outcome)
@@ -148,7 +148,7 @@ class _Group:
         }
 
     def rows(self, key: GroupKey, knowledge: Knowledge) -> Iterator[EvaluationRow]:
-        """Pairs, then the sides that met none, by tool."""
+        """Rows of the group: pairs first, then unpaired sides, sorted by tool."""
         sides = {which: tally.side(knowledge) for which, tally in self._sides.items()}
         for rough, fine in sorted(self._pairs | self._alone(), key=_tools):
             yield EvaluationRow(
@@ -162,7 +162,7 @@ class _Group:
             )
 
     def _alone(self) -> set[_Pair]:
-        """Sides that met none of the other kind."""
+        """Sides without a partner of the other kind."""
         paired = {key for pair in self._pairs for key in pair}
         return {
             (None, key) if key.is_finishing else (key, None)
@@ -172,7 +172,7 @@ class _Group:
 
 
 def _tools(pair: _Pair) -> tuple[str, str]:
-    """By what the rows of a group are ordered."""
+    """Sort key of the rows of a group: the tools."""
     rough, fine = pair
     return rough.tool if rough else "", fine.tool if fine else ""
 
@@ -183,20 +183,20 @@ def evaluation(
     grouping: Grouping = Grouping.FEATURE,
     knowledge: Knowledge | None = None,
 ) -> tuple[EvaluationRow, ...]:
-    """The table, in the order of names.
+    """Build the evaluation table, ordered by names.
 
     Parameters
     ----------
     outcomes : iterable of ProcessOutcome
-        In the order of time for each machine; read once.
+        In the order of time for each machine; iterated once.
     grouping : Grouping
     knowledge : Knowledge, optional
-        Corrections to show and to compare; none without.
+        Corrections to show and to compare; omitted: none.
 
     Raises
     ------
     ValueError
-        An outcome is older than the one before it on its side of its row.
+        If an outcome is older than the previous one on the same side of a row.
     """
     groups: dict[GroupKey, _Group] = {}
     for outcome in outcomes:
@@ -211,17 +211,17 @@ def evaluation(
 
 
 def selected(rows: Iterable[EvaluationRow], keep: RowFilter) -> tuple[EvaluationRow, ...]:
-    """Rows with at least one side that the filter names, in their order."""
+    """Rows with at least one side that passes the filter, in their order."""
     return tuple(row for row in rows if any(map(_FILTERS[keep], row.sides)))
 
 
 def ordered(rows: Sequence[EvaluationRow], by: SortKey) -> tuple[EvaluationRow, ...]:
-    """The same rows in another order."""
+    """Rows sorted by a key."""
     return tuple(sorted(sorted(rows, key=_names), key=_KEYS[by]))
 
 
 def _key(outcome: ProcessOutcome, grouping: Grouping) -> GroupKey:
-    """The group of an outcome."""
+    """Group key of an outcome."""
     by_kind = grouping is Grouping.KIND
     return GroupKey(
         machine=outcome.context.machine,
@@ -245,13 +245,13 @@ def _common(first: FeatureFacts, second: FeatureFacts) -> FeatureFacts:
 
 
 def _names(row: EvaluationRow) -> tuple[str, ...]:
-    """Machine, program, feature, material, tools."""
+    """Sort key: machine, program, feature, material, tools."""
     tools = (side.context.tool if side else "" for side in (row.roughing, row.finishing))
     return *row.key.names, *tools
 
 
 def _has_trend(side: Side) -> bool:
-    """Whether one of its quantities changes from run to run."""
+    """Whether any quantity of a side has a significant trend."""
     trends = (each.trend for each in side.deviations.values())
     return any(trend is not None and trend.is_significant for trend in trends)
 
@@ -267,7 +267,7 @@ _FILTERS: Mapping[RowFilter, Callable[[Side], bool]] = {
 
 
 def _largest(which: Evaluated) -> Callable[[EvaluationRow], float]:
-    """Key of the greatest mean deviation first, rows without one last."""
+    """Sort key for the greatest mean deviation first; rows without one come last."""
 
     def key(row: EvaluationRow) -> float:
         means = (side.deviations[which].mean for side in row.sides)
@@ -277,7 +277,7 @@ def _largest(which: Evaluated) -> Callable[[EvaluationRow], float]:
 
 
 def _age(row: EvaluationRow) -> float:
-    """Newest first."""
+    """Sort key for the newest outcome first."""
     latest: datetime = max(side.latest for side in row.sides)
     return -latest.timestamp()
 

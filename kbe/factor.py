@@ -1,6 +1,6 @@
-"""The factor on k_c that a correction stands for, at any degree of caution.
+"""Factor on k_c that a correction stands for, at any quantile.
 
-Apart from what learns corrections, so that a plan can take one without loading that.
+It is separate from the learning of corrections, so that a plan can use one without loading it.
 """
 
 from dataclasses import dataclass
@@ -10,9 +10,9 @@ from kbe.student import StudentT
 from stepnc_model.outcome import LearnedCorrection
 
 SAFE = 0.9
-"""quantile that a plan takes: one run in ten needs more force"""
+"""Default quantile for plans: one run in ten needs more force."""
 COVERAGE = 0.9
-"""probability of the interval that is shown"""
+"""Probability of the displayed interval."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -27,13 +27,14 @@ class FactorInterval:
 def factor_at(correction: LearnedCorrection, *, quantile: float = SAFE) -> float:
     """Factor on k_c that the next run exceeds with probability 1 − quantile.
 
-    ``exp(centre + scale·t_q)``; at 0.5 the centre. A plan that keeps a force bound takes more.
+    ``exp(centre + scale·t_q)``; the centre at 0.5. Plans that keep a force bound use a higher
+    quantile.
     """
     return exp(distribution(correction).quantile(quantile))
 
 
 def interval(correction: LearnedCorrection) -> FactorInterval:
-    """Centre, and the interval with as much probability below as above."""
+    """Centre of the factor, with its symmetric probability interval."""
     return FactorInterval(
         low=factor_at(correction, quantile=0.5 - 0.5 * COVERAGE),
         centre=factor_at(correction, quantile=0.5),

@@ -26,17 +26,17 @@ from kbe.errors import (
 from kbe.store_location import StoreLocation
 
 SHARED_MEMORY = sqlite3.SQLITE_IOERR_SHMSIZE, sqlite3.SQLITE_IOERR_SHMOPEN
-"""no room for the index of the log"""
+"""SQLite codes for a lack of room for the index of the write-ahead log."""
 
 
 @contextmanager
 def translated(place: StoreLocation) -> Iterator[None]:
-    """Turn what the database raises into the error tree.
+    """Translate database errors into errors of the knowledge base.
 
     Raises
     ------
     KnowledgeError
-        Of the kind that fits.
+        Of the class that matches the database error.
     """
     try:
         yield
@@ -54,14 +54,14 @@ def translated(place: StoreLocation) -> Iterator[None]:
 
 
 def fault(error: BaseException, place: StoreLocation) -> KnowledgeError:
-    """The error of the project for one of a database."""
+    """Convert a database error into an error of the knowledge base."""
     if isinstance(error, sqlite3.Error):
         return _sqlite_fault(error, place)
     return _postgresql_fault(error, place)
 
 
 def _sqlite_fault(error: sqlite3.Error, place: StoreLocation) -> KnowledgeError:
-    """By result code, [1]_."""
+    """Convert an SQLite error by its result code, [1]_."""
     code = getattr(error, "sqlite_errorcode", sqlite3.SQLITE_ERROR)
     shown = place.shown
     match code & 0xFF:
@@ -84,7 +84,7 @@ def _sqlite_fault(error: sqlite3.Error, place: StoreLocation) -> KnowledgeError:
 
 
 def _disk_fault(code: int, place: StoreLocation) -> KnowledgeError:
-    """A failed write is nearly always a limit (quota, size of a file); the rest is the disk."""
+    """Convert a disk error: failed writes are mostly quota or size limits, others hardware."""
     if code in {sqlite3.SQLITE_IOERR_WRITE, *SHARED_MEMORY}:
         return StoreFull(place.shown)
     reason = f"the disk reports a fault (SQLite {code}); check it, and keep a backup elsewhere"
@@ -92,7 +92,7 @@ def _disk_fault(code: int, place: StoreLocation) -> KnowledgeError:
 
 
 def _postgresql_fault(error: BaseException, place: StoreLocation) -> KnowledgeError:
-    """By class of the code, [2]_; no code: there was no answer at all."""
+    """Convert a PostgreSQL error by the class of its code, [2]_; no code: no answer."""
     state = getattr(error, "sqlstate", None) or ""
     shown, said = place.shown, _first_line(error, place)
     if state == "53100":
@@ -107,14 +107,14 @@ def _postgresql_fault(error: BaseException, place: StoreLocation) -> KnowledgeEr
         case "" | "08" | "28" | "3D" | "3F" | "53" | "57" | "58":
             return StoreUnavailable(
                 shown,
-                reason=f"the server does not let us in ({said}); "
+                reason=f"cannot connect to the server ({said}); "
                 "check that it runs, the address, the user, its rights and the password",
             )
     return KnowledgeError(f"{said} (PostgreSQL {state}); please report this", place=shown)
 
 
 def _first_line(error: BaseException, place: StoreLocation) -> str:
-    """Message of the server, without the password, should it be in it."""
+    """First line of a server message, with any password removed."""
     line = next(iter(str(error).splitlines()), type(error).__name__)
     secrets = [place.url.password, *place.url.normalized_query.get("password", ())]
     for secret in filter(None, map(str, secrets)):

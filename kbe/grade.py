@@ -1,9 +1,9 @@
-"""Grade of a group of outcomes against its plan, with a sentence on what to do.
+"""Grade of a group of outcomes against its plan.
 
-The letter is of the prediction: root mean square of the deviations, bias and scatter together,
-of the quantity that deviates most. Roughness counts only above the plan. Two words go before
-letters: *violated*, the force passed the bound that it was to keep, and *wasted*, it stayed
-far below although the plan meant to use it.
+The letter grades the prediction: the root mean square of the deviations, bias and scatter
+together, of the quantity that deviates most. Roughness counts only above the plan. Two words
+take precedence over letters: *violated*, the force exceeded its bound, and *wasted*, it stayed
+far below although the plan intended to use it.
 """
 
 from collections.abc import Mapping
@@ -14,11 +14,11 @@ from kbe.bound import BoundUse
 from kbe.statistics import DeviationStatistics, Evaluated
 
 LETTERS = ((0.05, "A"), (0.10, "B"), (0.20, "C"))
-"""greatest root mean square deviation of each letter"""
+"""Greatest root mean square deviation of each letter."""
 
 
 class EvaluationGrade(StrEnum):
-    """From worst to best, and nothing to judge by."""
+    """Grade of a group, from worst to best; unknown without data."""
 
     VIOLATED = "violated"
     WASTED = "wasted"
@@ -32,13 +32,13 @@ class EvaluationGrade(StrEnum):
 def grade(
     deviations: Mapping[Evaluated, DeviationStatistics], bound: BoundUse
 ) -> EvaluationGrade:
-    """The grade of a group.
+    """Grade a group of outcomes.
 
     Parameters
     ----------
     deviations : mapping of DeviationStatistics
     bound : BoundUse
-        One violation is enough; wasted is a group when at least half of its outcomes are.
+        A group is violated by one outcome, and wasted by half of its outcomes.
     """
     if bound.violated:
         return EvaluationGrade.VIOLATED
@@ -56,10 +56,10 @@ def grade(
 
 
 def _size(which: Evaluated, statistics: DeviationStatistics) -> float | None:
-    """Root mean square deviation; None: nothing is known."""
+    """Root mean square deviation of one quantity; None if nothing is known."""
     if statistics.mean is None:
         return None
-    # Smoother than planned is no fault of the part.
+    # A surface smoother than planned is not a defect.
     if which is Evaluated.ROUGHNESS and statistics.mean <= 0.0:
         return 0.0
     return hypot(statistics.mean, statistics.deviation or 0.0)

@@ -1,8 +1,8 @@
-"""Outcomes of one machine, material, tool and kind of feature, as counts, means and spreads.
+"""Statistics of outcomes, grouped by machine, material, tool and kind of feature.
 
-The rows of an evaluation table, [1]_ "Knowledge-based evaluation", made by the database: over
-a million outcomes that is a walk along one index. A variance from sums of squares loses about
-as many digits as mean² over variance has; deviations lie around zero, so it keeps enough.
+They are the rows of an evaluation table, [1]_ "Knowledge-based evaluation", computed by the
+database: for a million outcomes it scans one index. A variance from sums of squares loses about
+as many digits as mean² over variance has; deviations are near zero, so enough digits remain.
 
 References
 ----------
@@ -26,14 +26,14 @@ from stepnc_model.outcome import Context
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Spread:
-    """Deviations (measured over predicted, less one) of one quantity."""
+    """Statistics of the deviations (measured over predicted, less one) of one quantity."""
 
     count: int
-    """outcomes in which it was both predicted and measured"""
+    """Number of outcomes in which the quantity was both predicted and measured."""
     mean: float | None
-    """None: of none"""
+    """Mean deviation; None without outcomes."""
     deviation: float | None
-    """standard deviation of one outcome, with n − 1; None: of fewer than two"""
+    """Standard deviation of one outcome, with n − 1; None for fewer than two."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,7 +52,7 @@ class Group:
 
 
 def grouped(selection: Selection) -> "Select[Any]":
-    """The query whose rows :func:`group` understands."""
+    """Query of the grouped statistics, whose rows :func:`group` reads."""
     keys = [outcome.c[name] for name in GROUP]
     at = outcome.c.recorded_at
     sums = [each for name in EVALUATED for each in _sums(name)]
@@ -64,13 +64,13 @@ def grouped(selection: Selection) -> "Select[Any]":
 
 
 def _sums(name: str) -> tuple[ColumnElement[Any], ...]:
-    """Count, sum and sum of squares of a quantity's deviations."""
+    """Count, sum and sum of squares of the deviations of a quantity."""
     deviation = outcome.c[f"{name}_deviation"]
     return func.count(deviation), func.sum(deviation), func.sum(deviation * deviation)
 
 
 def group(row: Sequence[Any]) -> Group:
-    """The group of a row of :func:`grouped`."""
+    """Convert a row of the query :func:`grouped` to a group."""
     machine, material, tool, kind, outcomes, first, last, *sums = row
     spreads = {
         name: spread(*sums[3 * index : 3 * index + 3]) for index, name in enumerate(EVALUATED)
@@ -93,6 +93,6 @@ def spread(count: int, total: float | None, squares: float | None) -> Spread:
     mean = total / count
     if count == 1:
         return Spread(count=1, mean=mean, deviation=None)
-    # Rounding may leave less than nothing.
+    # Rounding may make it slightly negative.
     variance = max(squares - total * mean, 0.0) / (count - 1)
     return Spread(count=count, mean=mean, deviation=sqrt(variance))

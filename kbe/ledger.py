@@ -1,6 +1,6 @@
-"""Corrections and what was decided about them: the queries.
+"""Queries of corrections and of the decisions about them.
 
-A decision never changes what it is about: it is a row of its own, and the latest one counts.
+A decision never changes a correction: it is a row of its own, and the latest one counts.
 """
 
 from collections.abc import Sequence
@@ -18,7 +18,7 @@ from stepnc_model.outcome import Context, LearnedCorrection
 
 
 class Standing(StrEnum):
-    """State of a correction: the last decision about it."""
+    """State of a correction, set by the last decision about it."""
 
     PROPOSED = "proposed"
     ACCEPTED = "accepted"
@@ -27,23 +27,23 @@ class Standing(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StoredCorrection:
-    """A correction as the knowledge base has it."""
+    """Correction as stored, with its state."""
 
     id: int
     correction: LearnedCorrection
-    """with who accepted it and when, while it is accepted"""
+    """The correction itself, with who accepted it and when, while it is accepted."""
     standing: Standing
     decided_by: str
-    """person who accepted or withdrew it last; empty: none yet"""
+    """Person who accepted or withdrew it last; empty before any decision."""
     decided_at: datetime | None
 
 
 GREATEST_LOG = log(20.0)
-"""of a factor on k_c, either way: beyond is no material"""
+"""Greatest absolute ln of a factor on k_c; no material lies beyond."""
 
 _LATEST = select(func.max(decision.c.id)).group_by(decision.c.correction_id)
 _LAST = select(decision).where(decision.c.id.in_(_LATEST)).subquery("last_decision")
-"""the latest decision about each correction"""
+"""Subquery of the latest decision about each correction."""
 
 
 def entries() -> "Select[Any]":
@@ -57,7 +57,7 @@ def entries() -> "Select[Any]":
 
 
 def in_force(context: Context) -> "Select[Any]":
-    """Query of the one correction that was accepted last for a context."""
+    """Query of the correction that was accepted last for a context."""
     return (
         entries()
         .where(
@@ -73,7 +73,7 @@ def in_force(context: Context) -> "Select[Any]":
 
 
 def entry(row: Sequence[Any]) -> StoredCorrection:
-    """The entry of a row of :func:`entries`."""
+    """Convert a row of the query :func:`entries`."""
     id_, kind, by, at, *stored = row
     standing = Standing(kind or Standing.PROPOSED)
     is_accepted = standing is Standing.ACCEPTED
@@ -90,12 +90,12 @@ def entry(row: Sequence[Any]) -> StoredCorrection:
 
 
 def _require_sound(id_: int, learned: LearnedCorrection) -> None:
-    """Refuse what no learning proposes: somebody else has written it.
+    """Check that the values of a stored correction could come from the learning.
 
     Raises
     ------
     ValueError
-        With what is wrong.
+        When a value is out of range, so that another program must have written it.
     """
     is_sound = (
         abs(learned.log_centre) <= GREATEST_LOG
@@ -104,4 +104,4 @@ def _require_sound(id_: int, learned: LearnedCorrection) -> None:
         and 0.0 <= learned.confidence <= 1.0
     )
     if not is_sound:
-        raise ValueError(f"correction {id_} was not proposed by a review: {learned}")
+        raise ValueError(f"correction {id_} has values out of range: {learned}")

@@ -1,6 +1,7 @@
-"""Bring a store to the schema of this program, in one transaction.
+"""Upgrade of a store to the schema of this program, in one transaction.
 
-Two programs that open a new store at once both succeed: the second waits, and finds it made.
+Two programs that open a new store at the same time both succeed: the second waits, and finds
+the tables already made.
 """
 
 import time
@@ -19,20 +20,20 @@ from kbe.store_location import StoreLocation
 MIGRATIONS = Path(__file__).parent / "migrations"
 
 LOCK = 0x53544E43
-"""number of the lock that programs take which change the schema; the letters STNC"""
+"""Number of the database lock for schema changes; the letters STNC."""
 
 _version = Table(VERSION_TABLE, MetaData(), Column("version_num", Text()))
 
 
 def migrate(engine: Engine, place: StoreLocation, *, is_new_allowed: bool) -> None:
-    """Make or upgrade the tables of a store.
+    """Create or upgrade the tables of a store.
 
     Raises
     ------
     StoreTooNew
-        When a newer program made it.
+        When a newer program made the store.
     StoreUnavailable
-        When it is something else's, or new and may not be.
+        When the database is not a knowledge base, or new although that is not allowed.
     """
     with reading(engine, place) as connection:
         found = _found(connection, place, is_new_allowed=is_new_allowed)
@@ -44,13 +45,13 @@ def migrate(engine: Engine, place: StoreLocation, *, is_new_allowed: bool) -> No
         if not place.file:
             connection.execute(text("SELECT pg_advisory_xact_lock(:lock)"), {"lock": LOCK})
             _require_unicode(connection, place)
-        # Another program may have made it meanwhile.
+        # Another program may have upgraded it in the meantime.
         if _found(connection, place, is_new_allowed=is_new_allowed) != VERSION:
             _upgrade(connection)
 
 
 def _found(connection: Connection, place: StoreLocation, *, is_new_allowed: bool) -> str:
-    """Version of the schema; empty when there is none yet."""
+    """Version of the schema found; empty if there are no tables yet."""
     tables = inspect(connection).get_table_names()
     if VERSION_TABLE in tables:
         found = connection.execute(select(_version.c.version_num)).scalars().all()
@@ -58,12 +59,10 @@ def _found(connection: Connection, place: StoreLocation, *, is_new_allowed: bool
             raise StoreTooNew(place.shown, found=max(found), known=VERSION)
         if len(found) > 1 or not set(found) <= _known_versions():
             versions = ", ".join(map(str, found))
-            raise StoreDamaged(
-                place.shown, reason=f"its schema says it is of version {versions}"
-            )
+            raise StoreDamaged(place.shown, reason=f"unknown schema version {versions}")
         return found[0] if found else ""
     if tables:
-        reason = f"holds something else (table {tables[0]}); name another file or database"
+        reason = f"is not a knowledge base (it has a table {tables[0]}); choose another"
         raise StoreUnavailable(place.shown, reason=reason)
     if not is_new_allowed:
         raise StoreUnavailable(place.shown, reason="is empty; check the name")
@@ -75,7 +74,7 @@ def _known_versions() -> set[str]:
 
 
 def _write_ahead(engine: Engine, place: StoreLocation) -> None:
-    """Set the mode that the file keeps; SQLite does not wait for others when it does."""
+    """Switch an SQLite file to write-ahead logging, retrying while others lock it."""
     deadline = time.monotonic() + PATIENCE
     while True:
         try:
@@ -89,7 +88,7 @@ def _write_ahead(engine: Engine, place: StoreLocation) -> None:
 
 
 def _set_write_ahead(engine: Engine) -> None:
-    """Outside a transaction, as SQLite wants it."""
+    """Set the journal mode outside a transaction, as SQLite requires."""
     raw = engine.raw_connection()
     try:
         raw.cursor().execute("PRAGMA journal_mode = WAL")
@@ -98,16 +97,16 @@ def _set_write_ahead(engine: Engine) -> None:
 
 
 def _require_unicode(connection: Connection, place: StoreLocation) -> None:
-    """Refuse a database that cannot hold every name of a tool."""
+    """Require a database encoding that can store all names."""
     encoding = connection.execute(text("SHOW server_encoding")).scalar_one()
     if encoding != "UTF8":
-        reason = f"has the encoding {encoding}; make one with ENCODING 'UTF8'"
+        reason = f"has the encoding {encoding}; create a database with ENCODING 'UTF8'"
         raise StoreUnavailable(place.shown, reason=reason)
 
 
 def _upgrade(connection: Connection) -> None:
-    """Run what is new of ``migrations/versions``."""
-    # Slow to import, and needed once in the life of a store.
+    """Run the missing migrations in ``migrations/versions``."""
+    # Slow to import, and rarely needed.
     from alembic import command  # noqa: PLC0415
     from alembic.config import Config  # noqa: PLC0415
 

@@ -1,4 +1,4 @@
-"""Mean, scatter and straight line of a stream, from moments: nothing of the stream is kept.
+"""Running mean, scatter and linear trend of a stream, from moments, without storing values.
 
 References
 ----------
@@ -14,41 +14,41 @@ from math import sqrt
 from kbe.student import StudentT
 
 SIGNIFICANT = 0.01
-"""probability of so steep a line by chance; low, because a table tests many"""
+"""Significance level of a trend; low, because a table tests many trends."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Trend:
-    """Trend of a value from run to run, by least squares, [2]_.
+    """Linear trend of a value from run to run, by least squares, [2]_.
 
-    Runs are taken as independent.
+    Runs are assumed independent.
     """
 
     per_run: float
     standard_error: float
     runs: int
-    """that have a value; at least 3"""
+    """Number of runs with a value, at least 3."""
     chance: float
-    """probability of a line as steep, up or down, when there is no trend"""
+    """Probability of a slope as steep, up or down, if there is no trend."""
 
     @property
     def is_significant(self) -> bool:
-        """Whether the trend is significant."""
+        """Whether the trend is statistically significant."""
         return self.chance < SIGNIFICANT
 
 
 class Moments:
-    """Running state: count, means and centred sums of points (x, y), [1]_."""
+    """Count, means and centred sums of points (x, y), [1]_ (mutable state)."""
 
     def __init__(self) -> None:
         self.count = 0
         self.mean = 0.0
-        """of y"""
+        """Mean of y."""
         self._centre = 0.0
         self._xx = self._xy = self._yy = 0.0
 
     def add(self, x: float, y: float) -> None:
-        """One more point."""
+        """Add one point."""
         self.count += 1
         from_x, from_y = x - self._centre, y - self.mean
         self._centre += from_x / self.count
@@ -59,17 +59,17 @@ class Moments:
 
     @property
     def deviation(self) -> float | None:
-        """Standard deviation of y; None: fewer than two points."""
+        """Standard deviation of y; None for fewer than two points."""
         return sqrt(self._yy / (self.count - 1)) if self.count > 1 else None
 
     @property
     def trend(self) -> Trend | None:
-        """The line through the points; None: fewer than three points, or all at one x."""
+        """Least-squares line; None for fewer than three points, or points at one x."""
         if self.count < 3 or self._xx <= 0.0:
             return None
         slope = self._xy / self._xx
         degrees = self.count - 2
-        # Rounding may leave less than nothing of points that lie on a line.
+        # Rounding may make the residual of collinear points slightly negative.
         left = max(0.0, self._yy - slope * self._xy)
         error = sqrt(left / degrees / self._xx)
         return Trend(
@@ -81,7 +81,7 @@ class Moments:
 
 
 def _chance(slope: float, error: float, degrees: int) -> float:
-    """Two-sided probability of a slope under no trend."""
+    """Two-sided probability of a slope if there is no trend."""
     if error == 0.0:
         return 0.0 if slope != 0.0 else 1.0
     return 2.0 * StudentT(centre=0.0, scale=error, degrees=degrees).below(-abs(slope))

@@ -1,12 +1,12 @@
-"""Linear regression with a conjugate prior: what was believed, what was seen, what is believed.
+"""Bayesian linear regression with a conjugate prior.
 
 ``y = x·β + ε`` with ``ε ~ N(0, σ²/w)``; β and σ² are both unknown and follow a
-normal-inverse-gamma law, before and after. A power law is linear in logarithms: a factor is the
-coefficient of a column of ones, an exponent that of the logarithm of its base. Small problems:
-all matrices are (P, P) and dense.
+normal-inverse-gamma distribution, before and after. A power law is linear in logarithms: a
+factor is the coefficient of a column of ones, an exponent that of the logarithm of its base.
+Problems are small: all matrices are (P, P) and dense.
 
 Beliefs also fade: :func:`forgotten` is the geometric mean of posterior and prior, which is of
-the same family and never less sure than the prior.
+the same family and never less certain than the prior.
 
 References
 ----------
@@ -32,62 +32,69 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class NormalInverseGamma:
-    """``β | σ² ~ N(mean, σ² precision⁻¹)`` and ``σ² ~ inverse gamma(shape, rate)``, [2]_."""
+    """Normal-inverse-gamma distribution of coefficients β and variance σ², [2]_.
+
+    ``β | σ² ~ N(mean, σ² precision⁻¹)`` and ``σ² ~ inverse gamma(shape, rate)``.
+    """
 
     mean: Floats
-    """Mean, (P,)"""
+    """Mean of the coefficients, (P,)."""
     precision: Floats
-    """Precision, (P, P), in units of 1/σ²; symmetric, positive definite"""
+    """Precision, (P, P), in units of 1/σ²; symmetric, positive definite."""
     shape: float
-    """half the degrees of freedom, above 0"""
+    """Shape: half the degrees of freedom, above 0."""
     rate: float
-    """above 0"""
+    """Rate of the inverse gamma distribution, above 0."""
 
     def __post_init__(self) -> None:
-        """Refuse what is no distribution."""
+        """Check shapes and signs."""
         size = len(self.mean)
         if self.mean.shape != (size,) or self.precision.shape != (size, size):
-            raise ValueError(f"mean {self.mean.shape}, precision {self.precision.shape}")
+            raise ValueError(
+                f"shapes do not match: mean {self.mean.shape}, precision {self.precision.shape}"
+            )
         if not (self.shape > 0.0 and self.rate > 0.0):
             raise ValueError(f"shape {self.shape} and rate {self.rate} must be above 0")
 
     @property
     def scatter(self) -> float:
-        """Standard deviation σ that the predictions use, ``√(rate / shape)``."""
+        """Standard deviation σ used by the predictions, ``√(rate / shape)``."""
         return sqrt(self.rate / self.shape)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Observations:
-    """Observations of a linear model."""
+    """Observations of a linear model, with weights and counts."""
 
     design: Floats
-    """Design, (N, P): x of each"""
+    """Design matrix, (N, P): the x of each observation."""
     values: Floats
-    """Values, (N,): y of each"""
+    """Observed values y, (N,)."""
     weights: Floats
-    """Weights, (N,): w, σ² over the variance of each; above 0"""
+    """Weights w, (N,): σ² over the variance of each observation, above 0."""
     counts: Floats
-    """(N,): power of its likelihood, [4]_. 1: one of its own; 1/n: n that err together are
-    worth one"""
+    """Power of the likelihood of each observation, (N,), [4]_.
+
+    1: independent; 1/n: n observations with a common error are worth one.
+    """
 
     def __post_init__(self) -> None:
         """Check shapes, finiteness and signs."""
         rows = (len(self.values),)
         if self.design.ndim != 2 or len(self.design) != rows[0]:
-            raise ValueError(f"design {self.design.shape} for {rows[0]} values")
+            raise ValueError(f"design {self.design.shape} does not match {rows[0]} values")
         if self.weights.shape != rows or self.counts.shape != rows:
             raise ValueError("each value needs one weight and one count")
         if not all(np.isfinite(each).all() for each in (self.design, self.values)):
             raise ValueError("observations must be finite")
         if not ((self.weights > 0.0).all() and (self.counts >= 0.0).all()):
-            raise ValueError("weights must be above 0, counts not below")
+            raise ValueError("weights must be above 0, counts at least 0")
 
 
 def updated(belief: NormalInverseGamma, seen: Observations) -> NormalInverseGamma:
-    """Posterior after observations, [2]_ eqs. (7.70) to (7.73).
+    """Posterior distribution after observations, [2]_ eqs. (7.70) to (7.73).
 
-    The rate is written with residuals, where [2]_ subtracts squares of near numbers.
+    The rate uses residuals, where [2]_ subtracts squares of nearly equal numbers.
     """
     weights = seen.counts * seen.weights
     precision = belief.precision + seen.design.T @ (weights[:, None] * seen.design)
@@ -106,7 +113,7 @@ def updated(belief: NormalInverseGamma, seen: Observations) -> NormalInverseGamm
 def forgotten(
     belief: NormalInverseGamma, prior: NormalInverseGamma, *, share: float
 ) -> NormalInverseGamma:
-    """Prior when only a share of what was learned still counts.
+    """Belief after forgetting: only a share of what was learned still counts.
 
     Proportional to ``belief^share · prior^(1 − share)``, [3]_. With the same prior this is the
     belief from the same observations with all their counts times ``share``.
@@ -116,7 +123,7 @@ def forgotten(
     belief : NormalInverseGamma
         Learned from the prior.
     prior : NormalInverseGamma
-        What to return to.
+        Distribution to return to.
     share : float
         1: all is kept; 0: the prior.
     """
@@ -141,7 +148,7 @@ def expected(belief: NormalInverseGamma, row: Floats) -> StudentT:
 
 
 def predicted(belief: NormalInverseGamma, row: Floats, *, weight: float = 1.0) -> StudentT:
-    """Distribution of the next observation at a (P,) row x, [2]_ eq. (7.76)."""
+    """Predictive distribution of the next observation at a (P,) row x, [2]_ eq. (7.76)."""
     return _student(belief, row, own=1.0 / weight)
 
 

@@ -1,4 +1,4 @@
-"""Recommendations for a group of outcomes, in words with numbers.
+"""Remarks on a group of outcomes: observations with numbers, and recommendations.
 
 References
 ----------
@@ -18,11 +18,11 @@ from kbe.statistics import DeviationStatistics, Evaluated
 from stepnc_model.outcome import LearnedCorrection
 
 NOTABLE = 0.05
-"""deviation, or change of the factor, from which something is said"""
+"""Deviation, or change of the factor, above which a remark is made."""
 STEEP = 0.005
-"""of the plan a run, from which a significant trend is told"""
+"""Slope of a significant trend, per run relative to the plan, above which it is reported."""
 ENOUGH = AcceptanceBounds().fewest_outcomes
-"""outcomes from which a factor is recommended"""
+"""Number of outcomes from which a factor is recommended."""
 
 
 class Action(StrEnum):
@@ -42,19 +42,19 @@ class Action(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Evidence:
-    """Facts about a group that remarks rest on."""
+    """Statistics and corrections of a group, on which remarks are based."""
 
     deviations: Mapping[Evaluated, DeviationStatistics]
     bound: BoundUse
     proposed: LearnedCorrection | None
-    """that the outcomes of the context teach"""
+    """Correction learned from the outcomes of the context."""
     accepted: LearnedCorrection | None
-    """that plans take now; None: the catalogue's k_c"""
+    """Correction that plans use now; None: the catalogue's k_c."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Remark:
-    """Observation and recommendation."""
+    """Observation on a quantity with a recommended action."""
 
     about: Evaluated
     action: Action
@@ -66,7 +66,7 @@ class Remark:
 
 
 def remarks(evidence: Evidence) -> tuple[Remark, ...]:
-    """All that is worth saying, the gravest first."""
+    """All remarks on a group, the most serious first."""
     proposed = evidence.proposed if is_pending(evidence) else None
     found = [
         _overplanned(evidence.bound),
@@ -82,37 +82,37 @@ def remarks(evidence: Evidence) -> tuple[Remark, ...]:
 
 
 def is_pending(evidence: Evidence) -> bool:
-    """Whether the factor that was learned differs notably from the one that plans take."""
+    """Whether the learned factor differs notably from the one that plans use."""
     return abs(_learned(evidence) / _in_force(evidence) - 1.0) > NOTABLE
 
 
 def _learned(evidence: Evidence) -> float:
-    """Centre of the factor that was learned; none: what plans take."""
+    """Centre of the learned factor; without one, the factor that plans use."""
     if evidence.proposed is None:
         return _in_force(evidence)
     return factor_at(evidence.proposed, quantile=0.5)
 
 
 def _in_force(evidence: Evidence) -> float:
-    """Centre of the factor that plans take."""
+    """Centre of the factor that plans use."""
     return 1.0 if evidence.accepted is None else factor_at(evidence.accepted, quantile=0.5)
 
 
 def _overplanned(bound: BoundUse) -> Remark | None:
-    """The plan is not made for what it meets."""
+    """Remark on plans that themselves exceed the force bound."""
     if not bound.overplanned:
         return None
     return Remark(
         about=Evaluated.FORCE,
         action=Action.PLAN_AGAIN,
-        observed=f"the plan itself expected to pass the force bound in {bound.overplanned} of "
+        observed=f"the plan itself exceeded the force bound in {bound.overplanned} of "
         f"{bound.known} cuts",
         advice="optimise the program for this machine and material",
     )
 
 
 def _violated(bound: BoundUse) -> Remark | None:
-    """The force passed its bound."""
+    """Remark on a force that exceeded its bound."""
     if not bound.violated or bound.highest is None:
         return None
     return Remark(
@@ -125,28 +125,30 @@ def _violated(bound: BoundUse) -> Remark | None:
 
 
 def _factor(evidence: Evidence, proposed: LearnedCorrection) -> Remark:
-    """The factor that was learned is not the one that plans take."""
+    """Remark on a learned factor that differs from the one that plans use."""
     seen = interval(proposed)
     factor = f"the k_c factor {seen.centre:.2f} ({seen.low:.2f} to {seen.high:.2f})"
     phrases = [_deviates(evidence, which) for which in (Evaluated.FORCE, Evaluated.FEED)]
     observed = " and ".join(filter(None, phrases)) or (
-        f"force {seen.centre:.2f} of the catalogue's where plans take {_in_force(evidence):.2f}"
+        f"force {seen.centre:.2f} × catalogue, but plans use factor {_in_force(evidence):.2f}"
     )
     missing = ENOUGH - proposed.outcomes
     return Remark(
         about=Evaluated.FORCE,
         action=Action.WAIT if missing > 0 else Action.ACCEPT_FACTOR,
         observed=observed,
-        advice=f"let {missing} more confirm {factor}" if missing > 0 else f"accept {factor}",
+        advice=f"collect {missing} more to confirm {factor}"
+        if missing > 0
+        else f"accept {factor}",
     )
 
 
 def _force(evidence: Evidence) -> Remark | None:
-    """The force is off its plan, and no new factor explains it."""
+    """Remark on a force off its plan that no new factor explains."""
     observed = _deviates(evidence, Evaluated.FORCE)
     if not observed:
         return None
-    action, advice = Action.CHECK_FEED, "compare the feed that was run with the planned one"
+    action, advice = Action.CHECK_FEED, "compare the actual feed with the planned one"
     if evidence.proposed is None:
         action, advice = Action.RECORD_RATIO, "let the controller record force ratios"
     elif evidence.accepted is not None:
@@ -156,12 +158,12 @@ def _force(evidence: Evidence) -> Remark | None:
 
 
 def _wasted(evidence: Evidence) -> Remark | None:
-    """The force stayed far below a bound that the plan meant to use."""
+    """Remark on a force far below a bound that the plan intended to use."""
     bound = evidence.bound
     if not bound.wasted:
         return None
     each = bound.time_to_win / bound.wasted
-    won = f", about {each:.1f} s each could be won" if each > 0.0 else ""
+    won = f", about {each:.1f} s each could be saved" if each > 0.0 else ""
     overestimated = is_pending(evidence) and _learned(evidence) < _in_force(evidence)
     return Remark(
         about=Evaluated.FORCE,
@@ -175,7 +177,7 @@ def _wasted(evidence: Evidence) -> Remark | None:
 
 
 def _roughness(evidence: Evidence) -> Remark | None:
-    """The surface is rougher than planned."""
+    """Remark on a surface rougher than planned."""
     mean = evidence.deviations[Evaluated.ROUGHNESS].mean
     if mean is None or mean <= NOTABLE:
         return None
@@ -189,7 +191,7 @@ def _roughness(evidence: Evidence) -> Remark | None:
 
 
 def _feed(evidence: Evidence) -> Remark | None:
-    """The feed is not the planned one, and no factor explains it."""
+    """Remark on a feed off its plan that no factor explains."""
     observed, mean = (
         _deviates(evidence, Evaluated.FEED),
         evidence.deviations[Evaluated.FEED].mean,
@@ -201,7 +203,7 @@ def _feed(evidence: Evidence) -> Remark | None:
         about=Evaluated.FEED,
         action=Action.CHECK_FEED if slower else Action.PLAN_BOLDER,
         observed=observed,
-        advice="look for what holds the feed: override, force bound, short blocks"
+        advice="check what limits the feed: override, force bound, short blocks"
         if slower
         else _bolder(evidence),
     )
@@ -215,7 +217,7 @@ def _bolder(evidence: Evidence) -> str:
 
 
 def _time(evidence: Evidence) -> Remark | None:
-    """The time is off, though the feed is not."""
+    """Remark on a time off its plan although the feed is not."""
     observed = _deviates(evidence, Evaluated.TIME)
     if not observed or _deviates(evidence, Evaluated.FEED):
         return None
@@ -228,7 +230,7 @@ def _time(evidence: Evidence) -> Remark | None:
 
 
 def _trend(evidence: Evidence, which: Evaluated) -> Remark | None:
-    """A quantity changes from run to run."""
+    """Remark on a quantity with a trend from run to run."""
     trend = evidence.deviations[which].trend
     if trend is None or not trend.is_significant or abs(trend.per_run) < STEEP:
         return None
@@ -239,15 +241,15 @@ def _trend(evidence: Evidence, which: Evaluated) -> Remark | None:
         about=which,
         action=Action.CHANGE_TOOL if worn else Action.WAIT,
         observed=f"{which} {'rises' if rises else 'falls'} by {size:.1f} ± {error:.1f} % of "
-        f"the plan a run, over {trend.runs} runs",
-        advice="the edge wears, index or change the tool"
+        f"the plan per run, over {trend.runs} runs",
+        advice="the edge wears; index or change the tool"
         if worn
-        else "wait until it settles before a factor is accepted",
+        else "wait until it settles before accepting a factor",
     )
 
 
 def _deviates(evidence: Evidence, which: Evaluated) -> str:
-    """Deviation of a quantity in words; empty: not notable."""
+    """Text on the deviation of a quantity; empty if it is not notable."""
     seen = evidence.deviations[which]
     if seen.mean is None or abs(seen.mean) <= NOTABLE:
         return ""
@@ -258,5 +260,5 @@ def _deviates(evidence: Evidence, which: Evaluated) -> str:
 
 
 def _percent(share: float) -> str:
-    """A share in words."""
+    """Format a share as a percentage."""
     return f"{100.0 * share:.0f} %"

@@ -1,7 +1,7 @@
-"""A sample of bounded size of a stream of any length, each value as likely as any other.
+"""Reservoir sampling: a bounded random sample of a stream of any length.
 
-Exact while the stream is no longer than the reservoir. Its choice is drawn from a seed, so the
-same stream gives the same sample.
+Each value is equally likely to be kept. The sample is exact while the stream is no longer than
+the reservoir. Its choice is drawn from a seed, so the same stream gives the same sample.
 
 References
 ----------
@@ -14,12 +14,12 @@ References
 from random import Random
 
 CAPACITY = 1000
-"""values; the 95th of 100 is then known to ±1.4 of 100"""
+"""Size of the sample; the 95th percentile is then known to ±1.4 percentage points."""
 SEED = 14649
 
 
 class Reservoir:
-    """Running state: the values kept, and how many there were."""
+    """Random sample of a stream of values (mutable state)."""
 
     def __init__(self, capacity: int = CAPACITY, *, seed: int = SEED) -> None:
         self._capacity = capacity
@@ -28,7 +28,7 @@ class Reservoir:
         self._count = 0
 
     def add(self, value: float) -> None:
-        """One more value of the stream, [1]_."""
+        """Add one value of the stream, [1]_."""
         self._count += 1
         if len(self._kept) < self._capacity:
             self._kept.append(value)
@@ -38,7 +38,7 @@ class Reservoir:
             self._kept[place] = value
 
     def quantile(self, share: float) -> float | None:
-        """The value below which a share of the stream lies, [2]_; None: there was none."""
+        """Value below which a share of the stream lies, [2]_; None without values."""
         if not self._kept:
             return None
         ranked = sorted(self._kept)

@@ -1,7 +1,7 @@
-"""Nouns and rows: the attributes of a dataclass, flat, as columns whose names carry the unit.
+"""Mapping between dataclasses and database rows, with units in the column names.
 
 The dataclass is the only declaration. ``force.measured`` of an outcome becomes the column
-``force_measured_n``; a noun within a noun gives its own attributes, and when it is optional it
+``force_measured_n``; a nested dataclass gives its own attributes, and when it is optional it
 is absent when its first column is.
 """
 
@@ -34,33 +34,33 @@ UNITS = {
     "feed": "mm_s",
     "force_bound": "n",
 }
-"""ending of the columns of an attribute, and of all columns of a quantity"""
+"""Unit suffixes of the columns of an attribute, and of all columns of a quantity."""
 
 NAMES = {"context": "", "specific_force": "k_c11"}
-"""attributes that have another name as a column, or none"""
+"""Attributes whose column has another name, or none."""
 
 EVALUATED = ("roughness", "time", "force", "feed")
-"""quantities of an outcome whose deviation is stored with it"""
+"""Quantities of an outcome whose deviation is stored with it."""
 
 GREATEST_DEVIATION = 1e100
-"""what lies beyond is no measurement, and its square would leave the range of a double"""
+"""Greatest deviation that is stored; beyond it, the square could overflow a double."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AttributeColumn:
-    """One attribute that becomes one column."""
+    """Attribute that becomes one column."""
 
     path: tuple[str, ...]
-    """names of the attributes that lead to it"""
+    """Names of the attributes that lead to it."""
     name: str
-    """Name of the column"""
+    """Name of the column."""
     kind: type
-    """str, float, int, bool or datetime"""
+    """Type of the value: str, float, int, bool or datetime."""
     is_optional: bool
 
 
 class RowLayout(Generic[T]):
-    """A noun as columns, and back.
+    """Conversion of a dataclass to columns, and back.
 
     Examples
     --------
@@ -74,7 +74,7 @@ class RowLayout(Generic[T]):
         self._read = _reader(noun, count())
 
     def row(self, value: T) -> dict[str, Value]:
-        """Columns of a noun.
+        """Convert a dataclass instance to its columns.
 
         Raises
         ------
@@ -84,29 +84,29 @@ class RowLayout(Generic[T]):
         return {name: write(value) for name, write in self._writers}
 
     def noun(self, columns: Sequence[Any]) -> T:
-        """The noun of a row, in the order of :attr:`leaves`."""
+        """Convert a row, in the order of :attr:`leaves`, to a dataclass instance."""
         return cast(T, self._read(columns))
 
 
 def outcome_row(outcome: ProcessOutcome) -> dict[str, Value]:
-    """Columns of an outcome and of its deviations.
+    """Convert an outcome to its columns, with its deviations.
 
     Raises
     ------
     ValueError
-        As :meth:`RowLayout.row`, and for a deviation that no measurement can have.
+        As :meth:`RowLayout.row`, and for an implausibly large deviation.
     """
     row = OUTCOME.row(outcome)
     for name in EVALUATED:
         deviation = getattr(outcome, name).deviation
         if deviation is not None and not abs(deviation) <= GREATEST_DEVIATION:
-            raise ValueError(f"{name}: no measurement deviates by a factor of {deviation}")
+            raise ValueError(f"{name}: implausible deviation by a factor of {deviation}")
         row[f"{name}_deviation"] = deviation
     return row
 
 
 def _plain(hint: Any) -> tuple[Any, bool]:
-    """A type hint without ``| None``, and whether it had it."""
+    """Type hint without ``| None``, and whether ``None`` was allowed."""
     options = [each for each in get_args(hint) if each is not NoneType]
     return (options[0], True) if options else (hint, False)
 
@@ -114,7 +114,7 @@ def _plain(hint: Any) -> tuple[Any, bool]:
 def _leaves(
     noun: type, *, path: tuple[str, ...], is_optional: bool
 ) -> Iterator[AttributeColumn]:
-    """Attributes of a noun, and of the nouns within it, in order."""
+    """Attributes of a dataclass and of its nested dataclasses, in order."""
     hints = get_type_hints(noun)
     for field in fields(cast(Any, noun)):
         kind, can_lack = _plain(hints[field.name])
@@ -127,14 +127,14 @@ def _leaves(
 
 
 def _name(path: tuple[str, ...]) -> str:
-    """Column of an attribute: the path to it and its unit."""
+    """Column name of an attribute: its path and its unit."""
     units = [UNITS[part] for part in path if part in UNITS][:1]
     parts = [NAMES.get(part, part) for part in path]
     return "_".join(part for part in parts + units if part)
 
 
 def _writer(leaf: AttributeColumn) -> Callable[[object], Value]:
-    """Getter of a column's value from a dataclass."""
+    """Function that reads a column's value from a dataclass instance."""
     check = CHECKS[leaf.kind]
 
     def write(noun: object) -> Value:
@@ -149,7 +149,7 @@ def _writer(leaf: AttributeColumn) -> Callable[[object], Value]:
 
 
 def _reader(noun: type, columns: Iterator[int]) -> Callable[[Sequence[Any]], object]:
-    """Constructor of a dataclass from a row; takes its columns in order."""
+    """Function that builds a dataclass instance from a row; consumes its columns in order."""
     hints = get_type_hints(noun)
     readers: dict[str, Callable[[Sequence[Any]], object]] = {}
     for field in fields(cast(Any, noun)):
@@ -167,19 +167,19 @@ def _reader(noun: type, columns: Iterator[int]) -> Callable[[Sequence[Any]], obj
 def _nested(
     noun: type, columns: Iterator[int], *, is_optional: bool
 ) -> Callable[[Sequence[Any]], object]:
-    """Reader of a noun within a noun."""
+    """Reader of a nested dataclass."""
     first = next(columns)
     read = _reader(noun, chain([first], columns))
     return (lambda row: None if row[first] is None else read(row)) if is_optional else read
 
 
 def _choice(kind: type[StrEnum], column: int) -> Callable[[Sequence[Any]], object]:
-    """Reader of one of some words, or of none."""
+    """Reader of an enumeration value, or of None."""
     return lambda row: None if row[column] is None else kind(row[column])
 
 
 def storable_text(name: str, value: Any) -> str:
-    """Text that every database takes."""
+    """Check that a text can be stored by every database."""
     text = str(value)
     if "\0" in text or (not text.isascii() and _has_surrogate(text)):
         raise ValueError(f"{name}: {text!r} cannot be stored as text")
@@ -187,47 +187,47 @@ def storable_text(name: str, value: Any) -> str:
 
 
 def _has_surrogate(text: str) -> bool:
-    """Whether the text has no form in UTF-8."""
+    """Whether the text contains surrogates, which UTF-8 cannot encode."""
     return any("\ud800" <= letter <= "\udfff" for letter in text)
 
 
 def _number(name: str, value: Any) -> float:
-    """Finite number."""
+    """Check that a number is finite."""
     number = float(value)
     if not isfinite(number):
-        raise ValueError(f"{name}: {number} is no number to keep")
+        raise ValueError(f"{name}: {number} is not a finite number")
     # SQLite does not keep the sign of zero.
     return number + 0.0
 
 
 def _whole(name: str, value: Any) -> int:
-    """Whole number of 64 bits."""
+    """Check that a whole number fits into 64 bits."""
     number = operator.index(value)
     if not -(2**63) <= number < 2**63:
-        raise ValueError(f"{name}: {number} is no number to keep")
+        raise ValueError(f"{name}: {number} does not fit into 64 bits")
     return number
 
 
 def _truth(_name: str, value: Any) -> bool:
-    """Truth value."""
+    """Convert a truth value."""
     return bool(value)
 
 
 def _time(name: str, value: Any) -> datetime:
-    """Point in time."""
+    """Convert a point in time to UTC."""
     return utc(name, value)
 
 
 def utc(name: str, time: datetime) -> datetime:
-    """A time in UTC.
+    """Convert a time to UTC.
 
     Raises
     ------
     ValueError
-        When it has no zone.
+        When it has no time zone.
     """
     if time.tzinfo is None:
-        raise ValueError(f"{name}: {time} has no zone")
+        raise ValueError(f"{name}: {time} has no time zone")
     return time.astimezone(UTC)
 
 

@@ -1,7 +1,7 @@
-"""Tables of the knowledge base, made from the nouns that they hold.
+"""Tables of the knowledge base, generated from the dataclasses that they store.
 
 Three tables, and no row of them is ever changed: triggers of the database refuse it (they are
-in :mod:`kbe.migrations`). A correction is a proposal; what people decided about it are rows of
+in :mod:`kbe.migrations`). A correction is a proposal; decisions of people about it are rows of
 ``decision``. In force for a context is the correction that was accepted last and not withdrawn
 since.
 
@@ -32,13 +32,13 @@ from sqlalchemy.types import TypeDecorator, TypeEngine
 from kbe.rows import CORRECTION, EVALUATED, OUTCOME, AttributeColumn
 
 VERSION = "0001"
-"""of the schema: the newest file of ``migrations/versions``"""
+"""Version of the schema: the newest file of ``migrations/versions``."""
 
 VERSION_TABLE = "stepnc_kbe_version"
 
 
 class UtcTime(TypeDecorator[datetime]):
-    """A time with zone; SQLite keeps it as text in UTC."""
+    """Column type of times with zone, which SQLite stores as text in UTC."""
 
     impl = DateTime(timezone=True)
     cache_ok = True
@@ -52,7 +52,7 @@ class UtcTime(TypeDecorator[datetime]):
         return value.replace(tzinfo=UTC) if value.tzinfo is None else value.astimezone(UTC)
 
 
-# SQLite numbers rows by itself in columns that are called INTEGER, of 64 bits all the same.
+# SQLite numbers rows itself only in INTEGER columns, which have 64 bits there.
 ID = BigInteger().with_variant(Integer(), "sqlite")
 
 TYPES: dict[type, TypeEngine[Any]] = {
@@ -65,14 +65,14 @@ TYPES: dict[type, TypeEngine[Any]] = {
 
 
 def _column(leaf: AttributeColumn) -> "Column[Any]":
-    """Column of an attribute."""
+    """Database column of an attribute."""
     return Column(leaf.name, TYPES[leaf.kind], nullable=leaf.is_optional)
 
 
 metadata = MetaData()
 
 GROUP = ("machine", "material", "tool", "feature_kind")
-"""columns by which outcomes are evaluated together"""
+"""Columns by which outcomes are grouped for evaluation."""
 
 outcome = Table(
     "outcome",
@@ -83,7 +83,7 @@ outcome = Table(
     Index("outcome_by_time", "recorded_at"),
     Index("outcome_by_program", "program", "recorded_at"),
     Index("outcome_by_run", "run"),
-    # Has all that an evaluation asks for, in the order in which it groups.
+    # A covering index for evaluations, in the order in which they group.
     Index(
         "outcome_by_group",
         *GROUP,
@@ -93,7 +93,7 @@ outcome = Table(
 )
 
 DECIDED = ("accepted_by", "accepted_at")
-"""attributes of a correction that are rows of their own"""
+"""Attributes of a correction that are stored as decisions."""
 
 correction = Table(
     "correction",
@@ -116,4 +116,4 @@ decision = Table(
 )
 
 TABLES = (outcome, correction, decision)
-"""in an order in which rows can be copied"""
+"""All tables, in an order in which rows can be copied."""

@@ -1,4 +1,4 @@
-"""Selection of outcomes."""
+"""Selection of outcomes by machine, material, tool, feature, program, run and time."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -11,19 +11,19 @@ from kbe.schema import outcome
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Selection:
-    """Outcomes with all of these; None: any."""
+    """Filter of outcomes; None accepts any value."""
 
     machine: str | None = None
     material: str | None = None
     tool: str | None = None
     feature_kind: str | None = None
-    """EXPRESS name, ``closed_pocket``"""
+    """EXPRESS name of the feature, as ``closed_pocket``."""
     program: str | None = None
     run: str | None = None
     since: datetime | None = None
-    """first moment that counts, with zone"""
+    """Earliest time of recording, inclusive, with zone."""
     until: datetime | None = None
-    """first moment that counts no more, with zone"""
+    """Latest time of recording, exclusive, with zone."""
 
 
 EVERYTHING = Selection()
@@ -32,7 +32,7 @@ NAMES = ("machine", "material", "tool", "feature_kind", "program", "run")
 
 
 def conditions(selection: Selection) -> list[ColumnElement[bool]]:
-    """Conditions on a row of ``outcome``.
+    """SQL conditions of a selection on a row of ``outcome``.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""One side of a row of the evaluation table: the roughing or the finishing with one tool.
+"""One side of a row of the evaluation table: roughing or finishing with one tool.
 
 Columns are those of [1]_, Table 1, for one operation; numbers are means over its outcomes,
 names are all that occurred. Beyond [1]_: deviations, trends, grade, remarks and factor.
@@ -27,12 +27,12 @@ TYPES = {
     FaceMillingImmersion.UNIDIRECTIONAL_PART_IMMERSION: "d_s2",
     FaceMillingImmersion.BILATERAL_PART_IMMERSION: "d_s3",
 }
-"""types of face milling as [1]_ names them"""
+"""Symbols of the types of face milling in [1]_."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Knowledge:
-    """Corrections of the contexts that a table shows."""
+    """Proposed and accepted corrections by context, for an evaluation table."""
 
     proposed: Mapping[Context, LearnedCorrection] = field(default_factory=dict)
     accepted: Mapping[Context, LearnedCorrection] = field(default_factory=dict)
@@ -40,17 +40,17 @@ class Knowledge:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Side:
-    """Outcomes of one kind of operation, roughing or finishing, with one tool."""
+    """Evaluated outcomes of roughing or finishing with one tool."""
 
     context: Context
     specific_force: float | None
-    """k_c1.1 of the catalogue, N/mm²"""
+    """k_c1.1 of the catalogue, N/mm²."""
     cutting_speed: float | None
-    """V_c, mm/s"""
+    """Cutting speed V_c, mm/s."""
     step_depth: EvaluatedQuantity
-    """a_s, mm"""
+    """Depth of one pass a_s, mm."""
     feed_per_tooth: EvaluatedQuantity
-    """f_z, mm: predicted and evaluated"""
+    """Feed per tooth f_z, mm: predicted and evaluated."""
     immersions: tuple[FaceMillingImmersion, ...]
     strategies: tuple[str, ...]
     modes: tuple[str, ...]
@@ -62,13 +62,13 @@ class Side:
     grade: EvaluationGrade
     remarks: tuple[Remark, ...]
     factor: FactorInterval | None
-    """on k_c that was learned; None: nothing was"""
+    """Learned factor on k_c; None if nothing was learned."""
     is_pending: bool
-    """that factor differs notably from the one that plans take"""
+    """Whether the learned factor differs notably from the one that plans use."""
 
 
 class SideTally:
-    """Running state: outcomes of one side, streamed in the order of time."""
+    """Accumulator of the outcomes of one side, in the order of time (mutable state)."""
 
     def __init__(self, context: Context) -> None:
         self._context = context
@@ -84,12 +84,12 @@ class SideTally:
         self._latest: datetime | None = None
 
     def add(self, outcome: ProcessOutcome) -> None:
-        """One more outcome.
+        """Add one more outcome.
 
         Raises
         ------
         ValueError
-            It is older than the one before.
+            If it is older than the previous one.
         """
         if self._latest is not None and outcome.recorded_at < self._latest:
             raise ValueError(
@@ -98,7 +98,7 @@ class SideTally:
             )
         self._latest = outcome.recorded_at
         self._count += 1
-        # On one machine one run follows the other.
+        # Runs on one machine follow one another.
         self._runs += outcome.run != self._run
         self._run = outcome.run
         self._facts(outcome)
@@ -107,9 +107,9 @@ class SideTally:
         self._bound = used(self._bound, outcome)
 
     def side(self, knowledge: Knowledge) -> Side:
-        """Evaluation of the outcomes so far; there must have been one."""
+        """Evaluate the outcomes so far; at least one is required."""
         if self._latest is None:
-            raise ValueError("a side needs an outcome")
+            raise ValueError("a side needs at least one outcome")
         deviations = {which: each.statistics() for which, each in self._deviations.items()}
         proposed = knowledge.proposed.get(self._context)
         evidence = Evidence(
@@ -139,7 +139,7 @@ class SideTally:
         )
 
     def _facts(self, outcome: ProcessOutcome) -> None:
-        """Columns that are no deviations."""
+        """Add the values that are not deviations."""
         _add(self._specific_force, outcome.specific_force)
         _add(self._cutting_speed, outcome.cutting_speed)
         self._step_depth.add(outcome.step_depth)
@@ -152,9 +152,9 @@ class SideTally:
 
 
 class QuantityTally:
-    """Running state: a quantity as planned and as it was, like with like.
+    """Accumulator of a quantity as planned and as measured (mutable state).
 
-    Where some outcomes have both, the means are of those only.
+    Where some outcomes have both values, the means are of those only.
     """
 
     def __init__(self) -> None:
@@ -162,24 +162,24 @@ class QuantityTally:
         self._single = (Moments(), Moments())
 
     def add(self, quantity: EvaluatedQuantity) -> None:
-        """One more outcome."""
+        """Add one more outcome."""
         values = (quantity.predicted, quantity.measured)
         into = self._single if None in values else self._paired
         for moments, value in zip(into, values, strict=True):
             _add(moments, value)
 
     def quantity(self) -> EvaluatedQuantity:
-        """Means."""
+        """Means of the planned and the measured values."""
         predicted, measured = self._paired if self._paired[0].count else self._single
         return EvaluatedQuantity(predicted=_mean(predicted), measured=_mean(measured))
 
 
 def _add(moments: Moments, value: float | None) -> None:
-    """One more value, if it is known."""
+    """Add a value if it is known."""
     if value is not None:
         moments.add(0.0, value)
 
 
 def _mean(moments: Moments) -> float | None:
-    """None: no value was known."""
+    """Mean of the values; None without values."""
     return moments.mean if moments.count else None

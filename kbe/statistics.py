@@ -1,11 +1,11 @@
-"""Deviations of what was from what was planned: the four quantities that [1]_ evaluates.
+"""Statistics of the deviations from the plan, for the four quantities that [1]_ evaluates.
 
 A deviation is measured over predicted, less one. Outcomes are streamed in the order of time;
-count, mean, scatter, standard error and trend need moments only, median and 95th of 100 a
-sample of bounded size (:mod:`kbe.reservoir`).
+count, mean, scatter, standard error and trend need moments only, the median and the 95th
+percentile a sample of bounded size (:mod:`kbe.reservoir`).
 
-Workingsteps of one run err alike, so the standard error and the trend are those of the means
-of runs; mean, scatter, median and 95th of 100 are of all outcomes.
+Workingsteps of one run have correlated errors, so the standard error and the trend are those of
+the means of runs; mean, scatter, median and 95th percentile are of all outcomes.
 
 References
 ----------
@@ -24,11 +24,11 @@ from kbe.reservoir import Reservoir
 from stepnc_model.outcome import EvaluatedQuantity, ProcessOutcome
 
 HIGH = 0.95
-"""share of outcomes that deviate no farther up"""
+"""Quantile of the high deviation: share of outcomes at or below it."""
 
 
 class Evaluated(StrEnum):
-    """The four quantities."""
+    """Quantity whose deviation from the plan is evaluated."""
 
     ROUGHNESS = "roughness"
     TIME = "time"
@@ -38,30 +38,30 @@ class Evaluated(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DeviationStatistics:
-    """Deviations of one quantity; None: too few values to say."""
+    """Statistics of the deviations of one quantity; None: too few values."""
 
     count: int
-    """outcomes with a deviation"""
+    """Number of outcomes with a deviation."""
     missing: int
-    """outcomes without: not predicted, not measured, or no number"""
+    """Number of outcomes without a deviation: not predicted, not measured, or not a number."""
     mean: float | None
     deviation: float | None
-    """standard deviation of one outcome; from 2 outcomes"""
+    """Standard deviation of one outcome; from 2 outcomes."""
     standard_error: float | None
-    """Standard error of the mean of runs; from 2 runs"""
+    """Standard error of the mean of runs; from 2 runs."""
     median: float | None
     high: float | None
-    """95th of 100"""
+    """95th percentile."""
     runs: int
-    """with a deviation"""
+    """Number of runs with a deviation."""
     runs_above: int
-    """whose mean lies above the plan"""
+    """Number of runs whose mean lies above the plan."""
     trend: Trend | None
-    """from 3 runs"""
+    """Trend from run to run; from 3 runs."""
 
 
 class DeviationTally:
-    """Running state: what is kept of a stream of deviations."""
+    """Accumulator of a stream of deviations (mutable state)."""
 
     def __init__(self) -> None:
         self._missing = 0
@@ -73,7 +73,7 @@ class DeviationTally:
         self._in_run = Moments()
 
     def add(self, value: float | None, *, run: int) -> None:
-        """One more outcome, of the run with this number; numbers never fall."""
+        """Add one more outcome of a run; run numbers never decrease."""
         if value is None or not isfinite(value):
             self._missing += 1
             return
@@ -102,7 +102,7 @@ class DeviationTally:
         )
 
     def _with_last(self) -> tuple[Moments, int]:
-        """Means of runs, and how many lie above the plan, as if the last run were over."""
+        """Means of runs, and how many lie above the plan, as if the last run were complete."""
         if not self._in_run.count:
             return self._runs, self._above
         runs = copy(self._runs)
@@ -111,7 +111,7 @@ class DeviationTally:
 
 
 def quantity_of(outcome: ProcessOutcome, which: Evaluated) -> EvaluatedQuantity:
-    """One of the four quantities of an outcome."""
+    """Return one of the four evaluated quantities of an outcome."""
     quantities = {
         Evaluated.ROUGHNESS: outcome.roughness,
         Evaluated.TIME: outcome.time,

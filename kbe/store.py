@@ -1,12 +1,11 @@
-"""The knowledge base as its users see it: outcomes go in, and nothing ever goes out of it.
+"""Store of the knowledge base, to which rows are only ever added.
 
-What was added when a call returned is kept, whatever breaks afterwards; what a call could not
-add as a whole is not there at all. One store may be used by many threads, and one place by
-many programs.
+Data is safely stored when a call returns; a call that fails adds nothing. One store may be used
+by many threads, and one database by many programs.
 
 Order: outcomes come by time of recording; corrections by proposal. In force for a context is
-the correction that was accepted last and not withdrawn since: withdrawing it puts the one
-before back in force.
+the correction that was accepted last and not withdrawn since: withdrawing it puts the previous
+one back in force.
 """
 
 from collections import deque
@@ -30,11 +29,11 @@ from kbe.store_location import StoreLocation, parsed_place, require_openable
 from stepnc_model.outcome import Context, LearnedCorrection, ProcessOutcome
 
 AT_ONCE = 1000
-"""rows that are fetched together"""
+"""Number of rows fetched together."""
 
 
 class Store:
-    """An open knowledge base; :func:`open_store` makes it, ``with`` or ``close`` ends it."""
+    """Open knowledge base, made by :func:`open_store`; ended by ``with`` or ``close``."""
 
     def __init__(self, engine: Engine, place: StoreLocation) -> None:
         self.engine = engine
@@ -56,7 +55,7 @@ class Store:
         self.engine.dispose()
 
     def add(self, outcomes: Sequence[ProcessOutcome]) -> None:
-        """Keep outcomes: all of them, or none when it fails.
+        """Store outcomes: all of them, or none on failure.
 
         Raises
         ------
@@ -72,7 +71,7 @@ class Store:
             connection.execute(insert(outcome), rows)
 
     def outcomes(self, selection: Selection = EVERYTHING) -> Iterator[ProcessOutcome]:
-        """Outcomes by time, read as they are asked for, as they were when the first was."""
+        """Iterate over outcomes by time, in one consistent state of the store."""
         columns = [outcome.c[leaf.name] for leaf in OUTCOME.leaves]
         query = (
             select(*columns)
@@ -88,7 +87,7 @@ class Store:
                 yield OUTCOME.noun(row)
 
     def count(self, selection: Selection = EVERYTHING) -> int:
-        """Number of outcomes."""
+        """Number of selected outcomes."""
         query = select(func.count()).select_from(outcome).where(*conditions(selection))
         with reading(self.engine, self.place) as connection:
             return connection.execute(query).scalar_one()
@@ -101,22 +100,22 @@ class Store:
         return tuple(Context(machine=row[0], material=row[1], tool=row[2]) for row in rows)
 
     def groups(self, selection: Selection = EVERYTHING) -> tuple[Group, ...]:
-        """Outcomes counted and averaged by context and kind of feature, in order."""
+        """Counts and averages of outcomes by context and kind of feature, in order."""
         query = grouped(selection)
         with reading(self.engine, self.place) as connection:
             rows = sorted(connection.execute(query), key=lambda row: row[:4])
         return tuple(group(row) for row in rows)
 
     def propose(self, proposed: LearnedCorrection) -> int:
-        """Keep a correction for a person to decide about; its id.
+        """Store a proposed correction for a person to decide about; return its id.
 
         Raises
         ------
         ValueError
-            When it claims to be accepted already, and as :meth:`add`.
+            When it is marked as accepted already, and as :meth:`add`.
         """
         if proposed.accepted_by or proposed.accepted_at is not None:
-            raise ValueError("a correction is proposed before it is accepted")
+            raise ValueError("a proposed correction must not be accepted already")
         row = CORRECTION.row(proposed)
         stored = {name: value for name, value in row.items() if name not in DECIDED}
         with writing(self.engine, self.place) as connection:
@@ -129,7 +128,7 @@ class Store:
         Raises
         ------
         UnknownCorrection
-            When there is none of this id.
+            When no correction has this id.
         ValueError
             When nobody is named, or the time has no zone.
         """
@@ -140,7 +139,7 @@ class Store:
         self._decide(id, Standing.WITHDRAWN, by=by, at=at)
 
     def _decide(self, id_: int, standing: Standing, *, by: str, at: datetime) -> None:
-        """Keep a decision."""
+        """Store a decision about a correction."""
         if not by.strip():
             raise ValueError("a decision needs the name of the person who decides")
         row = {
@@ -156,72 +155,72 @@ class Store:
             connection.execute(insert(decision), row)
 
     def corrections(self) -> tuple[StoredCorrection, ...]:
-        """All corrections, whatever was decided about them."""
+        """All corrections, in any state."""
         with reading(self.engine, self.place) as connection:
             return tuple(entry(row) for row in connection.execute(entries()))
 
     def accepted(self, context: Context) -> LearnedCorrection | None:
-        """The correction in force for a context, if there is one."""
+        """Correction in force for a context, or None."""
         with reading(self.engine, self.place) as connection:
             row = connection.execute(in_force(context)).first()
             return None if row is None else entry(row).correction
 
     def check(self) -> None:
-        """Read all that is stored, to the last page.
+        """Read all stored data completely, to detect damage.
 
         Raises
         ------
         StoreDamaged
-            When it is not whole.
+            When something cannot be read.
         """
         with reading(self.engine, self.place) as connection:
             if self.place.file:
                 require_whole(connection, self.place)
                 return
-            # A server reports a page that it cannot read.
+            # A server reports pages that it cannot read.
             for table in TABLES:
                 query = select(table).execution_options(yield_per=AT_ONCE)
                 deque(connection.execute(query), maxlen=0)
 
 
 def require_whole(connection: Connection, place: StoreLocation) -> None:
-    """Refuse a file of SQLite whose pages, indexes or references do not agree.
+    """Check the pages, indexes and references of an SQLite file.
 
     Raises
     ------
     StoreDamaged
-        With the first thing that is wrong.
+        With the first fault found.
     """
     said = connection.execute(text("PRAGMA integrity_check(1)")).scalar_one()
     if said != "ok":
         raise StoreDamaged(place.shown, reason=str(said))
     broken = connection.execute(text("PRAGMA foreign_key_check")).first()
     if broken is not None:
-        raise StoreDamaged(place.shown, reason=f"a row of {broken[0]} refers to nothing")
+        raise StoreDamaged(place.shown, reason=f"a row of {broken[0]} refers to a missing row")
 
 
 def open_store(url_or_path: str, *, is_new_allowed: bool = True) -> Store:
-    """Open a knowledge base, and make or upgrade it when that is needed.
+    """Open a knowledge base; create or upgrade it if necessary.
 
     Parameters
     ----------
     url_or_path : str
         A file name, ``sqlite:///FILE`` or ``postgresql://USER:PASSWORD@HOST:PORT/DATABASE``.
     is_new_allowed : bool
-        Whether to make one where there is none.
+        Whether to create a store where there is none.
 
     Raises
     ------
     StoreUnavailable
-        When it cannot be reached, or is something else's; DriverMissing without psycopg.
+        When it cannot be reached, or is not a knowledge base; DriverMissing without psycopg.
     StoreDamaged, StoreTooNew, StoreReadOnly, StoreBusy, StoreFull
-        As they say.
+        As their names say.
     """
     return open_place(parsed_place(url_or_path), is_new_allowed=is_new_allowed)
 
 
 def open_place(place: StoreLocation, *, is_new_allowed: bool) -> Store:
-    """Open the store of a place; errors as :func:`open_store`."""
+    """Open the store at a location; errors as :func:`open_store`."""
     require_openable(place, is_new_allowed=is_new_allowed)
     engine = connected(place)
     try:

@@ -1,4 +1,4 @@
-"""Location of a knowledge base: a file, or a database on a server, without its password."""
+"""Location of a knowledge base: a file, or a server database shown without its password."""
 
 import os
 from dataclasses import dataclass
@@ -14,22 +14,22 @@ FORMS = "name a file, or sqlite:///FILE, or postgresql://USER@HOST/DATABASE"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StoreLocation:
-    """Location of a store."""
+    """Location of a knowledge base."""
 
     url: URL
     shown: str
-    """to people: no password in it"""
+    """Text shown to people, without a password."""
     file: str
-    """empty when it is a server's"""
+    """Path of the file; empty for a server."""
 
 
 def parsed_place(url_or_path: str) -> StoreLocation:
-    """The place that a person named.
+    """Parse the location that a user named.
 
     Raises
     ------
     StoreUnavailable
-        When it is none; what could be a password is not repeated.
+        When it is not a valid location; a possible password is not repeated.
     """
     if "://" not in url_or_path:
         return _file(url_or_path)
@@ -38,15 +38,15 @@ def parsed_place(url_or_path: str) -> StoreLocation:
     if kind == "sqlite":
         return _file(rest.removeprefix("/"))
     if kind not in {"postgresql", "postgres"}:
-        raise StoreUnavailable(f"{scheme}://…", reason=f"no database for this; {FORMS}")
+        raise StoreUnavailable(f"{scheme}://…", reason=f"unknown kind of database; {FORMS}")
     return _server(rest)
 
 
 def _file(name: str) -> StoreLocation:
-    """A file of SQLite."""
+    """Location of an SQLite file."""
     if not name or name == ":memory:" or "\0" in name:
-        raise StoreUnavailable(repr(name), reason=f"is no file name; {FORMS}")
-    # SQLite would take such a name for an address with options.
+        raise StoreUnavailable(repr(name), reason=f"is not a file name; {FORMS}")
+    # SQLite would interpret such a name as an address with options.
     path = f"./{name}" if name.startswith("file:") else name
     return StoreLocation(
         url=URL.create("sqlite+pysqlite", database=path), shown=name, file=path
@@ -54,10 +54,10 @@ def _file(name: str) -> StoreLocation:
 
 
 def _server(rest: str) -> StoreLocation:
-    """A database of PostgreSQL."""
+    """Location of a PostgreSQL database."""
     url = _server_url(rest)
     name = f"{url.username}@" if url.username else ""
-    # A socket, or the host, may be named behind the question mark, and so may a password.
+    # A socket or host, and also a password, may be given in the query string.
     host = url.host or ",".join(url.normalized_query.get("host", ()))
     port = f":{url.port}" if url.port else ""
     shown = f"postgresql://{name}{host}{port}/{url.database or ''}"
@@ -65,7 +65,7 @@ def _server(rest: str) -> StoreLocation:
 
 
 def _server_url(rest: str) -> URL:
-    """Address of a server, if it is beyond doubt which part is the password."""
+    """Parse the address of a server, if it is certain which part is the password."""
     try:
         address = urlsplit(f"postgresql://{rest}")
         beyond = address.path + address.query + address.fragment
@@ -75,15 +75,15 @@ def _server_url(rest: str) -> URL:
     except (ArgumentError, ValueError):
         pass
     reason = (
-        "is no address: postgresql://USER:PASSWORD@HOST:PORT/DATABASE, "
+        "is not a valid address; write postgresql://USER:PASSWORD@HOST:PORT/DATABASE, "
         "with %40 for @, %2F for /, %3A for :, %23 for # and %3F for ? in the password"
     )
-    # The cause would show what may be a password.
+    # The original error could reveal a password.
     raise StoreUnavailable("postgresql://…", reason=reason) from None
 
 
 def require_openable(place: StoreLocation, *, is_new_allowed: bool) -> None:
-    """Refuse a file that cannot be a store, before SQLite makes one.
+    """Refuse a file that cannot be a store, before SQLite creates one.
 
     Raises
     ------
@@ -95,9 +95,9 @@ def require_openable(place: StoreLocation, *, is_new_allowed: bool) -> None:
         return
     if os.path.exists(path):
         if not os.path.isfile(path):
-            raise StoreUnavailable(shown, reason=f"is no file; {FORMS}")
+            raise StoreUnavailable(shown, reason=f"is not a file; {FORMS}")
         return
     if not os.path.isdir(os.path.dirname(path) or "."):
-        raise StoreUnavailable(shown, reason="the folder does not exist; make it first")
+        raise StoreUnavailable(shown, reason="the folder does not exist; create it first")
     if not is_new_allowed:
         raise StoreUnavailable(shown, reason="there is no such file; check the name")

@@ -1,1 +1,1 @@
-"""Optimiser: the best feed within the limits of physics and machine."""
+"""Feed optimisation: the best feed within the limits of the cutting process and the machine."""

@@ -1,4 +1,4 @@
-"""Results of the optimiser: the advice for a workingstep, and the plan of a whole program."""
+"""Results of the optimiser: advice for each workingstep, and the plan for a whole program."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -22,116 +22,118 @@ class AdviceStatus(StrEnum):
 
     ADVISED = "advised"
     UNTOUCHED = "untouched"
-    """the program forbids it, or no feed is to be chosen; said why"""
+    """The feed stays as programmed: the program locks it, or nothing can be chosen (see
+    reason)."""
     INFEASIBLE = "infeasible"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LimitLoad:
-    """One limit at one setting."""
+    """Load of one limit at one setting, with its bound."""
 
     limit: Limit
     value: float
-    """canonical unit"""
+    """Load at the setting, in the canonical unit of the limit."""
     bound: float
-    """canonical unit, of the load times its safety factor"""
+    """Bound on the load times its safety factor, in the canonical unit of the limit."""
 
     @property
     def margin(self) -> float:
-        """Share of the bound that is left, after the safety factor; negative: passed."""
+        """Share of the bound left after the safety factor; negative when exceeded."""
         sign = 1.0 if self.limit.sense is BoundSide.AT_MOST else -1.0
         return sign * (self.bound - self.limit.safety_factor * self.value) / self.bound
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class EvaluatedSetting:
-    """A setting and what it does."""
+    """Setting of a cut with the resulting time, energy, forces and loads."""
 
     setting: Setting
     feed: float
-    """Feed, mm/s"""
+    """Feed along the path, mm/s."""
     time: float
-    """Time, s"""
+    """Machining time, s."""
     energy: float
-    """Energy, J"""
+    """Energy that the machine draws, J."""
     motor_power: float
-    """Motor power, W"""
+    """Power of the spindle motor, W."""
     cutting_force: float
-    """Cutting force, N, mean of a revolution; of a mill along its passes"""
+    """Cutting force averaged over a revolution, N; of a mill, along its passes."""
     thrust: float
-    """Thrust, N, along the axis, of a drill or of a mill that goes straight down; 0: of none"""
+    """Axial force of a drill or of a mill plunging straight down, N; 0 when neither occurs."""
     roughness: float | None
-    """Ra in mm; ``None`` where the feed does not describe it"""
+    """Roughness Ra, mm; ``None`` where it does not follow from the feed."""
     loads: tuple[LimitLoad, ...]
     plunge_loads: tuple[LimitLoad, ...] = ()
-    """at the plunge feed, on the ways down that have one of their own"""
+    """Loads of the limits at the plunge feed, on ways down that have a feed of their own."""
     ramp_force: float = 0.0
-    """N, mean of a revolution, of a mill down a ramp at the plunge feed; 0: of none"""
+    """Cutting force of a mill on a ramp at the plunge feed, revolution mean, N; 0: no ramp."""
     plunge_power: float = 0.0
-    """Plunge power, W of the motor at the plunge feed; 0: of none"""
+    """Motor power at the plunge feed, W; 0 when there is no plunge feed."""
 
     @property
     def plunge_feed(self) -> float | None:
-        """Feed on the way down into the material, mm/s; None: there is none of its own."""
+        """Feed on the way down into the material, mm/s; None without a plunge feed."""
         per_tooth = self.setting.plunge_feed
         return None if per_tooth is None else self.feed * per_tooth / self.setting.feed
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ParetoPoint:
-    """One point of the front between time, roughness and energy."""
+    """One point of the Pareto front between time, roughness and energy."""
 
     state: EvaluatedSetting
     roughness_bound: float | None
-    """Ra in mm that this point had to keep"""
+    """Roughness Ra that this point had to keep, mm; None: unbounded."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Advice:
-    """Advice for one workingstep."""
+    """Optimised setting of one workingstep, with the reasons and the state before and after."""
 
     workingstep: ResolvedWorkingstep
     tool: Tool
     programmed: Programmed
     status: AdviceStatus
     reason: str
-    """one sentence: what holds the feed, why it was not touched, or what conflicts"""
+    """One sentence: what limits the feed, why it was not changed, or which limits conflict."""
     cut: Cut | None
     before: EvaluatedSetting | None
     after: EvaluatedSetting | None
     force_factor: float = 1.0
-    """accepted correction of k_c that the loads were told with"""
+    """Accepted correction factor of k_c used for the loads."""
     active: LimitName | None = None
     active_words: str = ""
-    """the same as the user reads it"""
+    """Name of the active limit in words for the user."""
     saving_of_one_more: float = 0.0
-    """Saving of one more, s saved by one more step of the active limit"""
+    """Time or energy saved if the active limit rose by one step, s or J."""
     safety_factor: float = 1.0
-    """k_c at the quantile that is planned with, over the nominal one"""
+    """k_c at the planned quantile, relative to the nominal k_c."""
     saving_of_free_speed: float = 0.0
-    """s saved if the spindle speed were free, on the path of the advice"""
+    """Time saved if the spindle speed were free, on the advised path, s."""
     cost_of_safety: float = 0.0
-    """Cost of safety, s that planning with that quantile costs"""
+    """Extra time spent because of planning with the safety quantile, s."""
     deepest_first_time: float | None = None
-    """Deepest first time, s with the fewest passes"""
+    """Machining time with the fewest feasible passes, s."""
     prices: tuple[tuple[LimitName, float], ...] = ()
-    """relative fall of the cost for a relative rise of the bound"""
+    """Shadow price per limit: relative fall of the cost for a relative rise of the bound."""
     front: tuple[ParetoPoint, ...] = ()
     plunge_reason: str = ""
-    """one sentence: what holds the plunge feed; empty where there is none of its own"""
+    """What limits the plunge feed, one sentence; empty when there is no separate plunge
+    feed."""
     plunge_fault: str = ""
-    """why the tool may not go straight down here; empty where it may"""
+    """Why the tool must not plunge straight down here; empty when it may."""
     speed_fault: str = ""
-    """bound that a locked speed exceeds; empty where none"""
+    """Limit that a locked spindle speed exceeds; empty when none is exceeded."""
     holding_load: HoldingLoad | None = None
-    """what is asked of chuck, vice or clamps; None: nothing, or of a drill on a mill"""
+    """Load on the chuck, vice or clamps; None in air, or for a drill on a milling machine."""
     stability: Stability | None = None
-    """what is known of it; None: chatter is no matter of this cut's depth"""
+    """Chatter stability of the cut; None where chatter does not depend on its depth."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Plan:
-    """Advice for a program."""
+    """Optimised feeds for a program: one advice per workingstep."""
 
     program: str
     mode: Mode
@@ -140,16 +142,16 @@ class Plan:
     advices: tuple[Advice, ...]
     findings: tuple[Finding, ...]
     safety: float = USUAL_QUANTILE
-    """quantile of k_c at which loads keep their bounds"""
+    """Quantile of k_c at which the loads keep their bounds."""
 
     @property
     def is_infeasible(self) -> bool:
-        """Whether some workingstep has no feasible setting."""
+        """Whether any workingstep has no feasible setting."""
         return any(advice.status is AdviceStatus.INFEASIBLE for advice in self.advices)
 
     @property
     def faults(self) -> tuple[str, ...]:
-        """A sentence for each plunge of a tool that cannot, and each speed that is too fast."""
+        """One sentence for each forbidden plunge and each locked speed that is too fast."""
         return tuple(
             f"{advice.workingstep.id}: {fault}"
             for advice in self.advices
@@ -159,27 +161,27 @@ class Plan:
 
     @property
     def time_before(self) -> float:
-        """Seconds as programmed, of the workingsteps whose time is known."""
+        """Machining time as programmed, in seconds, of the workingsteps whose time is known."""
         return sum(advice.before.time for advice in self.advices if advice.before)
 
     @property
     def time_after(self) -> float:
-        """Seconds as advised."""
+        """Machining time as advised, in seconds."""
         return sum(state.time for state in self._final)
 
     @property
     def energy_before(self) -> float:
-        """Joules as programmed, of the workingsteps whose energy is known."""
+        """Energy as programmed, in joules, of the workingsteps whose energy is known."""
         return sum(advice.before.energy for advice in self.advices if advice.before)
 
     @property
     def energy_after(self) -> float:
-        """Joules as advised."""
+        """Energy as advised, in joules."""
         return sum(state.energy for state in self._final)
 
     @property
     def left_out(self) -> str:
-        """Remarks on what the totals leave out."""
+        """Short text naming what the totals leave out."""
         unknown = sum(advice.before is None for advice in self.advices)
         rest = "tool changes and moves between workingsteps"
         return f"{unknown} of the workingsteps (no feed is chosen), {rest}" if unknown else rest
@@ -191,7 +193,7 @@ class Plan:
 
 
 def tightest(loads: Sequence[LimitLoad]) -> list[LimitLoad]:
-    """One load for each limit and sense: the one that is nearest to its bound."""
+    """Return the load nearest to its bound for each limit and sense."""
     worst: dict[tuple[LimitName, BoundSide], LimitLoad] = {}
     for load in loads:
         key = (load.limit.name, load.limit.sense)

@@ -1,4 +1,4 @@
-"""Work-holding of a workingstep; without one, the loads that the setup must hold."""
+"""Work-holding of each workingstep, and notes on the loads of setups without work-holding."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
@@ -25,12 +25,12 @@ from stepnc_model.program import Program, ResolvedWorkingstep
 def with_holding(
     at: CuttingConditions, program: Program, step: ResolvedWorkingstep
 ) -> tuple[CuttingConditions, list[Finding]]:
-    """Conditions with what holds the workpiece, and what was assumed of its tolerances.
+    """Add the work-holding and the permitted bar deflection to the cutting conditions.
 
     Raises
     ------
     LibraryError
-        When neither a chuck's table nor the program says where it grips.
+        When neither the chuck's table nor the program states where the chuck grips.
     """
     machine = at.machine
     if machine.only_stated_limits:
@@ -49,7 +49,7 @@ def with_holding(
 def holding_findings(
     program: Program, advices: Sequence[Advice], machine: Machine
 ) -> list[Finding]:
-    """A note for each setup without work-holding, and a warning for tables of no setup."""
+    """Notes on setups without work-holding, and warnings on tables for unknown setups."""
     found = list(_unknown_setups(program, machine))
     if machine.only_stated_limits:
         return found
@@ -60,41 +60,41 @@ def holding_findings(
     for setup, held in by_setup.items():
         if holding_of(program, held[0].workingstep.setup, machine) is None:
             of = f"'{setup_id(program, held[0].workingstep.setup)}'" if setup else "the program"
-            text = f"no [[holding]] bounds the work-holding of {of}: {_asked(program, held)}"
+            text = f"no [[holding]] table for {of}: {_asked(program, held)}"
             ref = setup if setup is not None else held[0].workingstep.ref
             found.append(program.finding(Severity.NOTE, text, ref))
     return found
 
 
 def _unknown_setups(program: Program, machine: Machine) -> Iterator[Finding]:
-    """Tables that name a setup which the program does not have."""
+    """Warn about work-holding tables that name a setup which the program does not have."""
     setups = {step.setup: None for step in program.workingsteps if step.setup is not None}
     known = [setup_id(program, setup) for setup in setups]
     for holding in machine.holdings:
         if holding.setup and holding.setup.casefold() not in map(str.casefold, known):
             names = ", ".join(f"'{name}'" for name in known) or "none"
-            text = f"work-holding of setup '{holding.setup}': the program's setups are {names}"
+            text = f"work-holding of unknown setup '{holding.setup}'; the program has: {names}"
             yield Finding(severity=Severity.WARNING, message=text)
 
 
 def _asked(program: Program, held: Sequence[Advice]) -> str:
-    """The greatest loads of a setup, with the workingsteps that they come from."""
+    """Describe the greatest work-holding loads of a setup and their workingsteps."""
     first = held[0]
     if first.cut is None or not first.cut.kind.is_turned:
         across = _greatest(held, lambda load: load.force, "N across the spindle")
         lift = _greatest(held, lambda load: load.lift, "N upwards")
-        return f"a vice or clamps are asked to hold {across}{lift and ' and ' + lift}"
+        return f"the vice or clamps must hold {across}{lift and ' and ' + lift}"
     torque = _greatest(held, lambda load: 1e-3 * load.torque, "N·m about the axis")
     moment = _greatest(held, lambda load: 1e-3 * load.moment, "N·m of tilting about the jaws")
     grip = grip_of(program, first.workingstep, None)
     return (
-        f"the chuck is asked to hold {torque}{moment and ' and ' + moment}"
+        f"the chuck must hold {torque}{moment and ' and ' + moment}"
         f"{'' if grip is None else '; ' + _told(grip)}"
     )
 
 
 def _greatest(held: Sequence[Advice], of: Callable[[HoldingLoad], float], unit: str) -> str:
-    """The greatest of one load; empty where there is none."""
+    """Describe the greatest value of one work-holding load; empty when it is zero."""
     loads = [
         (of(advice.holding_load), advice.workingstep.id)
         for advice in held
@@ -105,9 +105,9 @@ def _greatest(held: Sequence[Advice], of: Callable[[HoldingLoad], float], unit: 
 
 
 def _told(grip: BarGrip) -> str:
-    """Position of the chuck's jaws as the program states it."""
+    """Describe the position of the chuck's jaws as stated by the program."""
     centre = ", with a tailstock" if grip.has_tailstock else ""
     return (
-        f"the program has it grip {grip.size.length:.4g} mm on Ø{grip.size.diameter:.4g} mm, "
-        f"{grip.overhang:.4g} mm stand out (L/D {grip.slenderness:.2g}){centre}"
+        f"by the program it grips {grip.size.length:.4g} mm on Ø{grip.size.diameter:.4g} mm, "
+        f"overhang {grip.overhang:.4g} mm (L/D {grip.slenderness:.2g}){centre}"
     )

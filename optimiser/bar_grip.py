@@ -1,9 +1,9 @@
-"""Work-holding of a setup: from the user's table, else from the program.
+"""Work-holding of a setup, taken from the user's table or else from the program.
 
 The program gives the bar and the points where it is clamped (ISO 14649-10,
-``clamping_positions``); a chuck is taken to grip from the one in front to the bar's end, in its
-whole diameter. The machine functions of an operation say whether a tailstock or a rest helps.
-Units mm.
+``clamping_positions``). A chuck is assumed to grip the full diameter of the bar, from the
+frontmost clamping point to its end. The machine functions of an operation state whether a
+tailstock or a rest supports the bar. Units: mm.
 """
 
 from dataclasses import dataclass
@@ -26,47 +26,47 @@ from stepnc_model.toolpath.task import clamps_of, stock_of
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BarGrip:
-    """Grip of a bar, along z of the setup."""
+    """Where a chuck grips a bar, along z of the setup."""
 
     size: GripSize
     face: float
-    """z where the jaws end"""
+    """z of the outer end of the jaws, mm."""
     front: float
-    """z of the bar's free end, as it was bought"""
+    """z of the free end of the bar as bought, mm."""
     has_tailstock: bool = False
     has_rest: bool = False
-    """whether a steady or a follow rest supports the bar as well"""
+    """Whether a steady rest or a follow rest also supports the bar."""
 
     @property
     def overhang(self) -> float:
-        """Length of the bar in front of the jaws."""
+        """Overhang: length of the bar in front of the jaws, mm."""
         return max(0.0, self.front - self.face)
 
     @property
     def slenderness(self) -> float:
-        """L/D of the bar as it is clamped."""
+        """Slenderness L/D of the clamped bar."""
         return self.overhang / self.size.diameter
 
 
 def holding_of(program: Program, setup: Ref[Setup] | None, machine: Machine) -> Holding | None:
-    """Work-holding of a setup: the table that names it, else the one that names no setup."""
+    """Work-holding of a setup: the table that names it, else the table without a setup name."""
     name = setup_id(program, setup).casefold()
     found = {holding.setup.casefold(): holding for holding in machine.holdings}
     return found.get(name) or found.get("")
 
 
 def setup_id(program: Program, setup: Ref[Setup] | None) -> str:
-    """Id of a setup; empty where there is none."""
+    """Return the id of a setup; empty without a setup."""
     return str(program.get(setup).its_id).strip() if setup is not None else ""
 
 
 def grip_of(program: Program, step: ResolvedWorkingstep, chuck: Chuck | None) -> BarGrip | None:
-    """Grip of a workingstep's bar; None where nothing states it and no chuck is given.
+    """Return where the bar of a workingstep is gripped; None if unknown and no chuck is given.
 
     Raises
     ------
     LibraryError
-        When a chuck is given, and neither its table nor the program says where it grips.
+        When a chuck is given, and neither its table nor the program states where it grips.
     """
     stock = _stock(program, step)
     told = chuck or Chuck(clamping_force=0.0, friction=0.0, source="")
@@ -93,20 +93,20 @@ def grip_of(program: Program, step: ResolvedWorkingstep, chuck: Chuck | None) ->
         size=GripSize(diameter=diameter, length=length),
         face=face,
         front=stock.high[2],
-        # Nobody faces the end that a centre stands in.
+        # A tailstock centre occupies the end face, so a facing operation cannot use it.
         has_tailstock=has_tailstock and not isinstance(step.operation, Facing),
         has_rest=bool(functions and (functions.steady_rest or functions.follow_rest)),
     )
 
 
 def _missing(program: Program, key: str) -> LibraryError:
-    """Names of the values that are missing to judge a chuck."""
-    text = f"missing, and the bar and the clamping positions of {program.name} do not tell it"
+    """Error for a chuck table whose grip cannot be completed from the program."""
+    text = f"missing; the bar and clamping positions of {program.name} do not state it"
     return LibraryError(text, path="", key=f"holding.{key}")
 
 
 def _stock(program: Program, step: ResolvedWorkingstep) -> Stock | None:
-    """The bar as it was bought; None where it cannot be read."""
+    """Return the bar as bought, or None when it cannot be read."""
     try:
         return stock_of(program, step.setup)
     except ValueError:
@@ -114,7 +114,7 @@ def _stock(program: Program, step: ResolvedWorkingstep) -> Stock | None:
 
 
 def _functions(program: Program, step: ResolvedWorkingstep) -> TurningMachineFunctions | None:
-    """Machine functions of an operation, if it has those of a lathe."""
+    """Return the turning machine functions of an operation, or None."""
     ref = getattr(step.operation, "its_machine_functions", None)
     found = program.model.entity(int(ref)) if ref is not None else None
     return found if isinstance(found, TurningMachineFunctions) else None

@@ -1,9 +1,9 @@
-"""The feed per tooth of a catalogue at another engagement than its own.
+"""Catalogue feed per tooth, adapted to the engagement of the cut.
 
-Catalogues mean their feeds for a usual width of cut. In a narrower one the chip is thinner than
-the feed, which may rise until the chip is as thick as the catalogue means it; in a wider one
-chips stay longer in the cut and leave a slot badly, and the feed falls, in a full slot to the
-catalogue's own factor.
+Catalogue feeds apply to a usual width of cut. In a narrower cut the chip is thinner than the
+feed, which may rise until the chip is as thick as the catalogue intends. In a wider cut the
+chips stay longer in the cut and evacuate badly from a slot, so the feed falls, in a full slot
+to the slot factor of the catalogue.
 """
 
 from optimiser.conditions import CuttingConditions
@@ -12,33 +12,41 @@ from simulator.physics.engagement import conventional
 from simulator.spec import CuttingMaterial, FeedWindow, ToolGrade, ToolKind
 
 GREATEST_THINNING = 4.0
-"""factor on the catalogue's feed: beyond, a wall that comes nearer is met at many times the
-chip that the edge bears; customary bound of CAM systems"""
+"""Greatest factor on the catalogue feed, a customary bound of CAM systems.
+
+With more, a wall that comes closer would give many times the chip that the edge bears.
+"""
 
 FINISH_NOSE_FEED = 0.5
-"""greatest feed per revolution over the nose radius where the surface stays: a radius of two to
-three feeds is recommended, Mitsubishi Materials, general catalogue 2020-2021, technical data"""
+"""Greatest feed per revolution over the nose radius for finishing.
+
+A radius of two to three feeds is recommended: Mitsubishi Materials, general catalogue
+2020-2021, technical data.
+"""
 
 ROUGH_NOSE_FEED = 2.0 / 3.0
-"""the same where it does not, for the strength of the nose: customary; 1/1.6 of strong inserts
-(C, S) and 1/2.5 of weak ones (D, T) are printed too"""
+"""Greatest feed per revolution over the nose radius for roughing.
+
+A customary bound for the strength of the nose; 1/1.6 for strong inserts (C, S) and 1/2.5 for
+weak ones (D, T) are printed too.
+"""
 
 
 def _factor(cut: Cut, at: CuttingConditions) -> float:
-    """Factor on the catalogue's feed per tooth by the engagement."""
+    """Factor on the catalogue feed per tooth for the engagement; 1 without a grade."""
     if at.grade is None or at.machine.only_stated_limits:
         return 1.0
     return engagement_factor(cut, at.grade)
 
 
 def feed_origin(cut: Cut, at: CuttingConditions) -> str:
-    """Note on how the engagement changed the catalogue's feed; empty where it did not."""
+    """Describe how the engagement changed the catalogue feed; empty if it did not."""
     factor = _factor(cut, at)
-    return "" if factor == 1.0 else f"{factor:.3g} of the catalogue's at this engagement"
+    return "" if factor == 1.0 else f"{factor:.3g} × the catalogue value at this engagement"
 
 
 def least_feed(cut: Cut, at: CuttingConditions) -> float | None:
-    """Least feed per tooth that material or grade recommend, mm: below it edges rub."""
+    """Least recommended feed per tooth, mm; below it the edges rub. None if not recommended."""
     bounds: list[float | None] = []
     if at.grade is not None:
         teeth = 1 if cut.kind is CutKind.MILLING else cut.tool.teeth
@@ -55,18 +63,18 @@ def least_feed(cut: Cut, at: CuttingConditions) -> float | None:
 
 
 def greatest_feed(cut: Cut, at: CuttingConditions) -> float | None:
-    """Greatest feed per tooth that material and grade allow at this engagement, mm."""
+    """Greatest feed per tooth for the material and grade at this engagement, mm."""
     feed = catalogue_feed(cut, at)
     return None if feed is None else feed * _factor(cut, at)
 
 
 def catalogue_feed(cut: Cut, at: CuttingConditions) -> float | None:
-    """Greatest feed per tooth that material and grade allow at their own engagement, mm."""
+    """Greatest feed per tooth for the material and grade at their reference engagement, mm."""
     bounds = [at.material.max_feed_per_tooth]
     grade = at.grade
     if grade is not None:
         if cut.kind is CutKind.TURNING and cut.corner_radius > 0.0:
-            # A wiper makes the surface without the nose, whose strength alone counts then.
+            # With a wiper the nose does not form the surface: only its strength counts.
             is_finish = cut.is_finishing and not cut.tool.has_wiper
             share = FINISH_NOSE_FEED if is_finish else ROUGH_NOSE_FEED
             bounds.append(share * cut.corner_radius)
@@ -84,7 +92,7 @@ def catalogue_feed(cut: Cut, at: CuttingConditions) -> float | None:
 
 
 def engagement_factor(cut: Cut, grade: ToolGrade) -> float:
-    """Factor on the feed per tooth of a catalogue where the path meets most; 1: no data."""
+    """Factor on the catalogue feed per tooth at the widest engagement; 1 without data."""
     window = grade.feed_window
     if cut.kind is not CutKind.MILLING or window is None or cut.engagement is None:
         return 1.0
@@ -94,7 +102,7 @@ def engagement_factor(cut: Cut, grade: ToolGrade) -> float:
 
 
 def feed_factor(width_ratio: float, sine: float, window: FeedWindow) -> float:
-    """Factor on the feed per tooth at an engagement.
+    """Factor on the catalogue feed per tooth at a given width and chip sine.
 
     ``h(x_ref)/h`` with ``h = f_z·sin φ`` at the thickest chip, at most 4; beyond the width of
     the window linear in a_e/D to the factor of a slot.

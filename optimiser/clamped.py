@@ -1,4 +1,4 @@
-"""Remaining stock of each setup, and the contact of a path with it."""
+"""Remaining stock of each setup, and simulated contact of tool paths with it."""
 
 from dataclasses import dataclass
 from math import sqrt
@@ -23,51 +23,51 @@ from stepnc_model.tool import tool_of
 from stepnc_model.toolpath.task import stock_of
 
 USUAL_CELLS = 200_000
-"""of a map: fewer than the virtual machine's, for most sections do not come from it"""
+"""Usual number of cells of a stock map, fewer than the virtual machine uses."""
 
 CELLS_PER_TOOL = 16.0
-"""least number of cells over the diameter of the smallest tool"""
+"""Least number of cells across the diameter of the smallest tool."""
 
 StockMap = MillingStock | TurningStock
 
 Change = StockPatch | BarRadii
-"""what a path makes of a stock"""
+"""Change that a path makes to a stock."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrialContacts:
-    """Contacts of a path with a stock that is left unchanged."""
+    """Simulated contacts of a path with a stock that is left unchanged."""
 
     met: PathContacts | None = None
-    """None where it is not known"""
+    """Contacts along the path; None when they are not known."""
     why: str = ""
-    """it is not known"""
+    """Reason why the contacts are not known; empty when they are."""
     change: Change | None = None
-    """what the path makes of the stock; None: nothing"""
+    """Change that the path would make to the stock; None when it changes nothing."""
     trial: PathTrial | None = None
-    """the same of a mill, with what it found"""
+    """Milling trial with its contacts and the changed cells; None for turning."""
 
 
 @dataclass(frozen=True, slots=True)
 class StockPlace:
-    """Stock that a workingstep cuts."""
+    """Key of a stock map: setup and process of the workingsteps that cut it."""
 
     setup: Ref[Setup] | None
     is_turning: bool
 
 
 class ClampedStocks:
-    """Stocks of a program by setup. Running state."""
+    """Stock maps of a program, one per setup and process (mutable state)."""
 
     def __init__(self, program: Program, machine: Machine) -> None:
         self.program = program
         self.machine = machine
         self.stocks: dict[StockPlace, StockMap | None] = {}
         self._changes: dict[StockPlace, Change] = {}
-        """not made yet: another path may be asked for"""
+        """Pending changes by stock, applied when the next workingstep asks for its stock."""
 
     def before(self, step: ResolvedWorkingstep) -> StockMap | None:
-        """Stock before a workingstep; None where no stock is known."""
+        """Return the stock as it is before a workingstep; None when the stock is unknown."""
         place = self.place(step)
         if place not in self.stocks:
             self.stocks[place] = self._raw(place)
@@ -80,19 +80,19 @@ class ClampedStocks:
         return stock
 
     def leave(self, step: ResolvedWorkingstep, change: Change | None) -> None:
-        """Change the stock as one path of a workingstep does, instead of any other of it."""
+        """Record the change of a workingstep, replacing any pending change of its stock."""
         place = self.place(step)
         self._changes.pop(place, None)
         if change is not None:
             self._changes[place] = change
 
     def place(self, step: ResolvedWorkingstep) -> StockPlace:
-        """Setup and process of a workingstep, which select its stock."""
+        """Return the setup and process of a workingstep, which select its stock."""
         is_turned = isinstance(step.operation, TurningMachiningOperation)
         return StockPlace(step.setup, is_turned or self.machine.kind is MachineKind.LATHE)
 
     def _raw(self, place: StockPlace) -> StockMap | None:
-        """The stock as it was bought."""
+        """Build the stock map of the raw stock; None when the stock is unknown."""
         try:
             raw = stock_of(self.program, place.setup)
             if raw is None:
@@ -104,7 +104,7 @@ class ClampedStocks:
             return None
 
     def _diameters(self) -> list[float]:
-        """Of the tools that rotate and can be used, mm."""
+        """Diameters of the usable rotating tools of the program, mm."""
         found = []
         for tool in {step.tool_ref for step in self.program.workingsteps}:
             try:
@@ -117,11 +117,11 @@ class ClampedStocks:
 def met_by(
     program: Program, step: ResolvedWorkingstep, run: ToolPathRun, stock: StockMap | None
 ) -> TrialContacts:
-    """Contacts of a tool with a stock, and the changed stock; else the reason why not."""
+    """Simulate a tool path in a stock; return its contacts, or why there are none."""
     change: Change
     trial = None
     if stock is None:
-        return TrialContacts(why="no stock is known")
+        return TrialContacts(why="the stock is not known")
     try:
         shape = shape_of(program, step.tool_ref)
         if shape is None:
@@ -141,7 +141,7 @@ def met_by(
 
 
 def _cell(raw: Stock, diameters: list[float]) -> float:
-    """Cell of a map that tells engagements, mm."""
+    """Cell size of a stock map fine enough for engagements, mm."""
     x, y = raw.high[0] - raw.low[0], raw.high[1] - raw.low[1]
     wanted = min(sqrt(x * y / USUAL_CELLS), min(diameters, default=x) / CELLS_PER_TOOL)
     return max(wanted, sqrt(x * y / MOST_CELLS))

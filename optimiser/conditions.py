@@ -1,4 +1,4 @@
-"""Conditions of a cut: machine, material, tool grade and permitted values."""
+"""Conditions of a cut: machine, material, tool grade, work-holding and permitted values."""
 
 from dataclasses import dataclass
 
@@ -7,42 +7,44 @@ from simulator.spec import CuttingMaterial, Machine, ToolGrade, WorkMaterial
 from simulator.work_holding import Holding
 
 GREATEST_DEFLECTION = 0.1
-"""mm at the tip of an end mill, whatever it leaves: beyond it teeth share the work unevenly;
-customary"""
+"""Greatest permitted deflection at the tip of any end mill, mm (customary).
+
+Beyond it the teeth share the work unevenly.
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PermittedDeflection:
-    """Permitted deflection of an end mill."""
+    """Permitted deflection of an end mill or bar, with its origin."""
 
     value: float = GREATEST_DEFLECTION
-    """Value, mm at its tip"""
+    """Permitted deflection, mm."""
     origin: str = ""
-    """where the value comes from, as a sentence goes on; empty: custom"""
+    """Origin of the value, as the end of a sentence; empty for the customary value."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CuttingConditions:
-    """Conditions of a cut: machine, material, tool grade and permitted values."""
+    """Machine, material, tool grade, work-holding and permitted values of one cut."""
 
     machine: Machine
     material: WorkMaterial
     cutting_material: CuttingMaterial
     grade: ToolGrade | None
-    """``None``: the material carries no tool limits"""
+    """Grade of the tool; ``None`` when the material has no tool limits."""
     roughness: float | None
-    """Ra in mm that this surface must keep"""
+    """Roughness Ra that this surface must keep, mm; None: no requirement."""
     deflection: PermittedDeflection = PermittedDeflection()
-    """what tolerance or allowance of its wall leaves to an end mill"""
+    """Permitted deflection of an end mill from the tolerance or allowance of its wall."""
     force_factor: float = 1.0
-    """accepted correction of k_c from measurements"""
+    """Accepted correction factor of k_c from measurements."""
     centre_cutting: bool | None = None
-    """whether the edges of a mill reach its axis; None: unknown"""
+    """Whether the end edges of a mill reach its axis; None when unknown."""
     safety_factor: float = 1.0
-    """k_c at the quantile that is planned with, over the nominal one"""
+    """k_c at the planned quantile, relative to the nominal k_c."""
     holding: Holding | None = None
-    """what holds the workpiece; None: nothing of it is bounded"""
+    """Chuck, vice or clamps that hold the workpiece; None: no holding limit applies."""
     grip: BarGrip | None = None
-    """where a bar is held; None: not turned, or nothing says it"""
+    """Where the bar is gripped; None when not turned or not stated."""
     bar_deflection: PermittedDeflection | None = None
-    """how far a bar may bend; None: as far as it does"""
+    """Permitted bending of a bar; None when it is not limited."""

@@ -1,7 +1,7 @@
-"""One cut as the limits see it: geometry, tool and what is programmed, for one workingstep.
+"""Geometry, tool and programmed setting of the cut of one workingstep.
 
-Whoever makes a :class:`Cut` (an estimate from the feature, or a tool path with the stock) knows
-the part; the limits know the physics; the mathematics knows neither. Units: mm, rad, s, rev/s.
+The maker of a :class:`Cut` (an estimate from the feature, or a tool path with the stock) knows
+the part; the limits know the physics; the solver knows neither. Units: mm, rad, s, rev/s.
 """
 
 from dataclasses import dataclass, replace
@@ -16,7 +16,7 @@ from simulator.spec import ToolKind
 from stepnc_model.tool import Tool
 
 LEAST_VOLUME = 1e-3
-"""mm³; less is rounding"""
+"""Least removed volume that counts as cutting, mm³; less is rounding."""
 
 
 class CutKind(StrEnum):
@@ -29,165 +29,170 @@ class CutKind(StrEnum):
 
     @property
     def is_turned(self) -> bool:
-        """Whether the workpiece turns, not the tool."""
+        """Whether the workpiece rotates instead of the tool."""
         return self in {CutKind.TURNING, CutKind.GROOVING}
 
 
 class Texture(StrEnum):
-    """Texture that the feed leaves on the finished surface."""
+    """Process that forms the finished surface, which selects the roughness model."""
 
     CORNER_PER_REVOLUTION = "corner, one high tooth"
-    """a turning insert, or the highest insert of a face mill"""
+    """Corner of a turning insert, or of the highest insert of a face mill."""
     CORNER_PER_TOOTH = "corner, all teeth equal"
-    """the corner of a solid end mill"""
+    """Corner of a solid end mill."""
     WALL = "wall"
-    """the side of an end mill"""
+    """Side of an end mill."""
     NONE = "not described by the feed"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CriticalPlace:
-    """A place of the path where a milling cutter cuts hard."""
+    """Place of the path where a milling load is greatest."""
 
     engagement: Engagement
     depth_share: float = 1.0
-    """real depth over that of a pass"""
+    """Real depth of cut over the nominal depth of a pass."""
     fill: float = 1.0
-    """section of the cut over that of the engagement"""
+    """Section of the cut over the section of the full engagement arc."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlungeEngagement:
-    """Engagement of a mill on its ways down into the material, with a feed of their own."""
+    """Engagement of a mill on ways down into the material that may have a plunge feed."""
 
     drilled: "tuple[Cut, ...]" = ()
-    """straight down, as a drill would make it: where thrust and where power is greatest"""
+    """Straight plunges modelled as drilling: those with the greatest thrust and power."""
     ramp: "Cut | None" = None
-    """down a ramp, a helix or to and fro"""
+    """Milling engagement on a ramp, helix or zigzag; None without one."""
     sine: float = 0.0
-    """greatest rise of a ramp over its length"""
+    """Sine of the steepest ramp angle: descent over path length."""
     reaches_axis: bool = False
-    """whether material under the axis is met straight down"""
+    """Whether a straight plunge meets material under the tool axis."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ReachedLoads:
-    """Share of the greatest loads that the axes let happen; no limit counts on it.
+    """Share of the greatest loads that remains when the axes are too slow for the feed.
 
-    Axes that are slower at the hardest place thin its chip.
+    No limit relies on it. Axes that are slower at the hardest place thin the chip there.
     """
 
     force: float = 1.0
     power: float = 1.0
     wall: float = 1.0
-    """Wall of the force normal to the wall"""
+    """Share of the greatest force normal to the wall."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TurnedBar:
-    """Shape that a turning path leaves of its bar, along z of the setup."""
+    """Shape of the bar after a turning path, and where it was cut, along z of the setup."""
 
     sections: tuple[BarSection, ...]
-    """Sections of the bar as it is left, from the chuck's end on; mm from that end"""
+    """Sections of the remaining bar from the chuck end on, mm from that end."""
     back: float
-    """Back, mm, z of the chuck's end"""
+    """z of the chuck end of the bar, mm."""
     low: float
-    """Low, mm, z of the cut that is nearest to the chuck"""
+    """z of the cut nearest to the chuck, mm."""
     high: float
-    """High, mm, z of the cut that is farthest from it"""
+    """z of the cut farthest from the chuck, mm."""
     speed_ratio: float = 1.0
-    """spindle speed where the cut is narrowest over that where the bar is widest …"""
+    """Spindle speed at the smallest cut diameter over that at the largest."""
     greatest_speed: float = inf
-    """… which the spindle does not pass, rev/s"""
+    """Greatest spindle speed that the path reaches, rev/s."""
 
     def fastest(self, speed: float) -> float:
-        """Greatest spindle speed in the cut, rev/s, of that where the bar is widest."""
+        """Greatest spindle speed in the cut, rev/s, for a speed at the largest diameter."""
         return max(speed, min(speed * self.speed_ratio, self.greatest_speed))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cut:
-    """Cut of one workingstep."""
+    """Cut of one workingstep: geometry, tool, programmed setting and hardest places."""
 
     kind: CutKind
     tool: Tool
     tool_kind: ToolKind
     diameter: float
-    """mm at which the cutting speed is taken: of the tool, or mean one of the workpiece"""
+    """Diameter at which the cutting speed is taken, mm: of the tool, or mean of the
+    workpiece."""
     programmed: Setting
     length: float
-    """Length, mm at cutting feed in one pass, approach and overrun included"""
+    """Length at cutting feed in one pass, approach and overrun included, mm."""
     total_depth: float
-    """Total depth, mm to remove, all passes together"""
+    """Total depth to remove in all passes together, mm."""
     is_depth_free: bool
-    """whether another number of passes would make the same part"""
+    """Whether a different number of passes would make the same part."""
     engagement: Engagement | None = None
-    """Engagement of a milling cutter"""
+    """Engagement arc of a milling cutter where its mean force is greatest."""
     radial_width: float = 0.0
-    """a_e of a milling cutter, width of a grooving insert"""
+    """Radial width a_e of a milling cutter, or width of a grooving insert, mm."""
     depth_share: float = 1.0
-    """greatest real depth over that of a pass: more where stock is left above"""
+    """Greatest real depth over the nominal depth of a pass; above 1 where stock was left."""
     fill: float = 1.0
-    """section of the cut over that of the engagement"""
+    """Section of the cut over the section of the full engagement arc."""
     chip_ratio: float | None = None
-    """mean chip over feed per tooth; None: by the engagement, or a turning tool's edge"""
+    """Mean chip thickness over feed per tooth; None: derived from engagement or edge angle."""
     width_ratio: float | None = None
-    """greatest a_e/D along the path; None: where a milling cutter is engaged most"""
+    """Greatest a_e/D along the path; None: taken from the engagement."""
     chip_sine: float | None = None
-    """greatest chip thickness over feed per tooth along the path; likewise"""
+    """Greatest chip thickness over feed per tooth along the path; None: from the engagement."""
     shank: CriticalPlace | None = None
-    """where the force across an end mill's axis is greatest; None: where it is engaged most"""
+    """Place of the greatest force across an end mill's axis; None: the greatest engagement."""
     wall: CriticalPlace | None = None
-    """where the force normal to the wall that it makes is; None: where it is engaged most"""
+    """Place of the greatest force normal to the wall; None: the greatest engagement."""
     helix_angle: float = 0.0
-    """Helix angle, rad, of a milling cutter's edges"""
+    """Helix angle of a milling cutter's edges, rad."""
     power_diameter: float | None = None
-    """mm at which the force, at the spindle speed of the cut, takes the greatest power: the
-    spindle may follow the tip, and the force acts in the middle of the cut; None: its own"""
+    """Diameter at which the force takes the greatest power at the cut's spindle speed, mm.
+
+    The spindle may follow the tip while the force acts in the middle of the cut. None: the
+    diameter on which the force acts.
+    """
     power_speed: float = 1.0
-    """spindle speed there over that of the cut"""
+    """Spindle speed at the place of greatest power over the spindle speed of the cut."""
     thickest: float = 1.0
-    """greatest chip of a drill over that of the feed: a strategy may slow the spindle alone"""
+    """Thickest chip of a drill over the nominal chip; above 1 where only the spindle slows."""
     reached: ReachedLoads = ReachedLoads()
     load_share: float = 1.0
-    """mean load over the length at cutting feed, air included, over the greatest"""
+    """Mean load over the length at cutting feed, air included, relative to the greatest
+    load."""
     previous_diameter: float = 0.0
-    """Previous diameter, mm, of the hole before a drill, reamer or boring bar"""
+    """Diameter of the hole before a drill, reamer or boring bar, mm."""
     widest_drilled: float | None = None
-    """mm, of the hole that the lips of a drill make where they cut most; None: its own"""
+    """Diameter cut by the lips of a drill where they cut most, mm; None: the tool diameter."""
     link_length: float = 0.0
-    """Link length, mm at rapid in one pass"""
+    """Length at rapid in one pass, mm."""
     rest_time: float = 0.0
-    """s in one pass beside the length at cutting feed: ramps, rapids, own feeds, waits"""
+    """Time per pass not at cutting feed, s: ramps, rapids, moves with own feeds, waits."""
     air_length: float = 0.0
-    """Air length, mm of the length that removes nothing"""
+    """Part of the cutting-feed length that removes nothing, mm."""
     volume: float | None = None
-    """Volume, mm³ that are removed; None: not known"""
+    """Removed volume, mm³; None when not known."""
     texture: Texture = Texture.NONE
     corner_radius: float = 0.0
-    """Corner radius, mm, the radius that marks the surface"""
+    """Radius that forms the surface, mm."""
     parallel_land: float = 0.0
-    """Parallel land, mm of edge that smooths the surface instead; 0: none"""
+    """Length of the parallel land that smooths the surface, mm; 0: none."""
     is_fed_inwards: bool = False
-    """an insert is fed towards the axis: its feed force bends the bar, not its back force"""
+    """Whether an insert is fed towards the axis, so that its feed force bends the bar."""
     turned: TurnedBar | None = None
-    """what a turning path makes of the bar; None: not known"""
+    """Shape of the bar after a turning path; None when not known."""
     is_finishing: bool = False
-    """this workingstep leaves the surface"""
+    """Whether this workingstep leaves the final surface."""
     is_finish_operation: bool = False
-    """the operation is a finish by its kind, not only the last on its feature"""
+    """Whether the operation is a finishing operation by its type."""
     depth_bound: float | None = None
-    """greatest depth of one pass that the tool allows, mm"""
+    """Greatest depth of one pass that the tool allows, mm."""
     floor: "Cut | None" = None
-    """the floor that is swept once, at its own depth, by an operation that cuts walls"""
+    """Floor that a wall-cutting operation sweeps once, at its own depth."""
     plunge: "Cut | None" = None
-    """what a mill drills where it goes straight down into the solid at the feed of the cut"""
+    """Straight plunge into solid material at the feed of the cut, modelled as drilling."""
     way_in: PlungeEngagement | None = None
-    """ways down that a feed of their own may run; None: none meets material"""
+    """Ways down that may have a plunge feed; None when none of them meets material."""
 
     @property
     def bare(self) -> "Cut":
-        """The same without what was met along its passes, and without a surface to leave."""
+        """Copy without the engagement met along the passes and without a finished surface."""
         return replace(
             self,
             engagement=None,
@@ -205,13 +210,13 @@ class Cut:
 
     @property
     def as_drill(self) -> "Cut":
-        """The mill as a drill of its diameter with flat lips, in the solid."""
+        """Copy of this cut as a flat-lipped drill of the mill's diameter in solid material."""
         tool = replace(self.tool, point_angle=pi)
         return replace(self.bare, kind=CutKind.DRILLING, tool=tool)
 
     @property
     def hardest(self) -> CriticalPlace | None:
-        """Places of the path where a milling cutter is engaged most."""
+        """Place of the path where the milling cutter is engaged most; None if unknown."""
         if self.engagement is None:
             return None
         return CriticalPlace(
@@ -220,7 +225,7 @@ class Cut:
 
     @property
     def mean_chip_ratio(self) -> float:
-        """Mean chip over the feed per tooth of a milling cutter where it is engaged most."""
+        """Mean chip thickness over feed per tooth where a milling cutter is engaged most."""
         if self.chip_ratio is not None:
             return self.chip_ratio
         if self.engagement is None:
@@ -229,14 +234,14 @@ class Cut:
 
     @property
     def turning_edge_angle(self) -> float:
-        """κ of the edge that turns, rad: by the mean chip as met, else as the tool has it."""
+        """Cutting edge angle κ of a turning tool, rad: from the measured mean chip if known."""
         if self.chip_ratio is None:
             return self.tool.cutting_edge_angle
         return asin(min(self.chip_ratio, 1.0))
 
     @property
     def edges(self) -> CuttingEdges:
-        """Edges of a milling cutter."""
+        """Edge geometry of a milling cutter."""
         return CuttingEdges(
             teeth=self.tool.teeth,
             diameter=self.tool.diameter,
@@ -247,17 +252,17 @@ class Cut:
 
     @property
     def force_diameter(self) -> float:
-        """Diameter on which the cutting force acts, mm; of a drill the middle of its lips."""
+        """Diameter on which the cutting force acts, mm; for a drill the middle of its lips."""
         if self.kind is CutKind.DRILLING:
             return 0.5 * (self.drilled_diameter + self.previous_diameter)
         return self.diameter
 
     @property
     def drilled_diameter(self) -> float:
-        """Outer diameter that the lips of a drill cut, mm: less than its own by its point."""
+        """Outer diameter that the lips of a drill cut, mm; smaller within its point."""
         return self.diameter if self.widest_drilled is None else self.widest_drilled
 
     @property
     def is_air(self) -> bool:
-        """Whether the path meets no material."""
+        """Whether the path removes no material."""
         return self.volume is not None and self.volume <= LEAST_VOLUME

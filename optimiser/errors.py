@@ -4,11 +4,11 @@ from stepnc_model.errors import StepNcError
 
 
 class OptimisationError(StepNcError):
-    """No best feed could be found."""
+    """No optimal feed could be found."""
 
 
 class Infeasible(OptimisationError):
-    """Two limits exclude each other.
+    """Two limits contradict each other, so no setting is feasible.
 
     Parameters
     ----------
@@ -24,12 +24,12 @@ class Infeasible(OptimisationError):
 
 
 class SolverFailed(OptimisationError):
-    """The convex solver gave no optimum.
+    """The convex solver found no optimum.
 
     Parameters
     ----------
     status : str
-        What the solver said.
+        Status reported by the solver.
     """
 
     def __init__(self, status: str) -> None:

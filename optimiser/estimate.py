@@ -1,9 +1,9 @@
-"""Cuts estimated from features: what is known of a cut before its path is made.
+"""Estimated cuts of milling and drilling workingsteps, before their tool paths are made.
 
-Radial width from the strategy's overlap, axial depth and passes from the feature's depth, path
-length from area over step-over plus approach and overrun; of an explicit tool path, by the
-corner points of its curves. Cuts of drills, reamers and boring bars follow from the hole.
-Turning is in :mod:`optimiser.estimate_turning`.
+The radial width follows from the strategy's overlap, axial depth and passes from the feature's
+depth, and the path length from area over step-over plus approach and overrun. Explicit tool
+paths are measured between the corner points of their curves. Cuts of drills, reamers and
+boring bars follow from the hole. Turning is in :mod:`optimiser.estimate_turning`.
 """
 
 from dataclasses import dataclass, replace
@@ -55,9 +55,9 @@ from stepnc_model.tool import Tool, tool_of
 
 
 def path_length(program: Program, ref: Ref[ToolpathList]) -> float:
-    """Length in mm of the trajectories of a list that are not run at rapid.
+    """Length of the trajectories of a list that are not run at rapid, mm.
 
-    Curves of a kind that cannot be measured count nothing; 0 when there is no other.
+    Curves that cannot be measured are not counted; 0 if nothing can be measured.
     """
     return sum(_moves_length(program, path) for path in program.get(ref).its_list)
 
@@ -74,42 +74,42 @@ def _moves_length(program: Program, ref: Ref[Entity]) -> float:
 
 
 DEFAULT_SIDE_ALLOWANCE = 0.5
-"""mm that a finish pass takes off a wall when no roughing operation says how much it left"""
+"""Depth taken off a wall by finishing when no roughing operation states its allowance, mm."""
 
 LEAST_FACEMILL = 25.0
-"""mm; files call smaller end mills FACEMILL, and nobody makes face mills so small"""
+"""Least diameter of a face mill, mm; files call smaller end mills FACEMILL too."""
 
 LEAST_DEPTH = 1e-3
-"""mm; a pass less deep than a micrometre is a slip of the pen"""
+"""Least programmed depth of a pass that is accepted as intended, mm."""
 
 FULL_LOAD = "the load along the given tool path is not known: full depth and width assumed"
 
 FINISHING = (PlaneFinishMilling, SideFinishMilling, BottomAndSideFinishMilling)
 
 FIXED_DEPTH = (FreeformOperation, SideFinishMilling, BottomAndSideFinishMilling)
-"""depth is given by the path, or each level would leave its mark on the finished wall"""
+"""Operations whose depth is given by the path or must stay to avoid marks on the wall."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sweep:
-    """Sweep of a region by a milling operation."""
+    """Width, depth and kind of the material that a milling operation sweeps."""
 
     radial_width: float
-    """a_e, mm"""
+    """Radial width a_e, mm."""
     total_depth: float
-    """Total depth, mm"""
+    """Depth to remove in all passes together, mm."""
     axial_depth: float
-    """Axial depth, mm of one pass as programmed"""
+    """Programmed axial depth of one pass, mm."""
     is_wall: bool
-    """only the wall is cut"""
+    """Whether only the wall is cut."""
     is_centred: bool
-    """one stroke along the middle makes the width"""
+    """Whether one stroke along the middle covers the whole width."""
 
 
 def milling_cut(
     program: Program, step: ResolvedWorkingstep, tool: Tool, *, speed: float, feed: float
 ) -> tuple[Cut, tuple[Finding, ...]]:
-    """Cut of a milling workingstep.
+    """Estimate the cut of a milling workingstep from its feature.
 
     Parameters
     ----------
@@ -124,10 +124,10 @@ def milling_cut(
     Returns
     -------
     Cut, findings
-        What was assumed is among the findings.
+        The findings state what was assumed.
     """
     if not step.features:
-        raise program.error("has no feature: nothing tells what to cut", step.ref)
+        raise program.error("has no feature: what to cut cannot be determined", step.ref)
     region = region_of(program, step.features[0])
     sweep, findings = _sweep(program, step, region, tool)
     is_facemill = tool.keyword == "FACEMILL" and tool.diameter >= LEAST_FACEMILL
@@ -168,7 +168,7 @@ def milling_cut(
 def _floor(
     program: Program, step: ResolvedWorkingstep, region: FeatureRegion, wall: Cut
 ) -> Cut | None:
-    """The floor that a bottom and side finish sweeps once, or None."""
+    """Return the floor that a bottom and side finishing operation sweeps once, or None."""
     operation = step.operation
     if not isinstance(operation, BottomAndSideFinishMilling) or region.area <= 0.0:
         return None
@@ -207,21 +207,21 @@ def passes_for(total: float, depth: float) -> int:
 def earlier_operations(
     program: Program, step: ResolvedWorkingstep
 ) -> list[tuple[ResolvedWorkingstep, MachiningOperation]]:
-    """Workingsteps on the same feature that run before this one, in order."""
+    """Return the earlier workingsteps on the same feature with their operations, in order."""
     return [(other, other.operation) for other in program.before(step)]
 
 
 def _sweep(
     program: Program, step: ResolvedWorkingstep, region: FeatureRegion, tool: Tool
 ) -> tuple[Sweep, list[Finding]]:
-    """Width, depth and passes of an operation."""
+    """Determine the width, depth and kind of the swept material of an operation."""
     operation = step.operation
     findings: list[Finding] = []
     total = _total_depth(program, step, region)
     depth = getattr(operation, "axial_cutting_depth", None)
     if depth is not None and depth < LEAST_DEPTH:
         raise program.error(
-            f"a depth of {depth:g} mm: it must be {LEAST_DEPTH:g} mm at least",
+            f"depth {depth:g} mm: it must be at least {LEAST_DEPTH:g} mm",
             step.operation_ref,
             "axial_cutting_depth",
         )
@@ -249,7 +249,7 @@ def _sweep(
 
 
 def _total_depth(program: Program, step: ResolvedWorkingstep, region: FeatureRegion) -> float:
-    """Depth that this operation removes, all passes together, mm."""
+    """Depth that this operation removes in all passes together, mm."""
     operation = step.operation
     left = getattr(operation, "allowance_bottom", None) or 0.0
     total = region.depth - left
@@ -262,7 +262,7 @@ def _total_depth(program: Program, step: ResolvedWorkingstep, region: FeatureReg
         total = (allowances[-1] if allowances else region.depth) - left
     if total <= 0.0:
         raise program.error(
-            f"leaves {left:g} mm of {region.depth:g} mm: nothing is removed",
+            f"allowance {left:g} mm on a depth of {region.depth:g} mm: nothing is removed",
             step.operation_ref,
             "allowance_bottom",
         )
@@ -270,7 +270,7 @@ def _total_depth(program: Program, step: ResolvedWorkingstep, region: FeatureReg
 
 
 def _left_on_side(program: Program, step: ResolvedWorkingstep) -> float:
-    """Thickness in mm that earlier operations left on the wall."""
+    """Thickness that earlier operations left on the wall, mm."""
     left = [
         earlier.allowance_side
         for _, earlier in earlier_operations(program, step)
@@ -282,7 +282,7 @@ def _left_on_side(program: Program, step: ResolvedWorkingstep) -> float:
 def _radial_width(
     program: Program, operation: Entity, region: FeatureRegion, tool: Tool
 ) -> float:
-    """``a_e = D·(1 − overlap)``, at most the programmed radial depth and the feature."""
+    """Radial width ``a_e = D·(1 − overlap)``, limited by the radial depth and the feature."""
     reference = getattr(operation, "its_machining_strategy", None)
     strategy = program.model.entity(int(reference)) if reference is not None else None
     overlap = 0.0
@@ -298,13 +298,13 @@ def _radial_width(
 
 
 def ratio(written: float) -> float:
-    """An overlap as a ratio below one; numbers above one are percent, as drafts wrote them."""
+    """Return an overlap as a ratio below one; values above one are read as percent."""
     value = written / 100.0 if written > 1.0 else written
     return min(max(value, 0.0), 0.95)
 
 
 def _texture(sweep: Sweep, tool: Tool, kind: ToolKind) -> tuple[Texture, float]:
-    """Texture of the finished surface, and the radius in mm that makes it."""
+    """Texture of the finished surface, and the radius that forms it, mm."""
     if sweep.is_wall:
         return Texture.WALL, 0.0
     if not tool.corner_radius:
@@ -315,7 +315,7 @@ def _texture(sweep: Sweep, tool: Tool, kind: ToolKind) -> tuple[Texture, float]:
 
 
 def _engagement(sweep: Sweep, tool: Tool) -> Engagement:
-    """Full, centred or one-sided, as paper 002 sorts face milling."""
+    """Classify the engagement as full, centred or one-sided."""
     if sweep.radial_width >= tool.diameter * (1.0 - ROUNDING):
         return full_immersion()
     if sweep.is_centred:
@@ -336,9 +336,9 @@ def _length(region: FeatureRegion, sweep: Sweep, tool: Tool) -> float:
 
 
 CLEARANCE = 2.0
-"""mm between the start of the feed and the surface, customary"""
+"""Distance between the start of the feed and the surface, mm (customary)."""
 
-INTO_SOLID = "no earlier hole is known: the tool is taken to cut into the solid"
+INTO_SOLID = "no earlier hole is known: cutting into solid material assumed"
 
 TOOL_KINDS: tuple[tuple[type[Entity], ToolKind], ...] = (
     (CenterDrilling, ToolKind.CENTER_DRILL),
@@ -347,7 +347,7 @@ TOOL_KINDS: tuple[tuple[type[Entity], ToolKind], ...] = (
     (Boring, ToolKind.BORING_BAR),
     (BackBoring, ToolKind.BORING_BAR),
 )
-"""kind of tool that an operation is done with"""
+"""Kind of tool implied by the type of operation."""
 
 TOOL_BODIES = {
     "TWIST_DRILL": ToolKind.DRILL,
@@ -360,13 +360,13 @@ TOOL_BODIES = {
     "TAPERED_REAMER": ToolKind.REAMER,
     "BORING_TOOL": ToolKind.BORING_BAR,
 }
-"""kind of tool by its body, where the operation does not tell; a drill for all others"""
+"""Kind of tool by its body, where the operation does not tell; any other is a drill."""
 
 
 def hole_cut(
     program: Program, step: ResolvedWorkingstep, tool: Tool, *, speed: float, feed: float
 ) -> tuple[Cut, tuple[Finding, ...]]:
-    """Cut of a drilling workingstep; parameters as :func:`milling_cut`."""
+    """Estimate the cut of a drilling workingstep; parameters as :func:`milling_cut`."""
     operation = step.operation
     kind = _tool_kind(operation, tool)
     depth, count = _depth_and_count(program, step, operation)
@@ -392,14 +392,14 @@ def hole_cut(
 
 
 def is_hole_making(operation: MachiningOperation, tool: Tool) -> bool:
-    """Whether an operation drills: by its kind, or along a given path by its tool."""
+    """Whether an operation drills: by its type, or by its tool along a given path."""
     return isinstance(operation, DrillingTypeOperation) or (
         isinstance(operation, FreeformOperation) and tool.keyword in TOOL_BODIES
     )
 
 
 def _tool_kind(operation: MachiningOperation, tool: Tool) -> ToolKind:
-    """Kind of tool by the operation, or by its body where the path is given."""
+    """Kind of tool by the operation, or by the tool body where the path is given."""
     by_operation = (kind for cls, kind in TOOL_KINDS if isinstance(operation, cls))
     return next(by_operation, TOOL_BODIES.get(tool.keyword, ToolKind.DRILL))
 
@@ -407,9 +407,9 @@ def _tool_kind(operation: MachiningOperation, tool: Tool) -> ToolKind:
 def _depth_and_count(
     program: Program, step: ResolvedWorkingstep, operation: MachiningOperation
 ) -> tuple[float, int]:
-    """Depth of the hole in mm, and how many of them a pattern makes."""
+    """Depth of the hole, mm, and number of holes in its pattern."""
     if not step.features:
-        raise program.error("has no feature: nothing tells how deep to drill", step.ref)
+        raise program.error("has no feature: the depth to drill cannot be determined", step.ref)
     reference: Ref[Entity] = step.features[0]
     feature: Entity = program.get(reference)
     count = 1
@@ -426,7 +426,7 @@ def _depth_and_count(
 
 
 def _is_through(program: Program, step: ResolvedWorkingstep) -> bool:
-    """Whether the hole has no bottom."""
+    """Whether the hole is a through hole."""
     feature: Entity = program.get(step.features[0])
     if isinstance(feature, ReplicateFeature):
         feature = program.get(feature.replicate_base_feature)
@@ -437,7 +437,7 @@ def _is_through(program: Program, step: ResolvedWorkingstep) -> bool:
 def _previous_diameter(
     program: Program, step: ResolvedWorkingstep, operation: MachiningOperation, tool: Tool
 ) -> tuple[float, tuple[Finding, ...]]:
-    """Diameter of the hole that is already there, mm."""
+    """Diameter of the hole that is already there, mm, and findings on missing holes."""
     given = getattr(operation, "previous_diameter", None)
     if given and given < tool.diameter:
         return given, ()

@@ -1,4 +1,4 @@
-"""Cuts of turning operations, estimated from the feature and the bar.
+"""Estimated cuts of turning operations, from the feature and the bar.
 
 The cutting speed is taken at the mean diameter of what is removed: a lathe at constant cutting
 speed has it everywhere, one at constant spindle speed on average.
@@ -37,15 +37,15 @@ from stepnc_model.program import Program, ResolvedWorkingstep
 from stepnc_model.tool import Tool
 
 CLEARANCE = 2.0
-"""mm between the start of the feed and the workpiece, customary"""
+"""Distance between the start of the feed and the workpiece, mm (customary)."""
 
 FALLBACK_DEPTH = 1.0
-"""mm of one pass when neither strategy nor allowance says how much is removed"""
+"""Depth of one pass when neither strategy nor allowance states what to remove, mm."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Revolved:
-    """A turning feature: radii in mm, and the length of its contour."""
+    """Radii and contour length of a turning feature, mm."""
 
     inner_radius: float
     outer_radius: float
@@ -53,7 +53,7 @@ class Revolved:
 
 
 def mean_diameter(program: Program, step: ResolvedWorkingstep) -> float:
-    """Diameter in mm at which the cutting speed of a turning workingstep is taken."""
+    """Diameter at which the cutting speed of a turning workingstep is taken, mm."""
     shape = _shape(program, step)
     return shape.inner_radius + shape.outer_radius
 
@@ -61,14 +61,17 @@ def mean_diameter(program: Program, step: ResolvedWorkingstep) -> float:
 def turning_cut(
     program: Program, step: ResolvedWorkingstep, tool: Tool, *, speed: float, feed: float
 ) -> tuple[Cut, tuple[Finding, ...]]:
-    """Cut of a turning workingstep; parameters as :func:`optimiser.estimate.milling_cut`."""
+    """Estimate the cut of a turning workingstep; parameters as for milling.
+
+    See :func:`optimiser.estimate.milling_cut`.
+    """
     operation = step.operation
     shape = _shape(program, step)
     if isinstance(operation, Grooving):
         return _grooving_cut(program, step, tool, speed=speed, feed=feed), ()
     if not isinstance(operation, (Facing, Contouring)):
         raise program.error(
-            f"{step.operation_type}: no cutting model describes it", step.operation_ref
+            f"{step.operation_type}: no cutting model exists", step.operation_ref
         )
     total, depth, findings = _depths(program, step, operation, shape)
     across = shape.outer_radius - shape.inner_radius
@@ -101,7 +104,7 @@ def turning_cut(
 def _grooving_cut(
     program: Program, step: ResolvedWorkingstep, tool: Tool, *, speed: float, feed: float
 ) -> Cut:
-    """A groove made by plunging, or a cut-off."""
+    """Estimate the cut of a plunged groove or of a cut-off."""
     shape = _shape(program, step)
     width = tool.width
     if not width:
@@ -132,7 +135,7 @@ def _depths(
     operation: TurningMachiningOperation,
     shape: Revolved,
 ) -> tuple[float, float, tuple[Finding, ...]]:
-    """Total depth and programmed depth of one pass, mm."""
+    """Total depth and programmed depth of one pass, mm, with findings."""
     allowance = getattr(operation, "allowance", None) or 0.0
     left = [
         getattr(earlier, "allowance", None) or 0.0
@@ -149,11 +152,11 @@ def _depths(
     findings: tuple[Finding, ...] = ()
     if total <= 0.0:
         total = written[0] if written else FALLBACK_DEPTH
-        text = f"how much is removed cannot be told from the bar: {total:g} mm assumed"
+        text = f"the depth to remove cannot be derived from the bar: {total:g} mm assumed"
         findings = (program.finding(Severity.WARNING, text, step.operation_ref),)
     if written and written[0] < LEAST_DEPTH:
         raise program.error(
-            f"a depth of {written[0]:g} mm: it must be {LEAST_DEPTH:g} mm at least",
+            f"depth {written[0]:g} mm: it must be at least {LEAST_DEPTH:g} mm",
             operation.its_machining_strategy or step.operation_ref,
             "cutting_depth",
         )
@@ -162,13 +165,13 @@ def _depths(
 
 
 def _strategy(program: Program, operation: TurningMachiningOperation) -> Entity | None:
-    """Strategy of an operation, if it has one."""
+    """Machining strategy of an operation, or None."""
     reference = operation.its_machining_strategy
     return program.model.entity(int(reference)) if reference is not None else None
 
 
 def _bar(program: Program) -> RightCircularCylinder | None:
-    """The bar that the part is turned from."""
+    """Cylindrical bar that the part is turned from, or None."""
     workpiece = program.workpiece()
     reference = workpiece.its_bounding_geometry if workpiece is not None else None
     if reference is None:
@@ -178,13 +181,13 @@ def _bar(program: Program) -> RightCircularCylinder | None:
 
 
 def _bar_radius_or(program: Program, radius: float) -> float:
-    """Radius of the bar, or a radius when there is no bar."""
+    """Radius of the bar, or the given radius without a bar, mm."""
     bar = _bar(program)
     return bar.radius if bar is not None else radius
 
 
 def _stock_in_front(program: Program) -> float:
-    """Length in mm of the bar in front of the workpiece's zero."""
+    """Length of the bar in front of the workpiece zero, mm; 0 without a bar."""
     bar = _bar(program)
     if bar is None:
         return 0.0
@@ -193,9 +196,9 @@ def _stock_in_front(program: Program) -> float:
 
 
 def _shape(program: Program, step: ResolvedWorkingstep) -> Revolved:
-    """All features of the workingstep together."""
+    """Combined radii and length of all features of the workingstep."""
     if not step.features:
-        raise program.error("has no feature: nothing tells what to turn", step.ref)
+        raise program.error("has no feature: what to turn cannot be determined", step.ref)
     shapes = [_revolved(program, feature) for feature in step.features]
     outer = max(shape.outer_radius for shape in shapes)
     if isinstance(step.operation, ContouringRough):
@@ -209,7 +212,7 @@ def _shape(program: Program, step: ResolvedWorkingstep) -> Revolved:
 
 
 def _revolved(program: Program, ref: Ref[Entity]) -> Revolved:
-    """Radii and length of one feature."""
+    """Radii and length of one turning feature."""
     feature = program.get(ref)
     if isinstance(feature, OuterDiameter):
         radius = 0.5 * size(program, feature.diameter_at_placement, ref)
@@ -234,15 +237,18 @@ def _revolved(program: Program, ref: Ref[Entity]) -> Revolved:
 
 
 def _shoulder_distance(program: Program, feature: OuterDiameterToShoulder) -> float:
-    """Length in mm up to the shoulder, by the place of its profile."""
+    """Distance to the shoulder from the placement of its profile, mm."""
     profile = program.get(feature.v_shape_boundary)
     if profile.placement is None:
-        raise program.error("does not say where the shoulder is", feature.v_shape_boundary)
+        raise program.error(
+            "has no placement: the position of the shoulder is unknown",
+            feature.v_shape_boundary,
+        )
     return abs(float(program.get(program.get(profile.placement).location).coordinates[2]))
 
 
 def _contour(points: list[tuple[float, float, float]], offset: float) -> Revolved:
-    """Polyline in the x, z half plane."""
+    """Radii and length of a polyline in the x, z half plane."""
     radii = [offset + hypot(point[0], point[1]) for point in points]
     heights = [point[2] for point in points]
     return Revolved(
@@ -253,7 +259,7 @@ def _contour(points: list[tuple[float, float, float]], offset: float) -> Revolve
 
 
 def _groove(program: Program, feature: Groove) -> Revolved:
-    """A groove from the surface above it to its radius."""
+    """Radii and width of a groove, from the surface above it to its bottom radius."""
     profile = program.get(feature.sweep)
     if not isinstance(profile, SquareUProfile):
         raise program.error("a groove of this profile cannot be estimated", feature.sweep)

@@ -1,7 +1,7 @@
-"""Cuts of workingsteps as estimated from their features, whatever the operation.
+"""Cuts estimated from features alone, for milling, drilling and turning operations.
 
-What no path tells is here too: which tool kind and texture, whether it finishes, and what is
-programmed.
+Also determines what no tool path shows: tool kind, surface texture, whether the workingstep
+finishes, and the programmed setting.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -22,11 +22,11 @@ from stepnc_model.technology import programmed
 from stepnc_model.tool import tool_of
 
 GUESSES = frozenset({FULL_LOAD, INTO_SOLID})
-"""messages that hold no longer where it is known what the path meets"""
+"""Messages that no longer apply once the contact along the path is known."""
 
 
 class Estimates:
-    """A source of cuts that looks at features only."""
+    """Source of cuts that are estimated from features, without tool paths."""
 
     def __init__(self, program: Program, machine: Machine, material: WorkMaterial) -> None:
         self.program = program
@@ -34,27 +34,27 @@ class Estimates:
         self.material = material
 
     def cut(self, step: ResolvedWorkingstep) -> tuple[Cut, list[Finding]]:
-        """The cut of a workingstep as programmed, and what was assumed."""
+        """Return the estimated cut of a workingstep as programmed, with findings."""
         return estimated_cut(self.program, step, self.machine, self.material)
 
     def at(self, _step: ResolvedWorkingstep, cut: Cut, _setting: Setting) -> Cut:
-        """The same cut: an estimate knows one length of pass."""
+        """Return the cut unchanged: an estimate does not depend on the setting."""
         return cut
 
     def leave_out(self, step: ResolvedWorkingstep) -> None:
-        """Nothing: no workingstep knows of another."""
+        """Do nothing: estimated workingsteps do not affect each other."""
 
     def each(
         self, steps: Sequence[ResolvedWorkingstep], do: Callable[[ResolvedWorkingstep], Result]
     ) -> Iterator[Result]:
-        """Results of workingsteps in their order."""
+        """Run a function on each workingstep, one after the other, and yield the results."""
         return one_by_one(steps, do)
 
 
 def estimated_cut(
     program: Program, step: ResolvedWorkingstep, machine: Machine, material: WorkMaterial
 ) -> tuple[Cut, list[Finding]]:
-    """The cut of a workingstep as estimated from its feature, and what was assumed.
+    """Estimate the cut of a workingstep from its feature; the findings state assumptions.
 
     Parameters
     ----------
@@ -62,8 +62,8 @@ def estimated_cut(
     step : ResolvedWorkingstep
     machine : Machine
     material : WorkMaterial
-        Of the workpiece: helix and parallel land of a cutter are those of its grade, unless the
-        machine has the stated limits alone.
+        Workpiece material; helix and parallel land come from the tool grade, unless the
+        machine uses only its stated limits.
 
     Raises
     ------
@@ -77,7 +77,7 @@ def estimated_cut(
     is_turning = isinstance(operation, TurningMachiningOperation)
     diameter = mean_diameter(program, step) if is_turning else tool.diameter
     if diameter <= 0.0:
-        raise program.error("cuts at the axis: no cutting speed there", step.operation_ref)
+        raise program.error("cuts at the spindle axis: cutting speed 0", step.operation_ref)
     speed = conditions.spindle_speed(diameter)
     feed = conditions.feed_per_tooth(speed, tool.teeth)
     if not is_turning and not tool.has_teeth:

@@ -1,4 +1,4 @@
-"""From a cut and its conditions to a problem, and from a setting to what it does."""
+"""Build the optimisation problem of a cut, and evaluate settings of the cut."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
@@ -35,55 +35,60 @@ from simulator.physics.tool_life import tool_life
 from simulator.spec import Machine, WorkMaterial
 
 LEAST_DEPTH = 0.05
-"""mm, no pass is planned shallower"""
+"""Least depth of a planned pass, mm."""
 
 LEAST_SPEED_RATIO = 0.1
-"""of the greatest speed, when neither machine nor tool names a least one"""
+"""Least spindle speed over the greatest, when neither machine nor tool states one."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OptimisationTask:
-    """Task of the optimiser: mode, freedom, margin."""
+    """Optimisation task: mode, free variables and safety margin."""
 
     mode: Mode = Mode.TC
     free: frozenset[Free] = frozenset({Free.FEED, Free.DEPTH})
     roughness: float | None = None
-    """Ra in mm for all finished surfaces, instead of what the file says"""
+    """Roughness Ra for all finished surfaces in place of the file's, mm; None: as in the
+    file."""
     tool_change: float = 0.0
-    """Tool change, s to change a worn tool; 0: tool life does not count"""
+    """Time to change a worn tool, s; 0: tool life does not count."""
     force_factors: Mapping[str, float] = field(default_factory=dict, hash=False)
-    """accepted corrections of k_c by the id of the tool; a tool that is not named has none"""
+    """Accepted corrections of k_c by tool id; 1 for a tool that is not listed."""
     front: bool = False
-    """whether the front between time, roughness and energy is wanted"""
+    """Whether the Pareto front between time, roughness and energy is computed."""
     safety: float = USUAL_QUANTILE
-    """quantile of k_c at which loads must keep their bounds, 0.5 (nominal) to 0.999"""
+    """Quantile of k_c at which loads must keep their bounds, 0.5 (nominal) to 0.999."""
     learned_safety_factors: Mapping[str, float] = field(default_factory=dict, hash=False)
-    """k_c at that quantile over its accepted correction, by the id of the tool; a tool that is
-    not named has the spread of its material"""
+    """k_c at the planned quantile over its accepted correction, by tool id.
+
+    A tool that is not listed has the spread of its material.
+    """
     centre_cutting: Mapping[str, bool] = field(default_factory=dict, hash=False)
-    """whether the edges of a mill reach its axis, by the id of the tool"""
+    """Whether the end edges of a mill reach its axis, by tool id."""
     allow_plunge: bool = False
-    """whether cutters that do not cut over centre may go straight down into the solid"""
+    """Whether mills that do not cut over centre may plunge straight into solid material."""
     wipers: frozenset[str] = frozenset()
-    """ids of the tools whose inserts have a wiper"""
+    """Ids of the tools whose inserts have a wiper."""
     source: Source = along_paths
-    """what makes the source of the cuts"""
+    """Factory of the source of cuts."""
 
     def __post_init__(self) -> None:
         for tool, factor in self.force_factors.items():
             if not (isfinite(factor) and factor > 0.0):
-                raise ValueError(f"tool '{tool}': a factor on k_c of {factor:g}")
+                raise ValueError(
+                    f"tool '{tool}': k_c factor must be finite and above 0, not {factor:g}"
+                )
         require_quantile(self.safety)
-        # Copies: what the caller does with his own later must not change the task.
+        # Read-only copies, so that later changes by the caller cannot change the task.
         for name in ("force_factors", "learned_safety_factors", "centre_cutting"):
             object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
 
     def force_factor(self, tool: str) -> float:
-        """Accepted correction of k_c for a tool, by its id."""
+        """Accepted correction factor of k_c for a tool id."""
         return self.force_factors.get(tool, 1.0)
 
     def safety_factor(self, tool: str, machine: Machine, material: WorkMaterial) -> float:
-        """k_c at the quantile over the nominal one, for a tool by its id."""
+        """k_c at the planned quantile relative to the nominal k_c, for a tool id."""
         if tool in self.learned_safety_factors:
             return self.learned_safety_factors[tool]
         if machine.only_stated_limits or material.spread is None:
@@ -92,7 +97,7 @@ class OptimisationTask:
 
 
 def problem_of(cut: Cut, at: CuttingConditions, task: OptimisationTask) -> Problem:
-    """The mathematical problem of a cut."""
+    """Formulate the optimisation problem of a cut."""
     limits = limits_of(cut, at) + stability_limits(cut, at) + holding_limits(cut, at)
     limits = _safe(limits, at)
     given = cut.programmed
@@ -114,12 +119,12 @@ def problem_of(cut: Cut, at: CuttingConditions, task: OptimisationTask) -> Probl
 
 
 def _safe(limits: tuple[Limit, ...], at: CuttingConditions) -> tuple[Limit, ...]:
-    """Limits at the quantile of k_c that is planned with."""
+    """Limits with the safety factor of k_c applied."""
     return tuple(limit.with_safety(at.safety_factor) for limit in limits)
 
 
 def _held_feed(feed: float, sense: BoundSide) -> Limit:
-    """The programmed feed as a limit, when it is not free."""
+    """Limit that fixes the feed per tooth at its programmed value."""
     return Limit(
         name=LimitName.PROGRAMMED_FEED,
         load=Monomial(coefficient=1.0, feed_exponent=1.0),
@@ -133,7 +138,7 @@ def _held_feed(feed: float, sense: BoundSide) -> Limit:
 def _stretches(
     cut: Cut, at: CuttingConditions, task: OptimisationTask
 ) -> tuple[tuple[float, ...], tuple[tuple[Limit, ...], ...]]:
-    """Speeds that may be chosen, and the spindle's limits on each stretch of its curve."""
+    """Spindle speeds to choose from, and the spindle limits on each stretch of its curve."""
     speed = held_speed(cut, at)
     low, high = speed_range(cut, at)
     if Free.SPEED not in task.free or not low < high < inf:
@@ -143,17 +148,17 @@ def _stretches(
 
 
 def _between(cut: Cut, at: CuttingConditions, slow: float, fast: float) -> tuple[Limit, ...]:
-    """Limits of spindle and chuck on a range of speeds."""
+    """Limits of spindle and chuck on a range of spindle speeds."""
     spindle = spindle_limits(cut, at, segment_within(cut, at, slow, fast))
     return _safe((*spindle, *chuck_limits(cut, at, slow, fast)), at)
 
 
 def _cost(cut: Cut, at: CuttingConditions, task: OptimisationTask) -> Cost:
-    """Time and energy of the cut on this machine."""
+    """Time and energy of the cut on this machine as a cost function."""
     machine = at.machine
     spindle = machine.spindle
     wear = _wear_rate(cut, at) if task.tool_change > 0.0 else None
-    # Energy is specific force times volume: what makes the power a peak is no part of it.
+    # Energy is specific force times volume, so the peak factors of the power do not apply.
     mean = replace(cut, power_diameter=None, thickest=1.0)
     return Cost(
         length=cut.length,
@@ -169,7 +174,7 @@ def _cost(cut: Cut, at: CuttingConditions, task: OptimisationTask) -> Cost:
 
 
 def _wear_rate(cut: Cut, at: CuttingConditions) -> Monomial | None:
-    """Tool lives used in one second: ``1/T = (v_c/C)^(1/n)``; None when no life is known."""
+    """Tool lives used per second: ``1/T = (v_c/C)^(1/n)``; None when tool life is unknown."""
     window = find_window(at.material, cut.tool_kind, at.cutting_material)
     if window is None or window.taylor is None:
         return None
@@ -181,7 +186,7 @@ def _wear_rate(cut: Cut, at: CuttingConditions) -> Monomial | None:
 def state_of(
     cut: Cut, problem: Problem, at: CuttingConditions, setting: Setting
 ) -> EvaluatedSetting:
-    """Evaluation of a cut at one setting."""
+    """Evaluate a cut at one setting: time, energy, forces, roughness and loads."""
     point = (setting.feed, setting.depth, setting.speed)
     passes, ways_in = list(_passes(cut, setting)), list(_ways_in(cut, setting))
     parts = passes + ways_in
@@ -208,7 +213,7 @@ def state_of(
 
 
 def _plunge_loads(cut: Cut, at: CuttingConditions, setting: Setting) -> tuple[LimitLoad, ...]:
-    """Loads at the plunge feed, where there is one."""
+    """Loads at the plunge feed; empty without a plunge feed."""
     if setting.plunge_feed is None:
         return ()
     point = (setting.plunge_feed, setting.depth, setting.speed)
@@ -218,7 +223,7 @@ def _plunge_loads(cut: Cut, at: CuttingConditions, setting: Setting) -> tuple[Li
 def _loads(
     limits: tuple[Limit, ...], point: tuple[float, float, float]
 ) -> tuple[LimitLoad, ...]:
-    """Limits at one feed per tooth, depth and spindle speed."""
+    """Loads of limits at one feed per tooth, depth and spindle speed."""
     return tuple(
         LimitLoad(
             limit=limit, value=limit.load.value(*point), bound=limit.full_bound_at(point[2])
@@ -229,19 +234,19 @@ def _loads(
 
 @dataclass(frozen=True, slots=True)
 class _Part:
-    """A part of a cut with its own load."""
+    """Part of a cut with its own feed and depth."""
 
     cut: Cut
     feed: float
-    """Feed, mm per tooth"""
+    """Feed per tooth, mm."""
     depth: float
-    """Depth, mm"""
+    """Axial depth of cut, mm."""
 
 
 def _passes(cut: Cut, setting: Setting) -> Iterator[_Part]:
-    """The walls, the floor that is swept with them, and what is drilled at their feed.
+    """Parts at the feed of the cut: walls, swept floor and straight plunges.
 
-    No load of what is drilled depends on the depth.
+    The loads of a plunge do not depend on the depth.
     """
     feed, depth = setting.feed, setting.depth
     yield _Part(cut, feed, depth)
@@ -252,7 +257,7 @@ def _passes(cut: Cut, setting: Setting) -> Iterator[_Part]:
 
 
 def _ways_in(cut: Cut, setting: Setting) -> Iterator[_Part]:
-    """Loads on the ways down, at the plunge feed."""
+    """Parts at the plunge feed: straight plunges and ramps."""
     way_in, feed = cut.way_in, setting.plunge_feed
     if way_in is None or feed is None:
         return
@@ -263,12 +268,12 @@ def _ways_in(cut: Cut, setting: Setting) -> Iterator[_Part]:
 
 
 def _across(cut: Cut, parts: Iterable[_Part]) -> list[_Part]:
-    """Parts without what a mill drills."""
+    """Parts without those that a mill drills."""
     return [part for part in parts if part.cut.kind is cut.kind]
 
 
 def _thrust_load(cut: Cut, at: CuttingConditions) -> Monomial:
-    """Force along the axis of what is drilled, N."""
+    """Axial force of a drilled part, N."""
     return thrust(cut, at.material.kienzle, force_factor(at), drill_point(at))
 
 
@@ -278,7 +283,7 @@ def _greatest(
     at: CuttingConditions,
     speed: float,
 ) -> float:
-    """A load of the part that has most of it; 0 of none."""
+    """Greatest value of a load over the parts; 0 without parts."""
     return max(
         (load(part.cut, at).value(part.feed, part.depth, speed) for part in parts),
         default=0.0,

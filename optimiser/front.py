@@ -1,7 +1,7 @@
-"""The front between time, roughness and energy of one workingstep.
+"""Pareto front between time, roughness and energy of one workingstep.
 
-Every point is an exact optimum: least time, or least energy, for a roughness that is asked
-for. What another point beats in all three is left out.
+Every point is an exact optimum: least time, or least energy, for a required roughness. Points
+that another point equals or beats in all three are left out.
 """
 
 from dataclasses import replace
@@ -17,11 +17,11 @@ from optimiser.problem import BoundSide, Limit, LimitName, Problem, Setting
 from optimiser.roughness import roughness_limit, roughness_load
 
 POINTS = 15
-"""levels of roughness between the finest that cuts and the one that costs nothing"""
+"""Number of roughness levels between the finest possible and the unconstrained optimum."""
 
 
 def front_of(problem: Problem, cut: Cut, at: CuttingConditions) -> tuple[ParetoPoint, ...]:
-    """Points of the front, the fastest first."""
+    """Points of the Pareto front, the fastest first."""
     free = replace(problem, limits=_without_roughness(problem.limits))
     best = [state_of(cut, free, at, _best(free, mode)) for mode in (Mode.TC, Mode.EC)]
     points = [ParetoPoint(state=state, roughness_bound=None) for state in best]
@@ -39,7 +39,7 @@ def front_of(problem: Problem, cut: Cut, at: CuttingConditions) -> tuple[ParetoP
 
 
 def _best(problem: Problem, mode: Mode) -> Setting:
-    """The optimum: in closed form, but where wear puts the fastest speed inside its range."""
+    """Best setting: closed form, or the geometric program when tool wear counts."""
     has_wear = mode is not Mode.EC and problem.cost.tool_change > 0.0
     if not has_wear or len(problem.speeds) == 1:
         return exact.solve(problem, mode).setting
@@ -53,7 +53,7 @@ def _without_roughness(limits: tuple[Limit, ...]) -> tuple[Limit, ...]:
 
 
 def _levels(problem: Problem, cut: Cut, roughest: EvaluatedSetting) -> list[float]:
-    """Ra in mm from what the roughest optimum leaves down to what the thinnest chip leaves."""
+    """Ra levels, mm, from the roughest optimum down to the thinnest permitted chip."""
     load = roughness_load(cut)
     if load is None or roughest.roughness is None:
         return []
@@ -72,7 +72,7 @@ def _levels(problem: Problem, cut: Cut, roughest: EvaluatedSetting) -> list[floa
 
 
 def _undominated(points: list[ParetoPoint]) -> list[ParetoPoint]:
-    """Points that no other equals or beats in time, roughness and energy."""
+    """Points that no other point equals or beats in time, roughness and energy."""
     kept: list[ParetoPoint] = []
     for point in sorted(points, key=lambda point: _measures(point.state)):
         mine = _measures(point.state)
@@ -86,5 +86,5 @@ def _measures(state: EvaluatedSetting) -> tuple[float, float, float]:
 
 
 def _beats(one: tuple[float, ...], other: tuple[float, ...]) -> bool:
-    """Whether the first is nowhere worse, up to rounding."""
+    """Whether the first point is nowhere worse than the second, up to rounding."""
     return all(a <= b * (1.0 + exact.TIE) for a, b in zip(one, other, strict=True))

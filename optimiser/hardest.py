@@ -1,11 +1,11 @@
-"""From what the tool meets along its path to the places where it cuts hardest.
+"""Find the places where a tool cuts hardest, from its contacts along the path.
 
-Loads are those of the virtual machine: the mean force follows from the section of the cut and
-the mean chip, forces along the helix from the arc of contact, and from the depth that the
-section fills there. Every station is tried: a place that is worst for the mean force need not
-be worst for the shank. Units mm, rad.
+The loads are those of the virtual machine: the mean force follows from the section of the cut
+and the mean chip thickness, forces along the helix from the contact arc and the depth that the
+section fills there. Every station is tried, because the place of the greatest mean force need
+not be the place of the greatest shank load. Units: mm, rad.
 
-Of a turning path the shape of the bar is told, for its bending, and the speeds it turns at.
+For a turning path, the shape of the bar (for its bending) and the spindle speeds are found too.
 """
 
 from collections.abc import Callable, Iterator
@@ -27,14 +27,16 @@ from simulator.removal.stations import SingleArcs, StationKind, Stations, single
 from simulator.spec import Kienzle, ToolKind
 
 LEAST_RATIO = 0.01
-"""mean chip over the feed; the power of what is thinner is not to be told"""
+"""Least mean chip thickness over feed; the power of thinner chips is not reliable."""
 
 LIKELY = 0.65
-"""of the roughly greatest force: what is less is no candidate, as a rough force is above 0.7 of
-the exact one"""
+"""Share of the greatest rough force above which a station is evaluated exactly.
+
+A rough force is always above 0.7 of the exact one.
+"""
 
 DIGITS = 3
-"""to which engagements are told apart: µm, mrad"""
+"""Decimals by which engagements are distinguished: µm, mrad."""
 
 KINDS = {
     CutKind.MILLING: StationKind.MILLING,
@@ -42,31 +44,31 @@ KINDS = {
     CutKind.GROOVING: StationKind.TURNING,
     CutKind.DRILLING: StationKind.DRILLING,
 }
-"""which stations an operation is judged by; plunges of a mill are in :mod:`optimiser.plunge`"""
+"""Kind of stations that determine each process; plunges are in :mod:`optimiser.plunge`."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PathContacts:
-    """Contacts of a tool along a path."""
+    """Simulated contacts of a tool with the stock along a path."""
 
     stations: Stations
     length: Floats
-    """Length, (M,) mm, stretch for which each station holds"""
+    """Length of the stretch for which each station holds, (M,), mm."""
     cell: float
-    """Cell, mm: sections of shorter stretches are noise"""
+    """Cell size of the stock map, mm; sections of shorter stretches are noise."""
 
     @property
     def volume(self) -> float:
-        """Removed, mm³."""
+        """Removed volume, mm³."""
         return float((self.stations.section * self.length).sum())
 
     def where(self, rows: Bools) -> "PathContacts":
-        """The same of some stations only."""
+        """Contacts at the selected stations only."""
         kept = {each.name: getattr(self.stations, each.name)[rows] for each in fields(Stations)}
         return replace(self, stations=Stations(**kept), length=self.length[rows])
 
     def on(self, run: ToolPathRun, other: ToolPathRun) -> "PathContacts":
-        """The same, met on a path, on one that is the same way in other pieces."""
+        """Contacts of another path, transferred to a run of the same way in other segments."""
         length = other.segments.length
         before = (np.cumsum(length) - length)[self.stations.segment]
         middle = before + self.stations.station - 0.5 * self.length
@@ -76,18 +78,18 @@ class PathContacts:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Bending:
-    """Forces along the helix at the stations that mill, over ``K·k_c1.1·f_z^q``, mm."""
+    """Bending forces at the milling stations, over ``K·k_c1.1·f_z^q``, mm."""
 
     at: Ints
-    """At, (K,) rows of the stations"""
+    """Rows of the milling stations, (K,)."""
     shank: Floats
-    """Shank, (K,) greatest across the axis"""
+    """Greatest force across the tool axis, (K,), mm."""
     wall: Floats
-    """Wall, (K,) greatest normal to the wall that is made"""
+    """Greatest force normal to the wall, (K,), mm."""
 
 
 def bending(cut: Cut, stations: Stations, kienzle: Kienzle) -> Bending:
-    """Bending of an end mill along a path; None for other tools."""
+    """Bending forces of an end mill along a path; empty for other tools."""
     at = _milled_rows(stations)
     if cut.tool_kind is not ToolKind.ENDMILL or not len(at):
         return Bending(at=at[:0], shank=np.empty(0), wall=np.empty(0))
@@ -113,7 +115,7 @@ def _where_hard(
     law: ForceLaw,
     fill: Floats,
 ) -> Floats:
-    """Forces at places, exact where they may be among the greatest: there are thousands."""
+    """Forces at many places, exact where they may be among the greatest, rough elsewhere."""
     found = greatest(edges, places, law, is_rough=True)
     rows = np.flatnonzero(fill * found >= LIKELY * (fill * found).max())
     found[rows] = greatest(edges, places.rows(rows), law)
@@ -123,7 +125,7 @@ def _where_hard(
 def with_hardest(
     cut: Cut, met: PathContacts, kienzle: Kienzle, *, depth: float, bent: Bending
 ) -> Cut:
-    """A cut with its engagement as met in passes of a nominal depth, where anything was met."""
+    """Return the cut with the hardest engagement that its passes met, if they met any."""
     rows = met.stations.kind == KINDS[cut.kind]
     if cut.kind is not CutKind.MILLING:
         is_long = rows & (met.length >= met.cell)
@@ -138,7 +140,7 @@ def with_hardest(
 
 
 def weighted_volume(met: PathContacts, exponent: float) -> float:
-    """``Σ V·χ^(−m)``: what the energy of the cut is in proportion to; χ is the chip ratio."""
+    """Volume weighted by the chip ratio χ, ``Σ V·χ^(−m)``, proportional to the energy."""
     rows = met.stations.section > 0.0
     volume = met.stations.section[rows] * met.length[rows]
     ratio = met.stations.chip_ratio[rows].clip(LEAST_RATIO)
@@ -146,11 +148,11 @@ def weighted_volume(met: PathContacts, exponent: float) -> float:
 
 
 def greatest_section(cut: Cut, *, depth: float) -> tuple[float, float]:
-    """Section of the hardest place in mm² in passes of a nominal depth, and its chip ratio."""
+    """Section at the hardest place, mm², and its chip ratio, for a nominal depth of pass."""
     tool = cut.tool
     if cut.kind is CutKind.MILLING:
         if cut.engagement is None:
-            raise ValueError("a milling cut needs its engagement")
+            raise ValueError("a milling cut has no engagement")
         width = 0.5 * cut.diameter * cut.engagement.cosine_difference * cut.fill
         return depth * cut.depth_share * width, cut.mean_chip_ratio
     if cut.kind is CutKind.DRILLING:
@@ -162,9 +164,9 @@ def greatest_section(cut: Cut, *, depth: float) -> tuple[float, float]:
 
 
 def _share(cut: Cut, share: float) -> float:
-    """Real depth over the nominal one; at least 1 where another depth may be chosen.
+    """Real depth over the nominal one; at least 1 where the depth may be chosen.
 
-    A pass may have found less material than its depth because there was no more: another
+    A pass may have met less material only because no more was left; a pass of a different
     depth would not.
     """
     return max(1.0, share) if cut.is_depth_free else share

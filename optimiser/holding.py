@@ -1,11 +1,12 @@
-"""Limits of what holds the workpiece, and what a cut asks of it.
+"""Limits of the work-holding, and the loads that a cut puts on it.
 
 A chuck must not slip, nor let a bar tilt; a bar must not bend too far; a vice or clamps hold by
-friction. Only what the user says of them bounds (:class:`simulator.spec.Chuck`); else one note
-for each setup tells what is asked. Units mm, N, N·mm, rev/s.
+friction. Only values given by the user limit a cut (:class:`simulator.spec.Chuck`); otherwise
+one note per setup states the loads to hold. Units: mm, N, N·mm, rev/s.
 
-Forces along and across the feed have exponents of their own, so their resultant is no power of
-the feed. It is convex in logarithms: a power through two feeds is never below it in between.
+Forces along and across the feed have different exponents, so their resultant is not a power of
+the feed. It is convex in logarithms: a power law through two feeds never lies below it between
+them.
 """
 
 from collections.abc import Callable, Iterator
@@ -35,13 +36,13 @@ from simulator.work_holding import (
 from stepnc_model.units import rpm_from_rev_s
 
 FEEDS = (0.05, 1.0)
-"""mm per revolution, between which turning feeds lie, and forces are powers of the feed"""
+"""Range of turning feeds in which forces are fitted as powers of the feed, mm/rev."""
 
 PLACES = 24
-"""along a bar with a tailstock, at which its bending is asked for"""
+"""Number of places along a bar with a tailstock at which its bending is evaluated."""
 
 NM, UM = 1e-3, 1e3
-"""user's number per canonical unit"""
+"""Factors from canonical units to user units: N·mm to N·m, mm to µm."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -49,13 +50,13 @@ class HoldingLoad:
     """Loads of a cut on the work-holding."""
 
     torque: float = 0.0
-    """N·mm about the spindle's axis, of a bar; with the axial force that slips as it does"""
+    """Torque of a bar about the spindle axis, N·mm, with the effect of the axial force."""
     moment: float = 0.0
-    """Moment, N·mm about the jaws, across the axis; 0 where nothing says where they are"""
+    """Tilting moment about the jaws, across the axis, N·mm; 0 where the jaws are unknown."""
     force: float = 0.0
-    """Force, N across the axis of a mill, the greatest"""
+    """Greatest force across the axis of a mill, N."""
     lift: float = 0.0
-    """Lift, N along it, that pulls the workpiece towards the spindle"""
+    """Axial force that pulls the workpiece towards the spindle, N."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -68,7 +69,7 @@ class _Forces:
 
 
 def holding_limits(cut: Cut, at: CuttingConditions) -> tuple[Limit, ...]:
-    """Limits of a vice, clamps and a slender bar, which know no spindle speed."""
+    """Limits of a vice, clamps or slender bar, none of which depend on the spindle speed."""
     if isinstance(at.holding, Clamp):
         return tuple(_clamp_limits(cut, at, at.holding))
     bending = _bar_compliance(cut, at)
@@ -92,7 +93,7 @@ def chuck_limits(
 ) -> tuple[Limit, ...]:
     """Torque and tilting moment that a chuck holds between two spindle speeds.
 
-    What counts is the greatest speed on the path.
+    The greatest speed on the path decides.
     """
     chuck, grip = at.holding, at.grip
     if not isinstance(chuck, Chuck) or grip is None or cut.kind is CutKind.MILLING:
@@ -107,7 +108,7 @@ def chuck_limits(
         origin += f" at {rpm_from_rev_s(_fastest(cut, slow)):.0f} rpm"
     if _fastest(cut, fast) > usable_speed(chuck):
         usable = rpm_from_rev_s(usable_speed(chuck))
-        origin += f", where it holds less than {LEAST_LEFT:.0%} from {usable:.0f} rpm on"
+        origin += f"; the chuck holds less than {LEAST_LEFT:.0%} above {usable:.0f} rpm"
 
     def limit(name: LimitName, load: Monomial, holds: Callable[[float], float]) -> Limit:
         bound, exponent = powers_of_speed(lambda speed: holds(at_speed(speed)), slow, fast)
@@ -141,7 +142,7 @@ def chuck_limits(
 
 
 def holding_load(cut: Cut, at: CuttingConditions, setting: Setting) -> HoldingLoad | None:
-    """Loads of a cut at a setting on the work-holding; None for a cut in air."""
+    """Loads of a cut on the work-holding at one setting; None for a cut in air."""
     if cut.is_air or at.machine.only_stated_limits:
         return None
     point = (setting.feed, setting.depth, setting.speed)
@@ -160,7 +161,7 @@ def holding_load(cut: Cut, at: CuttingConditions, setting: Setting) -> HoldingLo
 
 
 def _clamp_limits(cut: Cut, at: CuttingConditions, clamp: Clamp) -> Iterator[Limit]:
-    """Greatest force across the axis of a mill, and what pulls the workpiece upwards."""
+    """Limits of a vice or clamps on the cross force of a mill and on its lifting force."""
     if cut.kind is not CutKind.MILLING:
         return
     limit = Limit(
@@ -185,14 +186,14 @@ def _across(cut: Cut, at: CuttingConditions) -> Monomial:
 
 
 def _lift(cut: Cut, at: CuttingConditions) -> Monomial | None:
-    """Force with which helical edges pull the workpiece out, N; None of straight ones."""
+    """Force with which helical edges lift the workpiece, N; None for straight edges."""
     if cut.helix_angle <= 0.0:
         return None
     return loads.scaled(force_load(cut, at), tan(cut.helix_angle))
 
 
 def _torque(cut: Cut, at: CuttingConditions) -> Monomial:
-    """Torque of a cut, with its axial force where it is known what holds that."""
+    """Torque of a cut on the bar, N·mm, with the axial force where the grip is known."""
     arm = 0.5 * cut.force_diameter
     grip = at.grip
     if grip is None:
@@ -203,9 +204,10 @@ def _torque(cut: Cut, at: CuttingConditions) -> Monomial:
 
 
 def _moment(cut: Cut, at: CuttingConditions) -> Monomial | None:
-    """Moment of a cut about the jaws; None where they are not known, or of a tool on the axis.
+    """Moment of a cut about the jaws; None if the jaws are unknown or the tool is on the axis.
 
-    In the plane of the tool feed and back force turn against each other: the greater counts.
+    In the plane of the tool the feed and back forces turn against each other: the greater
+    counts.
     """
     if at.grip is None or not cut.kind.is_turned:
         return None
@@ -247,7 +249,7 @@ def _bar_compliance(cut: Cut, at: CuttingConditions) -> float:
 
 
 def _load(cut: Cut, at: CuttingConditions, of: Callable[[_Forces], float]) -> Monomial:
-    """A positive load of the forces on a bar, as the power of the feed through two feeds."""
+    """Load of the forces on a bar, fitted as a power of the feed through two feeds."""
     depth = 0.0 if cut.kind is not CutKind.TURNING else 1.0
     low, high = (of(_forces(cut, at, feed / cut.tool.teeth)) for feed in FEEDS)
     if low <= 0.0:
@@ -261,7 +263,7 @@ def _load(cut: Cut, at: CuttingConditions, of: Callable[[_Forces], float]) -> Mo
 
 
 def _forces(cut: Cut, at: CuttingConditions, feed: float) -> _Forces:
-    """Forces on a bar at a feed per edge, at 1 mm of depth where they know it."""
+    """Forces on a bar at a feed per edge and at 1 mm depth of cut."""
     cutting = force_load(cut, at).value(feed, 1.0, 1.0)
     if cut.kind is CutKind.DRILLING:
         thrust = loads.thrust(cut, at.material.kienzle, force_factor(at), drill_point(at))

@@ -1,4 +1,4 @@
-"""A lower bound of what a workingstep costs in so many passes or more: what ends the search."""
+"""Lower bound of the cost of a workingstep by number of passes, used to stop the search."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -9,11 +9,12 @@ from optimiser.problem import BoundSide, Limit, Problem
 
 
 def least_cost(problem: Problem, mode: Mode) -> Callable[[int], float]:
-    """Cost that no setting in so many passes or more comes below, s or J.
+    """Return a function giving the least possible cost, s or J, for k passes or more.
 
-    Of the limits on the feed only those count that no depth changes. Ways between passes and
-    at the greatest feed rate take their time; the energy has besides what the spindle idles
-    and cuts with at the greatest feed per tooth, as both fall with it.
+    Only feed limits that do not depend on the depth count. The time bound is the travel at the
+    greatest feed rate plus the links between passes. The energy bound adds the idling of the
+    spindle and the cutting work at the greatest feed per tooth, both of which fall with the
+    feed.
     """
     cost = problem.cost
     fastest = _greatest(problem, per_tooth=False)
@@ -26,8 +27,8 @@ def least_cost(problem: Problem, mode: Mode) -> Callable[[int], float]:
     feed, power = _greatest(problem, per_tooth=True), cost.motor_power
     idle = cost.standby_power_per_speed / (cost.teeth * feed)
     work = 0.0
-    # Only then the work of one mm of path falls with the feed, and that of all passes together
-    # does not fall with their number.
+    # The work per mm of path falls with the feed, and the work of all passes together does
+    # not fall with their number, only if this condition holds.
     if power.feed_exponent <= 1.0 and power.depth_exponent <= 1.0 and power.curve is None:
         work = power.coefficient * feed ** (power.feed_exponent - 1.0) + power.offset / feed
         work *= problem.total_depth**power.depth_exponent * cost.length / cost.teeth
@@ -41,9 +42,10 @@ def least_cost(problem: Problem, mode: Mode) -> Callable[[int], float]:
 
 
 def _greatest(problem: Problem, *, per_tooth: bool) -> float:
-    """Greatest f in mm, or f·n in mm/s, that limits without the depth allow at any speed.
+    """Greatest feed per tooth f, mm, or product f·n, mm/s, allowed at any speed.
 
-    Each allows the most at one end of a stretch: offsets apart, it is a power of the speed.
+    Only limits that do not depend on the depth count. Offsets aside, each limit is a power of
+    the speed, so it allows the most at one end of a stretch.
     """
 
     def most(limit: Limit, speed: float) -> float:

@@ -1,12 +1,12 @@
-"""From a cut, a machine, a material and a tool grade to the limits that hold.
+"""Limits that machine, material and tool grade put on a cut.
 
-A value that a source does not give does not limit. All loads come from
-:mod:`optimiser.loads`; nothing here knows how a problem is solved.
+A value that a source does not give sets no limit. All loads come from :mod:`optimiser.loads`;
+this module does not depend on how a problem is solved.
 
-Where the spindle speed is not free it is as programmed, but never beyond tool and machine. A
-speed below the recommended window costs time and wears an edge by other ways; one above it
-burns the edge. So a speed is lowered to its bound and never raised, except to the least that
-the spindle turns.
+Where the spindle speed is not free it stays as programmed, but never above what tool and
+machine allow. A speed below the recommended window costs time and wears the edge in other
+ways; a speed above it burns the edge. So a speed is lowered to its bound and never raised,
+except to the least speed of the spindle.
 """
 
 from collections.abc import Iterator
@@ -40,35 +40,37 @@ from stepnc_model.tool import Tool
 from stepnc_model.units import m_min_from_speed, rpm_from_rev_s
 
 PLUNGE_FEED_RATIO = 0.5
-"""greatest feed per tooth straight down over that along the pass, customary: near the axis the
-edges hardly move; Fanar, general catalogue 2021, p. 329, takes 25 to 50 % of the table on the
-way into the material"""
+"""Greatest feed per tooth in a straight plunge over the feed along the pass (customary).
+
+Near the axis the edges hardly move; Fanar, general catalogue 2021, p. 329, uses 25 to 50 % of
+the table feed on the way into the material.
+"""
 
 STRAIGHT_DOWN = "straight down"
-"""how limits of a plunge are told from those along the pass"""
+"""Words added to the limits of a plunge to distinguish them from those along the pass."""
 
 KW, NM, MM_MIN, M_MIN, RPM = 1e-3, 1e-3, 60.0, 0.06, 60.0
-"""user's number per canonical unit"""
+"""Factors from canonical units to user units."""
 
 
 def force_factor(at: CuttingConditions) -> float:
-    """K = K_γ·K_v times the accepted correction; 1 for a material of constant k_s."""
+    """Force factor K = K_γ·K_v times the accepted correction; 1 for a constant k_s material."""
     correction = correction_of(at.material, at.grade, at.cutting_material)
     return at.force_factor * correction.factor
 
 
 def force_load(cut: Cut, at: CuttingConditions) -> Monomial:
-    """Tangential force of this cut, N."""
+    """Tangential force of the cut, N."""
     return loads.cutting_force(cut, at.material.kienzle, force_factor(at), drill_point(at))
 
 
 def drill_point(at: CuttingConditions) -> DrillPoint:
-    """Point of the tool where it cuts on its end."""
+    """Geometry of the drill point, or of the end of a mill, that cuts."""
     return (at.grade.point if at.grade is not None else None) or LIPS_ONLY
 
 
 def power_load(cut: Cut, at: CuttingConditions) -> Monomial:
-    """Motor power of this cut, W."""
+    """Motor power of the cut, W."""
     return loads.motor_power(cut, force_load(cut, at), at.machine.spindle.efficiency)
 
 
@@ -84,12 +86,12 @@ def limits_of(cut: Cut, at: CuttingConditions) -> tuple[Limit, ...]:
 
 
 def _load_limits(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
-    """Limits on what cuts, of the walls and of the floor that is swept at its own depth."""
+    """Limits on the loads of the walls, the swept floor and the straight plunge."""
     yield from machine_limits(cut, at)
     yield from tool_limits(cut, at)
     if cut.floor is not None:
         floor = cut.floor
-        # Its sweep stays off the walls, and a tool that bends leaves the depth alone.
+        # The floor sweep does not touch the walls, and tool bending does not change the depth.
         swept = replace(at, deflection=PermittedDeflection())
         for limit in (*machine_limits(floor, swept), *tool_limits(floor, swept)):
             yield limit.at_depth(floor.total_depth)
@@ -98,10 +100,10 @@ def _load_limits(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
 
 
 def _plunge_limits(cut: Cut, plunge: Cut, at: CuttingConditions) -> Iterator[Limit]:
-    """Feed per tooth and thrust where a mill goes straight down.
+    """Limits on feed per tooth and thrust where a mill plunges straight down.
 
-    Where nothing says what feed the mill bears along the pass, the programmed one is all that
-    is known to be borne. Half of it is custom and no physics: it does not make the edges rub.
+    Without a catalogue feed, the programmed feed is the only one known to be safe. Half of the
+    catalogue feed is a custom, not physics, so it must not fall below the rubbing limit.
     """
     highest = catalogue_feed(cut, at)
     borne = cut.programmed.feed
@@ -126,12 +128,12 @@ def _plunge_limits(cut: Cut, plunge: Cut, at: CuttingConditions) -> Iterator[Lim
 
 
 def straight_down(limit: Limit) -> Limit:
-    """A limit of a plunge, told as one."""
+    """Label a limit as one of a straight plunge."""
     return replace(limit, label=f"{limit.words} {STRAIGHT_DOWN}")
 
 
 def spindle_limits(cut: Cut, at: CuttingConditions, segment: CurveSegment) -> tuple[Limit, ...]:
-    """Motor power and torque on one stretch of the spindle's curve."""
+    """Limits on motor power and torque on one stretch of the spindle's curve."""
     limits = _spindle_limits(cut, at, segment)
     if cut.plunge is not None:
         limits += tuple(map(straight_down, _spindle_limits(cut.plunge, at, segment)))
@@ -145,7 +147,7 @@ def spindle_limits(cut: Cut, at: CuttingConditions, segment: CurveSegment) -> tu
 def _spindle_limits(
     cut: Cut, at: CuttingConditions, segment: CurveSegment
 ) -> tuple[Limit, ...]:
-    """Motor power and torque of one cut."""
+    """Limits on motor power and torque for one cut."""
     force = force_load(cut, at)
     power = Limit(
         name=LimitName.MOTOR_POWER,
@@ -170,22 +172,22 @@ def _spindle_limits(
 
 
 def _power_origin(at: CuttingConditions) -> str:
-    """Note on what the power bound leaves out; empty where it is the machine's whole power."""
+    """Note that the power bound excludes idling; empty if it is the machine's whole power."""
     spindle = at.machine.spindle
     idles = spindle.idle_power or spindle.idle_power_per_speed
     if at.machine.only_stated_limits or not idles:
         return ""
-    return "what the idling spindle leaves of its drive's"
+    return "the drive power less the idling power of the spindle"
 
 
 def segment_at(at: CuttingConditions, speed: float) -> CurveSegment:
-    """Stretch of the spindle's curve that holds at a speed, the nearest beyond its ends."""
+    """Stretch of the spindle's curve that contains a speed, or the nearest beyond its ends."""
     segments = curve_segments(at.machine.spindle)
     return next((part for part in segments if speed <= part.max_speed), segments[-1])
 
 
 def speed_range(cut: Cut, at: CuttingConditions) -> tuple[float, float]:
-    """Least and greatest spindle speed that machine and tool allow, rev/s."""
+    """Least and greatest spindle speed allowed by machine and tool, rev/s."""
     low, high = 0.0, inf
     for limit in speed_limits(cut, at):
         bound = limit.bound / limit.load.coefficient
@@ -197,7 +199,7 @@ def speed_range(cut: Cut, at: CuttingConditions) -> tuple[float, float]:
 
 
 def machine_limits(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
-    """Cutting force and feed mechanism."""
+    """Limits on the cutting force and the feed rate of the machine."""
     machine = at.machine
     if machine.max_cutting_force is not None:
         is_drill = cut.kind is CutKind.DRILLING
@@ -222,7 +224,7 @@ def machine_limits(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
 
 
 def tool_limits(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
-    """Feed per tooth, chip thickness, deflection and strength of the shank."""
+    """Limits on feed per tooth, chip thickness, deflection and shank strength."""
     highest = greatest_feed(cut, at)
     feed = Monomial(coefficient=1.0, feed_exponent=1.0)
     words = "feed per revolution" if cut.tool.diameter <= 0.0 else ""
@@ -262,7 +264,7 @@ def tool_limits(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
 
 
 def _bending_limits(cut: Cut, at: CuttingConditions, grade: ToolGrade) -> Iterator[Limit]:
-    """Deflection and bending stress of an end mill clamped at one end."""
+    """Limits on deflection and bending stress of an end mill clamped at one end."""
     shank = end_mill(
         cut.tool.diameter,
         cutting_edge_length=cut.tool.cutting_edge_length,
@@ -289,12 +291,12 @@ def _bending_limits(cut: Cut, at: CuttingConditions, grade: ToolGrade) -> Iterat
 
 
 def is_bent(cut: Cut) -> bool:
-    """Whether the tool is slender: face mills are not."""
+    """Whether the tool bends under load: end mills do, face mills do not."""
     return cut.kind is CutKind.MILLING and cut.tool_kind is ToolKind.ENDMILL
 
 
 def _depth_limits(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
-    """Depth of one pass that machine, tool and grade allow."""
+    """Limit on the depth of one pass from machine, tool and grade."""
     grade = at.grade
     bounds = [at.machine.max_axial_depth, cut.depth_bound]
     if grade is not None:
@@ -311,7 +313,7 @@ def _depth_limits(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
 
 
 def speed_limits(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
-    """Window of the cutting speed, and what the spindle turns."""
+    """Limits on cutting speed and spindle speed."""
     low, high = cutting_speed_window(at)
     spindle = at.machine.spindle
     velocity = Monomial(coefficient=pi * cut.diameter, speed_exponent=1.0)
@@ -338,7 +340,7 @@ def speed_limits(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
 
 
 def _chuck_speed(at: CuttingConditions) -> float | None:
-    """Speed above which a chuck holds too little to be used, rev/s; None of another one."""
+    """Speed above which a chuck holds too little to be used, rev/s; None for other holding."""
     if not isinstance(at.holding, Chuck):
         return None
     speed = usable_speed(at.holding)
@@ -346,7 +348,7 @@ def _chuck_speed(at: CuttingConditions) -> float | None:
 
 
 def cutting_speed_window(at: CuttingConditions) -> tuple[float | None, float | None]:
-    """Cutting speeds that the grade, else the material, recommends, mm/s."""
+    """Recommended cutting speeds of the grade, or else of the material, mm/s."""
     grade = at.grade
     if grade is None:
         return None, None
@@ -366,7 +368,7 @@ def _chip_ratio(cut: Cut) -> float:
 
 
 WRITTEN = 1e-6
-"""relative excess that is the rounding of a number in a file"""
+"""Relative excess that is attributed to the rounding of numbers in a file."""
 
 
 def held_speed(cut: Cut, at: CuttingConditions) -> float:
@@ -380,7 +382,7 @@ def held_speed(cut: Cut, at: CuttingConditions) -> float:
 
 
 def why_too_fast(cut: Cut, at: CuttingConditions) -> str:
-    """Name of the limit that the programmed speed exceeds; empty where it keeps all."""
+    """Text naming the limit that the programmed speed exceeds; empty if it exceeds none."""
     speed = cut.programmed.speed
     passed = min(_passed(cut, at), key=_greatest_speed, default=None)
     return "" if passed is None else told(passed, passed.load.value(1.0, 1.0, speed), speed)
@@ -394,7 +396,7 @@ def why_thread_too_fast(
     *,
     diameter: float,
 ) -> str:
-    """Name of the limit that the speed of a thread exceeds; else empty.
+    """Text naming the limit that the speed of a thread exceeds; empty if it exceeds none.
 
     Parameters
     ----------
@@ -403,7 +405,7 @@ def why_thread_too_fast(
     machine : Machine
     material : WorkMaterial
     diameter : float
-        Of the thread, mm; 0: not known, so nothing is.
+        Thread diameter, mm; 0: not known, so the speed is not checked.
     """
     if diameter <= 0.0:
         return ""
@@ -434,7 +436,7 @@ def why_thread_too_fast(
 
 
 def _passed(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
-    """Limits that the programmed speed passes; below the window of the tool it may be."""
+    """Speed limits that the programmed speed violates, except the tool's least speed."""
     speed = cut.programmed.speed
     for limit in speed_limits(cut, at):
         is_most = limit.sense is BoundSide.AT_MOST
@@ -446,5 +448,5 @@ def _passed(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
 
 
 def _greatest_speed(limit: Limit) -> float:
-    """Spindle speed at the bound of a limit, rev/s."""
+    """Spindle speed at the bound of a speed limit, rev/s."""
     return limit.bound / limit.load.coefficient

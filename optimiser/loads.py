@@ -1,4 +1,4 @@
-"""The loads of a cut in feed per tooth, depth and spindle speed.
+"""Loads of a cut as functions of feed per tooth, depth and spindle speed.
 
 Every number comes from :mod:`simulator.physics`: a Kienzle force is ``c·f^(1−m_c)·a``, so its
 value at one point gives c. The functions take the force factor K (rake, speed).
@@ -16,32 +16,32 @@ from simulator.physics.flutes import WALL, CuttingEdges, ForceLaw
 from simulator.spec import DrillPoint, Kienzle
 
 LEAST = 1e-9
-"""mm; a straight edge makes its wall where it has no chip, and a load must be positive"""
+"""Least value of a load, mm; a straight edge without a chip at the wall would give zero."""
 
 
 class ForceKind(Enum):
-    """Force along the helix that a curve gives."""
+    """Force along the helix that a depth curve describes."""
 
     ACROSS = auto()
-    """greatest across the axis within a revolution"""
+    """Greatest force across the axis within a revolution."""
     AT_WALL = auto()
-    """greatest normal to a wall while an edge makes it"""
+    """Greatest force normal to a wall while an edge forms it."""
 
 
 REFERENCE_FEED = 0.1
-"""mm, where the physics is asked; any would do"""
+"""Feed at which the physics is evaluated, mm; any value would do."""
 
 
 def cutting_force(
     cut: Cut, kienzle: Kienzle, factor: float, point: DrillPoint = drilling.LIPS_ONLY
 ) -> Monomial:
-    """Tangential force in N; of a mill all teeth together, averaged over a revolution.
+    """Tangential force, N; for a mill all teeth together, averaged over a revolution.
 
-    Of a drill that of all lips in their middle, where the virtual machine has it too.
+    For a drill, the force of all lips at their middle, as in the virtual machine.
     """
     if cut.kind is CutKind.MILLING:
         at = _milling_cut(cut, cut.hardest)
-        # The chip as it was met, which need not be that of the arc that holds all contact.
+        # Use the measured chip, which may differ from that of the arc that spans all contact.
         thinner = cut.mean_chip_ratio * REFERENCE_FEED / at.mean_chip_thickness
         force = milling.mean_force(kienzle, at, factor=factor * cut.fill)
         return _monomial(force * thinner**-kienzle.m_c, kienzle, depth=1.0)
@@ -68,7 +68,7 @@ def shank_force(cut: Cut, kienzle: Kienzle, factor: float) -> Monomial:
 
 
 def wall_force(cut: Cut, kienzle: Kienzle, factor: float) -> Monomial | None:
-    """Force normal to the wall while an edge makes it, N; None where it reaches no wall."""
+    """Force normal to the wall while an edge forms it, N; None where no wall is touched."""
     place = cut.wall or cut.hardest
     if place is None or not _reaches_wall(place):
         return None
@@ -83,7 +83,7 @@ def _reaches_wall(place: CriticalPlace) -> bool:
 def _along_helix(
     cut: Cut, place: CriticalPlace | None, kienzle: Kienzle, factor: float, force: ForceKind
 ) -> Monomial:
-    """A load that is integrated along the edges in the cut."""
+    """Load that is integrated along the helical edges in the cut."""
     if place is None:
         raise ValueError("a milling cut needs its engagement")
     exponent = 1.0 - kienzle.m_c
@@ -98,7 +98,7 @@ def _along_helix(
 
 @dataclass(frozen=True, slots=True)
 class DepthCurve:
-    """Integral of the forces at one place as a function of the depth of a pass, mm."""
+    """Integral of the helix forces at one place as a function of the depth of a pass, mm."""
 
     edges: CuttingEdges
     place: CriticalPlace
@@ -106,7 +106,7 @@ class DepthCurve:
     force: ForceKind
 
     def __call__(self, depth: float) -> float:
-        """Integral at a depth in mm."""
+        """Evaluate the integral at a depth in mm."""
         return _integral(self, depth)
 
 
@@ -125,7 +125,7 @@ def _integral(curve: DepthCurve, depth: float) -> float:
 
 
 def over_mean(curve: DepthCurve, depth: float) -> float:
-    """A force along the helix over the mean tangential force, at the curve's place."""
+    """Ratio of a force along the helix to the mean tangential force at the same place."""
     mean = milling.mean_force(
         Kienzle(k_c11=1.0, m_c=1.0 - curve.law.exponent),
         milling.MillingCut(
@@ -143,7 +143,7 @@ def over_mean(curve: DepthCurve, depth: float) -> float:
 def thrust(
     cut: Cut, kienzle: Kienzle, factor: float, point: DrillPoint = drilling.LIPS_ONLY
 ) -> Monomial:
-    """Force along the axis of a drill, N; the part of the chisel edge is an offset."""
+    """Axial force of a drill, N; the share of the chisel edge is an offset."""
     at = _drilling_cut(cut, point)
     force = cut.fill * drilling.lip_thrust(kienzle, at, factor=factor) * _thicker(cut, kienzle)
     lips = _monomial(force, kienzle, depth=0.0)
@@ -163,7 +163,7 @@ def torque(cut: Cut, force: Monomial) -> Monomial:
 
 
 def _scaled(load: Monomial, factor: float, speed: float = 0.0) -> Monomial:
-    """The same load times a factor and a power of the spindle speed."""
+    """Multiply a load by a factor and a power of the spindle speed."""
     return Monomial(
         coefficient=load.coefficient * factor,
         offset=load.offset * factor,
@@ -175,12 +175,12 @@ def _scaled(load: Monomial, factor: float, speed: float = 0.0) -> Monomial:
 
 
 def scaled(load: Monomial, factor: float) -> Monomial:
-    """The same load times a factor."""
+    """Multiply a load by a factor."""
     return _scaled(load, factor)
 
 
 def _monomial(value: float, kienzle: Kienzle, *, depth: float) -> Monomial:
-    """Kienzle load whose value at the reference feed and unit depth is known."""
+    """Kienzle load with a known value at the reference feed and unit depth."""
     exponent = 1.0 - kienzle.m_c
     return Monomial(
         coefficient=value / REFERENCE_FEED**exponent,
@@ -190,7 +190,7 @@ def _monomial(value: float, kienzle: Kienzle, *, depth: float) -> Monomial:
 
 
 def _milling_cut(cut: Cut, place: CriticalPlace | None) -> milling.MillingCut:
-    """The cut at one place, at the reference feed and unit depth of a pass."""
+    """Milling cut at one place, at the reference feed and unit depth of a pass."""
     if place is None:
         raise ValueError("a milling cut needs its engagement")
     return milling.MillingCut(
@@ -203,12 +203,12 @@ def _milling_cut(cut: Cut, place: CriticalPlace | None) -> milling.MillingCut:
 
 
 def _thicker(cut: Cut, kienzle: Kienzle) -> float:
-    """Force of the thickest chip over that of the feed's."""
+    """Force of the thickest chip relative to that of the nominal feed."""
     return float(cut.thickest ** (1.0 - kienzle.m_c))
 
 
 def _drilling_cut(cut: Cut, point: DrillPoint) -> drilling.DrillingCut:
-    """The hole with one lip's feed at the reference."""
+    """Drilling cut of the hole at the reference feed of one lip."""
     return drilling.DrillingCut(
         feed_per_revolution=REFERENCE_FEED * cut.tool.teeth,
         tool_diameter=cut.drilled_diameter,

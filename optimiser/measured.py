@@ -1,12 +1,12 @@
-"""Cuts as the real tool path makes them, in the stock that is left, timed by the machine.
+"""Cuts along real tool paths in the remaining stock, timed by the machine's axes.
 
-Each workingstep's path cuts the stock of its setup, which goes on to the next workingstep. From
-what the tool meets come the hardest places, for the limits, and the mean load, for the energy;
-from the motion of the axes comes the time. What lasts as long as the feed says counts as
-length, in mm at the programmed feed, with ratios of it and a spindle that follows the radius.
+Each workingstep's path cuts the stock of its setup, which goes on to the next workingstep. The
+contacts along the path give the hardest places, for the limits, and the mean load, for the
+energy; the motion of the axes gives the time. Motion whose time depends on the programmed feed
+counts as length, in mm at that feed, with ratios of it and a spindle that follows the radius.
 The rest counts as time: ramps, rapids, moves with a feed of their own, waits.
 
-Paths are tried with other depths of passes, too: those of the program as
+Paths with other depths of passes are tried too: those of the program as
 :mod:`stepnc_model.writeback` would write it, without writing it.
 """
 
@@ -68,54 +68,53 @@ from stepnc_model.toolpath.path import Feed, ToolPath
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TriedPath:
-    """A path that was tried, and what it met."""
+    """Tool path that was tried, with its contacts, its cut and its timing."""
 
     path: ToolPath
     run: ToolPathRun
-    """as programmed"""
+    """Run of the path as programmed."""
     cut: Cut
-    """with the engagement as met"""
+    """Cut with the engagement met along the path."""
     passes: int
     weighted: float
-    """weighted volume over that of the hardest place, mm"""
+    """Chip-weighted volume over that of the hardest place, mm."""
     air: float
-    """share of the length that removes nothing"""
+    """Share of the length that removes nothing."""
     meeting: TrialContacts
     along: PathContacts | None
-    """what was met along the passes; None: nothing is known of it"""
+    """Contacts along the passes; None when they are not known."""
     bent: Bending | None
-    """by that"""
+    """Bending forces of an end mill at these contacts."""
     slope: PlungeCuts | None
-    """what was met down ramps; None: nothing"""
+    """Contacts down ramps; None when there are no ramps."""
     times: dict[tuple[float, float, float | None], Cut] = field(default_factory=dict)
-    """the cut as timed already, by the ratios of feed and speed and the plunge feed; filled
-    when asked for"""
+    """Timed cuts by feed ratio, speed ratio and plunge feed, filled on demand."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class SearchTrace:
-    """Trace of a workingstep's search: what it read and changed."""
+    """What the search for a workingstep's setting read and changed."""
 
     place: StockPlace | None = None
-    """which stock"""
+    """Stock that the workingstep cuts."""
     change: Change | None = None
     trial: PathTrial | None = None
-    """that of the change; None: not of a mill"""
+    """Milling trial of the change; None when the tool is not a mill."""
     trials: tuple[PathTrial, ...] = ()
-    """Trials of all paths that were tried"""
+    """Trials of all paths that were tried."""
     left_out: dict[int, str] = field(default_factory=dict)
-    """features whose path could not be made, with the workingstep"""
+    """Features whose path could not be made, with the id of the workingstep."""
 
 
 def with_depth(
     program: Program, step: ResolvedWorkingstep, depth: float
 ) -> tuple[Program, ResolvedWorkingstep]:
-    """A program and its workingstep as if it were programmed in passes of another depth.
+    """Copy of a program and a workingstep with a different depth of its passes.
 
     Raises
     ------
     PathError
-        When the file leaves no depth to choose.
+        When the file does not let the depth be chosen.
     """
     operation: Any = step.operation
     if hasattr(operation, "axial_cutting_depth") and not operation.its_toolpath:
@@ -124,28 +123,28 @@ def with_depth(
     strategy: Ref[Entity] | None = getattr(operation, "its_machining_strategy", None)
     entity: Any = None if strategy is None else program.get(strategy)
     if strategy is None or not hasattr(entity, "cutting_depth") or operation.its_toolpath:
-        raise PathError("the depth of its passes is not programmed", entity=str(step.ref))
+        raise PathError("the file sets no depth of its passes", entity=str(step.ref))
     changed = copy(program)
     changed.model = _Changed(program.model, strategy, replace(entity, cutting_depth=(depth,)))
     return changed, step
 
 
 class _Changed(Model):
-    """The entities of a program, one of them another one."""
+    """Entities of a program with one entity replaced."""
 
     def __init__(self, model: Model, ref: Ref[Entity], entity: Entity) -> None:
         super().__init__(model.file)
         self._model, self._number, self._entity = model, int(ref), entity
 
     def entity(self, id: int, /) -> Entity | None:
-        """The entity of an instance."""
+        """Return the entity of an instance number."""
         return self._entity if id == self._number else self._model.entity(id)
 
 
 class MeasuredCuts:
-    """A source of cuts along real paths. Running state: what is left of each stock.
+    """Source of cuts along real paths (mutable state: the remaining stock of each setup).
 
-    The stock goes on to the next workingstep as the path that was asked for last leaves it.
+    The stock passes to the next workingstep as the path that was requested last leaves it.
 
     Parameters
     ----------
@@ -153,7 +152,8 @@ class MeasuredCuts:
     machine : Machine
     material : WorkMaterial
     is_run : bool
-        Whether a run will stand beside the plan: then cuts tell what the axes reach, too.
+        Whether a simulated run is compared with the plan; the cuts then include the loads that
+        the axes actually reach.
     """
 
     def __init__(
@@ -172,20 +172,20 @@ class MeasuredCuts:
         self.control, self.limits = usual_motion(machine)
         self.stocks = ClampedStocks(program, machine)
         self._left_out: dict[int, str] = {}
-        """workingstep without a path, by the instance number of its feature"""
+        """Ids of workingsteps without a path, by the instance number of their feature."""
         self._estimate: Cut | None = None
         self._found: StockMap | None = None
-        """what the workingstep finds"""
+        """Stock that the workingstep finds."""
         self._seen: dict[int, TriedPath] = {}
-        """paths of the workingstep, by the number of passes"""
+        """Tried paths of the workingstep, by the number of passes."""
         self._trace = SearchTrace()
         self._numbers: dict[StockPlace, dict[int, int]] = {}
-        """new numbers of the first moves of workingsteps that are repeated, by the old ones"""
+        """New numbers of the first moves of repeated workingsteps, by their old numbers."""
 
     def cut(self, step: ResolvedWorkingstep) -> tuple[Cut, list[Finding]]:
-        """The cut of a workingstep as programmed, and what was assumed.
+        """Return the cut of a workingstep as programmed, with findings on assumptions.
 
-        Where no path can be made, or what it meets is not known, the estimate from the feature
+        Where no path can be made, or its contacts are not known, the estimate from the feature
         takes its place, and a finding says so.
 
         Raises
@@ -212,9 +212,10 @@ class MeasuredCuts:
         return self._timed(step, seen, seen.cut.programmed), findings
 
     def at(self, step: ResolvedWorkingstep, cut: Cut, setting: Setting) -> Cut:
-        """The same cut as the path of another setting makes it.
+        """Return the cut as the path of another setting makes it.
 
-        Where a path in other passes cannot be made, all passes are taken to be alike.
+        Where a path with a different number of passes cannot be made, all passes are assumed
+        alike.
         """
         given, estimate = cut.programmed, self._estimate
         if not self._seen or estimate is None:
@@ -234,7 +235,7 @@ class MeasuredCuts:
         return replace(timed, programmed=replace(timed.programmed, passes=passes, depth=depth))
 
     def leave_out(self, step: ResolvedWorkingstep) -> None:
-        """Cut the stock as a workingstep does that is not advised but is run."""
+        """Cut the stock with a workingstep that is not optimised but will run."""
         stock = self.stocks.before(step)
         self._trace = SearchTrace(place=self.stocks.place(step))
         try:
@@ -247,23 +248,23 @@ class MeasuredCuts:
     def each(
         self, steps: Sequence[ResolvedWorkingstep], do: Callable[[ResolvedWorkingstep], Result]
     ) -> Iterator[Result]:
-        """Results of workingsteps in their order; of a mill on two cores."""
+        """Results of workingsteps in their order; on a mill two processes are used."""
         if self.machine.kind is MachineKind.LATHE:
             return one_by_one(steps, do)
         return side_by_side(steps, do, self)
 
     def split(self) -> None:
-        """Prepare to repeat what a copy does from now on."""
+        """Prepare to repeat the changes that a copy of this state makes from now on."""
         self._numbers = {}
 
     def trace(self) -> SearchTrace:
-        """Place of the stock that the last workingstep read and changed."""
+        """Trace of the last workingstep: the stock that it read and changed."""
         return self._trace
 
     def is_apart(
         self, step: ResolvedWorkingstep, trace: SearchTrace, others: Sequence[SearchTrace]
     ) -> bool:
-        """Whether a workingstep would have met the same after others."""
+        """Whether a workingstep would have met the same stock after the others."""
         features = {int(feature) for feature in step.features}
         if any(features & other.left_out.keys() for other in others):
             return False
@@ -279,7 +280,7 @@ class MeasuredCuts:
         )
 
     def repeat(self, step: ResolvedWorkingstep, trace: SearchTrace) -> None:
-        """Change the stock as a workingstep has changed a copy of it."""
+        """Apply the stock change that a workingstep made in a copy of this state."""
         self._left_out |= trace.left_out
         stock, change = self.stocks.before(step), trace.change
         if trace.trial is not None and isinstance(stock, MillingStock):
@@ -289,7 +290,7 @@ class MeasuredCuts:
         self.stocks.leave(step, change)
 
     def _leave(self, step: ResolvedWorkingstep, meeting: TrialContacts) -> None:
-        """Stock before the next workingstep, with the findings on it."""
+        """Record the stock change and the trials of a path."""
         self.stocks.leave(step, meeting.change)
         trials = self._trace.trials
         if meeting.trial is not None and meeting.trial not in trials:
@@ -299,18 +300,18 @@ class MeasuredCuts:
         )
 
     def _leave_out(self, step: ResolvedWorkingstep) -> None:
-        """Without its path, what comes after it on its features would meet too much."""
+        """Mark the features of a workingstep without a path, for the cuts that follow."""
         without = {int(feature): step.id for feature in step.features}
         self._left_out |= without
         self._trace = replace(self._trace, left_out=without)
 
     def _path(self, step: ResolvedWorkingstep) -> ToolPath:
-        """Path of a workingstep as programmed."""
+        """Tool path of a workingstep as programmed."""
         require_ready(self.program, step, self._left_out)
         return workingstep_path(self.program, step)
 
     def _run(self, path: ToolPath, pace: SpeedRatios) -> ToolPathRun:
-        """Tool path as the axes run it; each feed is looked up once."""
+        """Run of a tool path by the axes; each feed is looked up once."""
         is_lathe = path.is_turning or self.machine.kind is MachineKind.LATHE
         kind = PostMachine.LATHE if is_lathe else PostMachine.MILL
         known: dict[Feed, ModalState] = {}
@@ -332,13 +333,13 @@ class MeasuredCuts:
     def _see(
         self, step: ResolvedWorkingstep, path: ToolPath, cut: Cut, *, passes: int
     ) -> TriedPath:
-        """Try a path in the stock that the workingstep finds."""
+        """Try a path in the current stock and record its contacts."""
         run = self._run(path, SpeedRatios(technology=step.technology_ref))
         meeting = met_by(self.program, step, run, self._found)
         met = meeting.met
         weighted, air, along, bent, slope = 0.0, 0.0, None, None, None
         if met is not None:
-            # Levels of a mill are equal, however deep they were asked to be.
+            # The levels of a mill are of equal depth, whatever depth was requested.
             is_equal = cut.kind is CutKind.MILLING and cut.is_depth_free
             depth = cut.total_depth / passes if is_equal else cut.programmed.depth
             along, slope = along_passes(run, met), down_ramps(cut, run, met, self.kienzle)
@@ -377,7 +378,7 @@ class MeasuredCuts:
         slope: PlungeCuts | None,
         depth: float,
     ) -> Cut:
-        """The cut with its ways down; turning is told where the programmed path is widest."""
+        """Add volume, diameter and ways down to the cut of a path."""
         cut = replace(cut, volume=met.volume)
         if cut.kind.is_turned and not cut.is_air:
             first = next(iter(self._seen.values()), None)
@@ -390,7 +391,7 @@ class MeasuredCuts:
         return replace(cut, plunge=plunge_of(cut, met, is_fed(run, step.technology_ref, cut)))
 
     def _widest(self, met: PathContacts, run: ToolPathRun) -> float:
-        """Diameter of the bar where it is cut, mm: the same in however many passes."""
+        """Greatest diameter of the bar where it is cut, mm, whatever the number of passes."""
         stations, stock = met.stations, self._found
         if not isinstance(stock, TurningStock):
             return float(stations.diameter.max())
@@ -402,7 +403,7 @@ class MeasuredCuts:
         return 2.0 * float(stock.outer[inside].max())
 
     def _at_widest(self, step: ResolvedWorkingstep, cut: Cut, diameter: float) -> Cut:
-        """Speeds and loads of turning are those at its greatest diameter: nothing is harder."""
+        """Refer speeds and loads of a turning cut to its greatest diameter."""
         found = programmed(self.program, step.technology_ref)
         speed = found.spindle_speed(diameter)
         feed = found.feed_per_tooth(speed, cut.tool.teeth)
@@ -410,7 +411,7 @@ class MeasuredCuts:
         return replace(cut, diameter=diameter, programmed=given)
 
     def _timed(self, step: ResolvedWorkingstep, seen: TriedPath, setting: Setting) -> Cut:
-        """The cut of a path, run so much faster than programmed."""
+        """Cut of a path at the feed and speed of a setting, with its time."""
         given, plunge = seen.cut.programmed, setting.plunge_feed
         feed, speed = setting.feed / given.feed, setting.speed / given.speed
         if feed == speed == 1.0 and plunge == given.plunge_feed:
@@ -426,7 +427,7 @@ class MeasuredCuts:
     def _run_through(
         self, step: ResolvedWorkingstep, seen: TriedPath, pace: SpeedRatios
     ) -> Cut:
-        """The same, with the motion of the axes."""
+        """Time the cut along its path with the motion of the axes."""
         cut, given = seen.cut, seen.cut.programmed
         run = seen.run
         if pace != SpeedRatios(technology=step.technology_ref):
@@ -459,7 +460,7 @@ class MeasuredCuts:
         )
 
     def _with_ramp_reached(self, cut: Cut, seen: TriedPath, ride: MachineRun) -> Cut:
-        """The cut with what the axes make of the loads down its ramps."""
+        """Add to the ramp the loads that the axes actually reach on it."""
         ramp = None if cut.way_in is None else cut.way_in.ramp
         slope = seen.slope
         if slope is None or cut.way_in is None or ramp is None:

@@ -7,12 +7,12 @@ from simulator.spec import Machine, ModeDirection, VibratingPart, VibrationMode
 from stepnc_model.tool import Tool
 
 SAME_DIAMETER = 1e-3
-"""mm"""
+"""Tolerance within which tool diameters are equal, mm."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MeasuredModes:
-    """Modes that hold for one cut, along the axes of the machine."""
+    """Measured vibration modes that apply to one cut, along the axes of the machine."""
 
     x: tuple[VibrationMode, ...]
     y: tuple[VibrationMode, ...]
@@ -20,17 +20,17 @@ class MeasuredModes:
 
     @property
     def in_plane(self) -> tuple[VibrationMode, ...]:
-        """Modes that a mill feels, each once."""
+        """Modes that affect milling, each once."""
         return tuple(dict.fromkeys((*self.x, *self.y)))
 
     @property
     def along_axis(self) -> tuple[VibrationMode, ...]:
-        """Modes that a turning tool feels."""
+        """Modes that affect turning, each once."""
         return tuple(dict.fromkeys((*self.x, *self.z)))
 
 
 def measured_modes(cut: Cut, machine: Machine) -> MeasuredModes | None:
-    """Measured modes that hold for a cut; those that name its tool, else its diameter."""
+    """Measured modes that apply to a cut: those that name its tool, or else its diameter."""
     if cut.kind not in {CutKind.MILLING, CutKind.TURNING}:
         return None
     fitting = [mode for mode in machine.modes if _is_of(mode, cut.tool)]
@@ -47,7 +47,7 @@ def measured_modes(cut: Cut, machine: Machine) -> MeasuredModes | None:
 
 
 def _is_of(mode: VibrationMode, tool: Tool) -> bool:
-    """Whether a mode was measured on a tool."""
+    """Whether a mode was measured on a given tool."""
     if mode.part is not VibratingPart.TOOL:
         return False
     if mode.tool and mode.tool.casefold() != tool.id.strip().casefold():
@@ -57,7 +57,7 @@ def _is_of(mode: VibrationMode, tool: Tool) -> bool:
 
 
 def what_is_measured(cut: Cut, measured: MeasuredModes) -> str:
-    """Number of modes, and the directions that are taken as rigid."""
+    """Describe the number of modes and the directions assumed to be rigid."""
     modes = measured.in_plane if cut.kind is CutKind.MILLING else measured.along_axis
     text = f"{len(modes)} measured mode{'' if len(modes) == 1 else 's'}"
     if not any(mode.part is VibratingPart.TOOL for mode in modes):

@@ -1,12 +1,12 @@
-"""Definitions of the modes time-critical, quality-critical and energy-critical.
+"""Optimisation modes: time-critical (TC), quality-critical (QC) and energy-critical (EC).
 
 TC
     Least machining time. A roughness stated for the surface is kept.
 QC
-    The fastest feed that keeps the roughness asked for, never below the minimum chip
-    thickness. (Least roughness alone would be least feed, which rubs.)
+    The fastest feed that keeps the required roughness, never below the minimum chip
+    thickness. (Least roughness alone would mean least feed, which rubs.)
 EC
-    Least energy: what the machine draws while it cuts, and the cut itself.
+    Least energy, of the machine and of the cut itself.
 
 TC and QC are the modes of F. Ridwan, X. Xu, G. Liu, "A framework for machining optimisation
 based on STEP-NC", J. Intell. Manuf. 23 (2012) 423–441, eqs. (12)–(14), in their corrected

@@ -1,11 +1,11 @@
-"""The one public verb: advice for every workingstep of a program.
+"""Feed advice for every workingstep of a program.
 
-Lengths, engagement and times are those of the real tool paths in the stock that is left, run by
-the machine's axes, unless another source of cuts is asked for. The optimum is exact for the
-model with these numbers; it is solved again with those of the path at the advice itself, until
-the advice stays, so that its time is that of the path that the file will give.
+Lengths, engagement and times are those of the real tool paths in the remaining stock, run by
+the machine's axes, unless another source of cuts is chosen. The optimum is exact for these
+numbers. It is solved again with the path of the advice itself until the advice no longer
+changes, so that its time is that of the path that the file will give.
 
-Same inputs, same result: corrections of the cutting force come as an argument, by tool.
+The result depends on the arguments alone: corrections of the cutting force are passed by tool.
 """
 
 from collections.abc import Callable, Sequence
@@ -44,7 +44,7 @@ from stepnc_model.technology import programmed
 from stepnc_model.tool import Tool, tool_of
 
 DEFAULT_QUALITY = 3.2e-3
-"""mm, Ra that QC keeps where neither user nor file asks for one: ISO 1302 general machining"""
+"""Roughness Ra kept in QC mode when none is required, mm: ISO 1302 general machining."""
 
 
 def optimise_program(
@@ -56,7 +56,7 @@ def optimise_program(
     selected: Callable[[ResolvedWorkingstep], bool] = lambda _: True,
     progress: Callable[[], None] = lambda: None,
 ) -> Plan:
-    """Advise every selected workingstep of a program.
+    """Optimise the feeds of every selected workingstep of a program.
 
     Parameters
     ----------
@@ -65,9 +65,9 @@ def optimise_program(
     material : MaterialMatch
     task : OptimisationTask
     selected : callable
-        Which workingsteps are wanted.
+        Predicate that selects the workingsteps.
     progress : callable
-        Called after each of them.
+        Called after each optimised workingstep.
 
     Returns
     -------
@@ -97,11 +97,11 @@ def optimise_program(
             continue
         advices.append(advice)
         progress()
-        # Workingsteps that share a tool are told the same of it.
+        # Workingsteps that share a tool produce the same findings about it.
         findings += [finding for finding in found if finding not in findings]
     findings += _estimates(program, advices)
     if task.free:
-        # Where nothing may change, the loads are those of the run, not of an estimate.
+        # If nothing may change, the run under control reports the loads instead of an estimate.
         findings += holding_findings(program, advices, machine)
     return Plan(
         program=program.name,
@@ -123,7 +123,7 @@ def advise(
     material: MaterialMatch,
     task: OptimisationTask,
 ) -> tuple[Advice, list[Finding]]:
-    """Advice for one workingstep, with what was assumed on the way."""
+    """Optimise the feed of one workingstep; the findings state assumptions."""
     tool = tool_of(program, step.tool_ref)
     conditions = programmed(program, step.technology_ref)
     untouched = Advice(
@@ -156,7 +156,7 @@ def advise(
     problem = problem_of(cut, at, task)
     before = state_of(cut, problem, at, problem.programmed)
     if not isfinite(before.time) or not isfinite(before.energy):
-        raise ValueError(f"a time of {before.time:g} s: its numbers are beyond all machines")
+        raise ValueError(f"machining time {before.time:g} s: time and energy must be finite")
     untouched = replace(
         untouched,
         force_factor=at.force_factor,
@@ -197,7 +197,7 @@ def advise(
 
 
 def _thread_diameter(program: Program, step: ResolvedWorkingstep, tool: Tool) -> float:
-    """Diameter of a thread in mm; 0 where its feature does not tell."""
+    """Diameter of a thread, mm; 0 where its feature does not state it."""
     if not isinstance(step.operation, TurningMachiningOperation):
         return tool.diameter
     try:
@@ -207,13 +207,13 @@ def _thread_diameter(program: Program, step: ResolvedWorkingstep, tool: Tool) ->
 
 
 def _kept(untouched: Advice, reason: str, too_fast: str) -> Advice:
-    """A workingstep that is locked, with the limit that its speed exceeds."""
+    """Advice for a locked workingstep, with the limit that its speed exceeds."""
     told = f"{reason}, and {too_fast}" if too_fast else reason
     return replace(untouched, reason=told, speed_fault=too_fast)
 
 
 def _too_fast(program: Program, advice: Advice) -> list[Finding]:
-    """Finding on a speed that exceeds its bound and must not be changed."""
+    """Finding on a locked spindle speed that exceeds its bound."""
     if not advice.speed_fault:
         return []
     text = f"the program locks the speed, and {advice.speed_fault}"
@@ -221,7 +221,7 @@ def _too_fast(program: Program, advice: Advice) -> list[Finding]:
 
 
 def _estimates(program: Program, advices: Sequence[Advice]) -> list[Finding]:
-    """Notes on the estimated stability of tools without measured modes, one a tool."""
+    """Notes on the estimated stability of tools without measured modes, one per tool."""
     told = [
         (advice.tool, advice.stability, state.setting.depth)
         for advice in advices
@@ -234,21 +234,21 @@ def _estimates(program: Program, advices: Sequence[Advice]) -> list[Finding]:
 
 
 def _why_idle(cut: Cut) -> str:
-    """Why no feed is to be chosen; empty where one is."""
+    """Reason why no feed can be chosen; empty where one can."""
     if cut.is_air:
         return "the tool meets no material: the feed stays as programmed"
     if cut.length <= 0.0:
-        return "no move runs at the programmed feed: it stays"
+        return "no move runs at the programmed feed: the feed stays as programmed"
     return ""
 
 
 def _in_air(state: EvaluatedSetting) -> EvaluatedSetting:
-    """A state that loads nothing."""
+    """State of a cut in air, without loads."""
     return replace(state, motor_power=0.0, cutting_force=0.0, roughness=None, loads=())
 
 
 def _solved(untouched: Advice, cut: Cut, problem: Problem, asked: AdviceContext) -> Advice:
-    """Advice from the best setting."""
+    """Advice from the best setting of a workingstep."""
     at, task = asked.at, asked.task
     told = best_of(cut, problem, asked)
     solution = told.optimum.solution
@@ -280,7 +280,7 @@ def _solved(untouched: Advice, cut: Cut, problem: Problem, asked: AdviceContext)
 def _saving_of_free_speed(
     cut: Cut, at: CuttingConditions, task: OptimisationTask, solution: exact.Solution
 ) -> float:
-    """Seconds that a free spindle speed would save, on the same path."""
+    """Time that a free spindle speed would save on the same path, s."""
     if Free.SPEED in task.free:
         return 0.0
     free = problem_of(cut, at, replace(task, free=task.free | {Free.SPEED}))
@@ -291,7 +291,7 @@ def _saving_of_free_speed(
 
 
 def _is_cut_with_feed(step: ResolvedWorkingstep) -> bool:
-    """Whether the feed may be chosen at all: a thread's feed is its pitch."""
+    """Whether the feed may be chosen; the feed of a thread is its pitch."""
     return not any(word in step.operation_type for word in ("tapping", "thread"))
 
 
@@ -304,7 +304,7 @@ def _conditions(
     material: MaterialMatch,
     task: OptimisationTask,
 ) -> tuple[CuttingConditions, list[Finding]]:
-    """Grade, cutting material, roughness and permitted deflection of a cut."""
+    """Grade, cutting material, roughness and permitted deflection of a cut, with findings."""
     findings: list[Finding] = []
     cutting_material = edge_material(cut.tool.edge_material)
     if cutting_material is None:
@@ -320,7 +320,7 @@ def _conditions(
             findings.append(program.finding(Severity.WARNING, str(error), step.tool_ref))
     is_turned = cut.kind.is_turned
     if is_turned is not (machine.kind is MachineKind.LATHE):
-        text = f"{step.operation_type} on machine '{machine.name}', a {machine.kind.value}"
+        text = f"{step.operation_type} on '{machine.name}', which is a {machine.kind.value}"
         findings.append(program.finding(Severity.WARNING, text, step.operation_ref))
     asked = _roughness(program, step, cut, task, findings)
     deflection = PermittedDeflection()
@@ -329,7 +329,7 @@ def _conditions(
         findings += found
     factor = task.force_factor(cut.tool.id)
     if factor != 1.0:
-        text = f"k_c × {factor:.4g} for tool '{cut.tool.id}'"
+        text = f"k_c × {factor:.4g} (accepted correction) for tool '{cut.tool.id}'"
         findings.append(program.finding(Severity.NOTE, text, step.tool_ref))
     return (
         CuttingConditions(
@@ -354,27 +354,27 @@ def _roughness(
     task: OptimisationTask,
     findings: list[Finding],
 ) -> float | None:
-    """Ra in mm that this workingstep must keep: asked for, in the file, or QC's default."""
+    """Roughness Ra that this workingstep must keep, mm: requested, in the file, or default."""
     if not cut.is_finishing:
         return None
     drawn = required_roughness(program, step)
     asked = task.roughness or drawn
     if asked is not None and drawn is not None and asked > drawn:
         text = (
-            f"Ra {asked * 1e3:g} µm as asked for is coarser than "
+            f"the requested Ra {asked * 1e3:g} µm is coarser than "
             f"Ra {drawn * 1e3:g} µm in the file"
         )
         findings.append(program.finding(Severity.WARNING, text, step.operation_ref))
     if asked is None and task.mode is Mode.QC:
         asked = DEFAULT_QUALITY
-        text = f"no roughness is asked for: QC keeps Ra {DEFAULT_QUALITY * 1e3:g} µm"
+        text = f"no roughness is required: QC keeps Ra {DEFAULT_QUALITY * 1e3:g} µm"
         findings.append(program.finding(Severity.NOTE, text, step.operation_ref))
     if asked is not None and roughness_load(cut) is None:
-        text = f"Ra {asked * 1e3:g} µm is asked for, but " + (
+        text = f"Ra {asked * 1e3:g} µm is required, but " + (
             f"the parallel land of {cut.parallel_land:g} mm that inserts usually have makes "
             f"this surface: the feed keeps {100.0 * LAND_SHARE:g} % of it in a revolution"
             if cut.parallel_land
-            else "the feed does not describe this surface"
+            else "the roughness of this surface does not follow from the feed"
         )
         findings.append(program.finding(Severity.NOTE, text, step.operation_ref))
     return asked

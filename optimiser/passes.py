@@ -1,7 +1,8 @@
-"""The best number of passes, each told by the numbers of its own path.
+"""Search for the best number of passes, each evaluated along its own tool path.
 
-The closed form takes all passes to be alike; a path in other passes has other ways in and out
-and meets the stock otherwise. So what the closed form proposes is measured, and solved again.
+The closed form assumes that all passes are alike, but a path with other passes enters and
+leaves elsewhere and meets the stock differently. So each proposal of the closed form is tried
+along its path and solved again.
 """
 
 from dataclasses import dataclass, replace
@@ -19,19 +20,24 @@ from optimiser.source import CutSource
 from stepnc_model.program import ResolvedWorkingstep
 
 ROUNDS = 4
-"""greatest number of paths tried for the depth of one workingstep"""
+"""Greatest number of paths tried for the depth of one workingstep."""
 
 UNTIL_FEASIBLE = 10
-"""the same while none keeps its limits: stock that is left above makes passes deeper"""
+"""Greatest number of paths tried while none keeps its limits.
+
+Stock that was left above can make passes deeper than planned.
+"""
 
 MANY = 100
-"""passes; where more are programmed, so many more: the first number beyond that keeps the
-limits stands, for a path of hundreds of levels takes seconds and nobody asked for one"""
+"""Number of passes above which the first feasible path is accepted.
+
+A larger programmed number raises it. A path of hundreds of levels takes seconds to evaluate.
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AdviceContext:
-    """One workingstep and everything that its advice hangs on besides its cut."""
+    """Inputs of one workingstep's advice besides its cut."""
 
     step: ResolvedWorkingstep
     at: CuttingConditions
@@ -41,7 +47,7 @@ class AdviceContext:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Optimum:
-    """A best setting, and what the limits are worth."""
+    """Best setting with the shadow prices of its limits."""
 
     solution: exact.Solution
     prices: tuple[tuple[LimitName, float], ...] = ()
@@ -49,7 +55,7 @@ class Optimum:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PassCountOptimum:
-    """The best of a number of passes; the cut's numbers are those of the path that results."""
+    """Best setting for one number of passes, with the cut along the resulting path."""
 
     cut: Cut
     problem: Problem
@@ -57,11 +63,11 @@ class PassCountOptimum:
 
 
 def best_of(cut: Cut, problem: Problem, asked: AdviceContext) -> PassCountOptimum:
-    """The best number of passes, each told by its own path.
+    """Find the best number of passes, each evaluated along its own path.
 
-    The optimum of what was told last says which number to try next, until it says one that was
-    tried, or one that by its own word is no better than the best so far: that path is not made.
-    The programmed number is tried first, so that advice that was taken is given again.
+    The last optimum proposes the next number to try, until it proposes a number that was tried,
+    or that by its own estimate is no better than the best so far; that path is not made. The
+    programmed number is tried first, so that advice that was adopted is given again.
     """
     told: dict[int, PassCountOptimum] = {}
     tried: set[int] = set()
@@ -92,18 +98,18 @@ def best_of(cut: Cut, problem: Problem, asked: AdviceContext) -> PassCountOptimu
     best = min(told.values(), key=lambda each: _cost(each, asked.task), default=None)
     if best is None:
         raise last or exact.conflict(problem)
-    # What comes next finds the stock as this path leaves it.
+    # The next workingstep finds the stock as this path leaves it.
     asked.cuts.at(asked.step, best.cut, best.optimum.solution.setting)
     return best
 
 
 def _cost(told: PassCountOptimum, task: OptimisationTask) -> float:
-    """Seconds or joules of a number of passes, by its own path."""
+    """Cost in seconds or joules of a number of passes along its own path."""
     return exact.cost_function(told.problem, task.mode)(told.optimum.solution.setting)
 
 
 def _told(cut: Cut, problem: Problem, passes: int, asked: AdviceContext) -> PassCountOptimum:
-    """The best setting in a number of passes: limits first, then the time at that feed."""
+    """Best setting for a number of passes: first the limits, then the time at that feed."""
     given, step, task = cut.programmed, asked.step, asked.task
     depth = given.depth if passes == given.passes else problem.depth_at(passes)
     cut = asked.cuts.at(step, cut, replace(given, passes=passes, depth=depth))
@@ -120,27 +126,27 @@ def _told(cut: Cut, problem: Problem, passes: int, asked: AdviceContext) -> Pass
 
 
 def _with_plunge(cut: Cut, setting: Setting, asked: AdviceContext) -> Setting:
-    """The setting with the best plunge feed, where feeds are free."""
+    """Setting with the best plunge feed, where feeds are free."""
     if Free.FEED not in asked.task.free:
         return replace(setting, plunge_feed=cut.programmed.plunge_feed)
     return with_plunge_feed(cut, asked.at, setting)
 
 
 def _with_passes(problem: Problem, passes: int, task: OptimisationTask) -> Optimum:
-    """The optimum in a number of passes."""
+    """Optimum for a given number of passes."""
     free = _optimum(problem, task)
     given = problem.programmed
     if free.solution.setting.passes == passes:
         return free
     if passes != given.passes:
         given = replace(given, passes=passes, depth=problem.depth_at(passes))
-    why = f"these are {passes} passes along their path"
+    why = f"the tool path has {passes} passes"
     held = replace(problem, passes=(passes, passes), programmed=given, why_held=why)
     return _optimum(held, task)
 
 
 def _optimum(problem: Problem, task: OptimisationTask) -> Optimum:
-    """The exact optimum, or that of the geometric program when tools wear out."""
+    """Exact optimum, or that of the geometric program when tool wear counts."""
     if task.tool_change == 0.0:
         return Optimum(solution=exact.solve(problem, task.mode))
     from optimiser import program as general  # noqa: PLC0415 (cvxpy takes a second)

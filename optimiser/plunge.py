@@ -1,11 +1,11 @@
-"""Engagement of a mill that goes down into the material: straight, or on a slant.
+"""Engagement of a mill that goes down into the material: straight, or on a slope.
 
-A way down that the path makes itself may run at a feed of its own
-(:class:`PlungeEngagement`). A way down that the file draws runs as the file says, at the feed
-of the cut, so what it takes holds for the whole cut (:func:`plunge_of`).
+A way down that the path generator adds may have a feed of its own
+(:class:`PlungeEngagement`). A way down that the file defines runs at the feed of the cut, so
+its loads limit the whole cut (:func:`plunge_of`).
 
 Straight down the mill cuts as a drill does, with lips square to its axis, in the section that
-was met. On a ramp, a helix or a zigzag it mills as along a pass. Units mm.
+was met. On a ramp, a helix or a zigzag it mills as along a pass. Units: mm.
 """
 
 from dataclasses import dataclass, replace
@@ -23,23 +23,23 @@ from stepnc_model.entities.entity import Entity
 from stepnc_model.part21.values import Ref
 
 CORE = 0.25
-"""of the radius; what does not reach so far in is planed off at the side, not drilled"""
+"""Share of the radius that contact must reach inwards to count as drilling."""
 
 TINY = 1e-9
-"""mm; a shorter move is none"""
+"""Least length of a move, mm."""
 
 LEAST_SHARE = 0.02
-"""of the tool's section, over a stretch that begins above the material; less is a sliver"""
+"""Share of the tool's section below which removed material is only a sliver."""
 
 
 def is_fed(run: ToolPathRun, technology: Ref[Entity], cut: Cut) -> Bools:
-    """(N,) which segments run at the feed of the cut, and none of its own."""
+    """Segments that run at the feed of the cut rather than a feed of their own, (N,)."""
     bound = follows(run, technology)
     return bound if cut.way_in is None else bound & ~plunges(run)
 
 
 def plunge_feed_of(run: ToolPathRun, cut: Cut) -> float:
-    """Feed per tooth on the ways down as the file has it, mm."""
+    """Feed per tooth on the ways down as programmed, mm."""
     own = [move.feed.per_revolution for move in run.moves if move.feed and move.feed.is_plunge]
     per_turn = own[0] if own else None
     return cut.programmed.feed if per_turn is None else per_turn / cut.tool.teeth
@@ -53,17 +53,17 @@ def along_passes(run: ToolPathRun, met: PathContacts) -> PathContacts:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PlungeCuts:
-    """Milling contacts on ways down that may have a feed of their own."""
+    """Milling contacts on ramps that may have a feed of their own."""
 
     met: PathContacts
     bent: Bending
-    """by that"""
+    """Bending forces of an end mill at these contacts."""
 
 
 def down_ramps(
     cut: Cut, run: ToolPathRun, met: PathContacts, kienzle: Kienzle
 ) -> PlungeCuts | None:
-    """Milling contacts on the ramps of a path; None: there are none."""
+    """Milling contacts on the ramps of a path; None without ramps."""
     stations = met.stations
     rows = plunges(run)[stations.segment] & (stations.kind == StationKind.MILLING)
     if not rows.any():
@@ -81,17 +81,17 @@ def way_in_of(
     kienzle: Kienzle,
     depth: float,
 ) -> PlungeEngagement | None:
-    """Engagement on ways down that may have a feed of their own; None where there is none.
+    """Engagement on ways down that may have a feed of their own; None without any.
 
     Parameters
     ----------
     cut : Cut
     met : PathContacts
-        What its path met.
+        Contacts along the path.
     run : ToolPathRun
-        Of its path.
+        Run of the path.
     slope : PlungeCuts or None
-        Of :func:`down_ramps`.
+        Result of :func:`down_ramps`.
     kienzle : Kienzle
     depth : float, mm
         Nominal depth of one pass.
@@ -103,7 +103,7 @@ def way_in_of(
         return None
     ramp, sine = None, 0.0
     if slope is not None:
-        # What a ramp meets follows from its path, and a path of other passes is met anew.
+        # The ramp follows from its path; a path with other passes is tried anew.
         as_met = replace(cut.bare, is_depth_free=False)
         ramp = with_hardest(as_met, slope.met, kienzle, depth=depth, bent=slope.bent)
         sine = float(_sine(run.segments)[slope.met.stations.segment].max())
@@ -116,7 +116,7 @@ def way_in_of(
 
 
 def _hardest(stations: Stations, rows: Ints) -> list[int]:
-    """Stations straight down with the greatest power, and the greatest thrust."""
+    """Rows of the straight plunges with the greatest power and the greatest thrust."""
     if not len(rows):
         return []
     section = stations.peak_section[rows]
@@ -125,7 +125,7 @@ def _hardest(stations: Stations, rows: Ints) -> list[int]:
 
 
 def _drilled(cut: Cut, stations: Stations, row: int) -> Cut:
-    """One station straight down as a hole, of which only a part need be met."""
+    """Model one straight plunge as drilling a hole of which only a part may be met."""
     width, middle = float(stations.axial_depth[row]), float(stations.diameter[row])
     outer, inner = middle + width, max(0.0, middle - width)
     return replace(
@@ -137,15 +137,15 @@ def _drilled(cut: Cut, stations: Stations, row: int) -> Cut:
 
 
 def _sine(segments: Segments) -> Floats:
-    """(N,) height that each segment loses over its length."""
+    """Descent of each segment over its length, (N,)."""
     drop = segments.start[:, 2] - segments.end[:, 2]
     fall: Floats = drop / np.maximum(segments.length, TINY)
     return fall
 
 
 def _is_core(cut: Cut, stations: Stations) -> Bools:
-    """(M,) whether stations straight down meet material near the axis, and not a sliver."""
-    # A lip's width is its axial depth here, and twice the radius of its middle the diameter.
+    """Whether straight plunges meet material near the axis, and not only a sliver, (M,)."""
+    # Here the axial depth is the width of a lip, and the diameter twice its mid-radius.
     inner = stations.diameter - stations.axial_depth
     is_thick = stations.section >= LEAST_SHARE * 0.25 * pi * cut.diameter**2
     core: Bools = is_thick & (inner <= CORE * cut.diameter)
@@ -153,15 +153,15 @@ def _is_core(cut: Cut, stations: Stations) -> Bools:
 
 
 def plunge_of(cut: Cut, met: PathContacts, is_bound: Bools) -> Cut | None:
-    """The hardest plunge of a milling cut, as a drill would make it; None where there is none.
+    """Hardest straight plunge of a milling cut modelled as drilling; None without one.
 
     Parameters
     ----------
     cut : Cut
     met : PathContacts
-        What its path met.
+        Contacts along the path.
     is_bound : (N,) array
-        Which segments of the path run at the feed of the cut.
+        Segments of the path that run at the feed of the cut.
     """
     if cut.kind is not CutKind.MILLING:
         return None

@@ -1,17 +1,17 @@
-"""The feed of a mill on its way down into the material: the greatest that its limits allow.
+"""Feed of a mill on its way down into the material: the greatest that its limits allow.
 
 Straight down the mill is a drill with flat lips: thrust, torque and power are those of a drill,
-and the feed per tooth is a share of the catalogue's, since near the axis the edges hardly move.
-A cutter whose edges reach the axis takes half of it, one of which this is unknown a quarter.
+and the feed per tooth is a share of the catalogue feed, since near the axis the edges hardly
+move: half if the edges reach the axis, a quarter if that is unknown.
 
 On a ramp at the angle α the part ``f·sin α`` along the axis is a plunge, and the rest mills as
-a pass does, at the engagement that is met. Time and energy fall with the feed, so at a spindle
-speed the best plunge feed is the least of its caps in every mode: a plunge leaves no surface.
-The speed is chosen for the passes.
+a pass does, at the engagement that is met. Time and energy fall with the feed, so at a given
+spindle speed the best plunge feed is the least of its caps in every mode: a plunge leaves no
+surface. The speed is chosen for the passes.
 
-Whether a mill may go straight down into the solid depends on its edges: where they end short of
-the axis they leave a core that its face presses on. ISO 14649-111 has no attribute for it, so a
-tool table says it; of some bodies their form does.
+Whether a mill may plunge straight into solid material depends on its edges: edges that end
+short of the axis leave a core that the end face presses on. ISO 14649-111 has no attribute for
+this, so a tool table states it; for some tool bodies it follows from their form.
 
 References
 ----------
@@ -41,14 +41,15 @@ from stepnc_model.errors import Finding, Severity
 from stepnc_model.program import Program, ResolvedWorkingstep
 
 CAUTIOUS_FEED_RATIO = 0.25
-"""the same where it is unknown whether the cutter cuts over centre, [1]"""
+"""Feed per tooth in a straight plunge over the catalogue feed, if centre cutting is unknown,
+[1]."""
 
 DOWN_A_RAMP = "down the ramp"
-"""how limits of a ramp are told from those of a pass"""
+"""Words added to the limits of a ramp to distinguish them from those of a pass."""
 
 
 def plunge_limits(cut: Cut, at: CuttingConditions, speed: float) -> tuple[Limit, ...]:
-    """Limits of the plunge feed at one spindle speed in rev/s; none where nothing is met."""
+    """Limits of the plunge feed at one spindle speed in rev/s; empty if nothing is met."""
     found = (*_straight(cut, at, speed), *_ramp(cut, at, speed))
     return tuple(
         limit.with_safety(at.safety_factor)
@@ -58,12 +59,12 @@ def plunge_limits(cut: Cut, at: CuttingConditions, speed: float) -> tuple[Limit,
 
 
 def holding(limits: tuple[Limit, ...], setting: Setting) -> Limit:
-    """The limit that allows the least plunge feed."""
+    """Return the limit that allows the least plunge feed."""
     return min(limits, key=lambda each: each.feed_at_bound(setting.depth, setting.speed))
 
 
 def with_plunge_feed(cut: Cut, at: CuttingConditions, setting: Setting) -> Setting:
-    """A setting with the greatest plunge feed, where the cut has one of its own."""
+    """Add the greatest permitted plunge feed to a setting, if the cut has a plunge feed."""
     limits = plunge_limits(cut, at, setting.speed)
     if not limits:
         return setting
@@ -72,7 +73,7 @@ def with_plunge_feed(cut: Cut, at: CuttingConditions, setting: Setting) -> Setti
 
 
 def _straight(cut: Cut, at: CuttingConditions, speed: float) -> Iterator[Limit]:
-    """Limits of what is drilled."""
+    """Limits of straight plunges."""
     if cut.way_in is None or not cut.way_in.drilled:
         return
     ratio = _feed_ratio(at) if cut.way_in.reaches_axis else 1.0
@@ -83,7 +84,7 @@ def _straight(cut: Cut, at: CuttingConditions, speed: float) -> Iterator[Limit]:
 
 
 def _ramp(cut: Cut, at: CuttingConditions, speed: float) -> Iterator[Limit]:
-    """Limits of what a ramp mills, and of the plunge in it."""
+    """Limits of a ramp: of its milling and of its motion along the axis."""
     if cut.way_in is None or cut.way_in.ramp is None:
         return
     ramp, sine = cut.way_in.ramp, cut.way_in.sine
@@ -101,15 +102,16 @@ def _spindle_limits(cut: Cut, at: CuttingConditions, speed: float) -> tuple[Limi
 
 
 def _feed_ratio(at: CuttingConditions) -> float:
-    """Feed per tooth along the axis over that of the catalogue."""
+    """Feed per tooth along the axis over the catalogue feed."""
     return PLUNGE_FEED_RATIO if at.centre_cutting else CAUTIOUS_FEED_RATIO
 
 
 def _feed_limit(cut: Cut, at: CuttingConditions, *, ratio: float, share: float) -> Limit:
-    """Feed per tooth along the axis, which is a share of that along the path.
+    """Limit on the feed per tooth along the axis, a share of the feed along the path.
 
-    Where nothing says what feed the mill bears along the pass, the programmed one is all that
-    is known to be borne. A part of it is custom and no physics: it does not make the edges rub.
+    Without a catalogue feed, the programmed feed is the only one known to be safe. The
+    reduction of the catalogue feed is a custom, not physics, so it must not fall below the
+    rubbing limit.
     """
     highest = catalogue_feed(cut, at)
     borne = share * (cut.programmed.plunge_feed or cut.programmed.feed)
@@ -122,12 +124,12 @@ def _feed_limit(cut: Cut, at: CuttingConditions, *, ratio: float, share: float) 
         bound=borne,
         unit="mm",
         step=0.01,
-        origin=f"{ratio:g} of the catalogue's along the axis" if ratio < 1.0 else "",
+        origin=f"{ratio:g} × the catalogue value along the axis" if ratio < 1.0 else "",
     )
 
 
 def _thrust_limits(cut: Cut, at: CuttingConditions, sine: float) -> Iterator[Limit]:
-    """Thrust of a plunge into the solid at the part of the feed along the axis."""
+    """Limit on the thrust of a plunge into solid material at the axial part of the feed."""
     if at.machine.max_cutting_force is None:
         return
     drill = cut.as_drill
@@ -146,17 +148,17 @@ RAMPS = "plunge_ramp, plunge_helix or plunge_zigzag"
 
 
 def goes_into_solid(cut: Cut | None) -> bool:
-    """Whether material under the axis of a mill is met straight down."""
+    """Whether a mill plunges straight into material under its axis."""
     if cut is None:
         return False
     return cut.plunge is not None or (cut.way_in is not None and cut.way_in.reaches_axis)
 
 
 def plunge_fault(cut: Cut | None, at: CuttingConditions, *, is_allowed: bool) -> str:
-    """Why a cut may not go straight down as it does; empty where it may."""
+    """Reason why a cut must not plunge straight down as it does; empty where it may."""
     if is_allowed or at.centre_cutting is not False or not goes_into_solid(cut):
         return ""
-    return "goes straight down into the solid with a tool that does not cut over centre"
+    return "plunges straight into solid material with a tool that does not cut over centre"
 
 
 def plunge_findings(
@@ -167,18 +169,18 @@ def plunge_findings(
     *,
     is_allowed: bool,
 ) -> list[Finding]:
-    """Finding on a plunge into the solid; the same words for every unknown tool."""
+    """Findings on plunges into solid material, with the same words for every unknown tool."""
     if cut is None or not goes_into_solid(cut):
         return []
     tool = f"tool '{cut.tool.id}'"
     if at.centre_cutting is None:
         text = (
-            f"{tool} goes straight down into the solid, and nothing says whether it cuts over "
-            f"centre: a ramp ({RAMPS}) spares it, centre_cutting in a tool table settles it"
+            f"{tool} plunges straight into solid material; it is unknown whether it cuts over "
+            f"centre: use a ramp ({RAMPS}) or set centre_cutting in a tool table"
         )
         return [program.finding(Severity.WARNING, text, step.tool_ref)]
     if at.centre_cutting:
         return []
     severity = Severity.WARNING if is_allowed else Severity.ERROR
-    text = f"{tool} does not cut over centre and goes straight down into the solid: take a ramp"
+    text = f"{tool} does not cut over centre, but plunges into solid material: use a ramp"
     return [program.finding(severity, f"{text} ({RAMPS})", step.operation_ref, "approach")]

@@ -1,17 +1,17 @@
-"""One workingstep as a mathematical problem: limits, cost, and what may be chosen.
+"""Optimisation problem of one workingstep: limits, cost, and what may be chosen.
 
 Choose the feed per tooth f, the integer number of passes k (depth of one pass a = H/k) and,
 when it is free, the spindle speed n. Units: mm, s, W, J, rev/s.
 
-A limit of the cut is all that the mathematics sees of machining. Its load is ``(c·f^α + e) ·
-g(a) · n^γ``, where f is the feed per tooth (per revolution when nothing has teeth), a the depth
-of one pass and n the spindle speed. Kienzle forces give ``e = 0``; the edge term of the
-linear-edge model and the empirical floor of the roughness are ``e``. A limit holds a load below
-(or above) ``b·n^δ``; a stretch of the spindle's power curve gives ``δ``. A bound that is no
-power of the speed (the lobes of stability) is ``b`` times a :class:`SpeedCurve`; only a load of
-the depth alone may have one.
+Limits are the only description of machining that the solver sees. The load of a limit is
+``(c·f^α + e) · g(a) · n^γ``, where f is the feed per tooth (per revolution when nothing has
+teeth), a the depth of one pass and n the spindle speed. Kienzle forces give ``e = 0``; the edge
+term of the linear-edge model and the empirical floor of the roughness are ``e``. A limit keeps
+a load below (or above) ``b·n^δ``; a stretch of the spindle's power curve gives ``δ``. A bound
+that is not a power of the speed (stability lobes) is ``b`` times a :class:`SpeedCurve`; only a
+load that depends on the depth alone may have one.
 
-The load has the limit's own canonical unit.
+The load is in the canonical unit of its limit.
 """
 
 from bisect import bisect_right
@@ -23,7 +23,7 @@ from math import ceil, inf
 
 
 class LimitName(StrEnum):
-    """The names by which a limit is told to the user."""
+    """Names of the limits as reported to the user."""
 
     MOTOR_POWER = "motor_power"
     SPINDLE_TORQUE = "spindle_torque"
@@ -46,12 +46,12 @@ class LimitName(StrEnum):
 
     @property
     def words(self) -> str:
-        """The name as a sentence uses it."""
+        """Name of the limit in words."""
         return self.value.replace("_", " ")
 
 
 class BoundSide(StrEnum):
-    """On which side of its bound a load must stay."""
+    """Side of its bound on which a load must stay."""
 
     AT_MOST = "at most"
     AT_LEAST = "at least"
@@ -59,7 +59,7 @@ class BoundSide(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Monomial:
-    """``(c·f^α + e) · g(a) · n^γ`` with c > 0, e ≥ 0, α ≥ 0; g(a) is a^β, β ≥ 0, or a curve."""
+    """Load ``(c·f^α + e)·g(a)·n^γ``, c > 0, e ≥ 0, α ≥ 0; g(a) is a^β, β ≥ 0, or a curve."""
 
     coefficient: float
     offset: float = 0.0
@@ -67,19 +67,19 @@ class Monomial:
     depth_exponent: float = 0.0
     speed_exponent: float = 0.0
     curve: Callable[[float], float] | None = None
-    """Curve, g where it is no power of the depth, as along a helix; positive"""
+    """Positive function g of the depth where it is not a power, as along a helix."""
 
     def depth_factor(self, depth: float) -> float:
-        """``g(a)`` at a depth in mm."""
+        """Depth factor ``g(a)`` at a depth in mm."""
         return depth**self.depth_exponent if self.curve is None else self.curve(depth)
 
     @property
     def knows_depth(self) -> bool:
-        """Whether the load changes with the depth."""
+        """Whether the load depends on the depth."""
         return self.depth_exponent != 0.0 or self.curve is not None
 
     def value(self, feed: float, depth: float, speed: float) -> float:
-        """Value at one feed per tooth (mm), depth (mm) and spindle speed (rev/s)."""
+        """Value of the load at a feed per tooth (mm), depth (mm) and spindle speed (rev/s)."""
         return float(
             (self.coefficient * feed**self.feed_exponent + self.offset)
             * self.depth_factor(depth)
@@ -89,12 +89,12 @@ class Monomial:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SpeedCurve:
-    """A bound by spindle speed: straight between its points, none below the first."""
+    """Bound as a piecewise linear function of spindle speed, infinite below its first point."""
 
     speeds: tuple[float, ...]
-    """Speeds, rev/s, ascending, at least two"""
+    """Spindle speeds of the points, ascending, at least two, rev/s."""
     bounds: tuple[float, ...]
-    """positive; the last one holds above the last speed"""
+    """Positive bounds at the points; the last one holds above the last speed."""
 
     def at(self, speed: float) -> float:
         """Bound at a speed; infinite below the first point."""
@@ -111,7 +111,7 @@ class SpeedCurve:
         return max((low, *inner, high), key=self.at)
 
     def allowing(self, load: float, low: float, high: float) -> Iterator[tuple[float, float]]:
-        """Ranges of speed within a range whose bound is at least a load, ascending."""
+        """Ranges of speed within [low, high] whose bound is at least the load, ascending."""
         inner = [speed for speed in self.speeds if low < speed < high]
         start: float | None = low if self.at(low) >= load else None
         for slower, faster in pairwise((low, *inner, high)):
@@ -127,86 +127,86 @@ class SpeedCurve:
             yield start, high
 
     def _between(self, row: int, speed: float) -> float:
-        """Bound on the straight line behind a point."""
+        """Bound interpolated on the segment after a point."""
         low, high = self.speeds[row], self.speeds[row + 1]
         share = (speed - low) / (high - low)
         return self.bounds[row] + share * (self.bounds[row + 1] - self.bounds[row])
 
 
 def _met(slower: float, faster: float, before: float, after: float, load: float) -> float:
-    """Speed at which a straight bound equals a load."""
+    """Speed at which a linearly varying bound equals a load, rev/s."""
     return slower + (faster - slower) * (load - before) / (after - before)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limit:
-    """A load at most (or at least) ``b·n^δ``, b > 0."""
+    """Limit of a cut: a load at most (or at least) ``b·n^δ``, b > 0."""
 
     name: LimitName
     load: Monomial
     bound: float
-    """Bound of the nominal load: what must not be passed, over the safety factor"""
+    """Bound on the nominal load: the full bound divided by the safety factor."""
     unit: str
-    """unit in which the user reads load and bound"""
+    """Unit in which the user reads load and bound."""
     scale: float = 1.0
-    """user's number = canonical number · scale"""
+    """Factor from the canonical unit to the user's unit."""
     step: float = 1.0
-    """what "one more" of the bound means to the user, in the user's unit"""
+    """Step by which the bound is widened to report savings, in the user's unit."""
     sense: BoundSide = BoundSide.AT_MOST
     bound_speed_exponent: float = 0.0
     label: str = ""
-    """what the user reads instead of the name"""
+    """Name shown to the user instead of the default."""
     origin: str = ""
-    """where the bound comes from, as a sentence goes on; empty where the name tells"""
+    """Origin of the bound, as the end of a sentence; empty where the name is enough."""
     curve: SpeedCurve | None = None
-    """factor on the bound by spindle speed"""
+    """Factor on the bound as a function of spindle speed."""
     safety_factor: float = 1.0
-    """load at the quantile of k_c that is planned with, over the nominal load"""
+    """Load at the planned quantile of k_c over the nominal load."""
 
     @property
     def words(self) -> str:
-        """The limit as a sentence uses it."""
+        """Name of the limit in words."""
         return self.label or self.name.words
 
     def bound_at(self, speed: float) -> float:
-        """Bound at one spindle speed, canonical unit; infinite where its curve has none."""
+        """Bound on the nominal load at one spindle speed, canonical unit; may be infinite."""
         factor = 1.0 if self.curve is None else self.curve.at(speed)
         return float(factor * self.bound * speed**self.bound_speed_exponent)
 
     def full_bound_at(self, speed: float) -> float:
-        """Bound at one spindle speed, canonical unit."""
+        """Bound without the safety factor at one spindle speed, canonical unit."""
         return self.safety_factor * self.bound_at(speed)
 
     def told(self, load: float) -> str:
-        """A nominal load as a sentence uses it."""
+        """Text of a nominal load with its unit and safety factor."""
         words = f" ({self.safety_words})" if self.safety_words else ""
         return f"{load * self.scale:.4g} {self.unit}{words}"
 
     @property
     def safety_words(self) -> str:
-        """By what a nominal load is raised before it meets its bound; empty for nothing."""
+        """Text of the safety factor on the nominal load; empty without one."""
         if self.safety_factor == 1.0:
             return ""
         return f"× {self.safety_factor:.4g} for the spread of k_c"
 
     def told_bound(self, speed: float) -> str:
-        """Bound as part of a sentence."""
+        """Text of the bound with its unit."""
         return f"{self.full_bound_at(speed) * self.scale:.4g} {self.unit}"
 
     def with_safety(self, factor: float) -> "Limit":
-        """The same limit with a safety factor, where its load scales with k_c."""
+        """Copy with a safety factor, if the load scales with k_c."""
         if self.name not in SCALES_WITH_FORCE:
             return self
         return replace(self, bound=self.bound / factor, safety_factor=factor)
 
     @property
     def without_safety(self) -> "Limit":
-        """The same limit of the nominal load."""
+        """Copy that limits the nominal load, without a safety factor."""
         return replace(self, bound=self.bound * self.safety_factor, safety_factor=1.0)
 
     @property
     def is_of_depth(self) -> bool:
-        """Whether it bounds the depth of a pass and nothing else."""
+        """Whether the limit concerns only the depth of a pass."""
         return self.load.feed_exponent == 0.0 and self.load.depth_exponent > 0.0
 
     def greatest_depth(self, speed: float) -> float:
@@ -232,7 +232,7 @@ class Limit:
         return float(rest ** (1.0 / load.feed_exponent)) if rest > 0.0 else 0.0
 
     def at_depth(self, depth: float) -> "Limit":
-        """The same limit for a cut whose depth is given and not chosen."""
+        """Copy for a cut whose depth is given rather than chosen."""
         factor = self.load.depth_factor(depth)
         load = replace(
             self.load,
@@ -262,17 +262,17 @@ SCALES_WITH_FORCE = frozenset({
     LimitName.BAR_DEFLECTION,
     LimitName.HOLDING_FORCE,
 })
-"""limits that k_c moves: loads in proportion to it, and the stable depth that falls with it"""
+"""Limits that depend on k_c: loads in proportion to it, and the stable depth."""
 
 ROUNDING = 1e-9
 """relative slack within which a load counts as being at its bound"""
 
 
 DIGITS = 12
-"""significant digits of a depth"""
+"""Significant digits to which a depth is rounded."""
 
 INSIDE = 1e-6
-"""share by which a range of stable speeds is entered: a speed in a file has its last digit"""
+"""Margin by which a range of stable speeds is entered, to allow for rounding in files."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -280,55 +280,56 @@ class Setting:
     """Setting of a workingstep: feed, depth, passes and speed."""
 
     feed: float
-    """Feed, mm per tooth, or per revolution when the tool has no teeth to count"""
+    """Feed per tooth, mm, or feed per revolution for a tool without teeth."""
     depth: float
-    """Depth, mm, one pass"""
+    """Depth of one pass, mm."""
     passes: int
     speed: float
-    """Speed, rev/s"""
+    """Spindle speed, rev/s."""
     plunge_feed: float | None = None
-    """mm per tooth on the way down into the material; None: there is none of its own. No cost
-    and no limit of the problem knows it: it is the best for the speed"""
+    """Feed per tooth on the way down into the material, mm; None without a plunge feed.
+
+    It is the best for the speed; neither the cost nor the limits of the problem depend on it.
+    """
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cost:
-    """Time and energy of a setting.
+    """Time and energy of a workingstep as functions of its setting.
 
-    ``t = (k·L + L_0)/(z·f·n)·(1 + t_change/life(n)) + k·t_link`` and
-    ``E = P_0·t + (P_1·n + P_motor(f, a, n))·(k·L + L_0)/(z·f·n)``: what the
-    spindle draws to idle is counted while it cuts, so that the energy falls with the feed
-    along every limit.
+    ``t = (k·L + L_0)/(z·f·n)·(1 + t_change/life(n)) + k·t_link`` and ``E = P_0·t + (P_1·n +
+    P_motor(f, a, n))·(k·L + L_0)/(z·f·n)``. The idle power of the spindle is counted only while
+    it cuts, so that the energy falls with the feed along every limit.
     """
 
     length: float
-    """Length, mm at cutting feed in one pass, approach and overrun included"""
+    """Length at cutting feed in one pass, approach and overrun included, mm."""
     teeth: int
     motor_power: Monomial
-    """Motor power, W drawn by the cut"""
+    """Motor power drawn by the cut, W."""
     once_length: float = 0.0
-    """Once length, mm at cutting feed whatever the number of passes"""
+    """Length at cutting feed that does not depend on the number of passes, mm."""
     link_time: float = 0.0
-    """Link time, s in one pass not at cutting feed"""
+    """Time per pass not at cutting feed, s."""
     standby_power: float = 0.0
-    """Standby power, W while the workingstep runs"""
+    """Standby power while the workingstep runs, W."""
     standby_power_per_speed: float = 0.0
-    """Standby power per speed, W per rev/s, while cutting"""
+    """Standby power per spindle speed while cutting, W per rev/s."""
     tool_change: float = 0.0
-    """Tool change, s for one change of a worn tool"""
+    """Time to change a worn tool, s."""
     wear_rate: Monomial | None = None
-    """tool lives used in one second of cutting"""
+    """Tool lives used per second of cutting."""
 
     def cutting_time(self, at: Setting) -> float:
-        """Seconds at cutting feed."""
+        """Time at cutting feed, s."""
         return self.travel(at.passes) / (self.teeth * at.feed * at.speed)
 
     def travel(self, passes: int) -> float:
-        """Length at cutting feed, mm."""
+        """Length at cutting feed in all passes, mm."""
         return passes * self.length + self.once_length
 
     def time(self, at: Setting) -> float:
-        """Seconds from first cut to last retract, with the share of tool changes."""
+        """Time from first cut to last retract, with the share of tool changes, s."""
         cutting = self.cutting_time(at)
         changes = 0.0
         if self.wear_rate is not None:
@@ -337,7 +338,7 @@ class Cost:
         return cutting + changes + at.passes * self.link_time
 
     def energy(self, at: Setting) -> float:
-        """Joules drawn from the mains."""
+        """Energy drawn from the mains, J."""
         idle = self.standby_power_per_speed * at.speed
         cut = self.motor_power.value(at.feed, at.depth, at.speed)
         return self.standby_power * self.time(at) + (idle + cut) * self.cutting_time(at)
@@ -345,27 +346,29 @@ class Cost:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Problem:
-    """Limits, cost and freedom of one workingstep."""
+    """Limits, cost and free variables of one workingstep."""
 
     limits: tuple[Limit, ...]
     cost: Cost
     total_depth: float
-    """H in mm"""
+    """Total depth H, mm."""
     passes: tuple[int, int]
-    """least and greatest number that may be chosen; equal when the depth is not free"""
+    """Least and greatest number of passes; equal when the depth is not free."""
     speeds: tuple[float, ...]
-    """ends of the stretches of the spindle's curve that may be used, ascending, rev/s; a
-    single value when the speed is not free"""
+    """Ends of the usable stretches of the spindle's curve, ascending, rev/s.
+
+    A single value when the speed is not free.
+    """
     programmed: Setting
     why_held: str = "the depth is not free"
-    """why there is no other number of passes, where there is none"""
+    """Why the number of passes cannot change, when it cannot."""
     stretches: tuple[tuple[Limit, ...], ...] = ((),)
-    """limits that hold on one stretch of the curve only, one tuple for each stretch"""
+    """Limits that hold on one stretch of the speed range only, one tuple per stretch."""
 
     def depth_at(self, passes: int) -> float:
-        """Depth of each of so many passes, mm, as it is written into a file.
+        """Depth of each pass for a number of passes, mm, as it is written into a file.
 
-        Rounded, so that reading what was written and solving again gives the same numbers.
+        It is rounded, so that reading the file and solving again gives the same numbers.
         """
         if self.passes[0] == self.passes[1]:
             return self.programmed.depth
@@ -373,20 +376,20 @@ class Problem:
 
     @property
     def curved(self) -> Limit | None:
-        """The limit of the depth whose bound is a curve of the speed."""
+        """Depth limit whose bound is a curve of the speed; None if there is none."""
         return next((limit for limit in self.limits if limit.curve is not None), None)
 
     @property
     def is_branched(self) -> bool:
-        """Whether the speeds that a depth may have are several ranges."""
+        """Whether the permitted speeds at a depth form several ranges."""
         return self.curved is not None and len(self.speeds) > 1
 
     def parts(self, depth: float) -> Iterator["Problem"]:
-        """The same problem on each range of speeds that may be used at a depth.
+        """Copies of the problem, one for each range of speeds that may be used at a depth.
 
-        A range lies within one stretch of the spindle's curve, and within one lobe where the
-        depth of a pass is bounded by a curve of the speed: that bound is kept in all of it.
-        A single speed has no range.
+        A range lies within one stretch of the spindle's curve, and within one stability lobe
+        where a curve of the speed bounds the depth; that bound is kept in the whole range. A
+        single speed has no range.
         """
         curved = self.curved
         for (low, high), limits in zip(pairwise(self.speeds), self.stretches, strict=False):

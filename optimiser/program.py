@@ -1,4 +1,4 @@
-"""The geometric program of one workingstep: the general method, and the judge of the fast one.
+"""Geometric program of one workingstep: the general solver, and a check of the closed form.
 
 For a given number of passes every limit is a posynomial in the feed per tooth f and the spindle
 speed n, and so are machining time, Taylor tool changes and energy. In logarithms the program is
@@ -7,7 +7,7 @@ of the limits: the relative rise of the cost for a relative fall of the bound. T
 compiled once with parameters; a solve only sets them.
 
 S. Boyd, S.-J. Kim, L. Vandenberghe, A. Hassibi, "A tutorial on geometric programming", Optim.
-Eng. 8 (2007) 67–127, §§ 2 and 3.3. Only home of cvxpy.
+Eng. 8 (2007) 67–127, §§ 2 and 3.3. The only module that uses cvxpy.
 """
 
 import warnings
@@ -24,30 +24,30 @@ from optimiser.problem import BoundSide, Limit, LimitName, Monomial, Problem, Se
 from optimiser.workingstep import TIE, conflict, is_posynomial, limits_at
 
 ROWS = (8, 24)
-"""limits that a program can hold: the less it holds, the faster it is set and read"""
+"""Sizes of compiled programs, in limits; a smaller one is faster to set and solve."""
 
 ABSENT = 1e-12
-"""weight of a term that is not there: a posynomial knows no zero"""
+"""Weight of an absent term: a posynomial has no zero."""
 
 PRECISION = {"tol_gap_abs": 1e-7, "tol_gap_rel": 1e-7, "tol_feas": 1e-8, "max_iter": 200}
-"""relative, of the logarithm of the cost: what Clarabel reaches on every case tried"""
+"""Solver tolerances, relative, for the logarithm of the cost; Clarabel reaches them."""
 
 UNIT_FEEDS = (1.0, 3.0, 0.3)
-"""units of the feed tried in turn, over the programmed feed, should one be ill-conditioned"""
+"""Units of the feed tried in turn, relative to the programmed feed, if ill-conditioned."""
 
 TERMS = 4
-"""monomials of the cost: standby, idling, chip and edge energy, or time and tool changes"""
+"""Monomials of the cost: standby, idling, chip and edge energy, or time and tool changes."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SolverOptimum:
-    """Optimum of the solver for one number of passes."""
+    """Optimum found by the solver for one number of passes."""
 
     setting: Setting
     cost: float
-    """Cost, s or J"""
+    """Cost, s or J."""
     prices: dict[LimitName, float]
-    """−d ln(cost) / d ln(bound) of each limit, dimensionless; zero when it does not bind"""
+    """Shadow price −d ln(cost) / d ln(bound) of each limit; zero when it is not active."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,9 +62,9 @@ class _LimitRow:
 
 @dataclass(frozen=True, slots=True)
 class _Unit:
-    """Units of the program's variables, in mm and rev/s, which make them of order one.
+    """Units of the program's variables, in mm and rev/s, that make them of order one.
 
-    A fixed speed leaves the program by exponents of zero: an interior point needs an inside.
+    A fixed speed gets zero exponents, because an interior-point method needs an interior.
     """
 
     feed: float
@@ -73,7 +73,7 @@ class _Unit:
 
 
 class GeometricProgram:
-    """The compiled program; a solve sets its parameters (so it is not shared by threads)."""
+    """Compiled geometric program; solving sets its parameters, so threads must not share it."""
 
     def __init__(self, rows: int) -> None:
         self._feed = cp.Variable(pos=True)
@@ -119,7 +119,7 @@ class GeometricProgram:
         mode : Mode
         passes : int
         depth : float
-            mm, depth of each pass.
+            Depth of each pass, mm.
         stretch : int
             Index into ``problem.stretches``.
 
@@ -158,7 +158,7 @@ class GeometricProgram:
         standby = problem.cost.standby_power if mode is Mode.EC else 1.0
         programmed = worth * float(self._problem.value)
         cost = programmed + passes * problem.cost.link_time * standby
-        # The constant link time is no part of the program: its prices shrink by that share.
+        # The constant link time is not part of the program: its prices shrink by that share.
         prices = {
             limit.name: float(held.dual_value) / rest * programmed / cost
             for limit, held, rest in zip(limits, self._held, rests, strict=False)
@@ -166,7 +166,7 @@ class GeometricProgram:
         return SolverOptimum(setting=setting, cost=cost, prices=prices)
 
     def _attempt(self) -> str:
-        """Solve what the parameters say; the solver's own word for the outcome."""
+        """Solve with the current parameters and return the solver's status."""
         with warnings.catch_warnings():
             warnings.filterwarnings("ignore", message="Solution may be inaccurate")
             try:
@@ -176,16 +176,16 @@ class GeometricProgram:
         return str(self._problem.status)
 
     def _set_speeds(self, speeds: tuple[float, ...]) -> None:
-        """Bounds of the speed over its unit; a fixed one needs an inside all the same."""
+        """Set the bounds of the relative speed; a fixed speed gets a dummy range."""
         _put(self._least_speed, 1.0)
         _put(self._greatest_speed, speeds[-1] / speeds[0] if len(speeds) > 1 else 2.0)
 
     def _set_rows(self, limits: list[Limit], *, depth: float, unit: _Unit) -> list[float]:
-        """One row a limit; rows left over hold always.
+        """Set one row for each limit; unused rows always hold.
 
-        An offset that no speed changes goes to the other side, ``c·f^α ≤ b − e``: beside it a
-        bound only just above the offset would leave the solver no digits. Returns the share
-        of each bound that is left, ``d ln(b − e) = d ln b / share``.
+        An offset that does not depend on the speed moves to the other side, ``c·f^α ≤ b − e``,
+        because a bound just above its offset would leave the solver no significant digits.
+        Return the share of each bound that is left, ``d ln(b − e) = d ln b / share``.
         """
         rests = []
         for row, limit in zip(self._rows, limits, strict=False):
@@ -194,7 +194,7 @@ class GeometricProgram:
             scale = load.depth_factor(depth) * unit.speed**exponent / limit.bound
             chip = unit.feed**load.feed_exponent
             if sign < 0.0 and load.offset:
-                raise OptimisationError(f"{limit.name.words} with an offset is no posynomial")
+                raise OptimisationError(f"{limit.name.words} plus offset: no posynomial")
             offset = load.offset * scale
             is_constant = (unit.is_fixed or exponent == 0.0) and offset < 1.0
             rest = 1.0 - offset if is_constant else 1.0
@@ -211,7 +211,7 @@ class GeometricProgram:
         return rests
 
     def _set_terms(self, terms: list[tuple[float, float, float]], *, unit: _Unit) -> float:
-        """Weights and exponents of the cost; returns what a cost of one is worth."""
+        """Set the weights and exponents of the cost; return the value of a unit cost."""
         weights = [
             weight * unit.feed**feed * unit.speed**speed for weight, feed, speed in terms
         ]
@@ -228,28 +228,28 @@ class GeometricProgram:
 
 
 def _put(parameter: cp.Parameter, value: float) -> None:
-    """Set what has changed: cvxpy looks at each value for longer than the solver needs."""
+    """Set a parameter only if it changed, because cvxpy validates each value slowly."""
     if parameter.value is None or float(parameter.value) != value:
         parameter.value = value
 
 
 @cache
 def program(rows: int) -> GeometricProgram:
-    """The one compiled program of this process with so many rows."""
+    """Return the compiled program of this process with a given number of rows."""
     return GeometricProgram(rows)
 
 
 def program_for(problem: Problem, stretch: int) -> GeometricProgram:
-    """The smallest program that holds the limits of a stretch."""
+    """Return the smallest program that holds the limits of a stretch."""
     count = len(_rows_of(problem, stretch))
     for rows in ROWS:
         if count <= rows:
             return program(rows)
-    raise OptimisationError(f"{count} limits exceed the {ROWS[-1]} of the program")
+    raise OptimisationError(f"{count} limits exceed the {ROWS[-1]} that the solver supports")
 
 
 def _rows_of(problem: Problem, stretch: int) -> list[Limit]:
-    """Limits on the feed: each is a row of the program."""
+    """Limits on the feed, each of which becomes a row of the program."""
     return [
         limit
         for limit in problem.limits + problem.stretches[stretch]
@@ -258,10 +258,10 @@ def _rows_of(problem: Problem, stretch: int) -> list[Limit]:
 
 
 def solve(problem: Problem, mode: Mode) -> SolverOptimum:
-    """Optimum over all numbers of passes and all stretches of the spindle's curve.
+    """Find the optimum over all numbers of passes and all stretches of the spindle's curve.
 
-    Where the cost is convex in the logarithm of the number of passes the search ends at the
-    first rise, else where no more passes can cost less.
+    Where the cost is convex in the logarithm of the number of passes the search stops at the
+    first rise, otherwise where no larger number of passes can cost less.
 
     Parameters
     ----------
@@ -298,7 +298,7 @@ def solve(problem: Problem, mode: Mode) -> SolverOptimum:
 
 
 def snapped(problem: Problem, optimum: SolverOptimum) -> Setting:
-    """The solver's setting with its feed put on the nearest cap: feasible to the last digit."""
+    """Setting of the solver with its feed set exactly to the nearest cap."""
     at = optimum.setting
     speed = min(max(at.speed, problem.speeds[0]), problem.speeds[-1])
     caps = [
@@ -312,7 +312,7 @@ def snapped(problem: Problem, optimum: SolverOptimum) -> Setting:
 def _best_stretch(
     problem: Problem, mode: Mode, *, passes: int, depth: float
 ) -> SolverOptimum | None:
-    """Best of the stretches of the spindle's curve, or None when none is feasible."""
+    """Best optimum of the stretches of the spindle's curve, or None if none is feasible."""
     best: SolverOptimum | None = None
     parts = [problem] if len(problem.speeds) == 1 else problem.parts(depth)
     for part in parts:

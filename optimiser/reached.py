@@ -1,8 +1,8 @@
-"""Greatest forces of a path where its axes stay below the programmed feed.
+"""Greatest loads of a path where the axes stay below the programmed feed.
 
-Limits are held against the programmed feed: another control may not brake in a corner. What a
-run on this machine shows is less where the hardest place is a corner, an end, or a way down
-with a feed of its own. Units mm, s.
+Limits are checked at the programmed feed, because another control may not slow down in a
+corner. A run on this machine shows less load where the hardest place is a corner, an end, or a
+way down with a feed of its own. Units: mm, s.
 """
 
 from dataclasses import dataclass, replace
@@ -17,58 +17,58 @@ from simulator.motion.tool_path import ToolPathRun
 from simulator.removal.stations import Stations
 
 INSIDE = np.array([1e-6, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0 - 1e-6])
-"""places in a stretch, the first and the last just inside its ends"""
+"""Relative places in a stretch, the first and the last just inside its ends."""
 
 HARD = 0.5
-"""of the greatest force; where more than that is reached, no easier place can be harder"""
+"""Share of the greatest force; if a place above it keeps more, no easier place is harder."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MachineRun:
-    """Run of a path by the axes."""
+    """Run of a path by the machine axes."""
 
     run: ToolPathRun
     control: ControlModel
     limits: AxisLimits
     feed: float
-    """Feed, mm/s, of the technology"""
+    """Feed of the technology, mm/s."""
     spindle: float
-    """Spindle, rev/s at the diameter of the cut"""
+    """Spindle speed at the diameter of the cut, rev/s."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class _Loads:
-    """Force, power and force at the wall, in proportion."""
+    """Relative force, power and wall force along a path."""
 
     rows: Ints
-    """Rows, (K,) stations that cut at a feed"""
+    """Rows of the stations that cut at a feed, (K,)."""
     programmed: Floats
-    """Programmed, (3, K) with the chip that is programmed there"""
+    """Loads with the chip that is programmed at each station, (3, K)."""
     nominal: Floats
-    """Nominal, (3,) greatest with the chip of the technology's feed, as limits have them"""
+    """Greatest loads with the chip of the technology's feed, as the limits use them, (3,)."""
 
 
 def with_power(
     cut: Cut, met: PathContacts, bent: Bending, ride: MachineRun, *, exponent: float
 ) -> Cut:
-    """A cut with what its limits need of the whole path: where power is greatest.
+    """Add the place of greatest power along the path to a cut, for its limits.
 
     Parameters
     ----------
     cut : Cut
     met : PathContacts
-        What the path met.
+        Contacts along the path.
     bent : Bending
-        By the same stations.
+        Bending forces at the same stations.
     ride : MachineRun
     exponent : float
-        m_c.
+        Kienzle exponent m_c.
     """
     loads = None if cut.kind is CutKind.MILLING else _loads(cut, met, bent, ride, exponent)
     if loads is None:
         return cut
     if cut.kind is CutKind.DRILLING:
-        # The limits hold against what is programmed, whatever the strategy of the hole.
+        # The limits use the programmed chip, whatever the strategy of the hole.
         ratio = max(float(loads.programmed[0].max() / loads.nominal[0]), 1.0)
         return replace(
             cut,
@@ -86,7 +86,7 @@ def with_power(
 def with_reached(
     cut: Cut, met: PathContacts, bent: Bending, ride: MachineRun, *, exponent: float
 ) -> Cut:
-    """A cut with what its greatest loads become along its path, too; as :func:`with_power`."""
+    """Add the loads that the axes actually reach along the path; as :func:`with_power`."""
     cut = with_power(cut, met, bent, ride, exponent=exponent)
     loads = None if cut.kind.is_turned else _loads(cut, met, bent, ride, exponent)
     if loads is None:
@@ -106,7 +106,7 @@ def with_reached(
 def _loads(
     cut: Cut, met: PathContacts, bent: Bending, ride: MachineRun, exponent: float
 ) -> _Loads | None:
-    """Loads at the cutting stations for a feed; None: no station cuts."""
+    """Relative loads at the cutting stations; None if no station cuts."""
     stations, run = met.stations, ride.run
     is_cut = (stations.kind == KINDS[cut.kind]) & (stations.section > 0.0)
     is_cut &= ~run.segments.is_rapid[stations.segment] & (run.spindle[stations.segment] > 0.0)
@@ -137,14 +137,14 @@ def _loads(
 
 
 def _power_diameter(loads: _Loads, ride: MachineRun) -> float:
-    """Diameter, mm, at which the greatest force takes the greatest power."""
+    """Diameter at which the greatest force takes the greatest power, mm."""
     return float(loads.programmed[1].max() / (loads.nominal[0] * ride.spindle))
 
 
 def _shares(
     met: PathContacts, ride: MachineRun, loads: _Loads, at: Bools, exponent: float
 ) -> Floats:
-    """(3,) what the axes leave of the nominal loads; 1 of nothing."""
+    """Share of the nominal loads that the axes reach, (3,); 1 for a load of zero."""
     rows = loads.rows[at]
     if not len(rows):
         return np.zeros(3)
@@ -157,7 +157,7 @@ def _shares(
 
 
 def _speeds(met: PathContacts, ride: MachineRun, rows: Ints) -> Floats:
-    """(K, P) mm/s at the places in K stretches."""
+    """Speeds reached at the places in K stretches, (K, P), mm/s."""
     places = met.stations.station[rows, None] - met.length[rows, None] * (1.0 - INSIDE)
     speeds = reached_speeds(
         ride.run,
@@ -170,7 +170,7 @@ def _speeds(met: PathContacts, ride: MachineRun, rows: Ints) -> Floats:
 
 
 def _filled(stations: Stations, rows: Ints) -> Floats:
-    """(K, P) section there over the greatest of the stretch."""
+    """Section at the places over the greatest of each stretch, (K, P)."""
     section = stations.section[rows, None] + stations.growth[rows, None] * (INSIDE - 0.5)
     share: Floats = section / stations.peak_section[rows, None]
     return share

@@ -1,4 +1,4 @@
-"""Sentences on limits: which holds a feed, and which a program passes."""
+"""Sentences on limits: which limit sets a feed, and which limits a program exceeds."""
 
 from optimiser import workingstep as exact
 from optimiser.advice import Advice, AdviceStatus, EvaluatedSetting, LimitLoad
@@ -11,13 +11,13 @@ from stepnc_model.units import rpm_from_rev_s
 
 
 def reason_of(state: EvaluatedSetting, limit: Limit) -> str:
-    """Sentence that names the limit that holds the feed."""
+    """Sentence naming the limit that sets the feed."""
     load = next(load for load in state.loads if load.limit is limit)
     return _reached(load, state.setting.speed)
 
 
 def _reached(load: LimitLoad, speed: float) -> str:
-    """Sentence of a load that is at its bound."""
+    """Sentence on a load that reaches its bound."""
     limit = load.limit
     origin = f", {limit.origin}" if limit.origin else ""
     return (
@@ -27,13 +27,13 @@ def _reached(load: LimitLoad, speed: float) -> str:
 
 
 def plunge_reason(state: EvaluatedSetting) -> str:
-    """Sentence that names the limit that holds the plunge feed; empty where there is none."""
+    """Sentence naming the limit that sets the plunge feed; empty without a plunge feed."""
     tight = min(state.plunge_loads, key=lambda load: load.margin, default=None)
     return "" if tight is None else _reached(tight, state.setting.speed)
 
 
 def passed_limits(program: Program, advice: Advice) -> list[Finding]:
-    """Limits that the programmed setting passes, and the advised one too: a held speed's."""
+    """Findings on limits exceeded as programmed, and whether the advice exceeds them too."""
     if advice.before is None:
         return []
     still = set()
@@ -50,7 +50,7 @@ def passed_limits(program: Program, advice: Advice) -> list[Finding]:
 
 
 def _passed_loads(state: EvaluatedSetting) -> list[LimitLoad]:
-    """Loads beyond their bounds, by more than rounding."""
+    """Loads beyond their bounds by more than rounding."""
     return [each for each in (*state.loads, *state.plunge_loads) if each.margin < -ROUNDING]
 
 
@@ -60,9 +60,9 @@ def _kind(load: LimitLoad) -> tuple[LimitName, bool]:
 
 
 def _brought_within(limit: Limit, advice: Advice) -> str:
-    """Speed to which a programmed one was changed; empty for limits that are not on speed."""
+    """Text with the spindle speed that was changed to keep a limit; empty for other limits."""
     is_speed = limit.name in {LimitName.CUTTING_SPEED, LimitName.SPINDLE_SPEED}
     if not is_speed or advice.before is None or advice.after is None:
         return ""
     given, speed = advice.before.setting.speed, advice.after.setting.speed
-    return "" if speed == given else f"; brought to {rpm_from_rev_s(speed):.4g} rpm"
+    return "" if speed == given else f"; changed to {rpm_from_rev_s(speed):.4g} rpm"

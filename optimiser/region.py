@@ -1,7 +1,7 @@
-"""Region that a milling feature removes, with areas and lengths of its boundaries.
+"""Region that a milling feature removes, with its area and boundary lengths.
 
-ISO 14649-10 features in their own coordinates. Arcs of composite curves count by their chords
-here; the tool path, which keeps arcs, replaces this estimate.
+Features of ISO 14649-10 are taken in their own coordinates. Arcs of composite curves count as
+chords here; the tool path, which keeps arcs, replaces this estimate.
 """
 
 from collections.abc import Iterator
@@ -59,7 +59,7 @@ Point = tuple[float, float, float]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BoundarySize:
-    """Area and length of a boundary."""
+    """Area, length and width of a boundary, mm² and mm."""
 
     area: float
     length: float
@@ -67,7 +67,7 @@ class BoundarySize:
 
 
 def closed_outline(program: Program, ref: Ref[Entity]) -> BoundarySize:
-    """Outline of a closed profile."""
+    """Size of a closed profile."""
     profile = program.get(ref)
     if isinstance(profile, RectangularClosedProfile):
         width, length = (
@@ -83,11 +83,11 @@ def closed_outline(program: Program, ref: Ref[Entity]) -> BoundarySize:
         return _ngon(program, ref, profile)
     if isinstance(profile, GeneralClosedProfile):
         return _polygon(list(points_of(program, profile.closed_profile_shape)))
-    raise program.error("is no closed profile", ref)
+    raise program.error("is not a closed profile of a known kind", ref)
 
 
 def open_outline(program: Program, ref: Ref[Entity]) -> BoundarySize:
-    """Outline of an open profile, closed by the straight line between its ends."""
+    """Size of an open profile, its area closed by the straight line between its ends."""
     profile = program.get(ref)
     if isinstance(profile, GeneralProfile):
         points = list(points_of(program, profile.its_profile))
@@ -107,12 +107,12 @@ def open_outline(program: Program, ref: Ref[Entity]) -> BoundarySize:
 
 
 def circle_outline(diameter: float) -> BoundarySize:
-    """Outline of a circle."""
+    """Size of a circle of a given diameter."""
     return BoundarySize(area=0.25 * pi * diameter**2, length=pi * diameter, width=diameter)
 
 
 def _ngon(program: Program, ref: Ref[Entity], profile: NgonClosedProfile) -> BoundarySize:
-    """Regular polygon by its circumscribed circle or its width across flats."""
+    """Size of a regular polygon, from its circumscribed circle or its width across flats."""
     sides, half = profile.number_of_sides, 0.5 * size(program, profile.diameter, ref)
     angle = pi / sides
     edge = 2.0 * half * (sin(angle) if profile.circumscribed_or_across_flats else tan(angle))
@@ -121,7 +121,7 @@ def _ngon(program: Program, ref: Ref[Entity], profile: NgonClosedProfile) -> Bou
 
 
 def _polygon(points: list[Point]) -> BoundarySize:
-    """Area by the shoelace formula, length and narrower extent of a closed polygon."""
+    """Size of a closed polygon: shoelace area, length and narrower extent."""
     ring = [*points, points[0]]
     twice = sum(a[0] * b[1] - b[0] * a[1] for a, b in pairwise(ring))
     length = sum(hypot(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(ring))
@@ -130,7 +130,7 @@ def _polygon(points: list[Point]) -> BoundarySize:
 
 
 def points_of(program: Program, ref: Ref[Entity]) -> Iterator[Point]:
-    """Corner points of a bounded curve, arcs by their ends."""
+    """Corner points of a bounded curve; arcs give only their ends."""
     curve = program.get(ref)
     if isinstance(curve, Polyline):
         for point in curve.points:
@@ -150,7 +150,7 @@ def points_of(program: Program, ref: Ref[Entity]) -> Iterator[Point]:
 def _point(program: Program, ref: Ref[Entity]) -> Point:
     point = program.get(ref)
     if not isinstance(point, CartesianPoint):
-        raise program.error("is no point", ref)
+        raise program.error("is not a cartesian_point", ref)
     x, y, z = (*point.coordinates, 0.0, 0.0)[:3]
     return float(x), float(y), float(z)
 
@@ -167,11 +167,11 @@ def travel_length(program: Program, ref: Ref[Entity]) -> float:
     if isinstance(path, GeneralPath):
         points = list(points_of(program, path.swept_path))
         return sum(hypot(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(points))
-    raise program.error("is no course of travel", ref)
+    raise program.error("is not a travel path of a known kind", ref)
 
 
 def swept_width(program: Program, ref: Ref[Entity], depth: float) -> float:
-    """Width at the top of a slot's profile, mm."""
+    """Width at the top of the profile of a slot, mm."""
     profile = program.get(ref)
     if isinstance(profile, (SquareUProfile, RoundedUProfile)):
         return size(program, profile.width, ref)
@@ -181,29 +181,29 @@ def swept_width(program: Program, ref: Ref[Entity], depth: float) -> float:
         return 2.0 * size(program, profile.radius, ref)
     if isinstance(profile, GeneralProfile):
         return _polygon(list(points_of(program, profile.its_profile))).width
-    raise program.error("its width cannot be told from a profile of this kind", ref)
+    raise program.error("the width cannot be derived from a profile of this kind", ref)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FeatureRegion:
-    """A feature seen along the tool's axis."""
+    """Region of a feature seen along the tool axis."""
 
     area: float
-    """Area, mm² of floor to sweep; 0 when only walls are cut"""
+    """Area of floor to sweep, mm²; 0 when only walls are cut."""
     perimeter: float
-    """Perimeter, mm of wall to follow"""
+    """Length of wall to follow, mm."""
     width: float
-    """Width, mm, extent across the strokes"""
+    """Extent across the strokes, mm."""
     depth: float
-    """Depth, mm along the axis"""
+    """Depth along the tool axis, mm."""
     is_open: bool
-    """the tool may enter and leave through the side"""
+    """Whether the tool may enter and leave through the side."""
     count: int = 1
-    """equal regions that a pattern repeats"""
+    """Number of equal regions in a pattern."""
 
 
 def region_of(program: Program, ref: Ref[Entity]) -> FeatureRegion:
-    """Region of one feature.
+    """Determine the region of one feature.
 
     Parameters
     ----------
@@ -256,7 +256,7 @@ def region_of(program: Program, ref: Ref[Entity]) -> FeatureRegion:
 
 
 def _face(program: Program, feature: PlanarFace, depth: float) -> FeatureRegion:
-    """Length of travel times profile length, less the bosses."""
+    """Region of a planar face: travel length times profile length, less the bosses."""
     length = size(
         program, program.get(feature.course_of_travel).distance, feature.course_of_travel
     )
@@ -284,7 +284,7 @@ def _pocket(
     depth: float,
     is_open: bool,
 ) -> FeatureRegion:
-    """Boundary less islands; island walls count as walls."""
+    """Region of a pocket: its boundary less the islands, whose walls count as walls."""
     islands = list(_islands(program, bosses))
     return FeatureRegion(
         area=max(0.0, outline.area - sum(island.area for island in islands)),
@@ -296,7 +296,7 @@ def _pocket(
 
 
 def _slot(program: Program, feature: Slot, depth: float) -> FeatureRegion:
-    """Width of the swept shape along the course of travel."""
+    """Region of a slot: its width along the course of travel."""
     length = travel_length(program, feature.course_of_travel)
     width = swept_width(program, feature.swept_shape, depth)
     ends = [program.get(end) for end in feature.end_conditions]
@@ -310,7 +310,7 @@ def _slot(program: Program, feature: Slot, depth: float) -> FeatureRegion:
 
 
 def _step(program: Program, feature: Step, depth: float) -> FeatureRegion:
-    """From the edge to the side of the stock, which lies to the right of the edge's sense."""
+    """Region of a step: from its edge to the side of the stock, on the right of the edge."""
     path = program.get(feature.open_boundary)
     length = size(program, path.distance, feature.open_boundary)
     placement = program.get(feature.feature_placement)
@@ -325,7 +325,7 @@ def _step(program: Program, feature: Step, depth: float) -> FeatureRegion:
 def _distance_to_side(
     program: Program, *, at: tuple[float, ...], along: tuple[float, ...]
 ) -> float:
-    """Distance in mm from a line to the side of the stock's block on its right."""
+    """Distance from a line to the side of the stock block on its right, mm."""
     workpiece = program.workpiece()
     bounding = workpiece.its_bounding_geometry if workpiece is not None else None
     block = program.get(bounding) if bounding is not None else None
@@ -342,20 +342,20 @@ def _distance_to_side(
 
 
 DEFAULT_STEP_WIDTH = 10.0
-"""mm, of a step when the file gives no stock to measure it by"""
+"""Width of a step when the file gives no stock to measure it from, mm."""
 
 
 def _islands(program: Program, bosses: tuple[Ref[Boss], ...]) -> Iterator[BoundarySize]:
-    """Outlines of the bosses that stay."""
+    """Sizes of the outlines of the bosses that remain."""
     return (closed_outline(program, program.get(boss).its_boundary) for boss in bosses)
 
 
 def _profile_boundary(program: Program, ref: Ref[Entity], feature: Entity) -> BoundarySize:
-    """Outline that an outside profile or a boss is cut along."""
+    """Size of the outline that an outside profile or a boss is cut along."""
     boundary = boundary_of(feature)
     if boundary is None or not isinstance(feature, (GeneralOutsideProfile, Boss, ShapeProfile)):
         raise program.error(
-            "its path length cannot be estimated from a feature of this kind", ref
+            "the path length cannot be estimated for a feature of this kind", ref
         )
     shape = program.get(boundary)
     is_open = isinstance(shape, (SquareUProfile, GeneralProfile, PartialCircularProfile))
@@ -363,7 +363,7 @@ def _profile_boundary(program: Program, ref: Ref[Entity], feature: Entity) -> Bo
 
 
 def pattern_count(pattern: GeneralPattern | RectangularPattern | CircularPattern) -> int:
-    """Regions that a pattern makes."""
+    """Number of regions that a pattern makes."""
     if isinstance(pattern, GeneralPattern):
         return 1 + len(pattern.replicate_locations)
     if isinstance(pattern, CircularPattern):

@@ -1,7 +1,7 @@
-"""The roughness that a program asks of a surface.
+"""Surface roughness that a program requires.
 
-ISO 14649-10 ``surface_texture_parameter`` on ``machined_surface``. The standard leaves the unit
-to the reader; profiles are told in micrometres everywhere, so the value is read as µm.
+It is read from ISO 14649-10 ``surface_texture_parameter`` on ``machined_surface``. The standard
+does not fix the unit; roughness is customarily given in micrometres, so µm is assumed.
 """
 
 from simulator.physics.surface import RZ_PER_RA
@@ -13,7 +13,7 @@ from stepnc_model.units import mm_from_um
 
 
 def required_roughness(program: Program, step: ResolvedWorkingstep) -> float | None:
-    """Smallest Ra in mm asked of a surface that this workingstep leaves, or None."""
+    """Smallest Ra required of a surface that this workingstep leaves, mm, or None."""
     asked = [
         _arithmetic(texture)
         for feature in step.features
@@ -25,7 +25,7 @@ def required_roughness(program: Program, step: ResolvedWorkingstep) -> float | N
 
 
 def _arithmetic(texture: SurfaceTextureParameter) -> float | None:
-    """Ra in mm; None for a parameter that is neither Ra nor Rz."""
+    """Arithmetic roughness Ra of a parameter, mm; None if it is neither Ra nor Rz."""
     name = texture.parameter_name.strip().upper()
     value = texture.its_value
     if value is None or value <= 0.0:
@@ -36,7 +36,7 @@ def _arithmetic(texture: SurfaceTextureParameter) -> float | None:
 
 
 def _leaves(step: ResolvedWorkingstep, element: BottomOrSide | None) -> bool:
-    """Whether the operation makes the bottom or the side that is meant."""
+    """Whether the operation cuts the bottom or the side to which a texture applies."""
     if isinstance(step.operation, PlaneMilling):
         return element is not BottomOrSide.SIDE
     if isinstance(step.operation, SideMilling):

@@ -1,4 +1,4 @@
-"""The surface that a feed leaves, and the feed that a surface allows."""
+"""Roughness that a feed leaves, and the feed limit of a required roughness."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -10,16 +10,22 @@ from simulator.physics.surface import RA_FLOOR, corner_coefficient, wall_coeffic
 from stepnc_model.units import UM_PER_MM
 
 LAND_SHARE = 0.8
-"""greatest feed per revolution over the parallel land of a face mill's inserts: each revolution
-then smooths what the one before left; Sandvik Coromant, milling surface generation"""
+"""Greatest feed per revolution over the parallel land of a face mill's inserts.
+
+Each revolution then smooths the surface of the previous one; Sandvik Coromant, milling surface
+generation.
+"""
 
 WIPER_FEED = 2.0
-"""feed of a wiper insert over that of a round nose for the same surface; Kyocera, chipbreaker
-selection for steel, WP and WQ: double feed rate while maintaining a smooth finish"""
+"""Feed of a wiper insert over that of a round nose for the same surface.
+
+Kyocera, chipbreaker selection for steel, WP and WQ: double feed rate while maintaining a smooth
+finish.
+"""
 
 
 def surface_limits(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
-    """Roughness, where the feed describes it."""
+    """Limit on the roughness of the finished surface, where it depends on the feed."""
     if at.roughness is None:
         return
     if cut.parallel_land > 0.0 and at.roughness >= RA_FLOOR:
@@ -36,17 +42,17 @@ def surface_limits(cut: Cut, at: CuttingConditions) -> Iterator[Limit]:
 
 
 def roughness_limit(cut: Cut, roughness: float) -> Limit:
-    """Ra in mm at most so much; ValueError when the feed does not describe the surface."""
+    """Limit on roughness Ra, mm; ValueError if the surface does not depend on the feed."""
     load = roughness_load(cut)
     if load is None:
-        raise ValueError("the feed does not describe this surface")
+        raise ValueError("the roughness of this surface does not follow from the feed")
     return Limit(
         name=LimitName.ROUGHNESS, load=load, bound=roughness, unit="µm", scale=UM_PER_MM
     )
 
 
 def roughness_load(cut: Cut) -> Monomial | None:
-    """Ra in mm as a function of the feed, or None where the feed does not describe it.
+    """Roughness Ra, mm, as a function of the feed; None where it does not depend on the feed.
 
     Ideal roughness of :mod:`simulator.physics.surface` and the floor; the feed of a corner is
     per revolution for one high tooth, per tooth for equal ones, over :data:`WIPER_FEED` with a

@@ -1,26 +1,26 @@
-"""Margin on forces: the quantile of k_c at which bounds are kept.
+"""Safety margin on forces: the quantile of k_c at which bounds are kept.
 
-k_c of a catalogue is a median that real material scatters around, by a factor as often up as
-down: ln k_c is normal with ``σ = ln(1 + s)``, s the relative spread. Loads are in proportion to
-k_c, so that a bound kept by the load at a quantile is passed with the probability that is left.
+The k_c of a catalogue is a median around which real material scatters: ln k_c is normally
+distributed with ``σ = ln(1 + s)``, s the relative spread. Loads are proportional to k_c, so a
+bound kept at the quantile q is exceeded with the probability 1 − q.
 """
 
 from math import exp, log
 
 USUAL_QUANTILE = 0.9
-"""one cut in ten may need more force than was planned for"""
+"""Default quantile: one cut in ten may need more force than was planned for."""
 
 LEAST_QUANTILE, GREATEST_QUANTILE = 0.5, 0.999
-"""nominal; above the other, results would depend on an unknown tail of the distribution"""
+"""Range of the quantile: nominal, to where the tail of the distribution is unknown."""
 
 
 def require_quantile(quantile: float) -> None:
-    """Refuse what is no quantile to plan with.
+    """Check that a quantile is within the supported range.
 
     Raises
     ------
     ValueError
-        With the bounds.
+        When it is not; the message states the range.
     """
     if not LEAST_QUANTILE <= quantile <= GREATEST_QUANTILE:
         raise ValueError(
@@ -29,7 +29,7 @@ def require_quantile(quantile: float) -> None:
 
 
 def safety_factor(spread: float, quantile: float) -> float:
-    """k_c at a quantile over its median: ``exp(z·ln(1 + s))``, z the normal quantile.
+    """Ratio of k_c at a quantile to its median, ``exp(z·ln(1 + s))``, z the normal quantile.
 
     Examples
     --------

@@ -1,14 +1,15 @@
-"""Workingsteps on two cores: the later half of some in a second process, kept where it may be.
+"""Process workingsteps on two cores, with the same results as on one.
 
-Nothing says before its path is made where a workingstep cuts. So the second process takes its
-half as if the first one had changed nothing that matters, and tells afterwards where it looked
-and what it changed. Where that lies apart from what the first half changed, its result is that
-of one workingstep after another and is kept; otherwise the workingstep is done again. Results
-come in the order of the program and are the same as on one core, errors too: the second process
-ends at its first one, and the first process meets it again in its turn. Results that are late,
-for something else runs on the other core, are not waited for.
+Where a workingstep cuts is not known before its path is made. So a second process handles the
+later half of a batch as if the first half changed nothing relevant, and afterwards reports
+which places it read and changed. If these are apart from the changes of the first half, its
+results are kept; otherwise the workingsteps are done again. Results come in program order and
+are the same as on one core, errors too: the second process ends at its first error, which the
+first process meets again in its turn. Results that are late, because the other core is busy,
+are not waited for.
 
-Programs whose workingsteps meet, a face before all pockets, are tried again ever more rarely.
+Programs whose workingsteps overlap, such as a face before all pockets, are tried on two cores
+less and less often.
 """
 
 import os
@@ -24,46 +25,46 @@ from typing import Generic, Protocol, TypeVar
 from stepnc_model.program import ResolvedWorkingstep
 
 LEAST = 16
-"""workingsteps for each process that are worth a second one"""
+"""Least number of workingsteps per process that justifies a second process."""
 
 MOST = 64
-"""workingsteps for each process before both wait for one another"""
+"""Greatest number of workingsteps per process before both synchronise."""
 
 SOON = 0.05
-"""s; nothing is late before"""
+"""Least waiting time before a result counts as late, s."""
 
-_SIZE = 8  # bytes in which a size is told
+_SIZE = 8  # number of bytes that encode the size of a result
 
 Result = TypeVar("Result")
 Trace = TypeVar("Trace")
 
 
 class SplittableState(Protocol[Trace]):
-    """A state that workingsteps change, each in a place of its own."""
+    """State that workingsteps change, each in a place of its own."""
 
     def split(self) -> None:
-        """Prepare to repeat what a copy does from now on."""
+        """Prepare to repeat the changes that a copy makes from now on."""
         ...
 
     def trace(self) -> Trace:
-        """Place that the last workingstep read and changed."""
+        """Trace of the place that the last workingstep read and changed."""
         ...
 
     def is_apart(
         self, step: ResolvedWorkingstep, trace: Trace, others: Sequence[Trace]
     ) -> bool:
-        """Whether a workingstep would have done the same after others."""
+        """Whether a workingstep would have had the same result after the others."""
         ...
 
     def repeat(self, step: ResolvedWorkingstep, trace: Trace) -> None:
-        """Change the state as a workingstep has changed a copy of it."""
+        """Apply to this state the change that a workingstep made in a copy of it."""
         ...
 
 
 def one_by_one(
     steps: Sequence[ResolvedWorkingstep], do: Callable[[ResolvedWorkingstep], Result]
 ) -> Iterator[Result]:
-    """Results of workingsteps, each after the one before."""
+    """Results of workingsteps, processed one after the other."""
     return map(do, steps)
 
 
@@ -78,9 +79,9 @@ def side_by_side(
     ----------
     steps : sequence of ResolvedWorkingstep
     do : callable
-        Does one of them; a result that can be sent from process to process.
+        Processes one workingstep; its result must be picklable.
     state : SplittableState
-        What ``do`` changes besides.
+        State that ``do`` changes.
 
     Yields
     ------
@@ -106,7 +107,7 @@ def side_by_side(
 
 
 def _is_possible() -> bool:
-    """Whether there are two cores, and a process that may be forked: one without threads."""
+    """Whether there are two cores and this process has no threads, so that it may fork."""
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else 1
     return cores > 1 and threading.active_count() == 1
 
@@ -117,7 +118,7 @@ def _halves(
     do: Callable[[ResolvedWorkingstep], Result],
     state: SplittableState[Trace],
 ) -> Generator[Result, None, int]:
-    """Both halves at once; gives how much of the second could be kept."""
+    """Process both halves at once; return how many results of the second were kept."""
     kept = 0
     state.split()
     with _Second(second, do, state) as other:
@@ -135,7 +136,7 @@ def _halves(
                 yield told[0]
                 continue
             if told is None:
-                # Its core is busy: what takes longer here than there is not waited for again.
+                # The core is busy: do not wait again for results that take longer there.
                 patience = 0.0
             yield do(step)
             changed.append(state.trace())
@@ -143,10 +144,10 @@ def _halves(
 
 
 class _Second(Generic[Result, Trace]):
-    """A second process, forked from this one; use it with ``with``. Running state.
+    """Second process, forked from this one; a context manager with mutable state.
 
-    Results lie in a file without a name, their sizes come through a pipe: it never is full, so
-    that the second process never waits.
+    Results are written to an unnamed file and their sizes to a pipe, which never fills, so the
+    second process never waits.
     """
 
     def __init__(
@@ -157,7 +158,7 @@ class _Second(Generic[Result, Trace]):
     ) -> None:
         self._file = TemporaryFile(buffering=0)  # noqa: SIM115 (closed at the end of ``with``)
         self._ends = [0]
-        """where results end in the file"""
+        """Offsets at which results end in the file."""
         self._pipe, write = os.pipe()
         self._pid = os.fork()
         if self._pid == 0:
@@ -168,7 +169,7 @@ class _Second(Generic[Result, Trace]):
                     self._file.write(told)
                     os.write(write, len(told).to_bytes(_SIZE))
             finally:
-                # An error comes again in the first process; nothing else is to be cleaned up.
+                # The first process meets any error again; there is nothing else to clean up.
                 os._exit(0)
         os.close(write)
 
@@ -182,7 +183,7 @@ class _Second(Generic[Result, Trace]):
         os.waitpid(self._pid, 0)
 
     def result(self, index: int, patience: float) -> tuple[Result, Trace] | None:
-        """A result with its trace; None when it does not come within some seconds."""
+        """Return a result with its trace, or None if it takes longer than ``patience`` s."""
         while index + 1 >= len(self._ends):
             if not select([self._pipe], [], [], patience)[0]:
                 return None

@@ -26,39 +26,39 @@ def why_elsewhere(step: ResolvedWorkingstep, machine: Machine) -> str:
 
 
 class CutSource(Protocol):
-    """Cuts of a program's workingsteps, asked for in their order. May keep a state."""
+    """Source of the cuts of a program's workingsteps, requested in order; may keep state."""
 
     def cut(self, step: ResolvedWorkingstep) -> tuple[Cut, list[Finding]]:
-        """The cut of a workingstep as programmed, and what was assumed."""
+        """Return the cut of a workingstep as programmed, with findings on assumptions."""
         ...
 
     def at(self, step: ResolvedWorkingstep, cut: Cut, setting: Setting) -> Cut:
-        """The same cut with length and time as they are at another setting."""
+        """Return the cut with its length and time at another setting."""
         ...
 
     def leave_out(self, step: ResolvedWorkingstep) -> None:
-        """Go past a workingstep that is not advised but is run."""
+        """Pass over a workingstep that is not optimised but will run."""
         ...
 
     def each(
         self, steps: Sequence[ResolvedWorkingstep], do: Callable[[ResolvedWorkingstep], Result]
     ) -> Iterator[Result]:
-        """Results of workingsteps in their order, each of which asks for its cuts."""
+        """Run a function that requests cuts on each workingstep, and yield results in order."""
         ...
 
 
 Source = Callable[[Program, Machine, WorkMaterial], CutSource]
-"""what makes the source of a program's cuts"""
+"""Factory of the source of a program's cuts."""
 
 
 class WiperCutSource:
-    """A source of cuts, some of whose turning inserts have a wiper.
+    """Source of cuts that marks the turning inserts that have a wiper.
 
     Parameters
     ----------
     cuts : CutSource
     wipers : set of str
-        Ids of the tools.
+        Ids of the tools whose inserts have a wiper.
     """
 
     def __init__(self, cuts: CutSource, wipers: frozenset[str]) -> None:
@@ -68,12 +68,12 @@ class WiperCutSource:
         self._wipers = wipers
 
     def cut(self, step: ResolvedWorkingstep) -> tuple[Cut, list[Finding]]:
-        """The cut of a workingstep as programmed, and what was assumed."""
+        """Return the cut of a workingstep as programmed, with findings on assumptions."""
         cut, findings = self._cuts.cut(step)
         return self._with_wiper(cut), findings
 
     def at(self, step: ResolvedWorkingstep, cut: Cut, setting: Setting) -> Cut:
-        """The same cut with length and time as they are at another setting."""
+        """Return the cut with its length and time at another setting."""
         return self._with_wiper(self._cuts.at(step, cut, setting))
 
     def _with_wiper(self, cut: Cut) -> Cut:
@@ -85,9 +85,9 @@ class WiperCutSource:
 def along_paths(
     program: Program, machine: Machine, material: WorkMaterial, *, is_run: bool = False
 ) -> CutSource:
-    """Cuts as the real tool path makes them in the stock that is left, timed by the machine.
+    """Source of cuts along the real tool paths in the remaining stock, timed by the machine.
 
-    Where a run will stand beside the plan, they tell what the axes reach, too.
+    With ``is_run``, the cuts include the loads that the axes actually reach.
     """
     from optimiser.measured import MeasuredCuts  # noqa: PLC0415 (numpy)
 
@@ -95,5 +95,5 @@ def along_paths(
 
 
 def from_features(program: Program, machine: Machine, material: WorkMaterial) -> CutSource:
-    """Cuts estimated from features: quick, and blind to what the path really does."""
+    """Source of cuts estimated from features: fast, but without the real tool path."""
     return Estimates(program, machine, material)

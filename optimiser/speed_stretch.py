@@ -1,9 +1,9 @@
-"""Bounds that fall with the spindle speed, as powers of it on stretches of the speeds.
+"""Bounds that fall with spindle speed, approximated by powers of it on stretches of speed.
 
-What solves takes bounds ``b·n^δ``. What the idling spindle leaves of its drive's power, and
-what the flying jaws leave of a chuck's force, are no powers of the speed; but their logarithm
-is concave in that of the speed, so that a power through the ends of a stretch lies below them
-in between: on the safe side, and by little where the stretch is short.
+The solver takes bounds of the form ``b·n^δ``. The drive power left by an idling spindle and the
+chuck force left by centrifugal force on the jaws are not powers of the speed; but their
+logarithm is concave in that of the speed, so a power through the ends of a stretch lies below
+them in between: on the safe side, and by little where the stretch is short.
 """
 
 from collections.abc import Callable, Iterator
@@ -22,28 +22,32 @@ from simulator.work_holding import (
 )
 
 STEP = 2.0
-"""greatest ratio of the ends of a stretch: a power is 3 % off what an idling spindle leaves
-where it takes a third of the drive"""
+"""Greatest ratio of the ends of a stretch of speeds.
+
+The power law is then 3 % below the exact bound if idling takes a third of the drive power.
+"""
 
 LOSSES = tuple(share / 10.0 for share in range(1, 10))
-"""of a chuck's force, by which stretches end as well: a power is 6 % off in the last of them,
-1 % before"""
+"""Losses of chuck force at which stretches end.
+
+The power law is 6 % below the exact bound in the last stretch, 1 % in the others.
+"""
 
 LEAST_POWER = 1.0
-"""W; what idles a spindle must leave something, for a bound must be positive"""
+"""Least power that idling leaves for cutting, W, because a bound must be positive."""
 
 
 def powers_of_speed(
     bound_at: Callable[[float], float], slow: float, fast: float
 ) -> tuple[float, float]:
-    """(b, δ) of ``b·n^δ`` through a bound at two speeds; of one speed δ is 0."""
+    """Parameters (b, δ) of ``b·n^δ`` through a bound at two speeds; δ is 0 for one speed."""
     low, high = bound_at(slow), bound_at(fast)
     exponent = log(high / low) / log(fast / slow) if fast > slow else 0.0
     return low / slow**exponent, exponent
 
 
 def stretch_ends(cut: Cut, at: CuttingConditions, low: float, high: float) -> tuple[float, ...]:
-    """Speeds between which bounds are powers of the speed, ascending from least to greatest."""
+    """Ends of the speed stretches on which bounds are powers of the speed, ascending, rev/s."""
     inner = {part.max_speed for part in curve_segments(at.machine.spindle)}
     if not at.machine.only_stated_limits:
         if cut.turned is not None and cut.turned.speed_ratio < inf:
@@ -56,13 +60,13 @@ def stretch_ends(cut: Cut, at: CuttingConditions, low: float, high: float) -> tu
 
 
 def _parts(slow: float, fast: float) -> Iterator[float]:
-    """Speeds from one on, in equal steps of its logarithm, before another."""
+    """Geometrically spaced speeds from the slow end to before the fast end."""
     count = max(1, ceil(log(fast / slow) / log(STEP) - 1e-9))
     return (slow * (fast / slow) ** (row / count) for row in range(count))
 
 
 def _chuck_ends(cut: Cut, at: CuttingConditions) -> Iterator[float]:
-    """Speeds at which a chuck has lost more and more of its force."""
+    """Speeds at which a chuck has lost further tenths of its force, rev/s."""
     if isinstance(at.holding, Chuck) and (limit := permitted_speed(at.holding)) < inf:
         ratio = cut.turned.speed_ratio if cut.turned is not None else 1.0
         for share in LOSSES:
@@ -71,7 +75,7 @@ def _chuck_ends(cut: Cut, at: CuttingConditions) -> Iterator[float]:
 
 
 def segment_within(cut: Cut, at: CuttingConditions, slow: float, fast: float) -> CurveSegment:
-    """The spindle's curve on a stretch: what idling leaves of its power on the whole path."""
+    """Spindle curve on a stretch of speeds, less the idling power along the whole path."""
     segment = segment_at(at, sqrt(slow * fast))
     if at.machine.only_stated_limits:
         return segment

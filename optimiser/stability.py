@@ -1,9 +1,10 @@
-"""Stability of a cut: which measured modes hold for it, and what depth they allow.
+"""Chatter stability of a cut: the measured modes that apply, and the depth they allow.
 
-Only measured modes bound the depth: by the zero-order lobes in milling, by the orthogonal limit
-at any speed in turning. Without them an estimate by the tool's overhang tells the depth that is
-stable at any speed, with its band; it bounds nothing, for it would forbid nearly every slot.
-Zero order is not used for thin cuts and at speeds at which the flank damps; that is told.
+Only measured modes limit the depth: by zero-order lobes in milling, by the orthogonal limit at
+any speed in turning. Without them, the tool's overhang gives an estimate of the depth that is
+stable at any speed, with its band; it limits nothing, because it would forbid nearly every
+slot. The zero-order model is not used for thin cuts and for speeds with process damping; a
+message says so.
 """
 
 from collections.abc import Iterable, Iterator
@@ -38,52 +39,56 @@ if TYPE_CHECKING:
     from simulator.physics.stability import DynamicCut
 
 FREQUENCY_TOLERANCE = 0.01
-"""share by which a natural frequency may be off: what a tap test with a resolution of a few Hz
-tells, and what a warm spindle moves; no speed is advised nearer to the edge of a lobe"""
+"""Relative uncertainty of a natural frequency; no advised speed is closer to a lobe's edge.
+
+It covers the resolution of a tap test, a few Hz, and the drift of a warm spindle.
+"""
 
 SPEED_STEP = 1e-3
-"""share between two speeds at which lobes are drawn"""
+"""Relative step between two speeds of a stability lobe diagram."""
 
 LEAST_SPEED_SHARE = 0.1
-"""of the greatest speed, where neither machine nor tool names a least one"""
+"""Least speed of the lobes over the greatest, where machine and tool state no least one."""
 
 STIFFNESS_BAND = (5_000.0, 20_000.0)
-"""N/mm at the tip of usual end mills: band of the estimate"""
+"""Stiffness at the tip of usual end mills, N/mm: band of the estimate."""
 
 DAMPING_BAND = (0.02, 0.05)
-"""ζ of tools in their holders: band of the estimate"""
+"""Damping ratio ζ of tools in their holders: band of the estimate."""
 
 TOOL_SHARE = 0.5
-"""of the stiffness of the tool alone that is left at its tip: holder and spindle often give as
-much as the tool"""
+"""Share of the stiffness of the tool alone that remains at its tip.
+
+Holder and spindle often deflect as much as the tool.
+"""
 
 
 class Basis(StrEnum):
     """Basis of a statement on stability."""
 
     MEASURED = "measured"
-    """modes of a tap test: the depth is bounded"""
+    """Modes from a tap test: the depth is limited."""
     ESTIMATED = "estimated"
-    """the overhang of the tool: nothing is bounded"""
+    """Overhang of the tool: nothing is limited."""
     NOT_USED = "not_used"
-    """the model does not hold for this cut: nothing is bounded"""
+    """The model does not apply to this cut: nothing is limited."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stability:
-    """Stability of a cut."""
+    """Chatter stability of a cut: its basis and the stable depth."""
 
     basis: Basis
     reason: str
-    """what was measured or assumed, or why the model is not used"""
+    """What was measured or assumed, or why the model is not used."""
     least: float | None = None
-    """Least, mm of one pass, stable at any speed"""
+    """Depth of one pass that is stable at any speed, mm."""
     band: tuple[float, float] | None = None
-    """Band, mm, of an estimate"""
+    """Band of an estimated depth, mm."""
 
 
 def stability_limits(cut: Cut, at: CuttingConditions) -> tuple[Limit, ...]:
-    """The depth of one pass that measured modes allow; none where nothing is measured."""
+    """Limit on the depth of one pass from measured modes; empty without measured modes."""
     measured = measured_modes(cut, at.machine)
     if measured is None or _why_not_used(cut, at, measured):
         return ()
@@ -118,12 +123,12 @@ def stability_of(cut: Cut, at: CuttingConditions) -> Stability | None:
 
 
 def estimate_texts(told: Iterable[tuple[Tool, Stability, float]]) -> Iterator[tuple[str, str]]:
-    """Id of each tool without measured modes, and what is estimated for its hardest cut.
+    """Id of each tool without measured modes, with the estimate for its hardest cut.
 
     Parameters
     ----------
     told : iterable of (Tool, Stability, float)
-        Of each workingstep, with the depth of its passes in mm.
+        Tool, stability and depth of the passes in mm of each workingstep.
     """
     hardest: dict[str, tuple[Stability, float]] = {}
     for tool, found, depth in told:
@@ -137,16 +142,16 @@ def estimate_texts(told: Iterable[tuple[Tool, Stability, float]]) -> Iterator[tu
         stiff, soft = n_um_from_n_mm(STIFFNESS_BAND[1]), n_um_from_n_mm(STIFFNESS_BAND[0])
         yield (
             tool_id,
-            f"stability bounds no depth of tool '{tool_id}', as no modes are measured; "
-            f"estimated by {found.reason}, {found.least:.2g} mm would be stable at any speed "
+            f"chatter does not limit the depth of tool '{tool_id}': no modes are measured; "
+            f"estimated from {found.reason}, {found.least:.2g} mm would be stable at any speed "
             f"({low:.2g} to {high:.2g} mm for {soft:g} to {stiff:g} N/µm and "
-            f"ζ {DAMPING_BAND[0]:g} to {DAMPING_BAND[1]:g}), and {depth:.3g} mm are cut: "
-            "tap the tool, and import its modes with `stepnc taptest`",
+            f"ζ {DAMPING_BAND[0]:g} to {DAMPING_BAND[1]:g}); {depth:.3g} mm are cut: "
+            "tap-test the tool and import its modes with `stepnc taptest`",
         )
 
 
 def _limit(cut: Cut, *, bound: float, curve: SpeedCurve | None) -> Limit:
-    """The depth where the cut is deepest, against chatter."""
+    """Limit on the depth where the cut is deepest, against chatter."""
     return Limit(
         name=LimitName.STABILITY,
         load=Monomial(coefficient=cut.depth_share, depth_exponent=1.0),
@@ -157,7 +162,7 @@ def _limit(cut: Cut, *, bound: float, curve: SpeedCurve | None) -> Limit:
 
 
 def _why_not_used(cut: Cut, at: CuttingConditions, measured: MeasuredModes) -> str:
-    """Why measured modes bound nothing; empty where they do."""
+    """Reason why measured modes do not limit the depth; empty where they do."""
     if cut.kind is CutKind.MILLING:
         why = _why_thin(cut)
         if why:
@@ -171,13 +176,13 @@ def _why_not_used(cut: Cut, at: CuttingConditions, measured: MeasuredModes) -> s
     if highest > damped:
         return ""
     return (
-        f"the flank damps the waves below {rpm_from_rev_s(damped):.0f} rpm, where zero order "
-        "is not used"
+        f"process damping below {rpm_from_rev_s(damped):.0f} rpm: the zero-order model "
+        "does not apply"
     )
 
 
 def _why_thin(cut: Cut) -> str:
-    """Why zero order does not hold for an engagement; empty where it does."""
+    """Reason why the zero-order model does not apply to an engagement; empty where it does."""
     from simulator.physics.stability import LEAST_IMMERSION  # noqa: PLC0415 (numpy)
 
     if cut.engagement is None:
@@ -185,15 +190,18 @@ def _why_thin(cut: Cut) -> str:
     immersion = 0.5 * cut.engagement.cosine_difference
     if immersion >= LEAST_IMMERSION:
         return ""
-    return f"a_e/D {immersion:.2g} is below {LEAST_IMMERSION:g}, where zero order is not used"
+    return (
+        f"a_e/D {immersion:.2g} is below {LEAST_IMMERSION:g}, where the zero-order model "
+        "is not used"
+    )
 
 
 def _cutting_stiffness(cut: Cut, at: CuttingConditions) -> tuple[float, float]:
-    """K_t in N/mm² and K_r: what a wave adds to the force, so without the edge's rubbing.
+    """Cutting coefficients K_t, N/mm², and K_r of the chip alone, without edge rubbing.
 
-    From the linear-edge law where it was measured, else the slope of Kienzle's force at the
-    mean chip of the least feed that is recommended: the thinner chip is the stiffer one, and
-    the bound must not move with the feed that is sought under it.
+    They follow from the linear-edge law where it was measured, otherwise from the slope of
+    Kienzle's force at the mean chip of the least recommended feed: a thinner chip is stiffer,
+    and the bound must not move with the feed that is sought under it.
     """
     factor, edge = force_factor(at), at.material.linear_edge
     sine = sin(cut.tool.cutting_edge_angle)
@@ -209,14 +217,14 @@ def _cutting_stiffness(cut: Cut, at: CuttingConditions) -> tuple[float, float]:
 
 
 def _chip_ratio(cut: Cut) -> float:
-    """Mean chip over the feed per tooth or revolution."""
+    """Mean chip thickness over the feed per tooth or revolution."""
     if cut.engagement is None:
         return sin(cut.tool.cutting_edge_angle)
     return mean_chip_ratio(cut.engagement, cutting_edge_angle=cut.tool.cutting_edge_angle)
 
 
 def _speeds(cut: Cut, at: CuttingConditions) -> tuple[float, float]:
-    """Speeds that lobes are drawn for: those that may be chosen, and the programmed one."""
+    """Speed range of the lobes, permitted and programmed speeds included, rev/s."""
     given = cut.programmed.speed
     low, high = speed_range(cut, at)
     if not low < high < inf:
@@ -226,7 +234,7 @@ def _speeds(cut: Cut, at: CuttingConditions) -> tuple[float, float]:
 
 
 def _lobes(cut: Cut, at: CuttingConditions, measured: MeasuredModes) -> SpeedCurve:
-    """Greatest stable depth by speed, from where the flank stops damping."""
+    """Greatest stable depth by speed, above the speeds with process damping."""
     from simulator.physics.receptance import ModalStructure  # noqa: PLC0415 (numpy)
     from simulator.physics.stability import damped_speed  # noqa: PLC0415 (numpy)
 
@@ -237,7 +245,7 @@ def _lobes(cut: Cut, at: CuttingConditions, measured: MeasuredModes) -> SpeedCur
 
 
 def _least_measured(cut: Cut, at: CuttingConditions, measured: MeasuredModes) -> float:
-    """Depth that is stable at any speed, mm."""
+    """Depth that is stable at any speed according to measured modes, mm."""
     from simulator.physics.receptance import ModalStructure  # noqa: PLC0415 (numpy)
 
     if cut.kind is CutKind.TURNING:
@@ -280,7 +288,7 @@ def _dynamic_cut(cut: Cut, at: CuttingConditions) -> "DynamicCut":
 def _drawn(
     cut: "DynamicCut", structure: "ModalStructure", low: float, high: float
 ) -> SpeedCurve:
-    """Lobes between two speeds; kept, for a workingstep asks for the same ones many times."""
+    """Stability lobes between two speeds, cached because they are requested repeatedly."""
     from simulator.physics.stability import lobes  # noqa: PLC0415 (numpy)
 
     speeds, depths = lobes(
@@ -298,7 +306,7 @@ def _least(cut: "DynamicCut", structure: "ModalStructure") -> float:
 
 
 def _estimated(cut: Cut, at: CuttingConditions, grade: ToolGrade) -> Stability:
-    """Compliance estimated from the overhang of the tool, the same along x and y."""
+    """Stability estimated from the overhang of the tool, with equal compliance in x and y."""
     diameter, softest, stiffest = cut.tool.diameter, *STIFFNESS_BAND
     stiffness, of = sqrt(softest * stiffest), "usual tools"
     if cut.tool_kind is ToolKind.ENDMILL:
@@ -329,13 +337,13 @@ def _estimated(cut: Cut, at: CuttingConditions, grade: ToolGrade) -> Stability:
 
 
 def _expected(cut: Cut, at: CuttingConditions, *, stiffness: float, damping: float) -> float:
-    """Depth of one pass that is stable at any speed, mm, for one mode along x and y."""
+    """Depth of one pass stable at any speed, mm, for one mode along x and y."""
     from simulator.physics.receptance import ModalStructure  # noqa: PLC0415 (numpy)
 
     mode = VibrationMode(
         part=VibratingPart.TOOL,
         direction=ModeDirection.XY,
-        # The least of all lobes does not depend on it.
+        # The lowest point of all lobes does not depend on the natural frequency.
         natural_frequency=1_000.0,
         damping_ratio=damping,
         stiffness=stiffness,

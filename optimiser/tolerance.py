@@ -1,15 +1,15 @@
-"""Permitted deflection, from the tolerance or the allowance of the wall.
+"""Permitted deflection of tool or bar, from the tolerance or the allowance of the wall.
 
-The operation that leaves a wall must keep its tolerance. Its bending counts twice, as the walls
-on both sides of a size move alike, and may use half of the deviation that is permitted; the
-rest is for machine, clamping, heat, wear and measuring. So the bound is a quarter of the
-half-width. An earlier operation may bend into its allowance: a third of it, so that two thirds
-are left to clean up, and the finish never meets more than four thirds of what it was planned
-for. Lengths in mm.
+The operation that finishes a wall must keep its tolerance. Its deflection counts twice, as the
+walls on both sides of a size move alike, and may use half of the permitted deviation; the rest
+is for machine, clamping, heat, wear and measuring. So the bound is a quarter of the half-width
+of the tolerance. An earlier operation may deflect into its allowance: a third of it, so that
+two thirds are left to clean up, and the finish never meets more than four thirds of the planned
+allowance. Lengths in mm.
 
-A mill bends across its axis, so it moves walls and leaves depths alone. Widths, lengths and
-diameters say where walls stand. Radii of corners and the length of a way that ends in the open
-do not: there the tool or the edge of the part makes the shape.
+A mill bends across its axis, so it displaces walls and does not affect depths. Widths, lengths
+and diameters place walls. Radii of corners and the length of a slot with an open end do not:
+there the tool or the edge of the part makes the shape.
 """
 
 from collections.abc import Iterator
@@ -72,7 +72,7 @@ BOUNDARIES = (
     "swept_shape",
     "its_boundary",
 )
-"""attributes of features that hold the profile of their walls"""
+"""Attributes of features that hold the profile of their walls."""
 
 SIZES: dict[type[Entity], tuple[str, ...]] = {
     RoundHole: ("diameter",),
@@ -84,25 +84,25 @@ SIZES: dict[type[Entity], tuple[str, ...]] = {
     TeeProfile: ("width", "cross_bar_width"),
     PartialCircularProfile: ("radius",),
 }
-"""toleranced lengths that place a wall"""
+"""Toleranced lengths that place a wall, by the type of entity."""
 
 CLOSED_ENDS = (RadiusedSlotEndType, FlatSlotEndType)
-"""ends of a slot that are walls as well"""
+"""Types of slot ends that are walls as well."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WallSize:
-    """A size between walls, or of one."""
+    """Size between two walls, or of a single wall."""
 
     name: str
     size: float
-    """Size, mm, nominal"""
+    """Nominal size, mm."""
     ref: Ref[TolerancedLengthMeasure] | None
-    """None: measured on a shape that has no toleranced length"""
+    """Toleranced length in the file; None if the size was measured on a shape."""
 
 
 def wall_sizes(program: Program, ref: Ref[Entity]) -> list[WallSize]:
-    """Sizes of the walls of a feature, those of its bosses included; none of a bare face.
+    """Sizes of the walls of a feature and of its bosses; empty for a plain face.
 
     Raises
     ------
@@ -123,7 +123,7 @@ def wall_sizes(program: Program, ref: Ref[Entity]) -> list[WallSize]:
 
 
 def bar_sizes(program: Program, ref: Ref[Entity]) -> list[WallSize]:
-    """Diameters of a turning feature; none of a face, which a bar that bends leaves alone."""
+    """Diameters of a turning feature; empty for a face, which bar bending does not affect."""
     feature = program.get(ref)
     if isinstance(feature, OuterRound):
         return list(_size(program, "diameter", feature.diameter_at_placement))
@@ -137,7 +137,7 @@ def bar_sizes(program: Program, ref: Ref[Entity]) -> list[WallSize]:
 
 
 def _written(program: Program, feature: Entity) -> Iterator[WallSize]:
-    """Toleranced lengths of a feature and of the profile of its walls."""
+    """Sizes with toleranced lengths, of a feature and of the profile of its walls."""
     yield from _of(program, feature)
     for name in BOUNDARIES:
         boundary = getattr(feature, name, None)
@@ -151,7 +151,7 @@ def _written(program: Program, feature: Entity) -> Iterator[WallSize]:
 
 
 def _of(program: Program, entity: Entity) -> Iterator[WallSize]:
-    """Toleranced lengths of one entity."""
+    """Sizes with toleranced lengths, of one entity."""
     for attribute in SIZES.get(type(entity), ()):
         name = attribute.removeprefix("profile_").replace("_", " ")
         yield from _size(program, name, getattr(entity, attribute))
@@ -160,7 +160,7 @@ def _of(program: Program, entity: Entity) -> Iterator[WallSize]:
 def _size(
     program: Program, name: str, ref: Ref[TolerancedLengthMeasure] | None
 ) -> Iterator[WallSize]:
-    """One toleranced length, unless it has no size."""
+    """Size of one toleranced length, if it has a nominal size."""
     length = program.model.entity(int(ref)) if ref is not None else None
     if isinstance(length, TolerancedLengthMeasure) and (length.theoretical_size or 0.0) > 0.0:
         yield WallSize(name=name, size=length.theoretical_size, ref=ref)
@@ -179,21 +179,21 @@ def _boss_sizes(program: Program, feature: Entity) -> list[WallSize]:
 
 
 SHARE_OF_TOLERANCE = 0.25
-"""deflection over the half-width of the tolerance; why is told above"""
+"""Permitted deflection over the half-width of the tolerance; see the module docstring."""
 
 SHARE_OF_ALLOWANCE = 1.0 / 3.0
-"""deflection over the allowance; why is told above"""
+"""Permitted deflection over the allowance; see the module docstring."""
 
 GREATEST_AT_WALL = 0.05
-"""mm where the wall stays as it is cut, however wide the tolerance: customary"""
+"""Greatest deflection at a finished wall, mm, however wide the tolerance (customary)."""
 
 WALL_OPERATIONS = (SideMilling, BottomAndSideMilling, FreeformOperation, Boring, Reaming)
-"""operations that take an allowance off a wall"""
+"""Operations that remove an allowance from a wall."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Toleranced:
-    """A size between walls with the tolerance that holds for it."""
+    """Size between walls with its tolerance."""
 
     wall: WallSize
     tolerance: Tolerance
@@ -202,13 +202,13 @@ class _Toleranced:
 def permitted_deflection(
     program: Program, step: ResolvedWorkingstep
 ) -> tuple[PermittedDeflection, list[Finding]]:
-    """Permitted deflection of the end mill of a workingstep, and the assumptions behind it.
+    """Permitted deflection of the end mill of a workingstep; the findings state assumptions.
 
     Parameters
     ----------
     program : Program
     step : ResolvedWorkingstep
-        One that mills.
+        A milling workingstep.
 
     Returns
     -------
@@ -225,9 +225,9 @@ def permitted_deflection(
 def permitted_bar_deflection(
     program: Program, step: ResolvedWorkingstep
 ) -> tuple[PermittedDeflection, list[Finding]]:
-    """Permitted deflection of the bar of a turning workingstep, and the assumptions.
+    """Permitted deflection of the bar of a turning workingstep; findings state assumptions.
 
-    A bar that gives way is thicker by twice as much. Parameters, result and errors as those of
+    A bar that deflects gets thicker by twice as much. Parameters, result and errors as in
     :func:`permitted_deflection`.
     """
     diameters = [size for feature in step.features for size in bar_sizes(program, feature)]
@@ -238,17 +238,17 @@ def permitted_bar_deflection(
 def _permitted(
     program: Program, step: ResolvedWorkingstep, walls: list[WallSize], allowance: float
 ) -> tuple[PermittedDeflection, list[Finding]]:
-    """Permitted deflection for sizes and the allowance that is left on them."""
+    """Permitted deflection for given sizes and the allowance that is left on them."""
     forgiven = SHARE_OF_ALLOWANCE * allowance
     if not walls or forgiven >= GREATEST_DEFLECTION:
         return PermittedDeflection(), []
     tightest, findings = _tightest(program, walls)
     permitted = _within_tolerance(tightest)
-    # An allowance that forgives less than the tolerance does is no reason to bend less.
+    # An allowance that permits less than the tolerance does not tighten the bound.
     if forgiven > permitted.value:
-        origin = f"a third of the {allowance:g} mm that it leaves on the wall"
+        origin = f"a third of the allowance of {allowance:g} mm on the wall"
         return PermittedDeflection(value=forgiven, origin=origin), findings
-    left = f"{allowance:g} mm on " if allowance > 0.0 else ""
+    left = f"{allowance:g} mm on " if allowance > 0.0 else "no allowance on "
     what = "bar" if isinstance(step.operation, TurningMachiningOperation) else "tool"
     bound = f"{what} deflection at most {permitted.value:.3g} mm"
     text = f"leaves {left}the wall: {bound}, {permitted.origin}"
@@ -256,7 +256,7 @@ def _permitted(
 
 
 def _tightest(program: Program, walls: list[WallSize]) -> tuple[_Toleranced, list[Finding]]:
-    """The size with the tightest tolerance, and which tolerances cannot be read."""
+    """Size with the tightest tolerance, and findings on unreadable tolerances."""
     toleranced = []
     findings: list[Finding] = []
     for wall in walls:
@@ -271,7 +271,7 @@ def _tightest(program: Program, walls: list[WallSize]) -> tuple[_Toleranced, lis
 
 
 def _walls(program: Program, step: ResolvedWorkingstep) -> list[WallSize]:
-    """Sizes of the walls that an operation cuts; a face has none but those of its bosses."""
+    """Sizes of the walls that an operation cuts; a face has only those of its bosses."""
     if not step.features:
         return []
     feature = step.features[0]
@@ -282,12 +282,12 @@ def _walls(program: Program, step: ResolvedWorkingstep) -> list[WallSize]:
 
 
 def _allowance(program: Program, step: ResolvedWorkingstep) -> float:
-    """Thickness in mm that is left on the wall for a later operation; 0: this one leaves it."""
+    """Allowance left on the wall for a later operation, mm; 0 if this one finishes it."""
     operation = step.operation
     written: float | None = getattr(operation, "allowance_side", None)
     if written is not None:
         return max(0.0, written)
-    # A given tool path says nothing of what it leaves: it is taken to leave the wall.
+    # A given tool path states no allowance: it is assumed to finish the wall.
     if isinstance(operation, (*FINISHING, FreeformOperation)):
         return 0.0
     later = (each.operation for each in program.after(step))
@@ -296,16 +296,16 @@ def _allowance(program: Program, step: ResolvedWorkingstep) -> float:
 
 
 def _within_tolerance(size: _Toleranced) -> PermittedDeflection:
-    """A share of the tolerance, at most what any wall takes."""
+    """Permitted deflection as a share of the tolerance, at most that of any wall."""
     tolerance, wall = size.tolerance, size.wall
     share = SHARE_OF_TOLERANCE * tolerance.half_width
     places = [str(wall.ref)] if wall.ref is not None else []
     if tolerance.code != f"±{tolerance.half_width:g} mm":
         places.insert(0, tolerance.code)
     origin = (
-        f"a quarter of the ±{tolerance.half_width:.4g} mm of its {wall.name} "
+        f"a quarter of the ±{tolerance.half_width:.4g} mm tolerance of the {wall.name} "
         f"of {wall.size:.4g} mm ({', '.join(places)})"
     )
     if share > GREATEST_AT_WALL:
-        origin = f"the most for any wall: {origin} is more"
+        origin = f"the customary maximum for any wall ({origin} would be more)"
     return PermittedDeflection(value=min(share, GREATEST_AT_WALL), origin=origin)

@@ -1,20 +1,21 @@
-"""The exact optimum of one workingstep: one feed, depth, integer passes and spindle speed.
+"""Exact optimum of one workingstep: feed, depth, integer number of passes and spindle speed.
 
 For k passes the depth is H/k and everything is monomial. Time and energy fall with the feed,
 so at a given speed the best feed is its smallest cap: a closed form. When the speed is free
-the best point of k is a vertex of the feasible polygon in (ln f, ln n), since along every edge
+the best point for k is a vertex of the feasible polygon in (ln f, ln n), since along every edge
 both costs fall with the feed; all vertices are tried.
 
 Where every load is a power of the depth, the cost of the best point is a convex function of
 ln k (it is the value of a geometric program), so trying k = k_min, k_min + 1, … may stop at the
-first rise. Along a helix loads are curves of the depth, and where lobes bound the depth its
-speeds are a union of ranges, the vertices of each of which are tried: then all k are tried up
-to the one at which limits that know no depth, and the ways between passes, cost more than the
-best so far. All of it is exact, no rounding of a relaxed answer. Ties keep what was programmed.
+first rise. Along a helix loads are curves of the depth, and where lobes bound the depth the
+permitted speeds are a union of ranges, whose vertices are all tried. In these cases k rises
+until the limits that do not depend on the depth, and the links between passes, already cost
+more than the best so far. The result is exact, not a rounded relaxation. Ties keep the
+programmed setting.
 
-At one spindle speed the limits are reduced to what a number of passes still has to look at.
+At one spindle speed the limits are reduced to what still depends on the number of passes.
 Without an offset a limit caps the feed at ``f = ((b/c)·n^(δ−γ))^(1/α) · a^(−β/α)``: one power
-of the depth. Caps that do not depend on the depth are one number, however many there are.
+of the depth. All caps that do not depend on the depth reduce to one number.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -31,27 +32,27 @@ from stepnc_model.units import rpm_from_rev_s
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FeedCaps:
-    """Greatest and least feed per tooth as functions of the depth."""
+    """Greatest and least feed per tooth as functions of the depth, at one spindle speed."""
 
     constant: float
-    """Constant, mm, the least of the caps that know no depth"""
+    """Least of the caps that do not depend on the depth, mm."""
     powers: tuple[tuple[float, float], ...]
-    """(factor, exponent) of the caps that do"""
+    """(factor, exponent) of each cap that is a power of the depth."""
     others: tuple[Limit, ...]
-    """limits that depend on the depth, but by no power of it"""
+    """Limits that depend on the depth, but not as a power of it."""
     floor: float
-    """Floor, mm, the greatest of the limits from below that know no depth"""
+    """Greatest of the lower limits that do not depend on the depth, mm."""
     floors: tuple[Limit, ...]
-    """limits from below that do"""
+    """Lower limits that depend on the depth."""
     deepest: float
-    """Deepest, mm, the greatest depth that the depth limits allow"""
+    """Greatest depth that the depth limits allow, mm."""
     speed: float
-    """Speed, rev/s"""
+    """Spindle speed, rev/s."""
 
     def greatest(self, depth: float) -> float:
         """Greatest feed per tooth at a depth, mm; infinite when nothing caps it.
 
-        Zero at a depth that is itself not allowed.
+        Zero at a depth that is not allowed.
         """
         if depth > self.deepest * (1.0 + ROUNDING):
             return 0.0
@@ -71,7 +72,7 @@ class FeedCaps:
 
 
 def caps_at(limits: Iterable[Limit], speed: float) -> FeedCaps:
-    """Caps of all limits that bound the feed, at one spindle speed in rev/s."""
+    """Collect the feed caps of all limits at one spindle speed in rev/s."""
     constant, floor, deepest = inf, 0.0, inf
     powers: list[tuple[float, float]] = []
     others: list[Limit] = []
@@ -106,33 +107,33 @@ def caps_at(limits: Iterable[Limit], speed: float) -> FeedCaps:
 
 
 TIE = 1e-9
-"""relative difference of cost below which two settings are equally good"""
+"""Relative difference of cost below which two settings are equally good."""
 
 BISECTIONS = 80
-"""halvings that bring any bracket of ln n below the rounding of a float"""
+"""Halvings that bring any bracket of ln n below the rounding of a float."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Solution:
-    """The best setting and what holds it there."""
+    """Best setting of a workingstep and the limit that sets its feed."""
 
     setting: Setting
     time: float
-    """Time, s"""
+    """Machining time, s."""
     energy: float
-    """Energy, J"""
+    """Energy, J."""
     active: LimitName
-    """name of the limit that holds the feed"""
+    """Name of the limit that sets the feed."""
     holding: Limit
-    """that limit itself; several may have one name"""
+    """Limit that sets the feed; several limits may share a name."""
     limits: tuple[Limit, ...]
-    """all limits that apply at this setting"""
+    """All limits that apply at this setting."""
     deepest_first_time: float
-    """s, had the fewest passes been chosen; equal to ``time`` when they are the best"""
+    """Time with the fewest feasible passes, s; equal to ``time`` when they are the best."""
 
 
 def solve(problem: Problem, mode: Mode) -> Solution:
-    """Best setting of a workingstep.
+    """Find the best setting of a workingstep.
 
     Parameters
     ----------
@@ -181,7 +182,7 @@ def solve(problem: Problem, mode: Mode) -> Solution:
 
 
 def cost_function(problem: Problem, mode: Mode) -> Callable[[Setting], float]:
-    """Seconds or joules, whichever the mode wants least."""
+    """Cost function that the mode minimises: time in s or energy in J."""
     return problem.cost.energy if mode is Mode.EC else problem.cost.time
 
 
@@ -197,7 +198,7 @@ def limits_at(problem: Problem, speed: float) -> tuple[Limit, ...]:
 
 
 def conflict(problem: Problem) -> Infeasible:
-    """The two limits that exclude each other at the depth that comes nearest to both."""
+    """Build the error that names the two limits that contradict each other."""
     passes, speed = problem.passes[1], problem.programmed.speed
     depth = problem.depth_at(passes)
     limits = limits_at(problem, speed)
@@ -206,7 +207,7 @@ def conflict(problem: Problem) -> Infeasible:
     for limit in caps:
         if limit.is_of_depth and not limit.holds(1.0, depth, speed):
             is_fixed = problem.passes[0] == problem.passes[1]
-            why = problem.why_held if is_fixed else f"there are {passes} passes at most"
+            why = problem.why_held if is_fixed else f"at most {passes} passes are possible"
             load = limit.load.value(1.0, depth, speed)
             return Infeasible(
                 f"{told(limit, load, speed)}, and {why}{_elsewhere(limit, load)}",
@@ -235,12 +236,12 @@ def conflict(problem: Problem) -> Infeasible:
 
 
 def _with_safety(limit: Limit) -> str:
-    """Part of a bound that covers the spread of k_c; empty for nothing."""
+    """Text on the safety factor for the spread of k_c; empty without one."""
     return f", {limit.safety_words}" if limit.safety_words else ""
 
 
 def _elsewhere(limit: Limit, load: float) -> str:
-    """At which speed a bound that is a curve of it allows more; empty for another bound."""
+    """Text with the speed at which a stability bound allows more; empty for other bounds."""
     curve = limit.curve
     if curve is None:
         return ""
@@ -264,7 +265,7 @@ def _elsewhere(limit: Limit, load: float) -> str:
 
 
 def told(limit: Limit, load: float, speed: float) -> str:
-    """One limit with its numbers: 'axial depth 6 mm exceeds 5 mm'."""
+    """Sentence on one violated limit: 'axial depth 6 mm exceeds 5 mm'."""
     if limit.curve is not None:
         return (
             f"{limit.words} allows {limit.told_bound(speed)} "
@@ -275,7 +276,7 @@ def told(limit: Limit, load: float, speed: float) -> str:
 
 
 def widened(problem: Problem, name: LimitName, *, by_factor: float) -> Problem:
-    """The same problem with the bound of one limit multiplied."""
+    """Copy of the problem with the bound of one limit multiplied by a factor."""
 
     def wider(limit: Limit) -> Limit:
         if limit.name is not name:
@@ -290,7 +291,7 @@ def widened(problem: Problem, name: LimitName, *, by_factor: float) -> Problem:
 
 
 def without_safety(problem: Problem) -> Problem:
-    """The same problem with nominal loads at their bounds."""
+    """Copy of the problem without safety factors."""
     return replace(
         problem,
         limits=tuple(limit.without_safety for limit in problem.limits),
@@ -301,14 +302,14 @@ def without_safety(problem: Problem) -> Problem:
 
 
 def cost_of_safety(problem: Problem, mode: Mode, solution: Solution) -> float:
-    """Seconds that the safety factors of the limits cost; 0 when none holds the feed."""
+    """Time that the safety factors of the limits cost, s; 0 when there are none."""
     if all(limit.safety_factor == 1.0 for limit in solution.limits):
         return 0.0
     return max(0.0, solution.time - solve(without_safety(problem), mode).time)
 
 
 def saving_of_one_more(problem: Problem, mode: Mode, solution: Solution) -> float:
-    """Seconds saved if the bound of the active limit were one step wider; 0 when none."""
+    """Time saved if the bound of the active limit were one step wider, s."""
     speed = solution.setting.speed
     active = solution.holding
     factor = 1.0 + active.step / (active.scale * active.full_bound_at(speed))
@@ -317,7 +318,7 @@ def saving_of_one_more(problem: Problem, mode: Mode, solution: Solution) -> floa
 
 
 def _may_keep(problem: Problem) -> bool:
-    """Whether the programmed depth itself keeps the depth limits."""
+    """Whether the programmed depth keeps the depth limits."""
     at = problem.programmed
     return all(
         limit.holds(at.feed, at.depth, at.speed)
@@ -327,13 +328,13 @@ def _may_keep(problem: Problem) -> bool:
 
 
 def is_posynomial(problem: Problem) -> bool:
-    """Whether every load is a power of the depth: then the cost is convex in ln k."""
+    """Whether every load is a power of the depth, so that the cost is convex in ln k."""
     each = (problem.limits, *problem.stretches)
     return all(limit.load.curve is None for limits in each for limit in limits)
 
 
 def at_depth(problem: Problem, depth: float) -> Problem:
-    """The same problem with its curves of the depth as numbers: each is asked once."""
+    """Copy of the problem with its curves of the depth replaced by their values."""
     if is_posynomial(problem):
         return problem
 
@@ -352,7 +353,7 @@ def at_depth(problem: Problem, depth: float) -> Problem:
 def _search(
     problem: Problem, cost: Callable[[Setting], float]
 ) -> Callable[..., Setting | None]:
-    """Solver for a number of passes; None where no setting keeps all limits."""
+    """Return a solver for a number of passes; it returns None if no setting is feasible."""
     caps = _fixed_caps(problem)
 
     def best(passes: int, depth: float | None = None) -> Setting | None:
@@ -371,17 +372,17 @@ def _search(
 
 
 def _fixed_caps(problem: Problem) -> FeedCaps | None:
-    """Caps at the only speed there is, or None when the speed may be chosen."""
+    """Feed caps at the only speed, or None when the speed may be chosen."""
     return _caps(problem, problem.speeds[0]) if len(problem.speeds) == 1 else None
 
 
 def _caps(problem: Problem, speed: float) -> FeedCaps:
-    """Caps of all limits at one speed."""
+    """Feed caps of all limits at one speed."""
     return caps_at(limits_at(problem, speed), speed)
 
 
 def _setting(caps: FeedCaps, passes: int, depth: float) -> Setting | None:
-    """The greatest feed at one depth and speed, or None when none keeps all limits."""
+    """Setting with the greatest feed at one depth and speed, or None if infeasible."""
     highest, lowest = caps.greatest(depth), caps.least(depth)
     if highest == inf:
         raise OptimisationError(
@@ -394,7 +395,7 @@ def _setting(caps: FeedCaps, passes: int, depth: float) -> Setting | None:
 
 
 def _speed_candidates(problem: Problem, depth: float) -> Iterator[float]:
-    """Spindle speeds, of several that may be chosen, at which the best point can lie."""
+    """Spindle speeds at which the best point can lie."""
     for part in problem.parts(depth):
         low, high = part.speeds
         yield low
@@ -409,10 +410,10 @@ def _speed_candidates(problem: Problem, depth: float) -> Iterator[float]:
 def _crossing(
     first: Limit, second: Limit, *, depth: float, between: tuple[float, float]
 ) -> float | None:
-    """Speed at which two limits allow the same feed, or None within the stretch.
+    """Speed at which two limits allow the same feed, or None if not within the stretch.
 
-    ``ln f_i`` is linear in ln n for Kienzle limits and monotone for all, so halving the
-    bracket of the difference finds the only crossing to the last digit.
+    ``ln f_i`` is linear in ln n for Kienzle limits and monotone for all, so bisection of the
+    difference finds the only crossing to the last digit.
     """
 
     def difference(speed: float) -> float:
@@ -435,7 +436,7 @@ def _crossing(
 
 
 def settled(problem: Problem, best: Setting, first: Setting | None = None) -> Solution:
-    """Solution at a setting: the limit that holds its feed, and what it costs."""
+    """Solution at a setting: its time and energy, and the limit that sets its feed."""
     limits = limits_at(problem, best.speed)
     active = min(
         (limit for limit in limits if limit.sense is BoundSide.AT_MOST),

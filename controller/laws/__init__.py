@@ -1,1 +1,1 @@
-"""Control laws behind one interface."""
+"""Control laws for the feed override, behind one interface."""

@@ -1,13 +1,14 @@
-"""The axes as they would follow the override if only the feed drives' lag held them back.
+"""Model of the feed axes that follow the override with a nominal first-order lag.
 
 Corners, blocks and feed drives that differ from :class:`~controller.law.Plant` make the axes
-run another override than this; what they really ran is measured. The force that would have been
-measured on these axes, ``F·(mean/actual)^p``, is therefore known, and a law that looks at it
-instead of F sees a plant of exactly the nominal lag: it neither winds up while a corner slows
-the axes nor swings when the lag is not what it was taken for. PID controllers know the remedy
-as tracking of the measured output of the actuator [1]_.
+run at another override than this model; the override that they really ran is measured. The
+force that would have been measured with the modelled axes, ``F·(mean/actual)^p``, is therefore
+known, and a law that uses it instead of F sees a plant of exactly the nominal lag: it neither
+winds up while a corner slows the axes nor oscillates when the real lag differs. In PID control
+this is known as tracking of the measured actuator output [1]_.
 
-Revolutions are those in which the law is asked: one that was lost counts as not gone by.
+The model advances only in revolutions in which the law is called; lost revolutions do not
+count.
 
 References
 ----------
@@ -21,14 +22,14 @@ from math import exp, expm1, log
 from controller.law import Plant, Situation
 
 FARTHEST = log(20.0)
-"""of a force from its set point that is believed, either way, in ln"""
+"""Greatest deviation of the force from its set point that is accepted, either way, in ln."""
 STANDSTILL = 0.1
-"""of the floor; axes slower than this tell no force over feed"""
+"""Share of the floor below which axes are too slow for the force to indicate the load."""
 RACING = 10.0
-"""of the ceiling; axes do not run faster"""
+"""Multiple of the ceiling above which the measured override is not credible."""
 
 LEAST = 1e-3
-"""override, in place of none"""
+"""Least override used in place of zero."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -36,22 +37,22 @@ class Axes:
     """Overrides that axes of the nominal lag would run, above 0."""
 
     last: float
-    """at the end of the last revolution"""
+    """Override at the end of the last revolution."""
     mean: float
-    """over the last revolution"""
+    """Mean override over the last revolution."""
 
 
 def resting(override: float) -> Axes:
-    """Axes that have run an override for long."""
+    """Axes that have settled at an override."""
     run = max(override, LEAST)
     return Axes(last=run, mean=run)
 
 
 def moved(axes: Axes, override: float, *, lag: float) -> Axes:
-    """The axes after one more revolution at an override.
+    """Advance the axes by one more revolution at an override.
 
-    A first-order lag of T revolutions leaves ``exp(−1/T)`` of the way at the revolution's end
-    and ``T·(1 − exp(−1/T))`` of it in the mean.
+    A first-order lag of T revolutions leaves ``exp(−1/T)`` of the remaining distance at the end
+    of the revolution and ``T·(1 − exp(−1/T))`` of it in the mean.
     """
     way = axes.last - override
     return Axes(
@@ -60,29 +61,29 @@ def moved(axes: Axes, override: float, *, lag: float) -> Axes:
 
 
 def standing(at: Situation) -> float:
-    """Override that a step starts from: one of 0, a held feed, could not be multiplied."""
+    """Override that the next step starts from, above 0 even while the feed is held."""
     return within(at.override, at)
 
 
 def within(override: float, at: Situation) -> float:
-    """The nearest override that the guard lets through."""
+    """Clip an override to the range that the guard allows."""
     return min(max(override, at.floor), at.ceiling)
 
 
 def ran(at: Situation) -> float:
-    """Override that the axes ran, above 0."""
+    """Override that the axes ran, clipped to credible values above 0."""
     return min(max(at.actual, STANDSTILL * at.floor), RACING * at.ceiling)
 
 
 def shortfall(axes: Axes, at: Situation, *, exponent: float) -> float:
-    """Logarithm of set point over the force that these axes would meet; above 0: too little."""
+    """Logarithm of set point over the force at the modelled axes; above 0: force too low."""
     slowed = log(ran(at)) - log(axes.mean)
     error = log(at.set_point) - log(at.force) + exponent * slowed
     return min(max(error, -FARTHEST), FARTHEST)
 
 
 def quickening(plant: Plant, closing: float) -> float:
-    """Overshoot factor of the command, so that the axes reach their goal sooner.
+    """Lead factor of the command, so that the axes reach their target sooner.
 
     To approach with time constant T_c instead of the lag T, sampled once a revolution:
     ``κ = (1 − exp(−1/T_c)) / (1 − exp(−1/T))``.
@@ -90,7 +91,7 @@ def quickening(plant: Plant, closing: float) -> float:
     Parameters
     ----------
     plant : Plant
-        With the lag.
+        Gives the lag T.
     closing : float, revolutions
         T_c of the closed loop.
     """
@@ -98,5 +99,5 @@ def quickening(plant: Plant, closing: float) -> float:
 
 
 def sent(axes: Axes, goal: float, *, quickening: float) -> float:
-    """Override that makes the axes approach their goal so much sooner than by themselves."""
+    """Override command with lead, so that the axes approach their target sooner."""
     return axes.last + quickening * (goal - axes.last)

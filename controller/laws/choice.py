@@ -1,4 +1,4 @@
-"""The control laws by name."""
+"""Selection of a control law by name."""
 
 from enum import StrEnum
 from typing import Any
@@ -14,7 +14,7 @@ from controller.laws.self_tuning import SelfTuning
 
 
 class LawName(StrEnum):
-    """Control laws that a user can ask for."""
+    """Names of the control laws that a user can choose."""
 
     PI = "pi"
     LOG_PI = "log-pi"
@@ -26,20 +26,20 @@ class LawName(StrEnum):
 
 
 def law_named(name: LawName, plant: Plant, *, has_preview: bool) -> ControlLaw[Any]:
-    """A law, tuned for a plant; its state is of the law's own kind.
+    """Create a control law tuned for a plant; the type of its state depends on the law.
 
     Parameters
     ----------
     name : LawName
-        MPC has its own preview, which it uses whenever something is known ahead.
+        MPC has its own preview, used whenever the cut ahead is known.
     plant : Plant
-        What it is tuned for.
+        Process model for which the law is tuned.
     has_preview : bool
-        Whether situations tell what is ahead.
+        Whether situations include the expected force ahead.
     """
     match name:
         case LawName.MPC:
-            # Late, because OSQP takes its time to import.
+            # Imported late because OSQP is slow to import.
             from controller.laws.mpc import ModelPredictive  # noqa: PLC0415
 
             return ModelPredictive(plant=plant)
@@ -50,7 +50,7 @@ def law_named(name: LawName, plant: Plant, *, has_preview: bool) -> ControlLaw[A
 
 
 def _feedback(name: LawName, plant: Plant) -> ControlLaw[Any]:
-    """A law that only feeds back."""
+    """Create a law with feedback only."""
     match name:
         case LawName.PI:
             return PI(plant=plant)

@@ -1,14 +1,14 @@
 """Fuzzy control of the cutting force: rules of a machinist instead of a gain.
 
 Sugeno's method [2]_ of order zero: the error ``e = ln(F_ref/F)`` and its change ``Δe`` in one
-revolution belong to triangular sets, five and three of them, that add up to 1 everywhere; each
-of the fifteen rules proposes a step of ln u, and the step is the mean of the proposals, each
-with the product of its memberships for weight. Steps add up (incremental output), from the
-override that the guard let through, so nothing winds up. Such rules have held torque [1]_ and
-force [3]_ on machining centres; sets and rules here are our own.
+revolution belong to five and three triangular sets, which add up to 1 everywhere; each of the
+fifteen rules proposes a step of ln u, and the step is the mean of the proposals, each weighted
+with the product of its memberships. Steps add up (incremental output), from the override that
+the guard applied, so nothing winds up. Such rules have controlled torque [1]_ and force [3]_ on
+machining centres; the sets and rules here are our own.
 
-A force off by the factor 2 is the sets' unit; the rules' unit is the step which would bring
-such a force back with time constant T_c, ``κ·ln 2/p`` (see
+The sets are scaled to a force off by the factor 2; the rules are scaled to the step which would
+bring such a force back with time constant T_c, ``κ·ln 2/p`` (see
 :func:`~controller.laws.axes.quickening`). The table follows ``0.35·e + 0.7·Δe``, PI control
 whose zero is near the pole of drives with a lag of three revolutions, and bends that plane:
 far from the set point, steps that slow down are greater than those that speed up.
@@ -39,11 +39,11 @@ from controller.laws.axes import (
 )
 
 UNIT = log(2.0)
-"""ln of the force ratio that is called big"""
+"""Logarithm of the force ratio that counts as a large error."""
 ERRORS = (-1.0, -0.2, 0.0, 0.2, 1.0)
-"""peaks of the sets of the error: far too much, too much, right, too little, far too little"""
+"""Peaks of the error sets: force much too high, too high, right, too low, much too low."""
 CHANGES = (-1.0, 0.0, 1.0)
-"""peaks of the sets of its change: force rises, stays, falls"""
+"""Peaks of the sets of the error change: force rises, stays, falls."""
 RULES = (
     (-1.00, -0.45, 0.25),
     (-0.77, -0.07, 0.63),
@@ -51,32 +51,32 @@ RULES = (
     (-0.63, 0.07, 0.77),
     (-0.30, 0.40, 1.00),
 )
-"""step for each set of the error, down, and of its change, across"""
+"""Step for each set of the error (rows) and of its change (columns)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FuzzyState:
-    """State of the fuzzy law."""
+    """State of the fuzzy control law."""
 
     axes: Axes
     error: float
-    """of the revolution before, ln"""
+    """Error of the previous revolution, ln."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Fuzzy:
-    """Fuzzy control with fifteen rules."""
+    """Fuzzy control law with fifteen rules."""
 
     plant: Plant = field(default_factory=Plant)
     closing: float = 2.0
-    """T_c, revolutions, of small errors"""
+    """Time constant T_c for small errors, revolutions."""
 
     def begin(self, override: float) -> FuzzyState:
-        """As though the force had been at its set point."""
+        """Initial state, as if the force were at its set point."""
         return FuzzyState(axes=resting(override), error=0.0)
 
     def decide(self, state: FuzzyState, at: Situation) -> tuple[FuzzyState, float]:
-        """See :class:`~controller.law.ControlLaw`."""
+        """Decide the next override; see :class:`~controller.law.ControlLaw`."""
         axes = moved(state.axes, standing(at), lag=self.plant.lag)
         error = shortfall(axes, at, exponent=self.plant.exponent)
         step = inferred(error / UNIT, (error - state.error) / UNIT)
@@ -85,7 +85,7 @@ class Fuzzy:
 
 
 def inferred(error: float, change: float) -> float:
-    """Output of the rules for an error and its change, in their units."""
+    """Output of the fuzzy rules for an error and its change, in the units of the sets."""
     return sum(
         belongs * changes * rule
         for belongs, row in zip(memberships(error, ERRORS), RULES, strict=True)
@@ -95,7 +95,7 @@ def inferred(error: float, change: float) -> float:
 
 
 def memberships(value: float, peaks: tuple[float, ...]) -> list[float]:
-    """Membership of a value in each of the triangular sets with these peaks; sum 1."""
+    """Membership of a value in each of the triangular sets with these peaks; they sum to 1."""
     held = min(max(value, peaks[0]), peaks[-1])
     below = min(bisect_right(peaks, held), len(peaks) - 1) - 1
     share = (held - peaks[below]) / (peaks[below + 1] - peaks[below])

@@ -1,4 +1,4 @@
-"""The next revolutions as a quadratic program: overrides whose force stays below its set point.
+"""Quadratic program over the next revolutions that keeps the force below its set point.
 
 First-order axes are linear in the override u itself, not in its logarithm. With u commanded for
 a revolution they go from x to ``a·x + (1 − a)·u``, a = exp(−1/T), and their mean on the way is
@@ -10,8 +10,8 @@ minimise ``Σ (m_j − t_j)² + w_Δ·Σ (u_j − u_{j−1})² + w_s·Σ s_j²``
 
 with caps c, targets t and slack s, the excess; the states x are eliminated [1]_. There is a
 solution whenever u_0 lies in the band, and an s below 0 would cost without a gain. Matrices and
-their pattern never change, only the linear cost and the bounds; all is homogeneous in the unit
-of the override.
+their pattern never change, only the linear cost and the bounds; the program is homogeneous in
+the unit of the override.
 
 References
 ----------
@@ -28,72 +28,74 @@ from scipy import sparse
 from controller.ports import Floats
 
 LENGTH = 20
-"""H, revolutions: nearly seven lags of a usual drive"""
+"""Length H of the horizon, revolutions: nearly seven lags of a usual drive."""
 MOVES = 0.6
-"""w_Δ, of a move against an error of the same size: less shows in the command as noise"""
+"""Weight w_Δ of a change of override against an equal error; less passes noise to it."""
 EXCESS = 10.0
-"""w_s, of override beyond a cap against as much below it: more than ten times costs iterations
-and gains little"""
+"""Weight w_s of override beyond a cap against an equal amount below it.
+
+More than ten times costs iterations and gains little.
+"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Horizon:
-    """H revolutions of axes with one lag."""
+    """Prediction matrices over H revolutions for axes with one lag."""
 
     decay: Floats
-    """(H,) share of the axes' override now in the mean of each revolution"""
+    """Share of the present override of the axes in the mean of each revolution, (H,)."""
     response: Floats
-    """(H, H) share of each command, by column, in the mean of each revolution, by row"""
+    """Share of each command (column) in the mean of each revolution (row), (H, H)."""
     quadratic: sparse.csc_matrix
-    """(2H, 2H) upper triangle of P in the cost ``½·zᵀ·P·z + qᵀ·z``, z = (u, s)"""
+    """Upper triangle of P in the cost ``½·zᵀ·P·z + qᵀ·z``, z = (u, s), (2H, 2H)."""
     rows: sparse.csc_matrix
-    """(3H, 2H) A of the constraints ``l ≤ A·z ≤ u``: caps, band, moves"""
+    """Matrix A of the constraints ``l ≤ A·z ≤ u`` on caps, band and moves, (3H, 2H)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Outlook:
-    """Input of one decision; overrides in any one unit."""
+    """Inputs of one decision of the predictive law, with overrides in a common unit."""
 
     axes: float
-    """at the end of the last revolution"""
+    """Override of the axes at the end of the last revolution."""
     command: float
-    """u_0 of the last revolution, between floor and ceiling"""
+    """Command u_0 of the last revolution, between floor and ceiling."""
     caps: Floats
-    """(H,) c, of the mean of each revolution"""
+    """Caps c on the mean override of each revolution, (H,)."""
     targets: Floats
-    """(H,) t"""
+    """Targets t of the mean override of each revolution, (H,)."""
     floor: float
     ceiling: float
     rise: float
-    """from one revolution to the next, at most"""
+    """Greatest rise of the override per revolution."""
     fall: float
-    """likewise"""
+    """Greatest fall of the override per revolution."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Vectors:
-    """Terms of the program that change from one decision to the next."""
+    """Vectors of the quadratic program that change with each decision."""
 
     linear: Floats
-    """(2H,) q"""
+    """Linear cost q, (2H,)."""
     lower: Floats
-    """(3H,) l"""
+    """Lower bounds l, (3H,)."""
     upper: Floats
-    """(3H,) u"""
+    """Upper bounds u, (3H,)."""
 
 
 def remaining(lag: float) -> float:
-    """Share a of a way that axes with this lag in revolutions have left after a revolution."""
+    """Share a of the distance left after a revolution, for axes with a lag in revolutions."""
     return exp(-1.0 / lag)
 
 
 def lingering(lag: float) -> float:
-    """Share b of a way that is left in the mean of a revolution."""
+    """Share b of the distance that is left in the mean of a revolution."""
     return -lag * expm1(-1.0 / lag)
 
 
 def horizon(lag: float, *, length: int = LENGTH) -> Horizon:
-    """The program for a lag in revolutions, above 0."""
+    """Build the prediction matrices for a lag in revolutions, above 0."""
     left, mean_left = remaining(lag), lingering(lag)
     decay = mean_left * left ** np.arange(length, dtype=np.float64)
     response = np.zeros((length, length))
@@ -114,7 +116,7 @@ def horizon(lag: float, *, length: int = LENGTH) -> Horizon:
 
 
 def vectors(over: Horizon, outlook: Outlook) -> Vectors:
-    """Linear cost and bounds of the program."""
+    """Compute the linear cost and the bounds of the quadratic program."""
     length = len(over.decay)
     coasting = over.decay * outlook.axes
     linear = np.zeros(2 * length)

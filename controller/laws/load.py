@@ -1,4 +1,4 @@
-"""Load and exponent of the cut, learned from force and feed once a revolution.
+"""Estimate of cutting load and feed exponent, updated once a revolution.
 
 ``ln F = c + p·ln v`` with v the override that the axes ran: recursive least squares with a
 forgetting factor for each of the two [1]_. The load c changes all the time and is forgotten
@@ -21,40 +21,40 @@ from math import sqrt
 LOAD_FORGETTING = 0.7
 EXPONENT_FORGETTING = 0.99
 LOAD_VARIANCE = 1.0
-"""greatest, of ln F: the load may be off by a factor of e"""
+"""Greatest variance of ln F: the load may be off by a factor of e."""
 EXPONENT_VARIANCE = 0.1**2
-"""greatest, of p: between materials"""
+"""Greatest variance of p: the spread between materials."""
 TINY = 1e-12
-"""variance, in place of none"""
+"""Least variance used in place of zero."""
 SURPRISE = 4.0
-"""standard deviations of an innovation that is more than noise"""
+"""Innovation, in standard deviations, above which it is more than noise."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LoadEstimate:
-    """An estimate with its covariance."""
+    """Estimate of the load and the exponent, with its covariance."""
 
     log: float
-    """c, ln N: force at override 1"""
+    """Logarithm c of the force at override 1, ln N."""
     exponent: float
-    """p"""
+    """Exponent p of force over feed."""
     variance: float
-    """of c"""
+    """Variance of c."""
     exponent_variance: float
     covariance: float
 
 
 def first_load(force: float, *, way: float, exponent: float, noise: float) -> LoadEstimate:
-    """Load from one force, with the exponent taken for granted.
+    """Initial load estimate from one force, with an assumed exponent.
 
     Parameters
     ----------
     force : float
-        ln N.
+        Logarithm of the force, ln N.
     way : float
-        ln v.
+        Logarithm of the override that the axes ran, ln v.
     exponent : float
-        p.
+        Exponent p of force over feed.
     noise : float
         Standard deviation of ``force``.
     """
@@ -68,19 +68,19 @@ def first_load(force: float, *, way: float, exponent: float, noise: float) -> Lo
 
 
 def learned(load: LoadEstimate, *, force: float, way: float, noise: float) -> LoadEstimate:
-    """Load and exponent after one more revolution in which the axes changed their speed."""
+    """Update load and exponent after a revolution in which the axes changed their speed."""
     prior = _forgotten(load, of_load=LOAD_FORGETTING, of_exponent=EXPONENT_FORGETTING)
     return _corrected(prior, force=force, way=way, noise=noise, share=1.0)
 
 
 def learned_load(load: LoadEstimate, *, force: float, way: float, noise: float) -> LoadEstimate:
-    """Load after one more revolution at nearly the same speed; the exponent stays."""
+    """Update the load after a revolution at nearly the same speed; the exponent stays."""
     prior = _forgotten(load, of_load=LOAD_FORGETTING, of_exponent=1.0)
     return _corrected(prior, force=force, way=way, noise=noise, share=0.0)
 
 
 def _forgotten(load: LoadEstimate, *, of_load: float, of_exponent: float) -> LoadEstimate:
-    """The estimate grown old, [1]_; scaled from both sides, its covariance stays positive."""
+    """Widen the covariance by the forgetting factors, [1]_; it stays positive definite."""
     wider = min(1.0 / of_load, LOAD_VARIANCE / max(load.variance, TINY))
     other = min(1.0 / of_exponent, EXPONENT_VARIANCE / max(load.exponent_variance, TINY))
     return replace(
@@ -94,7 +94,7 @@ def _forgotten(load: LoadEstimate, *, of_load: float, of_exponent: float) -> Loa
 def _corrected(
     prior: LoadEstimate, *, force: float, way: float, noise: float, share: float
 ) -> LoadEstimate:
-    """One step of least squares, with so much of the exponent's gain."""
+    """Perform one least-squares step, with a given share of the gain of the exponent."""
     innovation = force - prior.log - prior.exponent * way
     surprising = abs(innovation) > SURPRISE * sqrt(_spread(prior, way) + noise**2)
     if surprising:
@@ -115,7 +115,7 @@ def _corrected(
 
 
 def _spread(load: LoadEstimate, way: float) -> float:
-    """Variance of the predicted ln F."""
+    """Variance of the predicted ln F, before measurement noise."""
     known = load.variance + 2.0 * way * load.covariance + way**2 * load.exponent_variance
-    # Rounding may leave less than nothing.
+    # Rounding may make it slightly negative.
     return max(known, 0.0)

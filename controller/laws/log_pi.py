@@ -1,12 +1,12 @@
-"""Proportional and integral control of the cutting force in logarithms: the default law.
+"""Proportional-integral control of the cutting force in logarithms: the default law.
 
-In ln the plant has one gain, the exponent p, whatever is cut, so no gains are scheduled. The
-override at which the force would meet its set point is ``ln u* = ln v + e/p``, where v is what
-the axes run and ``e = ln(F_ref/F)``: proportional to the error, and the axes themselves are the
-integrator (integral action by feedback from the actuator [1]_). They are sent there with lead,
-``u = v + κ·(u* − v)``, so that v approaches u* with time constant T_c instead of their lag T,
-:func:`~controller.laws.axes.quickening`. For small errors that is the velocity form
-``Δ ln u = K_p·(e_k − e_{k−1}) + K_i·e_k`` with ``K_p + K_i = κ/p`` and its zero,
+In logarithms the plant has one gain, the exponent p, whatever is cut, so no gain scheduling is
+needed. The override at which the force would meet its set point is ``ln u* = ln v + e/p``,
+where v is what the axes run and ``e = ln(F_ref/F)``: proportional to the error, and the axes
+themselves are the integrator (integral action by feedback from the actuator [1]_). The command
+has lead, ``u = v + κ·(u* − v)``, so that v approaches u* with time constant T_c instead of
+their lag T, :func:`~controller.laws.axes.quickening`. For small errors that is the velocity
+form ``Δ ln u = K_p·(e_k − e_{k−1}) + K_i·e_k`` with ``K_p + K_i = κ/p`` and its zero,
 ``K_p/(K_p + K_i) = exp(−1/T)``, on the pole of the drives; there is no integral to wind up.
 
 References
@@ -34,18 +34,18 @@ from controller.laws.axes import (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LogPI:
-    """PI control in logarithms; the state is the axes."""
+    """PI control law in logarithms; its state is the model of the axes."""
 
     plant: Plant = field(default_factory=Plant)
     closing: float = 1.5
-    """T_c, revolutions"""
+    """Time constant T_c of the closed loop, revolutions."""
 
     def begin(self, override: float) -> Axes:
-        """Axes at this override."""
+        """Initial state: axes settled at the override."""
         return resting(override)
 
     def decide(self, state: Axes, at: Situation) -> tuple[Axes, float]:
-        """See :class:`~controller.law.ControlLaw`."""
+        """Decide the next override; see :class:`~controller.law.ControlLaw`."""
         axes = moved(state, standing(at), lag=self.plant.lag)
         error = shortfall(axes, at, exponent=self.plant.exponent)
         goal = axes.mean * exp(error / self.plant.exponent)

@@ -1,19 +1,19 @@
-"""Model predictive control of the cutting force: the override planned over next revolutions.
+"""Model predictive control (MPC) of the cutting force: plans the override ahead.
 
 Once a revolution ``ln K = ln F − ln g − p·ln m`` is measured, m the mean override that the axes
-ran, and filtered: the disturbance that makes the law free of offset [1]_. With it each of the
-next revolutions has a cap, the override at which its force meets the set point, ``c_j =
-(F_ref / (K·g_j))^(1/p)``, and OSQP [2]_ solves the program of
+ran, and filtered: the disturbance estimate that makes the law free of offset [1]_. With it each
+of the next revolutions has a cap, the override at which its force meets the set point,
+``c_j = (F_ref / (K·g_j))^(1/p)``, and OSQP [2]_ solves the program of
 :mod:`controller.laws.horizon`; the first command is the decision. Where nothing is known ahead,
 g stays as it is.
 
-Targets are the least cap up to each revolution: a cut that will be lighter is answered when it
-is there, since the program would otherwise slow down first in order to rise earlier. Where OSQP
-does not find the solution in the iterations that it has, the decision is the least cap of the
-horizon, within the rise: the model inverted at rest, which asks no more of the cut than the
-program would in the end, and does not make up for the lag.
+Targets are the least cap up to each revolution, so a lighter cut is answered only when it
+begins, since the program would otherwise slow down first in order to rise earlier. Where OSQP
+does not find the solution within its iterations, the decision is the least cap of the
+horizon, within the rise: the steady-state inverse of the model, which does not compensate for
+the lag.
 
-Answers depend on state and situation only: every solve starts from what the state holds. The
+Decisions depend on state and situation only: every solve starts from what the state holds. The
 workspace of the solver is reused, so an object serves one thread at a time.
 
 References
@@ -44,19 +44,19 @@ from controller.laws.horizon import (
 from controller.ports import Floats
 
 LEARNING = 0.4
-"""share of what is new in a measured ln K that is believed"""
+"""Filter gain: share of the deviation of a measured ln K that is adopted."""
 SURPRISE = 1.0
-"""of ln K, that is believed at most in one revolution"""
+"""Greatest deviation of ln K that is accepted in one revolution."""
 RISE = 0.5
-"""of the override from one revolution to the next, at most"""
+"""Greatest rise of the override per revolution."""
 FALL = 1.0
-"""likewise"""
+"""Greatest fall of the override per revolution."""
 LEAST, MOST = 0.01, 10.0
-"""overrides between which the program is stated, whatever the band"""
+"""Range of overrides in which the program is formulated, whatever the band."""
 NARROWEST = 1.01
-"""ceiling over floor in the program: OSQP factorises anew when a band becomes an equation"""
+"""Least ceiling over floor in the program; OSQP refactorises if a band becomes an equality."""
 CHECKED = 5
-"""iterations after which OSQP looks whether it is done"""
+"""Number of iterations after which OSQP checks for termination."""
 SETTINGS = {
     "verbose": False,
     "rho": 0.4,
@@ -66,32 +66,32 @@ SETTINGS = {
     "eps_abs": 1e-4,
     "eps_rel": 0.0,
 }
-"""of OSQP, in units of the least cap; a rho that adapts would remember earlier calls"""
+"""Settings of OSQP, in units of the least cap; a fixed rho keeps calls independent."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class MpcState:
-    """State that a decision leaves to the next."""
+    """State of the MPC law that one decision leaves to the next."""
 
     log_factor: float | None
-    """ln K; None: nothing was measured yet"""
+    """Filtered ln K; None before anything was measured."""
     expected: float
-    """N, g that K refers to; 0: none was ever known, and K stands for K·g"""
+    """Expected force g to which K refers, N; 0: never known, and K stands for K·g."""
     plan: Floats
-    """(2H,) commands and excess of the coming revolutions, as the last decision saw them"""
+    """Planned commands and excess of the next revolutions, from the last decision, (2H,)."""
     prices: Floats
-    """(3H,) dual variables of the caps, the band and the moves, likewise"""
+    """Dual variables of caps, band and moves, from the last decision, (3H,)."""
     is_planned: bool
-    """whether the last decision was the program's; if not, it was the least cap"""
+    """Whether the last decision came from the program; otherwise it was the least cap."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ModelPredictive:
-    """Model predictive control; with preview where the situation has what is ahead."""
+    """Model predictive control law, with preview where the situation includes it."""
 
     plant: Plant = field(default_factory=Plant)
     iterations: int = 400
-    """of the solver, at most: some 0.4 ms"""
+    """Greatest number of solver iterations, some 0.4 ms."""
     _horizon: Horizon = field(init=False, repr=False, compare=False)
     _solver: Any = field(init=False, repr=False, compare=False)
 
@@ -103,7 +103,7 @@ class ModelPredictive:
         object.__setattr__(self, "_solver", _solver(over, iterations=self.iterations))
 
     def begin(self, override: float) -> MpcState:
-        """Nothing measured, and a plan to stay at this override."""
+        """Initial state: nothing measured, and a plan to stay at the override."""
         return MpcState(
             log_factor=None,
             expected=0.0,
@@ -113,11 +113,11 @@ class ModelPredictive:
         )
 
     def decide(self, state: MpcState, at: Situation) -> tuple[MpcState, float]:
-        """See :class:`~controller.law.ControlLaw`; what the situation tells must be finite."""
+        """Decide the next override; the values of the situation must be finite."""
         expected = at.expected if at.expected > 0.0 else state.expected
         factor = _learned(state, at, exponent=self.plant.exponent)
         outlook = _outlook(at, _needed(at, factor, expected=expected), plant=self.plant)
-        # The least cap as unit makes the solver's tolerance one relative to what is decided.
+        # Scaling by the least cap makes the solver's tolerance relative to the decision.
         unit = float(outlook.caps.min())
         program = vectors(self._horizon, outlook)
         self._solver.update(
@@ -142,13 +142,13 @@ class ModelPredictive:
 
 
 def _solver(over: Horizon, *, iterations: int) -> Any:
-    """OSQP, set up once: matrices are scaled and factorised here."""
+    """Set up the OSQP solver; its matrices are scaled and factorised once."""
     solver = osqp.OSQP()
     solver.setup(
         P=over.quadratic,
         q=np.zeros(2 * LENGTH),
         A=over.rows,
-        # Bounds of the kind of later ones: caps from above, band and moves from both sides.
+        # Bounds of the same kind as later: caps from above, band and moves on both sides.
         l=np.repeat([-np.inf, 0.0, -1.0], LENGTH),
         u=np.ones(3 * LENGTH),
         max_iter=iterations,
@@ -161,10 +161,10 @@ def _learned(state: MpcState, at: Situation, *, exponent: float) -> float | None
     """Filtered ln K after one more revolution."""
     before = state.log_factor
     if state.expected == 0.0 and at.expected > 0.0:
-        # From now on K refers to g, and the expected force is right until shown otherwise.
+        # From now on K refers to g, and the expected force is assumed correct until measured.
         before = 0.0
     if at.actual < LEAST:
-        # Force of axes that stand tells nothing of force over feed.
+        # The force at standing axes does not indicate the load at feed.
         return before
     expected = at.expected if at.expected > 0.0 else state.expected
     measured = log(at.force) - log(expected or 1.0) - exponent * log(at.actual)
@@ -174,14 +174,14 @@ def _learned(state: MpcState, at: Situation, *, exponent: float) -> float | None
 
 
 def _needed(at: Situation, log_factor: float | None, *, expected: float) -> Floats | None:
-    """(H,) ln of the force allowed over that at override 1; None: nothing was measured yet."""
+    """Logarithm of allowed force over force at override 1, (H,); None before a measurement."""
     if log_factor is None:
         return None
     return log(at.set_point) - log_factor - np.log(_coming(at, expected or 1.0))
 
 
 def _coming(at: Situation, expected: float) -> Floats:
-    """(H,) N, g of each of the next revolutions; what is not known stays as it was."""
+    """Expected force g of each of the next revolutions, (H,), N; unknown values are kept."""
     if at.expected <= 0.0 or not at.ahead:
         return np.full(LENGTH, expected)
     coming, last = [], expected
@@ -192,7 +192,7 @@ def _coming(at: Situation, expected: float) -> Floats:
 
 
 def _outlook(at: Situation, needed: Floats | None, *, plant: Plant) -> Outlook:
-    """Matrices that the quadratic program is set up with."""
+    """Build the inputs of the quadratic program from the situation."""
     floor = min(max(at.floor, LEAST), MOST / NARROWEST)
     ceiling = max(min(at.ceiling, MOST), NARROWEST * floor)
     command = min(max(at.override, floor), ceiling)
@@ -200,7 +200,7 @@ def _outlook(at: Situation, needed: Floats | None, *, plant: Plant) -> Outlook:
         caps = np.full(LENGTH, command)
     else:
         caps = np.exp((needed / plant.exponent).clip(log(floor), log(ceiling)))
-    # Of the way that the axes lacked in the mean, this share they still lack at the end.
+    # Share of the distance missing in the mean that is still missing at the end.
     lacking = remaining(plant.lag) / lingering(plant.lag)
     axes = at.override + lacking * (at.actual - at.override)
     return Outlook(
@@ -216,6 +216,6 @@ def _outlook(at: Situation, needed: Floats | None, *, plant: Plant) -> Outlook:
 
 
 def _later(values: Floats) -> Floats:
-    """Each row of H values one revolution on, the last kept."""
+    """Shift each row of H values by one revolution, keeping the last."""
     rows = values.reshape(-1, LENGTH)
     return np.concatenate([rows[:, 1:], rows[:, -1:]], axis=1).ravel()

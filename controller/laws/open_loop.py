@@ -1,4 +1,4 @@
-"""No control: the programmed feed, as if there were no law; runs are only recorded."""
+"""Open-loop law without control: the programmed feed runs, and the run is only recorded."""
 
 from dataclasses import dataclass
 
@@ -6,16 +6,16 @@ from controller.law import Situation
 from controller.laws.axes import within
 
 PROGRAMMED = 1.0
-"""override"""
+"""Override of the programmed feed."""
 
 
 @dataclass(frozen=True, slots=True)
 class OpenLoop:
-    """The law that leaves the override at 1; it needs no state."""
+    """Open-loop law that keeps the override at 1; it needs no state."""
 
     def begin(self, override: float) -> None:
-        """Nothing to remember."""
+        """Return no state, because the law remembers nothing."""
 
     def decide(self, state: None, at: Situation) -> tuple[None, float]:
-        """An override of 1, or what of it the guard lets through."""
+        """Return an override of 1, or the nearest that the guard allows."""
         return state, within(PROGRAMMED, at)

@@ -1,12 +1,12 @@
-"""Proportional and integral control of the cutting force, linear, in velocity form.
+"""Linear proportional-integral control of the cutting force, in velocity form.
 
 With the error relative to the set point, ``e = 1 − F/F_ref``, and ``ΔF/F = p·Δu/u`` the plant's
 gain is p over the override, so the step is taken relative to the override:
-``u_{k+1} = u_k·(1 + K_p·(e_k − e_{k−1}) + K_i·e_k)``, [1]_. The zero of the law is laid on the
-pole of the feed drives, ``K_p/(K_p + K_i) = exp(−1/T)``, and what is left of the loop is an
+``u_{k+1} = u_k·(1 + K_p·(e_k − e_{k−1}) + K_i·e_k)``, [1]_. The zero of the law is placed on
+the pole of the feed drives, ``K_p/(K_p + K_i) = exp(−1/T)``, and what is left of the loop is an
 integrator that closes with time constant T_c when ``K_p + K_i = κ/p``, κ by
 :func:`~controller.laws.axes.quickening`. The velocity form starts from the override that the
-guard let through, and so cannot wind up.
+guard applied, and so cannot wind up.
 
 The error is not symmetric: half the force is −0.5, double is +1. The law slows down faster
 than it speeds up.
@@ -32,34 +32,34 @@ from controller.laws.axes import (
 )
 
 GREATEST = 1.0
-"""excess of force over set point, relative, that is believed: more would stop the feed"""
+"""Greatest relative excess of force over set point that is used, so the feed never stops."""
 SLOWEST = 0.3
-"""of the override that one step leaves"""
+"""Least share of the override that one step leaves."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PIState:
-    """State of a PI law."""
+    """State of the linear PI law."""
 
     axes: Axes
     error: float
-    """of the revolution before, relative to the set point"""
+    """Error of the previous revolution, relative to the set point."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PI:
-    """Linear PI control."""
+    """Linear PI control law."""
 
     plant: Plant = field(default_factory=Plant)
     closing: float = 2.0
-    """T_c, revolutions"""
+    """Time constant T_c of the closed loop, revolutions."""
 
     def begin(self, override: float) -> PIState:
-        """As though the force had been at its set point."""
+        """Initial state, as if the force were at its set point."""
         return PIState(axes=resting(override), error=0.0)
 
     def decide(self, state: PIState, at: Situation) -> tuple[PIState, float]:
-        """See :class:`~controller.law.ControlLaw`."""
+        """Decide the next override; see :class:`~controller.law.ControlLaw`."""
         plant = self.plant
         axes = moved(state.axes, standing(at), lag=plant.lag)
         error = max(1.0 - exp(-shortfall(axes, at, exponent=plant.exponent)), -GREATEST)

@@ -1,18 +1,18 @@
-"""Preview for any law: what the program says of the cut is taken out of its plant.
+"""Preview for any control law: feed-forward of the force that the program expects.
 
-Force is ``F = K·g·u^p``. Of the expected force g the program knows the course, so the override
-that would hold the set point were K = 1, ``ff = (F_ref/g)^(1/p)``, is fed forward, with g the
-greatest of all revolutions in sight: the axes are slow enough before the load comes. The law
-inside commands only the factor w on it, ``u = w·ff``, and is shown the plant
-``F/F_ref = K·w^p``: constant whatever the engagement does, with the one unknown K. Its axes are
-those of the nominal lag (:mod:`controller.laws.axes`), and K is measured at the axes as they
-really ran, ``K = F/(g·v^p)``, so neither the band nor another lag reaches the law inside.
+Force is ``F = K·g·u^p``. The program knows the course of the expected force g, so the override
+that would hold the set point if K were 1, ``ff = (F_ref/g)^(1/p)``, is fed forward, with g the
+greatest of all revolutions in sight: the axes are slow enough before the load comes. The inner
+law commands only the factor w on it, ``u = w·ff``, and is shown the plant ``F/F_ref = K·w^p``:
+constant whatever the engagement, with the one unknown K. Its axes are those of the nominal lag
+(:mod:`controller.laws.axes`), and K is measured at the axes as they really ran,
+``K = F/(g·v^p)``, so neither the band nor another lag affects the inner law.
 
 Around a change of g a program and a machine never agree to the revolution. There K is only
-known between the values that the neighbouring g give, and of these the one nearest to what was
-believed before counts; and K falls by no more than a seventh in a revolution, because a cut
-that is lighter than announced is mostly one that begins later. Where nothing is known the law
-works alone, from the override at which it takes over.
+known to lie between the values that the neighbouring g give, and the one nearest to the
+previous K is used; and K falls by no more than a seventh in a revolution, because a cut that is
+lighter than expected is mostly one that begins later. Where nothing is known the law works
+alone, from the override at which it takes over.
 
 The axes are slowed with lead, which needs half the look-ahead; six to eight revolutions do.
 
@@ -35,55 +35,55 @@ from controller.laws.axes import Axes, moved, quickening, ran, resting, sent, st
 S = TypeVar("S")
 
 FARTHEST = log(1e3)
-"""of a feed-forward or a factor K from 1 that is believed, either way, in ln"""
+"""Greatest deviation of the feed-forward or of K from 1 that is accepted, either way, in ln."""
 LEAST_FREEDOM = (0.5, 2.0)
-"""factor w that the law inside may always command, whatever is left of the band"""
+"""Range of the factor w always available to the inner law, whatever the band leaves."""
 
 GREATEST_FALL = 0.15
-"""of ln K in a revolution"""
+"""Greatest fall of ln K per revolution."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PreviewedState(Generic[S]):
-    """The law inside and its share of the override."""
+    """State of a law with preview: the inner law and its share of the override."""
 
     inner: S
     share: float
-    """w that the law inside commanded"""
+    """Factor w that the inner law commanded."""
     axes: Axes
-    """what axes of the nominal lag would run of w"""
+    """Modelled axes of the nominal lag that follow w."""
     forward: Axes
-    """what they would run of the feed-forward"""
+    """Modelled axes of the nominal lag that follow the feed-forward."""
     factor: float
-    """ln K, as believed"""
+    """Estimated ln K."""
     expected: float
-    """N, g of the revolution before"""
+    """Expected force g of the previous revolution, N."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlainState(Generic[S]):
-    """The law inside without preview."""
+    """State of the inner law while there is no preview."""
 
     inner: S
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Previewed(Generic[S]):
-    """A law with preview, itself a law."""
+    """Control law that adds preview to an inner law."""
 
     law: ControlLaw[S]
     plant: Plant = field(default_factory=Plant)
     closing: float = 1.0
-    """revolutions, time constant with which the axes are slowed before a load"""
+    """Time constant with which the axes are slowed before a load, revolutions."""
 
     def begin(self, override: float) -> PreviewedState[S] | PlainState[S]:
-        """The law inside alone, until something is known."""
+        """Initial state: the inner law alone, until the cut ahead is known."""
         return PlainState(inner=self.law.begin(override))
 
     def decide(
         self, state: PreviewedState[S] | PlainState[S], at: Situation
     ) -> tuple[PreviewedState[S] | PlainState[S], float]:
-        """See :class:`~controller.law.ControlLaw`."""
+        """Decide the next override; see :class:`~controller.law.ControlLaw`."""
         if not at.ahead or at.expected <= 0.0 or max(at.ahead) <= 0.0:
             return self._alone(state, at)
         forward = self._forward(at)
@@ -108,13 +108,13 @@ class Previewed(Generic[S]):
     def _alone(
         self, state: PreviewedState[S] | PlainState[S], at: Situation
     ) -> tuple[PlainState[S], float]:
-        """The law inside with the plant as it is."""
+        """Decide with the inner law alone, on the real plant."""
         inner = state.inner if isinstance(state, PlainState) else self.law.begin(standing(at))
         inner, override = self.law.decide(inner, replace(at, expected=0.0, ahead=()))
         return PlainState(inner=inner), override
 
     def _factored(self, at: Situation, forward: float) -> PreviewedState[S]:
-        """The law inside as it takes over, at the override that runs."""
+        """Initial state when the preview takes over, at the running override."""
         share = standing(at) / forward
         return PreviewedState(
             inner=self.law.begin(share),
@@ -126,16 +126,16 @@ class Previewed(Generic[S]):
         )
 
     def _forward(self, at: Situation) -> float:
-        """Override that holds the set point at the greatest load in sight, were K = 1."""
+        """Feed-forward override for the greatest load in sight, if K were 1."""
         known = log(at.set_point) - log(max(at.ahead))
         return exp(_held(known / self.plant.exponent))
 
     def _measured(self, at: Situation) -> float:
-        """Logarithm of the force at override 1, N."""
+        """Logarithm of the force at override 1, ln N."""
         return log(at.force) - self.plant.exponent * log(ran(at))
 
     def _factor(self, state: PreviewedState[S], at: Situation) -> float:
-        """Logarithm of K: of those that the neighbours allow, the nearest to before."""
+        """Logarithm of K: the value nearest to the last that the neighbours permit."""
         near = [each for each in (state.expected, at.expected, at.ahead[0]) if each > 0.0]
         measured = self._measured(at)
         low, high = measured - log(max(near)), measured - log(min(near))
@@ -150,7 +150,7 @@ class Previewed(Generic[S]):
         factor: float,
         forward: float,
     ) -> Situation:
-        """Situation for the inner law: that of a constant plant."""
+        """Situation for the inner law, which sees a constant plant."""
         low, high = LEAST_FREEDOM
         return Situation(
             force=exp(factor) * axes.mean**self.plant.exponent,
@@ -162,7 +162,7 @@ class Previewed(Generic[S]):
         )
 
     def _slowed(self, state: PreviewedState[S], at: Situation, forward: float) -> float:
-        """The feed-forward; with lead where it slows the axes, for too slow does no harm."""
+        """Feed-forward with lead where it slows the axes; slowing too much is harmless."""
         late = max(1.0, ran(at) / (state.axes.mean * state.forward.mean))
         axes = replace(state.forward, last=state.forward.last * late)
         if axes.last <= forward:
@@ -172,5 +172,5 @@ class Previewed(Generic[S]):
 
 
 def _held(value: float) -> float:
-    """A logarithm that stays within what is believed."""
+    """Clip a logarithm to the credible range."""
     return min(max(value, -FARTHEST), FARTHEST)

@@ -1,10 +1,10 @@
-"""Self-tuning control of the cutting force: what is cut is estimated, then steered to.
+"""Self-tuning control of the cutting force: estimates the load, then places the pole.
 
 The plant in logarithms is ``ln F = c + p·ln v``; v is what the axes ran, measured, so the lag
-of the drives does not enter the estimate (:mod:`controller.laws.load`). By it the force meets
-its set point at ``ln u* = (ln F_ref − c)/p``, and the axes are sent there with lead to arrive
+of the drives does not enter the estimate (:mod:`controller.laws.load`). With it the force meets
+its set point at ``ln u* = (ln F_ref − c)/p``, and the command has lead so that the axes arrive
 with time constant T_c, ``u = v + κ·(u* − v)``, :func:`~controller.laws.axes.quickening`:
-indirect self-tuning with pole placement [1]_. The exponent is bounded to what materials have.
+indirect self-tuning with pole placement [1]_. The exponent is bounded to usual materials.
 
 References
 ----------
@@ -29,50 +29,50 @@ from controller.laws.axes import (
 from controller.laws.load import LoadEstimate, first_load, learned, learned_load
 
 EXPONENT_BAND = (0.7, 1.2)
-"""of p over that of the plant"""
+"""Range of the estimated p over that of the plant."""
 EXCITATION = 0.03
-"""way of the axes in one revolution, ln, from which they tell of p"""
+"""Least change of ln v in one revolution from which p is learnt."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SelfTuningState:
-    """State of the self-tuning law."""
+    """State of the self-tuning control law."""
 
     axes: Axes
     way: float
-    """ln of the override that the axes ran in the revolution before"""
+    """Logarithm of the override that the axes ran in the previous revolution."""
     load: LoadEstimate | None
-    """None: no force was seen yet"""
+    """Estimated load and exponent; None before any force was seen."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SelfTuning:
-    """Self-tuning control."""
+    """Self-tuning control law."""
 
     plant: Plant = field(default_factory=Plant)
     closing: float = 1.5
-    """T_c, revolutions"""
+    """Time constant T_c of the closed loop, revolutions."""
     noise: float = 0.03
-    """of a force, relative standard deviation"""
+    """Relative standard deviation of a measured force."""
 
     def begin(self, override: float) -> SelfTuningState:
-        """Nothing is known but the plant."""
+        """Initial state: nothing is known except the plant."""
         axes = resting(override)
         return SelfTuningState(axes=axes, way=log(axes.last), load=None)
 
     def decide(self, state: SelfTuningState, at: Situation) -> tuple[SelfTuningState, float]:
-        """See :class:`~controller.law.ControlLaw`."""
+        """Decide the next override; see :class:`~controller.law.ControlLaw`."""
         axes = moved(state.axes, standing(at), lag=self.plant.lag)
         way = log(ran(at))
         load = self._learned(state, log(at.force), way)
-        # Seen from where the axes are, so that no far-off estimate leads out of all numbers.
+        # Relative to the present position of the axes, so that a bad estimate cannot overflow.
         farther = (log(at.set_point) - load.log - load.exponent * way) / load.exponent
         goal = way + min(max(farther, -FARTHEST), FARTHEST)
         override = sent(axes, exp(goal), quickening=quickening(self.plant, self.closing))
         return SelfTuningState(axes=axes, way=way, load=load), within(override, at)
 
     def _learned(self, state: SelfTuningState, force: float, way: float) -> LoadEstimate:
-        """The estimate after one more revolution; the exponent stays within its band."""
+        """Update the estimate after one more revolution; the exponent stays within its band."""
         known = {"force": force, "way": way, "noise": self.noise}
         if state.load is None:
             return first_load(**known, exponent=self.plant.exponent)
@@ -80,6 +80,6 @@ class SelfTuning:
         load = (learned if is_excited else learned_load)(state.load, **known)
         low, high = (bound * self.plant.exponent for bound in EXPONENT_BAND)
         exponent = min(max(load.exponent, low), high)
-        # The force that is expected now stays.
+        # The force expected at the present override stays the same.
         kept = load.log + (load.exponent - exponent) * way
         return replace(load, log=kept, exponent=exponent)

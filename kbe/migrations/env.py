@@ -1,7 +1,7 @@
-"""Alembic runs this file to migrate a store over the connection that it is given.
+"""Alembic environment that migrates a store over a given connection.
 
-The transaction is the caller's (:mod:`kbe.migrate`), for both databases: SQLite, too, can undo
-DDL.
+The transaction belongs to the caller (:mod:`kbe.migrate`) for both databases: SQLite, too, can
+roll back DDL.
 """
 
 from alembic import context
@@ -10,7 +10,7 @@ from kbe.schema import VERSION_TABLE, metadata
 
 
 def migrate() -> None:
-    """Run the migrations that are asked for."""
+    """Run the requested migrations."""
     context.configure(
         connection=context.config.attributes["connection"],
         target_metadata=metadata,
@@ -21,6 +21,6 @@ def migrate() -> None:
         context.run_migrations()
 
 
-# Absent when the file is imported for its documentation.
+# The configuration is missing when the file is imported for its documentation.
 if hasattr(context, "config"):
     migrate()

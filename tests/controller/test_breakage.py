@@ -78,7 +78,7 @@ def test_broken_tooth_stays_broken_and_is_told_with_its_numbers() -> None:
     assert state.is_broken
     assert inspected(state, shown(cutter.forces()), cutter.expected).broken == 1
     assert state.reason == (
-        "0.00 of the mean force while tooth 2 was the last to enter, 1.00 with whole teeth"
+        "0.00 of the mean force in the period of tooth 2, 1.00 with intact teeth"
     )
 
 

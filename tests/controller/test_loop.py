@@ -209,13 +209,13 @@ def test_more_power_comes_slowly() -> None:
 def test_a_set_point_that_was_asked_for_counts_instead_of_the_plans() -> None:
     run = plugged(even(5), settings=LoopSettings(look_ahead=0, set_point=250.0)).run()
     assert run.cycles[-1].set_point == 250.0
-    assert "250 N as asked for" in run.events[0].text
+    assert "250 N as requested" in run.events[0].text
 
 
 def test_a_set_point_leaves_room_for_a_sudden_rise() -> None:
     run = plugged(even(5), steps=[step(breakage=600.0)]).run()
     assert run.cycles[-1].set_point == 0.8 * 600.0 / 2.0
-    assert "240 N, for the tool to bear a sudden rise" in run.events[0].text
+    assert "reduced to 240 N so that the tool withstands a sudden rise" in run.events[0].text
 
 
 def test_where_nothing_bounds_the_force_the_law_is_not_asked() -> None:

@@ -110,7 +110,7 @@ def test_only_an_override_that_stays_below_the_band_is_a_danger() -> None:
     assert after(state._replace(below=BELOW - 1), hard).below == BELOW
     stopped = after(state._replace(below=BELOW), hard)
     assert stopped.is_stopped
-    assert "in danger even at 20 %" in stopped.events[-1].text
+    assert "too high even at 20 %" in stopped.events[-1].text
 
 
 def waited(count: int, *, force: float) -> LoopState:

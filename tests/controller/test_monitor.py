@@ -164,8 +164,8 @@ def test_a_broken_tooth_is_told_once_with_its_number_and_its_force() -> None:
         turned(watching, 400.0, 0.0, 700.0, 400.0, time=2.0 + turn)
     assert watching.kinds == [EventKind.BREAKAGE]
     assert watching.events[0].text == (
-        "tooth 2 of 4 takes no chip: 0.00 of the mean force while tooth 2 was the last to "
-        "enter, 1.00 with whole teeth"
+        "tooth 2 of 4 takes no chip: 0.00 of the mean force in the period of tooth 2, "
+        "1.00 with intact teeth"
     )
     assert watching.monitor.breakage.is_broken
 
@@ -187,9 +187,9 @@ def test_the_way_out_of_a_cut_and_the_way_in_are_no_broken_tooth() -> None:
     [
         (
             380.0,
-            "force 1.27 times the mean of the last 40 revolutions: 380 N, from 1.11 times on",
+            "force 1.27 times the mean of the last 40 revolutions: 380 N, limit 1.11 times",
         ),
-        (492.0, "force 1.23 times the set point of 400 N: 492 N, from 1.2 times on"),
+        (492.0, "force 1.23 times the set point of 400 N: 492 N, limit 1.2 times"),
     ],
 )
 def test_a_warning_says_which_rule_tripped_and_with_what_numbers(

@@ -56,7 +56,7 @@ def test_no_force_within_a_revolution_of_its_place_is_overlooked(
     ("until", "force", "why"),
     [
         ([], [], "at least one"),
-        ([1.0, 2.0], [1.0], "as many"),
+        ([1.0, 2.0], [1.0], "equal numbers"),
         ([1.0, 1.0], [1.0, 1.0], "ascend"),
         ([1.0, 2.0], [1.0, -1.0], "negative"),
         ([1.0, 2.0], [1.0, float("nan")], "finite"),

@@ -52,7 +52,7 @@ def test_the_strength_of_the_tool_is_room_for_a_sudden_rise() -> None:
     weak = step(breakage=600.0)
     assert approached(bounded(AIMS, weak), AIMS, weak).set_point == 240.0
     told = introduction(AIMS, weak.reference)
-    assert told.endswith("; 240 N, for the tool to bear a sudden rise")
+    assert told.endswith("; reduced to 240 N so that the tool withstands a sudden rise")
 
 
 def test_the_band_is_narrowed_by_what_the_workingstep_allows() -> None:
@@ -75,7 +75,7 @@ def test_a_workingstep_is_introduced_with_what_bounds_it() -> None:
         introduction(AIMS, REFERENCE)
         == "SLOT: force bound 400 N by motor power, where the plan cuts hardest"
     )
-    assert introduction(AIMS, FREE.reference) == "FREE: nothing bounds the force"
+    assert introduction(AIMS, FREE.reference) == "FREE: nothing limits the force"
 
 
 def test_what_a_hold_has_taught_is_eased_little_by_little() -> None:

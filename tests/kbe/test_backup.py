@@ -133,7 +133,7 @@ def test_backup_never_overwrites(store: Store, file: str, tmp_path: Path) -> Non
 
 
 def test_backup_goes_to_a_file_in_a_folder(store: Store, tmp_path: Path) -> None:
-    with pytest.raises(StoreUnavailable, match="a backup is a file"):
+    with pytest.raises(StoreUnavailable, match="a backup must be a file"):
         backup(store, "postgresql://ann:secret@db/kbe")
     with pytest.raises(StoreUnavailable, match="the folder does not exist"):
         backup(store, str(tmp_path / "missing" / "monday.db"))

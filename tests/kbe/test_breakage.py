@@ -62,7 +62,7 @@ with open_store(path) as store:
             store.add(outcomes[first : first + 10])
             accepted += 10
     except StoreFull as error:
-        assert "Make room" in str(error)
+        assert "Free some space" in str(error)
     assert 0 < accepted < len(outcomes), accepted
     assert list(store.outcomes()) == outcomes[:accepted]
     store.check()
@@ -163,7 +163,7 @@ def test_file_of_something_else_is_left(tmp_path: Path) -> None:
     letter = tmp_path / "letter.txt"
     letter.write_text("Dear Ann, " * 500, encoding="utf-8")
     before = digest(tmp_path)
-    with pytest.raises(StoreDamaged, match="no knowledge base"):
+    with pytest.raises(StoreDamaged, match="not a knowledge base"):
         open_store(str(letter))
     assert digest(tmp_path) == before
 

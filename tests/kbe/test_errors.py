@@ -24,7 +24,7 @@ ALL = [
     (DriverMissing("a.db"), "stepnc-optimiser[postgres]"),
     (StoreReadOnly("a.db"), "allow"),
     (StoreBusy("a.db"), "try again"),
-    (StoreFull("a.db"), "Make room"),
+    (StoreFull("a.db"), "Free some space"),
     (StoreTooNew("a.db", found="0009", known="0001"), "install the newer"),
     (StoreNotEmpty("a.db", rows=3), "restore into a new file"),
     (BackupExists("a.db"), "name another"),

@@ -73,13 +73,13 @@ def test_feed_that_the_controller_lowered_asks_for_the_factor_as_well() -> None:
 
 def test_factor_alone_is_told_against_what_plans_take() -> None:
     found = only(evidence(proposed=correction(log(1.3)), accepted=correction(log(1.1))))
-    assert found.observed == "force 1.30 of the catalogue's where plans take 1.10"
+    assert found.observed == "force 1.30 × catalogue, but plans use factor 1.10"
 
 
 def test_few_outcomes_ask_for_more() -> None:
     found = only(evidence(proposed=correction(log(1.3), outcomes=1)))
     assert found.action is Action.WAIT
-    assert found.advice.startswith("let 2 more confirm the k_c factor 1.30")
+    assert found.advice.startswith("collect 2 more to confirm the k_c factor 1.30")
 
 
 def test_accepted_factor_is_pending_no_more() -> None:
@@ -115,7 +115,7 @@ def test_waste_is_told_with_its_time() -> None:
     assert found.action is Action.PLAN_BOLDER
     assert (
         found.observed
-        == "force below 80 % of its bound in 6 of 9 cuts, about 5.0 s each could be won"
+        == "force below 80 % of its bound in 6 of 9 cuts, about 5.0 s each could be saved"
     )
 
 
@@ -166,7 +166,7 @@ def test_trend_of_wear_asks_for_a_new_edge(
 ) -> None:
     found = only(evidence({which: rising(per_run)}))
     assert (found.about, found.action) == (which, action)
-    assert "by 2.1 ± 0.3 % of the plan a run, over 12 runs" in found.observed
+    assert "by 2.1 ± 0.3 % of the plan per run, over 12 runs" in found.observed
 
 
 def test_trend_by_chance_or_too_flat_is_not_told() -> None:

@@ -77,18 +77,19 @@ def test_password_is_never_repeated_even_when_it_is_not_escaped(password: str) -
             "%40 for @, %2F for /, %3A for :, %23 for # and %3F for ?", ""
         )
         said = said.replace("postgresql://USER:PASSWORD@HOST:PORT/DATABASE", "")
-        assume(password not in "postgresql://…: is no address: , with  in the password")
+        rest = "postgresql://…: is not a valid address; write , with  in the password"
+        assume(password not in rest)
     assert password not in said
 
 
 def test_folder_must_exist(tmp_path: Path) -> None:
     place = parsed_place(str(tmp_path / "missing" / "kbe.db"))
-    with pytest.raises(StoreUnavailable, match="the folder does not exist; make it"):
+    with pytest.raises(StoreUnavailable, match="the folder does not exist; create it"):
         require_openable(place, is_new_allowed=True)
 
 
 def test_folder_is_no_file(tmp_path: Path) -> None:
-    with pytest.raises(StoreUnavailable, match="is no file"):
+    with pytest.raises(StoreUnavailable, match="is not a file"):
         require_openable(parsed_place(str(tmp_path)), is_new_allowed=True)
 
 

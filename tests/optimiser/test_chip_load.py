@@ -70,7 +70,7 @@ def test_chip_load_follows_the_engagement() -> None:
     assert bound == pytest.approx(0.75 * 0.12)
     contour = advice_of(plan, "FINISH CONTOUR")
     assert after(contour).setting.feed > 1.5 * 0.2  # 0.01·D of the catalogue
-    assert "of the catalogue's at this engagement" in contour.reason
+    assert "× the catalogue value at this engagement" in contour.reason
 
 
 def test_no_feed_is_below_the_least_at_which_edges_cut() -> None:

@@ -91,7 +91,7 @@ def test_a_file_without_a_stock_has_none() -> None:
     part = program("paper002", "0.1,$,$,#13,());", "0.1,$,$,$,());")
     step = part.workingsteps[0]
     stock = ClampedStocks(part, load_machine("paper002")).before(step)
-    assert met_by(part, step, straight(*ALONG), stock).why == "no stock is known"
+    assert met_by(part, step, straight(*ALONG), stock).why == "the stock is not known"
 
 
 def test_a_stock_without_volume_is_none() -> None:

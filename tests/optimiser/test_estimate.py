@@ -217,7 +217,7 @@ def test_what_is_written_is_not_assumed(bracket: Program) -> None:
 
 def test_allowance_that_leaves_everything_is_an_error() -> None:
     program = edited(("#340,#340,#350,1.5,0.5);", "#340,#340,#350,1.5,2.);"))
-    with pytest.raises(SchemaError, match=r"leaves 2 mm of 2 mm: nothing is removed"):
+    with pytest.raises(SchemaError, match=r"allowance 2 mm on a depth of 2 mm: nothing is"):
         cut_of(program, "ROUGH FACE")
 
 

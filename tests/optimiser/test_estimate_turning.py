@@ -142,7 +142,7 @@ def test_without_a_bar_the_depth_is_assumed_and_said() -> None:
     cut, findings = estimate(program, "ROUGH FACE")
     assert cut.total_depth == FALLBACK_DEPTH
     (finding,) = findings
-    assert "cannot be told from the bar: 1 mm assumed" in str(finding)
+    assert "cannot be derived from the bar: 1 mm assumed" in str(finding)
 
 
 def test_without_a_bar_the_strategy_says_the_depth() -> None:

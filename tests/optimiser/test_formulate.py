@@ -109,7 +109,7 @@ def test_tasks_are_equal_and_hashed_by_value() -> None:
 
 @pytest.mark.parametrize("factor", [0.0, -1.0, float("inf"), float("nan")])
 def test_a_factor_that_no_force_can_have_is_refused(factor: float) -> None:
-    with pytest.raises(ValueError, match="tool 'a': a factor on k_c of"):
+    with pytest.raises(ValueError, match="tool 'a': k_c factor must be finite and above 0"):
         OptimisationTask(force_factors={"a": factor})
 
 

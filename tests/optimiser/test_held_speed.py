@@ -46,7 +46,7 @@ def test_no_speed_above_the_window_of_the_grade_is_advised(plan: Plan, name: str
     said = [
         str(finding) for finding in plan.findings if "m/min exceeds 90 m/min" in str(finding)
     ]
-    assert any("; brought to 1432 rpm" in text for text in said)
+    assert any("; changed to 1432 rpm" in text for text in said)
 
 
 def test_a_speed_below_the_window_stays_until_it_is_free() -> None:

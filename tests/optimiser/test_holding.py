@@ -118,7 +118,7 @@ def test_without_a_table_one_note_a_setup_tells_what_is_asked() -> None:
         "'SETUP 1'",
         f"{1e-3 * load.torque:.4g} N·m about the axis (ROUGH CONTOUR)",
         f"{1e-3 * load.moment:.4g} N·m of tilting about the jaws (ROUGH CONTOUR)",
-        "grip 30 mm on Ø60 mm, 122 mm stand out (L/D 2)",
+        "it grips 30 mm on Ø60 mm, overhang 122 mm (L/D 2)",
     ):
         assert text in notes[0].message
 
@@ -138,7 +138,7 @@ def test_a_tailstock_of_the_program_or_the_table_takes_the_moment() -> None:
 def test_a_table_of_another_setup_is_told_and_bounds_nothing() -> None:
     plan = shaft(replace(CHUCK, setup="OP 20"))
     texts = [each.message for each in plan.findings]
-    assert "work-holding of setup 'OP 20': the program's setups are 'SETUP 1'" in texts
+    assert "work-holding of unknown setup 'OP 20'; the program has: 'SETUP 1'" in texts
     assert any("no [[holding]]" in text for text in texts)
     assert advice_of(plan, "ROUGH CONTOUR").active is advice_of(shaft(), "ROUGH CONTOUR").active
 
@@ -153,7 +153,7 @@ def test_a_table_that_names_the_setup_goes_before_one_that_names_none() -> None:
 
 def test_a_chuck_that_cannot_be_judged_names_the_key() -> None:
     program = edited("shaft", ("$,$,#33,(#36));", "$,$,#33,());"))
-    with pytest.raises(LibraryError, match="jaw_face_z_mm: missing, and the bar"):
+    with pytest.raises(LibraryError, match="jaw_face_z_mm: missing; the bar"):
         optimise_program(
             program,
             machine=replace(load_machine("lathe22"), holdings=(CHUCK,)),
@@ -347,7 +347,7 @@ def test_weak_clamps_bound_the_bracket_and_a_note_tells_what_is_asked() -> None:
     needed = tight.safety_factor * tight.holding_load.force
     assert needed <= 800.0 * (1.0 + 1e-9) < tight.safety_factor * loose.holding_load.force
     assert tight.active is LimitName.HOLDING_FORCE
-    asked = f"asked to hold {loose.holding_load.force:.4g} N across the spindle (ROUGH POCKET)"
+    asked = f"must hold {loose.holding_load.force:.4g} N across the spindle (ROUGH POCKET)"
     assert any(asked in each.message for each in plans[0].findings)
     assert not any("[[holding]]" in each.message for each in plans[1].findings)
 
@@ -370,7 +370,7 @@ def test_idling_leaves_less_of_the_drive() -> None:
     spindle = LATHE.machine.spindle
     left = available_power(spindle, speed) - float(idle_power(spindle, speed))
     assert power.full_bound_at(speed) == pytest.approx(left)
-    assert power.origin == "what the idling spindle leaves of its drive's"
+    assert power.origin == "the drive power less the idling power of the spindle"
 
 
 def test_power_counts_where_the_path_turns_fastest() -> None:

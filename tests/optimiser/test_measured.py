@@ -253,7 +253,7 @@ def test_what_an_estimate_guesses_is_not_said_where_it_is_known() -> None:
     text = text.replace("#330,3.,$,9.8,$,1.", "#330,3.,$,$,$,1.")
     read = Program(Part21File.from_bytes(text.encode(), name="bracket"), name="bracket")
     step = step_of(read, "REAM HOLE 1")
-    guess = "is taken to cut into the solid"
+    guess = "cutting into solid material assumed"
     assert any(
         guess in each.message
         for each in estimated_cut(read, step, load_machine("vmc15"), STEEL)[1]

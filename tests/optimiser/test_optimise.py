@@ -135,7 +135,7 @@ def test_roughness_of_the_user_goes_before_that_of_the_file() -> None:
     plan = plan_of("shaft", OptimisationTask(roughness=2.5e-3))
     assert after(advice_of(plan, "FINISH CONTOUR")).roughness == pytest.approx(2.5e-3)
     texts = [str(finding) for finding in plan.findings]
-    said = "Ra 2.5 µm as asked for is coarser than Ra 1.6 µm in the file"
+    said = "the requested Ra 2.5 µm is coarser than Ra 1.6 µm in the file"
     assert any(said in text for text in texts)
 
 
@@ -165,7 +165,7 @@ def test_quality_nobody_asked_for_is_the_default_and_said() -> None:
     assert roughness is not None
     assert roughness <= DEFAULT_QUALITY * (1.0 + 1e-9)
     texts = [str(finding) for finding in plan.findings]
-    assert any("no roughness is asked for: QC keeps Ra 3.2 µm" in text for text in texts)
+    assert any("no roughness is required: QC keeps Ra 3.2 µm" in text for text in texts)
 
 
 @pytest.mark.parametrize("name", ["bracket", "shaft"])
@@ -256,7 +256,7 @@ def test_accepted_correction_lowers_the_feed_at_the_power_limit() -> None:
     (advice,) = plan.advices
     assert advice.force_factor == 1.42
     assert mm_min_from_speed(after(advice).feed) == pytest.approx(290.0 / 1.42)
-    note = f"k_c × 1.42 for tool '{first.tool.id}'"
+    note = f"k_c × 1.42 (accepted correction) for tool '{first.tool.id}'"
     assert [finding.message for finding in plan.findings].count(note) == 1
 
 
@@ -266,7 +266,7 @@ def test_accepted_correction_of_one_tool_leaves_the_others() -> None:
         for factors in ({}, {"END MILL 12MM": 1.31})
     )
     notes = [each.message for each in corrected.findings if "k_c ×" in each.message]
-    assert notes == ["k_c × 1.31 for tool 'END MILL 12MM'"]
+    assert notes == ["k_c × 1.31 (accepted correction) for tool 'END MILL 12MM'"]
     for old, new in zip(plain.advices, corrected.advices, strict=True):
         is_meant = new.tool.id == "END MILL 12MM"
         assert new.force_factor == (1.31 if is_meant else 1.0)

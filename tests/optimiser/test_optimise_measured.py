@@ -79,7 +79,7 @@ def test_without_a_stock_the_engagement_is_estimated_and_said() -> None:
     (advice,) = plan.advices
     assert mm_min_from_speed(after(advice).feed) == pytest.approx(290.0)
     texts = [str(finding) for finding in plan.findings]
-    assert any("no stock is known" in text for text in texts)
+    assert any("the stock is not known" in text for text in texts)
 
 
 def test_without_a_path_everything_is_estimated_and_said() -> None:

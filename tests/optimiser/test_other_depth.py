@@ -51,5 +51,5 @@ def test_the_path_is_that_of_the_edited_file(
 
 def test_a_hole_has_no_depth_to_choose() -> None:
     part = program("bracket")
-    with pytest.raises(PathError, match="depth of its passes is not programmed"):
+    with pytest.raises(PathError, match="sets no depth of its passes"):
         with_depth(part, step_of(part, "DRILL HOLE 1"), 5.0)

@@ -135,5 +135,5 @@ def test_finer_than_careful_milling_leaves_the_corner_counts_despite_a_land() ->
 
 
 def test_a_surface_without_a_law_has_no_limit() -> None:
-    with pytest.raises(ValueError, match="the feed does not describe"):
+    with pytest.raises(ValueError, match="does not follow from the feed"):
         roughness_limit(replace(CUT, texture=Texture.NONE), 1e-3)

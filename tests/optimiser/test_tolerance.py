@@ -42,14 +42,16 @@ def bracket() -> Program:
 @pytest.mark.parametrize(
     ("name", "value", "origin"),
     [
-        ("MILL SLOT", 0.025, "a quarter of the ±0.1 mm of its width of 12 mm (#137)"),
-        ("FINISH POCKET", 0.025, "a quarter of the ±0.1 mm of its width of 50 mm (#149)"),
-        ("MILL STEP", 0.05, "a quarter of the ±0.2 mm of its width of 15 mm (ISO 2768-m)"),
+        ("MILL SLOT", 0.025, "a quarter of the ±0.1 mm tolerance of the width of 12 mm (#137)"),
+        ("FINISH POCKET", 0.025,
+         "a quarter of the ±0.1 mm tolerance of the width of 50 mm (#149)"),
+        ("MILL STEP", 0.05,
+         "a quarter of the ±0.2 mm tolerance of the width of 15 mm (ISO 2768-m)"),
         ("FINISH OPEN POCKET", 0.05,
-         "a quarter of the ±0.2 mm of its width of 28 mm (ISO 2768-m)"),
+         "a quarter of the ±0.2 mm tolerance of the width of 28 mm (ISO 2768-m)"),
         ("FINISH CONTOUR", 0.05,
-         "the most for any wall: a quarter of the ±0.3 mm of its width of 90 mm "
-         "(ISO 2768-m) is more"),
+         "the customary maximum for any wall (a quarter of the ±0.3 mm tolerance of the width "
+         "of 90 mm (ISO 2768-m) would be more)"),
     ],
 )  # fmt: skip
 def test_operation_that_leaves_a_wall_keeps_its_tolerance_and_says_so(
@@ -60,7 +62,8 @@ def test_operation_that_leaves_a_wall_keeps_its_tolerance_and_says_so(
     assert found.origin == origin
     (note,) = findings
     assert note.severity is Severity.NOTE
-    assert note.message == f"leaves the wall: tool deflection at most {value:g} mm, {origin}"
+    bound = f"tool deflection at most {value:g} mm, {origin}"
+    assert note.message == f"leaves no allowance on the wall: {bound}"
     (step,) = (step for step in bracket.workingsteps if step.id == name)
     assert note.entity == bracket.label(step.operation_ref)
 
@@ -71,7 +74,7 @@ def test_earlier_operation_bends_by_a_third_of_its_allowance(
 ) -> None:
     found, findings = permitted(bracket, name)
     assert found.value == pytest.approx(0.1)
-    assert found.origin == "a third of the 0.3 mm that it leaves on the wall"
+    assert found.origin == "a third of the allowance of 0.3 mm on the wall"
     assert not findings
 
 
@@ -143,14 +146,14 @@ def test_finish_of_the_floor_alone_leaves_the_wall_to_the_operation_before() -> 
     ("tolerance", "value", "origin"),
     [
         ("PLUS_MINUS_VALUE(0.018,0.,4)", 0.00225,
-         "a quarter of the ±0.009 mm of its width of 12 mm (+0.018/-0 mm, #137)"),
+         "a quarter of the ±0.009 mm tolerance of the width of 12 mm (+0.018/-0 mm, #137)"),
         ("LIMITS_AND_FITS(0.,7.,.HOLE.)", 0.00225,
-         "a quarter of the ±0.009 mm of its width of 12 mm (IT7, #137)"),
+         "a quarter of the ±0.009 mm tolerance of the width of 12 mm (IT7, #137)"),
         ("LIMITS_AND_FITS('H',9.,.HOLE.)", 0.005375,
-         "a quarter of the ±0.0215 mm of its width of 12 mm (IT9, #137)"),
+         "a quarter of the ±0.0215 mm tolerance of the width of 12 mm (IT9, #137)"),
         ("PLUS_MINUS_VALUE(0.5,0.5,3)", 0.05,
-         "the most for any wall: a quarter of the ±0.5 mm of its width of 12 mm "
-         "(#137) is more"),
+         "the customary maximum for any wall (a quarter of the ±0.5 mm tolerance of the width "
+         "of 12 mm (#137) would be more)"),
     ],
 )  # fmt: skip
 def test_tolerance_of_the_file_counts_in_either_form(
@@ -175,7 +178,8 @@ def test_tolerance_that_cannot_be_read_is_told_and_the_general_one_holds(
     tolerance: str,
 ) -> None:
     found, (warning, note) = of_slot(tolerance)
-    assert found.origin == "a quarter of the ±0.2 mm of its width of 12 mm (ISO 2768-m, #137)"
+    origin = "a quarter of the ±0.2 mm tolerance of the width of 12 mm (ISO 2768-m, #137)"
+    assert found.origin == origin
     assert warning.severity is Severity.WARNING
     assert warning.entity.startswith("#901 ")
     assert warning.line > 0
@@ -186,7 +190,8 @@ def test_general_tolerance_of_a_narrow_slot_is_tighter() -> None:
     width = "#137=TOLERANCED_LENGTH_MEASURE(5.,$);"
     found, _ = permitted(edited("bracket", (WIDTH, width)), "MILL SLOT")
     assert found.value == pytest.approx(0.025)
-    assert found.origin == "a quarter of the ±0.1 mm of its width of 5 mm (ISO 2768-m, #137)"
+    origin = "a quarter of the ±0.1 mm tolerance of the width of 5 mm (ISO 2768-m, #137)"
+    assert found.origin == origin
 
 
 def test_tightest_of_several_sizes_counts() -> None:
@@ -218,9 +223,9 @@ def test_advice_keeps_the_bound_and_names_its_origin() -> None:
     assert load.value <= 0.025 * (1.0 + 1e-9)
     assert advice.reason == (
         "tool deflection 0.025 mm reaches its bound of 0.025 mm, "
-        "a quarter of the ±0.1 mm of its width of 12 mm (#137)"
+        "a quarter of the ±0.1 mm tolerance of the width of 12 mm (#137)"
     )
-    assert notes(plan, "leaves the wall") == 5
+    assert notes(plan, "leaves no allowance on the wall") == 5
 
 
 def test_tolerance_that_no_cut_can_keep_is_a_conflict_that_names_it() -> None:
@@ -232,7 +237,7 @@ def test_tolerance_that_no_cut_can_keep_is_a_conflict_that_names_it() -> None:
 
 def test_material_of_a_paper_has_no_tolerance() -> None:
     plan = plan_of("paper002", OptimisationTask())
-    assert notes(plan, "leaves the wall") == 0
+    assert notes(plan, "leaves no allowance on the wall") == 0
     assert notes(plan, "ISO 2768") == 0
 
 
@@ -245,15 +250,20 @@ def notes(plan: Plan, text: str) -> int:
     ("file", "name", "value", "origin"),
     [
         ("ex1.stp", "WS ROUGH POCKET1", 0.1, ""),
-        ("ex1.stp", "WS FINISH POCKET1", 0.025, "±0.1 mm of its width of 50 mm (#122)"),
-        ("EXAMPLE1_original.stp", "WS FINISH POCKET1", 0.05, "50 mm (ISO 2768-m) is more"),
+        ("ex1.stp", "WS FINISH POCKET1", 0.025,
+         "±0.1 mm tolerance of the width of 50 mm (#122)"),
+        ("EXAMPLE1_original.stp", "WS FINISH POCKET1", 0.05,
+         "50 mm (ISO 2768-m) would be more)"),
         ("Cavidade.p21", "WS Finishing - Cavidade 1", 0.015,
-         "±0.06 mm of its width of 50 mm (#63)"),
+         "±0.06 mm tolerance of the width of 50 mm (#63)"),
         ("Ranhura.p21", "WS ranhura - acabamento", 0.01375,
-         "±0.055 mm of its width of 25 mm (#62)"),
-        ("RanhuraPerfilVee.p21", "WS 2", 0.05, "±0.2 mm of its width of 26 mm (ISO 2768-m)"),
-        ("ex1E.stp", "REAM HOLE1", 0.05, "±0.3 mm of its diameter of 22 mm (#58) is more"),
-        ("ex1E.stp", "WS FINISH POCKET1 A", 0.025, "±0.1 mm of its width of 50 mm (#122)"),
+         "±0.055 mm tolerance of the width of 25 mm (#62)"),
+        ("RanhuraPerfilVee.p21", "WS 2", 0.05,
+         "±0.2 mm tolerance of the width of 26 mm (ISO 2768-m)"),
+        ("ex1E.stp", "REAM HOLE1", 0.05,
+         "±0.3 mm tolerance of the diameter of 22 mm (#58) would be more)"),
+        ("ex1E.stp", "WS FINISH POCKET1 A", 0.025,
+         "±0.1 mm tolerance of the width of 50 mm (#122)"),
     ],
 )  # fmt: skip
 def test_foreign_file(file: str, name: str, value: float, origin: str) -> None:

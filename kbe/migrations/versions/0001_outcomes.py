@@ -1,7 +1,7 @@
-"""Outcomes, corrections, decisions, and triggers that refuse to change any of them.
+"""Create the tables of outcomes, corrections and decisions, with triggers against changes.
 
-What is written here stays as it is: later changes are files of their own. There is no way
-back, because that would throw rows away; a backup is the way back.
+This file never changes: later schema changes get files of their own. There is no downgrade,
+because it would delete rows; restore a backup instead.
 """
 
 import sqlalchemy as sa
@@ -38,7 +38,7 @@ FOR EACH STATEMENT EXECUTE FUNCTION refuse_change();
 
 
 def upgrade() -> None:
-    """Make tables, indexes and triggers."""
+    """Create tables, indexes and triggers."""
     _make_outcome()
     _make_correction()
     _make_decision()
@@ -54,7 +54,7 @@ def upgrade() -> None:
 
 
 def _make_outcome() -> None:
-    """One row for a workingstep of a run."""
+    """Create the table of outcomes, one row per workingstep of a run."""
     op.create_table(
         "outcome",
         sa.Column("id", ID, primary_key=True),
@@ -111,7 +111,7 @@ def _make_outcome() -> None:
 
 
 def _make_correction() -> None:
-    """One row for a proposal."""
+    """Create the table of corrections, one row per proposal."""
     op.create_table(
         "correction",
         sa.Column("id", ID, primary_key=True),
@@ -129,7 +129,7 @@ def _make_correction() -> None:
 
 
 def _make_decision() -> None:
-    """One row for what a person decided about a proposal."""
+    """Create the table of decisions, one row per decision of a person."""
     op.create_table(
         "decision",
         sa.Column("id", ID, primary_key=True),

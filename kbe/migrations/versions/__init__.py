@@ -1,1 +1,1 @@
-"""One file per change of the schema, in order."""
+"""Migration scripts, one file per change of the schema, in order."""

@@ -47,7 +47,7 @@ def test_a_file_that_is_something_else_says_so(
     assert kbe(*words, "--kb", damaged) == BAD_INPUT
     out, error = told(capsys)
     assert not out
-    assert "damaged, or no knowledge base" in error
+    assert "damaged, or not a knowledge base" in error
     assert [each.name for each in tmp_path.iterdir()] == ["part.db"]
 
 

@@ -160,7 +160,7 @@ def test_what_the_operator_switches_is_obeyed(controlled: Controlled) -> None:
     assert status.override_percent == 100.0
     assert status.motor_power_kw == pytest.approx(7.5)
     texts = [event.text for event in live.taken().events]
-    assert {"mode QC", "OFF: the program's own feed", "motor power 50 %"} <= set(texts)
+    assert {"mode QC", "OFF: the programmed feed runs", "motor power 50 %"} <= set(texts)
 
 
 def test_a_drive_that_draws_too_much_is_told(controlled: Controlled) -> None:

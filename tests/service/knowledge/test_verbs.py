@@ -197,6 +197,6 @@ def test_an_outcome_without_zone_is_the_callers_mistake(
     kb: str, shop_outcomes: tuple[ProcessOutcome, ...]
 ) -> None:
     naive = replace(shop_outcomes[0], recorded_at=datetime(2026, 3, 5))
-    with pytest.raises(ValueError, match="has no zone"):
+    with pytest.raises(ValueError, match="has no time zone"):
         knowledge.record(kb, [shop_outcomes[0], naive])
     assert knowledge.newest(kb, EVERYTHING, limit=1).total == 1200
