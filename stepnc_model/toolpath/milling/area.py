@@ -15,11 +15,11 @@ from stepnc_model.toolpath.milling.offset import erode
 from stepnc_model.toolpath.milling.strategy import EndMillShape
 from stepnc_model.units import rad_from_deg
 
-SAMPLES = 24
+SAMPLES = 40
 """Number of heights at which a non-flat cutter is compared with a non-straight wall."""
 
-THIRDS = 60
-"""Iterations of the ternary search for the closest contact."""
+ROUNDS = 9
+"""Number of times that the heights around the closest contact are sampled again."""
 
 Inset = Callable[[float], float]
 """Inset of a wall at a height above the floor, mm; 0 at the top."""
@@ -164,22 +164,10 @@ def extra(inset: Inset, cutter: EndMillShape, *, bottom: float, top: float) -> f
     def sum_at(above: float) -> float:
         return inset(bottom + above) + cutter.reach(above)
 
-    sums = [sum_at(above) for above in heights]
-    last, most = len(heights) - 1, max(sums)
-    for at, own in enumerate(sums):
-        # Fillet and corner may each make a peak; the greater one may lie between samples.
-        low, high = max(at - 1, 0), min(at + 1, last)
-        if own >= sums[low] and own >= sums[high]:
-            most = max(most, _greatest(sum_at, heights[low], heights[high]))
-    return max(0.0, most - cutter.radius)
-
-
-def _greatest(function: Callable[[float], float], low: float, high: float) -> float:
-    """Maximum of a unimodal function by ternary search."""
-    for _ in range(THIRDS):
-        third = (high - low) / 3.0
-        if function(low + third) < function(high - third):
-            low += third
-        else:
-            high -= third
-    return function(0.5 * (low + high))
+    # Fillet and corner may each make a peak: the samples around the greatest are sampled again.
+    for _ in range(ROUNDS):
+        sums = [sum_at(above) for above in heights]
+        index = sums.index(max(sums))
+        low, high = heights[max(index - 1, 0)], heights[min(index + 1, len(heights) - 1)]
+        heights = [low + (high - low) * at / SAMPLES for at in range(SAMPLES + 1)]
+    return max(0.0, max(sums) - cutter.radius)
