@@ -79,7 +79,7 @@ def curve_segments(spindle: Spindle) -> tuple[CurveSegment, ...]:
     greatest = inf if spindle.max_speed is None else spindle.max_speed
     if not 0.0 <= least < greatest:
         raise ValueError(
-            f"least spindle speed {least:g} rev/s must be less than the greatest, "
+            f"lowest spindle speed {least:g} rev/s must be less than the highest, "
             f"{greatest:g} rev/s"
         )
     clipped = (_clipped(part, least, greatest) for part in _stretches(spindle))
