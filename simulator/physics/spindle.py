@@ -116,7 +116,7 @@ def _stretch_at(spindle: Spindle, spindle_speed: float) -> CurveSegment:
 
 
 def _stretches(spindle: Spindle) -> tuple[CurveSegment, ...]:
-    """Segments of the curve from 0 to infinity."""
+    """Segments of a spindle's curve for speeds from 0 to infinity."""
     _require_usable(spindle.curve)
     first, last = spindle.curve[0], spindle.curve[-1]
     between = (_between(low, high) for low, high in pairwise(spindle.curve))
