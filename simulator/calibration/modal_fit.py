@@ -204,8 +204,8 @@ def _picked(response: FrequencyResponse, count: int | None, *, path: str) -> lis
     give = -response.receptance.imag
     if give.max() < -give.min():
         message = (
-            "the imaginary part is positive at its greatest peak: "
-            "is its sign that of e^(+iωt), and the response that of the tapped point?"
+            "the imaginary part is positive at its highest peak: check that it follows "
+            "the sign convention e^(+iωt) and was measured at the tapped point"
         )
         raise CalibrationError(message, path=path)
     # A mode is a few lines wide; a peak narrower than the noise around it is not a mode.

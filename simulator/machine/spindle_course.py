@@ -57,14 +57,14 @@ class SpindleCourse:
 
 
 def standing(time: float, speed: float = 0.0) -> SpindleCourse:
-    """Course of a spindle at constant speed."""
+    """Spindle speed over time for a constant speed."""
     return SpindleCourse(times=np.array([time]), speeds=np.array([speed]))
 
 
 def ramped(
     course: SpindleCourse, now: float, speed: float, *, acceleration: float | None
 ) -> SpindleCourse:
-    """Course of a spindle that changes to another speed from now on.
+    """Spindle speed over time for a change to another speed that begins now.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def ramped(
 def following(
     course: SpindleCourse, begin: float, ends: Floats, *, wanted: Floats, acceleration: float
 ) -> SpindleCourse:
-    """Course of a spindle that follows the radius at constant surface speed, within limits.
+    """Spindle speed over time that follows the radius at constant surface speed.
 
     Parameters
     ----------

@@ -327,7 +327,7 @@ def shortest_filter(limits: AxisLimits, change: Floats) -> FixedTimeFilter:
     known = np.isfinite(limits.acceleration)
     wanted = np.maximum(change[known], LEAST_CHANGE)
     if not known.any() or not np.isfinite(wanted).all():
-        raise ValueError("the filter needs axes with finite rapid, feed and acceleration")
+        raise ValueError("the FIR filter needs axes with finite rapid, feed and acceleration")
     ramps = wanted / limits.acceleration[known]
     areas = wanted / limits.jerk[known]
     first = float(np.maximum(ramps, np.sqrt(areas)).max())

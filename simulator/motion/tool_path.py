@@ -142,7 +142,7 @@ LookUp = Callable[[Feed], ModalState]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Leg:
-    """Rows of a run from rest to rest, and the wait after them."""
+    """Part of a run from rest to rest, by its rows, with the wait after it."""
 
     first: int
     last: int
@@ -376,7 +376,7 @@ class _Collector:
             return dwell.seconds
         speed = float(self._speeds(np.array([self.at[0]]))[0])
         if dwell.revolutions is None or speed <= 0.0:
-            raise PostError(f"'{self.path.id}': a dwell in revolutions with a stopped spindle")
+            raise PostError(f"'{self.path.id}': dwell in revolutions with a stopped spindle")
         return dwell.revolutions / speed
 
     def _speeds(self, x: Floats) -> Floats:

@@ -150,7 +150,7 @@ def bilateral(radial_width: float, tool_diameter: float, *, offset: float = 0.0)
     reach = abs(offset) + radial_width / 2.0
     if reach > tool_diameter / 2.0 * (1.0 + _ROUNDING):
         raise ValueError(
-            f"strip reaching {reach:g} mm from the axis must be at most half the tool "
+            f"strip extends {reach:g} mm from the axis; it must not exceed half the tool "
             f"diameter, {tool_diameter / 2.0:g} mm"
         )
     entry = acos(min((2.0 * offset + radial_width) / tool_diameter, 1.0))

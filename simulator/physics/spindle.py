@@ -79,7 +79,7 @@ def curve_segments(spindle: Spindle) -> tuple[CurveSegment, ...]:
     greatest = inf if spindle.max_speed is None else spindle.max_speed
     if not 0.0 <= least < greatest:
         raise ValueError(
-            f"least spindle speed {least:g} rev/s must be less than the greatest, "
+            f"lowest spindle speed {least:g} rev/s must be less than the highest, "
             f"{greatest:g} rev/s"
         )
     clipped = (_clipped(part, least, greatest) for part in _stretches(spindle))
@@ -116,7 +116,7 @@ def _stretch_at(spindle: Spindle, spindle_speed: float) -> CurveSegment:
 
 
 def _stretches(spindle: Spindle) -> tuple[CurveSegment, ...]:
-    """Segments of the curve from 0 to infinity."""
+    """Segments of a spindle's curve for speeds from 0 to infinity."""
     _require_usable(spindle.curve)
     first, last = spindle.curve[0], spindle.curve[-1]
     between = (_between(low, high) for low, high in pairwise(spindle.curve))

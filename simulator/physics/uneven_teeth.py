@@ -63,7 +63,10 @@ def sums(
     *,
     exponent: float,
 ) -> Floats:
-    """Like :func:`simulator.physics.even_teeth.sums`, but for unequal teeth."""
+    """Sum tangential force, force against the feed and force towards φ = 0 over unequal teeth.
+
+    Arguments and result are those of :func:`simulator.physics.even_teeth.sums`, with runout.
+    """
     teeth = len(runout.offsets)
     turns = ceil((pi + float(bands.high.max(initial=0.0))) / (2.0 * pi))
     tooth = np.repeat(np.arange(teeth), turns)

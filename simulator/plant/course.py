@@ -170,7 +170,7 @@ class NominalCourse:
     force: Singles
     """Mean tangential force over a revolution, (N,), N."""
     land_force: Singles
-    """Mean tangential force per mm of flank wear, (N,), N/mm; independent of the feed."""
+    """Mean force of the wear land, (N,), N per mm of flank wear; independent of the feed."""
     exponent: Singles
     """Exponent p of force over feed, 1 − m_c, (N,)."""
     removal_rate: Singles

@@ -41,7 +41,9 @@ class Instrument:
         for name in ("noise", "floor", "step", "lag"):
             require_not_negative(getattr(self, name), name, "")
         if not 0.0 <= self.missing < 1.0:
-            raise ValueError(f"missing {self.missing:g} must be at least 0 and below 1")
+            raise ValueError(
+                f"share of missing samples {self.missing:g} must be at least 0 and below 1"
+            )
 
 
 DYNAMOMETER = Instrument(noise=0.03, floor=1.0, drift=0.02, step=0.25, lag=0.0005)

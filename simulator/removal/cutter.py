@@ -89,7 +89,7 @@ class Insert:
             require_positive(self.width, "blade width", "mm")
             if 2.0 * self.nose_radius > self.width:
                 raise ValueError(
-                    f"corners of {self.nose_radius:g} mm must be at most half the blade's "
+                    f"corner radius {self.nose_radius:g} mm must be at most half the blade "
                     f"width, {0.5 * self.width:g} mm"
                 )
 

@@ -173,7 +173,7 @@ def _require_plane(segments: Segments) -> None:
 
 
 DEFAULT_CELL = 0.01
-"""Default length of a cell, mm; longer for bars of more than MOST_CELLS such cells."""
+"""Default length of a cell, mm; longer for long bars, with at most MOST_CELLS."""
 
 MOST_CELLS = 1_000_000
 

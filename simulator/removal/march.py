@@ -158,7 +158,7 @@ def _sink(task: RemovalTask, segment: Segment, out: Floats, count: int, found: F
         span = (stretch / stretches, (stretch + 1) / stretches)
         x, y, z = place(row, span[1])
         inner, outer = lip(grid, profile, x, y, z)
-        # Where a point broke through the bottom, its height on the axis is useless.
+        # Below the bottom of the stock the map does not tell the width of a pointed tool.
         middle = place(row, 0.5 * (span[0] + span[1]))
         bored = max(bored, hole(grid, task.past, middle))
         if abs(inner - bored) <= LIP_ERROR * profile.radius + max(grid.dx, grid.dy):

@@ -247,7 +247,7 @@ def test_a_huge_stock_takes_no_more_memory(code: Path) -> None:
         (TABLE.replace("endmill", "axe"), "tool[1].kind"),
         (
             '[[tool]]\nnumber = 1\nkind = "turning"\n',
-            "line 5: T1 turning T1 turns, and the mac",
+            "line 5: T1 turning T1 is a turning tool",
         ),
     ],
 )

@@ -262,7 +262,7 @@ REFUSED: dict[str, tuple[Callable[[Rows], Rows], str]] = {
     ),
     "no power": (
         lambda rows: [row[:1] for row in rows],
-        "no power in W; one of x_axis_wattage",
+        "no column with a power in W; one of x_axis_wattage",
     ),
 }
 
@@ -291,7 +291,7 @@ def test_a_run_that_cannot_be_is_refused_in_one_line(
             b"time_s,electric_wattage\n" + b"\0" * 300,
             "line 2: 1 values in a table with 2 columns",
         ),
-        (b"time_s|electric_wattage\n0|900\n", "time_s: missing"),
+        (b"time_s|electric_wattage\n0|900\n", "time_s: column is missing"),
         (b"time_s;electric_wattage\n0;900\n0,1;900\n0.1;901\n", "line 4: time_s: 0.1 s after"),
         (b'time_s,electric_wattage\n"1,2\n', "line 2: 1 values in a table with 2 columns"),
         (b"time_s,electric_wattage\n" + b"1" * 200_000 + b",3\n", "field larger than field"),

@@ -48,7 +48,7 @@ def test_a_file_adds_pairs_and_then_there_is_an_interval(
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (("--life", "160:5"), "2 or more"),
+        (("--life", "160:5"), "at least 2"),
         (("--life", "160"), "write 120:25"),
         (("--life", "160:x", "--life", "100:3"), "must be two numbers"),
         ((*PAIRS, "--edge", "wood"), "hss, carbide, ceramic"),

@@ -84,7 +84,7 @@ def test_time_in_another_unit_is_refused(tmp_path: Path) -> None:
     table = rows()
     for i, row in enumerate(table):
         row[0] = str(100_000 * i)
-    assert "every 100000 s" in str(refused(tmp_path, table))
+    assert "sampling interval 100000 s" in str(refused(tmp_path, table))
 
 
 def test_position_in_another_unit_is_refused(tmp_path: Path) -> None:

@@ -60,7 +60,7 @@ def test_pairs_that_hardly_tell_a_slope_have_no_upper_end() -> None:
     ("pairs", "message"),
     [
         ([], "0 pair"),
-        ([pair(100.0, 60.0)], "2 or more"),
+        ([pair(100.0, 60.0)], "at least 2"),
         ([pair(100.0, 60.0), pair(100.0, 90.0)], "two different speeds"),
         ([pair(100.0, 60.0), pair(-1.0, 90.0)], "pair 2"),
         ([pair(100.0, 0.0), pair(90.0, 90.0)], "pair 1"),

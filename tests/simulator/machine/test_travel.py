@@ -84,7 +84,7 @@ def test_arc_may_go_as_far_as_its_farthest_point(
 def test_axis_that_the_machine_has_not_names_the_line(lathe: Machine) -> None:
     path = chained([lines([(0, 0, 0), (5, 0, 0)]), lines([(5, 0, 0), (5, 2, 0)])])
     require_axes(lathe, path[:1])
-    with pytest.raises(ProgramFault, match="line 1: moves along Y"):
+    with pytest.raises(ProgramFault, match="line 1: move along Y"):
         require_axes(lathe, path)
 
 

@@ -198,12 +198,12 @@ def test_off_travel_names_axis_position_and_line(mill: Machine) -> None:
 
 
 def test_axis_that_the_machine_has_not(lathe: Machine) -> None:
-    with pytest.raises(ProgramFault, match="line 2: moves along Y"):
+    with pytest.raises(ProgramFault, match="line 2: move along Y"):
         run(lathe, HOME, nc.Rapid(end=(0.0, 10.0, 50.0)))
 
 
 def test_turning_tool_on_a_mill(mill: Machine, even_stock: Stocks) -> None:
-    with pytest.raises(ProgramFault, match="line 4: T1 TOOL 1 turns"):
+    with pytest.raises(ProgramFault, match="line 4: T1 TOOL 1 is a turning tool"):
         run(
             mill,
             nc.ToolChange(number=1),

@@ -32,7 +32,7 @@ def test_strip_at_the_cutter_s_edge_is_one_sided() -> None:
 
 
 def test_strip_beyond_the_cutter_is_refused() -> None:
-    with pytest.raises(ValueError, match="at most half the tool diameter, 10 mm"):
+    with pytest.raises(ValueError, match="must not exceed half the tool diameter, 10 mm"):
         engagement.bilateral(8.0, 20.0, offset=7.0)
 
 

@@ -113,7 +113,7 @@ def test_empty_curve_is_refused() -> None:
 
 
 def test_crossed_speed_range_is_refused() -> None:
-    with pytest.raises(ValueError, match="least spindle speed 50 rev/s"):
+    with pytest.raises(ValueError, match="lowest spindle speed 50 rev/s"):
         curve_segments(spindle(BASE, min_speed=50.0, max_speed=20.0))
 
 
