@@ -73,7 +73,7 @@ class Judged:
     misfit: float
     """Squared distance between measured and expected shares, in standard deviations."""
     offsets: Offsets
-    """Offsets updated by the revolution."""
+    """Tooth offsets updated by the revolution."""
 
 
 def unknown(teeth: int) -> Offsets:
