@@ -173,7 +173,7 @@ def _share(cut: Cut, share: float) -> float:
 
 
 def _drilled(cut: Cut, stations: Stations, at: Ints) -> Cut:
-    """Drilled cut with the widest ring that the lips met along the path."""
+    """Drilled cut at the greatest section that the lips met along the path."""
     row = at[stations.peak_section[at].argmax()]
     # Here the axial depth is the width of a lip, and the diameter twice its mid-radius.
     middle, width = float(stations.diameter[row]), float(stations.axial_depth[row])
