@@ -66,7 +66,7 @@ EXPECTED = 0.5
 """Misfit per tooth that gives no reason to change the offsets."""
 
 DOUBTFUL = 30.0
-"""Misfit per tooth without a tooth, up to which that tooth may be lost."""
+"""Misfit per tooth, computed without one tooth, up to which that tooth may be lost."""
 
 NOTABLE = 2.0
 """Misfit per tooth above which a revolution is examined further."""

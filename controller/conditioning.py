@@ -39,7 +39,7 @@ class Tare:
     """Zero of an instrument: its reading while nothing is cut."""
 
     offset: float = 0.0
-    """Zero reading, N or W."""
+    """Zero reading of the instrument, N or W."""
     seconds: float = 0.0
     """Weighted time over which the zero was learnt, s; 0 before anything was learnt."""
     time: float = 0.0
@@ -58,7 +58,7 @@ class IdlePower:
     spindle_speed: float = 0.0
     """Spindle speed at which the idle power holds, rev/s."""
     tare: Tare = field(default_factory=Tare)
-    """Learnt idle power, W."""
+    """Learnt idle power of the main drive, W."""
 
 
 def tared(tare: Tare, reading: Reading, *, has_chips: bool | None = None) -> Tare:
@@ -187,7 +187,7 @@ def conditioned(set_point: float, wanted: float, *, rise: float = RISE) -> float
 
 
 def _cuts(reading: Reading, has_chips: bool | None) -> bool:
-    """Whether chips may be being cut."""
+    """Whether chips may be forming."""
     return reading.can_override if has_chips is None else has_chips
 
 

@@ -29,7 +29,7 @@ class LoopCycle:
     ratio: float | None
     """ln(measured / expected force); None when not comparable."""
     weight: float = 1.0
-    """Equivalent force over real force."""
+    """Weight: equivalent force over real force."""
     events: tuple[LoopEvent, ...]
 
     @property

@@ -31,7 +31,7 @@ class RatioEstimate:
     square_sum: float = 0.0
     """Sum of squared distances from the mean."""
     readings: int = 0
-    """Number of revolutions counted."""
+    """Number of revolutions counted so far."""
 
     @property
     def log_deviation(self) -> float:

@@ -80,7 +80,7 @@ class OverrideBand:
     rise: float = 0.25
     """Greatest relative rise of the override per revolution; falling is not limited."""
     safe: float = 0.5
-    """Override without force readings."""
+    """Override that applies without force readings."""
     sensor_timeout: float = 0.5
     """Time without a reading after which the safe override applies, s."""
     overload_ratio: float = OVERLOAD_RATIO

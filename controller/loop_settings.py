@@ -41,7 +41,7 @@ class LoopSettings:
             ("power factor", self.power_factor),
             ("set point", 1.0 if self.set_point is None else self.set_point),
             ("servo lag", self.servo_lag),
-            ("force of chips", self.chips),
+            ("chip force threshold", self.chips),
         ):
             if not 0.0 < value < inf:
                 raise ValueError(f"{thing} {value:g} must be positive and finite")
@@ -63,7 +63,7 @@ class LoopStep:
     exponent: float = 0.8
     """Exponent p of force over feed."""
     tool: str = ""
-    """Id of the tool."""
+    """Id of the tool in this workingstep."""
     diameter: float = 0.0
     """Diameter at which the cutting speed drives the force, mm; 0: not known."""
 

@@ -1,4 +1,4 @@
-"""State machine of the control loop.
+"""State machine of the control loop, with its phases and transitions.
 
 The phase determines the override::
 
@@ -460,7 +460,7 @@ def _tuned(
 
 
 def _situation(state: LoopState, revolution: Revolution) -> Situation:
-    """Situation that the law is given."""
+    """Input for the control law from the state and a revolution."""
     keep, preview, look_ahead = state.keep, state.preview, state.settings.look_ahead
     way = revolution.period * max(revolution.override, LEAST_WAY)
     begin, end = revolution.progress_before, revolution.progress
@@ -489,12 +489,12 @@ def _bounded(state: LoopState, *, cap: float) -> LoopState:
 
 
 def _stopped(state: LoopState, why: str) -> LoopState:
-    """Stop the program permanently."""
+    """Stop the program permanently, with the reason."""
     return _told(_into(state, Phase.STOPPED, 0.0), EventKind.STOP, why)
 
 
 def _into(state: LoopState, phase: Phase, override: float) -> LoopState:
-    """Set the phase and its override."""
+    """Change to a phase, with its override."""
     allowed_ = AllowedOverride(override=override, holding=phase.value)
     return state._replace(phase=phase, allowed=allowed_)
 

@@ -63,7 +63,7 @@ class Monitor(NamedTuple):
     breakage: Breakage = Breakage()
     watch: ThresholdWatch = ThresholdWatch()
     override: float = 1.0
-    """Override of the last revolution."""
+    """Override in the last revolution."""
     level: AlarmLevel = AlarmLevel.SAFE
     """Level that was reported last."""
     since: float = -inf
@@ -73,7 +73,7 @@ class Monitor(NamedTuple):
     at_floor: int = 0
     """Revolutions at the floor of the override; negative once reported."""
     events: tuple[LoopEvent, ...] = ()
-    """Events of the last revolution."""
+    """Events caused by the last revolution."""
 
     def begun(self, tool: str) -> "Monitor":
         """Enter a new workingstep, whose force errors may differ from those of the last one."""

@@ -43,7 +43,7 @@ Arcs of contact are not exactly as planned, thin ones above all.
 """
 
 PLAIN = 1.5
-"""Misfit per tooth up to which a revolution is as expected; above it, the search restarts."""
+"""Misfit per tooth of a revolution as expected; above it, the fit is repeated."""
 
 _STEP = 1e-4  # step for numerical derivatives, mm
 _NEAR = 5e-4  # change between iterations at which they have converged, mm
@@ -73,7 +73,7 @@ class Judged:
     misfit: float
     """Squared distance between measured and expected shares, in standard deviations."""
     offsets: Offsets
-    """Offsets updated by the revolution."""
+    """Tooth offsets updated by the revolution."""
 
 
 def unknown(teeth: int) -> Offsets:

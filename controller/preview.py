@@ -26,11 +26,11 @@ class Expected:
     """Expected values in the tooth periods of a revolution, by tooth number."""
 
     force: NDArray[np.float64]
-    """Force at an override of 1, (z,), N."""
+    """Expected force at an override of 1, (z,), N."""
     change: NDArray[np.float64]
     """Greatest change of that force from the previous or to the next tooth period, (z,), N."""
     arcs: Arcs
-    """Arcs of contact, (z,)."""
+    """Arcs of contact of the teeth, (z,)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -17,11 +17,11 @@ class RunRecord:
 
     workingstep: int
     time: float = 0.0
-    """Total time, s."""
+    """Total time of the workingstep, s."""
     cutting_time: float = 0.0
     """Time with chips, s."""
     way: float = 0.0
-    """Length of path with chips, mm."""
+    """Length of path run with chips, mm."""
     peak: float = 0.0
     """Force of some revolutions that came nearest to its bound, N; without a bound the
     greatest."""

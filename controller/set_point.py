@@ -66,7 +66,7 @@ def bounded(
 def approached(
     keep: WorkingstepBounds, settings: LoopSettings, step: LoopStep
 ) -> WorkingstepBounds:
-    """Bounds of the next revolution.
+    """Force and override bounds of the next revolution.
 
     A falling set point applies at once to the law, but the force needs time to follow: the
     overload limit falls as slowly as a set point rises, :data:`controller.conditioning.RISE`.

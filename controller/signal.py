@@ -58,7 +58,7 @@ class Revolution:
     power: float
     """Mean power of the main drive, W; NaN: all samples lost."""
     feed: float
-    """Mean feed, mm/s."""
+    """Mean feed during the revolution, mm/s."""
     override: float
     """Mean override that the axes ran."""
     spindle_speed: float
@@ -76,7 +76,7 @@ class Revolution:
 
     @property
     def teeth(self) -> int:
-        """Number of teeth."""
+        """Number of teeth of the cutter."""
         return len(self.tooth_peaks)
 
     @property

@@ -74,10 +74,10 @@ class ThresholdWatch:
 
     level: AlarmLevel = AlarmLevel.SAFE
     log_mean: float = 0.0
-    """Mean of ln(F / 1 N)."""
+    """Learnt mean of ln(F / 1 N)."""
     log_variance: float = 0.0
     revolutions: int = 0
-    """Number of revolutions learnt from."""
+    """Number of revolutions learnt from so far."""
     workingstep: int = 0
     """Number of the workingstep to which they belong."""
 

@@ -44,7 +44,7 @@ class Content:
 
     @property
     def rows(self) -> int:
-        """Total number of rows."""
+        """Total number of rows in all tables."""
         return self.outcomes + self.corrections + self.decisions
 
 
@@ -209,7 +209,7 @@ def _keep_others_out(connection: Connection) -> None:
 
 
 def _copy_rows(source: Connection, target: Connection) -> None:
-    """Copy all rows with their ids."""
+    """Copy all rows of all tables with their ids."""
     for table in TABLES:
         rows = [each.name for each in table.columns]
         for part in _rows(source, table).partitions():

@@ -7,7 +7,7 @@ from stepnc_model.outcome import ProcessOutcome
 PASSED = 1.05
 """Share of the bound above which the force has violated it."""
 UNUSED = 0.80
-"""Share of the bound below which it is wasted, if the plan intended to use it."""
+"""Share of the bound below which the bound is wasted, if the plan intended to use it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

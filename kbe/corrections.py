@@ -53,7 +53,7 @@ ONE = np.ones(1)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FactorPrior:
-    """Prior belief about a factor before the first run."""
+    """Prior belief about the factor on k_c before the first run."""
 
     deviation: float = 0.2
     """Standard deviation of ln factor about 0: catalogue forces are ±20 % until calibrated."""

@@ -91,20 +91,20 @@ class EvaluationRow:
     length: float | None
     """Length L of the feature, mm; None: not known, or not the same in all outcomes."""
     width: float | None
-    """Width X of the feature, mm."""
+    """Width X of the feature, mm; None as for the length."""
     total_depth: float | None
-    """Total depth a_t, mm."""
+    """Total depth a_t, mm; None as for the length."""
     roughing: Side | None
     finishing: Side | None
 
     @property
     def sides(self) -> tuple[Side, ...]:
-        """Sides that the row has."""
+        """Roughing and finishing side, as far as the row has them."""
         return tuple(side for side in (self.roughing, self.finishing) if side is not None)
 
     @property
     def grade(self) -> EvaluationGrade:
-        """Worst grade of the sides."""
+        """Worst grade of the sides of the row."""
         return min((side.grade for side in self.sides), key=list(EvaluationGrade).index)
 
 
@@ -132,7 +132,7 @@ class _Group:
         """Sides seen at each feature in the current run."""
 
     def add(self, outcome: ProcessOutcome) -> None:
-        """Add one more outcome."""
+        """Add one more outcome to the group."""
         self._feature = _common(self._feature, outcome.feature)
         key = _SideKey(is_finishing=outcome.is_finishing, tool=outcome.context.tool)
         self._sides.setdefault(key, SideTally(outcome.context)).add(outcome)
@@ -216,7 +216,7 @@ def selected(rows: Iterable[EvaluationRow], keep: RowFilter) -> tuple[Evaluation
 
 
 def ordered(rows: Sequence[EvaluationRow], by: SortKey) -> tuple[EvaluationRow, ...]:
-    """Rows sorted by a key."""
+    """Evaluation rows sorted by a key."""
     return tuple(sorted(sorted(rows, key=_names), key=_KEYS[by]))
 
 
@@ -232,7 +232,7 @@ def _key(outcome: ProcessOutcome, grouping: Grouping) -> GroupKey:
 
 
 def _common(first: FeatureFacts, second: FeatureFacts) -> FeatureFacts:
-    """Facts that two features have in common."""
+    """Facts that are equal for two features; others are empty."""
     if first == second:
         return first
     return FeatureFacts(

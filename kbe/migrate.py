@@ -62,7 +62,7 @@ def _found(connection: Connection, place: StoreLocation, *, is_new_allowed: bool
             raise StoreDamaged(place.shown, reason=f"unknown schema version {versions}")
         return found[0] if found else ""
     if tables:
-        reason = f"is not a knowledge base (it has a table {tables[0]}); choose another"
+        reason = f"is not a knowledge base (table {tables[0]}); name another file or database"
         raise StoreUnavailable(place.shown, reason=reason)
     if not is_new_allowed:
         raise StoreUnavailable(place.shown, reason="is empty; check the name")

@@ -43,12 +43,12 @@ class Moments:
     def __init__(self) -> None:
         self.count = 0
         self.mean = 0.0
-        """Mean of y."""
+        """Mean of the y values."""
         self._centre = 0.0
         self._xx = self._xy = self._yy = 0.0
 
     def add(self, x: float, y: float) -> None:
-        """Add one point."""
+        """Add one point (x, y)."""
         self.count += 1
         from_x, from_y = x - self._centre, y - self.mean
         self._centre += from_x / self.count

@@ -47,7 +47,7 @@ class NormalInverseGamma:
     """Rate of the inverse gamma distribution, above 0."""
 
     def __post_init__(self) -> None:
-        """Check shapes and signs."""
+        """Check shapes and signs of the parameters."""
         size = len(self.mean)
         if self.mean.shape != (size,) or self.precision.shape != (size, size):
             raise ValueError(

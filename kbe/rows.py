@@ -53,7 +53,7 @@ class AttributeColumn:
     path: tuple[str, ...]
     """Names of the attributes that lead to it."""
     name: str
-    """Name of the column."""
+    """Name of the database column."""
     kind: type
     """Type of the value: str, float, int, bool or datetime."""
     is_optional: bool
@@ -209,7 +209,7 @@ def _whole(name: str, value: Any) -> int:
 
 
 def _truth(_name: str, value: Any) -> bool:
-    """Convert a truth value."""
+    """Convert a value to bool."""
     return bool(value)
 
 

@@ -48,7 +48,7 @@ class Side:
     cutting_speed: float | None
     """Cutting speed V_c, mm/s."""
     step_depth: EvaluatedQuantity
-    """Depth of one pass a_s, mm."""
+    """Depth of one pass a_s, mm: predicted and evaluated."""
     feed_per_tooth: EvaluatedQuantity
     """Feed per tooth f_z, mm: predicted and evaluated."""
     immersions: tuple[FaceMillingImmersion, ...]
@@ -84,7 +84,7 @@ class SideTally:
         self._latest: datetime | None = None
 
     def add(self, outcome: ProcessOutcome) -> None:
-        """Add one more outcome.
+        """Add one more outcome of this side.
 
         Raises
         ------
@@ -162,7 +162,7 @@ class QuantityTally:
         self._single = (Moments(), Moments())
 
     def add(self, quantity: EvaluatedQuantity) -> None:
-        """Add one more outcome."""
+        """Add one more outcome of the quantity."""
         values = (quantity.predicted, quantity.measured)
         into = self._single if None in values else self._paired
         for moments, value in zip(into, values, strict=True):
@@ -175,7 +175,7 @@ class QuantityTally:
 
 
 def _add(moments: Moments, value: float | None) -> None:
-    """Add a value if it is known."""
+    """Add a value to moments if it is known."""
     if value is not None:
         moments.add(0.0, value)
 

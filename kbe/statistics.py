@@ -51,7 +51,7 @@ class DeviationStatistics:
     """Standard error of the mean of runs; from 2 runs."""
     median: float | None
     high: float | None
-    """95th percentile."""
+    """95th percentile of the deviations."""
     runs: int
     """Number of runs with a deviation."""
     runs_above: int
@@ -85,7 +85,7 @@ class DeviationTally:
         self._sample.add(value)
 
     def statistics(self) -> DeviationStatistics:
-        """Statistics of the stream so far."""
+        """Statistics of the deviations added so far."""
         runs, above = self._with_last()
         scatter = runs.deviation
         return DeviationStatistics(

@@ -51,7 +51,7 @@ class Store:
         self.close()
 
     def close(self) -> None:
-        """Close all connections."""
+        """Close all database connections."""
         self.engine.dispose()
 
     def add(self, outcomes: Sequence[ProcessOutcome]) -> None:
@@ -155,7 +155,7 @@ class Store:
             connection.execute(insert(decision), row)
 
     def corrections(self) -> tuple[StoredCorrection, ...]:
-        """All corrections, in any state."""
+        """All stored corrections, in any state."""
         with reading(self.engine, self.place) as connection:
             return tuple(entry(row) for row in connection.execute(entries()))
 

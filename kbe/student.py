@@ -9,7 +9,7 @@ class StudentT:
 
     centre: float
     scale: float
-    """Scale, above 0."""
+    """Scale of the distribution, above 0."""
     degrees: float
     """Degrees of freedom, above 0."""
 

@@ -106,7 +106,7 @@ class Advice:
     active_words: str = ""
     """Name of the active limit in words for the user."""
     saving_of_one_more: float = 0.0
-    """Time or energy saved if the active limit rose by one step, s or J."""
+    """Time saved if the bound of the active limit were one step wider, s."""
     safety_factor: float = 1.0
     """k_c at the planned quantile, relative to the nominal k_c."""
     saving_of_free_speed: float = 0.0

@@ -30,7 +30,7 @@ class BarGrip:
 
     size: GripSize
     face: float
-    """z of the outer end of the jaws, mm."""
+    """z coordinate of the outer end of the jaws, mm."""
     front: float
     """z of the free end of the bar as bought, mm."""
     has_tailstock: bool = False

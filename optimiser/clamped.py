@@ -125,12 +125,12 @@ def met_by(
     try:
         shape = shape_of(program, step.tool_ref)
         if shape is None:
-            return TrialContacts(why="threads and knurls are not cut from the stock")
+            return TrialContacts(why="threads and knurls are not simulated in the stock")
         if isinstance(stock, TurningStock):
             stations, change = stock.tried(run.segments, shape)
             cell = stock.cell
         elif isinstance(shape, Insert):
-            return TrialContacts(why="an insert does not mill")
+            return TrialContacts(why="a turning insert cannot mill")
         else:
             stations, trial = stock.tried(run.segments, shape, is_clockwise=run.is_clockwise)
             change, cell = trial.after, stock.map.cell

@@ -18,7 +18,7 @@ class PermittedDeflection:
     """Permitted deflection of an end mill or bar, with its origin."""
 
     value: float = GREATEST_DEFLECTION
-    """Permitted deflection, mm."""
+    """Greatest permitted deflection, mm."""
     origin: str = ""
     """Origin of the value, as the end of a sentence; empty for the customary value."""
 

@@ -90,7 +90,7 @@ class TurnedBar:
     sections: tuple[BarSection, ...]
     """Sections of the remaining bar from the chuck end on, mm from that end."""
     back: float
-    """z of the chuck end of the bar, mm."""
+    """z coordinate of the chuck end of the bar, mm."""
     low: float
     """z of the cut nearest to the chuck, mm."""
     high: float
@@ -161,7 +161,7 @@ class Cut:
     widest_drilled: float | None = None
     """Diameter cut by the lips of a drill where they cut most, mm; None: the tool diameter."""
     link_length: float = 0.0
-    """Length at rapid in one pass, mm."""
+    """Length of rapid moves in one pass, mm."""
     rest_time: float = 0.0
     """Time per pass not at cutting feed, s: ramps, rapids, moves with own feeds, waits."""
     air_length: float = 0.0

@@ -108,7 +108,7 @@ def _grooving_cut(
     shape = _shape(program, step)
     width = tool.width
     if not width:
-        raise program.error("a grooving tool needs its cutting width", step.tool_ref)
+        raise program.error("a grooving tool must state its cutting width", step.tool_ref)
     infeed = shape.outer_radius - shape.inner_radius
     is_off = isinstance(step.operation, CuttingIn)
     plunges = 1 if is_off else passes_for(shape.length, width)

@@ -81,7 +81,7 @@ class Bending:
     """Bending forces at the milling stations, over ``K·k_c1.1·f_z^q``, mm."""
 
     at: Ints
-    """Rows of the milling stations, (K,)."""
+    """Row numbers of the milling stations, (K,)."""
     shank: Floats
     """Greatest force across the tool axis, (K,), mm."""
     wall: Floats
@@ -152,7 +152,7 @@ def greatest_section(cut: Cut, *, depth: float) -> tuple[float, float]:
     tool = cut.tool
     if cut.kind is CutKind.MILLING:
         if cut.engagement is None:
-            raise ValueError("a milling cut has no engagement")
+            raise ValueError("the milling cut has no engagement")
         width = 0.5 * cut.diameter * cut.engagement.cosine_difference * cut.fill
         return depth * cut.depth_share * width, cut.mean_chip_ratio
     if cut.kind is CutKind.DRILLING:
@@ -173,15 +173,15 @@ def _share(cut: Cut, share: float) -> float:
 
 
 def _drilled(cut: Cut, stations: Stations, at: Ints) -> Cut:
-    """A hole as wide as the lips cut where they cut most, with what was there before."""
+    """Drilled cut at the greatest section that the lips met along the path."""
     row = at[stations.peak_section[at].argmax()]
-    # A lip's width is its axial depth here, and twice the radius of its middle the diameter.
+    # Here the axial depth is the width of a lip, and the diameter twice its mid-radius.
     middle, width = float(stations.diameter[row]), float(stations.axial_depth[row])
     return replace(cut, widest_drilled=middle + width, previous_diameter=middle - width)
 
 
 def _turned(cut: Cut, stations: Stations, at: Ints, kienzle: Kienzle, *, nominal: float) -> Cut:
-    """A turned cut where its force is greatest: at a small depth the nose thins the chip."""
+    """Turned cut at its greatest force; at a small depth the nose radius thins the chip."""
     ratio = stations.chip_ratio[at].clip(LEAST_RATIO)
     row = (stations.axial_depth[at] * ratio**-kienzle.m_c).argmax()
     deepest = float(stations.axial_depth[at][row])
@@ -194,7 +194,7 @@ def _turned(cut: Cut, stations: Stations, at: Ints, kienzle: Kienzle, *, nominal
 def _milled(
     cut: Cut, met: PathContacts, kienzle: Kienzle, *, nominal: float, bent: Bending
 ) -> Cut:
-    """A milling cut with the places of its greatest forces: mean, across it, at the wall."""
+    """Milling cut with the places of its greatest mean, cross and wall forces."""
     stations = met.stations
     at = _milled_rows(stations)
     if not len(at):
@@ -232,20 +232,20 @@ def _milled(
 
 
 def _milled_rows(stations: Stations) -> Ints:
-    """Stations that mill along an arc that is known."""
+    """Rows of the stations that mill along a known arc."""
     has_arc = stations.exit_angle > stations.entry_angle
     return np.flatnonzero((stations.kind == StationKind.MILLING) & has_arc)
 
 
 def _width_ratio(arcs: SingleArcs, at: Ints) -> Floats:
-    """a_e/D at stations."""
+    """Radial width over diameter, a_e/D, at the stations."""
     entry, exit_ = _within(arcs, at)
     ratio: Floats = 0.5 * (np.cos(entry) - np.cos(exit_))
     return ratio
 
 
 def _chip_sine(arcs: SingleArcs, at: Ints) -> Floats:
-    """Greatest sin φ on the arcs of stations."""
+    """Greatest sin φ on the contact arcs of the stations."""
     entry, exit_ = _within(arcs, at)
     holds_top = (entry <= 0.5 * pi) & (exit_ >= 0.5 * pi)
     sine: Floats = np.where(holds_top, 1.0, np.maximum(np.sin(entry), np.sin(exit_)))
@@ -253,34 +253,34 @@ def _chip_sine(arcs: SingleArcs, at: Ints) -> Floats:
 
 
 def _within(arcs: SingleArcs, at: Ints) -> tuple[Floats, Floats]:
-    """Entry and exit angles of stations on the side where chips are made."""
+    """Entry and exit angles of stations, clipped to the side where chips are formed, rad."""
     return arcs.entry_angle[at].clip(0.0, pi), arcs.exit_angle[at].clip(0.0, pi)
 
 
 SAME_SPEED = 1e-6
-"""share by which speeds differ that are one"""
+"""Relative difference below which spindle speeds count as equal."""
 
 MOST_SECTIONS = 200
-"""that a bar is told by; each is as thin as it is anywhere within"""
+"""Greatest number of sections that describe a bar; each has its least thickness."""
 
 
 def turned_of(
     cut: Cut, met: PathContacts, run: ToolPathRun, stock: TurningStock, after: BarRadii
 ) -> TurnedBar | None:
-    """The bar after a path, and where the path cuts it; None where it cuts nothing.
+    """Shape of the bar after a path, and where the path cuts it; None if it cuts nothing.
 
     Parameters
     ----------
     cut : Cut
-        With the programmed speed where the bar is widest.
+        Cut with the programmed speed at the widest place of the bar.
     met : PathContacts
-        What its path met.
+        Contacts along its path.
     run : ToolPathRun
         The path as programmed.
     stock : TurningStock
-        What it found.
+        Stock before the path.
     after : BarRadii
-        What it left.
+        Bar radii after the path.
     """
     stations = met.stations
     rows = stations.section > 0.0
@@ -304,7 +304,7 @@ def turned_of(
 
 
 def _sections(cell: float, bar: BarRadii) -> Iterator[BarSection]:
-    """Stretches of a bar up to where nothing is left of it, mm from its first end."""
+    """Sections of a bar up to where nothing is left of it, mm from its first end."""
     is_left = bar.outer > bar.inner
     count = len(is_left) if is_left.all() else int(is_left.argmin())
     step = max(1, ceil(count / MOST_SECTIONS))

@@ -75,7 +75,7 @@ def power_load(cut: Cut, at: CuttingConditions) -> Monomial:
 
 
 def limits_of(cut: Cut, at: CuttingConditions) -> tuple[Limit, ...]:
-    """All limits that hold at every spindle speed."""
+    """All limits of a cut that hold at every spindle speed."""
     return (
         *_load_limits(cut, at),
         *_depth_limits(cut, at),

@@ -85,7 +85,7 @@ def _along_helix(
 ) -> Monomial:
     """Load that is integrated along the helical edges in the cut."""
     if place is None:
-        raise ValueError("a milling cut needs its engagement")
+        raise ValueError("the milling cut has no engagement")
     exponent = 1.0 - kienzle.m_c
     return Monomial(
         coefficient=factor * kienzle.k_c11,
@@ -175,7 +175,7 @@ def _scaled(load: Monomial, factor: float, speed: float = 0.0) -> Monomial:
 
 
 def scaled(load: Monomial, factor: float) -> Monomial:
-    """Multiply a load by a factor."""
+    """Multiply a load function by a factor."""
     return _scaled(load, factor)
 
 
@@ -192,7 +192,7 @@ def _monomial(value: float, kienzle: Kienzle, *, depth: float) -> Monomial:
 def _milling_cut(cut: Cut, place: CriticalPlace | None) -> milling.MillingCut:
     """Milling cut at one place, at the reference feed and unit depth of a pass."""
     if place is None:
-        raise ValueError("a milling cut needs its engagement")
+        raise ValueError("the milling cut has no engagement")
     return milling.MillingCut(
         feed_per_tooth=REFERENCE_FEED,
         teeth=cut.tool.teeth,

@@ -72,7 +72,7 @@ class TriedPath:
 
     path: ToolPath
     run: ToolPathRun
-    """Run of the path as programmed."""
+    """Run of the path at the programmed feeds and speeds."""
     cut: Cut
     """Cut with the engagement met along the path."""
     passes: int
@@ -96,7 +96,7 @@ class SearchTrace:
     """What the search for a workingstep's setting read and changed."""
 
     place: StockPlace | None = None
-    """Stock that the workingstep cuts."""
+    """Stock map that the workingstep cuts."""
     change: Change | None = None
     trial: PathTrial | None = None
     """Milling trial of the change; None when the tool is not a mill."""
@@ -175,7 +175,7 @@ class MeasuredCuts:
         """Ids of workingsteps without a path, by the instance number of their feature."""
         self._estimate: Cut | None = None
         self._found: StockMap | None = None
-        """Stock that the workingstep finds."""
+        """Stock map that the workingstep finds."""
         self._seen: dict[int, TriedPath] = {}
         """Tried paths of the workingstep, by the number of passes."""
         self._trace = SearchTrace()

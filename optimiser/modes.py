@@ -17,7 +17,7 @@ from enum import StrEnum
 
 
 class Mode(StrEnum):
-    """Objective of the optimisation."""
+    """Objective of the feed optimisation."""
 
     TC = "TC"
     QC = "QC"

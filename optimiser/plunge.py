@@ -26,7 +26,7 @@ CORE = 0.25
 """Share of the radius that contact must reach inwards to count as drilling."""
 
 TINY = 1e-9
-"""Least length of a move, mm."""
+"""Least length of a move, mm, to avoid division by zero."""
 
 LEAST_SHARE = 0.02
 """Share of the tool's section below which removed material is only a sliver."""

@@ -73,7 +73,7 @@ def with_plunge_feed(cut: Cut, at: CuttingConditions, setting: Setting) -> Setti
 
 
 def _straight(cut: Cut, at: CuttingConditions, speed: float) -> Iterator[Limit]:
-    """Limits of straight plunges."""
+    """Limits of straight plunges of a mill."""
     if cut.way_in is None or not cut.way_in.drilled:
         return
     ratio = _feed_ratio(at) if cut.way_in.reaches_axis else 1.0

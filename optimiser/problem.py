@@ -46,7 +46,7 @@ class LimitName(StrEnum):
 
     @property
     def words(self) -> str:
-        """Name of the limit in words."""
+        """Name of the limit in words, without underscores."""
         return self.value.replace("_", " ")
 
 
@@ -97,7 +97,7 @@ class SpeedCurve:
     """Positive bounds at the points; the last one holds above the last speed."""
 
     def at(self, speed: float) -> float:
-        """Bound at a speed; infinite below the first point."""
+        """Bound at a spindle speed; infinite below the first point."""
         if speed < self.speeds[0]:
             return inf
         row = bisect_right(self.speeds, speed) - 1
@@ -106,7 +106,7 @@ class SpeedCurve:
         return self._between(row, speed)
 
     def peak(self, low: float, high: float) -> float:
-        """Speed of the greatest bound in a range, rev/s."""
+        """Spindle speed of the greatest bound in a range, rev/s."""
         inner = [speed for speed in self.speeds if low < speed < high]
         return max((low, *inner, high), key=self.at)
 
@@ -165,7 +165,7 @@ class Limit:
 
     @property
     def words(self) -> str:
-        """Name of the limit in words."""
+        """Name of the limit in words, or its label."""
         return self.label or self.name.words
 
     def bound_at(self, speed: float) -> float:
@@ -190,7 +190,7 @@ class Limit:
         return f"× {self.safety_factor:.4g} for the spread of k_c"
 
     def told_bound(self, speed: float) -> str:
-        """Text of the bound with its unit."""
+        """Text of the bound of a limit, with its unit."""
         return f"{self.full_bound_at(speed) * self.scale:.4g} {self.unit}"
 
     def with_safety(self, factor: float) -> "Limit":
@@ -244,7 +244,7 @@ class Limit:
         return replace(self, load=load)
 
     def holds(self, feed: float, depth: float, speed: float) -> bool:
-        """Whether the load keeps its bound, up to rounding."""
+        """Whether the load of the limit keeps its bound, up to rounding."""
         load, bound = self.load.value(feed, depth, speed), self.bound_at(speed)
         slack = bound - load if self.sense is BoundSide.AT_MOST else load - bound
         return slack >= -ROUNDING * bound
@@ -265,7 +265,7 @@ SCALES_WITH_FORCE = frozenset({
 """Limits that depend on k_c: loads in proportion to it, and the stable depth."""
 
 ROUNDING = 1e-9
-"""relative slack within which a load counts as being at its bound"""
+"""Relative slack within which a load counts as being at its bound."""
 
 
 DIGITS = 12
@@ -321,7 +321,7 @@ class Cost:
     """Tool lives used per second of cutting."""
 
     def cutting_time(self, at: Setting) -> float:
-        """Time at cutting feed, s."""
+        """Machining time at cutting feed, s."""
         return self.travel(at.passes) / (self.teeth * at.feed * at.speed)
 
     def travel(self, passes: int) -> float:
@@ -351,7 +351,7 @@ class Problem:
     limits: tuple[Limit, ...]
     cost: Cost
     total_depth: float
-    """Total depth H, mm."""
+    """Total depth to remove in all passes, H, mm."""
     passes: tuple[int, int]
     """Least and greatest number of passes; equal when the depth is not free."""
     speeds: tuple[float, ...]

@@ -45,14 +45,14 @@ class SolverOptimum:
 
     setting: Setting
     cost: float
-    """Cost, s or J."""
+    """Cost of the optimum, s or J."""
     prices: dict[LimitName, float]
     """Shadow price −d ln(cost) / d ln(bound) of each limit; zero when it is not active."""
 
 
 @dataclass(frozen=True, slots=True)
 class _LimitRow:
-    """Parameters of one limit: ``c·f^α·n^γ + e·n^γ ≤ 1``."""
+    """Solver parameters of one limit: ``c·f^α·n^γ + e·n^γ ≤ 1``."""
 
     coefficient: cp.Parameter
     offset: cp.Parameter
@@ -194,7 +194,7 @@ class GeometricProgram:
             scale = load.depth_factor(depth) * unit.speed**exponent / limit.bound
             chip = unit.feed**load.feed_exponent
             if sign < 0.0 and load.offset:
-                raise OptimisationError(f"{limit.name.words} plus offset: no posynomial")
+                raise OptimisationError(f"{limit.name.words} with offset is not a posynomial")
             offset = load.offset * scale
             is_constant = (unit.is_fixed or exponent == 0.0) and offset < 1.0
             rest = 1.0 - offset if is_constant else 1.0

@@ -31,7 +31,7 @@ class MachineRun:
     control: ControlModel
     limits: AxisLimits
     feed: float
-    """Feed of the technology, mm/s."""
+    """Feed programmed in the technology, mm/s."""
     spindle: float
     """Spindle speed at the diameter of the cut, rev/s."""
 

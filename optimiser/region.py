@@ -67,7 +67,7 @@ class BoundarySize:
 
 
 def closed_outline(program: Program, ref: Ref[Entity]) -> BoundarySize:
-    """Size of a closed profile."""
+    """Area, length and width of a closed profile."""
     profile = program.get(ref)
     if isinstance(profile, RectangularClosedProfile):
         width, length = (
@@ -191,11 +191,11 @@ class FeatureRegion:
     area: float
     """Area of floor to sweep, mm²; 0 when only walls are cut."""
     perimeter: float
-    """Length of wall to follow, mm."""
+    """Length of wall to follow by the cutter, mm."""
     width: float
-    """Extent across the strokes, mm."""
+    """Extent of the region across the strokes, mm."""
     depth: float
-    """Depth along the tool axis, mm."""
+    """Depth of the region along the tool axis, mm."""
     is_open: bool
     """Whether the tool may enter and leave through the side."""
     count: int = 1

@@ -64,7 +64,7 @@ Holder and spindle often deflect as much as the tool.
 
 
 class Basis(StrEnum):
-    """Basis of a statement on stability."""
+    """Basis of a statement on chatter stability."""
 
     MEASURED = "measured"
     """Modes from a tap test: the depth is limited."""
@@ -84,7 +84,7 @@ class Stability:
     least: float | None = None
     """Depth of one pass that is stable at any speed, mm."""
     band: tuple[float, float] | None = None
-    """Band of an estimated depth, mm."""
+    """Uncertainty band of an estimated stable depth, mm."""
 
 
 def stability_limits(cut: Cut, at: CuttingConditions) -> tuple[Limit, ...]:
@@ -99,7 +99,7 @@ def stability_limits(cut: Cut, at: CuttingConditions) -> tuple[Limit, ...]:
 
 
 def stability_of(cut: Cut, at: CuttingConditions) -> Stability | None:
-    """Stability of a cut; None where chatter does not depend on its depth."""
+    """Chatter stability of a cut; None where it does not depend on the depth."""
     if cut.kind not in {CutKind.MILLING, CutKind.TURNING} or cut.is_air:
         return None
     measured = measured_modes(cut, at.machine)
@@ -274,7 +274,7 @@ def _dynamic_cut(cut: Cut, at: CuttingConditions) -> "DynamicCut":
     from simulator.physics.stability import DynamicCut  # noqa: PLC0415 (numpy)
 
     if cut.engagement is None:
-        raise ValueError("a milling cut needs its engagement")
+        raise ValueError("the milling cut has no engagement")
     stiffness, ratio = _cutting_stiffness(cut, at)
     return DynamicCut(
         engagement=cut.engagement,
@@ -299,7 +299,7 @@ def _drawn(
 
 @lru_cache(maxsize=256)
 def _least(cut: "DynamicCut", structure: "ModalStructure") -> float:
-    """Depth that is stable at any speed, mm."""
+    """Depth of cut that is stable at any spindle speed, mm."""
     from simulator.physics.stability import least_stable_depth  # noqa: PLC0415 (numpy)
 
     return least_stable_depth(cut, structure)

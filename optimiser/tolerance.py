@@ -96,7 +96,7 @@ class WallSize:
 
     name: str
     size: float
-    """Nominal size, mm."""
+    """Nominal width, length or diameter, mm."""
     ref: Ref[TolerancedLengthMeasure] | None
     """Toleranced length in the file; None if the size was measured on a shape."""
 

@@ -64,7 +64,7 @@ class FeedCaps:
         return feed
 
     def least(self, depth: float) -> float:
-        """Least feed per tooth at a depth, mm."""
+        """Least feed per tooth that the lower limits allow at a depth, mm."""
         feed = self.floor
         for limit in self.floors:
             feed = max(feed, limit.feed_at_bound(depth, self.speed))
@@ -121,7 +121,7 @@ class Solution:
     time: float
     """Machining time, s."""
     energy: float
-    """Energy, J."""
+    """Energy that the machine draws, J."""
     active: LimitName
     """Name of the limit that sets the feed."""
     holding: Limit

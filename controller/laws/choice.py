@@ -50,7 +50,7 @@ def law_named(name: LawName, plant: Plant, *, has_preview: bool) -> ControlLaw[A
 
 
 def _feedback(name: LawName, plant: Plant) -> ControlLaw[Any]:
-    """Create a law with feedback only."""
+    """Create a control law with feedback only."""
     match name:
         case LawName.PI:
             return PI(plant=plant)

@@ -39,7 +39,7 @@ class LoadEstimate:
     exponent: float
     """Exponent p of force over feed."""
     variance: float
-    """Variance of c."""
+    """Variance of the load logarithm c."""
     exponent_variance: float
     covariance: float
 

@@ -55,7 +55,7 @@ class PreviewedState(Generic[S]):
     forward: Axes
     """Modelled axes of the nominal lag that follow the feed-forward."""
     factor: float
-    """Estimated ln K."""
+    """Estimated ln K, the measured over the expected force."""
     expected: float
     """Expected force g of the previous revolution, N."""
 

@@ -107,10 +107,10 @@ def test_what_is_not_modelled_is_said() -> None:
     box = ClampedStocks(mill, load_machine("vmc15")).before(mill.workingsteps[0])
     assert (
         met_by(part, thread, straight(*ALONG), bar).why
-        == "threads and knurls are not cut from the stock"
+        == "threads and knurls are not simulated in the stock"
     )
     roughing = part.workingsteps[0]
-    assert met_by(part, roughing, straight(*ALONG), box).why == "an insert does not mill"
+    assert met_by(part, roughing, straight(*ALONG), box).why == "a turning insert cannot mill"
     # A rotating tool beside the axis of a bar.
     why = met_by(mill, mill.workingsteps[0], straight((9, 0, 0), (9, 0, -50)), bar).why
     assert "beside its axis" in why
