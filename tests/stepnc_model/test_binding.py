@@ -105,7 +105,7 @@ def test_dangling_reference_is_an_error() -> None:
     assert finding.entity == "#2 AXIS2_PLACEMENT_3D"
     assert finding.line == 6
     assert finding.rule == "ISO 10303-21"
-    with pytest.raises(SchemaError, match="#99: is referred to") as error:
+    with pytest.raises(SchemaError, match="#99: is referenced") as error:
         model.get(Ref[CartesianPoint](99))
     assert error.value.entity == "#99"
     assert model.entity(99) is None
@@ -118,13 +118,13 @@ def test_unknown_entity_is_kept_and_noted_once() -> None:
     assert "TROCHOIDAL_MILLING (2 instances)" in finding.message
     assert finding.line == 7
     assert model.entity(2) is None
-    with pytest.raises(SchemaError, match="line 7: #2 TROCHOIDAL_MILLING: is not an entity"):
+    with pytest.raises(SchemaError, match="line 7: #2 TROCHOIDAL_MILLING: this entity type is not supported"):
         model.get(Ref[Entity](2))
 
 
 def test_complex_instance_is_noted() -> None:
     model = model_of("#1=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.));")
-    assert "a complex instance is not read" in only_finding(model).message
+    assert "a complex instance is not supported" in only_finding(model).message
     with pytest.raises(SchemaError, match="complex"):
         model.get(Ref[Entity](1))
 
@@ -140,7 +140,7 @@ def test_malformed_instance_is_no_entity() -> None:
 def test_reference_to_the_wrong_kind_is_an_error() -> None:
     finding = only_finding(model_of(POINT, "#2=MACHINED_SURFACE(#1,.SIDE.);"))
     assert finding.severity is Severity.ERROR
-    assert finding.message == "#1 CARTESIAN_POINT stands where ManufacturingFeature belongs"
+    assert finding.message == "#1 CARTESIAN_POINT is referenced where ManufacturingFeature is expected"
     assert finding.attribute == "its_machining_feature"
 
 
@@ -168,7 +168,7 @@ def test_surplus_attribute_is_kept_and_told() -> None:
     model = model_of("#1=CHANNEL('C',$,4.);")
     finding = only_finding(model)
     assert finding.severity is Severity.WARNING
-    assert finding.message == "3 attributes, 1 expected: the surplus is kept, not read"
+    assert finding.message == "3 attributes, 1 expected: the surplus is kept but ignored"
 
 
 def test_optimisation_at_the_very_end_is_recognised() -> None:
@@ -227,7 +227,7 @@ def test_number_that_is_not_finite_is_an_error() -> None:
     model = model_of("#1=CUTTING_COMPONENT(1.E400,$,$,$,$);")
     finding = only_finding(model)
     assert finding.severity is Severity.ERROR
-    assert finding.message == "inf is no finite number"
+    assert finding.message == "inf is not a finite number"
 
 
 def test_required_reference_may_be_unset() -> None:

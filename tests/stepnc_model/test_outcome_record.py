@@ -164,30 +164,30 @@ def test_a_workingstep_may_be_named_by_its_instance() -> None:
 
 
 def test_a_workingstep_of_another_program_is_refused() -> None:
-    with pytest.raises(SchemaError, match="'NOPE' is no workingstep of this program"):
+    with pytest.raises(SchemaError, match="'NOPE' is not a workingstep of this program"):
         written(BRACKET, replace(OUTCOME, workingstep="NOPE"))
 
 
 def test_an_id_of_two_operations_is_refused() -> None:
     twice = BRACKET.replace(b"'FINISH POCKET'", b"'ROUGH POCKET'")
-    with pytest.raises(SchemaError, match="'ROUGH POCKET' names 2 operations"):
+    with pytest.raises(SchemaError, match="'ROUGH POCKET' belongs to 2 operations"):
         written(twice, OUTCOME)
 
 
 @pytest.mark.parametrize(
     ("wrong", "message"),
     [
-        (replace(OUTCOME, time=EvaluatedQuantity(measured=-1.0)), "a machining time of -1 s"),
+        (replace(OUTCOME, time=EvaluatedQuantity(measured=-1.0)), "invalid machining time: -1 s"),
         (
             replace(OUTCOME, force=EvaluatedQuantity(measured=float("nan"))),
-            "a cutting force of nan N",
+            "invalid cutting force: nan N",
         ),
-        (replace(OUTCOME, feed=EvaluatedQuantity(measured=0.0)), "a feed of 0 m/s"),
-        (replace(OUTCOME, roughness=EvaluatedQuantity(measured=0.0)), "a roughness of 0 µm"),
+        (replace(OUTCOME, feed=EvaluatedQuantity(measured=0.0)), "invalid feed: 0 m/s"),
+        (replace(OUTCOME, roughness=EvaluatedQuantity(measured=0.0)), "invalid roughness: 0 µm"),
         (replace(OUTCOME, recorded_at=NOON.replace(tzinfo=None)), "has no time zone"),
-        (replace(CORRECTION, log_centre=1000.0), "a factor on k_c of inf"),
-        (replace(CORRECTION, log_centre=-1000.0), "a factor on k_c of 0"),
-        (replace(CORRECTION, context=replace(CONTEXT, tool="")), "holds for a machine"),
+        (replace(CORRECTION, log_centre=1000.0), "invalid factor on k_c: inf"),
+        (replace(CORRECTION, log_centre=-1000.0), "invalid factor on k_c: 0"),
+        (replace(CORRECTION, context=replace(CONTEXT, tool="")), "a correction must name its machine, material and tool"),
         (replace(CORRECTION, confidence=1.1), "a confidence of 1.1"),
         (replace(CORRECTION, confidence=float("nan")), "a confidence of nan"),
     ],
@@ -224,9 +224,9 @@ class TestProfiles:
 
     def test_a_program_with_outcomes_has_no_profile_standard(self, tmp_path: Path) -> None:
         data = written(BRACKET, OUTCOME)
-        with pytest.raises(SchemaError, match="OUTCOME: has no form in profile 'standard'"):
+        with pytest.raises(SchemaError, match="OUTCOME: cannot be written in profile 'standard'"):
             writeback.convert(program_of(data), FileProfile.STANDARD)
-        with pytest.raises(SchemaError, match="has no form in profile 'standard'"):
+        with pytest.raises(SchemaError, match="cannot be written in profile 'standard'"):
             optimised(written(PAPER, CORRECTION), tmp_path, profile="standard")
 
     def test_the_schema_stays_while_outcomes_do(self, tmp_path: Path) -> None:

@@ -39,7 +39,7 @@ def test_size_must_be_a_length_of_a_part(number: str) -> None:
 
 
 def test_size_that_is_missing_is_said() -> None:
-    with pytest.raises(PathError, match="#140 CLOSED_POCKET: lacks a size"):
+    with pytest.raises(PathError, match="#140 CLOSED_POCKET: a required size is missing"):
         size(program(), None, POCKET)
 
 

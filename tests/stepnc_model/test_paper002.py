@@ -66,7 +66,7 @@ def test_optimisation_with_five_parameters_is_read(figure: Part21File) -> None:
         "';' is missing after #203",
         "';' is missing after #204",
         "RIGHT: read as .RIGHT.",
-        "..F.: an enumeration has one dot",
+        "..F.: an enumeration must have one dot",
         '"FULL_IMMERSION"',
         "'*****/'",
     ],
@@ -114,7 +114,7 @@ def test_cutting_force_is_put_in_order(figure: Part21File) -> None:
         axial_cutting_depth=5.0,
     )
     messages = " ".join(each.message for each in reading.findings)
-    assert "stands first" in messages
+    assert "comes first" in messages
     assert "read as 500 rpm" in messages
 
 

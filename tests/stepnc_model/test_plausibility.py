@@ -71,7 +71,7 @@ class TestNumbers:
             (
                 "$,.TCP.,$,-0.25,0.1,.F.,.F.,.F.",
                 "spindle",
-                "the edge moves at 0.471 m/min only",
+                "the cutting speed is only 0.471 m/min",
             ),
         ],
     )

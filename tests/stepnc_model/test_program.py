@@ -166,11 +166,11 @@ class TestRefusal:
         assert caught.value.line == FIRST_LINE
 
     def test_a_main_workplan_that_is_not_there_is_refused(self) -> None:
-        with pytest.raises(SchemaError, match=r"#2.*no such instance"):
+        with pytest.raises(SchemaError, match=r"#2.*does not exist"):
             program_of(PROJECT)
 
     def test_a_main_workplan_of_another_kind_is_refused(self) -> None:
-        with pytest.raises(SchemaError, match="is no workplan"):
+        with pytest.raises(SchemaError, match="is not a workplan"):
             program_of(PROJECT, "#2=NC_VARIABLE('V',$);")
 
     def test_a_file_without_project_runs_its_only_outer_workplan(self) -> None:
@@ -178,7 +178,7 @@ class TestRefusal:
         assert ids(program) == [2, 3, 10]
 
     def test_two_outer_workplans_without_project_are_refused(self) -> None:
-        with pytest.raises(SchemaError, match="2 workplans that nothing contains"):
+        with pytest.raises(SchemaError, match="2 workplans that are not nested"):
             program_of(plan(2), plan(3))
 
     def test_a_file_without_workplan_is_no_program(self) -> None:
@@ -244,7 +244,7 @@ class TestFault:
 
     def test_an_operation_of_another_kind_is_a_fault(self) -> None:
         program = program_of(PROJECT, plan(2, 10), step(10, "#70"), *COMMON)
-        assert "#70 NC_VARIABLE: is no machining operation" in str(only_fault(program))
+        assert "#70 NC_VARIABLE: is not a machining operation" in str(only_fault(program))
 
     def test_an_unknown_operation_is_a_fault_that_names_it(self) -> None:
         program = program_of(
@@ -294,7 +294,7 @@ class TestWorkpiece:
 
     def test_what_is_no_material_is_refused(self) -> None:
         program = program_of(PROJECT, plan(2), "#30=WORKPIECE('MINE',#2,$,$,$,$,());")
-        with pytest.raises(SchemaError, match=r"#2 WORKPLAN: stands where a material belongs"):
+        with pytest.raises(SchemaError, match=r"#2 WORKPLAN: is not a material"):
             program.material()
 
     def test_a_file_without_workpiece_has_no_material(self) -> None:

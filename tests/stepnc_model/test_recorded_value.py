@@ -43,7 +43,7 @@ def test_numbers_have_twelve_digits() -> None:
 
 @pytest.mark.parametrize("value", [0.0, -1.0, nan, inf])
 def test_what_is_not_positive_is_refused(value: float) -> None:
-    with pytest.raises(ValueError, match=f"a feed of {value:g} m/s"):
+    with pytest.raises(ValueError, match=f"invalid feed: {value:g} m/s"):
         positive_or_none(value, "feed", "m/s")
 
 
@@ -54,7 +54,7 @@ def test_nothing_measured_is_nothing_written() -> None:
 
 def test_a_force_may_be_nothing_at_all_but_not_less() -> None:
     assert measured_or_none(0.0, "force", "N") == 0.0
-    with pytest.raises(ValueError, match="a force of -1 N"):
+    with pytest.raises(ValueError, match="invalid force: -1 N"):
         measured_or_none(-1.0, "force", "N")
 
 

@@ -96,21 +96,21 @@ def test_length_without_a_tolerance_has_none() -> None:
 @pytest.mark.parametrize(
     ("text", "why"),
     [
-        ("PLUS_MINUS_VALUE(0.1,-0.1,3)", "both are to be written as positive numbers"),
-        ("PLUS_MINUS_VALUE(-0.2,-0.1,3)", "both are to be written as positive numbers"),
-        ("PLUS_MINUS_VALUE(-0.1,0.2,3)", "both are to be written as positive numbers"),
+        ("PLUS_MINUS_VALUE(0.1,-0.1,3)", "both must be written as positive numbers"),
+        ("PLUS_MINUS_VALUE(-0.2,-0.1,3)", "both must be written as positive numbers"),
+        ("PLUS_MINUS_VALUE(-0.1,0.2,3)", "both must be written as positive numbers"),
         ("PLUS_MINUS_VALUE(0.,0.,3)", "limits of 0 mm"),
-        ("PLUS_MINUS_VALUE($,0.1,3)", "a limit is missing"),
-        ("PLUS_MINUS_VALUE(0.1)", "a limit is missing"),
-        ("LIMITS_AND_FITS('Q',7.,$)", "'Q' is no fundamental deviation of ISO 286-1"),
-        ("LIMITS_AND_FITS('','W7',$)", "'W' is no fundamental deviation of ISO 286-1"),
-        ("LIMITS_AND_FITS(0.,0.021,$)", "grade 0.021: a grade of ISO 286-1 is a whole number"),
+        ("PLUS_MINUS_VALUE($,0.1,3)", "the upper or lower limit is missing"),
+        ("PLUS_MINUS_VALUE(0.1)", "the upper or lower limit is missing"),
+        ("LIMITS_AND_FITS('Q',7.,$)", "'Q' is not a fundamental deviation of ISO 286-1"),
+        ("LIMITS_AND_FITS('','W7',$)", "'W' is not a fundamental deviation of ISO 286-1"),
+        ("LIMITS_AND_FITS(0.,0.021,$)", "grade 0.021: an ISO 286-1 grade must be a whole number"),
         ("LIMITS_AND_FITS(0.,'hole',$)", "grade 'hole'"),
         ("LIMITS_AND_FITS(0.,$,$)", "grade ''"),
-        ("LIMITS_AND_FITS(0.,19.,$)", "IT19: ISO 286-1 gives IT1 to IT18"),
+        ("LIMITS_AND_FITS(0.,19.,$)", "IT19: ISO 286-1 has grades IT1 to IT18"),
         ("LIMITS_AND_FITS(0.,-7.,$)", "IT-7"),
-        ("CARTESIAN_POINT('',(0.,0.,0.))", "is no tolerance that this program reads"),
-        ("ODD_TOLERANCE(1.)", "is no tolerance that this program reads"),
+        ("CARTESIAN_POINT('',(0.,0.,0.))", "this kind of tolerance is not supported"),
+        ("ODD_TOLERANCE(1.)", "this kind of tolerance is not supported"),
     ],
 )
 def test_tolerance_that_cannot_be_read_is_a_warning_at_its_place(text: str, why: str) -> None:
@@ -119,7 +119,7 @@ def test_tolerance_that_cannot_be_read_is_a_warning_at_its_place(text: str, why:
     assert found.finding is not None
     assert found.finding.severity is Severity.WARNING
     assert why in found.finding.message
-    assert "ISO 2768-m holds instead" in found.finding.message
+    assert "ISO 2768-m is used instead" in found.finding.message
     assert found.finding.entity == f"#4 {text.partition('(')[0]}"
     assert found.finding.line == 8
 

@@ -123,7 +123,7 @@ class TestRotating:
             read("#10=MILLING_CUTTING_TOOL('T',$,(),$,$,$);")
 
     def test_a_body_without_dimension_is_refused(self) -> None:
-        with pytest.raises(SchemaError, match=r"#11 ENDMILL\.dimension: has no dimension"):
+        with pytest.raises(SchemaError, match=r"#11 ENDMILL\.dimension: the tool body has no dimension"):
             rotating("ENDMILL($,4,.RIGHT.,.F.,$)")
 
     def test_a_tool_without_name_is_called_by_its_kind(self) -> None:
@@ -193,15 +193,15 @@ class TestTurning:
         assert turning(edge="$,$,12.,95.,$,80.,$,6.,$").corner_radius is None
 
     def test_a_turning_tool_without_edge_is_refused(self) -> None:
-        with pytest.raises(SchemaError, match=r"#10 .*cutting_edge: has no cutting edge"):
+        with pytest.raises(SchemaError, match=r"#10 .*cutting_edge: the tool has no cutting edge"):
             read("#10=GENERAL_TURNING_TOOL('T2',150.,32.,$,$,$,$,.RIGHT.);")
 
 
 def test_a_probe_is_no_cutting_tool() -> None:
-    with pytest.raises(SchemaError, match="no milling, drilling or turning tool"):
+    with pytest.raises(SchemaError, match="is not a milling, drilling or turning tool"):
         read("#10=TOUCH_PROBE('P');")
 
 
 def test_a_tool_that_is_not_there_is_refused() -> None:
-    with pytest.raises(SchemaError, match="no such instance"):
+    with pytest.raises(SchemaError, match="is referenced, but does not exist in the file"):
         read("#11=TOUCH_PROBE('P');")

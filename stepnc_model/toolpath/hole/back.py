@@ -319,7 +319,7 @@ def _passed(job: ToolPathTask, operation: DrillingTypeOperation, hole: Hole) -> 
     widths = [*_narrower(job, hole), *([given] if given is not None else [])]
     widths = widths or _drilled(job)[-1:]
     if not widths:
-        message = "previous_diameter is needed: the diameter of the passed hole is unknown"
+        message = "the diameter of the hole that the tool passes is unknown"
         raise job.fault(message, at, "previous_diameter")
     return min(widths)
 

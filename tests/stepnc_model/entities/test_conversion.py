@@ -74,10 +74,10 @@ def test_value_that_fits_is_taken_without_a_word(
         (REFERENCE, None, None, Severity.WARNING, "$ where entity is required"),
         (COUNT, Real(4.0), 4, Severity.NOTE, "a real where an integer is required"),
         (COUNT, Real(4.5), None, Severity.ERROR, "4.5 where an integer is required"),
-        (COUNT, Real(inf), None, Severity.ERROR, "no finite number"),
-        (NUMBER, Real(inf), None, Severity.ERROR, "no finite number"),
-        (NUMBER, Real(nan), None, Severity.ERROR, "no finite number"),
-        (NUMBER, 10**400, None, Severity.ERROR, "beyond all reals"),
+        (COUNT, Real(inf), None, Severity.ERROR, "is not a finite number"),
+        (NUMBER, Real(inf), None, Severity.ERROR, "is not a finite number"),
+        (NUMBER, Real(nan), None, Severity.ERROR, "is not a finite number"),
+        (NUMBER, 10**400, None, Severity.ERROR, "the integer is too large for a real"),
         (FEED, Typed("FEED_PER_REV_TYPE", Real(inf)), None, Severity.ERROR, "finite"),
         (NUMBER, "0.04", None, Severity.ERROR, "'0.04' where a number is required"),
         (NUMBER, Ref(4), None, Severity.ERROR, "#4 where a number is required"),
@@ -94,7 +94,7 @@ def test_value_that_fits_is_taken_without_a_word(
         (NUMBERS, "x", (), Severity.ERROR, "item 1: 'x' where a number is required"),
         (REFERENCES, (Ref(1), None), (Ref(1),), Severity.WARNING, "item 2: $"),
         (NUMBERS, (Real(1.0), None), (), Severity.ERROR, "item 2: $"),
-        (NUMBERS, (Real(1.0), DERIVED), (), Severity.ERROR, "items are left out"),
+        (NUMBERS, (Real(1.0), DERIVED), (), Severity.ERROR, "items are missing"),
     ],
 )
 def test_odd_value_is_told_and_never_fatal(
@@ -177,5 +177,5 @@ def test_types_within_types_need_no_stack() -> None:
 
 
 def test_anything_else_has_no_form() -> None:
-    with pytest.raises(TypeError, match="no value of an attribute"):
+    with pytest.raises(TypeError, match="is not a valid attribute value"):
         give(NUMBER, [1.0])

@@ -57,7 +57,7 @@ def test_instances_have_no_dictionary() -> None:
 
 
 def test_missing_and_unknown_attributes_are_refused() -> None:
-    with pytest.raises(TypeError, match="Direction lacks direction_ratios"):
+    with pytest.raises(TypeError, match="Direction requires direction_ratios"):
         Direction(name="")  # type: ignore[call-arg]
     with pytest.raises(TypeError, match="Direction has no length"):
         Direction(name="", direction_ratios=(), length=1.0)  # type: ignore[call-arg]

@@ -46,7 +46,7 @@ def test_slips_do_not_stop_the_parser() -> None:
         ("A(,1);", 2, "a value is missing before ','"),
         ("A(1));", 4, "after the closing bracket"),
         ("A();;", 4, "after the closing bracket"),
-        (")", 0, "closes nothing"),
+        (")", 0, "')' without an open bracket"),
         ("(A(),B());", 4, "a value is missing before ','"),
         ("((1));", 1, "an entity name is missing"),
         ("(1);", 1, "an entity was expected"),

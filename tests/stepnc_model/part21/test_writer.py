@@ -263,7 +263,7 @@ def test_edit_of_what_is_not_there_is_refused() -> None:
         edits.replace_parameter(5, 1, None)
     with pytest.raises(IndexError, match="#2 has 0 parameters"):
         edits.remove_parameter(2, 0)
-    with pytest.raises(ValueError, match="no keyword"):
+    with pytest.raises(ValueError, match="is not a valid keyword"):
         edits.add("A(B", ())
 
 

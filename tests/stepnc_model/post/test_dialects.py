@@ -91,7 +91,7 @@ def test_code_of_one_control_becomes_code_of_another(
 
 
 def test_canonical_commands_have_no_blocks() -> None:
-    with pytest.raises(PostError, match="no NC code"):
+    with pytest.raises(PostError, match="canonical commands are not NC code: they cannot be read as blocks"):
         list(read_blocks([], Dialect.CANONICAL))
 
 
@@ -117,7 +117,7 @@ def test_a_feed_below_the_last_digit_is_refused(control: Dialect) -> None:
         ProgramStart(name="F"),
         Linear(end=(1.0, 0.0, 0.0), rate=Rate(value=1e-9)),
     ]
-    with pytest.raises(PostError, match="below what an F word can say"):
+    with pytest.raises(PostError, match="too small for an F word"):
         lines_of(blocks, control)
 
 

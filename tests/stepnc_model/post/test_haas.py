@@ -62,5 +62,5 @@ def test_taps_need_no_m29(machine: MachineType, sense: SpindleDirection, code: s
 
 def test_a_mill_cuts_no_threads() -> None:
     thread = ThreadingMove(end=(0.0, 0.0, -5.0), lead=1.0)
-    with pytest.raises(PostError, match="synchronised line"):
+    with pytest.raises(PostError, match="a synchronised move: this"):
         lines(Rapid(end=(0.0, 0.0, 0.0)), thread)

@@ -35,31 +35,31 @@ def read(*lines: str) -> list[Block]:
 @pytest.mark.parametrize(
     ("line", "message"),
     [
-        ("G123", "word G123: not known on this mill"),
-        ("G91", "word G91: not known"),
-        ("G20", "word G20: not known"),
-        ("M98 P1", "word P1: nothing in this block uses it"),
-        ("M99", "word M99: not known"),
-        ("X1", "no motion is in force"),
+        ("G123", "word G123: unknown G code on this mill"),
+        ("G91", "word G91: unknown G code"),
+        ("G20", "word G20: unknown G code"),
+        ("M98 P1", "word P1: not used by this block"),
+        ("M99", "word M99: unknown M code"),
+        ("X1", "no motion command"),
         ("G1 X1", "without F"),
         ("G0 G1 X1 F1", "two motions"),
-        ("G2 X1 Y0 I5 J0 F1", r"no arc: its radii are 5.0000 and 4.0000 mm"),
-        ("G2 X1 Y0 F1", "no arc"),
-        ("G2 X0 Y0 R5 F1", "no arc"),
-        ("G0 X1 E5", "word E5: nothing"),
-        ("G0 X1 X2", "a second X"),
+        ("G2 X1 Y0 I5 J0 F1", r"invalid arc: the radii to its ends are 5.0000 and 4.0000 mm"),
+        ("G2 X1 Y0 F1", "invalid arc"),
+        ("G2 X0 Y0 R5 F1", "invalid arc"),
+        ("G0 X1 E5", "word E5: not used"),
+        ("G0 X1 X2", "X appears twice"),
         ("G4", "the word P is missing"),
-        ("M3", "spindle on without S"),
-        ("M6", "M6 without a tool"),
+        ("M3", "spindle on without a speed S"),
+        ("M6", "M6 without a tool number: T is missing"),
         ("T1.5 M6", "whole number"),
         ("G81 X0 Y0 F1", "without Z or R"),
         ("G83 Z-1 R1 F1", "without Q"),
-        ("G81 Z1 R0 F1", "must lead down"),
+        ("G81 Z1 R0 F1", "must lie below"),
         ("G18 G81 Z-1 R1 F1", "in the plane ZX"),
-        ("G33.1 Z-1 K1", "while the spindle stands"),
-        ("#1=5", "no word"),
-        ("IF [1 EQ 1] GOTO 5", "no word"),
-        ("(open", "no word"),
+        ("G33.1 Z-1 K1", "while the spindle is stopped"),
+        ("#1=5", "not a word of NC code"),
+        ("IF [1 EQ 1] GOTO 5", "not a word of NC code"),
+        ("(open", "not a word of NC code"),
     ],
 )
 def test_nothing_is_skipped_in_silence(line: str, message: str) -> None:
@@ -140,12 +140,12 @@ def test_the_same_code_means_other_things_on_a_lathe() -> None:
     found = list(FanucReader(MachineType.LATHE).blocks(["G99", "G1 X20. Z-5. F0.2"]))
     rate = Rate(value=0.2, mode=RateMode.PER_REVOLUTION)
     assert found == [Linear(end=(10.0, 0.0, -5.0), rate=rate)]
-    with pytest.raises(PostError, match="G95: not known on this lathe"):
+    with pytest.raises(PostError, match="G95: unknown G code on this lathe"):
         list(FanucReader(MachineType.LATHE).blocks(["G95"]))
 
 
 def test_a_lathe_has_no_y() -> None:
-    with pytest.raises(PostError, match="Y1: nothing"):
+    with pytest.raises(PostError, match="Y1: not used"):
         list(FanucReader(MachineType.LATHE).blocks(["G0 X1. Y1."]))
 
 

@@ -171,7 +171,7 @@ class TestConstantSpeed:
         assert constant_speed(SurfaceSpeed(speed=1500.0, limit=10.0), 0.0).speed == 10.0
 
     def test_on_the_axis_it_needs_a_limit(self) -> None:
-        with pytest.raises(PostError, match="without a limit"):
+        with pytest.raises(PostError, match="needs a spindle speed limit"):
             constant_speed(SurfaceSpeed(speed=1500.0), 0.0)
 
 

@@ -231,7 +231,7 @@ def test_a_speed_of_zero_stops_the_spindle_and_says_so(part: Program) -> None:
 
 
 def test_a_cut_without_feed_is_refused_with_its_workingstep(part: Program) -> None:
-    with pytest.raises(PostError, match=r"'WS': a cut without feed: .*#35 MILLING_TECHNOLOGY"):
+    with pytest.raises(PostError, match=r"'WS': a cut has no feed: .*#35 MILLING_TECHNOLOGY"):
         blocks(part, path(line(9.0, 5.0, 2.0, Feed(technology=Ref(35)))))
 
 

@@ -54,8 +54,8 @@ def test_layouts_of_nist_and_linuxcnc_mean_the_same(line: str, command: Canonica
 @pytest.mark.parametrize(
     ("line", "message"),
     [
-        ("FLY_TO(1, 2, 3)", "is no canonical command"),
-        ("G1 X0", "is no canonical command"),
+        ("FLY_TO(1, 2, 3)", "is not a canonical command"),
+        ("G1 X0", "is not a canonical command"),
         ("STRAIGHT_FEED(1, 2)", "2 arguments: it needs 3"),
         ("ARC_FEED(1, 2, 3, 4, 1)", "5 arguments: it needs 6"),
         ("DWELL(soon)", "must be numbers"),

@@ -112,19 +112,19 @@ def test_a_cycle_goes_on_over_lines() -> None:
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("FN 0: Q1 = 5", "not known"),
+        ("FN 0: Q1 = 5", "unknown Klartext block"),
         ("L X+1", "without F"),
-        ("L X+1 A+5 FMAX", r"word A\+5: not known here"),
-        ("L X+1 X+2 FMAX", "said twice"),
+        ("L X+1 A+5 FMAX", r"word A\+5: unknown here"),
+        ("L X+1 X+2 FMAX", "given twice"),
         ("L X+1 RL FMAX", "word RL"),
-        ("C X+1 Y+0 DR+ F60", "without CC"),
-        ("CP IPA+90 DR+ F60", "without CC"),
-        ("CYCL CALL", "without a cycle"),
-        ("CYCL DEF 252 CIRCULAR POCKET", "not known"),
+        ("C X+1 Y+0 DR+ F60", "without a preceding CC"),
+        ("CP IPA+90 DR+ F60", "without a preceding CC"),
+        ("CYCL CALL", "CYCL CALL without a defined cycle"),
+        ("CYCL DEF 252 CIRCULAR POCKET", "unknown Klartext block"),
         ("M3", "no speed"),
-        ("M7", "not known"),
-        ("TOOL CALL 1 X S5", "not known"),
-        ("L X+1 F60 ~", "nothing follows"),
+        ("M7", "unknown Klartext block"),
+        ("TOOL CALL 1 X S5", "unknown Klartext block"),
+        ("L X+1 F60 ~", "no line follows"),
     ],
 )
 def test_nothing_is_skipped_in_silence(text: str, message: str) -> None:
@@ -136,11 +136,11 @@ def test_nothing_is_skipped_in_silence(text: str, message: str) -> None:
 @pytest.mark.parametrize(
     ("arc", "message"),
     [
-        ("C X+1 Y+0 DR+ F60", "radii are 10.0000 and 9.0000"),
+        ("C X+1 Y+0 DR+ F60", "radii to its ends are 10.0000 and 9.0000"),
         ("C X+20 Y+0 F60", "without DR"),
-        ("C X+20 Y+0 Z+1 DR+ F60", "out of the plane"),
+        ("C X+20 Y+0 Z+1 DR+ F60", "C leaves the plane of its CC"),
         ("CP IPA-90 DR+ F60", "signs of IPA and DR differ"),
-        ("CP PA+90 DR+ F60", "not known here"),
+        ("CP PA+90 DR+ F60", "unknown here"),
     ],
 )
 def test_arcs_that_are_none_are_refused(arc: str, message: str) -> None:
@@ -154,7 +154,7 @@ def test_a_cycle_that_lacks_a_parameter_is_refused() -> None:
 
 
 def test_a_block_without_number_is_refused() -> None:
-    with pytest.raises(PostError, match="begins with its number"):
+    with pytest.raises(PostError, match="must begin with its number"):
         list(HeidenhainReader(MachineType.MILL).blocks(["L X+1 FMAX"]))
 
 

@@ -175,10 +175,10 @@ def test_a_spindle_at_an_angle() -> None:
 @pytest.mark.parametrize(
     ("line", "message"),
     [
-        ("G0 X1 TURN=2", "TURN=: nothing here uses it"),
-        ("MCALL CYCLE81(1,1,0,-5)", "no word"),
-        ("R1=5", "no word"),
-        ("G1 X=AC(5) F60", "no word"),
+        ("G0 X1 TURN=2", "TURN=: not used by this block"),
+        ("MCALL CYCLE81(1,1,0,-5)", "not a word of NC code"),
+        ("R1=5", "not a word of NC code"),
+        ("G1 X=AC(5) F60", "not a word of NC code"),
         ("G332 Z5 K1", "must lead back"),
         ("CYCLE81(1,1,0,-5)", "without F"),
         ("CYCLE81(1,1)", "at least RTP, RFP, SDIS and DP"),
@@ -194,10 +194,10 @@ def test_nothing_is_skipped_in_silence(line: str, message: str) -> None:
 @pytest.mark.parametrize(
     ("call", "message"),
     [
-        ("CYCLE81(5,5,0,-10,3)", "argument 5, 3, is not read"),
-        ("CYCLE83(5,5,0,-10,,-4,3,0,0,0,1,1)", "argument 6, -4, is not read"),
+        ("CYCLE81(5,5,0,-10,3)", "argument 5, 3, is not supported"),
+        ("CYCLE83(5,5,0,-10,,-4,3,0,0,0,1,1)", "argument 6, -4, is not supported"),
         ("CYCLE83(5,5,0,-10,,,3,0,0,0,0.5,1)", "a feed of 0.5 at the first peck"),
-        ("CYCLE85(5,5,0,-10,,0,90,90)", "feeds other than the one in force"),
+        ("CYCLE85(5,5,0,-10,,0,90,90)", "feeds other than the current one are not supported"),
     ],
 )
 def test_arguments_that_would_change_a_cycle_are_refused(call: str, message: str) -> None:

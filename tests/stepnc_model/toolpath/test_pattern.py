@@ -131,7 +131,7 @@ class TestCircular:
 
     @pytest.mark.parametrize("index", [0, 5])
     def test_a_place_that_is_not_there_is_refused(self, index: int) -> None:
-        with pytest.raises(PathError, match=f"index {index}: .* from 1 to 4"):
+        with pytest.raises(PathError, match=f"index {index}: .* numbered 1 to 4"):
             origins(circle(4, moved="#60"), f"#60=CIRCULAR_OFFSET(1.,{index});")
 
     @pytest.mark.parametrize("count", [0, -1, MAX_COPIES + 1])
@@ -168,12 +168,12 @@ class TestRectangular:
         assert found[2] == (120.0, 50.0, -3.5)
 
     def test_rows_without_spacing_are_refused(self) -> None:
-        with pytest.raises(PathError, match="several rows need a spacing"):
+        with pytest.raises(PathError, match="several rows needs a row spacing"):
             origins(rectangle(row_spacing="$"))
 
     @pytest.mark.parametrize("place", ["0,1", "3,1", "1,4"])
     def test_a_place_that_is_not_there_is_refused(self, place: str) -> None:
-        with pytest.raises(PathError, match="the places of this pattern count from 1"):
+        with pytest.raises(PathError, match="the places of this pattern are numbered 1"):
             origins(rectangle(missing="#60"), f"#60=RECTANGULAR_OMIT({place});")
 
     def test_too_many_copies_are_refused(self) -> None:

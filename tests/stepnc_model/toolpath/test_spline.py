@@ -58,21 +58,21 @@ def test_knots_of_the_file_count_by_their_multiplicity() -> None:
 @pytest.mark.parametrize(
     ("curve", "message"),
     [
-        (f"B_SPLINE_CURVE('',3,(#11,#12,#13),{FORM})", "degree 3 with 3 control points"),
+        (f"B_SPLINE_CURVE('',3,(#11,#12,#13),{FORM})", "degree 3 does not suit 3 control points"),
         (f"B_SPLINE_CURVE('',0,(#11,#12),{FORM})", "degree 0"),
         (
             f"B_SPLINE_CURVE_WITH_KNOTS('',1,(#11,#12),{FORM},(2,1),(0.,1.),.UNSPECIFIED.)",
-            "3 knots for 2 control points of degree 1",
+            "3 knots do not match 2 control points of degree 1",
         ),
         (
             f"B_SPLINE_CURVE_WITH_KNOTS('',1,(#11,#12),{FORM},(2,2),(1.,0.),.UNSPECIFIED.)",
-            "its knots fall",
+            "the knots decrease: each must be at least the previous",
         ),
         (
             f"B_SPLINE_CURVE_WITH_KNOTS('',1,(#11,#12),{FORM},(4),(0.,1.),.UNSPECIFIED.)",
-            "2 knots, 1 multiplicities",
+            "2 knots but 1 multiplicities",
         ),
-        ("POLYLINE('',(#11,#12))", "is no B-spline"),
+        ("POLYLINE('',(#11,#12))", "is not a B-spline curve"),
     ],
 )
 def test_what_does_not_fit_together_is_refused(curve: str, message: str) -> None:

@@ -137,7 +137,7 @@ class TestSecurityPlane:
         assert found == pytest.approx((16.0, 2.0, 30.0))
 
     def test_a_level_direction_is_refused(self) -> None:
-        with pytest.raises(PathError, match=r"#13 .*it is level"):
+        with pytest.raises(PathError, match=r"#13 .*the direction is level"):
             point_on_plane(
                 program(tangent(1.0)), (1.0, 2.0, 0.0), Ref(13), frame=Frame(), height=30.0
             )

@@ -180,5 +180,5 @@ def test_a_lift_leads_away_from_the_last_cut() -> None:
 
 
 def test_an_approach_to_nothing_is_refused() -> None:
-    with pytest.raises(PathError, match="no trajectory that it leads to"):
+    with pytest.raises(PathError, match="there is no trajectory to approach or leave"):
         walked(10, 47)

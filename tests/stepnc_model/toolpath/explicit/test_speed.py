@@ -93,7 +93,7 @@ class TestPace:
     @pytest.mark.parametrize(
         ("speed", "message"),
         [
-            ("0.", "factor 0 on the feed"),
+            ("0.", "feed factor 0"),
             ("-1.", "must be positive"),
             ("#34", "one coordinate"),
             ("#37", "factor -1"),

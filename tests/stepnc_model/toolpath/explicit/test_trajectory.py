@@ -81,7 +81,7 @@ class TestLocation:
 
     @pytest.mark.parametrize("axis", ["#38", "#20", "#34"])
     def test_a_tool_axis_that_leans_is_refused(self, axis: str) -> None:
-        with pytest.raises(PathError, match="its tool axis"):
+        with pytest.raises(PathError, match="the tool axis"):
             traced(location(axis=axis))
 
 
@@ -110,8 +110,8 @@ class TestContact:
     @pytest.mark.parametrize(
         ("tool", "normal", "message"),
         [
-            (FLAT, (0.0, 0.0, 1.0), "a flat tool on level ground"),
-            (BALL, (0.0, 0.0, 0.0), "points nowhere"),
+            (FLAT, (0.0, 0.0, 1.0), "a flat tool on a level surface"),
+            (BALL, (0.0, 0.0, 0.0), "has zero length"),
             (None, (0.0, 0.0, 1.0), "needs a rotating tool"),
         ],
     )
@@ -144,12 +144,12 @@ class TestAxes:
     @pytest.mark.parametrize(
         ("names", "commands", "message"),
         [
-            ("'X'", "#30", "where its other axes are"),
+            ("'X'", "#30", "positions of the other axes"),
             ("'X','Y','B'", "#30,#30,#30", "axes X, Y, B"),
             ("'X','X'", "#30,#30", "each once"),
             ("'X','Y','Z'", "#30,#30", "3 axes, 2 commands"),
             ("'X','Y','Z'", "#30,#30,#33", "different numbers of points"),
-            ("'X','Y','Z'", "#30,#30,#34", "is no polyline"),
+            ("'X','Y','Z'", "#30,#30,#34", "is not a polyline"),
         ],
     )
     def test_what_does_not_fit_is_refused(

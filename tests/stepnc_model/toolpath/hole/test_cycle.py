@@ -170,7 +170,7 @@ class TestPeck:
         [
             (",0.,0.,10.,$", "first_depth: 0.0 mm"),
             (",0.,10.,-1.,$", "depth_of_step: -1.0 mm"),
-            (",0.,10.,0.00001,$", "depth_of_step: 2000000 steps"),
+            (",0.,10.,0.00001,$", "depth_of_step: 2000000 pecks"),
         ],
     )
     def test_steps_that_lead_nowhere_are_refused(self, rest: str, message: str) -> None:

@@ -142,7 +142,7 @@ class TestBottom:
             "#167=SPHERICAL_HOLE_BOTTOM(#601);\n#601=TOLERANCED_LENGTH_MEASURE(4.,$);",
         )
         with pytest.raises(
-            PathError, match="sphere of radius 4 mm below a hole of radius 5 mm"
+            PathError, match="sphere radius 4 mm is smaller than the hole radius 5 mm"
         ):
             drilled(change)
 
@@ -160,18 +160,18 @@ class TestCuttingDepth:
         found = drilled(FLAT, (OPERATION, OPERATION.replace("3.,$,", "3.,31.,")))
         (finding,) = found.findings
         assert (finding.severity, finding.attribute) == (Severity.WARNING, "cutting_depth")
-        assert "31 mm is deeper than the hole of 30 mm" in finding.message
+        assert "31 mm is deeper than the hole depth of 30 mm" in finding.message
 
     @pytest.mark.parametrize("depth", ["0.", "-2."])
     def test_it_must_be_positive(self, depth: str) -> None:
-        with pytest.raises(PathError, match=r"cutting_depth: .*removes nothing"):
+        with pytest.raises(PathError, match=r"cutting_depth: .*must be positive"):
             drilled((OPERATION, OPERATION.replace("3.,$,", f"3.,{depth},")))
 
     def test_it_is_enough_where_the_feature_has_no_depth(self) -> None:
         no_plane = ("#161,#163,#166", "#161,$,#166")
         given = (OPERATION, OPERATION.replace("3.,$,", "3.,12.,"))
         assert drilled(no_plane, given).depth.full == 12.0
-        with pytest.raises(PathError, match=r"#160 .*has no depth"):
+        with pytest.raises(PathError, match=r"#160 .*depth: neither the hole's depth"):
             drilled(no_plane)
 
     def test_a_centre_drills_is_measured_to_its_tip(self) -> None:
@@ -200,11 +200,11 @@ class TestSink:
         assert drilled(self.SINK, self.WIDE, given).depth.tip == 4.0
 
     def test_a_hole_without_taper_does_not_tell(self) -> None:
-        with pytest.raises(PathError, match="needs a cutting_depth"):
+        with pytest.raises(PathError, match="a cutting depth is needed"):
             drilled(self.SINK, self.WIDE)
 
     def test_a_tool_narrower_than_the_sink_is_refused(self) -> None:
-        with pytest.raises(PathError, match=r"tool of 9\.8 mm for a sink of 10 mm"):
+        with pytest.raises(PathError, match=r"tool of 9\.8 mm is too narrow for a sink of 10 mm"):
             drilled(self.SINK, self.TAPER, self.ANGLE)
 
 
@@ -217,7 +217,7 @@ class TestFit:
         if fits:
             drilled(change)
             return
-        with pytest.raises(PathError, match=r"tool of 10\.02 mm for a hole of 10 mm"):
+        with pytest.raises(PathError, match=r"tool of 10\.02 mm diameter is too wide for a hole of 10 mm"):
             drilled(change)
 
     def test_a_taper_is_as_wide_as_its_narrow_end(self) -> None:
@@ -245,7 +245,7 @@ class TestFit:
         found = drilled((DRILL, DRILL.replace("60.", "34.")))
         (finding,) = found.findings
         assert finding.severity is Severity.WARNING
-        assert "cutting edge of 34 mm for a depth of 34.78 mm" in finding.message
+        assert "cutting edge of 34 mm is shorter than the depth of 34.78 mm" in finding.message
 
     def test_a_short_tool_is_a_warning(self) -> None:
         found = drilled(("'DRILL 9.8MM',#451,(#453),95.", "'DRILL 9.8MM',#451,(#453),30."))

@@ -97,7 +97,7 @@ def test_what_is_no_ratio_is_refused(ratio: str) -> None:
 
 
 def test_what_is_no_strategy_of_drilling_is_refused() -> None:
-    with pytest.raises(PathError, match=r"#350 .*no strategy of drilling"):
+    with pytest.raises(PathError, match=r"#350 .*is not a drilling strategy"):
         stages((OPERATION, OPERATION.replace("#361", "#350")))
 
 

@@ -149,7 +149,7 @@ def test_a_blind_hole_is_left_by_one_pitch_first() -> None:
     found = path(BLIND, ("DEFINITION(30.", "DEFINITION(40."))
     assert found.moves[2].end[2] == pytest.approx(-40.0 + 1.5)
     (finding,) = found.findings
-    assert "the thread ends 1.5 mm above its length" in finding.message
+    assert "the thread is 1.5 mm too short" in finding.message
 
 
 def test_a_point_lies_below_the_teeth() -> None:
@@ -203,18 +203,18 @@ def test_the_teeth_go_from_the_end_of_the_thread_to_above_the_part(
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (("(#160),.T.", "(#170),.T."), r"#160 .*no thread names it"),
-        (("1.5,'MM'", "0.,'MM'"), "number_of_threads: 0: it must be positive"),
+        (("(#160),.T.", "(#170),.T."), r"#160 .*no thread has this hole as its applied_shape: the pitch is unknown"),
+        (("1.5,'MM'", "0.,'MM'"), "number_of_threads: 0: the pitch must be positive"),
         (("1.5,'MM'", "1.5,'FURLONG'"), "number_of_threads: unit 'FURLONG'"),
-        (("1.5,'MM'", "1.E-3,'MM'"), "number_of_threads: .* 1000 at most"),
+        (("1.5,'MM'", "1.E-3,'MM'"), "number_of_threads: .* at most 1000"),
         (("'RIGHT')", "'WRONG')"), "thread_hand: 'WRONG'"),
         (("#622,#622,12.,", "#622,#622,0.,"), "major_diameter: 0 mm"),
-        (("#622,#622,12.,", "#622,#622,10.2,"), "tool of 10.2 mm for a thread of 10.2 mm"),
+        (("#622,#622,12.,", "#622,#622,10.2,"), "tool of 10.2 mm is too wide to mill a thread of 10.2 mm"),
         (("DEFINITION(30.", "DEFINITION(-1."), "partial_profile: -1 mm"),
-        (("DIMENSION(10.2", "DIMENSION(10.6"), "tool of 10.6 mm for a hole of 10.5 mm"),
+        (("DIMENSION(10.2", "DIMENSION(10.6"), "tool of 10.6 mm diameter is too wide for a hole of 10.5 mm"),
         (
             ("#620=CATALOGUE_THREAD(", "#630=SPECIFICATION((),'',$,$);\n#620=DEFINED_THREAD("),
-            "minor diameter is 9 mm",
+            "minor diameter of 9 mm",
         ),
     ],
 )

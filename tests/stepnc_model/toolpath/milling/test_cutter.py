@@ -90,7 +90,7 @@ def test_taper_that_no_tool_has_is_refused() -> None:
         "#421=TAPERED_ENDMILL(#422,4,.RIGHT.,.F.,$,$)",
         "#421=TAPERED_ENDMILL(#422,4,.RIGHT.,.F.,$,90.)",
     )
-    with pytest.raises(PathError, match=r"taper of 90°.*80°"):
+    with pytest.raises(PathError, match=r"taper angle 90°.*80°"):
         cutter_of(job_at("ROUGH POCKET", change))
 
 

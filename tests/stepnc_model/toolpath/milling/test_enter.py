@@ -162,7 +162,7 @@ def test_angle_meets_the_pass_at_its_angle() -> None:
 
 def test_lead_without_room_is_left_out_and_said() -> None:
     path, _ = entered("AP_RETRACT_TANGENT($,25.)")
-    assert "no room for ap_retract_tangent: straight down" in path.findings[0].message.lower()
+    assert "no room for ap_retract_tangent: moving straight down" in path.findings[0].message.lower()
     path, _ = entered("AP_RETRACT_TANGENT($,1.)", clearance=nowhere)
     assert path.findings
 
@@ -170,7 +170,7 @@ def test_lead_without_room_is_left_out_and_said() -> None:
 @pytest.mark.parametrize("angle", ["0.", "-3.", "90."])
 def test_angle_that_is_no_ramp_is_said(angle: str) -> None:
     path, _ = entered(f"PLUNGE_RAMP($,{angle})")
-    assert "is no ramp: straight down" in path.findings[0].message
+    assert "is not a valid ramp: moving straight down" in path.findings[0].message
 
 
 def test_ramp_on_a_speck_is_a_plunge_and_said() -> None:

@@ -93,12 +93,12 @@ def test_polygon_has_three_sides_at_least(sides: str) -> None:
 
 
 def test_profile_with_a_gap_is_refused() -> None:
-    with pytest.raises(PathError, match="does not close: a gap of 28 mm"):
+    with pytest.raises(PathError, match="the profile does not close: gap of 28 mm"):
         closed("GENERAL_CLOSED_PROFILE($,#158)")
 
 
 def test_open_profile_is_no_closed_one() -> None:
-    with pytest.raises(PathError, match="#900 LINEAR_PROFILE: is no closed profile"):
+    with pytest.raises(PathError, match="#900 LINEAR_PROFILE: is not a closed profile"):
         closed("LINEAR_PROFILE($,#109)")
 
 
@@ -116,12 +116,12 @@ def test_courses_are_as_long_as_drawn(path: str, length: float) -> None:
 
 
 def test_course_out_of_its_plane_is_refused() -> None:
-    with pytest.raises(PathError, match="its_direction: leads out of its plane"):
+    with pytest.raises(PathError, match="its_direction: the course of travel leaves its plane"):
         travel("LINEAR_PATH($,#127,#501)")
 
 
 def test_what_is_no_course_is_refused() -> None:
-    with pytest.raises(PathError, match="is no course of travel"):
+    with pytest.raises(PathError, match="is not a course of travel"):
         travel("LINEAR_PROFILE($,#109)")
 
 
@@ -133,14 +133,14 @@ def test_open_arc_begins_on_x() -> None:
 
 def test_open_boundary_of_another_kind_is_refused() -> None:
     job = job_at("ROUGH POCKET", more="#900=ROUNDED_U_PROFILE($,#137);")
-    with pytest.raises(PathError, match="cannot be followed"):
+    with pytest.raises(PathError, match="this kind of open boundary is not supported"):
         open_outline(job, NEW, Frame())
 
 
 @pytest.mark.parametrize("number", ["1.E7", "-1.E300"])
 def test_point_that_lies_beyond_any_part_is_refused(number: str) -> None:
     more = f"#901=POLYLINE('',(#500,#902));#902=CARTESIAN_POINT('',({number},0.,0.));"
-    with pytest.raises(PathError, match="no part is so large"):
+    with pytest.raises(PathError, match="is too far away"):
         travel("GENERAL_PATH($,#901)", more)
 
 
@@ -161,7 +161,7 @@ def test_boundary_that_crosses_itself_is_refused() -> None:
 
 
 def test_feature_must_stand_upright() -> None:
-    with pytest.raises(PathError, match=r"#140 .*its axis \(0, 1, 0\) does not lie along"):
+    with pytest.raises(PathError, match=r"#140 .*axis \(0, 1, 0\) is not parallel"):
         require_upright(job_at("ROUGH POCKET"), Frame(z=(0.0, 1.0, 0.0)), Ref(140))
 
 

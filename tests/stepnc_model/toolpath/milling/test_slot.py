@@ -110,14 +110,14 @@ def test_woodruff_end_is_not_cut_into_at_any_level(z: float) -> None:
 def test_corner_larger_than_half_the_width_is_refused() -> None:
     change, more = ended("FLAT_SLOT_END_TYPE(#127,#127)", "OPEN_SLOT_END_TYPE()")
     with pytest.raises(
-        PathError, match=r"corner radius 90 mm: .*half the width of the slot, 6 mm"
+        PathError, match=r"corner radius 90 mm .*half the width of the slot, 6 mm"
     ):
         slot(change, more=more)
 
 
 def test_loop_end_needs_a_course_that_closes() -> None:
     change, more = ended("LOOP_SLOT_END_TYPE()", "LOOP_SLOT_END_TYPE()")
-    with pytest.raises(PathError, match="#130 SLOT: its course does not close: a gap of 90 mm"):
+    with pytest.raises(PathError, match="#130 SLOT: the slot's course does not close: gap of 90 mm"):
         slot(change, more=more)
 
 
@@ -154,7 +154,7 @@ def test_slot_around_a_corner_is_round_outside_and_sharp_inside() -> None:
 
 def test_course_sharper_than_half_the_width_is_refused() -> None:
     more = "#901=PARTIAL_CIRCULAR_PATH($,#902,200.);#902=TOLERANCED_LENGTH_MEASURE(3.,#510);"
-    with pytest.raises(PathError, match="turns more sharply than its half width 6 mm"):
+    with pytest.raises(PathError, match="curves more tightly than the half width 6 mm"):
         slot(("#133,#126,#136,", "#133,#901,#136,"), more=more)
 
 
@@ -209,7 +209,7 @@ def test_general_profile_is_as_wide_as_its_narrower_side_twice() -> None:
 
 
 def test_profile_that_no_mill_makes_is_refused() -> None:
-    with pytest.raises(PathError, match="a slot of this profile cannot be milled"):
+    with pytest.raises(PathError, match="a slot with this kind of profile cannot be milled"):
         profiled("LINEAR_PROFILE($,#109)")
 
 

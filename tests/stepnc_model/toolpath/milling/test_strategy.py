@@ -96,18 +96,18 @@ def test_overlap_that_leaves_no_progress_is_refused_at_its_strategy(overlap: str
 @pytest.mark.parametrize("radial", ["0.", "-2."])
 def test_width_of_cut_must_be_positive(radial: str) -> None:
     with pytest.raises(
-        PathError, match=r"radial_cutting_depth: .* mm: a width of cut is positive"
+        PathError, match=r"radial_cutting_depth: .* mm: the width of cut must be positive"
     ):
         way("CONTOUR_PARALLEL($,.T.,.CCW.,.CLIMB.)", radial=radial)
 
 
 def test_steps_that_are_a_slip_are_refused() -> None:
-    with pytest.raises(PathError, match="radial_cutting_depth: steps of 1e-05 mm"):
+    with pytest.raises(PathError, match="radial_cutting_depth: step of 1e-05 mm"):
         way("CONTOUR_PARALLEL($,.T.,.CCW.,.CLIMB.)", radial="0.00001")
 
 
 def test_explicit_strategy_needs_its_path() -> None:
-    with pytest.raises(PathError, match="asks for an explicit tool path, and none is given"):
+    with pytest.raises(PathError, match="the strategy asks for an explicit tool path, but the operation has none"):
         way("EXPLICIT_STRATEGY($,$)")
 
 

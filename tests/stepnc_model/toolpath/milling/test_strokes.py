@@ -121,5 +121,5 @@ def test_nothing_to_cover_makes_no_stroke() -> None:
 
 
 def test_more_strokes_than_any_machine_makes_are_refused() -> None:
-    with pytest.raises(ValueError, match="strokes side by side"):
+    with pytest.raises(ValueError, match="parallel strokes"):
         scan([FIELD], along=1 + 0j, step=1e-4)

@@ -38,5 +38,5 @@ def test_an_angle_without_length_is_refused(path_of: Callable[..., ToolPath]) ->
         ),
         (END, "#600=AP_RETRACT_ANGLE($,45.,0.);\n" + END),
     )
-    with pytest.raises(SchemaError, match="no way to the path"):
+    with pytest.raises(SchemaError, match="is not a valid lead-in"):
         path_of("FINISH CONTOUR", *edits)

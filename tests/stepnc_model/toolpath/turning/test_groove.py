@@ -63,7 +63,7 @@ def test_cutting_in_goes_to_the_axis_and_past_it_by_the_corner(
 
 def test_a_vee_too_sharp_for_the_insert_is_said(path_of: Callable[..., ToolPath]) -> None:
     path = path_of("THREAD RELIEF", (SQUARE, "VEE_PROFILE($,#135,90.,0.)"))
-    assert "does not come to the bottom" in str(path.findings)
+    assert "does not reach the bottom" in str(path.findings)
 
 
 @pytest.mark.parametrize(
@@ -71,7 +71,7 @@ def test_a_vee_too_sharp_for_the_insert_is_said(path_of: Callable[..., ToolPath]
     [
         ((".RIGHT.,3.,12.", ".RIGHT.,4.5,12."), "too narrow for an insert of 4.5 mm"),
         ((".RIGHT.,3.,12.", ".RIGHT.,3.,2."), "the insert reaches 2 mm"),
-        ((".RIGHT.,3.,12.", ".RIGHT.,$,12."), "a width of None mm"),
+        ((".RIGHT.,3.,12.", ".RIGHT.,$,12."), "an insert width of None mm"),
         (("(),$,#506,$)", "(),$,#506,9.)"), "a step of 9 mm"),
     ],
 )

@@ -46,4 +46,4 @@ def test_without_a_bar_the_features_say_how_large_it_is(
 ) -> None:
     found = bar(job, "ROUGH CONTOUR", ("0.02,$,$,#33,(#36)", "0.02,$,$,$,(#36)"))
     assert found.radius == 27.0
-    assert "a diameter of 54 mm" in str(found.findings[0])
+    assert "54 mm diameter" in str(found.findings[0])

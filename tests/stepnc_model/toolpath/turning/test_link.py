@@ -48,7 +48,7 @@ def test_an_oblique_feed_of_straight_passes_is_said(job: Jobs) -> None:
 
 
 def test_a_negative_lift_is_refused(job: Jobs) -> None:
-    with pytest.raises(SchemaError, match="no such length"):
+    with pytest.raises(SchemaError, match="is not a valid l"):
         link_of(
             job("ROUGH CONTOUR", ("#506,1.,$,$);\n#353", "#506,-1.,$,$);\n#353")), HalfPlane()
         )

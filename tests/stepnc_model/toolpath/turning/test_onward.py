@@ -68,15 +68,15 @@ def test_oblique_directions_are_followed(path_of: PathOf) -> None:
 @pytest.mark.parametrize(
     ("ways", "text"),
     [
-        ("#914,#502,#506,2.", "the way back would run into what is left"),
-        ("#501,#502,#915,2.", "the step over would run into what is left"),
-        ("#501,#506,#506,2.", "the lift leads into the part"),
+        ("#914,#502,#506,2.", "the return path would hit the remaining stock"),
+        ("#501,#502,#915,2.", "the stepover would hit the remaining stock"),
+        ("#501,#506,#506,2.", "the lift points into the part"),
         ("#501,#501,#506,2.", "the lift does not leave the surface"),
-        ("#501,#502,#504,2.", "the step over leads along the feed"),
-        ("#501,#502,#502,2.", "the step over leads off the part"),
-        ("#504,#502,#506,2.", "does not lead back"),
-        ("#501,#916,#506,2.", "no direction in the plane of the lathe"),
-        ("#501,#502,#506,0.", "no room for a rapid"),
+        ("#501,#502,#504,2.", "the stepover points along the feed"),
+        ("#501,#502,#502,2.", "the stepover points away from the part"),
+        ("#504,#502,#506,2.", "does not point back"),
+        ("#501,#916,#506,2.", "not in the lathe's x-z plane"),
+        ("#501,#502,#506,0.", "too little for a rapid"),
     ],
 )
 def test_what_makes_no_sense_is_said_and_a_sane_path_made(

@@ -38,7 +38,7 @@ def test_without_retract_plane_the_clearance_is_a_note(
     path_of: Callable[..., ToolPath],
 ) -> None:
     path = path_of("ROUGH FACE", ("'ROUGH FACE',5.", "'ROUGH FACE',$"))
-    assert "5 mm off the stock assumed" in str(path.findings[0])
+    assert "assuming 5 mm off the stock" in str(path.findings[0])
 
 
 def test_without_nose_radius_the_tool_is_sharp_and_it_is_said(
@@ -52,11 +52,11 @@ def test_without_nose_radius_the_tool_is_sharp_and_it_is_said(
 @pytest.mark.parametrize(
     ("edit", "message"),
     [
-        (("#352,0.5)", "#352,50.)"), "an allowance of 50 mm where"),
-        (("#352,0.5)", "#352,-0.5)"), "must not be negative"),
+        (("#352,0.5)", "#352,50.)"), "the allowance of 50 mm exceeds"),
+        (("#352,0.5)", "#352,-0.5)"), "must be from 0 to 1000 mm"),
         (("(#110,#120),#202", "(),#202"), "has no feature"),
-        (("152.,30.)", "152.,12.)"), "that of the bar is 12 mm"),
-        (("152.,30.)", "62.,30.)"), "the bar from"),
+        (("152.,30.)", "152.,12.)"), "exceeds the bar radius of 12 mm"),
+        (("152.,30.)", "62.,30.)"), "the bar extends from"),
         (("(2.),$,#504", "(-2.),$,#504"), "must be positive"),
     ],
 )

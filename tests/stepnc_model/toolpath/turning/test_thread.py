@@ -89,7 +89,7 @@ def test_without_relief_it_is_said(path_of: Callable[..., ToolPath]) -> None:
 
 
 def test_an_inside_thread_is_refused(path_of: Callable[..., ToolPath]) -> None:
-    with pytest.raises(SchemaError, match="inside thread"):
+    with pytest.raises(SchemaError, match="internal threads are not supported"):
         path_of(NAME, (".EXTERNAL.", ".INTERNAL."))
 
 
@@ -141,4 +141,4 @@ def test_a_run_in_keeps_half_the_insert_off_the_wall_of_the_relief(
     """Away from the chuck out of a relief from −29 to −25 mm; half a pitch is 1 mm."""
     path = path_of(NAME, ("#431,.RIGHT.,2.,\n     .RIGHT.", "#431,.RIGHT.,2.,\n     .LEFT."))
     assert runs(path)[-1][0][2] == pytest.approx(-28.0)
-    assert "a run-in of 3 mm, not of 4 mm" in str(path.findings)
+    assert "the run-in is 3 mm instead of 4 mm" in str(path.findings)
