@@ -204,7 +204,9 @@ class TestSink:
             drilled(self.SINK, self.WIDE)
 
     def test_a_tool_narrower_than_the_sink_is_refused(self) -> None:
-        with pytest.raises(PathError, match=r"tool of 9\.8 mm is too narrow for a sink of 10 mm"):
+        with pytest.raises(
+            PathError, match=r"tool of 9\.8 mm is too narrow for a sink of 10 mm"
+        ):
             drilled(self.SINK, self.TAPER, self.ANGLE)
 
 
@@ -217,7 +219,9 @@ class TestFit:
         if fits:
             drilled(change)
             return
-        with pytest.raises(PathError, match=r"tool of 10\.02 mm diameter is too wide for a hole of 10 mm"):
+        with pytest.raises(
+            PathError, match=r"tool of 10\.02 mm diameter is too wide for a hole of 10 mm"
+        ):
             drilled(change)
 
     def test_a_taper_is_as_wide_as_its_narrow_end(self) -> None:
