@@ -50,7 +50,7 @@ class Spline:
         return tuple(sorted(set(self.knots[self.degree : len(self.poles) + 1])))
 
     def at(self, parameter: float) -> Point:
-        """Point at a parameter, [1]_."""
+        """Point of the curve at a parameter value, [1]_."""
         degree = self.degree
         last = len(self.poles) - 1
         span = min(max(bisect_right(self.knots, parameter) - 1, degree), last)

@@ -55,9 +55,9 @@ class ThreadPass:
     """Position z where the run-in starts, mm."""
     end: float
     bottom: float
-    """Radius of the insert tip, mm."""
+    """Radius at which the insert tip cuts in this pass, mm."""
     clear: float
-    """Radius of the return move, mm."""
+    """Radius at which the tool returns, mm."""
     angle: float | None
     """Pull-out angle from the axis, degrees; None for straight out."""
     has_relief: bool
