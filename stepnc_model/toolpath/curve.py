@@ -232,7 +232,7 @@ class _CurveVisit:
 def _segments(program: Program, ref: Ref[Entity], visit: _CurveVisit) -> Iterator[Segment]:
     """Lines and arcs of a curve of any supported kind."""
     if visit.level > MOST_NESTED or next(visit.budget, None) is None:
-        message = f"contains itself, or over {MOST_NESTED} levels or {MOST_CURVES} curves"
+        message = f"contains itself, or nests over {MOST_NESTED} levels or {MOST_CURVES} curves"
         raise program.path_error(message, ref)
     curve = program.get(ref)
     if isinstance(curve, Polyline):

@@ -373,7 +373,7 @@ def _check_stock(job: ToolPathTask, hole: Hole, depth: Depth) -> None:
     if reach < bottom - TOLERANCE:
         kind = "through" if hole.is_through else "blind"
         message = (
-            f"a {kind} hole down to z = {reach:g} mm leaves the workpiece, "
+            f"a {kind} hole down to z = {reach:g} mm breaks through the workpiece, "
             f"whose bottom lies at z = {bottom:g} mm"
         )
         raise job.fault(message, hole.ref, "depth")

@@ -233,7 +233,7 @@ def _helix(job: ToolPathTask, outline: FeatureOutline, pitch: float) -> TurnedTh
     depth = EXTERNAL_DEPTH * pitch
     least, radius = outline.radii
     if radius - least > SAME_PITCH:
-        raise job.fault("taper threads are not supported", outline.ref)
+        raise job.fault("tapered threads are not supported", outline.ref)
     low, high = outline.low, outline.high
     if isinstance(feature, Thread):
         area = job.program.get(feature.partial_profile)

@@ -234,7 +234,7 @@ def test_what_is_odd_is_said(change: tuple[str, str], attribute: str) -> None:
             ("DIMENSION(16.,$", "DIMENSION(18.,$"),
             "tool of 18 mm diameter is too wide for a bore of 16 mm",
         ),
-        (("#503,3.)", "#503,3.1)"), "a bar of 3.1 mm, 3.5 mm off that of the hole"),
+        (("#503,3.)", "#503,3.1)"), "a bar of 3.1 mm, 3.5 mm off the hole's axis"),
         (("#503,3.)", "#503,0.)"), "0 mm: the diameter must be positive"),
         (("110.,#503,3.)", "110.,#501,3.)"), "along the axis of its tool"),
         (

@@ -242,7 +242,7 @@ class TestFit:
 
     def test_a_blind_hole_through_the_bottom_of_the_stock_is_refused(self) -> None:
         change = ("(0.,0.,-30.));\n#166", "(0.,0.,-40.5));\n#166")
-        with pytest.raises(PathError, match=r"z = -40\.5 mm leaves .* z = -40 mm"):
+        with pytest.raises(PathError, match=r"z = -40\.5 mm breaks .* z = -40 mm"):
             drilled(FLAT, change, (DRILL, DRILL.replace("20.", "$")))
 
     def test_a_short_cutting_edge_is_a_warning(self) -> None:
