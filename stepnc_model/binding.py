@@ -245,7 +245,7 @@ def to_parameters(entity: Entity) -> tuple[Value, ...]:
 
 
 def _entity_of(file: Part21File, id: int) -> Entity | None:
-    """Entity of one instance, or None."""
+    """Entity of one instance; None if it cannot be bound."""
     printed = _printed(file, id)
     if printed is not None:
         return printed.entity
@@ -402,7 +402,7 @@ def _unknown_findings(file: Part21File) -> Iterator[Finding]:
 def _finding(
     file: Part21File, id: int, attribute: str, *, remark: ConversionRemark, rule: str
 ) -> Finding:
-    """Finding for a remark at an instance."""
+    """Convert a remark about an instance to a finding."""
     return Finding(
         severity=remark.severity,
         message=remark.message,

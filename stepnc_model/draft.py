@@ -44,7 +44,7 @@ class Draft:
     def put(
         self, owner: Ref[Any], attribute: str, value: Value, *, at: Ref[Any] | None = None
     ) -> None:
-        """Set an attribute.
+        """Set the value of an attribute of an instance.
 
         Parameters
         ----------

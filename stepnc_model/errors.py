@@ -121,7 +121,7 @@ class WriteError(StepNcError):
 
 
 class Severity(StrEnum):
-    """Severity of a finding."""
+    """Severity of a finding: note, warning or error."""
 
     NOTE = "note"
     """Information about an assumption, a default or an outdated name."""
@@ -164,7 +164,7 @@ class FindingList:
         self._counts: Counter[Severity] = Counter()
 
     def add(self, finding: Finding) -> None:
-        """Add a finding."""
+        """Add a finding to the list."""
         if self.has_room(finding.severity):
             self._kept.append(finding)
         self._counts[finding.severity] += 1
@@ -179,7 +179,7 @@ class FindingList:
         return self._counts[severity] < MOST_FINDINGS
 
     def count(self, severity: Severity, number: int = 1) -> None:
-        """Count findings without listing them."""
+        """Count further findings without listing them."""
         self._counts[severity] += number
 
     def all(self) -> tuple[Finding, ...]:

@@ -49,7 +49,7 @@ def measured_or_none(value: float | None, name: str, unit: str) -> float | None:
 
 
 def positive_or_none(value: float | None, name: str, unit: str) -> float | None:
-    """Check a number above 0; None if not measured."""
+    """Check that a measured number is positive; None if not measured."""
     return None if value is None else positive(value, name, unit)
 
 
@@ -84,11 +84,11 @@ class RecordedCorrection:
     context: Context
     factor: float
     confidence: float
-    """Confidence, 0 to 1."""
+    """Confidence in the correction factor, 0 to 1."""
     accepted_by: str
     """Person who accepted the correction; empty for a proposal."""
     valid_from: datetime | None
-    """Start of validity, with time zone."""
+    """Time from which the correction is valid, with time zone."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -202,7 +202,7 @@ def _put(edits: Edits, entity: entities.Correction, old: _Standing | None) -> No
 
 
 def _context(entity: entities.Correction) -> Context:
-    """Context of a correction entity."""
+    """Machine, material and tool of a correction entity."""
     return Context(machine=entity.machine, material=entity.material, tool=entity.tool)
 
 
@@ -220,7 +220,7 @@ class RecordedOutcome:
     force: float | None
     """Cutting force, N."""
     feed: float | None
-    """Feed, mm/s."""
+    """Measured feed, mm/s."""
     roughness: float | None
     """Roughness Ra, mm."""
     trace: str

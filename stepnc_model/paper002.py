@@ -78,7 +78,7 @@ class _Record:
 def read_printed(
     keyword: str, values: tuple[Value, ...], *, label: str = "", line: int = 0
 ) -> ConsistentRecord | None:
-    """Read a record in the form of Fig. 11.
+    """Read an optimisation record in the form of Fig. 11.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ def read_printed(
 
 
 def _machine_power(record: _Record) -> ConsistentRecord | None:
-    """Read ('MACHINE POWER', 0.29, 'kW')."""
+    """Read a machine power, printed as ('MACHINE POWER', 0.29, 'kW')."""
     if len(record.values) != 3:
         return None
     parameter = _numeric_parameter(*record.values)
@@ -125,7 +125,7 @@ def _machine_power(record: _Record) -> ConsistentRecord | None:
 
 
 def _main_cutting_power(record: _Record) -> ConsistentRecord | None:
-    """Read ('CUTTING POWER', $, 'kW', #203, 35), where 35 is Table 2's speed in m/min."""
+    """Read a cutting power, ('CUTTING POWER', $, 'kW', #203, 35); 35 is a speed in m/min."""
     if len(record.values) != 5:
         return None
     name, value, unit, force, speed = record.values
@@ -150,7 +150,7 @@ def _main_cutting_power(record: _Record) -> ConsistentRecord | None:
 
 
 def _cutting_force(record: _Record) -> ConsistentRecord | None:
-    """Read (1000, #204, 500, $, 0.5, 5): resistance, type, speed, nothing, feed, depth."""
+    """Read a cutting force: resistance, type, speed, nothing, feed and depth."""
     if len(record.values) != 6:
         return None
     _, face, _, surplus, _, _ = record.values
@@ -186,7 +186,7 @@ def _cutting_force(record: _Record) -> ConsistentRecord | None:
 
 
 def _face_milling_type(record: _Record) -> ConsistentRecord | None:
-    """Read (180.0, "FULL_IMMERSION")."""
+    """Read a face milling type, printed as (180.0, "FULL_IMMERSION")."""
     if len(record.values) != 2:
         return None
     angle, immersion = _number(record.values[0]), record.values[1]

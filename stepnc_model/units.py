@@ -1,8 +1,8 @@
-"""Named conversions at the edges. Inside: mm, s, N, W, rad, rev/s.
+"""Unit conversions between the internal units mm, s, N, W, rad, rev/s and those of files.
 
-``x_from_y`` reads: the canonical x from a number in the unit y. ISO 14649-10 §4.2.1 writes
-speeds in m/s, spindles in rev/s and angles in degrees; controls and people speak mm/min and
-rpm.
+``x_from_y`` returns the canonical x from a number in the unit y. ISO 14649-10 §4.2.1 writes
+speeds in m/s, spindle speeds in rev/s and angles in degrees; controls and people use mm/min
+and rpm.
 
 A :class:`UnitProfile` gives the units in which a program writes its feeds and speeds. ISO
 14649-10 §4.2.1 prescribes m/s for speeds and rev/s for spindles when the file names no unit.

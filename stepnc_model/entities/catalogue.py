@@ -49,13 +49,13 @@ OLDER_NAMES = {
     "COUNTERSINKING": "COUNTER_SINKING",
     "MULTISTEP_DRILLING_OPERATION": "MULTISTEP_DRILLING",
 }
-"""names of the drafts of 2001 and of some files, and what the standard of 2004 calls them"""
+"""Entity names of the drafts of 2001 and of some files, with those of the 2004 standard."""
 
 
 BY_ARITY: dict[tuple[str, int], type[Entity]] = {
     ("MILLING_TECHNOLOGY", 5): adaptive.AdaptiveMillingTechnology
 }
-"""other forms of an entity, told apart by the number of parameters"""
+"""Alternative forms of an entity, recognised by their number of parameters."""
 
 
 def class_of(keyword: str, arity: int) -> type[Entity] | None:

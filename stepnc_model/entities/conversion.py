@@ -24,10 +24,10 @@ class AttributeSlot:
     is_optional: bool = False
     references: tuple[type[Entity], ...] = ()
     plain: tuple[type, ...] = ()
-    """of str, float, int and bool, and of Typed where the type of a measure matters"""
+    """Plain types: str, float, int, bool, and Typed where the type of a measure matters."""
     enumeration: type[StrEnum] | None = None
     items: "AttributeSlot | None" = None
-    """Items of a list"""
+    """Type of the items of a list."""
 
     def expected(self) -> str:
         """Description of the expected type, for messages."""
@@ -93,7 +93,7 @@ class ConversionRemark:
 
 
 Taken = tuple[object, ConversionRemark | None]
-"""a Python value, and what is odd about it"""
+"""Python value, and a remark if the Part 21 value deviates from its type."""
 
 
 def take(slot: AttributeSlot, value: Value) -> Taken:

@@ -17,7 +17,7 @@ TIDY_COMMENT = rb"/\*(?>(?:[^*/]++|\*(?!/)|/(?!\*)){0,1000})\*/"
 """Comment that does not contain another ``/*``."""
 BLANK = rb"(?>(?:\s++|" + TIDY_COMMENT + rb"){0,1000})"
 ROUNDS = rb"{0,10000}"
-"""Repetitions of a group in one run."""
+"""Greatest number of repetitions of a pattern group in one match."""
 STRING = rb"'[^']*+'"
 """String, or the piece of a string up to a doubled apostrophe."""
 BINARY = rb'"[^"\r\n;]*+"'

@@ -69,15 +69,15 @@ class Index:
 
     ids: "array[int]"
     starts: "array[int]"
-    """Offsets of the ``#``."""
+    """Offset of each instance's ``#`` in the file."""
     ends: "array[int]"
-    """Offsets behind the ``;``."""
+    """Offset behind each instance's ``;`` in the file."""
     codes: "array[int]"
-    """Positions in ``keywords``."""
+    """Position of each instance's keyword in ``keywords``."""
     keywords: tuple[str, ...]
     """Keywords in upper case; empty for complex instances."""
     positions: dict[int, int]
-    """Position in the columns by id."""
+    """Position of an instance in the columns, by its id."""
 
 
 class IndexBuilder:
@@ -152,7 +152,7 @@ class IndexBuilder:
         return end
 
     def finish(self) -> Index:
-        """Complete index of all sections.
+        """Build the index of all DATA sections.
 
         Raises
         ------
@@ -179,7 +179,7 @@ class IndexBuilder:
         )
 
     def _too_long(self, sizes: list[int]) -> Part21Error:
-        """Error that names the longest instance."""
+        """Error about an instance that is too long, naming the longest."""
         longest = sizes.index(max(sizes))
         message = (
             f"#{self._ids[longest]} is {sizes[longest]} bytes long; at most {MAX_INSTANCE}"

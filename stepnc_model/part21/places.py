@@ -38,7 +38,7 @@ class Lines:
             self._before.append(self._before[-1] + count)
 
     def line(self, offset: int) -> int:
-        """Line of an offset, counted from 1."""
+        """Line number of a byte offset, counted from 1."""
         block = offset // _BLOCK
         return self._before[block] + self._data.count(self._break, block * _BLOCK, offset) + 1
 
@@ -76,10 +76,10 @@ MOST_OF_INSTANCE = 100
 
 
 class Slips(Protocol):
-    """Collector of deviations, such as a list."""
+    """Collector of syntax deviations, such as a list."""
 
     def append(self, slip: SyntaxSlip, /) -> None:
-        """Add a deviation."""
+        """Record a syntax deviation."""
 
 
 class FileSlips:
@@ -96,7 +96,7 @@ class FileSlips:
         self._data = data
 
     def append(self, slip: SyntaxSlip, /) -> None:
-        """Add a deviation.
+        """Record a syntax deviation.
 
         Raises
         ------

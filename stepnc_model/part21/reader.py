@@ -104,7 +104,7 @@ class Part21File:
 
     @classmethod
     def from_bytes(cls, data: bytes, *, name: str = "") -> Self:
-        """Index a file.
+        """Index the instances of a file.
 
         Parameters
         ----------
@@ -140,7 +140,7 @@ class Part21File:
         return self._index.keywords[self._index.codes[self._index.positions[id]]]
 
     def parameters(self, id: int) -> tuple[Value, ...]:
-        """Parameters of a simple instance.
+        """Parameters of a simple instance as Python values.
 
         Raises
         ------
@@ -181,7 +181,7 @@ class Part21File:
         return self._body(id) + self._simple(id).end
 
     def span(self, id: int) -> tuple[int, int]:
-        """Byte span of ``#id=...;``."""
+        """Byte span of an instance's text, ``#id=...;``."""
         position = self._index.positions[id]
         return self._index.starts[position], self._index.ends[position]
 
@@ -235,7 +235,7 @@ class Part21File:
 
     @cached_property
     def _index(self) -> Index:
-        """Index of the instances."""
+        """Index of the file's instances."""
         return self.structure.index
 
     @cached_property
@@ -334,7 +334,7 @@ class Part21File:
             found.count(Severity.WARNING, record.unlisted)
 
     def _finding(self, slip: SyntaxSlip, label: str = "") -> Finding:
-        """Finding for a deviation."""
+        """Convert a syntax deviation to a finding."""
         return Finding(
             severity=slip.severity,
             message=slip.message,

@@ -18,7 +18,7 @@ from stepnc_model.part21.tokens import TOKEN, MalformedError, scalar, shown
 from stepnc_model.part21.values import Typed, Value
 
 Part: TypeAlias = tuple[str, tuple[Value, ...]]
-"""Keyword in upper case, and values."""
+"""Keyword in upper case and parameter values of one part of an instance."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,11 +32,11 @@ class InstanceRecord:
     end: int
     """Offset of the bracket that closes a simple instance."""
     slips: tuple[SyntaxSlip, ...]
-    """First deviations."""
+    """First syntax deviations found in the instance."""
     unlisted: int
-    """Number of further deviations."""
+    """Number of further syntax deviations, which are not listed."""
     error: SyntaxSlip | None
-    """Error that makes the parameters unusable."""
+    """Syntax error that makes the parameters unusable, or None."""
 
 
 def parse_record(text: str) -> InstanceRecord:
@@ -71,7 +71,7 @@ class _Frame:
     """Open bracket on the parser's stack."""
 
     keyword: str
-    """Keyword of a part or of a typed value."""
+    """Keyword in front of the bracket, of a part or of a typed value."""
     is_part: bool
     is_complex: bool = False
     values: list[Value] = field(default_factory=list)
@@ -80,7 +80,7 @@ class _Frame:
 
 
 class _Parser:
-    """State of :func:`parse_record`."""
+    """Stack parser of one instance, used by :func:`parse_record`."""
 
     def __init__(self) -> None:
         self.parts: list[Part] = []
@@ -95,7 +95,7 @@ class _Parser:
         self._last_end = 0
 
     def take(self, match: re.Match[str]) -> None:
-        """Process the next token."""
+        """Process the next token of the instance."""
         kind = match.lastgroup
         if kind == "blank":
             return

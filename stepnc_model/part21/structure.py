@@ -51,15 +51,15 @@ _MAX_UNCLOSED = 10
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Statement:
-    """Entity of the header."""
+    """Statement (entity) in the HEADER section of a file."""
 
     keyword: str
-    """Keyword in upper case."""
+    """Keyword of the header statement, in upper case."""
     start: int
     bracket: int
-    """Offset of the ``(``."""
+    """Byte offset of the opening bracket."""
     end: int
-    """Offset behind the ``)``."""
+    """Byte offset behind the closing bracket."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -99,7 +99,7 @@ def read_structure(data: bytes) -> FileStructure:
 
 
 class _Scan:
-    """State of :func:`read_structure`."""
+    """Scanner of the file structure, used by :func:`read_structure`."""
 
     def __init__(self, data: bytes) -> None:
         self.slips = FileSlips(data)
@@ -189,7 +189,7 @@ class _Scan:
         return self.data_end
 
     def _statement(self, match: re.Match[bytes]) -> int:
-        """Read an entity of the header."""
+        """Read a statement of the HEADER section."""
         data = self._data
         keyword = match[1].decode("ascii").upper()
         if self._open != "HEADER":
@@ -238,6 +238,6 @@ class _Scan:
 
 
 def _blank_to_end(data: bytes, position: int) -> bool:
-    """Whether only white space follows."""
+    """Whether only white space follows up to the end of the file."""
     match = _SPACE.match(data, position)
     return match is not None and match.end() == len(data)

@@ -78,7 +78,7 @@ def scalar(match: re.Match[str], *, slips: Slips) -> Value:
 
 
 def _reference(match: re.Match[str]) -> Ref[object]:
-    """Reference with a number of valid length."""
+    """Instance reference from a token; an error if its number is too long."""
     if len(match[0]) > 19:
         raise MalformedError(match.start(), f"instance name too long: {shown(match)}")
     return Ref(match[0][1:])
@@ -108,7 +108,7 @@ def _word(match: re.Match[str], *, slips: Slips) -> Enumeration:
 
 
 def _quoted(match: re.Match[str], *, slips: Slips) -> Value:
-    """Binary; text in double quotes is read as a string."""
+    """Binary value; other text in double quotes is read as a string."""
     token = match[0]
     if _STANDARD_BINARY.fullmatch(token):
         return Binary(token[1:-1])
@@ -117,7 +117,7 @@ def _quoted(match: re.Match[str], *, slips: Slips) -> Value:
 
 
 def _slip(match: re.Match[str], message: str) -> SyntaxSlip:
-    """Deviation from the standard at a token."""
+    """Record a deviation from the standard at a token."""
     return SyntaxSlip(offset=match.start(), message=f"{shown(match)}: {message}")
 
 

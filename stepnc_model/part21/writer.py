@@ -20,7 +20,7 @@ from stepnc_model.part21.strings import decode, encode
 from stepnc_model.part21.values import Binary, Derived, Enumeration, Real, Ref, Typed, Value
 
 Span: TypeAlias = tuple[int, int]
-"""Byte span: start and end."""
+"""Byte span in the file: start and end offset."""
 Element: TypeAlias = Span | bytes
 """Element of a list: a span in the file, or new text."""
 Splice: TypeAlias = tuple[int, int, bytes]
@@ -63,7 +63,7 @@ def list_splices(
 
 
 def _text(data: bytes, element: Element) -> bytes:
-    """Bytes of an element."""
+    """Bytes of a list element, from the file or new."""
     return element if isinstance(element, bytes) else data[element[0] : element[1]]
 
 
@@ -209,7 +209,7 @@ class Edits:
         return id in self._added or (id in self.file and id not in self._removed)
 
     def replace_parameter(self, id: int, position: int, value: Value) -> None:
-        """Replace a parameter, counted from 0.
+        """Replace a parameter of an instance; positions count from 0.
 
         Raises
         ------
@@ -226,7 +226,7 @@ class Edits:
         parameters[position] = format_value(value)
 
     def append_parameter(self, id: int, value: Value) -> None:
-        """Add a parameter after the last one."""
+        """Add a parameter to an instance after its last one."""
         self._parameters(id).append(format_value(value))
 
     def remove_parameter(self, id: int, position: int) -> None:
@@ -283,7 +283,7 @@ class Edits:
             self._schema_elements().append(format_value(name))
 
     def remove_schema(self, name: str) -> None:
-        """Remove a name from FILE_SCHEMA."""
+        """Remove a schema name from FILE_SCHEMA."""
         names = self._schema_names()
         elements = self._schema_elements()
         self._schemas = [

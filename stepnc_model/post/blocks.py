@@ -27,9 +27,9 @@ class Cycles(StrEnum):
     """Form in which drilling cycles are written."""
 
     EXPANDED = "expanded"
-    """Written as single moves."""
+    """Cycles written as single moves."""
     OWN = "own"
-    """Written as cycles of the control, where it has them."""
+    """Cycles written as canned cycles of the control, where it has them."""
 
 
 class RateMode(StrEnum):
@@ -43,7 +43,7 @@ class RateMode(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Rate:
-    """Feed with its mode."""
+    """Feed value with its mode, per minute or per revolution."""
 
     value: float
     """Feed, mm/s or mm/rev."""
@@ -63,7 +63,7 @@ class SpindleDirection(StrEnum):
 
     @property
     def opposite(self) -> "SpindleDirection":
-        """Opposite direction."""
+        """Opposite direction of spindle rotation."""
         return (
             SpindleDirection.COUNTERCLOCKWISE
             if self is SpindleDirection.CLOCKWISE
@@ -82,7 +82,7 @@ class CoolantKind(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ProgramStart:
-    """Start of an NC program."""
+    """Start of an NC program, with its name and machine type."""
 
     name: str
     machine: MachineType = MachineType.MILL
@@ -204,7 +204,7 @@ class RigidTap:
     start: Point
     bottom_z: float
     lead: float
-    """Lead, mm per revolution."""
+    """Lead of the tapped thread, mm per revolution."""
     speed: float
     """Spindle speed, rev/s."""
     sense: SpindleDirection = SpindleDirection.CLOCKWISE
@@ -243,11 +243,11 @@ class DrillingCycle:
     bottom_z: float
     rate: Rate
     step_depth: float = 0.0
-    """Depth of each peck, mm."""
+    """Depth of each peck in drilling, mm."""
     retract_distance: float = 0.0
     """Distance of a short retract, or above the last depth after a full retract, mm."""
     dwell: float = 0.0
-    """Dwell at the bottom, s."""
+    """Dwell at the bottom of the hole, s."""
     expansion: tuple["Block", ...] = ()
 
 

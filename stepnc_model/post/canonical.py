@@ -245,7 +245,7 @@ PLAIN: dict[type, Callable[[Any], Canonical]] = {
 
 
 def _shown(argument: Argument) -> str:
-    """Format one argument as text."""
+    """Format an argument of a canonical command as text."""
     if isinstance(argument, float):
         text = f"{argument:.4f}"
         return "0.0000" if text == "-0.0000" else text

@@ -63,7 +63,7 @@ class DialectTraits:
     """Differences between the controls of the Fanuc family."""
 
     head: str
-    """Program number."""
+    """Program number in the head of the program."""
     seconds: Callable[[float], str]
     """Format a dwell in seconds as a P word."""
     seconds_of: Callable[[float, bool], float]
@@ -126,7 +126,7 @@ class Fanuc(IsoCode):
         yield "%"
 
     def text(self, text: str) -> str:
-        """Comment in capitals and safe characters."""
+        """Format a comment in capitals, using only safe characters."""
         plain = ascii_text(text).upper().replace("(", "[").replace(")", "]")
         return f"({REFUSED.sub(' ', plain)[:LONGEST]})"
 
@@ -166,7 +166,7 @@ class Fanuc(IsoCode):
         return self.manner.coolant[CoolantKind.THROUGH]
 
     def seconds(self, value: float) -> str:
-        """Dwell time as a P word."""
+        """Format a dwell time as a P word."""
         return self.manner.seconds(value)
 
     def thread_words(self, start: Point, block: ThreadingMove) -> list[str]:
@@ -243,11 +243,11 @@ class FanucReader(IsoReader):
             yield ToolChange(number=whole(whole(number, "T") // 100, "T"))
 
     def lead(self, end: Point, words: LineWords) -> float:
-        """Lead from F, which is the feed as well, mm."""
+        """Lead of a thread from the F word, which is the feed as well, mm."""
         return self._lead()
 
     def tap(self, words: LineWords, act: GCode) -> Iterator[Block]:
-        """Rigid tap with its lead in F."""
+        """Read a rigid tap with its lead in the F word."""
         sense = (
             SpindleDirection.CLOCKWISE
             if act is GCodeAction.TAP

@@ -28,7 +28,7 @@ LEAST_RADIUS = 0.005
 """Least radius of an arc, mm; LinuxCNC treats smaller arcs as points."""
 
 WHOLE = 1e-6
-"""Rounding tolerance of a full turn, rad."""
+"""Tolerance within which an angle counts as a full turn, rad."""
 
 NOISE = 1e-9
 """Angle below which an arc's ends are the same point, rad."""
@@ -183,7 +183,7 @@ def along(start: Point, arc: Circular, turned: float, part: float) -> Point:
 
 
 def end_of(block: Block, at: Point) -> Point:
-    """Position after a block."""
+    """Position of the tool after a block."""
     if isinstance(block, (Rapid, Linear, Circular, ThreadingMove)):
         return block.end
     if isinstance(block, Retract):

@@ -244,7 +244,7 @@ class Heidenhain:
             yield from rest
 
     def _coordinates(self, end: Point) -> list[str]:
-        """Words of the axes that move."""
+        """Coordinate words of the axes that move."""
         words = [
             f"{letter}{_signed(value)}"
             for letter, value, old in zip("XYZ", end, self.at, strict=True)

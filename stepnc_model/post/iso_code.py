@@ -134,22 +134,22 @@ class IsoCode(ABC):
 
     @abstractmethod
     def start(self, name: str) -> Iterator[str]:
-        """Write the head of the program."""
+        """Write the head of the NC program."""
 
     @abstractmethod
     def end(self, _: ProgramEnd) -> Iterator[str]:
-        """Write the end of the program."""
+        """Write the end of the NC program."""
 
     @abstractmethod
     def text(self, text: str) -> str:
-        """Comment with its delimiters."""
+        """Format a comment with the delimiters of the control."""
 
     @abstractmethod
     def tool_change(self, block: ToolChange) -> Iterator[str]:
         """Write a tool change and the length offset."""
 
     def mode_code(self, mode: RateMode) -> str:
-        """G code of a feed mode."""
+        """G code of a feed mode, per minute or per revolution."""
         return "G94" if mode is RateMode.PER_MINUTE else "G95"
 
     @abstractmethod
@@ -165,7 +165,7 @@ class IsoCode(ABC):
         """Write a rigid tap at the current position."""
 
     def seconds(self, value: float) -> str:
-        """Duration of a dwell with its letter."""
+        """Dwell time as a word, with its address letter."""
         return f"P{self.number(value, 3)}"
 
     def turn_words(self, block: Circular) -> list[str]:
@@ -198,7 +198,7 @@ class IsoCode(ABC):
         yield from self.line(code, self.speed(block.speed), SENSE_CODES[block.sense])
 
     def speed(self, speed: float) -> str:
-        """S word in rpm."""
+        """Spindle speed as an S word in rpm."""
         return f"S{decimal(rpm_from_rev_s(speed), self.speed_places)}"
 
     def orient(self, _: SpindleOrient) -> Iterator[str]:
@@ -227,7 +227,7 @@ class IsoCode(ABC):
             yield from self.line(self.modal.word("motion", "G0"), *self._offset(), *words)
 
     def pause(self, block: Pause) -> Iterator[str]:
-        """Write a dwell."""
+        """Write a dwell block (G4)."""
         return self.line("G4", self.seconds(block.seconds))
 
     def drilling_cycle(self, block: DrillingCycle) -> Iterator[str]:
@@ -277,14 +277,14 @@ class IsoCode(ABC):
         return words
 
     def mode(self, mode: RateMode) -> str:
-        """G code of a feed mode, if it changes."""
+        """G code of a feed mode, if the mode changes."""
         word = self.modal.word("mode", self.mode_code(mode))
         if word:
             self.modal.forget("F")
         return word
 
     def rate(self, rate: Rate) -> str:
-        """F word, if it changes."""
+        """Feed as an F word, if it changes."""
         return self.modal.word("F", f"F{self.rate_text(rate)}")
 
     def rate_text(self, rate: Rate) -> str:

@@ -71,9 +71,9 @@ class IsoReader(ABC):
     }
     coolant_ends: frozenset[str] = frozenset({"M9"})
     quiet: ClassVar[frozenset[str]] = frozenset()
-    """M words without effect here."""
+    """M words that the reader accepts and ignores."""
     head: ClassVar[re.Pattern[str]] = re.compile("%")
-    """Pattern of lines without words."""
+    """Pattern of lines without NC words, such as the percent sign."""
 
     def __init__(self, machine: MachineType) -> None:
         self.machine = machine
@@ -121,7 +121,7 @@ class IsoReader(ABC):
         return Comment(text=text)
 
     def seconds(self, words: LineWords) -> float:
-        """Duration of a dwell, s."""
+        """Dwell time of a G4 block, s."""
         return words.need("P", "G4")
 
     @abstractmethod
@@ -130,7 +130,7 @@ class IsoReader(ABC):
 
     @abstractmethod
     def tap(self, words: LineWords, act: GCode) -> Iterator[Block]:
-        """Blocks of a rigid tap."""
+        """Neutral blocks of a rigid tap."""
 
     def surface_limit(self, words: LineWords) -> float | None:
         """Greatest spindle speed at constant surface speed, rev/s."""
@@ -149,7 +149,7 @@ class IsoReader(ABC):
             yield ToolChange(number=self._tool)
 
     def extra(self, words: LineWords) -> Iterator[Block]:
-        """Further blocks that only a dialect has."""
+        """Further blocks that only some dialects have."""
         yield from ()
 
     # Methods that all dialects share.
@@ -172,7 +172,7 @@ class IsoReader(ABC):
             raise PostError(f"word {words.functions[0]}: unknown M code")
 
     def rate(self) -> Rate:
-        """Feed in force."""
+        """Feed that is currently in force."""
         if not self.feed:
             raise PostError("a feed move without F")
         if self.mode is RateMode.PER_MINUTE:
@@ -180,7 +180,7 @@ class IsoReader(ABC):
         return Rate(value=self.feed, mode=RateMode.PER_REVOLUTION)
 
     def end(self, words: LineWords) -> Point:
-        """End point given by the axis words."""
+        """End point of a move, given by its axis words."""
         x, y, z = self.at
         given = words.take("X")
         if given is not None:

@@ -174,7 +174,7 @@ def _incomplete(program: Program, feed: Feed, why: str) -> ModalState:
     speed = getattr(technology, "spindle", None)
     if isinstance(technology, MillingTechnology) and speed is not None:
         if speed == 0.0:
-            spindle, note = SpindleOff(), f"{label}: spindle speed 0: the spindle stands"
+            spindle, note = SpindleOff(), f"{label}: spindle speed 0: the spindle is stopped"
         else:
             sense = (
                 SpindleDirection.CLOCKWISE if speed < 0.0 else SpindleDirection.COUNTERCLOCKWISE

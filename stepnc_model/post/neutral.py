@@ -218,7 +218,7 @@ class _Sequence:
         yield Comment(text=function.id)
         maker = FUNCTIONS.get(function.keyword)
         if maker is None:
-            yield Comment(text=f"{function.keyword} is not written")
+            yield Comment(text=f"{function.keyword} is not supported")
             return
         if function.keyword in STOPS:
             # The operator may reach into the machine.

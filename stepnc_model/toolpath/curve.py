@@ -50,7 +50,7 @@ class Spline:
         return tuple(sorted(set(self.knots[self.degree : len(self.poles) + 1])))
 
     def at(self, parameter: float) -> Point:
-        """Point at a parameter, [1]_."""
+        """Point of the curve at a parameter value, [1]_."""
         degree = self.degree
         last = len(self.poles) - 1
         span = min(max(bisect_right(self.knots, parameter) - 1, degree), last)
@@ -232,7 +232,7 @@ class _CurveVisit:
 def _segments(program: Program, ref: Ref[Entity], visit: _CurveVisit) -> Iterator[Segment]:
     """Lines and arcs of a curve of any supported kind."""
     if visit.level > MOST_NESTED or next(visit.budget, None) is None:
-        message = f"contains itself, or over {MOST_NESTED} levels or {MOST_CURVES} curves"
+        message = f"contains itself, or nests over {MOST_NESTED} levels or {MOST_CURVES} curves"
         raise program.path_error(message, ref)
     curve = program.get(ref)
     if isinstance(curve, Polyline):

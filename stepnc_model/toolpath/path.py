@@ -108,7 +108,7 @@ class SpindleCommand(StrEnum):
     """Command to the spindle between moves."""
 
     START = "start"
-    """Start in the direction of cutting."""
+    """Start the spindle in the direction of cutting."""
     REVERSE = "reverse"
     STOP = "stop"
     ORIENT = "orient"
@@ -128,7 +128,7 @@ class CycleKind(StrEnum):
     """Kinds of canned cycles that controls offer."""
 
     DRILL = "drill"
-    """Feed in, rapid out."""
+    """Simple drilling: feed in, rapid out."""
     DWELL = "drill with dwell"
     PECK = "peck, full retract"
     CHIP_BREAK = "peck, short retract"
@@ -149,10 +149,10 @@ class CannedCycle:
     retract_z: float
     """Height z of the retract plane, mm."""
     bottom_z: float
-    """Height z of the bottom, mm."""
+    """Height z of the bottom of the hole, mm."""
     feed: Feed
     step_depth: float = 0.0
-    """Depth of each peck, mm."""
+    """Depth of each peck in drilling, mm."""
     retract_distance: float = 0.0
     """Distance of a short retract, mm."""
     dwell: float = 0.0
@@ -195,7 +195,7 @@ class ToolPath:
 
     @property
     def end(self) -> Point:
-        """End point of the path."""
+        """End point of the tool path."""
         return next((move.end for move in reversed(self.moves)), self.start)
 
     def segments(self) -> Iterator[tuple[Point, Move]]:
@@ -265,7 +265,7 @@ class Function:
     """EXPRESS name in capitals, such as ``OPTIONAL_STOP``."""
     id: str
     text: str = ""
-    """Text of a message."""
+    """Text of a message to the operator."""
 
 
 def plus(one: Point, other: Point) -> Point:

@@ -326,16 +326,16 @@ class PathBuilder:
         self._cycles.append(cycle)
 
     def find(self, finding: Finding) -> None:
-        """Add a finding unless it is already there."""
+        """Add a finding to the tool path, unless it is already there."""
         if finding not in self._findings:
             self._findings.append(finding)
 
     def warn(self, message: str, ref: Ref[Entity], attribute: str = "") -> None:
-        """Add a warning unless it is already there."""
+        """Add a warning to the tool path, unless it is already there."""
         self.find(self._job.warning(message, ref, attribute))
 
     def finished(self) -> ToolPath:
-        """Completed tool path."""
+        """Tool path built from all collected steps."""
         step = self._job.step
         return ToolPath(
             workingstep=step.ref,

@@ -151,7 +151,7 @@ def test_entities_without_a_remark_take_the_docstring_of_their_class() -> None:
     tree = ast.parse((ROOT / CLASSES).read_text(encoding="utf-8"))
     classes = {each.name for each in tree.body if isinstance(each, ast.ClassDef)}
     assert "MachinePower" in classes
-    assert "What the main drive has." in section(ENTITIES, "machine_power")
+    assert "Power available at the main drive." in section(ENTITIES, "machine_power")
 
 
 def test_every_decision_is_in_the_list() -> None:

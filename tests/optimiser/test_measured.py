@@ -225,7 +225,7 @@ def test_what_stands_on_a_workingstep_without_a_path_is_estimated() -> None:
         cut, findings = source.cut(step)
         said[step.id] = [finding.message for finding in findings]
         assert (cut.volume is None) == (step.id in {"ROUGH POCKET", "FINISH POCKET"})
-    assert any("its feature is not ready" in text for text in said["FINISH POCKET"])
+    assert any("the feature is not ready" in text for text in said["FINISH POCKET"])
 
 
 def test_a_workingstep_that_is_left_out_without_a_path_is_remembered() -> None:
@@ -233,7 +233,7 @@ def test_a_workingstep_that_is_left_out_without_a_path_is_remembered() -> None:
     source = MeasuredCuts(read, load_machine("vmc15"), STEEL)
     source.leave_out(step_of(read, "ROUGH POCKET"))
     _, findings = source.cut(step_of(read, "FINISH POCKET"))
-    assert any("its feature is not ready" in finding.message for finding in findings)
+    assert any("the feature is not ready" in finding.message for finding in findings)
 
 
 NOT_DRILLED = ("(#20,#21,#22,#23,#24,#25),$,$,$);", "(#24),$,$,$);")

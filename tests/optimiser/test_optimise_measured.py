@@ -91,7 +91,7 @@ def test_without_a_path_everything_is_estimated_and_said() -> None:
     assert after(advice).time == pytest.approx(318.0 / 290.0 * 60.0)
     texts = [str(finding) for finding in plan.findings]
     said = "no tool path: length, time and engagement are estimated"
-    assert any(said in text and "retract plane lies above" in text for text in texts)
+    assert any(said in text and "retract plane must lie above" in text for text in texts)
 
 
 def test_time_counts_the_way_through_air(bracket: Plan) -> None:

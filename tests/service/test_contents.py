@@ -28,6 +28,6 @@ def test_tolerance_that_cannot_be_read_is_a_warning(tmp_path: Path) -> None:
     path.write_text(text)
     contents = check(path)
     assert contents.is_usable
-    (found,) = (each for each in contents.findings if "ISO 2768-m holds" in each.message)
+    (found,) = (each for each in contents.findings if "ISO 2768-m is used" in each.message)
     assert found.entity == "#511 PLUS_MINUS_VALUE"
     assert found.line > 0

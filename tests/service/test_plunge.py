@@ -185,6 +185,6 @@ def test_a_plunge_feed_that_is_not_positive_is_refused(
         main(["post", str(wrong), "--control", "linuxcnc", "-o", str(output)])
     assert stopped.value.code == BAD_INPUT
     error = capsys.readouterr().err
-    assert "plunge feed -0.025 mm/tooth: it must be positive" in error
+    assert "plunge feed -0.025 mm/tooth must be positive" in error
     assert "BOTTOM_AND_SIDE_ROUGH_MILLING" in error
     assert not output.exists()

@@ -118,7 +118,9 @@ def test_unknown_entity_is_kept_and_noted_once() -> None:
     assert "TROCHOIDAL_MILLING (2 instances)" in finding.message
     assert finding.line == 7
     assert model.entity(2) is None
-    with pytest.raises(SchemaError, match="line 7: #2 TROCHOIDAL_MILLING: this entity type is not supported"):
+    with pytest.raises(
+        SchemaError, match="line 7: #2 TROCHOIDAL_MILLING: this entity type is not supported"
+    ):
         model.get(Ref[Entity](2))
 
 
@@ -140,7 +142,10 @@ def test_malformed_instance_is_no_entity() -> None:
 def test_reference_to_the_wrong_kind_is_an_error() -> None:
     finding = only_finding(model_of(POINT, "#2=MACHINED_SURFACE(#1,.SIDE.);"))
     assert finding.severity is Severity.ERROR
-    assert finding.message == "#1 CARTESIAN_POINT is referenced where ManufacturingFeature is expected"
+    assert (
+        finding.message
+        == "#1 CARTESIAN_POINT is referenced where ManufacturingFeature is expected"
+    )
     assert finding.attribute == "its_machining_feature"
 
 

@@ -177,17 +177,26 @@ def test_an_id_of_two_operations_is_refused() -> None:
 @pytest.mark.parametrize(
     ("wrong", "message"),
     [
-        (replace(OUTCOME, time=EvaluatedQuantity(measured=-1.0)), "invalid machining time: -1 s"),
+        (
+            replace(OUTCOME, time=EvaluatedQuantity(measured=-1.0)),
+            "invalid machining time: -1 s",
+        ),
         (
             replace(OUTCOME, force=EvaluatedQuantity(measured=float("nan"))),
             "invalid cutting force: nan N",
         ),
         (replace(OUTCOME, feed=EvaluatedQuantity(measured=0.0)), "invalid feed: 0 m/s"),
-        (replace(OUTCOME, roughness=EvaluatedQuantity(measured=0.0)), "invalid roughness: 0 µm"),
+        (
+            replace(OUTCOME, roughness=EvaluatedQuantity(measured=0.0)),
+            "invalid roughness: 0 µm",
+        ),
         (replace(OUTCOME, recorded_at=NOON.replace(tzinfo=None)), "has no time zone"),
         (replace(CORRECTION, log_centre=1000.0), "invalid factor on k_c: inf"),
         (replace(CORRECTION, log_centre=-1000.0), "invalid factor on k_c: 0"),
-        (replace(CORRECTION, context=replace(CONTEXT, tool="")), "a correction must name its machine, material and tool"),
+        (
+            replace(CORRECTION, context=replace(CONTEXT, tool="")),
+            "a correction must name its machine, material and tool",
+        ),
         (replace(CORRECTION, confidence=1.1), "a confidence of 1.1"),
         (replace(CORRECTION, confidence=float("nan")), "a confidence of nan"),
     ],
@@ -224,7 +233,9 @@ class TestProfiles:
 
     def test_a_program_with_outcomes_has_no_profile_standard(self, tmp_path: Path) -> None:
         data = written(BRACKET, OUTCOME)
-        with pytest.raises(SchemaError, match="OUTCOME: cannot be written in profile 'standard'"):
+        with pytest.raises(
+            SchemaError, match="OUTCOME: cannot be written in profile 'standard'"
+        ):
             writeback.convert(program_of(data), FileProfile.STANDARD)
         with pytest.raises(SchemaError, match="cannot be written in profile 'standard'"):
             optimised(written(PAPER, CORRECTION), tmp_path, profile="standard")

@@ -104,7 +104,10 @@ def test_length_without_a_tolerance_has_none() -> None:
         ("PLUS_MINUS_VALUE(0.1)", "the upper or lower limit is missing"),
         ("LIMITS_AND_FITS('Q',7.,$)", "'Q' is not a fundamental deviation of ISO 286-1"),
         ("LIMITS_AND_FITS('','W7',$)", "'W' is not a fundamental deviation of ISO 286-1"),
-        ("LIMITS_AND_FITS(0.,0.021,$)", "grade 0.021: an ISO 286-1 grade must be a whole number"),
+        (
+            "LIMITS_AND_FITS(0.,0.021,$)",
+            "grade 0.021: an ISO 286-1 grade must be a whole number",
+        ),
         ("LIMITS_AND_FITS(0.,'hole',$)", "grade 'hole'"),
         ("LIMITS_AND_FITS(0.,$,$)", "grade ''"),
         ("LIMITS_AND_FITS(0.,19.,$)", "IT19: ISO 286-1 has grades IT1 to IT18"),

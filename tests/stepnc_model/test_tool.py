@@ -123,7 +123,9 @@ class TestRotating:
             read("#10=MILLING_CUTTING_TOOL('T',$,(),$,$,$);")
 
     def test_a_body_without_dimension_is_refused(self) -> None:
-        with pytest.raises(SchemaError, match=r"#11 ENDMILL\.dimension: the tool body has no dimension"):
+        with pytest.raises(
+            SchemaError, match=r"#11 ENDMILL\.dimension: the tool body has no dimension"
+        ):
             rotating("ENDMILL($,4,.RIGHT.,.F.,$)")
 
     def test_a_tool_without_name_is_called_by_its_kind(self) -> None:
@@ -193,7 +195,9 @@ class TestTurning:
         assert turning(edge="$,$,12.,95.,$,80.,$,6.,$").corner_radius is None
 
     def test_a_turning_tool_without_edge_is_refused(self) -> None:
-        with pytest.raises(SchemaError, match=r"#10 .*cutting_edge: the tool has no cutting edge"):
+        with pytest.raises(
+            SchemaError, match=r"#10 .*cutting_edge: the tool has no cutting edge"
+        ):
             read("#10=GENERAL_TURNING_TOOL('T2',150.,32.,$,$,$,$,.RIGHT.);")
 
 

@@ -215,7 +215,7 @@ def _axes(
     if len(set(names)) != len(names) or not set(names) <= set(AXES):
         raise program.path_error(f"axes {', '.join(names)}: only X, Y and Z, each once", ref)
     if len(names) != len(trajectory.commands):
-        counts = f"{len(names)} axes, {len(trajectory.commands)} commands"
+        counts = f"{len(names)} axes but {len(trajectory.commands)} commands"
         raise program.path_error(counts, ref)
     if at is None and len(names) < len(AXES):
         raise program.path_error("the positions of the other axes are unknown", ref)

@@ -267,7 +267,7 @@ def back_findings(
     if job.stock is not None and mouth_z > job.stock.low[2] + TOLERANCE:
         text = (
             f"the bore opens at z = {mouth_z:g} mm, above the bottom of the workpiece at "
-            f"z = {job.stock.low[2]:g} mm: the tool shifts there"
+            f"z = {job.stock.low[2]:g} mm: the tool shifts inside it"
         )
         yield job.warning(text, hole.ref, "depth")
 
@@ -366,8 +366,10 @@ def _check_bar(job: ToolPathTask, shift: float, passed: float) -> None:
     """Raise an error if the shifted boring bar does not pass the hole."""
     bar = _bar(job)
     if shift + 0.5 * (bar or 0.0) > 0.5 * passed + TOLERANCE:
-        what = "its axis" if bar is None else f"a bar of {bar:g} mm"
-        message = f"{what}, {shift:g} mm off that of the hole, does not pass {passed:g} mm"
+        what = "the tool axis" if bar is None else f"a bar of {bar:g} mm"
+        message = (
+            f"{what}, {shift:g} mm off the hole's axis, does not fit through {passed:g} mm"
+        )
         attribute = "tool_holder_diameter_for_spindle_orientation"
         raise job.fault(message, job.step.tool_ref, attribute)
 

@@ -154,7 +154,7 @@ class HoleCut:
 
     @property
     def feed(self) -> Feed:
-        """Feed at the bottom of the hole."""
+        """Feed of the tool at the bottom of the hole."""
         return self.stages[-1].feed
 
     @property

@@ -373,7 +373,7 @@ def _check_stock(job: ToolPathTask, hole: Hole, depth: Depth) -> None:
     if reach < bottom - TOLERANCE:
         kind = "through" if hole.is_through else "blind"
         message = (
-            f"a {kind} hole down to z = {reach:g} mm leaves the workpiece, "
+            f"a {kind} hole down to z = {reach:g} mm breaks through the workpiece, "
             f"whose bottom lies at z = {bottom:g} mm"
         )
         raise job.fault(message, hole.ref, "depth")
@@ -442,10 +442,12 @@ def _below(job: ToolPathTask, hole: Hole) -> float:
 def _sink(job: ToolPathTask, hole: Hole) -> float:
     """Depth of a countersink's tip at which its cone has the sink's diameter at the top, mm."""
     if hole.diameter is None or not hole.is_tapered:
-        message = "a cutting depth is needed: the hole has no taper that gives the sink diameter"
+        message = "a cutting depth is needed: no taper of the hole gives the sink diameter"
         raise job.fault(message, job.step.operation_ref, "cutting_depth")
     if hole.diameter > job.tool.diameter + TOLERANCE:
-        message = f"tool of {job.tool.diameter:g} mm is too narrow for a sink of {hole.diameter:g} mm"
+        message = (
+            f"tool of {job.tool.diameter:g} mm is too narrow for a sink of {hole.diameter:g} mm"
+        )
         raise job.fault(message, job.step.operation_ref, "its_tool")
     angle = lip_angle(job)
     if angle <= 0.0:

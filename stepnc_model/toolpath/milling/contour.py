@@ -71,7 +71,7 @@ class ContourEdge:
 
 
 Chain = tuple[ContourEdge, ...]
-"""Consecutive edges, each starting where the previous one ends."""
+"""Chain of edges, each starting where the previous one ends."""
 
 Loop = Chain
 """Closed chain of edges."""
@@ -181,7 +181,7 @@ def shape(loop: Loop, *, tolerance: float) -> Polygon:
 
 @lru_cache(maxsize=REMEMBERED)
 def _shape(loop: Loop, tolerance: float) -> Polygon:
-    """Cached implementation of ``shape``."""
+    """Polygon of a loop, cached; implementation of ``shape``."""
     points = np.array(vertices(loop, tolerance=tolerance), dtype=complex)
     return shapely.polygons(np.column_stack((points.real, points.imag)))
 

@@ -99,7 +99,7 @@ def rings(
 def _rings(
     walls: tuple[Loop, ...], distance: float, radius: float, step: float
 ) -> tuple[MillingPass, ...]:
-    """Cached implementation of ``rings``."""
+    """Contour-parallel passes, cached; implementation of ``rings``."""
     levels = list(_levels(walls, distance, step))
     if not levels:
         return ()

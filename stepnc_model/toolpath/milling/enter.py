@@ -53,9 +53,9 @@ class Heights:
     retract: float
     """Retract plane of the operation, down to which the tool moves in rapid."""
     above: float
-    """Height just above the material of this level."""
+    """Height z just above the material of this level, mm."""
     level: float
-    """Height of the pass."""
+    """Height z of the pass, mm."""
 
 
 def enter(

@@ -80,7 +80,7 @@ def _at(
 
 
 def _start(loop: Loop) -> complex:
-    """Middle of the longest line, or of the longest arc if there is no line."""
+    """Start point on a closed wall: middle of its longest line, else of its longest arc."""
     lines = [edge for edge in loop if edge.centre is None] or list(loop)
     return max(lines, key=lambda edge: edge.length).at(0.5)
 

@@ -63,7 +63,7 @@ class CentreArea:
     """Side of the path that is free: i for the left, -i for the right."""
 
     def holds(self, chain: Chain) -> bool:
-        """Whether a chain stays within the area."""
+        """Whether a path of the cutter's centre stays within the area."""
         return all(self._holds(edge) for edge in chain)
 
     def _holds(self, edge: ContourEdge) -> bool:
@@ -96,7 +96,7 @@ def within(loops: Sequence[Loop]) -> Clearance:
 
 @lru_cache(maxsize=REMEMBERED)
 def _within(loops: tuple[Loop, ...]) -> Clearance:
-    """Cached implementation of ``within``."""
+    """Clearance function, cached; implementation of ``within``."""
     edges = ContourEdges.of([edge for loop in loops for edge in loop])
     area = area_of(loops, tolerance=CHORD)
     shapely.prepare(area)

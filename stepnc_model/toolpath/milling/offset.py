@@ -73,7 +73,7 @@ class ContourEdges:
         )
 
     def pick(self, index: NDArray[np.intp]) -> "ContourEdges":
-        """Select edges by their indices."""
+        """Select contour edges by their indices."""
         return ContourEdges(
             self.start[index],
             self.end[index],
@@ -256,7 +256,7 @@ SHORTEST = 1e-7
 """Length below which a piece is a rounding error, mm."""
 
 JOIN = 1e-4
-"""Greatest gap between pieces of one chain, mm."""
+"""Greatest gap between the ends of pieces that are joined to a chain, mm."""
 
 SMOOTH = 1e-9
 """Bend at a vertex that counts as smooth, rad."""
@@ -286,7 +286,7 @@ def erode(loops: Sequence[Loop], distance: float) -> tuple[Loop, ...]:
 
 @lru_cache(maxsize=REMEMBERED)
 def _eroded(loops: tuple[Loop, ...], distance: float) -> tuple[Loop, ...]:
-    """Cached implementation of ``erode``."""
+    """Eroded loops, cached; implementation of ``erode``."""
     sources = [edge for loop in loops for edge in halved(loop)]
     candidates = [
         edge for loop in loops for edge in _parallels(halved(loop), distance, is_closed=True)
@@ -416,7 +416,7 @@ def _stitched(pieces: list[ContourEdge]) -> tuple[Loop, ...]:
 
 
 def _pruned(pieces: list[ContourEdge]) -> list[ContourEdge]:
-    """Pieces without dead ends.
+    """Remove pieces that are dead ends and cannot belong to a closed loop.
 
     Where two edges are almost collinear, pieces behind their crossing are closer than the
     distance by less than the slack: they remain, and a chain that follows one never closes.

@@ -220,7 +220,9 @@ def _ngon(
     """Regular polygon, given by its circumscribed circle or its width across flats."""
     sides = profile.number_of_sides
     if sides is None or not 3 <= sides <= 1000:
-        raise job.fault(f"{sides} sides: a polygon has 3 at least", ref, "number_of_sides")
+        raise job.fault(
+            f"{sides} sides: a polygon must have at least 3", ref, "number_of_sides"
+        )
     radius = 0.5 * size(job.program, profile.diameter, ref)
     if not profile.circumscribed_or_across_flats:
         radius /= cos(pi / sides)

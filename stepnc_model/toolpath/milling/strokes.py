@@ -223,7 +223,7 @@ SHORTEST_PIECE = 0.1
 
 @dataclass(frozen=True, slots=True)
 class ClippedChain:
-    """Part of a chain on one side of a boundary."""
+    """Part of a clipped chain on one side of the clipping boundary."""
 
     chain: Chain
     is_inside: bool
@@ -258,7 +258,7 @@ def inside(cut: MillingPass, loops: Sequence[Loop]) -> list[MillingPass]:
 
 
 def _split(edge: ContourEdge, parts: list[float]) -> Chain:
-    """Cut an edge at given fractions of its length."""
+    """Split a contour edge at given fractions of its length."""
     cuts = [0.0, *(part for part in parts if 1e-9 < part < 1.0 - 1e-9), 1.0]
     return tuple(edge.between(low, high) for low, high in pairwise(cuts) if high > low)
 

@@ -139,7 +139,7 @@ class Plunger:
         self.home = course.at
 
     def over(self, u: float) -> None:
-        """Move above position u in rapid."""
+        """Move the insert in rapid to a position u above the groove."""
         kind = MoveType.RAPID if self.course.count else MoveType.APPROACH
         at, v = self.plane.spot(self.course.at)
         level = max(v, self._clear(min(at, u), max(at, u)))
@@ -179,7 +179,7 @@ class Plunger:
         return u, self._clear(u, u)
 
     def _clear(self, low: float, high: float) -> float:
-        """Clear level over an interval of u, mm."""
+        """Level at which the insert is clear of the stock over an interval of u, mm."""
         beside = self.rim.top(low - RAPID_CLEARANCE, high + RAPID_CLEARANCE)
         return max(beside, 0.0) + RAPID_CLEARANCE
 
@@ -300,7 +300,7 @@ def _check_depth(
 
 
 def _places(job: ToolPathTask, insert: GroovingInsert, low: float, high: float) -> list[float]:
-    """Positions u of the plunges, in their order."""
+    """Positions u of the grooving plunges, in cutting order."""
     strategy = strategy_of(job)
     step = max(OVERLAP * insert.flat, 0.25 * insert.width)
     direction = None

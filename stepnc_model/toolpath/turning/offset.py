@@ -30,9 +30,9 @@ class InsertFlanks:
     """Angles by which the edges of an insert rise from its nose, from the u axis, rad."""
 
     ahead: float = 0.5 * pi
-    """Rise angle of the edge on the −u side, rad."""
+    """Rise angle of the insert edge on the −u side, rad."""
     behind: float = 0.5 * pi
-    """Rise angle of the edge on the +u side, rad."""
+    """Rise angle of the insert edge on the +u side, rad."""
 
 
 def grown(profile: RadiusProfile, radius: float) -> RadiusProfile:
@@ -100,7 +100,7 @@ def _rolled(chain: Sequence[ProfilePiece], radius: float, side: int) -> Iterator
 
 
 def _moved(piece: ProfilePiece, radius: float, side: int) -> ProfilePiece | None:
-    """Offset a piece along its normal, or return None where the offset vanishes."""
+    """Offset a line or arc along its normal; None where the offset vanishes."""
     if piece.is_upright:
         return None
     if piece.centre is None:

@@ -165,7 +165,7 @@ def _scanned(
 
 
 def _top(region: TurningRegion, centres: RadiusProfile) -> float:
-    """Greatest v of the stock over the region, mm."""
+    """Greatest height v of the stock over the region to be turned, mm."""
     return region.stock.top(centres.low, centres.high)
 
 
@@ -215,7 +215,7 @@ def _follow(
     setting: TurningSetting,
     allowance: float,
 ) -> None:
-    """Follow the surface once where stock stands on it."""
+    """Make one pass along the surface where stock stands on it."""
     towards = 1 if setting.is_reversed else -1
     pieces = touching(walk, oriented(region.chain(allowance), towards=towards), setting.overcut)
     if pieces:
@@ -295,7 +295,7 @@ def _make(
     bar: TurningBlank,
     outlines: tuple[FeatureOutline, ...],
 ) -> None:
-    """Generate the path for the kind of operation."""
+    """Generate the tool path by the kind of turning operation."""
     operation = job.step.operation
     if isinstance(operation, (Contouring, Facing)):
         tool = job.program.get(job.step.tool_ref)

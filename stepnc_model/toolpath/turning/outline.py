@@ -248,12 +248,12 @@ class FeatureOutline:
 
     @property
     def low(self) -> float:
-        """Least z, mm."""
+        """Least z coordinate of the feature's surface, mm."""
         return min(piece.low for piece in self.pieces)
 
     @property
     def high(self) -> float:
-        """Greatest z, mm."""
+        """Greatest z coordinate of the feature's surface, mm."""
         return max(piece.high for piece in self.pieces)
 
     @property

@@ -342,7 +342,7 @@ def _lead_in(
         size = strategy.radius
         if not 0.0 < size < 1e4:
             raise job.fault(
-                f"approach radius {size:g} mm must be from 0 to 10 000 mm",
+                f"approach radius {size:g} mm must be between 0 and 10 000 mm",
                 ref or job.step.ref,
                 "radius",
             )

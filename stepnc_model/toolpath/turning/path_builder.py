@@ -63,7 +63,7 @@ class TurningPathBuilder:
         self.at: Spot = plane.spot(course.at)
         """Position of the nose centre."""
         self.heading: Spot = (-1.0, 0.0)
-        """Unit vector at the end of the last feed."""
+        """Direction at the end of the last feed move, as a unit vector."""
         self.has_cut = False
         self._home = self.at
         self._measure()
@@ -215,7 +215,7 @@ def _parts(piece: ProfilePiece, rim: RadiusProfile) -> list[ProfilePiece]:
 def _runs(
     parts: Iterable[ProfilePiece], rim: RadiusProfile
 ) -> Iterator[tuple[bool, list[ProfilePiece]]]:
-    """Group neighbouring parts by whether they cut."""
+    """Group neighbouring parts of a path by whether they cut."""
     run: list[ProfilePiece] = []
     was_contact = False
     for part in parts:

@@ -48,17 +48,17 @@ class ProfilePiece:
 
     @property
     def low(self) -> float:
-        """Least u, mm."""
+        """Least coordinate u along the passes, mm."""
         return min(self.start[0], self.end[0])
 
     @property
     def high(self) -> float:
-        """Greatest u, mm."""
+        """Greatest coordinate u along the passes, mm."""
         return max(self.start[0], self.end[0])
 
     @property
     def is_upright(self) -> bool:
-        """Whether the piece is a line along v."""
+        """Whether the piece is a line perpendicular to the passes (along v)."""
         return self.centre is None and self.high - self.low < UPRIGHT
 
     @property
@@ -77,7 +77,7 @@ class ProfilePiece:
         return -size if is_clockwise else size
 
     def at(self, u: float) -> float:
-        """Height v at a position u within the interval, mm."""
+        """Height v of the piece at a position u within its interval, mm."""
         if self.centre is not None:
             inside = self.radius**2 - (u - self.centre[0]) ** 2
             return self.centre[1] + self.side * sqrt(max(0.0, inside))
@@ -252,16 +252,16 @@ class RadiusProfile:
 
     @property
     def low(self) -> float:
-        """Least u, mm."""
+        """Least coordinate u along the passes, mm."""
         return self.pieces[0].low if self.pieces else inf
 
     @property
     def high(self) -> float:
-        """Greatest u, mm."""
+        """Greatest coordinate u along the passes, mm."""
         return self.pieces[-1].high if self.pieces else -inf
 
     def at(self, u: float) -> float:
-        """Height v at a position u, the higher value at a wall; −inf outside the profile."""
+        """Height v of the profile at a position u, the higher one at a wall; −inf outside."""
         return max((p.at(u) for p in self.pieces if p.low <= u <= p.high), default=-inf)
 
     def within(self, low: float, high: float) -> "RadiusProfile":
@@ -317,17 +317,17 @@ class RadiusProfile:
 
 
 def highest(pieces: Iterable[ProfilePiece]) -> RadiusProfile:
-    """Upper envelope of pieces."""
+    """Upper envelope of lines and arcs, as a profile."""
     return _envelope(pieces, 1.0)
 
 
 def lowest(pieces: Iterable[ProfilePiece]) -> RadiusProfile:
-    """Lower envelope of pieces."""
+    """Lower envelope of lines and arcs, as a profile."""
     return _envelope(pieces, -1.0)
 
 
 def mirrored(pieces: Iterable[ProfilePiece]) -> RadiusProfile:
-    """Profile of the pieces turned upside down."""
+    """Profile mirrored in v, with its pieces upside down."""
     return RadiusProfile(pieces=tuple(map(_upside_down, pieces)))
 
 
@@ -418,7 +418,7 @@ def _cells(forward: Sequence[ProfilePiece]) -> Iterator[tuple[float, float, list
 
 
 def _spread(cuts: Sequence[float]) -> list[float]:
-    """Cuts without values that coincide with the previous one."""
+    """Remove positions that coincide with the previous one from a sorted list."""
     found: list[float] = []
     for cut in cuts:
         if not found or cut - found[-1] > NARROW:
@@ -436,12 +436,12 @@ class HalfPlane:
     tip_z: float = 0.0
 
     def point(self, centre: Spot) -> Point:
-        """Programmed point of a nose centre."""
+        """Convert the position of the nose centre to the programmed tool tip."""
         z, x = reversed(centre) if self.is_across else centre
         return x + self.tip_x, 0.0, z + self.tip_z
 
     def spot(self, point: Point) -> Spot:
-        """Nose centre of a programmed point."""
+        """Convert the programmed tool tip to the position of the nose centre."""
         x, z = point[0] - self.tip_x, point[2] - self.tip_z
         return (x, z) if self.is_across else (z, x)
 

@@ -93,7 +93,7 @@ class TurningRegion:
     nose: float
     """Nose radius, mm."""
     surface: RadiusProfile
-    """Surface that remains, without allowance."""
+    """Surface that remains after turning, without allowance."""
     stock: RadiusProfile
     low: float
     """Position u of the end of the features, mm."""
@@ -102,7 +102,7 @@ class TurningRegion:
     own_high: float
     """Position u of the start of the features, mm."""
     floor: float
-    """Least v of the features, mm."""
+    """Least height v of the features (radius, or z in facing), mm."""
     wall: float | None
     """Height v of the wall at the end of the features, mm; None without a wall."""
 
@@ -121,7 +121,7 @@ class TurningRegion:
         return tuple(backward)
 
     def _low(self, allowance: float) -> float:
-        """Lowest u of the nose centre: over the feature end, or at the wall."""
+        """Lowest position u of the nose centre: over the feature end, or at the wall."""
         reach = self.nose + allowance
         end = self.surface.within(self.low, self.low + reach).pieces
         foot = end[0].start[1] if end else -inf

@@ -189,7 +189,7 @@ class TurningSetting:
     link: PassLink
     feeds: Feeds
     is_reversed: bool
-    """Whether the passes run towards +u."""
+    """Whether the passes run in the positive u direction."""
     is_to_and_fro: bool
     is_along_contour: bool
     is_one_pass: bool
@@ -320,7 +320,7 @@ def _scaled(feed: Feed, ratio: float) -> Feed:
 
 
 def _feed(job: ToolPathTask, written: Typed | float | None, name: str) -> Feed | None:
-    """Feed given by the strategy, or None."""
+    """Feed from an attribute of the strategy, or None if it is not given."""
     if written is None:
         return None
     value = written.value if isinstance(written, Typed) else written

@@ -55,9 +55,9 @@ class ThreadPass:
     """Position z where the run-in starts, mm."""
     end: float
     bottom: float
-    """Radius of the insert tip, mm."""
+    """Radius at which the insert tip cuts in this pass, mm."""
     clear: float
-    """Radius of the return move, mm."""
+    """Radius at which the tool returns, mm."""
     angle: float | None
     """Pull-out angle from the axis, degrees; None for straight out."""
     has_relief: bool
@@ -233,7 +233,7 @@ def _helix(job: ToolPathTask, outline: FeatureOutline, pitch: float) -> TurnedTh
     depth = EXTERNAL_DEPTH * pitch
     least, radius = outline.radii
     if radius - least > SAME_PITCH:
-        raise job.fault("taper threads are not supported", outline.ref)
+        raise job.fault("tapered threads are not supported", outline.ref)
     low, high = outline.low, outline.high
     if isinstance(feature, Thread):
         area = job.program.get(feature.partial_profile)

@@ -67,7 +67,7 @@ def test_a_run_that_nobody_knows_is_refused(place: str, tmp_path: Path) -> None:
 def test_a_run_of_another_program_is_refused(place: str, tmp_path: Path) -> None:
     with open_store(place) as store:
         store.add([replace(POCKET, run="other")])
-    with pytest.raises(StepNcError, match="no workingstep of this program"):
+    with pytest.raises(StepNcError, match="is not a workingstep of this program"):
         write_back(place, PART, run="other", output=tmp_path / "out.stpnc")
 
 

@@ -219,7 +219,7 @@ def test_a_workingstep_without_a_feed_cannot_be_posted_and_others_can(tmp_path: 
     ]  # fmt: skip
     assert "left out: 'DRILL HOLE 1': " in told[0]
     assert "left out: 'REAM HOLE 2': " in told[3]
-    assert "its feature is not ready: 'DRILL HOLE 2' was left out" in told[3]
+    assert "the feature is not ready: workingstep 'DRILL HOLE 2' was left out" in told[3]
     code = part.with_suffix(".nc").read_text()
     assert "(THIS WORKINGSTEP IS LEFT OUT)" in code
 

@@ -91,7 +91,9 @@ def test_code_of_one_control_becomes_code_of_another(
 
 
 def test_canonical_commands_have_no_blocks() -> None:
-    with pytest.raises(PostError, match="canonical commands are not NC code: they cannot be read as blocks"):
+    with pytest.raises(
+        PostError, match="canonical commands are not NC code: they cannot be read as blocks"
+    ):
         list(read_blocks([], Dialect.CANONICAL))
 
 

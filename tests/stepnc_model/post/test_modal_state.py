@@ -111,7 +111,7 @@ class TestMissingNumbers:
         """As #420 of NIST's ex1E.stp, which stops the spindle in a reamed hole."""
         found = milling("0.03,.TCP.,$,0.0,$")
         assert (found.spindle, found.rate) == (SpindleOff(), Rate(value=30.0))
-        assert found.note == "#30 MILLING_TECHNOLOGY: spindle speed 0: the spindle stands"
+        assert found.note == "#30 MILLING_TECHNOLOGY: spindle speed 0: the spindle is stopped"
 
     def test_a_missing_feed_leaves_the_spindle(self) -> None:
         found = milling("$,.TCP.,$,-8.,$")

@@ -226,7 +226,7 @@ def test_the_spindle_does_what_the_path_says(part: Program) -> None:
 def test_a_speed_of_zero_stops_the_spindle_and_says_so(part: Program) -> None:
     found = blocks(part, path(line(9.0, 5.0, 2.0, Feed(technology=STANDING))))
     at = found.index(Linear(end=(9.0, 5.0, 2.0), rate=Rate(value=30.0)))
-    text = "#32 MILLING_TECHNOLOGY: spindle speed 0: the spindle stands"
+    text = "#32 MILLING_TECHNOLOGY: spindle speed 0: the spindle is stopped"
     assert found[at - 2 : at] == [Comment(text=text), SpindleOff()]
 
 
@@ -290,7 +290,7 @@ def test_functions_stand_between_workingsteps(part: Program) -> None:
         FLOOD,
     ]
     assert Message(text="turn it") in found
-    assert Comment(text="EXCHANGE_PALLET is not written") in found
+    assert Comment(text="EXCHANGE_PALLET is not supported") in found
 
 
 def test_threads_of_a_lathe_keep_their_speed(part: Program) -> None:

@@ -119,7 +119,13 @@ def test_going_straight_down_into_solid_material_is_a_warning() -> None:
     steps = {step.id: step for step in program.workingsteps}
     for name, is_warned in (("ROUGH OPEN POCKET", True), ("ROUGH POCKET", False)):
         texts = [each.message for each in workingstep_path(program, steps[name]).findings]
-        assert any("the tool plunges straight into the material: consider a ramp or helix" in text for text in texts) is is_warned
+        assert (
+            any(
+                "the tool plunges straight into the material: consider a ramp or helix" in text
+                for text in texts
+            )
+            is is_warned
+        )
 
 
 def test_a_feature_beside_the_stock_is_a_warning() -> None:

@@ -58,7 +58,10 @@ def test_knots_of_the_file_count_by_their_multiplicity() -> None:
 @pytest.mark.parametrize(
     ("curve", "message"),
     [
-        (f"B_SPLINE_CURVE('',3,(#11,#12,#13),{FORM})", "degree 3 does not suit 3 control points"),
+        (
+            f"B_SPLINE_CURVE('',3,(#11,#12,#13),{FORM})",
+            "degree 3 does not suit 3 control points",
+        ),
         (f"B_SPLINE_CURVE('',0,(#11,#12),{FORM})", "degree 0"),
         (
             f"B_SPLINE_CURVE_WITH_KNOTS('',1,(#11,#12),{FORM},(2,1),(0.,1.),.UNSPECIFIED.)",

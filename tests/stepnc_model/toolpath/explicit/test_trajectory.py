@@ -147,7 +147,7 @@ class TestAxes:
             ("'X'", "#30", "positions of the other axes"),
             ("'X','Y','B'", "#30,#30,#30", "axes X, Y, B"),
             ("'X','X'", "#30,#30", "each once"),
-            ("'X','Y','Z'", "#30,#30", "3 axes, 2 commands"),
+            ("'X','Y','Z'", "#30,#30", "3 axes but 2 commands"),
             ("'X','Y','Z'", "#30,#30,#33", "different numbers of points"),
             ("'X','Y','Z'", "#30,#30,#34", "is not a polyline"),
         ],

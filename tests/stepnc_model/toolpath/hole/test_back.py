@@ -222,16 +222,25 @@ def test_what_is_odd_is_said(change: tuple[str, str], attribute: str) -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (("2.,10.,10.,0.5", "2.,0.,10.,0.5"), "cutting_depth: 0 mm: the cutting depth must be positive"),
+        (
+            ("2.,10.,10.,0.5", "2.,0.,10.,0.5"),
+            "cutting_depth: 0 mm: the cutting depth must be positive",
+        ),
         (("2.,10.,10.,0.5", "2.,43.,10.,0.5"), "cutting_depth: .*leaves no shoulder"),
         (("2.,10.,10.,0.5", "2.,10.,-1.,0.5"), "previous_diameter: -1 mm"),
         (("2.,10.,10.,0.5", "-2.,10.,10.,0.5"), "overcut_length: -2 mm"),
         (("2.,10.,10.,0.5", "2.,10.,16.,0.5"), "its_tool: tool of 16 mm is not wider"),
-        (("DIMENSION(16.,$", "DIMENSION(18.,$"), "tool of 18 mm diameter is too wide for a bore of 16 mm"),
-        (("#503,3.)", "#503,3.1)"), "a bar of 3.1 mm, 3.5 mm off that of the hole"),
+        (
+            ("DIMENSION(16.,$", "DIMENSION(18.,$"),
+            "tool of 18 mm diameter is too wide for a bore of 16 mm",
+        ),
+        (("#503,3.)", "#503,3.1)"), "a bar of 3.1 mm, 3.5 mm off the hole's axis"),
         (("#503,3.)", "#503,0.)"), "0 mm: the diameter must be positive"),
         (("110.,#503,3.)", "110.,#501,3.)"), "along the axis of its tool"),
-        (("BACKSIDE_COUNTERBORE(#462,1", "BACKSIDE_COUNTERBORE(#462,2"), "only a single-edge tool"),
+        (
+            ("BACKSIDE_COUNTERBORE(#462,1", "BACKSIDE_COUNTERBORE(#462,2"),
+            "only a single-edge tool",
+        ),
     ],
 )
 def test_what_cannot_be_bored_is_refused(change: tuple[str, str], message: str) -> None:
@@ -242,7 +251,9 @@ def test_what_cannot_be_bored_is_refused(change: tuple[str, str], message: str) 
 def test_a_hole_that_nothing_tells_of_is_refused() -> None:
     text = BRACKET.read_text(encoding="utf-8")
     workplan = ("(#20,#21,#22,#23,#24,#25)", "(#24)")
-    with pytest.raises(PathError, match=r"previous_diameter: the diameter of the hole that the tool passes"):
+    with pytest.raises(
+        PathError, match=r"previous_diameter: the diameter of the hole that the tool passes"
+    ):
         path_in(text, "REAM HOLE 1", *BACK, workplan, ("2.,10.,10.,0.5", "2.,10.,$,0.5"))
 
 

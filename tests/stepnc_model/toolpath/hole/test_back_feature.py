@@ -115,10 +115,16 @@ def test_a_hole_by_itself_is_entered_above_the_stock() -> None:
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ((("'REAM HOLE 1',#43,#160,", "'REAM HOLE 1',#43,$,"),), "the workingstep has no feature to bore"),
+        (
+            (("'REAM HOLE 1',#43,#160,", "'REAM HOLE 1',#43,$,"),),
+            "the workingstep has no feature to bore",
+        ),
         ((("#162,#501,#502);", "#162,#502,#503);"),), r"axis \(1, 0, 0\)"),
         ((COMPOUND, ON_COMPOUND, ("(#601,#610)", "(#150)")), "no round hole"),
-        ((("#161,#163,#166,$,#167);\n#161", "#161,$,#166,$,#167);\n#161"),), "the bore has no depth"),
+        (
+            (("#161,#163,#166,$,#167);\n#161", "#161,$,#166,$,#167);\n#161"),),
+            "the bore has no depth",
+        ),
     ],
 )
 def test_what_is_no_bore_is_refused(changes: tuple[tuple[str, str], ...], message: str) -> None:

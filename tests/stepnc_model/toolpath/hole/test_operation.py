@@ -160,7 +160,10 @@ def test_thread_drilling_without_a_thread_is_refused() -> None:
         "#214=REAMING($,$,'REAM HOLE 1',5.,$,#460,#312,#330,3.,$,9.8,$,1.,#360,.F.,$,$)",
         "#214=THREAD_DRILLING($,$,'REAM HOLE 1',5.,$,#460,#312,#330,3.,$,9.8,$,1.,#360,.F.)",
     )
-    with pytest.raises(PathError, match=r"#160 .*no thread has this hole as its applied_shape: the pitch is unknown"):
+    with pytest.raises(
+        PathError,
+        match=r"#160 .*no thread has this hole as its applied_shape: the pitch is unknown",
+    ):
         path("REAM HOLE 1", change)
 
 

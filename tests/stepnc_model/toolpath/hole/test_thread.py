@@ -203,15 +203,24 @@ def test_the_teeth_go_from_the_end_of_the_thread_to_above_the_part(
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (("(#160),.T.", "(#170),.T."), r"#160 .*no thread has this hole as its applied_shape: the pitch is unknown"),
+        (
+            ("(#160),.T.", "(#170),.T."),
+            r"#160 .*no thread has this hole as its applied_shape: the pitch is unknown",
+        ),
         (("1.5,'MM'", "0.,'MM'"), "number_of_threads: 0: the pitch must be positive"),
         (("1.5,'MM'", "1.5,'FURLONG'"), "number_of_threads: unit 'FURLONG'"),
         (("1.5,'MM'", "1.E-3,'MM'"), "number_of_threads: .* at most 1000"),
         (("'RIGHT')", "'WRONG')"), "thread_hand: 'WRONG'"),
         (("#622,#622,12.,", "#622,#622,0.,"), "major_diameter: 0 mm"),
-        (("#622,#622,12.,", "#622,#622,10.2,"), "tool of 10.2 mm is too wide to mill a thread of 10.2 mm"),
+        (
+            ("#622,#622,12.,", "#622,#622,10.2,"),
+            "tool of 10.2 mm is too wide to mill a thread of 10.2 mm",
+        ),
         (("DEFINITION(30.", "DEFINITION(-1."), "partial_profile: -1 mm"),
-        (("DIMENSION(10.2", "DIMENSION(10.6"), "tool of 10.6 mm diameter is too wide for a hole of 10.5 mm"),
+        (
+            ("DIMENSION(10.2", "DIMENSION(10.6"),
+            "tool of 10.6 mm diameter is too wide for a hole of 10.5 mm",
+        ),
         (
             ("#620=CATALOGUE_THREAD(", "#630=SPECIFICATION((),'',$,$);\n#620=DEFINED_THREAD("),
             "minor diameter of 9 mm",

@@ -162,7 +162,10 @@ def test_angle_meets_the_pass_at_its_angle() -> None:
 
 def test_lead_without_room_is_left_out_and_said() -> None:
     path, _ = entered("AP_RETRACT_TANGENT($,25.)")
-    assert "no room for ap_retract_tangent: moving straight down" in path.findings[0].message.lower()
+    assert (
+        "no room for ap_retract_tangent: moving straight down"
+        in path.findings[0].message.lower()
+    )
     path, _ = entered("AP_RETRACT_TANGENT($,1.)", clearance=nowhere)
     assert path.findings
 

@@ -79,7 +79,9 @@ def test_boss_that_leans_widens_below() -> None:
 
 def test_outline_that_crosses_itself_is_refused() -> None:
     more = "#900=GENERAL_CLOSED_PROFILE($,#901);#901=POLYLINE('',(#500,#182,#183,#181,#500));"
-    with pytest.raises(PathError, match="#110 GENERAL_OUTSIDE_PROFILE: the feature's boundary crosses"):
+    with pytest.raises(
+        PathError, match="#110 GENERAL_OUTSIDE_PROFILE: the feature's boundary crosses"
+    ):
         flank("ROUGH CONTOUR", ("#111,#114,#116);", "#111,#114,#900);"), more=more)
 
 

@@ -75,7 +75,9 @@ def test_open_boundary_that_closes_is_refused() -> None:
 
 
 def test_open_boundary_that_crosses_itself_is_refused() -> None:
-    with pytest.raises(PathError, match="#150 OPEN_POCKET: the feature's boundary crosses itself"):
+    with pytest.raises(
+        PathError, match="#150 OPEN_POCKET: the feature's boundary crosses itself"
+    ):
         pocket(("(#500,#181,#182,#183)", "(#500,#182,#181,#183)"), id="ROUGH OPEN POCKET")
 
 
@@ -92,7 +94,9 @@ def test_corners_that_do_not_fit_are_refused(corner: str) -> None:
 
 def test_boundary_that_crosses_itself_is_refused() -> None:
     more = "#900=GENERAL_CLOSED_PROFILE($,#901);#901=POLYLINE('',(#500,#182,#183,#181,#500));"
-    with pytest.raises(PathError, match="#140 CLOSED_POCKET: the feature's boundary crosses itself"):
+    with pytest.raises(
+        PathError, match="#140 CLOSED_POCKET: the feature's boundary crosses itself"
+    ):
         pocket(("#147,#148);", "#147,#900);"), more=more)
 
 

@@ -119,7 +119,9 @@ def test_sphere_smaller_than_its_hole_is_refused() -> None:
         "#900=ROUND_HOLE('H',#30,(),#141,#143,#180,$,#901);"
         "#901=SPHERICAL_HOLE_BOTTOM(#902);#902=TOLERANCED_LENGTH_MEASURE(20.,#510);"
     )
-    with pytest.raises(PathError, match="sphere radius 20 mm is smaller than the hole radius 30 mm"):
+    with pytest.raises(
+        PathError, match="sphere radius 20 mm is smaller than the hole radius 30 mm"
+    ):
         shape_of("ROUGH POCKET", on("#900"), more=more)
 
 
@@ -164,10 +166,10 @@ def test_compound_feature_within_itself_is_refused() -> None:
         ([("#145=CARTESIAN_POINT('',(0.,0.,-12.))", "#145=CARTESIAN_POINT('',(0.,0.,0.))")],
          "#140 CLOSED_POCKET.depth: depth 0 mm"),
         ([("#145=CARTESIAN_POINT('',(0.,0.,-12.))", "#145=CARTESIAN_POINT('',(0.,0.,-41.))")],
-         "the feature's floor at z = -41 mm lies below the workpiece, whose bottom is at z = -40 mm"),
+         "floor at z = -41 mm lies below the workpiece, whose bottom is at z = -40 mm"),
         ([("(#206,#207),#141,#143,", "(#206,#207),#141,$,")], "depth"),
         ([("'POCKET CENTRE',#142,#501,", "'POCKET CENTRE',#142,#505,")],
-         r"feature_placement: axis \(0, 0, -1\) is not parallel to the tool"),
+         r"feature_placement: .*axis \(0, 0, -1\) is not parallel to the tool"),
         ([("'POCKET CENTRE',#142,#501,#502", "'POCKET CENTRE',#142,#502,#503")],
          r"axis \(1, 0, 0\) is not parallel to the tool"),
     ],

@@ -117,7 +117,9 @@ def test_corner_larger_than_half_the_width_is_refused() -> None:
 
 def test_loop_end_needs_a_course_that_closes() -> None:
     change, more = ended("LOOP_SLOT_END_TYPE()", "LOOP_SLOT_END_TYPE()")
-    with pytest.raises(PathError, match="#130 SLOT: the slot's course does not close: gap of 90 mm"):
+    with pytest.raises(
+        PathError, match="#130 SLOT: the slot's course does not close: gap of 90 mm"
+    ):
         slot(change, more=more)
 
 

@@ -107,7 +107,10 @@ def test_steps_that_are_a_slip_are_refused() -> None:
 
 
 def test_explicit_strategy_needs_its_path() -> None:
-    with pytest.raises(PathError, match="the strategy asks for an explicit tool path, but the operation has none"):
+    with pytest.raises(
+        PathError,
+        match="the strategy asks for an explicit tool path, but the operation has none",
+    ):
         way("EXPLICIT_STRATEGY($,$)")
 
 

@@ -87,7 +87,10 @@ def test_a_thinner_mill_makes_the_bar_level_by_level_from_its_top() -> None:
     [
         ({"diameter": 21.0}, "21 mm for an undercut of 20 mm"),
         ({"diameter": 9.0}, "the mill must be between half and all of the undercut's width"),
-        ({"mill": "T_SLOT_MILL(#422,4,.RIGHT.,.F.,$,5.)"}, "5 mm thick does not fit an undercut of 4 mm"),
+        (
+            {"mill": "T_SLOT_MILL(#422,4,.RIGHT.,.F.,$,5.)"},
+            "5 mm thick does not fit an undercut of 4 mm",
+        ),
         ({"ends": "RADIUSED_SLOT_END_TYPE()"}, "both must be open"),
     ],
 )

@@ -34,7 +34,10 @@ def test_an_insert_does_not_sink_into_a_narrow_groove() -> None:
 @pytest.mark.parametrize(
     ("edit", "message"),
     [
-        ((".RIGHT.,3.,12.,0.2", ".RIGHT.,3.,12.,2."), "corner radius 2 mm is too large for the width 3 mm"),
+        (
+            (".RIGHT.,3.,12.,0.2", ".RIGHT.,3.,12.,2."),
+            "corner radius 2 mm is too large for the width 3 mm",
+        ),
         ((".RIGHT.,3.,12.,0.2", ".RIGHT.,0.,12.,0.2"), "an insert width of 0"),
         (("5.,$,#420,#303", "5.,$,#400,#303"), "is not a grooving tool"),
     ],

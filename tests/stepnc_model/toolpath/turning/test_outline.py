@@ -81,8 +81,14 @@ def test_a_rounded_edge_is_an_arc_from_x_towards_z(job: Callable[..., ToolPathTa
 @pytest.mark.parametrize(
     ("edit", "message"),
     [
-        (("'MATERIAL INSIDE',(-1.", "'MATERIAL INSIDE',(1."), "the material lies outside the surface: internal turning is not supported"),
-        (("'COLLAR',#122,#501,#502", "'COLLAR',#122,#502,#501"), "the feature's axis is not parallel to the spindle axis"),
+        (
+            ("'MATERIAL INSIDE',(-1.", "'MATERIAL INSIDE',(1."),
+            "the material lies outside the surface: internal turning is not supported",
+        ),
+        (
+            ("'COLLAR',#122,#501,#502", "'COLLAR',#122,#502,#501"),
+            "the feature's axis is not parallel to the spindle axis",
+        ),
         (("(0.,0.,-80.)", "(9.,0.,-80.)"), "9 mm off the spindle axis"),
         (("(15.,0.,-40.)", "(15.,2.,-40.)"), "does not lie in a plane"),
     ],
