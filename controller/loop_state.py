@@ -55,17 +55,13 @@ STANDING = 0.02
 """Override below which the axes count as standing."""
 
 FORGIVING = 1.0 / 100.0
-"""Share of a feed hold that is forgotten per revolution: only holds in quick succession
-count."""
+"""Share of a feed hold forgotten per revolution: only holds in quick succession count."""
 
 BELOW = 500
 """Consecutive revolutions with an override below the band after which the program stops."""
 
 REVOLUTIONS = 2.0
-"""Revolutions, besides the timeout, that may pass without a force.
-
-The first revolution is mostly incomplete.
-"""
+"""Revolutions without a force allowed besides the timeout; the first is mostly incomplete."""
 
 LEAST_WAY = 0.1
 """Least override used to compute the program time of the next revolutions."""
@@ -94,8 +90,7 @@ class FeedHold:
     force: float
     """Greatest force since the hold began, N."""
     calm: int = 0
-    """Consecutive tooth periods with a force below the set point; with runout, one is not
-    enough."""
+    """Consecutive tooth periods below the set point; with runout, one is not enough."""
 
 
 class LoopState(NamedTuple):

@@ -175,8 +175,8 @@ def _nearest(candidate: str, family: MaterialFamily, *, number: int) -> Material
     nearest = min(family.members, key=lambda row: abs(row.number - number))
     return MaterialGuess(
         material=nearest.material,
-        reason=f"'{candidate}' is not in the library; of the family {family.meaning} "
-        "this one is the nearest",
+        reason=f"'{candidate}' is not in the library; the nearest of the family "
+        f"{family.meaning} is used",
     )
 
 

@@ -220,7 +220,7 @@ def test_feature_without_depth_removes_nothing() -> None:
         "#105=CARTESIAN_POINT('',(0.,0.,-2.));",
         "#105=CARTESIAN_POINT('',(0.,0.,0.));",
     ))
-    with pytest.raises(SchemaError, match=r"#100 PLANAR_FACE.*depth 0 mm removes nothing"):
+    with pytest.raises(SchemaError, match=r"#100 PLANAR_FACE.*depth 0 mm is not valid"):
         region_of(program, FACE)
 
 
