@@ -258,19 +258,19 @@ def test_figure_11_of_paper_002_is_readable_as_printed() -> None:
     assert [(f.line, f.message) for f in file.findings] == [
         (3, "FILE_DESCRIPTION has 1 parameters instead of 2"),
         (4, "FILE_NAME has 1 parameters instead of 7"),
-        (7, "text that belongs to no instance: '. . .'"),
+        (7, "text outside any instance: '. . .'"),
         (11, "nested comment: '/*' within a comment"),
-        (13, "text that belongs to no instance: '*****/'"),
+        (13, "text outside any instance: '*****/'"),
         (14, "instances outside a DATA section: 'DATA;' is missing"),
         (16, "RIGHT: read as .RIGHT."),
         (16, "..F.: an enumeration has one dot on either side"),
         (24, "nested comment: '/*' within a comment"),
-        (26, "text that belongs to no instance: '*****/'"),
+        (26, "text outside any instance: '*****/'"),
         (29, "';' is missing after #202"),
         (30, "';' is missing after #203"),
         (31, '"FULL_IMMERSION": double quotes enclose binary values; read as a string'),
         (31, "';' is missing after #204"),
-        (32, "text that belongs to no instance: '. . .'"),
+        (32, "text outside any instance: '. . .'"),
     ]
 
 
