@@ -263,7 +263,7 @@ def test_figure_11_of_paper_002_is_readable_as_printed() -> None:
         (13, "text outside any instance: '*****/'"),
         (14, "instances outside a DATA section: 'DATA;' is missing"),
         (16, "RIGHT: read as .RIGHT."),
-        (16, "..F.: an enumeration has one dot on either side"),
+        (16, "..F.: an enumeration must have one dot on each side"),
         (24, "nested comment: '/*' within a comment"),
         (26, "text outside any instance: '*****/'"),
         (29, "';' is missing after #202"),
