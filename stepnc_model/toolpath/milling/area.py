@@ -156,18 +156,32 @@ def extra(inset: Inset, cutter: EndMillShape, *, bottom: float, top: float) -> f
     if inset is upright and cutter.taper == 0.0:
         return 0.0
     span = max(top - bottom, 0.0)
-    heights = sorted(
-        {span * (index / SAMPLES) ** 2 for index in range(SAMPLES + 1)}
-        | {min(cutter.corner, span)}
-    )
+    shares = [index / SAMPLES for index in range(SAMPLES + 1)]
+    round_end = min(cutter.corner, span)
+    # Closely at the tip, and where the corner's round ends.
+    heights = sorted({
+        *(span * share**power for share in shares for power in (2, 4)),
+        *(round_end * (1.0 - share**2) for share in shares),
+    })
 
     def sum_at(above: float) -> float:
         return inset(bottom + above) + cutter.reach(above)
 
-    # Fillet and corner may each make a peak: the samples around the greatest are sampled again.
+    sums = [sum_at(above) for above in heights]
+    last, most = len(heights) - 1, max(sums)
+    for at, own in enumerate(sums):
+        # Fillet, corner and top may each make a peak; the greatest may lie between samples.
+        low, high = max(at - 1, 0), min(at + 1, last)
+        if own >= sums[low] and own >= sums[high]:
+            most = max(most, _greatest(sum_at, heights[low], heights[high]))
+    return max(0.0, most - cutter.radius)
+
+
+def _greatest(function: Callable[[float], float], low: float, high: float) -> float:
+    """Maximum of a function in an interval, which is sampled ever more closely around it."""
     for _ in range(ROUNDS):
-        sums = [sum_at(above) for above in heights]
-        index = sums.index(max(sums))
-        low, high = heights[max(index - 1, 0)], heights[min(index + 1, len(heights) - 1)]
-        heights = [low + (high - low) * at / SAMPLES for at in range(SAMPLES + 1)]
-    return max(0.0, max(sums) - cutter.radius)
+        places = [low + (high - low) * at / SAMPLES for at in range(SAMPLES + 1)]
+        values = [function(place) for place in places]
+        index = values.index(max(values))
+        low, high = places[max(index - 1, 0)], places[min(index + 1, SAMPLES)]
+    return max(values)
