@@ -1,9 +1,9 @@
-"""Protection of text cells that a spreadsheet would take for formulas."""
+"""Texts that a spreadsheet would calculate; an apostrophe before them keeps them texts."""
 
 FIRST = "=+-@\t\r"
-"""First characters that make a spreadsheet treat a text as a formula."""
+"""one of these is what such a text begins with"""
 
 
 def disarmed(text: str) -> str:
-    """Return the text, with an apostrophe if a spreadsheet would take it for a formula."""
+    """The text, with an apostrophe if it needs one."""
     return f"'{text}" if text.startswith(tuple(FIRST)) else text

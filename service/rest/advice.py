@@ -1,7 +1,7 @@
-"""Routes of ``/v1/advice``: advised feeds, the optimised program, NC code and the report.
+"""``/v1/advice``: feeds with their reasons, the optimised program, NC code, the report.
 
-Machines and panels ask for single workingsteps again and again. Results never change once they
-are written, so their parts are cached as bytes.
+A look-up of one workingstep is what machines and panels ask again and again: results do not
+change once they are there, so their parts are kept ready as bytes.
 """
 
 import os
@@ -37,19 +37,19 @@ from stepnc_model.post.dialect import SUFFIXES, Dialect
 ROUTES = APIRouter(prefix="/v1/advice", tags=["advice"])
 
 MOST_READY = 64
-"""Largest number of results whose parts are cached."""
+"""results whose parts are kept ready"""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CachedAnswer:
-    """Prepared answer with its entity tag, and the 304 answer for clients that have it."""
+    """An answer, and the one for clients that have it already."""
 
     tag: bytes
     whole: PreparedResponse
     same: PreparedResponse
 
     def reply(self, request: Request) -> Response:
-        """Return the full answer, or 304 if the client has it already."""
+        """Whichever is due."""
         for name, value in request.scope["headers"]:
             if name == b"if-none-match" and matches(value.decode("latin-1"), self.tag.decode()):
                 return self.same
@@ -58,30 +58,30 @@ class CachedAnswer:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CachedAdvice:
-    """Result of an advice job as prepared answers."""
+    """A result as bytes, with its tags."""
 
     file: str
     stamp: int
-    """Modification time of the result file, in ns."""
+    """when its file was written, ns"""
     whole: CachedAnswer
     workingsteps: dict[str, CachedAnswer]
-    """Answers by workingstep id and by instance."""
+    """by id and by instance"""
     result: dict[str, Any]
 
 
 class AdviceCache:
-    """Cache of recently requested results. Running state."""
+    """Results that were asked for lately. Running state."""
 
     def __init__(self) -> None:
         self._ready: OrderedDict[str, CachedAdvice] = OrderedDict()
 
     def get(self, data_folder: DataFolder, id: str) -> CachedAdvice:
-        """Return a result from the cache, or read it.
+        """A result.
 
         Raises
         ------
         NotFound, Conflict
-            When the advice does not exist, or has no result yet.
+            When there is none, or not yet.
         """
         known = self._ready.get(id)
         file = str(data_folder.job_folder(id) / RESULT) if known is None else known.file
@@ -128,12 +128,12 @@ def _part(body: bytes) -> CachedAnswer:
 
 
 def _missing(data_folder: DataFolder, id: str) -> Exception:
-    """Return the error that explains why there is no result."""
+    """Why there is no result."""
     job = jobs.get(data_folder, id, JobKind.ADVICE)
     if job.state in {JobState.QUEUED, JobState.RUNNING}:
-        return Conflict(f"advice '{id}' is {job.state.value}: try again, or see its job")
+        return Conflict(f"advice '{id}' is {job.state.value}: look again, or at its job")
     if job.state is JobState.SUCCEEDED:
-        return Conflict(f"advice '{id}' had no result yet, or has lost it: try again")
+        return Conflict(f"advice '{id}' had no result yet, or has lost it: look again")
     return Conflict(f"advice '{id}' has {job.state.value}: its job says why")
 
 
@@ -145,10 +145,10 @@ def _cache(request: Request) -> AdviceCache:
 @ROUTES.get(
     "/{id}/workingsteps/{workingstep}",
     response_model=AdvisedView,
-    summary="Advised feed of one workingstep, with its reason",
+    summary="The feed of one workingstep, with its reason",
 )
 async def advised(request: Request, id: str, workingstep: str) -> Response:
-    """Show the advice for a workingstep, by its id or its instance number without ``#``."""
+    """By its id, or its instance without ``#``."""
     parts = _cache(request).get(data_folder_of(request), id).workingsteps
     found = parts.get(workingstep) or parts.get(f"#{workingstep}")
     if found is None:
@@ -157,16 +157,16 @@ async def advised(request: Request, id: str, workingstep: str) -> Response:
 
 
 class LookUpRoute(Route):
-    """Route of a single workingstep's advice without the framework's slower parameter parsing.
+    """The same without the framework's work on parameters, which takes longer than the look-up.
 
-    It precedes all other routes; the OpenAPI document describes the route above.
+    It stands before all other routes; the one above is what the OpenAPI document tells.
     """
 
     def __init__(self) -> None:
         super().__init__(f"{ROUTES.prefix}/{{id}}/workingsteps/{{workingstep}}", _look_up)
 
     def matches(self, scope: Scope) -> tuple[Match, Scope]:
-        """Match as any route does, and name the route for the metrics."""
+        """As of any route; the name of it is for the metrics."""
         match, child = super().matches(scope)
         return match, {**child, "route": self}
 
@@ -175,27 +175,27 @@ async def _look_up(request: Request) -> Response:
     return await advised(request, **request.path_params)
 
 
-@ROUTES.get("", response_model=PageView[JobView], summary="List advice, newest first")
+@ROUTES.get("", response_model=PageView[JobView], summary="All advice, newest first")
 async def list_advice(request: Request, data_folder: InDataFolder, cursor: OnPage) -> Response:
-    """List the advice jobs page by page."""
+    """The jobs that made it, or will."""
     page = jobs.listed(data_folder, cursor, kind=JobKind.ADVICE)
     return page_reply(request, page, [job_view(job) for job in page.items])
 
 
-@ROUTES.get("/{id}", response_model=AdviceView, summary="Show advice")
+@ROUTES.get("/{id}", response_model=AdviceView, summary="One advice")
 async def advice(request: Request, id: Id) -> Response:
-    """Show all workingsteps with programmed and advised feed, limits and reason."""
+    """All workingsteps with programmed and advised feed, limits and reason."""
     return _cache(request).get(data_folder_of(request), id).whole.reply(request)
 
 
 @ROUTES.get(
     "/{id}/file",
-    summary="Download the optimised program",
+    summary="The optimised program",
     response_class=Response,
     responses={200: {"content": {"application/step": {}}}},
 )
 async def optimised(request: Request, data_folder: InDataFolder, id: Id) -> Response:
-    """Download the uploaded program with the advised feeds; nothing else is changed."""
+    """The program as it came, with the advised feeds; nothing else is changed."""
     name = await run_in_threadpool(_name, request, data_folder, id)
     file = data_folder.job_folder(id) / OPTIMISED
     return file_reply(
@@ -205,12 +205,12 @@ async def optimised(request: Request, data_folder: InDataFolder, id: Id) -> Resp
 
 @ROUTES.get(
     "/{id}/nc",
-    summary="Download NC code with the advised feeds",
+    summary="NC code with the advised feeds",
     response_class=Response,
     responses={200: {"content": {"text/plain": {}}}},
 )
 async def nc_code(request: Request, data_folder: InDataFolder, id: Id) -> Response:
-    """Download NC code for the control that was named in the request."""
+    """For the control that was named when the advice was asked for."""
     name = await run_in_threadpool(_name, request, data_folder, id)
     control = _cache(request).get(data_folder, id).result["nc_control"]
     if control is None:
@@ -222,15 +222,15 @@ async def nc_code(request: Request, data_folder: InDataFolder, id: Id) -> Respon
     )
 
 
-@ROUTES.get("/{id}/report", summary="Show the report as a page", response_class=Response,
+@ROUTES.get("/{id}/report", summary="The report as a page", response_class=Response,
             responses={200: {"content": {"text/html": {}}}})  # fmt: skip
 async def report(request: Request, data_folder: InDataFolder, id: Id) -> Response:
-    """Show the self-contained HTML report, which can be saved, printed and sent."""
+    """A page that stands for itself: save it, print it, send it."""
     jobs.get(data_folder, id, JobKind.ADVICE)
     return report_reply(request, data_folder.job_folder(id) / REPORT, id=id)
 
 
 def _name(request: Request, data_folder: DataFolder, id: str) -> str:
-    """Return the file name of the optimised program, also after the program was deleted."""
+    """File name of the optimised program, also when the program was deleted."""
     program = str(_cache(request).get(data_folder, id).result["program"])
     return optimised_name(programs.shown_name(program))

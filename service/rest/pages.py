@@ -1,4 +1,4 @@
-"""Routes of the dashboard's files, and of plotly.js from the installed package."""
+"""The dashboard's files, and the plotly.js that the installed package carries."""
 
 import gzip
 import hashlib
@@ -26,13 +26,13 @@ KINDS = {
 
 @ROUTES.get("/")
 async def root() -> Response:
-    """Redirect to the first page of the dashboard."""
+    """The first page."""
     return RedirectResponse("/dashboard/plan.html")
 
 
 @ROUTES.get("/dashboard/plotly.min.js")
 async def plotly(request: Request) -> Response:
-    """Serve plotly.js from the installed package: nothing is fetched from another host."""
+    """From the installed package: nothing is fetched from another host."""
     content, tag = await run_in_threadpool(_plotly)
     headers = {"etag": tag, "cache-control": "public, max-age=86400", "vary": "accept-encoding"}
     if matches(request.headers.get("if-none-match"), tag):
@@ -46,7 +46,7 @@ async def plotly(request: Request) -> Response:
 
 @ROUTES.get("/dashboard/{name}")
 async def file(request: Request, name: str) -> Response:
-    """Serve a file of the dashboard."""
+    """One of the dashboard's files."""
     found = files().get(name)
     if found is None:
         raise NotFound("page", name)
@@ -60,19 +60,19 @@ async def file(request: Request, name: str) -> Response:
 
 @ROUTES.get("/favicon.ico")
 async def favicon() -> Response:
-    """Serve the icon that browsers request by default."""
+    """Browsers ask for it."""
     return RedirectResponse("/dashboard/icon.svg")
 
 
 @cache
 def files() -> dict[str, Path]:
-    """Return the paths of the dashboard's files by file name."""
+    """By name."""
     return {path.name: path for path in FOLDER.iterdir() if path.suffix in KINDS}
 
 
 @cache
 def _plotly() -> tuple[bytes, str]:
-    """Return plotly.js compressed with gzip, and its entity tag; computed once."""
+    """Packed once."""
     from plotly.offline import get_plotlyjs  # noqa: PLC0415 (plotly takes a second)
 
     text = get_plotlyjs().encode()
