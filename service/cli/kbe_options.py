@@ -45,7 +45,7 @@ def add_filters(parser: argparse.ArgumentParser) -> None:
         "--since",
         type=moment,
         metavar="TIME",
-        help="recorded at this time or later: 2026-03-05, 2026-03-05T14:30, or with a zone +01:00 "
+        help="recorded then or later: 2026-03-05, 2026-03-05T14:30, or with a zone as +01:00 "
         "(default: the local time zone)",
     )
     add(
