@@ -94,9 +94,9 @@ def refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Refused:
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("", "slot.ngc: there is nothing in it that takes time"),
-        ("(a remark)\n", "nothing in it that takes time"),
-        ("M30\n", "nothing in it that takes time"),
+        ("", "slot.ngc: the program contains nothing that takes time"),
+        ("(a remark)\n", "contains nothing that takes time"),
+        ("M30\n", "contains nothing that takes time"),
         ("hello world\n", "slot.ngc: line 1: 'hello world': no word of NC code"),
         (START + "G1 X1 Q5 F100\n", "line 6: word Q5: nothing in this block uses it"),
         (START + "G199 X1\n", "line 6: word G199: not known on this mill"),
@@ -105,13 +105,16 @@ def refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Refused:
         (START + "G1 X120 F0\n", "line 6: a motion at feed without F"),
         (START + "G1 X120 F-5\n", "line 6: word F-5: must not be negative"),
         (START + f"G1 X120 F{'9' * 400}\n", "line 6: word F99"),
-        (START + "G1 X120 F0.000000001\n", "line 6: 8.4e+12 s of machining: 1e+07 s at most"),
+        (
+            START + "G1 X120 F0.000000001\n",
+            "line 6: 8.4e+12 s of machining: the limit is 1e+07 s",
+        ),
         (START + f"G1 X{'9' * 40} F100\n", "line 6: word X99"),
         (START + "G2 X0 Y10 I3 J0 F100\n", "line 6: no arc: its radii are 3.0000 and 17.0000"),
         (START + "G2 X0 Y10 I0 J0 F100\n", "line 6: no arc"),
         (START + "G2 X0 Y10 R2 F100\n", "line 6: no arc"),
         (START + "G4 P-1\n", "line 6: word P-1: must not be negative"),
-        (START + "G4 P999999999\n", "line 6: 1e+09 s of machining: 1e+07 s at most"),
+        (START + "G4 P999999999\n", "line 6: 1e+09 s of machining: the limit is 1e+07 s"),
         (START.replace("S3000", "S-1"), "line 3: word S-1: must not be negative"),
         (START.replace("T1 M6", "T9 M6"), "line 2: no tool T9 in the table; known: T1"),
         (START.replace("T1 M6", "T0 M6"), "line 2: word T0: must be a whole number above 0"),
@@ -190,8 +193,8 @@ def test_cutting_with_a_standing_spindle_is_said(code: Path) -> None:
         ({"missing": "nan"}, "missing nan"),
         ({"deviation-mm": "inf"}, "deviation inf mm: it must be above 0 to 10 mm"),
         ({"filter-s": "1e-300,1e-300"}, "filter times 1e-300 and 1e-300 s: 1e-06 to 100 s"),
-        ({"filter-s": "1"}, "filter times '1': 2 numbers with commas between them"),
-        ({"zero": "nan,0,0"}, "zero 'nan,0,0': 3 numbers with commas between them"),
+        ({"filter-s": "1"}, "filter times '1': expected 2 numbers separated by commas"),
+        ({"zero": "nan,0,0"}, "zero 'nan,0,0': expected 3 numbers separated by commas"),
         ({"zero": "100,100,600"}, "Z = 5 mm is off the travel of the axis, -600 to -100 mm"),
         ({"runout-um": "5"}, "--force tooth"),
         ({"runout-um": "-5", "force": "tooth"}, "runout -5 µm: it must be 0 to 500 µm"),
@@ -202,11 +205,11 @@ def test_cutting_with_a_standing_spindle_is_said(code: Path) -> None:
         ({"dialect": "canonical"}, "canonical commands are no NC code"),
         ({"machine": "x"}, "unknown machine 'x'; known: lathe22"),
         ({"machine": ""}, "name a machine with --machine"),
-        ({"machine": "paper002"}, "'paper002' says nothing of its axes X, Y, Z: it cannot be"),
+        ({"machine": "paper002"}, "'paper002' has no data for its axes X, Y, Z: it cannot be"),
         ({"machine": "lathe22"}, "line 4: word Y10: nothing in this block uses it"),
         ({"material": "x"}, "unknown material 'x'; near names:"),
         ({"material": ""}, "a tool table without a material: name one with --material"),
-        ({"stock": "text"}, "stock 'text': 3 or 6 numbers with commas between them"),
+        ({"stock": "text"}, "stock 'text': expected 3 or 6 numbers separated by commas"),
         ({"stock": "1,2,3,4"}, "stock '1,2,3,4': 3 or 6 numbers"),
         ({"stock": "nan,0,0,1,1,1"}, "stock 'nan,0,0,1,1,1': 3 or 6 numbers"),
         (
@@ -259,10 +262,10 @@ def test_a_tool_table_that_cannot_be_used_is_refused(
     ("words", "message"),
     [
         ([], "name a STEP-NC program, or NC code with --nc"),
-        ([PARTS / "shaft.stpnc", "--tools", "x"], "are for NC code: name it with --nc"),
+        ([PARTS / "shaft.stpnc", "--tools", "x"], "need NC code: name it with --nc"),
         (["nowhere"], "nowhere: No such file or directory"),
         ([PARTS], "Is a directory"),
-        ([PARTS / "paper002.stpnc", "--machine", "paper002"], "nothing of its axes"),
+        ([PARTS / "paper002.stpnc", "--machine", "paper002"], "no data for its axes"),
         (
             [PARTS / "shaft.stpnc", "--machine", "vmc15"],
             "shaft.stpnc: workingstep 'ROUGH FACE': line 13: T1 ROUGHING TOOL, CARBIDE P25 "
@@ -271,7 +274,7 @@ def test_a_tool_table_that_cannot_be_used_is_refused(
         ([PARTS / "bracket.stpnc", "--machine", "lathe22"], "X = -39.5 mm is off the travel"),
         (
             [PARTS / "bracket.stpnc", "--nc", "x.ngc", "--stock", STOCK],
-            "tools and stock are those of the program",
+            "the program defines tools and stock",
         ),
     ],
 )
@@ -299,8 +302,8 @@ def test_code_that_cannot_be_read_is_refused(code: Path, refused: Refused) -> No
     assert "junk.ngc: line 1: " in refused(*alone(code, nc=str(junk)))
     assert "nowhere.ngc: No such file" in refused(*alone(code, nc="nowhere.ngc"))
     assert "Is a directory" in refused(*alone(code, nc=str(code.parent)), "--dialect=fanuc")
-    assert "name its dialect with --dialect" in refused(*alone(code, nc=str(PARTS)))
-    assert "is no file name" in refused(*alone(code, nc="a\0.ngc"))
+    assert "add --dialect" in refused(*alone(code, nc=str(PARTS)))
+    assert "is not a valid file name" in refused(*alone(code, nc="a\0.ngc"))
 
 
 @pytest.mark.parametrize(
@@ -312,10 +315,10 @@ def test_code_that_cannot_be_read_is_refused(code: Path, refused: Refused) -> No
         ("link.csv", "name another file"),
         ("nowhere/run.csv", "the folder does not exist"),
         ("/dev/full/run.csv", "the folder does not exist"),
-        ("folder.csv", "is no regular file"),
-        ("full.csv", "is no regular file"),
+        ("folder.csv", "is not a regular file"),
+        ("full.csv", "is not a regular file"),
         ("n" * 300 + ".csv", "File name too long"),
-        ("a\0.csv", "is no file name"),
+        ("a\0.csv", "is not a valid file name"),
         ("/proc/run.csv", "No such file or directory"),
     ],
 )

@@ -19,7 +19,7 @@ def test_numbers_come_back_as_they_were_written(numbers: list[float]) -> None:
 def test_a_refusal_names_the_thing_the_text_and_every_count() -> None:
     with pytest.raises(StepNcError) as refused:
         numbers_in("1,2", "stock", counts=(3, 6))
-    assert str(refused.value) == "stock '1,2': 3 or 6 numbers with commas between them"
+    assert str(refused.value) == "stock '1,2': expected 3 or 6 numbers separated by commas"
 
 
 @pytest.mark.parametrize("text", ["1e400,0,0", "-inf,0,0", "nan,0,0", "0x1,0,0", "1;2;3"])

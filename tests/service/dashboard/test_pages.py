@@ -33,9 +33,9 @@ def guard(*, may_ask: bool) -> Callable[[Route], None]:
     def answer(route: Route) -> None:
         request = route.request
         if request.headers.get("authorization") != GOOD:
-            refuse(route, 401, "a key is needed")
+            refuse(route, 401, "API key needed")
         elif request.method == "POST" and not may_ask:
-            refuse(route, 403, "this needs the role planner; the key has viewer")
+            refuse(route, 403, "this request needs the role planner; the key has viewer")
         else:
             route.continue_()
 

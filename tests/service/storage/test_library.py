@@ -325,7 +325,7 @@ def test_what_is_deleted_or_not_there_is_changed_by_nobody_who_saw_it(
         ),
         lambda: library.remove(data_folder, LibrarySection.MACHINES, "ours", condition=bool),
     ):
-        with pytest.raises(PreconditionFailed, match="is not there"):
+        with pytest.raises(PreconditionFailed, match="does not exist"):
             change()
     assert files(data_folder) == []
 
