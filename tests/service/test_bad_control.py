@@ -77,9 +77,9 @@ def refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Refused:
         ([SLOT, "--force", "inf"], "force inf N: it must be above 0 to 1e+06 N"),
         ([SLOT, "--force", "10"], "it must be above 10 N, the noise of the dynamometer"),
         ([SLOT, "--force", "-5"], "force -5 N: it must be above 0 to 1e+06 N"),
-        ([SLOT, "--band", "20"], "override band '20': 2 numbers with commas"),
-        ([SLOT, "--band", "nan,120"], "override band 'nan,120': 2 numbers"),
-        ([SLOT, "--band", "a,b"], "override band 'a,b': 2 numbers"),
+        ([SLOT, "--band", "20"], "override band '20': expected 2 numbers"),
+        ([SLOT, "--band", "nan,120"], "override band 'nan,120': expected 2 numbers"),
+        ([SLOT, "--band", "a,b"], "override band 'a,b': expected 2 numbers"),
         ([SLOT, "--band", "120,20"], "override band from 120 %: it must be above 0 to 100"),
         ([SLOT, "--band", "-20,120"], "override band from -20 %"),
         (
@@ -201,4 +201,4 @@ def test_a_knowledge_base_without_a_folder_is_refused_before_the_run(
 
 def test_an_endless_machine_file_is_refused(refused: Refused) -> None:
     told = refused(PARTS / "paper002.stpnc", "--machine", "/dev/zero")
-    assert "is a device, not a regular file" in told or "unknown machine" in told
+    assert "is a device" in told or "unknown machine" in told

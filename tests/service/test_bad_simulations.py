@@ -192,7 +192,7 @@ def test_cutting_with_a_standing_spindle_is_said(code: Path) -> None:
         ({"missing": "1"}, "missing 1: it must be at least 0 and below 1"),
         ({"missing": "nan"}, "missing nan"),
         ({"deviation-mm": "inf"}, "deviation inf mm: it must be above 0 to 10 mm"),
-        ({"filter-s": "1e-300,1e-300"}, "filter times 1e-300 and 1e-300 s: 1e-06 to 100 s"),
+        ({"filter-s": "1e-300,1e-300"}, "filter times 1e-300 and 1e-300 s: must be 1e-06 to 100 s"),
         ({"filter-s": "1"}, "filter times '1': expected 2 numbers separated by commas"),
         ({"zero": "nan,0,0"}, "zero 'nan,0,0': expected 3 numbers separated by commas"),
         ({"zero": "100,100,600"}, "Z = 5 mm is off the travel of the axis, -600 to -100 mm"),
@@ -210,14 +210,14 @@ def test_cutting_with_a_standing_spindle_is_said(code: Path) -> None:
         ({"material": "x"}, "unknown material 'x'; near names:"),
         ({"material": ""}, "a tool table without a material: name one with --material"),
         ({"stock": "text"}, "stock 'text': expected 3 or 6 numbers separated by commas"),
-        ({"stock": "1,2,3,4"}, "stock '1,2,3,4': 3 or 6 numbers"),
-        ({"stock": "nan,0,0,1,1,1"}, "stock 'nan,0,0,1,1,1': 3 or 6 numbers"),
+        ({"stock": "1,2,3,4"}, "stock '1,2,3,4': expected 3 or 6 numbers"),
+        ({"stock": "nan,0,0,1,1,1"}, "stock 'nan,0,0,1,1,1': expected 3 or 6 numbers"),
         (
             {"stock": "0,0,0,0,0,0"},
-            "stock: x from 0 to 0 mm: at least 0.01 mm, within 100000 mm",
+            "stock: x from 0 to 0 mm: must span at least 0.01 mm, within 100000 mm",
         ),
-        ({"stock": "0,0,0,1,-1,1"}, "y from 0 to -1 mm: at least 0.01 mm"),
-        ({"stock": "0,0,0,1,1,1e6"}, "z from 0 to 1e+06 mm: at least 0.01 mm"),
+        ({"stock": "0,0,0,1,-1,1"}, "y from 0 to -1 mm: must span at least 0.01 mm"),
+        ({"stock": "0,0,0,1,1,1e6"}, "z from 0 to 1e+06 mm: must span at least 0.01 mm"),
         ({"stock": "-10,0,20"}, "x from 5 to -5 mm"),
     ],
 )
@@ -290,7 +290,7 @@ def test_a_program_whose_stock_has_no_volume_is_refused(code: Path, refused: Ref
     few = text.replace("'MAIN WORKPLAN',(#3,#7,#4,#5,#6)", "'MAIN WORKPLAN',(#15)")
     part.write_text(few.replace("#34,156.,", "#34,0.,"), encoding="ascii")
     told = refused("simulate", part, "--machine=vmc15")
-    assert "stock: x from -3 to -3 mm: at least 0.01 mm" in told
+    assert "stock: x from -3 to -3 mm: must span at least 0.01 mm" in told
 
 
 # ------------------------------------------------------------------ files and disks

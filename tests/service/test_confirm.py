@@ -170,7 +170,7 @@ def test_a_machine_without_axes_is_refused_before_anything_is_planned() -> None:
         PARTS / "paper002.stpnc", machine="paper002", dry_run=True, confirm=True
     )
     told: list[str] = []
-    with pytest.raises(SimulationError, match="nothing of its axes X, Y, Z"):
+    with pytest.raises(SimulationError, match="no data for its axes X, Y, Z"):
         usecases.optimise(*asked, tell=told.append)
     assert told == []
 

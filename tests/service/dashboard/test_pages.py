@@ -81,9 +81,9 @@ def test_a_plan_goes_on_when_the_service_comes_back(browser: Browser, served: Se
         for away in (plan, runs):
             page.route(away, lambda route: route.abort())
         page.locator("#optimise").click()
-        expect(page.locator("#advice-work")).to_contain_text("The connection is lost")
+        expect(page.locator("#advice-work")).to_contain_text("Connection lost")
         page.unroute(plan)
         expect(page.locator("#steps tr.step").first).to_be_visible(timeout=60_000)
-        expect(page.locator("#runs")).to_contain_text("The connection is lost", timeout=60_000)
+        expect(page.locator("#runs")).to_contain_text("Connection lost", timeout=60_000)
         page.unroute(runs)
         expect(page.locator("#load-card")).to_be_visible(timeout=60_000)
