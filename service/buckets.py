@@ -1,9 +1,9 @@
-"""Curves of a run for plots, in bounded memory: least, mean and greatest by time.
+"""Minimum, mean and maximum of the signals of a run over time, in bounded memory, for plots.
 
-Values fall into buckets of one width. When the run outgrows them, neighbours are merged and
-the width doubles, so that a run of a second and one of a hundred hours take the same room and
-no peak is lost. Widths are powers of two: the border of a bucket stays one when widths double,
-and the trace is the same however the values were cut in chunks. Time in s.
+Values fall into buckets of equal width. When a run outgrows them, neighbouring buckets are
+merged and the width doubles, so that a run of a second and one of a hundred hours take the same
+memory and no peak is lost. Widths are powers of two: bucket borders stay borders when the width
+doubles, and the result does not depend on how the values were cut into chunks. Time in s.
 """
 
 from dataclasses import dataclass
@@ -13,49 +13,49 @@ import numpy as np
 from simulator.motion.segments import Floats
 
 MOST = 4096
-"""buckets; an even number"""
+"""Largest number of buckets; must be even."""
 
 FINEST = 2.0**-14
-"""s, width of the first buckets: below the interval of the fastest sampling"""
+"""Initial width of a bucket, in s; shorter than the interval of the fastest sampling."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class BucketCurve:
-    """One signal in each bucket; NaN where all its samples are missing."""
+    """Minimum, mean and maximum of a signal in each bucket; NaN where no sample is known."""
 
     low: Floats
-    """Low, (B,)"""
+    """Minimum in each bucket, (B,)."""
     mean: Floats
-    """Mean, (B,)"""
+    """Mean of each bucket, (B,)."""
     high: Floats
-    """High, (B,)"""
+    """Maximum in each bucket, (B,)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class BucketedRun:
-    """A run in B buckets that hold samples, ascending in time."""
+    """Signals of a run in B non-empty buckets, ascending in time."""
 
     width: float
-    """Width, s"""
+    """Width of a bucket, in s."""
     begin: Floats
-    """Begin, (B,) s, first sample of each bucket"""
+    """Time of the first sample in each bucket, (B,), s."""
     end: Floats
-    """End, (B,) s, last one"""
+    """Time of the last sample in each bucket, (B,), s."""
     curves: tuple[BucketCurve, ...]
-    """by the number of the signal"""
+    """Curves of the signals, indexed by signal number."""
 
     def curve(self, signal: int) -> BucketCurve:
-        """One signal."""
+        """Curve of a signal, by its number."""
         return self.curves[signal]
 
 
 class Buckets:
-    """Keeps the trace of a run while its values pass by. Running state.
+    """Collect the samples of a run into time buckets as they arrive. Running state.
 
     Parameters
     ----------
     signals : int
-        How many values there are at each time.
+        Number of signals sampled at each time.
     """
 
     def __init__(self, signals: int) -> None:
@@ -67,14 +67,14 @@ class Buckets:
         self._low, self._high = np.full(shape, np.inf), np.full(shape, -np.inf)
 
     def add(self, time: Floats, values: Floats) -> None:
-        """More values, later than those before.
+        """Add samples that are later than all samples before.
 
         Parameters
         ----------
         time : (M,) array, s
-            Ascending.
+            Ascending times of the samples.
         values : (M, S) array
-            NaN is a missing value.
+            Values of the signals; NaN marks a missing value.
         """
         while len(time):
             fits = int(np.searchsorted(time, MOST * self._width))
@@ -84,7 +84,7 @@ class Buckets:
                 self._widen()
 
     def trace(self) -> BucketedRun:
-        """The run so far."""
+        """Return the buckets filled so far."""
         held = np.isfinite(self._begin)
         is_known = self._count[held] > 0.0
         counts = np.where(is_known, self._count[held], np.nan)
@@ -102,11 +102,11 @@ class Buckets:
         )
 
     def _put(self, time: Floats, values: Floats) -> None:
-        """Values that fit."""
+        """Add samples that fit into the current time range."""
         rows = (time / self._width).astype(np.int64)
         np.minimum.at(self._begin, rows, time)
         np.maximum.at(self._end, rows, time)
-        # One value after another, so that sums do not depend on how they are cut in chunks.
+        # Add values one by one, so that sums do not depend on how they are cut into chunks.
         cells = (rows[:, None] * self._signals + np.arange(self._signals)).ravel()
         flat = values.ravel()
         is_known = ~np.isnan(flat)
@@ -116,7 +116,7 @@ class Buckets:
         np.maximum.at(self._high.reshape(-1), cells, np.where(is_known, flat, -np.inf))
 
     def _widen(self) -> None:
-        """Make one bucket of two."""
+        """Double the bucket width by merging each pair of neighbouring buckets."""
         self._width *= 2.0
         self._begin = _merged(self._begin, np.minimum, np.inf)
         self._end = _merged(self._end, np.maximum, -np.inf)
@@ -127,6 +127,6 @@ class Buckets:
 
 
 def _merged(cells: Floats, join: np.ufunc, empty: float) -> Floats:
-    """Neighbours joined in the first half, the second half empty."""
+    """Merge neighbouring cells into the first half of the array and clear the second half."""
     pairs = join(cells[0::2], cells[1::2])
     return np.concatenate((pairs, np.full_like(pairs, empty)))

@@ -1,4 +1,4 @@
-"""Machine and material: those that the user names, or those that suit a program."""
+"""Choice of machine and material: named by the user, or suited to the program."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -13,25 +13,25 @@ from stepnc_model.errors import StepNcError
 from stepnc_model.program import Program
 
 DEFAULT_MILL, DEFAULT_LATHE = "vmc15", "lathe22"
-"""machines taken when none is named"""
+"""Names of the machines used when the user names none."""
 
 
 def library_entries(kind: str) -> tuple[Machine | WorkMaterial, ...]:
-    """All machines or materials."""
+    """Return all machines or all materials of the library."""
     if kind == "machines":
         return tuple(load_machine(name) for name in machine_names())
     return tuple(load_material(name) for name in material_names())
 
 
 def library_entry(kind: str, name: str) -> Machine | WorkMaterial:
-    """One machine or material, by name or file."""
+    """Load a machine or material by its library name or file path."""
     if kind == "machines":
         return load_machine(name)
     return load_material_named(name).material
 
 
 def machine_for(name: str, program: Program) -> Machine:
-    """The machine named, or one that suits the program's first workingstep."""
+    """Load the named machine, or a default that suits the program's first workingstep."""
     if name:
         return load_machine(name)
     first = program.workingsteps[0].operation
@@ -40,14 +40,14 @@ def machine_for(name: str, program: Program) -> Machine:
 
 
 def with_holding(machine: Machine, holding: Path | None) -> Machine:
-    """A machine with the work-holding of a file; as it is where there is none."""
+    """Return a machine with the work-holding read from a file; unchanged without a file."""
     if holding is None:
         return machine
     return replace(machine, holdings=read_holding_file(holding, machine.kind))
 
 
 def material_for(name: str, program: Program) -> MaterialMatch:
-    """The material named, or the one the file names."""
+    """Find the material that the user names, or else the one that the STEP-NC file names."""
     if name:
         return load_material_named(name)
     material = program.material()
@@ -60,26 +60,26 @@ def material_for(name: str, program: Program) -> MaterialMatch:
 
 
 def load_material_named(name: str) -> MaterialMatch:
-    """A material by library name, file, or any name that catalogues give it."""
+    """Find a material by library name, file path, or any designation used in catalogues."""
     if name in material_names() or Path(name).suffix == ".toml":
         return MaterialMatch(
             material=load_material(name),
             certainty=Certainty.EXACT,
-            reason=f"'{name}' as asked for",
+            reason=f"'{name}' as requested",
         )
     return match_material((name,))
 
 
 def require_axes(machine: Machine) -> None:
-    """Refuse to run a machine that says nothing of how fast its axes are.
+    """Refuse to run a machine whose axis speeds are unknown.
 
     Raises
     ------
     SimulationError
-        With the axes of which nothing is known.
+        With the axes whose data are missing.
     """
     known = {axis.name for axis in machine.axes}
     needed = {"X", "Z"} if machine.kind is MachineKind.LATHE else {"X", "Y", "Z"}
     if missing := sorted(needed - known):
-        text = f"machine '{machine.name}' says nothing of its axes {', '.join(missing)}"
+        text = f"machine '{machine.name}' has no data for its axes {', '.join(missing)}"
         raise SimulationError(f"{text}: it cannot be run")

@@ -1,8 +1,8 @@
-"""A plan beside its run: what ``optimise`` promised, and what the virtual machine found.
+"""Comparison of a plan with its simulated run: the predictions of ``optimise`` against results.
 
-Both halves mean the same by every figure: time on the path itself, without tool change and the
-way to it; cutting force as the mean of a revolution, plunges apart; thrust along the axis of
-drills and plunges; cutting power at the edge; drive power while there are chips.
+Both sides define each figure alike: time on the path itself, without tool change and approach;
+cutting force as the mean over a revolution, plunges excluded; thrust along the axis of drills
+and plunges; cutting power at the edge; drive power while there are chips.
 """
 
 from collections.abc import Iterable, Iterator
@@ -21,17 +21,17 @@ from stepnc_model.program import Program
 
 
 def confirm(plan: Plan, program: Program, *, tell: Tell = silent) -> Confirmation:
-    """Run a program on the virtual machine and hold it against its plan.
+    """Run a program on the virtual machine and compare the result with its plan.
 
     Parameters
     ----------
     plan : Plan
-        Of cuts that tell what the axes reach (``along_paths(…, is_run=True)``); the figures of
-        others are those at the feed of the technology everywhere.
+        Its cuts should include what the axes reach (``along_paths(…, is_run=True)``); otherwise
+        their figures assume the programmed feed everywhere.
     program : Program
-        With the advice of the plan in it.
+        Program that contains the advice of the plan.
     tell : callable
-        Told of the progress.
+        Receives progress messages.
 
     Raises
     ------
@@ -53,7 +53,7 @@ def confirm(plan: Plan, program: Program, *, tell: Tell = silent) -> Confirmatio
 def _figures(
     advice: Advice, state: EvaluatedSetting, total: Total, machine: Machine
 ) -> Iterator[Figure]:
-    """Promises of one workingstep."""
+    """Yield the predicted and simulated figures of one workingstep."""
     efficiency, speed = machine.spindle.efficiency, state.setting.speed
     if advice.cut is not None:
         speed *= advice.cut.power_speed
@@ -110,12 +110,12 @@ def _figures(
 
 
 def _values(loads: Iterable[LimitLoad], name: LimitName) -> list[float]:
-    """Loads of the limits of a name, in canonical units."""
+    """Return the loads of all limits with the given name, in canonical units."""
     return [load.value for load in loads if load.limit.name is name]
 
 
 def _bound(state: EvaluatedSetting, name: LimitName) -> float:
-    """Least bound of the limits of a name, in canonical units."""
+    """Return the smallest upper bound among limits with the given name, in canonical units."""
     return min(
         (
             load.bound

@@ -1,18 +1,18 @@
-"""A plan beside its run as figures: what was promised, what was found, and the bound."""
+"""Figures that compare a plan with its simulated run: predicted and found value, and bound."""
 
 from dataclasses import dataclass
 from math import inf
 
 PASSED = 1.01
-"""found over bound, above which a bound counts as passed"""
+"""Ratio of found value to bound above which the bound counts as exceeded."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Figure:
-    """One promise and what became of it, in the user's unit."""
+    """Predicted value of a plan and the value found in its run, in the displayed unit."""
 
     key: str
-    """in JSON, with the unit"""
+    """Key in JSON, including the unit."""
     heading: str
     promised: float
     found: float
@@ -20,18 +20,18 @@ class Figure:
 
     @property
     def ratio(self) -> float | None:
-        """Found over promised; None of nothing."""
+        """Ratio of found to predicted value; None when the predicted value is zero."""
         return self.found / self.promised if self.promised > 0.0 else None
 
     @property
     def is_passed(self) -> bool:
-        """Whether the found value is above its bound."""
+        """Whether the found value exceeds its bound."""
         return self.found > PASSED * self.bound
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ConfirmedStep:
-    """One workingstep."""
+    """Predicted and found figures of one workingstep."""
 
     id: str
     figures: tuple[Figure, ...]
@@ -39,15 +39,15 @@ class ConfirmedStep:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Confirmation:
-    """All workingsteps of a plan."""
+    """Predicted and found figures of all workingsteps of a plan."""
 
     steps: tuple[ConfirmedStep, ...]
 
     @property
     def passed(self) -> tuple[str, ...]:
-        """A sentence for each bound that the run passed."""
+        """Return a sentence for each bound that the run exceeded."""
         return tuple(
-            f"{step.id}: {figure.heading} {figure.found:.4g} passes its bound of "
+            f"{step.id}: {figure.heading} {figure.found:.4g} exceeds its bound of "
             f"{figure.bound:.4g}"
             for step in self.steps
             for figure in step.figures

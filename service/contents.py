@@ -1,4 +1,4 @@
-"""Content of a file and its faults: the verb ``check``."""
+"""Check of a STEP-NC file: its contents and its errors, for the command ``check``."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,7 +14,7 @@ from stepnc_model.tolerance import tolerance_findings
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Contents:
-    """Result of ``check``."""
+    """Contents and findings of a checked STEP-NC file."""
 
     name: str
     schemas: tuple[str, ...]
@@ -24,14 +24,14 @@ class Contents:
 
     @property
     def is_usable(self) -> bool:
-        """Whether the program is usable."""
+        """Whether the program could be read and has no errors."""
         return self.program is not None and not any(
             finding.severity is Severity.ERROR for finding in self.findings
         )
 
 
 def check(path: Path, *, units: str = "iso", name: str = "") -> Contents:
-    """Content of a file and its faults."""
+    """Read a STEP-NC file and check it; return its contents and findings."""
     profile, called = unit_profile(units), name or path.name
     file = Part21File.from_bytes(read_bytes(path), name=called)
     try:
@@ -58,7 +58,7 @@ def check(path: Path, *, units: str = "iso", name: str = "") -> Contents:
 
 
 def _all_findings(program: Program) -> tuple[Finding, ...]:
-    """Findings of a program; its numbers are looked at only where its references are sound."""
+    """Return all findings of a program; check its numbers only if its references are valid."""
     findings = program.findings()
     if any(finding.severity is Severity.ERROR for finding in findings):
         return findings

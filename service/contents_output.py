@@ -1,4 +1,4 @@
-"""Content of a file as text and JSON: the verb ``check``."""
+"""Contents and findings of a STEP-NC file as text and JSON, for the command ``check``."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -10,12 +10,12 @@ from service.rendering.text import print_findings, print_line, print_table
 from stepnc_model.program import Program, ResolvedWorkingstep
 
 MOST_INDENTED = 20
-"""levels of executables that a table shows by indenting"""
+"""Deepest level of executables that the table still shows by indentation."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExecutableRow:
-    """A line of the workplan."""
+    """Row of the workplan table: one executable with its operation and tool."""
 
     instance: str
     entity: str
@@ -47,7 +47,7 @@ STEPS: tuple[Column[ResolvedWorkingstep], ...] = (
 
 
 def print_contents(contents: Contents) -> None:
-    """Content of a file."""
+    """Print the contents and findings of a STEP-NC file."""
     print_line(
         f"{contents.name}: {contents.instances} instances, "
         f"schemas {', '.join(contents.schemas) or 'none'}"
@@ -73,7 +73,7 @@ def _executables(program: Program) -> Iterator[ExecutableRow]:
 
 
 def contents_json(contents: Contents) -> str:
-    """Content of a file as JSON."""
+    """Return the contents and findings of a STEP-NC file as JSON."""
     program = contents.program
     return dump({
         "program": contents.name,

@@ -1,34 +1,34 @@
-"""Errors of the service's clients, and of its environment.
+"""Errors of the service: requests that it refuses, and failures of its environment.
 
 ::
 
     ServiceError
-    ├── NotFound(thing, id)       there is none, or no more
-    ├── Conflict                  it is not in the state for that
-    │   └── PreconditionFailed    it is not any more what the client has seen
-    ├── TooLarge(bound)           more bytes than are taken
-    ├── Unreadable                the body, or a part of it, is no such thing
-    ├── Unauthorised              no key, or none that is known
-    ├── Forbidden                 the key does not open this
-    ├── TooMany(wait)             more requests than are taken in a while
-    ├── StorageFull               the disk has no room
-    └── Unavailable               something the service stands on is missing
+    ├── NotFound(thing, id)       the resource does not exist or was deleted
+    ├── Conflict                  the state of the resource does not allow the request
+    │   └── PreconditionFailed    the resource has changed since the client read it
+    ├── TooLarge(bound)           more bytes than are accepted
+    ├── Unreadable                the body, a cursor or a header is malformed
+    ├── Unauthorised              the API key is missing or unknown
+    ├── Forbidden                 the API key lacks the role for this request
+    ├── TooMany(wait)             more requests than the rate limit allows
+    ├── StorageFull               the disk is full
+    └── Unavailable               something that the service depends on is missing
 """
 
 from stepnc_model.errors import StepNcError
 
 
 class ServiceError(StepNcError):
-    """Root of what the service itself refuses."""
+    """Base class of errors raised by the service itself."""
 
 
 class NotFound(ServiceError):
-    """There is no such thing, or it was deleted.
+    """The requested resource does not exist, or was deleted.
 
     Parameters
     ----------
     thing : str
-        What was looked for: ``program``.
+        Kind of resource that was looked for, e.g. ``program``.
     id : str
     """
 
@@ -39,7 +39,7 @@ class NotFound(ServiceError):
 
 
 class Conflict(ServiceError):
-    """Request that conflicts with the state of a resource."""
+    """The request conflicts with the current state of the resource."""
 
 
 class PreconditionFailed(Conflict):
@@ -47,49 +47,49 @@ class PreconditionFailed(Conflict):
 
 
 class TooLarge(ServiceError):
-    """More bytes than are taken.
+    """The content is larger than accepted.
 
     Parameters
     ----------
     what : str
     bound : int
-        Bytes at most.
+        Largest accepted size, in bytes.
     """
 
     def __init__(self, what: str, *, bound: int) -> None:
-        super().__init__(f"{what} is larger than {bound} bytes, which is the most")
+        super().__init__(f"{what} is larger than {bound} bytes, the largest size accepted")
         self.bound = bound
 
 
 class Unreadable(ServiceError):
-    """A body, a cursor or a header is not what it should be."""
+    """A request body, page cursor or header is malformed."""
 
 
 class Unauthorised(ServiceError):
-    """There is no key, or it is not known."""
+    """The API key is missing or unknown."""
 
 
 class Forbidden(ServiceError):
-    """The key does not open this."""
+    """The API key does not allow this request."""
 
 
 class TooMany(ServiceError):
-    """More requests than are taken in a while.
+    """The client has sent more requests than the rate limit allows.
 
     Parameters
     ----------
     wait : float
-        S after which the next is taken.
+        Time until the next request is accepted, in s.
     """
 
     def __init__(self, wait: float) -> None:
-        super().__init__(f"too many requests: the next is taken in {wait:.1f} s")
+        super().__init__(f"too many requests: try again in {wait:.1f} s")
         self.wait = wait
 
 
 class StorageFull(ServiceError):
-    """The disk has no room."""
+    """The disk has no space left."""
 
 
 class Unavailable(ServiceError):
-    """Something that the service stands on does not answer."""
+    """Something that the service depends on is missing or does not answer."""

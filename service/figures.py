@@ -1,4 +1,4 @@
-"""Plotly figures of a plan, in colours that the colour-blind tell apart (Okabe, Ito 2008)."""
+"""Plotly figures of a plan, in colours for the colour-blind (Okabe and Ito, 2008)."""
 
 from collections.abc import Callable, Iterator, Sequence
 
@@ -10,18 +10,18 @@ from service.panels import BLUE, CLEAR, FAINT, GREY, RED
 from stepnc_model.units import kw_from_watts, mm_min_from_speed, um_from_mm
 
 ROW = 26
-"""pixels of one workingstep in a figure"""
+"""Height of the row of one workingstep in a figure, in pixels."""
 
 USED = [
     [0.0, "rgba(86,180,233,0.05)"],
     [0.99, "rgba(86,180,233,0.6)"],
     [1.0, "rgba(213,94,0,0.6)"],
 ]
-"""of a limit: at its bound from the last colour on; words are legible on all"""
+"""Colour scale for the used share of a limit: orange at the bound; labels legible on all."""
 
 
 def plan_figures(plan: Plan) -> Iterator[go.Figure]:
-    """Time, feed, power and limits by workingstep, and fronts where they were asked for."""
+    """Yield figures of time, feed, power and limits by workingstep, and any Pareto fronts."""
     timed = [advice for advice in plan.advices if advice.before is not None]
     yield _compared(timed, lambda state: state.time, "Time by workingstep", "s")
     yield _compared(timed, lambda state: mm_min_from_speed(state.feed), "Feed", "mm/min")
@@ -47,7 +47,7 @@ def plan_figures(plan: Plan) -> Iterator[go.Figure]:
 def _compared(
     timed: Sequence[Advice], value: Callable[[EvaluatedSetting], float], title: str, unit: str
 ) -> go.Figure:
-    """A value of each workingstep as programmed and as advised."""
+    """Bar chart of a value of each workingstep, as programmed and as advised."""
     before = [advice.before for advice in timed]
     after = [advice.after or advice.before for advice in timed]
     figure = go.Figure([
@@ -64,7 +64,7 @@ def _compared(
 
 
 def _limits(plan: Plan) -> go.Figure:
-    """Use of each limit by every advised workingstep."""
+    """Heat map of the share of each limit that every advised workingstep uses."""
     advised = [advice for advice in plan.advices if advice.after is not None]
     rows = [_shares(advice) for advice in advised]
     used = [name for name in LimitName if any(name in row for row in rows)]
@@ -87,7 +87,7 @@ def _limits(plan: Plan) -> go.Figure:
 
 
 def _fronts(plan: Plan) -> go.Figure:
-    """Fronts between time and roughness."""
+    """Pareto fronts of machining time against roughness."""
     figure = go.Figure()
     for advice in plan.advices:
         states = [point.state for point in advice.front if point.state.roughness]
@@ -100,13 +100,13 @@ def _fronts(plan: Plan) -> go.Figure:
                 mode="lines+markers",
                 name=advice.workingstep.id,
             )
-    _laid_out(figure, "Fronts between time and roughness", "s", 10)
+    _laid_out(figure, "Pareto fronts of time and roughness", "s", 10)
     figure.update_xaxes(type="log")
     return figure.update_yaxes(type="log", title="Ra µm", autorange=True)
 
 
 def _names(shown: Sequence[Advice]) -> list[str]:
-    """Ids, numbered where several workingsteps have the same."""
+    """Workingstep ids, with the instance number appended where an id repeats."""
     names: list[str] = []
     for advice in shown:
         name = advice.workingstep.id or str(advice.workingstep.ref)
@@ -115,7 +115,7 @@ def _names(shown: Sequence[Advice]) -> list[str]:
 
 
 def _power_bound(advice: Advice) -> float | None:
-    """Motor power at the advised speed in kW."""
+    """Motor power available at the advised spindle speed, in kW."""
     state = advice.after or advice.before
     loads = state.loads if state is not None else ()
     bounds = [load.bound for load in loads if load.limit.name is LimitName.MOTOR_POWER]
@@ -123,7 +123,7 @@ def _power_bound(advice: Advice) -> float | None:
 
 
 def _shares(advice: Advice) -> dict[LimitName, float]:
-    """Load over bound, for the limits from above."""
+    """Return the ratio of load to bound, for limits that bound from above."""
     loads = advice.after.loads if advice.after is not None else ()
     return {
         load.limit.name: 1.0 - load.margin
@@ -133,7 +133,7 @@ def _shares(advice: Advice) -> dict[LimitName, float]:
 
 
 def _laid_out(figure: go.Figure, title: str, unit: str, rows: int) -> go.Figure:
-    """Common layout: the program's order from the top."""
+    """Apply the common layout; workingsteps run in program order from the top."""
     figure.update_layout(
         title=title,
         height=150 + ROW * max(rows, 3),

@@ -1,4 +1,4 @@
-"""Writing files: whole or not at all."""
+"""Reading of files, and atomic writing: an output file appears whole or not at all."""
 
 import os
 import tempfile
@@ -9,36 +9,36 @@ from stepnc_model.errors import StepNcError, WriteError
 
 
 def read_bytes(path: Path) -> bytes:
-    """All bytes of a file; an error of the project's own when it cannot be read."""
+    """Read all bytes of a file; raise StepNcError when it cannot be read."""
     try:
         if path.is_char_device():
-            raise StepNcError(f"{path}: is a device, no file")
+            raise StepNcError(f"{path}: is a device, not a regular file")
         return path.read_bytes()
     except OSError as error:
         raise StepNcError(f"{path}: {_reason(error)}") from error
     except ValueError as error:
-        raise StepNcError(f"{str(path)!r} is no file name: {error}") from error
+        raise StepNcError(f"{str(path)!r} is not a valid file name: {error}") from error
 
 
 LONGEST_LINE = 100_000
-"""letters; longer lines are no text for people or controls"""
+"""Largest number of characters in a line; longer lines are not taken for text."""
 
 
 def open_lines(path: Path) -> Iterator[str]:
-    """Lines of a text file, read as they are asked for; its first fault at once."""
+    """Yield the lines of a text file lazily; errors of opening are raised at once."""
     try:
         file = path.open(encoding="utf-8", errors="replace")
     except OSError as error:
         raise StepNcError(f"{path}: {_reason(error)}") from error
     except ValueError as error:
-        raise StepNcError(f"{str(path)!r} is no file name: {error}") from error
+        raise StepNcError(f"{str(path)!r} is not a valid file name: {error}") from error
 
     def lines() -> Iterator[str]:
         with file:
             try:
                 while line := file.readline(LONGEST_LINE):
                     if len(line) == LONGEST_LINE:
-                        raise StepNcError(f"{path}: a line of more than {LONGEST_LINE} letters")
+                        raise StepNcError(f"{path}: line longer than {LONGEST_LINE} characters")
                     yield line
             except OSError as error:
                 raise StepNcError(f"{path}: {_reason(error)}") from error
@@ -47,12 +47,12 @@ def open_lines(path: Path) -> Iterator[str]:
 
 
 def is_same(one: Path, other: Path) -> bool:
-    """Whether two paths lead to one file.
+    """Return whether two paths lead to the same file.
 
     Raises
     ------
     StepNcError
-        When a path is no path, or lies where one may not look.
+        When a path is not valid, or must not be read.
     """
     try:
         if one.resolve() == other.resolve():
@@ -61,34 +61,34 @@ def is_same(one: Path, other: Path) -> bool:
     except OSError as error:
         raise StepNcError(f"{error.filename}: {_reason(error)}") from error
     except RuntimeError as error:
-        raise StepNcError(f"{one} or {other}: links that lead in a circle") from error
+        raise StepNcError(f"{one} or {other}: symbolic links form a loop") from error
     except ValueError as error:
-        raise StepNcError(f"{str(one)!r} or {str(other)!r} is no file name") from error
+        raise StepNcError(f"{str(one)!r} or {str(other)!r} is not a valid file name") from error
 
 
 def beside(path: Path, suffix: str) -> Path:
-    """The file of the same name with another ending.
+    """Return the path of the file with the same name and another extension.
 
     Raises
     ------
     StepNcError
-        When the path has no name.
+        When the path has no file name.
     """
     if not path.name:
-        raise StepNcError(f"{path}: is no file")
+        raise StepNcError(f"{path}: is not a file")
     return path.with_suffix(suffix)
 
 
 def require_place(path: Path, *, apart_from: Path) -> None:
-    """Refuse an output that is another file of the same run, or has no folder."""
+    """Refuse an output path that is another file of the run, or whose folder does not exist."""
     if is_same(path, apart_from):
-        raise WriteError(f"is also {apart_from}; name another file", path=str(path))
+        raise WriteError(f"is the same file as {apart_from}; name another file", path=str(path))
     if not path.parent.is_dir():
         raise WriteError("the folder does not exist", path=str(path))
 
 
 def write_atomically(path: Path, data: bytes) -> None:
-    """Write a file beside its place, then move it there: readers see the old or the new.
+    """Write a temporary file, then move it into place: readers see the old file or the new one.
 
     Parameters
     ----------
@@ -98,18 +98,18 @@ def write_atomically(path: Path, data: bytes) -> None:
     Raises
     ------
     WriteError
-        When the folder or the disk refuses; what was there stays as it was.
+        When the folder or the disk refuses; an existing file stays unchanged.
     """
     _write_chunks(path, (data,))
 
 
 def write_lines(path: Path, lines: Iterable[str]) -> int:
-    """Write lines of text as they are made, whole or not at all; how many there were.
+    """Write lines of text as they are generated, whole or not at all; return the line count.
 
     Raises
     ------
     WriteError
-        As :func:`write_atomically`; errors of what makes the lines pass through.
+        As :func:`write_atomically`; errors raised while generating the lines pass through.
     """
     count = 0
 
@@ -124,12 +124,12 @@ def write_lines(path: Path, lines: Iterable[str]) -> int:
 
 
 def _write_chunks(path: Path, chunks: Iterable[bytes]) -> None:
-    """Write beside the place, then move it there."""
+    """Write chunks to a temporary file in the same folder, then move it into place."""
     name = ""
     try:
         path = path.resolve() if path.is_symlink() else path
         if path.exists() and not path.is_file():
-            raise WriteError("is no regular file", path=str(path))
+            raise WriteError("is not a regular file", path=str(path))
         descriptor, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
         with os.fdopen(descriptor, "wb") as file:
             file.writelines(chunks)
@@ -146,7 +146,7 @@ def _write_chunks(path: Path, chunks: Iterable[bytes]) -> None:
 
 
 def _mode(path: Path) -> int:
-    """Permissions of the file that is replaced, or what a new file gets."""
+    """Permissions of the file to be replaced, or the default ones of a new file."""
     if path.exists():
         return path.stat().st_mode & 0o777
     umask = os.umask(0)
@@ -155,5 +155,5 @@ def _mode(path: Path) -> int:
 
 
 def _reason(error: OSError) -> str:
-    """Message of the operating system, without its number."""
+    """Return the message of an operating system error, without its number."""
     return error.strerror or str(error)

@@ -1,9 +1,9 @@
-"""Texts that a spreadsheet would calculate; an apostrophe before them keeps them texts."""
+"""Protection of text cells that a spreadsheet would take for formulas."""
 
 FIRST = "=+-@\t\r"
-"""one of these is what such a text begins with"""
+"""First characters that make a spreadsheet treat a text as a formula."""
 
 
 def disarmed(text: str) -> str:
-    """The text, with an apostrophe if it needs one."""
+    """Return the text, with an apostrophe if a spreadsheet would take it for a formula."""
     return f"'{text}" if text.startswith(tuple(FIRST)) else text

@@ -1,7 +1,7 @@
-"""Ids that sort by the time they were made, and that cannot be guessed.
+"""Unique ids that sort by creation time and cannot be guessed.
 
 As in [1]_: 48 bits of milliseconds, then 80 bits, in 26 letters of Crockford's base 32. The
-first 12 of the 80 go on with the clock, as in [2]_, section 6.2, method 3; 68 are random.
+first 12 of the 80 bits extend the clock, as in [2]_, section 6.2, method 3; 68 are random.
 
 References
 ----------
@@ -16,7 +16,7 @@ import time
 LETTERS = "0123456789abcdefghjkmnpqrstvwxyz"
 LENGTH = 26
 PATTERN = f"^[{LETTERS}]{{{LENGTH}}}$"
-"""regular expression of an id"""
+"""Regular expression of an id."""
 
 _ID = re.compile(PATTERN)
 _CLOCK_BITS = 12
@@ -24,12 +24,12 @@ _RANDOM_BITS = 68
 
 
 def new_id() -> str:
-    """An id that sorts after all that were made 0.3 µs or more before it."""
+    """Create an id that sorts after every id made at least 0.3 µs earlier."""
     ticks = (time.time_ns() << _CLOCK_BITS) // 1_000_000
     number = ticks << _RANDOM_BITS | secrets.randbits(_RANDOM_BITS)
     return "".join(LETTERS[(number >> shift) & 31] for shift in range(5 * (LENGTH - 1), -1, -5))
 
 
 def is_id(word: str) -> bool:
-    """Whether this could be an id; nothing else ever becomes part of a path."""
+    """Whether a word has the form of an id; only such words may become part of a path."""
     return _ID.match(word) is not None and len(word) == LENGTH

@@ -1,4 +1,4 @@
-"""Machines and materials as text and JSON."""
+"""Machines and materials of the library as text and JSON."""
 
 from collections.abc import Sequence
 from dataclasses import asdict
@@ -23,11 +23,11 @@ MACHINES: tuple[Column[Machine], ...] = (
     Column(heading="name", value=lambda machine: machine.name, is_key=True),
     Column(heading="kind", value=lambda machine: machine.kind.value),
     Column(
-        heading="kW", form="g", help="greatest power of the spindle's motor",
+        heading="kW", form="g", help="maximum power of the spindle motor",
         value=lambda machine: max(kw_from_watts(each.power) for each in machine.spindle.curve),
     ),
     Column(
-        heading="rpm", form="g", help="greatest speed of the spindle",
+        heading="rpm", form="g", help="maximum spindle speed",
         value=lambda machine: None
         if machine.spindle.max_speed is None
         else rpm_from_rev_s(machine.spindle.max_speed),
@@ -37,7 +37,7 @@ MACHINES: tuple[Column[Machine], ...] = (
 
 MATERIALS: tuple[Column[WorkMaterial], ...] = (
     Column(heading="name", value=lambda material: material.name, is_key=True),
-    Column(heading="ISO", value=lambda material: material.iso_group, help="group of ISO 513"),
+    Column(heading="ISO", value=lambda material: material.iso_group, help="ISO 513 group"),
     Column(heading="k_c1.1 N/mm2", form="g", value=lambda material: material.kienzle.k_c11),
     Column(heading="m_c", form="g", value=lambda material: material.kienzle.m_c),
     Column(heading="title", value=lambda material: material.title),
@@ -50,7 +50,7 @@ FACTS: tuple[Column[Fact], ...] = (
 
 
 def print_entries(kind: str, entries: Sequence[Machine | WorkMaterial]) -> None:
-    """A library as a table."""
+    """Print a table of all machines or all materials."""
     if kind == "machines":
         print_table(MACHINES, [each for each in entries if isinstance(each, Machine)])
     else:
@@ -58,7 +58,7 @@ def print_entries(kind: str, entries: Sequence[Machine | WorkMaterial]) -> None:
 
 
 def print_entry(entry: Machine | WorkMaterial) -> None:
-    """One machine or material."""
+    """Print the data of one machine or material."""
     print_line(f"{entry.name}: {entry.title}")
     facts = _machine_facts(entry) if isinstance(entry, Machine) else _material_facts(entry)
     print_table(FACTS, facts)
@@ -68,17 +68,17 @@ def print_entry(entry: Machine | WorkMaterial) -> None:
 
 
 def entry_json(entry: Machine | WorkMaterial) -> str:
-    """One machine or material as JSON, in canonical units (mm, s, N, W, rev/s)."""
+    """Return a machine or material as JSON, in canonical units (mm, s, N, W, rev/s)."""
     return dump(plain(asdict(entry)))
 
 
 def entries_json(entries: Sequence[Machine | WorkMaterial]) -> str:
-    """All machines or materials by name and title."""
+    """Return the names and titles of all machines or materials as JSON."""
     return dump([{"name": entry.name, "title": entry.title} for entry in entries])
 
 
 def _machine_facts(machine: Machine) -> list[Fact]:
-    """Machine data for a planner."""
+    """List the data of a machine that matter to a planner, as name and value."""
     facts: list[Fact] = [
         (
             f"spindle at {rpm_from_rev_s(point.speed):g} rpm",
@@ -89,11 +89,11 @@ def _machine_facts(machine: Machine) -> list[Fact]:
     ]
     facts.append(("efficiency", f"{machine.spindle.efficiency:g}"))
     for name, value in (
-        ("greatest speed rpm", machine.spindle.max_speed and machine.spindle.max_speed * 60.0),
+        ("maximum speed rpm", machine.spindle.max_speed and machine.spindle.max_speed * 60.0),
         ("rapid mm/min", machine.rapid and mm_min_from_speed(machine.rapid)),
-        ("greatest feed mm/min", machine.max_feed and mm_min_from_speed(machine.max_feed)),
-        ("greatest cutting force N", machine.max_cutting_force),
-        ("greatest depth mm", machine.max_axial_depth),
+        ("maximum feed mm/min", machine.max_feed and mm_min_from_speed(machine.max_feed)),
+        ("maximum cutting force N", machine.max_cutting_force),
+        ("maximum depth mm", machine.max_axial_depth),
         ("base power kW", kw_from_watts(machine.base_power)),
     ):
         facts.append((name, "not limited" if value is None else f"{value:g}"))
@@ -109,7 +109,7 @@ def _machine_facts(machine: Machine) -> list[Fact]:
 
 
 def _held(holding: Holding) -> Fact:
-    """One work-holding of a machine."""
+    """Describe one work-holding of a machine, as name and value."""
     of = f" of {holding.setup}" if holding.setup else ""
     if isinstance(holding, Clamp):
         force = f"{kn_from_newtons(holding.holding_force):g} kN"
@@ -119,7 +119,7 @@ def _held(holding: Holding) -> Fact:
 
 
 def _material_facts(material: WorkMaterial) -> list[Fact]:
-    """Material data for a planner."""
+    """List the data of a material that matter to a planner, as name and value."""
     facts: list[Fact] = [
         ("ISO group", material.iso_group or "none"),
         ("also called", ", ".join(material.equivalents)),

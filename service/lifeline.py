@@ -1,4 +1,4 @@
-"""A process whose starter was killed must not go on: it would keep the port."""
+"""Let a worker process end with its parent, so that it does not keep the port occupied."""
 
 import os
 import threading
@@ -7,7 +7,7 @@ from multiprocessing.process import BaseProcess
 
 
 def end_with_parent() -> None:
-    """End this process when the one has ended that started it, if it has a starter."""
+    """End this process as soon as its parent process has ended, if it has one."""
     parent = parent_process()
     if parent is not None:
         threading.Thread(target=_watch, args=(parent,), daemon=True).start()

@@ -1,4 +1,4 @@
-"""Numbers and raw parts that the user types, with commas between them."""
+"""Parsing of comma-separated numbers and raw part dimensions entered by the user."""
 
 from math import isfinite
 
@@ -7,16 +7,16 @@ from stepnc_model.program import Stock
 from stepnc_model.toolpath.path import FARTHEST
 
 LEAST_SIZE = 0.01
-"""mm, of a stock along an axis"""
+"""Smallest accepted size of a stock along an axis, in mm."""
 
 
 def numbers_in(text: str, what: str, *, counts: tuple[int, ...]) -> tuple[float, ...]:
-    """Finite numbers with commas between them.
+    """Parse finite numbers separated by commas.
 
     Raises
     ------
     StepNcError
-        When they are no numbers, or not as many as they may be.
+        When the text does not hold numbers, or not an accepted count of them.
     """
     try:
         numbers = tuple(float(word) for word in text.split(","))
@@ -24,17 +24,17 @@ def numbers_in(text: str, what: str, *, counts: tuple[int, ...]) -> tuple[float,
         numbers = ()
     if len(numbers) not in counts or not all(map(isfinite, numbers)):
         wanted = " or ".join(map(str, counts))
-        raise StepNcError(f"{what} '{text}': {wanted} numbers with commas between them")
+        raise StepNcError(f"{what} '{text}': expected {wanted} numbers separated by commas")
     return numbers
 
 
 def stock_in(text: str) -> Stock:
-    """Six corners of a block, or diameter and two ends of a bar, in mm.
+    """Parse a raw part, in mm: six block corner coordinates, or a bar's diameter and two ends.
 
     Raises
     ------
     StepNcError
-        When they are no such numbers, or :func:`require_size` refuses the stock.
+        When the numbers are invalid, or :func:`require_size` refuses the stock.
     """
     numbers = numbers_in(text, "stock", counts=(3, 6))
     radius = None
@@ -48,8 +48,8 @@ def stock_in(text: str) -> Stock:
 
 
 def require_size(stock: Stock) -> None:
-    """Refuse a stock of which there is nothing, or more than any machine holds."""
+    """Refuse a stock that has no volume or extends too far from zero."""
     for axis, low, high in zip("xyz", stock.low, stock.high, strict=True):
         if not high - low >= LEAST_SIZE or max(abs(low), abs(high)) > FARTHEST:
-            bound = f"at least {LEAST_SIZE:g} mm, within {FARTHEST:g} mm of zero"
+            bound = f"must span at least {LEAST_SIZE:g} mm, within {FARTHEST:g} mm of zero"
             raise StepNcError(f"stock: {axis} from {low:g} to {high:g} mm: {bound}")

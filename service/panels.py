@@ -1,8 +1,8 @@
-"""A plotly figure of a run: panels above each other that share the axis of time.
+"""Plotly figure of a run: panels stacked above each other with a common time axis.
 
-What is drawn by :meth:`Panels.peaks` goes through the least and the greatest value of each
-bucket of the trace, so that peaks stay. Colours are those of Okabe and Ito (2008), which the
-colour-blind tell apart; lines and text are legible on light and on dark.
+Lines drawn by :meth:`Panels.peaks` go through the minimum and the maximum of each bucket of the
+run, so that peaks stay visible. Colours are those of Okabe and Ito (2008), which the
+colour-blind tell apart; lines and text are legible on light and dark backgrounds.
 """
 
 from collections.abc import Sequence
@@ -19,42 +19,42 @@ GREY, SKY, ORANGE, GREEN, PINK, BLUE, RED = (
     "#8c8c8c", "#56B4E9", "#E69F00", "#009E73", "#CC79A7", "#0072B2", "#D55E00",
 )  # fmt: skip
 DIM = "#757575"
-"""of a line: as far from white as from black"""
+"""Colour of secondary lines, as far from white as from black."""
 CLEAR = "rgba(0,0,0,0)"
 FAINT = "rgba(128,128,128,0.25)"
 BAND = "rgba(128,128,128,0.10)"
 STRIPES = ("rgba(86,180,233,0.45)", "rgba(230,159,0,0.45)")
-"""of workingsteps, in turns"""
+"""Alternating colours of workingsteps."""
 
 MOST_BANDS = 200
-"""workingsteps whose bands are drawn behind all panels"""
+"""Largest number of workingsteps whose bands are drawn behind the panels."""
 
 GAP = 52
-"""pixels between two panels, with two lines of title for the lower one"""
+"""Gap between two panels, with room for a title of two lines, in pixels."""
 
 MARGIN = 46
-"""pixels to the left of the panels"""
+"""Margin to the left of the panels, in pixels."""
 
 TOP, BOTTOM = 26, 48
-"""pixels above and below all panels"""
+"""Margins above and below all panels, in pixels."""
 
 MINUTES, HOURS = 900.0, 3.0 * 3600.0
-"""s from which on the axis of time is in minutes, in hours"""
+"""Durations from which the time axis is in minutes or hours, in s."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TimeSpan:
-    """A workingstep on the axis of time."""
+    """Span of a workingstep on the time axis."""
 
     name: str
     begin: float
-    """Begin, s"""
+    """Start of the workingstep, in s."""
     duration: float
-    """Duration, s"""
+    """Duration of the workingstep, in s."""
 
 
 class Panels:
-    """A figure that grows panel by panel. Running state."""
+    """Builder of a figure to which panels are added one by one. Running state."""
 
     def __init__(self, trace: BucketedRun) -> None:
         last = float(trace.end[-1]) if len(trace.end) else 0.0
@@ -66,7 +66,7 @@ class Panels:
         self._titles: list[str] = []
 
     def begin(self, title: str, *, height: int, **axis: object) -> None:
-        """The next panel, below those before."""
+        """Start the next panel, below those before."""
         self._heights.append(height)
         self._titles.append(title)
         number = len(self._heights)
@@ -74,12 +74,12 @@ class Panels:
         self.figure.layout[_name("xaxis", number)] = {"anchor": _name("y", number)}
 
     def add(self, drawn: go.Scatter | go.Bar) -> None:
-        """Draw in the last panel."""
+        """Draw a trace in the last panel."""
         number = len(self._heights)
         self.figure.add_trace(drawn.update(xaxis=_name("x", number), yaxis=_name("y", number)))
 
     def strip(self, stretches: Sequence[TimeSpan]) -> None:
-        """The first panel: the names of the workingsteps where they run."""
+        """Draw the first panel: workingstep names where they run."""
         hidden = {"showticklabels": False, "showgrid": False, "zeroline": False}
         self.begin(
             "<b>Workingsteps</b>", height=26, fixedrange=True, range=[0.0, 1.0], **hidden
@@ -103,7 +103,7 @@ class Panels:
         )
 
     def peaks(self, name: str, colour: str, signal: int, *, scale: float = 1.0) -> None:
-        """A line through least and greatest of each bucket."""
+        """Draw a line through the minimum and maximum of each bucket."""
         trace, curve = self._trace, self._trace.curve(signal)
         times = np.column_stack((trace.begin, trace.end)).ravel()
         values = np.column_stack((curve.low, curve.high)).ravel()
@@ -113,7 +113,7 @@ class Panels:
         self.add(line(name, colour, at, shown))
 
     def done(self, stretches: Sequence[TimeSpan]) -> go.Figure:
-        """Figure with all panels laid out."""
+        """Lay out all panels and return the figure."""
         figure, last = self.figure, _name("x", len(self._heights))
         inside = self._stack()
         figure.update_xaxes(
@@ -136,7 +136,7 @@ class Panels:
         )  # fmt: skip
 
     def _stack(self) -> int:
-        """Put the panels below each other; the height of all in pixels."""
+        """Stack the panels and return their total height, in pixels."""
         inside = sum(self._heights) + GAP * (len(self._heights) - 1)
         top = 0
         for number, (height, title) in enumerate(
@@ -154,7 +154,7 @@ class Panels:
         return inside
 
     def _bands(self, stretches: Sequence[TimeSpan], axis: str) -> list[dict[str, object]]:
-        """Every second workingstep, behind all panels."""
+        """Shaded bands of every second workingstep, behind all panels."""
         if len(stretches) > MOST_BANDS:
             return []
         return [
@@ -169,12 +169,12 @@ class Panels:
 
 
 def key(name: str, colour: str, mark: str = "■") -> str:
-    """A name with its colour, for a title."""
+    """Return a legend entry for a panel title: the name preceded by its colour mark."""
     return f'<span style="color:{colour}">{mark}</span> {name}'
 
 
 def line(name: str, colour: str, times: Floats, values: Floats) -> go.Scatter:
-    """32 bits: no screen has the digits of more."""
+    """Line trace of a signal, in 32-bit floats: more digits than any screen resolves."""
     return go.Scatter(
         name=name,
         x=times.astype(np.float32),
@@ -186,12 +186,12 @@ def line(name: str, colour: str, times: Floats, values: Floats) -> go.Scatter:
 
 
 def _clock(last: float) -> tuple[float, str]:
-    """The unit of the axis of time, and how many of it are in a second."""
+    """Return the factor from seconds to the unit of the time axis, and that unit."""
     if last < MINUTES:
         return 1.0, "s"
     return (1.0 / 60.0, "min") if last < HOURS else (1.0 / 3600.0, "h")
 
 
 def _name(kind: str, number: int) -> str:
-    """Plotly's name of an axis: the first has no number."""
+    """Plotly's name of an axis; the first axis has no number."""
     return kind if number == 1 else f"{kind}{number}"

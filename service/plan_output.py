@@ -1,6 +1,6 @@
-"""A plan as text, JSON and one self-contained HTML page.
+"""Output of a plan as text, JSON and one self-contained HTML page.
 
-Keys of JSON carry their units and are fixed: others parse them.
+JSON keys carry their units and never change, because other programs read them.
 """
 
 from collections.abc import Callable
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 
 def _change(value: Callable[[EvaluatedSetting], Cell]) -> Callable[[Advice], Cell]:
-    """A value as programmed and as advised."""
+    """Return a column value that pairs the programmed and the advised value."""
 
     def pair(advice: Advice) -> Cell:
         before, after = advice.before, advice.after
@@ -44,7 +44,7 @@ def _depth(state: EvaluatedSetting) -> str:
 
 
 def _plunge_feed(state: EvaluatedSetting) -> float | None:
-    """Feed on the way down, mm/min; None where there is none of its own."""
+    """Plunge feed into the material, in mm/min; None without a separate plunge feed."""
     return None if state.plunge_feed is None else mm_min_from_speed(state.plunge_feed)
 
 
@@ -53,7 +53,7 @@ def _energy(state: EvaluatedSetting) -> float:
 
 
 def _active(advice: Advice) -> str:
-    """Active limit, or why there is none."""
+    """Active limit of an advice, or its status if no feed was advised."""
     is_advised = advice.after is not None and advice.status is AdviceStatus.ADVISED
     return advice.active_words if is_advised else advice.status.value
 
@@ -76,7 +76,7 @@ SHOWN: tuple[Column[Advice], ...] = (
         value=_change(lambda state: mm_min_from_speed(state.feed)),
     ),
     Column(
-        heading="plunge mm/min", form=".1f", help="feed on the way down into the material",
+        heading="plunge mm/min", form=".1f", help="plunge feed into the material",
         value=_change(_plunge_feed), is_optional=True,
     ),
     Column(
@@ -92,7 +92,7 @@ TEXT = (
     ACTIVE,
     TIME,
 )
-"""columns on a terminal"""
+"""Columns of the plan table on a terminal."""
 
 PAGE = (
     *SHOWN,
@@ -103,7 +103,7 @@ PAGE = (
     ACTIVE,
     TIME,
 )  # fmt: skip
-"""columns on the page"""
+"""Columns of the plan table in the HTML report."""
 
 FRONT: "tuple[Column[ParetoPoint], ...]" = (
     Column(key="time_s", heading="time s", form=".2f", value=lambda point: point.state.time),
@@ -145,11 +145,11 @@ LOAD: tuple[Column[LimitLoad], ...] = (
     Column(key="safety_factor", value=lambda load: load.limit.safety_factor),
     Column(key="margin", value=lambda load: load.margin),
 )
-"""one limit; its margin is a share of the bound, after the safety factor"""
+"""Columns of a limit; its margin is a share of the bound, after the safety factor."""
 
 
 def print_plan(plan: Plan, confirmation: "Confirmation | None" = None) -> None:
-    """Advice for a program: a row for each workingstep, then totals and findings."""
+    """Print the advice for a program: a row per workingstep, then totals and findings."""
     material = plan.material.material
     print_line(
         f"{plan.program}: mode {plan.mode.value}, machine {plan.machine.name} "
@@ -177,10 +177,10 @@ def print_plan(plan: Plan, confirmation: "Confirmation | None" = None) -> None:
 
 
 def _safety(plan: Plan) -> str:
-    """At which quantile of k_c bounds are kept, and what that costs."""
+    """State the k_c quantile at which bounds are kept, and the time that costs."""
     factors = [advice.safety_factor for advice in plan.advices if advice.safety_factor != 1.0]
     if not factors:
-        return "loads are nominal: nothing is added for the spread of k_c"
+        return "loads are nominal: no margin is added for the spread of k_c"
     low, high = f"{min(factors):.3g}", f"{max(factors):.3g}"
     cost = sum(advice.cost_of_safety for advice in plan.advices)
     return (
@@ -190,8 +190,8 @@ def _safety(plan: Plan) -> str:
 
 
 def _print_confirmation(confirmation: "Confirmation") -> None:
-    """Promised and found values, and their ratios."""
-    print_line("promised -> found on the virtual machine (found / promised)")
+    """Print predicted and simulated values, with their ratios."""
+    print_line("predicted -> found on the virtual machine (found / predicted)")
     columns: list[Column[ConfirmedStep]] = [
         Column(heading="workingstep", value=lambda step: step.id),
         *(
@@ -201,7 +201,7 @@ def _print_confirmation(confirmation: "Confirmation") -> None:
     ]
     print_table(columns, confirmation.steps)
     for text in confirmation.passed:
-        print_line(f"bound passed: {text}", RED)
+        print_line(f"bound exceeded: {text}", RED)
 
 
 def _figure_at(place: int, step: "ConfirmedStep") -> str:
@@ -212,7 +212,7 @@ def _figure_at(place: int, step: "ConfirmedStep") -> str:
 
 
 def _reason(advice: Advice) -> str:
-    """Why this feed, and what would change it."""
+    """Explain the advised feed, and which change would allow a higher one."""
     if advice.status is not AdviceStatus.ADVISED or advice.after is None:
         return f"{advice.status.value}: {advice.reason}"
     text = advice.reason
@@ -234,7 +234,7 @@ def _reason(advice: Advice) -> str:
 
 
 def _stability_words(advice: Advice, state: EvaluatedSetting) -> str:
-    """The depth that measured modes allow, or why they are not asked."""
+    """Describe the stable depth by the measured modes, or why it is not bounded."""
     found = advice.stability
     if found is None or found.basis is Basis.ESTIMATED:
         return ""
@@ -248,7 +248,7 @@ def _stability_words(advice: Advice, state: EvaluatedSetting) -> str:
 
 
 def plan_json(plan: Plan, confirmation: "Confirmation | None" = None) -> str:
-    """A plan as JSON, and what its run found where one was asked for."""
+    """Return a plan as JSON, with the comparison to its simulated run if one was made."""
     found = {} if confirmation is None else {"confirmation": _confirmation(confirmation)}
     return dump({
         "program": plan.program,
@@ -268,7 +268,7 @@ def plan_json(plan: Plan, confirmation: "Confirmation | None" = None) -> str:
 
 
 def _confirmation(confirmation: "Confirmation") -> dict[str, Any]:
-    """Promised and found values."""
+    """Return predicted and found values as a JSON object."""
     return {
         "workingsteps": [
             {
@@ -290,7 +290,7 @@ def _confirmation(confirmation: "Confirmation") -> dict[str, Any]:
 
 
 def _advice(advice: Advice) -> dict[str, Any]:
-    """One workingstep."""
+    """Return the advice for one workingstep as a JSON object."""
     before, after = advice.before, advice.after
     shown = after or before
     step = advice.workingstep
@@ -324,7 +324,7 @@ def _advice(advice: Advice) -> dict[str, Any]:
 
 
 def _stability(advice: Advice) -> dict[str, Any] | None:
-    """Stability of the cut; the bound itself is one of the limits."""
+    """Return the chatter stability of a cut for JSON; its bound is one of the limits."""
     found = advice.stability
     if found is None:
         return None
@@ -337,7 +337,7 @@ def _stability(advice: Advice) -> dict[str, Any] | None:
 
 
 def _plunge(advice: Advice) -> dict[str, Any] | None:
-    """Plunge feed and the limit that holds it; null where no way down has one of its own."""
+    """Return the reason for the plunge feed and its limits for JSON; None if there is none."""
     shown = advice.after or advice.before
     if shown is None or not (shown.plunge_loads or advice.plunge_fault):
         return None
@@ -349,7 +349,7 @@ def _plunge(advice: Advice) -> dict[str, Any] | None:
 
 
 def _holding_load(advice: Advice) -> dict[str, float] | None:
-    """Loads on chuck, vice or clamps; their bounds are among the limits."""
+    """Return the loads on the chuck, vice or clamps; their bounds are among the limits."""
     load = advice.holding_load
     if load is None:
         return None
@@ -362,7 +362,7 @@ def _holding_load(advice: Advice) -> dict[str, float] | None:
 
 
 def _sensitivity(advice: Advice) -> dict[str, Any] | None:
-    """Saving for one more of the active limit's unit."""
+    """Return the time saved when the active limit is raised by one step."""
     if advice.active is None or advice.after is None:
         return None
     limit = next(load.limit for load in advice.after.loads if load.limit.name is advice.active)
@@ -375,12 +375,7 @@ def _sensitivity(advice: Advice) -> dict[str, Any] | None:
 
 
 def report_page(plan: Plan) -> str:
-    """The page as HTML.
-
-    Parameters
-    ----------
-    plan : Plan
-    """
+    """Return the HTML report of a plan."""
     from service.figures import plan_figures  # noqa: PLC0415 (plotly)
     from service.rendering.pages import plot, rendered  # noqa: PLC0415 (Jinja)
 

@@ -1,4 +1,4 @@
-"""An error of the project as a problem body after RFC 9457, for jobs and for REST."""
+"""RFC 9457 problem details of the project's errors, for jobs and the REST API."""
 
 import re
 from typing import Any
@@ -22,7 +22,7 @@ from stepnc_model.errors import Part21Error, StepNcError, WriteError
 PREFIX = "urn:stepnc:problem:"
 
 STANDARD = frozenset({"type", "title", "status", "detail", "instance"})
-"""members of RFC 9457, §3.1: no field of an error takes the place of one"""
+"""Standard members of RFC 9457, §3.1, which fields of an error never replace."""
 
 STATUS: tuple[tuple[type[StepNcError], int], ...] = (
     (NotFound, 404),
@@ -45,12 +45,12 @@ STATUS: tuple[tuple[type[StepNcError], int], ...] = (
     (Part21Error, 422),
     (StepNcError, 422),
 )
-"""the first class that fits; what a client sent is at fault unless it says otherwise"""
+"""HTTP status by error class; the first match counts, and 422 (client error) is the default."""
 
 TITLES = {
     "StepNcError": "Request refused",
-    "Part21Error": "No ISO 10303-21 file",
-    "SchemaError": "No usable STEP-NC program",
+    "Part21Error": "Not an ISO 10303-21 file",
+    "SchemaError": "Not a usable STEP-NC program",
     "NotFound": "Not found",
     "TooLarge": "Too large",
     "TooMany": "Too many requests",
@@ -58,13 +58,13 @@ TITLES = {
 
 
 def problem_of(error: StepNcError, *, hidden: str = "") -> dict[str, Any]:
-    """The body: type, title, status, detail, and the fields that the error carries.
+    """Return the problem body: type, title, status, detail, and the fields of the error.
 
     Parameters
     ----------
     error : StepNcError
     hidden : str
-        The data folder, which is nobody's business.
+        Path of the data folder, which is removed from all texts.
     """
     name = type(error).__name__
     fields = {
@@ -82,17 +82,17 @@ def problem_of(error: StepNcError, *, hidden: str = "") -> dict[str, Any]:
 
 
 def status_of(error: StepNcError) -> int:
-    """The HTTP status of an error."""
+    """Return the HTTP status of an error."""
     return next(status for kind, status in STATUS if isinstance(error, kind))
 
 
 def type_of(name: str) -> str:
-    """The type of a problem by the name of its error class."""
+    """Return the problem type URN for the name of an error class."""
     return PREFIX + _words(name).replace(" ", "-")
 
 
 def plain_problem(status: int, title: str, detail: str, **more: object) -> dict[str, Any]:
-    """A problem that no error of the tree stands for."""
+    """Return a problem body that belongs to no error class."""
     kind = title.lower().replace(" ", "-")
     return {
         "type": PREFIX + kind,

@@ -1,24 +1,24 @@
-"""Progress of what takes longer than a person likes to wait."""
+"""Progress messages of long-running work."""
 
 import re
 import time
 from collections.abc import Callable
 
 INTERVAL = 2.0
-"""s between two messages, and before the first"""
+"""Time before the first message and between two messages, in s."""
 
 WIDTH = 20
-"""characters of a bar"""
+"""Width of a progress bar, in characters."""
 
 
 def bar(share: float) -> str:
-    """A bar for a share of 0 to 1, and the share in per cent."""
+    """Return a progress bar for a share of 0 to 1, with the percentage."""
     full = int(share * WIDTH)
     return f"[{'#' * full}{'-' * (WIDTH - full)}] {share:4.0%}"
 
 
 def share_in(message: str) -> float | None:
-    """The share that a message with a :func:`bar` or a count tells; None: it tells none."""
+    """Parse the share done from a progress message; None if the message has none."""
     if found := re.search(r"\[[#-]+\] +(\d+)%", message):
         return int(found[1]) / 100.0
     if found := re.match(r"(\d+) of (\d+) ", message):
@@ -27,14 +27,14 @@ def share_in(message: str) -> float | None:
 
 
 class Ticker:
-    """Says now and then how far something is; running state."""
+    """Reports progress at regular intervals. Running state."""
 
     def __init__(self, tell: Callable[[str], None]) -> None:
         self._tell = tell
         self._last = time.monotonic()
 
     def __call__(self, words: Callable[[], str]) -> None:
-        """Say it, when it is time again."""
+        """Report the progress if the interval has passed."""
         now = time.monotonic()
         if now - self._last >= INTERVAL:
             self._last = now
@@ -42,7 +42,7 @@ class Ticker:
 
 
 class Progress:
-    """Counts, and tells how far it is every now and then; running state."""
+    """Counts finished workingsteps and reports progress at regular intervals. Running state."""
 
     def __init__(self, tell: Callable[[str], None], *, total: int) -> None:
         self._ticker = Ticker(tell)
@@ -50,6 +50,6 @@ class Progress:
         self._done = 0
 
     def __call__(self) -> None:
-        """One more is done."""
+        """Count one more finished workingstep."""
         self._done += 1
         self._ticker(lambda: f"{self._done} of {self._total} workingsteps")

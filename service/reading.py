@@ -1,4 +1,4 @@
-"""Reading of programs, and of words that choose one of several options."""
+"""Reading of programs, and parsing of option values."""
 
 from collections.abc import Callable
 from enum import StrEnum
@@ -16,17 +16,17 @@ from stepnc_model.units import PROFILES, UnitProfile
 E = TypeVar("E", bound=StrEnum)
 
 Tell = Callable[[str], None]
-"""where messages go"""
+"""Callback that receives messages."""
 
 
 def silent(_message: str) -> None:
-    """Messages go nowhere."""
+    """Discard a message."""
 
 
 def read_program(path: Path, *, units: str, name: str = "", stock: str = "") -> Program:
-    """A program from a file, which is called as the file is unless a name is given.
+    """Read a program from a file; its name is the file's name unless another is given.
 
-    Its raw part may be named where the file draws none.
+    A raw part may be passed only if the file itself defines none.
     """
     profile = unit_profile(units)
     called = name or path.name
@@ -34,19 +34,19 @@ def read_program(path: Path, *, units: str, name: str = "", stock: str = "") -> 
     raw = stock_in(stock) if stock else None
     program = Program(file, units=profile, name=called, stock=raw)
     if raw is not None and drawn_stock(program, None) is not None:
-        raise StepNcError(f"stock {stock}: '{called}' draws its own raw part: name no other")
+        raise StepNcError(f"stock {stock}: '{called}' defines its own raw part; omit the stock")
     return program
 
 
 def unit_profile(name: str) -> UnitProfile:
-    """Unit profile by name."""
+    """Return the unit profile with the given name."""
     if name not in PROFILES:
         raise StepNcError(f"unknown units '{name}'; known: {', '.join(PROFILES)}")
     return PROFILES[name]
 
 
 def one_of(kinds: type[E], word: str, what: str) -> E:
-    """Member of an enumeration by its value."""
+    """Return the enumeration member with the given value."""
     try:
         return kinds(word)
     except ValueError:
@@ -55,12 +55,12 @@ def one_of(kinds: type[E], word: str, what: str) -> E:
 
 
 def selected(program: Program, wanted: tuple[str, ...]) -> tuple[ResolvedWorkingstep, ...]:
-    """Workingsteps by id or #instance; all when none is named.
+    """Select workingsteps by id or #instance; all if none is named.
 
     Raises
     ------
     StepNcError
-        When there is no such workingstep.
+        When a named workingstep does not exist.
     """
     if not wanted:
         return program.workingsteps

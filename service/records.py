@@ -1,4 +1,4 @@
-"""Advice → what is written: the optimiser's answer as nouns of the file."""
+"""Conversion of the optimiser's advice into the records that are written to the file."""
 
 from dataclasses import dataclass
 from math import isclose, pi
@@ -12,11 +12,11 @@ from stepnc_model.units import deg_from_rad, kw_from_watts, um_from_mm
 from stepnc_model.writeback import WorkingstepUpdate, rounded
 
 UNCHANGED = 1e-9
-"""relative difference below which a number counts as the programmed one"""
+"""Relative difference below which an advised number counts as unchanged."""
 
 
 def changes_of(plan: Plan) -> list[WorkingstepUpdate]:
-    """Changes of all workingsteps that were advised."""
+    """Return the file updates of all advised workingsteps."""
     return [
         _change(plan, _Advised(each, each.cut, each.before, each.after))
         for each in plan.advices
@@ -26,7 +26,7 @@ def changes_of(plan: Plan) -> list[WorkingstepUpdate]:
 
 @dataclass(frozen=True, slots=True)
 class _Advised:
-    """An advice with everything that an advised workingstep has."""
+    """An advice with its cut and its settings before and after, none of them missing."""
 
     advice: Advice
     cut: Cut
@@ -35,7 +35,7 @@ class _Advised:
 
 
 def _change(plan: Plan, advised: _Advised) -> WorkingstepUpdate:
-    """Numbers for the file, in the units of its attributes."""
+    """Return the numbers to write for a workingstep, in the units of the file's attributes."""
     advice, cut = advised.advice, advised.cut
     conditions, before, after = advice.programmed, advised.before, advised.after
     given, best = before.setting, after.setting
@@ -52,7 +52,7 @@ def _change(plan: Plan, advised: _Advised) -> WorkingstepUpdate:
 
 
 def _record(plan: Plan, advised: _Advised) -> AdviceRecord:
-    """Description of the advice for its record."""
+    """Return the record that documents an advice in the file."""
     advice, cut = advised.advice, advised.cut
     before, after = advised.before, advised.after
     spindle = plan.machine.spindle
@@ -98,7 +98,7 @@ def _record(plan: Plan, advised: _Advised) -> AdviceRecord:
 
 
 def _removal_rate(cut: Cut, after: EvaluatedSetting) -> float:
-    """Material removed in mm³/s while the tool cuts."""
+    """Material removal rate while the tool cuts, in mm³/s."""
     best = after.setting
     if cut.kind is CutKind.MILLING:
         return cut.radial_width * cut.depth_share * best.depth * after.feed
@@ -111,7 +111,7 @@ def _removal_rate(cut: Cut, after: EvaluatedSetting) -> float:
 
 
 def immersion(engagement: Engagement) -> str:
-    """Name of the paper's face-milling type."""
+    """Return the type of face milling by its immersion: full, unilateral or bilateral."""
     half = 0.5 * pi
     if engagement.contact_angle >= 2.0 * half - 1e-9:
         return "FULL_IMMERSION"

@@ -1,4 +1,4 @@
-"""One function per verb. Packages meet here; the command line and REST are skins over it."""
+"""One function per command; the command line and the REST API call these functions."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -50,41 +50,41 @@ class AdviceFiles:
 
     file: Path
     name: str = ""
-    """name of the program; that of its file when empty"""
+    """Name of the program; empty: the name of its file."""
     output: Path | None = None
     in_place: bool = False
-    """whether the input file is overwritten"""
+    """Whether the input file is overwritten."""
     dry_run: bool = False
-    """whether no STEP-NC file is written"""
+    """Whether writing a STEP-NC file is suppressed."""
     report: Path | None = None
     holding: Path | None = None
-    """work-holding, instead of that of the machine's file"""
+    """Work-holding file that replaces the work-holding of the machine file."""
     tools: Path | None = None
-    """tool table: which of the program's tools cut over centre or have wipers"""
+    """Tool table: which tools of the program cut over centre or have wipers."""
     knowledge: str = ""
-    """knowledge base with accepted corrections; that of the environment when empty"""
+    """Knowledge base with accepted corrections; empty: the one named by the environment."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OptimiseResult:
-    """Result of ``optimise``."""
+    """Plan of a program, the file written, and the comparison with a simulated run."""
 
     plan: Plan
     written: Path | None
-    """the STEP-NC file, or None when nothing was written"""
+    """The STEP-NC file, or None when nothing was written."""
     confirmation: "Confirmation | None" = None
-    """None: not asked for"""
+    """Comparison with the simulated run; None if it was not requested."""
 
 
 def optimise(
     request: AdviceRequest, files: AdviceFiles, *, tell: Tell = silent
 ) -> OptimiseResult:
-    """Read, optimise, write back.
+    """Read a program, optimise its feeds and write the optimised program.
 
     Raises
     ------
     StepNcError
-        For everything that is wrong with file, names, limits or output; nothing is written.
+        When the file, a name, a limit or an output is invalid; nothing is written.
     """
     require_bounds(request)
     task = _task(request, _table(files.tools))
@@ -158,11 +158,11 @@ def optimise(
 def _require_run(
     program: Program, chosen: tuple[ResolvedWorkingstep, ...], machine: Machine
 ) -> None:
-    """Refuse to confirm what cannot be run: before all, not after the plan."""
+    """Refuse confirmation of workingsteps that cannot be run, before any work is done."""
     require_axes(machine)
     for step in chosen:
         if stock_of(program, step.setup) is None:
-            text = f"'{step.id}' cannot be confirmed: the file draws no raw part"
+            text = f"'{step.id}' cannot be confirmed: the file defines no raw part"
             raise StepNcError(f"{text}; name one with --stock")
 
 
@@ -174,14 +174,14 @@ def _tell_conflicts(plan: Plan, tell: Tell) -> None:
 
 
 def convert(path: Path, *, profile: FileProfile, output: Path) -> None:
-    """Move the optimisation records of a file into another profile."""
+    """Convert the optimisation records of a file into another file profile."""
     require_place(output, apart_from=path)
     program = read_program(path, units="iso")
     write_atomically(output, writeback.convert(program, profile))
 
 
 def _output(files: AdviceFiles) -> Path:
-    """Output path of the optimised program: never the input unless asked."""
+    """Output path of the optimised program; the input file only if asked for."""
     if files.in_place:
         if files.output is not None:
             raise StepNcError("--in-place and --output exclude each other")
@@ -200,7 +200,7 @@ def _output(files: AdviceFiles) -> Path:
 
 
 def _task(request: AdviceRequest, tools: "tuple[TableTool, ...]") -> OptimisationTask:
-    """Task of the optimiser, in the units inside."""
+    """Build the optimiser's task from a request, in internal units."""
     roughness = request.roughness_um
     return OptimisationTask(
         mode=request.mode,
@@ -217,13 +217,13 @@ def _task(request: AdviceRequest, tools: "tuple[TableTool, ...]") -> Optimisatio
 
 
 def _centre_cutting(tools: tuple["TableTool", ...]) -> dict[str, bool]:
-    """Tools of a table that cut over centre, by their ids; empty without a table."""
+    """Whether tools cut over centre, by tool id; only tools for which the table says so."""
     said = {tool.id: tool.centre_cutting for tool in tools}
     return {name: does for name, does in said.items() if does is not None}
 
 
 def _table(tools: Path | None) -> tuple["TableTool", ...]:
-    """Tools of a table; none where there is no table."""
+    """Read a tool table; empty without a file."""
     if tools is None:
         return ()
     from simulator.tool_table import read_tool_table  # noqa: PLC0415 (numpy)
@@ -232,7 +232,7 @@ def _table(tools: Path | None) -> tuple["TableTool", ...]:
 
 
 def _nc_place(request: AdviceRequest, files: AdviceFiles, output: Path) -> Path | None:
-    """Output path of NC code: beside the optimised program."""
+    """Output path of the NC code, next to the optimised program; None if not requested."""
     if request.nc_control is None:
         return None
     place = beside(output, request.nc_control.suffix)
@@ -243,7 +243,7 @@ def _nc_place(request: AdviceRequest, files: AdviceFiles, output: Path) -> Path 
 
 
 def _nc_code(program: Program, data: bytes, control: Dialect, tell: Tell) -> Iterator[str]:
-    """NC code of the program as it is after optimisation."""
+    """Generate NC code of the optimised program."""
     from service.paths.toolpaths import nc_lines, paths_of, with_feeds  # noqa: PLC0415 (numpy, shapely)
 
     paths = with_feeds(paths_of(_read_again(program, data), tell=tell), keep_going=False)
@@ -251,7 +251,7 @@ def _nc_code(program: Program, data: bytes, control: Dialect, tell: Tell) -> Ite
 
 
 def _read_again(program: Program, data: bytes) -> Program:
-    """A program as its file says it now."""
+    """Parse a program again from its changed bytes."""
     file = Part21File.from_bytes(data, name=program.name)
     return Program(file, units=program.units, name=program.name, stock=program.stock)
 
@@ -259,9 +259,9 @@ def _read_again(program: Program, data: bytes) -> Program:
 def _require_usable(
     program: Program, chosen: tuple[ResolvedWorkingstep, ...], findings: tuple[Finding, ...]
 ) -> None:
-    """Refuse a program with errors, or with numbers that are in other units.
+    """Refuse a program with errors, or whose numbers appear to be in other units.
 
-    Broken workingsteps do not matter when others are asked for by name.
+    Broken workingsteps do not matter when others are selected by name.
     """
     if program.faults and len(chosen) == len(program.workingsteps):
         raise program.faults[0]
@@ -283,7 +283,7 @@ def _require_usable(
 def _with_file_findings(
     plan: Plan, findings: tuple[Finding, ...], match: MaterialMatch
 ) -> Plan:
-    """The plan with what was noticed while reading, and how the material was found."""
+    """Add the findings from reading, and how the material was matched, to a plan."""
     guess = match.certainty is Certainty.GUESS
     said = Finding(severity=Severity.WARNING if guess else Severity.NOTE, message=match.reason)
     return replace(plan, findings=(*findings, said, *plan.findings))

@@ -1,6 +1,6 @@
-"""Access middleware: authentication, roles, limits, and the duration of every request.
+"""Access middleware: authentication, roles, limits, and timing of every request.
 
-One middleware of plain ASGI, so that a look-up costs little more than the framework's own.
+It is one middleware in plain ASGI, so that a look-up adds little to the framework's own time.
 """
 
 import asyncio
@@ -30,19 +30,19 @@ from stepnc_model.errors import StepNcError
 LOG = structlog.get_logger("rest")
 
 BODY_BYTES = 1 << 20
-"""of a body that is no program"""
+"""Largest request body other than a program, in bytes."""
 
 UPLOADS = frozenset({"/v1/programs"})
-"""paths whose bodies may be as large as a program; they count what they unpack"""
+"""Paths that accept bodies as large as a program; their routes count the unpacked bytes."""
 
 PATIENT = 5.0
-"""s for which a key that was found good need not be looked up again"""
+"""Time for which a valid key is not looked up again, in s."""
 
 PLACE = re.compile(r"(?:\[([0-9a-f:.]+)\]|([^:@/\[\]]*))(?::\d*)?")
-"""a host and perhaps a port, RFC 9110 §4.2.3"""
+"""Host and optional port of a Host header, RFC 9110 §4.2.3."""
 
 GONE = 499
-"""in metrics and log: the client left before it was answered"""
+"""Status in metrics and log when the client disconnected before the answer."""
 
 REQUEST_ID = re.compile(rb"^[A-Za-z0-9._-]{1,64}$")
 
@@ -50,7 +50,7 @@ HEADERS = (
     (b"x-content-type-options", b"nosniff"),
     (b"cross-origin-resource-policy", b"same-origin"),
 )
-"""of all answers"""
+"""Security headers of all answers."""
 
 OF_PAGES = (
     (b"referrer-policy", b"no-referrer"),
@@ -62,7 +62,7 @@ OF_PAGES = (
     ),
 )
 
-# plotly.js puts styles of its own into the page; scripts come from files only.
+# plotly.js adds inline styles to the page; scripts come from files only.
 POLICY = (
     b"content-security-policy",
     b"default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; "
@@ -70,7 +70,7 @@ POLICY = (
     b"form-action 'none'; frame-ancestors 'none'",
 )
 
-# A report is a page of its own that carries its scripts inside, and talks to nobody.
+# A report is a self-contained page with inline scripts, and makes no requests.
 REPORT_POLICY = (
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; "
     "img-src data: blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'; "
@@ -78,20 +78,20 @@ REPORT_POLICY = (
 )
 
 ANYBODY = Key(id="", name="local", roles=frozenset(Role), created=0.0, revoked=None)
-"""the client where no keys are required"""
+"""Key assumed for every client where no keys are required."""
 
 NOBODY = Key(id="", name="nobody", roles=frozenset(), created=0.0, revoked=None)
-"""who has shown no key where one is asked for"""
+"""Key of a client that has shown none on a path that needs none."""
 
 
 NOTHING = (b"content-security-policy", b"default-src 'none'; frame-ancestors 'none'")
-"""for what is no page: if a browser took it for one, it could do nothing"""
+"""Policy for answers that are not pages: a browser that renders one can run nothing."""
 
 
 def _with_common(status: int, own: list[tuple[bytes, bytes]]) -> list[tuple[bytes, bytes]]:
-    """Headers of an answer with those that keep browsers from mischief.
+    """Add the common security headers to the headers of an answer.
 
-    A 304 has no kind: its headers replace those that the browser has kept, so it brings none.
+    A 304 answer gets none, because its headers would replace those that the browser has stored.
     """
     if status == 304:
         return own
@@ -104,11 +104,11 @@ def _with_common(status: int, own: list[tuple[bytes, bytes]]) -> list[tuple[byte
 
 
 class _Revoked(Exception):
-    """The key of an answer that has begun; none of the errors that an answer is made of."""
+    """Internal signal: the key was revoked while its answer was being sent."""
 
 
 class AccessMiddleware:
-    """The middleware. Running state."""
+    """ASGI middleware that checks and counts every request. Running state."""
 
     def __init__(self, app: ASGIApp, *, settings: Settings, data_folder: DataFolder) -> None:
         self._app, self._settings, self._data_folder = app, settings, data_folder
@@ -117,12 +117,12 @@ class AccessMiddleware:
             name.lower() for name in ({settings.host, *settings.names} | LOOPBACK)
         )
         self._log = RequestLog() if settings.has_request_log else None
-        # Ids of requests: random for the process, then counted.
+        # Request ids: a random prefix for the process, then a counter.
         self._prefix, self._count_of = secrets.token_hex(6), count_up(1)
         self._good: dict[str, tuple[float, Key]] = {}
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """See ASGI."""
+        """Check, bound, answer and count a request, as an ASGI application."""
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
@@ -147,7 +147,7 @@ class AccessMiddleware:
             await send(message)
 
         key = NOBODY
-        # What may be read may be asked about; the server leaves the body out.
+        # HEAD is answered as GET; the server leaves out the body.
         asked_as = {**scope, "method": "GET"} if scope["method"] == "HEAD" else scope
         try:
             self._require_known_host(scope, headers)
@@ -166,23 +166,23 @@ class AccessMiddleware:
             LOG.exception("fault", request=id.decode(), path=scope["path"])
             if status:
                 raise
-            problem = plain_problem(500, "Fault", "the program is at fault; its log says more")
+            problem = plain_problem(500, "Fault", "internal error; see the log of the service")
             await _refuse(answer, {**problem, "instance": id.decode()}, None)
         finally:
             self._count(asked_as, status, time.perf_counter() - begin, id=id, who=key.name)
 
     def _require_known_host(self, scope: Scope, headers: dict[bytes, bytes]) -> None:
-        """Pages of other hosts may not reach a service on this one through a browser."""
+        """Refuse unknown host names and changes requested by pages of other sites."""
         place = headers.get(b"host", b"").decode("latin-1").lower()
         if _host(place) not in self._names:
-            raise Forbidden(f"host '{place}': not a name of this service; see --name")
+            raise Forbidden(f"host '{place}' is not a name of this service; add it with --name")
         if scope["method"] in LOOKING:
             return
         site = headers.get(b"sec-fetch-site", b"same-origin")
         origin = headers.get(b"origin", b"").decode("latin-1")
         is_own = not origin or origin.partition("://")[2].lower() == place
         if site not in {b"same-origin", b"none"} or not is_own:
-            raise Forbidden(f"a page of '{origin or 'another site'}' may change nothing here")
+            raise Forbidden(f"a page of '{origin or 'another site'}' may not change anything")
 
     def _key(self, scope: Scope, headers: dict[bytes, bytes]) -> Key:
         client = (scope.get("client") or ("?",))[0]
@@ -198,15 +198,15 @@ class AccessMiddleware:
         except StepNcError:
             self._rate.take(client)
             raise
-        # Who has no key shares a bucket with all who come from there: no trying out.
+        # Clients without a key share a bucket by address, so that guessing keys is slow.
         self._rate.take(client if key is None else key.id)
         if key is None:
-            raise Unauthorised("a key is needed: Authorization: Bearer stepnc_…; `stepnc keys`")
+            raise Unauthorised("API key needed: Authorization: Bearer stepnc_…; `stepnc keys`")
         require(key, role_for(scope["method"], path))
         return key
 
     def _require_still_known(self, key: Key, headers: dict[bytes, bytes]) -> None:
-        """End a long answer when its key has been revoked meanwhile."""
+        """End a long answer if its key has been revoked meanwhile."""
         if key.id and self._known(headers) is None:
             raise _Revoked
 
@@ -227,16 +227,16 @@ class AccessMiddleware:
         return found
 
     def _bound(self, path: str, length: bytes) -> int:
-        """Bytes that the body may have."""
+        """Return the largest accepted body for a path, in bytes; refuse larger ones."""
         bound = self._settings.upload_bytes if path in UPLOADS else BODY_BYTES
         if not length.isdigit():
-            raise Unreadable("Content-Length is no number")
+            raise Unreadable("Content-Length is not a number")
         if int(length) > bound:
             raise TooLarge("the body", bound=bound)
         return bound
 
     def _bounded(self, scope: Scope, receive: Receive, headers: dict[bytes, bytes]) -> Receive:
-        """A body that arrives in time and is no larger than allowed."""
+        """Wrap ``receive`` so that the body must arrive in time and within its size limit."""
         length = headers.get(b"content-length")
         if length is None and b"transfer-encoding" not in headers:
             return receive
@@ -254,7 +254,7 @@ class AccessMiddleware:
                     message = await receive()
             except TimeoutError as error:
                 limit = self._settings.body_s
-                raise Unreadable(f"the body did not arrive in {limit:g} s") from error
+                raise Unreadable(f"the body did not arrive within {limit:g} s") from error
             taken += len(message.get("body", b""))
             is_whole = not message.get("more_body", False)
             if taken > bound:
@@ -264,7 +264,7 @@ class AccessMiddleware:
         return bounded
 
     def _count(self, scope: Scope, status: int, seconds: float, *, id: bytes, who: str) -> None:
-        """Into the metrics, and into the log."""
+        """Record a request in the metrics and in the request log."""
         count(scope["method"], getattr(scope.get("route"), "path", "unknown"), status, seconds)
         if self._log is not None:
             self._log.add({
@@ -274,7 +274,7 @@ class AccessMiddleware:
 
 
 def _host(place: str) -> str:
-    """A name without its port; empty: there is none."""
+    """Return the host name without port; empty if there is none."""
     found = PLACE.fullmatch(place)
     return "" if found is None else found[1] or found[2]
 

@@ -1,7 +1,7 @@
-"""``/v1/advice``: feeds with their reasons, the optimised program, NC code, the report.
+"""Routes of ``/v1/advice``: advised feeds, the optimised program, NC code and the report.
 
-A look-up of one workingstep is what machines and panels ask again and again: results do not
-change once they are there, so their parts are kept ready as bytes.
+Machines and panels ask for single workingsteps again and again. Results never change once they
+are written, so their parts are cached as bytes.
 """
 
 import os
@@ -37,19 +37,19 @@ from stepnc_model.post.dialect import SUFFIXES, Dialect
 ROUTES = APIRouter(prefix="/v1/advice", tags=["advice"])
 
 MOST_READY = 64
-"""results whose parts are kept ready"""
+"""Largest number of results whose parts are cached."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CachedAnswer:
-    """An answer, and the one for clients that have it already."""
+    """Prepared answer with its entity tag, and the 304 answer for clients that have it."""
 
     tag: bytes
     whole: PreparedResponse
     same: PreparedResponse
 
     def reply(self, request: Request) -> Response:
-        """Whichever is due."""
+        """Return the full answer, or 304 if the client has it already."""
         for name, value in request.scope["headers"]:
             if name == b"if-none-match" and matches(value.decode("latin-1"), self.tag.decode()):
                 return self.same
@@ -58,30 +58,30 @@ class CachedAnswer:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CachedAdvice:
-    """A result as bytes, with its tags."""
+    """Result of an advice job as prepared answers."""
 
     file: str
     stamp: int
-    """when its file was written, ns"""
+    """Modification time of the result file, in ns."""
     whole: CachedAnswer
     workingsteps: dict[str, CachedAnswer]
-    """by id and by instance"""
+    """Answers by workingstep id and by instance."""
     result: dict[str, Any]
 
 
 class AdviceCache:
-    """Results that were asked for lately. Running state."""
+    """Cache of recently requested results. Running state."""
 
     def __init__(self) -> None:
         self._ready: OrderedDict[str, CachedAdvice] = OrderedDict()
 
     def get(self, data_folder: DataFolder, id: str) -> CachedAdvice:
-        """A result.
+        """Return a result from the cache, or read it.
 
         Raises
         ------
         NotFound, Conflict
-            When there is none, or not yet.
+            When the advice does not exist, or has no result yet.
         """
         known = self._ready.get(id)
         file = str(data_folder.job_folder(id) / RESULT) if known is None else known.file
@@ -128,12 +128,12 @@ def _part(body: bytes) -> CachedAnswer:
 
 
 def _missing(data_folder: DataFolder, id: str) -> Exception:
-    """Why there is no result."""
+    """Return the error that explains why there is no result."""
     job = jobs.get(data_folder, id, JobKind.ADVICE)
     if job.state in {JobState.QUEUED, JobState.RUNNING}:
-        return Conflict(f"advice '{id}' is {job.state.value}: look again, or at its job")
+        return Conflict(f"advice '{id}' is {job.state.value}: try again, or see its job")
     if job.state is JobState.SUCCEEDED:
-        return Conflict(f"advice '{id}' had no result yet, or has lost it: look again")
+        return Conflict(f"advice '{id}' had no result yet, or has lost it: try again")
     return Conflict(f"advice '{id}' has {job.state.value}: its job says why")
 
 
@@ -145,10 +145,10 @@ def _cache(request: Request) -> AdviceCache:
 @ROUTES.get(
     "/{id}/workingsteps/{workingstep}",
     response_model=AdvisedView,
-    summary="The feed of one workingstep, with its reason",
+    summary="Advised feed of one workingstep, with its reason",
 )
 async def advised(request: Request, id: str, workingstep: str) -> Response:
-    """By its id, or its instance without ``#``."""
+    """Show the advice for a workingstep, by its id or its instance number without ``#``."""
     parts = _cache(request).get(data_folder_of(request), id).workingsteps
     found = parts.get(workingstep) or parts.get(f"#{workingstep}")
     if found is None:
@@ -157,16 +157,16 @@ async def advised(request: Request, id: str, workingstep: str) -> Response:
 
 
 class LookUpRoute(Route):
-    """The same without the framework's work on parameters, which takes longer than the look-up.
+    """Route of a single workingstep's advice without the framework's slower parameter parsing.
 
-    It stands before all other routes; the one above is what the OpenAPI document tells.
+    It precedes all other routes; the OpenAPI document describes the route above.
     """
 
     def __init__(self) -> None:
         super().__init__(f"{ROUTES.prefix}/{{id}}/workingsteps/{{workingstep}}", _look_up)
 
     def matches(self, scope: Scope) -> tuple[Match, Scope]:
-        """As of any route; the name of it is for the metrics."""
+        """Match as any route does, and name the route for the metrics."""
         match, child = super().matches(scope)
         return match, {**child, "route": self}
 
@@ -175,27 +175,27 @@ async def _look_up(request: Request) -> Response:
     return await advised(request, **request.path_params)
 
 
-@ROUTES.get("", response_model=PageView[JobView], summary="All advice, newest first")
+@ROUTES.get("", response_model=PageView[JobView], summary="List advice, newest first")
 async def list_advice(request: Request, data_folder: InDataFolder, cursor: OnPage) -> Response:
-    """The jobs that made it, or will."""
+    """List the advice jobs page by page."""
     page = jobs.listed(data_folder, cursor, kind=JobKind.ADVICE)
     return page_reply(request, page, [job_view(job) for job in page.items])
 
 
-@ROUTES.get("/{id}", response_model=AdviceView, summary="One advice")
+@ROUTES.get("/{id}", response_model=AdviceView, summary="Show advice")
 async def advice(request: Request, id: Id) -> Response:
-    """All workingsteps with programmed and advised feed, limits and reason."""
+    """Show all workingsteps with programmed and advised feed, limits and reason."""
     return _cache(request).get(data_folder_of(request), id).whole.reply(request)
 
 
 @ROUTES.get(
     "/{id}/file",
-    summary="The optimised program",
+    summary="Download the optimised program",
     response_class=Response,
     responses={200: {"content": {"application/step": {}}}},
 )
 async def optimised(request: Request, data_folder: InDataFolder, id: Id) -> Response:
-    """The program as it came, with the advised feeds; nothing else is changed."""
+    """Download the uploaded program with the advised feeds; nothing else is changed."""
     name = await run_in_threadpool(_name, request, data_folder, id)
     file = data_folder.job_folder(id) / OPTIMISED
     return file_reply(
@@ -205,12 +205,12 @@ async def optimised(request: Request, data_folder: InDataFolder, id: Id) -> Resp
 
 @ROUTES.get(
     "/{id}/nc",
-    summary="NC code with the advised feeds",
+    summary="Download NC code with the advised feeds",
     response_class=Response,
     responses={200: {"content": {"text/plain": {}}}},
 )
 async def nc_code(request: Request, data_folder: InDataFolder, id: Id) -> Response:
-    """For the control that was named when the advice was asked for."""
+    """Download NC code for the control that was named in the request."""
     name = await run_in_threadpool(_name, request, data_folder, id)
     control = _cache(request).get(data_folder, id).result["nc_control"]
     if control is None:
@@ -222,15 +222,15 @@ async def nc_code(request: Request, data_folder: InDataFolder, id: Id) -> Respon
     )
 
 
-@ROUTES.get("/{id}/report", summary="The report as a page", response_class=Response,
+@ROUTES.get("/{id}/report", summary="Show the report as a page", response_class=Response,
             responses={200: {"content": {"text/html": {}}}})  # fmt: skip
 async def report(request: Request, data_folder: InDataFolder, id: Id) -> Response:
-    """A page that stands for itself: save it, print it, send it."""
+    """Show the self-contained HTML report, which can be saved, printed and sent."""
     jobs.get(data_folder, id, JobKind.ADVICE)
     return report_reply(request, data_folder.job_folder(id) / REPORT, id=id)
 
 
 def _name(request: Request, data_folder: DataFolder, id: str) -> str:
-    """File name of the optimised program, also when the program was deleted."""
+    """Return the file name of the optimised program, also after the program was deleted."""
     program = str(_cache(request).get(data_folder, id).result["program"])
     return optimised_name(programs.shown_name(program))

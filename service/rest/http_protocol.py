@@ -1,7 +1,7 @@
-"""HTTP with bounds on what comes before a request is one: time and size of its head.
+"""HTTP protocol with bounds on the time and size of a request head.
 
-The server underneath bounds neither: a client that begins and never ends would be waited for,
-and kept in memory, without end. Bodies are bounded by the gate.
+The server underneath bounds neither: it would wait without end for a client that never
+completes its head, and keep it in memory. Bodies are bounded by the access middleware.
 """
 
 import asyncio
@@ -10,55 +10,55 @@ from typing import Any
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 
 HEAD_S = 10.0
-"""s within which a head arrives"""
+"""Time within which a request head must arrive, in s."""
 
 HEAD_BYTES = 1 << 16
-"""that a head may have beyond those that its first part brings"""
+"""Largest size of a request head beyond its first chunk, in bytes."""
 
 
 class BoundedHttpProtocol(HttpToolsProtocol):
-    """A connection whose client must come to the point. Running state."""
+    """HTTP connection with bounds on the time and size of a request head. Running state."""
 
     def __init__(self, *arguments: Any, **words: Any) -> None:
         super().__init__(*arguments, **words)
         self._begin: float | None = None
-        """since when a whole head is waited for"""
+        """Time since when a complete head is awaited, in s; None while a request is served."""
         self._is_head = False
-        """whether a part of it has come"""
+        """Whether a part of the head has arrived."""
         self._size = 0
         self._look_again: asyncio.TimerHandle | None = None
 
-    # The class underneath narrows what asyncio may hand it, and so must this one.
+    # The base class narrows the type of transport, and so must this class.
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
-        """See asyncio."""
+        """Start waiting for a request head (see asyncio)."""
         super().connection_made(transport)
         self._expect()
         self._look()
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """See asyncio."""
+        """Stop the timer of a closed connection (see asyncio)."""
         super().connection_lost(exc)
         if self._look_again is not None:
             self._look_again.cancel()
 
     def data_received(self, data: bytes) -> None:
-        """See asyncio."""
+        """Process received bytes and refuse a head that is too large (see asyncio)."""
         was_head, self._size = self._is_head, self._size + len(data)
         super().data_received(data)
         if was_head and self._is_head and self._size > HEAD_BYTES:
-            self.send_400_response("The head is too large.")
+            self.send_400_response("The request head is too large.")
         elif self._begin is None and self.cycle is not None and self.cycle.response_complete:
             # Not a head, or the rest of a body that was refused.
             self._expect()
 
     def on_message_begin(self) -> None:
-        """See httptools."""
+        """Note that a request head has begun (see httptools)."""
         super().on_message_begin()
         self._is_head, self._size = True, 0
         self._expect()
 
     def on_headers_complete(self) -> None:
-        """See httptools."""
+        """Note that a request head is complete (see httptools)."""
         self._begin, self._is_head = None, False
         super().on_headers_complete()
 
@@ -66,7 +66,7 @@ class BoundedHttpProtocol(HttpToolsProtocol):
         self._begin = self.loop.time()
 
     def _look(self) -> None:
-        """One look in a while for each connection costs less than a timer for each request."""
+        """Close overdue connections; a periodic look costs less than a timer per request."""
         if self._begin is not None and self.loop.time() - self._begin >= HEAD_S:
             self.transport.close()
             return

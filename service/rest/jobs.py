@@ -1,4 +1,4 @@
-"""``/v1/jobs``: long work, how far it is, its end; what happens in it as it happens."""
+"""Routes of ``/v1/jobs``: state, progress, events, cancellation and deletion of jobs."""
 
 from typing import Annotated, Any
 
@@ -26,36 +26,36 @@ async def list_jobs(
     request: Request,
     data_folder: InDataFolder,
     cursor: OnPage,
-    kind: Annotated[JobKind | None, Query(description="of this kind")] = None,
-    state: Annotated[JobState | None, Query(description="in this state")] = None,
+    kind: Annotated[JobKind | None, Query(description="only jobs of this kind")] = None,
+    state: Annotated[JobState | None, Query(description="only jobs in this state")] = None,
 ) -> Response:
-    """A page of them."""
+    """List jobs page by page."""
     page = jobs.listed(data_folder, cursor, kind=kind, state=state)
     return page_reply(request, page, [job_view(job) for job in page.items])
 
 
-@ROUTES.get("/{id}", response_model=JobView, summary="One job")
+@ROUTES.get("/{id}", response_model=JobView, summary="Show a job")
 async def job(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Show a job and its progress."""
     return json_reply(request, job_view(jobs.get(data_folder, id)))
 
 
 @ROUTES.get(
-    "/{id}/events", summary="What happens in it", response_class=Response, responses=EVENTS
+    "/{id}/events", summary="Stream events of a job", response_class=Response, responses=EVENTS
 )
 async def job_events(request: Request, data_folder: InDataFolder, id: Id) -> Response:
-    """Events ``job``, ``status``, ``rows``, ``event`` and ``gap``, until the job is over."""
+    """Stream events ``job``, ``status``, ``rows``, ``event``, ``gap`` until the job ends."""
     return await stream_reply(request, jobs.get(data_folder, id))
 
 
-@ROUTES.post("/{id}/cancel", response_model=JobView, summary="Ask for its end")
+@ROUTES.post("/{id}/cancel", response_model=JobView, summary="Cancel a job")
 async def cancel(request: Request, data_folder: InDataFolder, id: Id) -> Response:
-    """One that waits is cancelled at once, one that runs within seconds."""
+    """Cancel a job: a queued one at once, a running one within seconds."""
     require(key_of(request), role_to_end(jobs.get(data_folder, id).kind))
     return json_reply(request, job_view(await run_in_threadpool(jobs.cancel, data_folder, id)))
 
 
-@ROUTES.delete("/{id}", status_code=204, summary="Delete a job that is over, with its results")
+@ROUTES.delete("/{id}", status_code=204, summary="Delete a finished job and its results")
 async def delete(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Delete a job; outcomes that it recorded in the knowledge base stay there."""
     require(key_of(request), role_to_end(jobs.get(data_folder, id).kind))

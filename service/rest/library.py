@@ -1,4 +1,4 @@
-"""``/v1/machines`` and ``/v1/materials``: those of the library, and the shop's own."""
+"""Routes of ``/v1/machines`` and ``/v1/materials``: built-in library and own data."""
 
 import json
 from typing import Annotated
@@ -37,53 +37,53 @@ TOML = {
 }
 
 
-@MACHINES.get("", response_model=list[EntryView], summary="All machines")
+@MACHINES.get("", response_model=list[EntryView], summary="List machines")
 async def machines(request: Request, data_folder: InDataFolder) -> Response:
-    """By name; one of the shop's that cannot be read tells its problem."""
+    """List all machines by name; a machine of the shop with an unreadable file says why."""
     return await _all(request, data_folder, LibrarySection.MACHINES)
 
 
-@MACHINES.get("/{name}", summary="One machine")
+@MACHINES.get("/{name}", summary="Show a machine")
 async def machine(request: Request, data_folder: InDataFolder, name: Known) -> Response:
-    """In canonical units: mm, s, N, W, rev/s."""
+    """Show a machine in canonical units: mm, s, N, W, rev/s."""
     return await _one(request, data_folder, LibrarySection.MACHINES, name)
 
 
-@MACHINES.put("/{name}", summary="Keep a machine of the shop", openapi_extra=TOML,
+@MACHINES.put("/{name}", summary="Store a machine of the shop", openapi_extra=TOML,
               response_model=EntryView)  # fmt: skip
 async def put_machine(request: Request, data_folder: InDataFolder, name: Own) -> Response:
-    """Refused unless it can be read; with If-Match, only if it has not changed since."""
+    """Store a valid machine file; with If-Match, only if the stored one is unchanged."""
     return await _put(request, data_folder, LibrarySection.MACHINES, name)
 
 
 @MACHINES.delete("/{name}", status_code=204, summary="Delete a machine of the shop")
 async def delete_machine(request: Request, data_folder: InDataFolder, name: Own) -> Response:
-    """Those of the library stay; If-Match as when it is kept."""
+    """Delete a machine of the shop; library machines cannot be deleted. Honours If-Match."""
     return await _delete(request, data_folder, LibrarySection.MACHINES, name)
 
 
-@MATERIALS.get("", response_model=list[EntryView], summary="All materials")
+@MATERIALS.get("", response_model=list[EntryView], summary="List materials")
 async def materials(request: Request, data_folder: InDataFolder) -> Response:
-    """By name."""
+    """List all materials by name."""
     return await _all(request, data_folder, LibrarySection.MATERIALS)
 
 
-@MATERIALS.get("/{name}", summary="One material")
+@MATERIALS.get("/{name}", summary="Show a material")
 async def material(request: Request, data_folder: InDataFolder, name: Known) -> Response:
-    """In canonical units."""
+    """Show a material in canonical units: mm, s, N, W, rev/s."""
     return await _one(request, data_folder, LibrarySection.MATERIALS, name)
 
 
-@MATERIALS.put("/{name}", summary="Keep a material of the shop", openapi_extra=TOML,
+@MATERIALS.put("/{name}", summary="Store a material of the shop", openapi_extra=TOML,
                response_model=EntryView)  # fmt: skip
 async def put_material(request: Request, data_folder: InDataFolder, name: Own) -> Response:
-    """As for machines."""
+    """Store a valid material file; with If-Match, only if the stored one is unchanged."""
     return await _put(request, data_folder, LibrarySection.MATERIALS, name)
 
 
 @MATERIALS.delete("/{name}", status_code=204, summary="Delete a material of the shop")
 async def delete_material(request: Request, data_folder: InDataFolder, name: Own) -> Response:
-    """As for machines."""
+    """Delete a material of the shop; library materials cannot be deleted. Honours If-Match."""
     return await _delete(request, data_folder, LibrarySection.MATERIALS, name)
 
 
@@ -113,7 +113,7 @@ async def _one(
     shown = orjson.dumps({**entry, "name": name, "is_own": held.is_own})
     if not held.is_own:
         return json_reply(request, shown)
-    # The tag of the file, so that who has looked may change it with If-Match.
+    # The tag of the file, so that a client that has read it may change it with If-Match.
     return tagged(request, shown, tag_of(held.text))
 
 
@@ -122,7 +122,7 @@ async def _put(
 ) -> Response:
     data = await request.body()
     if not data:
-        raise Unreadable("the body is empty: send the file")
+        raise Unreadable("the body is empty: send the bytes of the file")
     kept = await run_in_threadpool(
         library.put, data_folder, section, name, data, condition=_condition(request)
     )
@@ -139,7 +139,7 @@ async def _delete(
 
 
 def _condition(request: Request) -> Condition:
-    """If-Match, RFC 9110 §13.1.1."""
+    """Return the check of the If-Match header, RFC 9110 §13.1.1."""
     asked = request.headers.get("if-match")
 
     def is_met(text: bytes | None) -> bool:

@@ -1,4 +1,4 @@
-"""``/v1/control-runs`` and ``/v1/trials``: runs that are steered while they go on."""
+"""Routes of ``/v1/control-runs`` and ``/v1/trials``: runs that can be changed as they go on."""
 
 from collections.abc import Mapping
 from dataclasses import asdict
@@ -53,7 +53,7 @@ SHOWN_EVENTS = 500
 USUAL = {
     "requestBody": {"content": {"application/json": {"example": {"inputs": asdict(Inputs())}}}}
 }
-"""of a trial: what is left out is as here"""
+"""Example request of a trial cut; the service fills in missing inputs with these values."""
 
 
 @CONTROL.post(
@@ -66,7 +66,7 @@ async def ask_control(
     owner: ByOwner,
     key: IdempotencyHeader = None,
 ) -> Response:
-    """A job on the virtual machine, under the force loop."""
+    """Queue a job that runs a program on the virtual machine under force control."""
     return await queued(
         request, run_order(data_folder, JobKind.CONTROL, body, owner), key, require=runnable
     )
@@ -77,7 +77,7 @@ async def ask_control(
 async def ask_trial(
     request: Request, body: TrialBody, owner: ByOwner, key: IdempotencyHeader = None
 ) -> Response:
-    """A constant cut whose every input may change while it goes on."""
+    """Queue a trial: a constant cut whose inputs can be changed while it goes on."""
     inputs = body.inputs.model_dump(mode="json", exclude_none=True)
     await run_in_threadpool(changed, Inputs(), **inputs)
     words = {"inputs": inputs, "seed": body.seed, "pace": body.pace}
@@ -86,11 +86,11 @@ async def ask_trial(
     )
 
 
-@CONTROL.post("/{id}/changes", status_code=202, summary="Change something while it runs")
+@CONTROL.post("/{id}/changes", status_code=202, summary="Change a controlled run")
 async def change_control(
     request: Request, data_folder: InDataFolder, id: Id, body: ControlChanges
 ) -> Response:
-    """It takes effect within a tenth of a second; the run's events tell of it."""
+    """Request changes, which take effect within a tenth of a second and appear as events."""
     require_changes(body)
     words = {name: value for name, value in dumped(body).items() if value is not None}
     return await _ordered(
@@ -98,11 +98,11 @@ async def change_control(
     )
 
 
-@TRIALS.post("/{id}/changes", status_code=202, summary="Change inputs while it runs")
+@TRIALS.post("/{id}/changes", status_code=202, summary="Change inputs of a trial cut")
 async def change_trial(
     request: Request, data_folder: InDataFolder, id: Id, body: TrialChanges
 ) -> Response:
-    """As for runs under control; ``restart`` after the loop has stopped, ``end`` at last."""
+    """Change inputs of a trial; ``restart`` continues a stopped run, ``end`` finishes it."""
     job = jobs.get(data_folder, id, JobKind.TRIAL)
     inputs = body.inputs.model_dump(mode="json", exclude_none=True)
     if inputs:
@@ -115,7 +115,7 @@ async def change_trial(
 
 
 def _inputs(data_folder: DataFolder, job: Job) -> Inputs:
-    """Inputs with all that was asked so far."""
+    """Return the current inputs of a trial, with all requested changes."""
     inputs = changed(Inputs(), **job.request["inputs"])
     status = LiveFolder(path=data_folder.job_folder(job.id)).read_status()
     return inputs if status is None else changed(inputs, **status["inputs"])
@@ -124,9 +124,9 @@ def _inputs(data_folder: DataFolder, job: Job) -> Inputs:
 async def _ordered(
     request: Request, data_folder: DataFolder, job: Job, *orders: Mapping[str, Any]
 ) -> Response:
-    """Hand orders on to the process that runs."""
+    """Pass change requests on to the process that runs the job."""
     if job.state.is_finished:
-        raise Conflict(f"{job.kind.value} '{job.id}' is {job.state.value}: it changes no more")
+        raise Conflict(f"{job.kind.value} '{job.id}' is {job.state.value}: no changes possible")
     folder = LiveFolder(path=data_folder.job_folder(job.id))
 
     def hand_on() -> None:
@@ -144,36 +144,36 @@ def _add_common(routes: APIRouter, kind: JobKind) -> None:
     @routes.get("", response_model=PageView[JobView], summary=f"{kind.value}s, newest first",
                 operation_id=f"list_{kind.name.lower()}")  # fmt: skip
     async def listed(request: Request, data_folder: InDataFolder, cursor: OnPage) -> Response:
-        """A page of their jobs."""
+        """List the jobs of this kind page by page."""
         page = jobs.listed(data_folder, cursor, kind=kind)
         return page_reply(request, page, [job_view(job) for job in page.items])
 
-    @routes.get("/{id}", summary="The result", operation_id=f"result_{kind.name.lower()}")
+    @routes.get("/{id}", summary="Show the result", operation_id=f"result_{kind.name.lower()}")
     async def result(request: Request, id: Id) -> Response:
-        """Once it is over."""
+        """Show the result of a finished run."""
         return await result_reply(request, id, kind)
 
-    @routes.get("/{id}/status", summary="How it is now",
+    @routes.get("/{id}/status", summary="Show the current status",
                 operation_id=f"status_{kind.name.lower()}")  # fmt: skip
     async def status(request: Request, data_folder: InDataFolder, id: Id) -> Response:
-        """Inputs, feeds, force, power, what holds the feed; null before it has begun."""
+        """Show inputs, feeds, force, power and the active limit; null before the run begins."""
         return status_reply(request, jobs.get(data_folder, id, kind))
 
-    @routes.get("/{id}/log", summary="What has happened so far",
+    @routes.get("/{id}/log", summary="List past events",
                 operation_id=f"log_{kind.name.lower()}")  # fmt: skip
     async def log(request: Request, data_folder: InDataFolder, id: Id) -> Response:
-        """The last events, oldest first."""
+        """List the last events, oldest first."""
         jobs.get(data_folder, id, kind)
         events = await run_in_threadpool(_events, LiveFolder(path=data_folder.job_folder(id)))
         return json_reply(request, {"events": events})
 
-    @routes.get("/{id}/events", summary="What happens, as it happens", response_class=Response,
+    @routes.get("/{id}/events", summary="Stream events", response_class=Response,
                 responses=EVENTS, operation_id=f"events_{kind.name.lower()}")  # fmt: skip
     async def events(request: Request, data_folder: InDataFolder, id: Id) -> Response:
-        """Server-sent events ``job``, ``status``, ``rows``, ``event`` and ``gap``."""
+        """Stream the events ``job``, ``status``, ``rows``, ``event`` and ``gap``."""
         return await stream_reply(request, jobs.get(data_folder, id, kind))
 
-    @routes.get("/{id}/series", response_model=SeriesView, summary="Signals against time",
+    @routes.get("/{id}/series", response_model=SeriesView, summary="Signals over time",
                 operation_id=f"series_{kind.name.lower()}")  # fmt: skip
     async def series(  # noqa: PLR0913, PLR0917 (each is a parameter of the request)
         request: Request,
@@ -184,16 +184,16 @@ def _add_common(routes: APIRouter, kind: JobKind) -> None:
         end_s: End = None,
         points: Points = SERIES_POINTS,
     ) -> Response:
-        """A range of time in as many points as are wanted; also while it runs."""
+        """Show signals over a time range with the requested resolution, also during a run."""
         job = jobs.get(data_folder, id, kind)
         return await series_reply(
             request, job, signals=signals, begin=begin_s, end=end_s, points=points
         )
 
-    @routes.post("/{id}/cancel", response_model=JobView, summary="End it",
+    @routes.post("/{id}/cancel", response_model=JobView, summary="Cancel the run",
                  operation_id=f"cancel_{kind.name.lower()}")  # fmt: skip
     async def cancel(request: Request, data_folder: InDataFolder, id: Id) -> Response:
-        """End a run; its rows stay."""
+        """End a run; its rows are kept."""
         jobs.get(data_folder, id, kind)
         return json_reply(
             request, job_view(await run_in_threadpool(jobs.cancel, data_folder, id))
@@ -204,10 +204,10 @@ _add_common(CONTROL, JobKind.CONTROL)
 _add_common(TRIALS, JobKind.TRIAL)
 
 
-@CONTROL.get("/{id}/samples", summary="The run as a Parquet file", response_class=Response,
+@CONTROL.get("/{id}/samples", summary="Download the run as Parquet", response_class=Response,
              responses={200: {"content": {PARQUET: {}}}})  # fmt: skip
 async def samples(request: Request, data_folder: InDataFolder, id: Id) -> Response:
-    """Revolution by revolution."""
+    """Download the samples of a run, one row per revolution."""
     file = file_of(
         data_folder, jobs.get(data_folder, id, JobKind.CONTROL), SAMPLES, thing="samples"
     )
@@ -216,10 +216,10 @@ async def samples(request: Request, data_folder: InDataFolder, id: Id) -> Respon
     )
 
 
-@CONTROL.get("/{id}/report", summary="The report as a page", response_class=Response,
+@CONTROL.get("/{id}/report", summary="Show the report as a page", response_class=Response,
              responses={200: {"content": {"text/html": {}}}})  # fmt: skip
 async def report(request: Request, data_folder: InDataFolder, id: Id) -> Response:
-    """A page that stands for itself."""
+    """Show the self-contained HTML report of a run."""
     jobs.get(data_folder, id, JobKind.CONTROL)
     return report_reply(request, data_folder.job_folder(id) / REPORT, id=id)
 

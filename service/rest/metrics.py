@@ -1,4 +1,4 @@
-"""Counts and times of requests for Prometheus; of several processes together."""
+"""Prometheus metrics of requests, jobs and streams, also shared by several processes."""
 
 import os
 from functools import lru_cache
@@ -15,7 +15,7 @@ from prometheus_client import (
 from prometheus_client.multiprocess import MultiProcessCollector
 
 SHARED = "PROMETHEUS_MULTIPROC_DIR"
-"""environment variable of prometheus-client: where several processes count together"""
+"""Environment variable of prometheus-client with the folder that several processes share."""
 
 REQUESTS = Counter(
     "stepnc_requests_total",
@@ -28,7 +28,7 @@ SECONDS = Histogram(
     ("route",),
     buckets=(0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 10.0),
 )
-STREAMS = Gauge("stepnc_streams", "Clients that watch a run now", multiprocess_mode="livesum")
+STREAMS = Gauge("stepnc_streams", "Clients watching a run", multiprocess_mode="livesum")
 JOBS = Gauge("stepnc_jobs", "Jobs by state", ("state",), multiprocess_mode="mostrecent")
 
 TYPE = CONTENT_TYPE_LATEST
@@ -36,19 +36,19 @@ TYPE = CONTENT_TYPE_LATEST
 
 @lru_cache(maxsize=4096)
 def _counters(method: str, route: str, status: int) -> tuple[Counter, Histogram]:
-    """Looked up once: the library's own look-up takes longer than counting."""
+    """Return the metrics of a route from a cache, which is faster than the library."""
     return REQUESTS.labels(method, route, status), SECONDS.labels(route)
 
 
 def count(method: str, route: str, status: int, seconds: float) -> None:
-    """One request more."""
+    """Count a request and record its duration, in s."""
     requests, times = _counters(method, route, status)
     requests.inc()
     times.observe(seconds)
 
 
 def exposition() -> bytes:
-    """All of it as text."""
+    """Return all metrics in the Prometheus text format."""
     if SHARED not in os.environ:
         return generate_latest(REGISTRY)
     registry = CollectorRegistry()

@@ -1,4 +1,4 @@
-"""The dashboard's files, and the plotly.js that the installed package carries."""
+"""Routes of the dashboard's files, and of plotly.js from the installed package."""
 
 import gzip
 import hashlib
@@ -26,13 +26,13 @@ KINDS = {
 
 @ROUTES.get("/")
 async def root() -> Response:
-    """The first page."""
+    """Redirect to the first page of the dashboard."""
     return RedirectResponse("/dashboard/plan.html")
 
 
 @ROUTES.get("/dashboard/plotly.min.js")
 async def plotly(request: Request) -> Response:
-    """From the installed package: nothing is fetched from another host."""
+    """Serve plotly.js from the installed package: nothing is fetched from another host."""
     content, tag = await run_in_threadpool(_plotly)
     headers = {"etag": tag, "cache-control": "public, max-age=86400", "vary": "accept-encoding"}
     if matches(request.headers.get("if-none-match"), tag):
@@ -46,7 +46,7 @@ async def plotly(request: Request) -> Response:
 
 @ROUTES.get("/dashboard/{name}")
 async def file(request: Request, name: str) -> Response:
-    """One of the dashboard's files."""
+    """Serve a file of the dashboard."""
     found = files().get(name)
     if found is None:
         raise NotFound("page", name)
@@ -60,19 +60,19 @@ async def file(request: Request, name: str) -> Response:
 
 @ROUTES.get("/favicon.ico")
 async def favicon() -> Response:
-    """Browsers ask for it."""
+    """Serve the icon that browsers request by default."""
     return RedirectResponse("/dashboard/icon.svg")
 
 
 @cache
 def files() -> dict[str, Path]:
-    """By name."""
+    """Return the paths of the dashboard's files by file name."""
     return {path.name: path for path in FOLDER.iterdir() if path.suffix in KINDS}
 
 
 @cache
 def _plotly() -> tuple[bytes, str]:
-    """Packed once."""
+    """Return plotly.js compressed with gzip, and its entity tag; computed once."""
     from plotly.offline import get_plotlyjs  # noqa: PLC0415 (plotly takes a second)
 
     text = get_plotlyjs().encode()

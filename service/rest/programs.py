@@ -1,4 +1,4 @@
-"""``/v1/programs``: upload, list, look at, delete."""
+"""Routes of ``/v1/programs``: upload, list, check and delete programs, and request advice."""
 
 import asyncio
 import zlib
@@ -48,7 +48,7 @@ from stepnc_model.part21.reader import Part21File
 ROUTES = APIRouter(prefix="/v1/programs", tags=["programs"])
 
 EXAMPLES = FilePath(__file__).parents[2] / "examples" / "parts"
-"""samples, where the sources are; an installed wheel has none"""
+"""Folder of the sample programs; an installed wheel has none."""
 
 STEP = "application/step"
 
@@ -72,13 +72,13 @@ async def upload(
     request: Request,
     data_folder: InDataFolder,
     owner: ByOwner,
-    name: Annotated[str, Query(max_length=200, description="what it is called")] = "",
+    name: Annotated[str, Query(max_length=200, description="name of the program")] = "",
     example: Annotated[
-        str, Query(max_length=64, description="a sample, instead of a body")
+        str, Query(max_length=64, description="name of a sample, instead of a body")
     ] = "",
     key: IdempotencyHeader = None,
 ) -> Response:
-    """Keep the bytes as they are. They must be a Part 21 file; findings are another call."""
+    """Store the bytes unchanged. They must be a Part 21 file; findings have their own route."""
     if example:
         data = await run_in_threadpool(_sample, example)
         name = name or f"{example}.stpnc"
@@ -103,12 +103,12 @@ async def upload(
 async def list_programs(
     request: Request, data_folder: InDataFolder, cursor: OnPage
 ) -> Response:
-    """A page of them."""
+    """List programs page by page."""
     page: Page[StoredProgram] = programs.listed(data_folder, cursor)
     return page_reply(request, page, [program_view(each) for each in page.items])
 
 
-@ROUTES.get("/{id}", response_model=ProgramView, summary="One program")
+@ROUTES.get("/{id}", response_model=ProgramView, summary="Show a program")
 async def program(request: Request, data_folder: InDataFolder, id: Id) -> Response:
     """Show a program."""
     return json_reply(request, program_view(programs.get(data_folder, id)))
@@ -116,12 +116,12 @@ async def program(request: Request, data_folder: InDataFolder, id: Id) -> Respon
 
 @ROUTES.get(
     "/{id}/file",
-    summary="The bytes of a program, as they came",
+    summary="Download a program as it was uploaded",
     response_class=Response,
     responses={200: {"content": {STEP: {}}}},
 )
 async def program_bytes(request: Request, data_folder: InDataFolder, id: Id) -> Response:
-    """Byte for byte."""
+    """Download a program, byte for byte as it was uploaded."""
     stored = programs.get(data_folder, id)
     programs.require_file(data_folder, id)
     return file_reply(
@@ -134,11 +134,11 @@ async def program_bytes(request: Request, data_folder: InDataFolder, id: Id) -> 
     )
 
 
-@ROUTES.get("/{id}/findings", response_model=ContentsView, summary="What is wrong with it")
+@ROUTES.get("/{id}/findings", response_model=ContentsView, summary="Check a program")
 async def findings(
     request: Request, data_folder: InDataFolder, id: Id, units: Units = ISO
 ) -> Response:
-    """Workingsteps and findings, as ``stepnc check`` tells them."""
+    """List workingsteps and findings, as ``stepnc check`` reports them."""
     stored = programs.get(data_folder, id)
     programs.require_file(data_folder, id)
     tag = f'"{stored.sha256[:24]}-{units.value}"'
@@ -153,34 +153,34 @@ async def findings(
 
 @ROUTES.delete("/{id}", status_code=204, summary="Delete a program")
 async def delete(data_folder: InDataFolder, id: Id) -> Response:
-    """Delete a program; results made from it stay."""
+    """Delete a program; results made from it are kept."""
     await run_in_threadpool(programs.remove, data_folder, id)
     return Response(status_code=204)
 
 
-@ROUTES.post("/{id}/advice", status_code=202, response_model=JobView, summary="Ask for feeds")
+@ROUTES.post("/{id}/advice", status_code=202, response_model=JobView, summary="Request advice")
 async def ask_advice(
     request: Request, id: Id, body: AdviceRequest, owner: ByOwner, key: IdempotencyHeader = None
 ) -> Response:
-    """A job; its result is at ``/v1/advice/{job}``."""
+    """Queue a job that optimises the feeds; its result will be at ``/v1/advice/{job}``."""
     asked = JobRequest(kind=JobKind.ADVICE, request=dumped(body), program=id, owner=owner)
     return await queued(request, asked, key, require=runnable)
 
 
 @ROUTES.get(
-    "/{id}/advice", response_model=PageView[JobView], summary="Advice that was asked for"
+    "/{id}/advice", response_model=PageView[JobView], summary="List advice for a program"
 )
 async def advice_of(
     request: Request, data_folder: InDataFolder, cursor: OnPage, id: Id
 ) -> Response:
-    """Newest first."""
+    """List the advice jobs of a program, newest first."""
     programs.get(data_folder, id)
     page = jobs.listed(data_folder, cursor, kind=JobKind.ADVICE, program=id)
     return page_reply(request, page, [job_view(job) for job in page.items])
 
 
 def samples() -> list[str]:
-    """Names of the samples."""
+    """Return the names of the sample programs."""
     return sorted(path.stem for path in EXAMPLES.glob("*.stpnc"))
 
 
@@ -191,12 +191,12 @@ def _sample(name: Name) -> bytes:
 
 
 def _require_part21(data: bytes, name: str) -> None:
-    """Refuse what is no Part 21 file; what it holds is not kept."""
+    """Refuse bytes that are not a Part 21 file, whatever the file contains."""
     Part21File.from_bytes(data, name=name)
 
 
 def _answers(request: Request) -> CheckCache:
-    """Cache of recent findings; the first request makes it."""
+    """Return the cache of recent findings, created by the first request."""
     state = request.app.state
     if not hasattr(state, "findings"):
         state.findings = CheckCache()
@@ -205,7 +205,7 @@ def _answers(request: Request) -> CheckCache:
 
 
 def _contents(data_folder: DataFolder, stored: StoredProgram, units: str) -> bytes:
-    """Bytes of the answer.
+    """Check a stored program and return the findings as JSON bytes.
 
     Raises
     ------
@@ -221,10 +221,10 @@ def _contents(data_folder: DataFolder, stored: StoredProgram, units: str) -> byt
 
 
 async def _body(request: Request) -> bytes:
-    """The body, unpacked, within its bound."""
+    """Read the request body, unpacked, up to the size limit."""
     packing = request.headers.get("content-encoding", "identity").lower()
     if packing not in {"identity", "gzip"}:
-        raise Unreadable(f"Content-Encoding '{packing}': gzip or none")
+        raise Unreadable(f"unknown Content-Encoding '{packing}'; send gzip or none")
     bound = settings_of(request).upload_bytes
     unpack = zlib.decompressobj(wbits=31) if packing == "gzip" else None
     parts: list[bytes] = []
@@ -237,16 +237,16 @@ async def _body(request: Request) -> bytes:
         parts.append(part)
         await asyncio.sleep(0)
     if unpack is not None and not unpack.eof:
-        raise Unreadable("the gzip body is cut off")
+        raise Unreadable("the gzip body is incomplete")
     return b"".join(parts)
 
 
 def _unpacked(unpack: "zlib._Decompress", chunk: bytes, most: int) -> bytes:
-    """Decompressed chunk, up to a size."""
+    """Decompress a chunk, up to a number of bytes."""
     try:
         part = unpack.decompress(chunk, most)
     except zlib.error as error:
-        raise Unreadable(f"the body is no gzip: {error}") from error
+        raise Unreadable(f"the body is not valid gzip: {error}") from error
     if unpack.unused_data:
-        raise Unreadable("there is more behind the end of the gzip body: send one file")
+        raise Unreadable("data follows the end of the gzip body; send a single file")
     return part

@@ -1,4 +1,4 @@
-"""Rate limit of requests: a token bucket for each client. Running state."""
+"""Rate limit of requests, with a token bucket for each client. Running state."""
 
 import time
 from collections.abc import Callable
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from service.errors import TooMany
 
 MOST_CLIENTS = 10_000
-"""whose buckets are kept; a full bucket need not be"""
+"""Largest number of clients whose buckets are kept; full buckets can be dropped."""
 
 
 @dataclass(slots=True)
@@ -17,16 +17,16 @@ class _Bucket:
 
 
 class RateLimit:
-    """Buckets by client, in one process.
+    """Token buckets by client, within one process.
 
     Parameters
     ----------
     rate : float
-        Requests a second in the long run; 0: no limit.
+        Requests per second on average; 0: no limit.
     burst : int
-        Requests at once.
+        Requests that may be sent at once.
     now : callable
-        S.
+        Clock, in s.
     """
 
     def __init__(
@@ -36,12 +36,12 @@ class RateLimit:
         self._buckets: dict[str, _Bucket] = {}
 
     def take(self, client: str) -> None:
-        """One request more.
+        """Take a token for a request of a client.
 
         Raises
         ------
         TooMany
-            With the time to wait.
+            When the bucket is empty; carries the time to wait.
         """
         if not self._rate:
             return
@@ -57,7 +57,7 @@ class RateLimit:
         bucket.tokens -= 1.0
 
     def _make_room(self, now: float) -> None:
-        """Forget those whose buckets are full again, and if need be the oldest."""
+        """Drop clients whose buckets are full again, and if necessary the oldest ones."""
         if len(self._buckets) < MOST_CLIENTS:
             return
         refill = self._burst / self._rate

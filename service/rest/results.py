@@ -1,4 +1,4 @@
-"""Routes of all kinds of jobs: their result, the rows of their run, their events."""
+"""Replies that all kinds of jobs share: result, rows of the run, and events."""
 
 from collections.abc import AsyncIterator, Callable
 from functools import partial
@@ -24,33 +24,33 @@ from service.storage.jobs import Job, JobKind, JobState
 
 SERIES_POINTS = 1000
 
-Begin = Annotated[float | None, Query(description="first moment, s", allow_inf_nan=False)]
-End = Annotated[float | None, Query(description="last moment, s", allow_inf_nan=False)]
-Points = Annotated[int, Query(ge=1, le=5000, description="at most, in each signal")]
+Begin = Annotated[float | None, Query(description="start time, s", allow_inf_nan=False)]
+End = Annotated[float | None, Query(description="end time, s", allow_inf_nan=False)]
+Points = Annotated[int, Query(ge=1, le=5000, description="most points in each signal")]
 Signals = Annotated[
-    str, Query(max_length=1000, description="names with commas between; empty: all")
+    str, Query(max_length=1000, description="comma-separated names; empty: all signals")
 ]
 
 
 READERS = CapacityLimiter(2)
-"""of all rows of a run at once: each takes a processor, and some hundred MB"""
+"""Limit of threads that read whole runs at once: each takes a processor and some 100 MB."""
 
 P = ParamSpec("P")
 T = TypeVar("T")
 
 
 async def read_in_turn(read: Callable[P, T], *args: P.args, **words: P.kwargs) -> T:
-    """Read rows in a thread, when not too many do: memory and processors are for all."""
+    """Read rows in a thread, while few other threads do: memory and processors are shared."""
     return await to_thread.run_sync(partial(read, *args, **words), limiter=READERS)
 
 
 async def result_reply(request: Request, id: str, kind: JobKind) -> Response:
-    """The result of a job.
+    """Reply with the result of a job.
 
     Raises
     ------
     NotFound, Conflict
-        When there is no such job, or it has no result (yet).
+        When the job does not exist, or has no result (yet).
     """
     data_folder = data_folder_of(request)
     job = jobs.get(data_folder, id, kind)
@@ -63,12 +63,12 @@ async def result_reply(request: Request, id: str, kind: JobKind) -> Response:
 
 
 def require_done(job: Job) -> None:
-    """Refuse what needs the end of a job.
+    """Refuse a request that needs the job to have succeeded.
 
     Raises
     ------
     Conflict
-        When it has not succeeded.
+        When the job has not succeeded.
     """
     if job.state is not JobState.SUCCEEDED:
         where = f"see /v1/jobs/{job.id}"
@@ -84,7 +84,7 @@ async def series_reply(
     end: float | None,
     points: int,
 ) -> Response:
-    """Signals of a range of time, as many points as a screen shows."""
+    """Reply with signals over a time range, thinned to as many points as a screen shows."""
     first = -inf if begin is None else begin
     last = inf if end is None else end
     if first > last:
@@ -121,12 +121,12 @@ def _live(request: Request, job: Job) -> LiveFolder:
 
 
 def status_reply(request: Request, job: Job) -> Response:
-    """Latest status snapshot of a run; null: there is none yet."""
+    """Reply with the latest status snapshot of a run; null before the first one."""
     return json_reply(request, _live(request, job).read_status())
 
 
 async def stream_reply(request: Request, job: Job) -> Response:
-    """Events of a run, as a stream."""
+    """Reply with the events of a run as a stream."""
     hub = hub_of(request)
     hub.require_room()
 
@@ -140,12 +140,12 @@ async def stream_reply(request: Request, job: Job) -> Response:
 
 
 def file_of(data_folder: DataFolder, job: Job, name: str, *, thing: str) -> Path:
-    """A file that a job has left.
+    """Return the path of a file written by a job.
 
     Raises
     ------
     NotFound
-        When it has left none.
+        When the job has written no such file.
     """
     file = data_folder.job_folder(job.id) / name
     if not file.is_file():

@@ -1,29 +1,29 @@
-"""Role that a request needs: one table, for the access check and for the OpenAPI document."""
+"""Role needed for each request, shared by the access check and the OpenAPI document."""
 
 from service.errors import Forbidden
 from service.storage.jobs import JobKind
 from service.storage.keys import Key, Role
 
 OPERATED = ("/v1/control-runs", "/v1/trials")
-"""where a machine is steered"""
+"""Paths of runs that steer a machine; changes need the role operator."""
 
 SEEN = ("/v1/evaluations",)
-"""tables that are made on demand, and change nothing"""
+"""Paths whose requests only compute tables and change nothing; they need the role viewer."""
 
 JOBS = "/v1/jobs/"
-"""of all kinds"""
+"""Path of jobs of all kinds."""
 
 LOOKING = frozenset({"GET", "HEAD", "OPTIONS"})
 
 KEPT = ("/v1/", "/metrics")
-"""what keys protect; the dashboard's files and the signs of life are everybody's"""
+"""Paths that need a key; the dashboard's files and the health checks are public."""
 
 DOCUMENT = "/v1/openapi.json"
-"""tells how to ask, and nothing else"""
+"""Path of the OpenAPI document, which is public because it only describes the API."""
 
 
 def role_for(method: str, path: str) -> Role | None:
-    """The role that opens a path; None: the route asks, as the kind of the job says."""
+    """Return the role that a request needs; None if its route decides by the kind of job."""
     if method in LOOKING or path.startswith(SEEN):
         return Role.VIEWER
     if path.startswith(JOBS):
@@ -32,17 +32,17 @@ def role_for(method: str, path: str) -> Role | None:
 
 
 def role_to_end(kind: JobKind) -> Role:
-    """The role that may end a job, and delete what it made."""
+    """Return the role that may cancel or delete a job of a kind."""
     return Role.OPERATOR if kind.is_live else Role.PLANNER
 
 
 def is_protected(path: str) -> bool:
-    """Whether a key is asked for, where keys are asked for at all."""
+    """Whether a path needs a key, where the service requires keys."""
     return path.startswith(KEPT) and path != DOCUMENT
 
 
 def require(key: Key, role: Role | None) -> None:
-    """Refuse who may not.
+    """Refuse a key that lacks the role.
 
     Raises
     ------
@@ -50,4 +50,4 @@ def require(key: Key, role: Role | None) -> None:
     """
     if role is not None and not key.opens(role):
         has = ", ".join(sorted(key.roles))
-        raise Forbidden(f"this needs the role {role.value}; the key has {has}")
+        raise Forbidden(f"this request needs the role {role.value}; the key has {has}")

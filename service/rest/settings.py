@@ -1,4 +1,4 @@
-"""Settings of the service; passed to its processes in the environment."""
+"""Settings of the service, passed to its worker processes in the environment."""
 
 import json
 import os
@@ -8,7 +8,7 @@ from pathlib import Path
 from service.errors import Unavailable
 
 VARIABLE = "STEPNC_SERVE"
-"""environment variable in which the settings go from process to process"""
+"""Environment variable that passes the settings from process to process."""
 
 LOOPBACK = frozenset({"127.0.0.1", "::1", "localhost"})
 
@@ -17,27 +17,27 @@ MIB = 1 << 20
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Settings:
-    """All of them."""
+    """Settings of the service."""
 
     data: str
-    """folder"""
+    """Path of the data folder."""
     knowledge: str = ""
-    """place of the knowledge base; empty: that of the environment, else in the folder"""
+    """Knowledge base; empty: from the environment, or else inside the data folder."""
     host: str = "127.0.0.1"
     port: int = 8000
     names: tuple[str, ...] = ()
-    """names under which clients know this host, beside the one it listens on"""
+    """Additional host names by which clients reach the service."""
     needs_keys: bool = False
     upload_bytes: int = 32 * MIB
-    """Upload bytes of a program, unpacked"""
+    """Largest program that may be uploaded, unpacked, in bytes."""
     rate: float = 0.0
-    """requests a second of one client, in the long run; 0: as many as there come"""
+    """Requests per second that a client may send on average; 0: no limit."""
     burst: int = 100
-    """requests at once"""
+    """Requests that a client may send at once."""
     body_s: float = 60.0
-    """in which a body arrives"""
+    """Time within which a request body must arrive, in s."""
     level: str = "info"
-    """Level of the log"""
+    """Level of the log."""
 
     @property
     def has_request_log(self) -> bool:
@@ -55,17 +55,17 @@ class Settings:
         return Path(self.data)
 
     def hand_on(self) -> None:
-        """Put them where processes started from this one find them."""
+        """Store the settings in the environment for processes started from this one."""
         os.environ[VARIABLE] = json.dumps(asdict(self))
 
 
 def handed_on() -> Settings:
-    """The settings that the starting process has left.
+    """Load the settings that the parent process has stored in the environment.
 
     Raises
     ------
     Unavailable
-        When it has left none.
+        When the environment holds no settings.
     """
     text = os.environ.get(VARIABLE)
     if text is None:

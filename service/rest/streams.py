@@ -1,8 +1,8 @@
-"""Server-sent events of runs: one reader of a run's files for all clients that watch it.
+"""Server-sent events of runs: one reader of a run's files serves all subscribers of the run.
 
-A reader looks at the files of a run some times a second as long as somebody watches, makes one
-message of what is new, and hands the same bytes to everybody. A client that cannot follow
-loses messages, is told so by an event ``gap``, and reads the series again. Running state.
+While a run has subscribers, its reader polls the files of the run several times a second, makes
+one message of what is new and sends the same bytes to every subscriber. A client that is too
+slow loses messages, is told so by an event ``gap``, and should read the series again.
 """
 
 import asyncio
@@ -28,25 +28,25 @@ from service.storage.jobs import Job
 LOG = structlog.get_logger("streams")
 
 TICK = 0.1
-"""s between two looks at a run"""
+"""Interval between two polls of a run's files, in s."""
 
 ROWS = 40
-"""of the series in one message; more are thinned out: whoever needs them asks for a window"""
+"""Most rows of the series in one message; longer stretches are thinned out."""
 
 WAITING = 50
-"""messages that wait for a client before it has lost some"""
+"""Messages that may wait for a client before further ones are dropped."""
 
 MOST_CLIENTS = 1000
 
 QUIET = 10.0
-"""s after which something is said, so that a broken line is noticed"""
+"""Time without a message after which a comment keeps the connection alive, in s."""
 
 END_OF_STREAM = b""
-"""the last message"""
+"""Marker of the end of the stream in a client's queue."""
 
 
 def event(name: str, content: Any) -> bytes:
-    """One server-sent event."""
+    """Encode a server-sent event."""
     data = orjson.dumps(content, option=orjson.OPT_SERIALIZE_NUMPY)
     return b"event: " + name.encode() + b"\ndata: " + data + b"\n\n"
 
@@ -59,7 +59,7 @@ class StreamClient:
     has_lost: bool = False
 
     def give(self, message: bytes) -> None:
-        """A message, if the client can follow."""
+        """Queue a message; drop it if the client is too slow."""
         if self.has_lost and self.queue.qsize() < WAITING // 2:
             self.has_lost = False
             self.queue.put_nowait(event("gap", {}))
@@ -71,7 +71,7 @@ class StreamClient:
             self.has_lost = True
 
     def end(self) -> None:
-        """Nothing more comes; who could not follow to the end is told so first."""
+        """End the stream; tell a client that has lost messages before it ends."""
         if self.has_lost or self.queue.full():
             while self.queue.qsize() > WAITING - 2:
                 self.queue.get_nowait()
@@ -80,7 +80,7 @@ class StreamClient:
 
 
 class RunReader:
-    """Reads one run for all its clients. Running state."""
+    """Reads the files of one run for all its subscribers. Running state."""
 
     def __init__(self, data_folder: DataFolder, id: str) -> None:
         self.clients: set[StreamClient] = set()
@@ -93,13 +93,13 @@ class RunReader:
         self._status: bytes = b""
 
     async def run(self) -> None:
-        """Run until the job has ended, or no subscriber is left."""
+        """Poll and send until the job has ended or no subscriber is left."""
         try:
             with suppress(NotFound):
                 self._skip()
                 while self.clients:
                     job = jobs.get(self._data_folder, self._id)
-                    # After the job was looked at: what it wrote before its end is seen.
+                    # The job is read first, so that what it wrote before its end is not missed.
                     for message in self._news(job):
                         for client in self.clients:
                             client.give(message)
@@ -107,24 +107,24 @@ class RunReader:
                         break
                     await asyncio.sleep(TICK)
         finally:
-            # Also after a fault: nobody waits for what does not come.
+            # Also after an error: no subscriber may wait for messages that never come.
             self.is_finished = True
             for client in self.clients:
                 client.end()
 
     def _skip(self) -> None:
-        """Read on from now; earlier rows are in the series and in the list of events."""
+        """Skip rows and events written so far; subscribers read those from the files."""
         series = open_series(self._folder.series)
         self._row = 0 if series is None else len(series)
         while (read := read_on(self._folder.events, self._offset)).lines:
             self._offset = read.offset
 
     def first(self) -> list[bytes]:
-        """First messages for a new subscriber: the job and the status."""
+        """Return the first messages for a new subscriber: the job and the status."""
         return [message for message in (self._job, self._status) if message]
 
     def _news(self, job: Job) -> list[bytes]:
-        """Messages about what has changed."""
+        """Return messages about everything that has changed since the last poll."""
         news = []
         status = self._folder.read_status()
         said = b"" if status is None else event("status", status)
@@ -146,7 +146,7 @@ class RunReader:
     def _rows(self) -> bytes | None:
         series = open_series(self._folder.series)
         if series is not None and len(series) < self._row:
-            # Another attempt has begun anew.
+            # The job was started again and writes a new series.
             self._row = 0
         if series is None or len(series) <= self._row:
             return None
@@ -159,7 +159,7 @@ class RunReader:
 
 
 class StreamHub:
-    """Readers by run. Running state."""
+    """Readers of all watched runs, by run id. Running state."""
 
     def __init__(self, data_folder: DataFolder) -> None:
         self._data_folder = data_folder
@@ -168,7 +168,7 @@ class StreamHub:
         self._clients = 0
 
     def require_room(self) -> None:
-        """Refuse one client more than can watch, before anything was answered.
+        """Refuse a subscriber beyond the allowed number, before the answer begins.
 
         Raises
         ------
@@ -178,12 +178,12 @@ class StreamHub:
             raise TooMany(10.0)
 
     async def watch(self, id: str) -> AsyncIterator[bytes]:
-        """Messages for one more client.
+        """Yield the messages of a run to a new subscriber.
 
         Raises
         ------
         TooMany
-            When as many as can be watch already.
+            When the allowed number of subscribers is reached.
         """
         self.require_room()
         client = StreamClient()
@@ -223,13 +223,13 @@ class StreamHub:
             if self._readers.get(id) is reader:
                 del self._readers[id]
             if not ended.cancelled() and (error := ended.exception()) is not None:
-                LOG.error("a run cannot be watched", job=id, reason=str(error))
+                LOG.error("watching a run failed", job=id, reason=str(error))
 
         task.add_done_callback(done)
         return reader
 
     async def close(self) -> None:
-        """End all streams: the service stops."""
+        """End all streams when the service stops."""
         for reader in self._readers.values():
             for client in reader.clients:
                 client.end()
